@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+#
+# make                build/mesofit (also ./mesofit) and build/libmesofit.a
+# make test           builds and passes all tests: check, then check-physics
+# make check          unit, reference and command-line tests (about a minute)
+# make check-physics  laws and exact limits (minutes)
+# make asan           the whole test suite under address and undefined-behaviour sanitizers
+# make lint           formatting, static analysis, layers, names, licence lines
+# make bench          speed of the engine on this machine
+# make WERROR=1 …     warnings are errors
+
+MAKEFLAGS += --no-print-directory
+
+BUILD   ?= build
+PACKAGES = gsl libcjson
+WARN     = -Wall -Wextra -Wshadow -Wpointer-arith -Wstrict-prototypes -Wmissing-prototypes \
+           -Wvla -Wundef $(if $(WERROR),-Werror)
+# No -ffast-math: NaN must stay visible. These two only drop errno and FP exception flags, which
+# nothing here reads, and let sqrt and comparisons vectorise.
+OPTIMISE = -O3 -fno-math-errno -fno-trapping-math -ffp-contract=fast
+CFLAGS  ?= $(OPTIMISE) -g
+override CFLAGS += -std=c11 -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 -fopenmp $(WARN) \
+           -Iinclude -MMD -MP $(shell pkg-config --cflags $(PACKAGES)) $(SANITIZE)
+LDLIBS  := $(shell pkg-config --libs $(PACKAGES)) -lm
+override LDFLAGS += -fopenmp $(SANITIZE)
+
+SOURCES  = $(wildcard src/*/*.c)
+OBJECTS  = $(SOURCES:%.c=$(BUILD)/%.o)
+LIBRARY  = $(BUILD)/libmesofit.a
+PROGRAM  = $(BUILD)/mesofit
+
+.PHONY: all check check-physics asan lint bench clean
+all: $(PROGRAM) mesofit
+
+mesofit: $(PROGRAM)
+	ln -sf $(PROGRAM) $@
+
+$(LIBRARY): $(filter-out $(BUILD)/src/app/%,$(OBJECTS))
+	@rm -f $@
+	ar rcs $@ $^
+
+$(PROGRAM): $(filter $(BUILD)/src/app/%,$(OBJECTS)) $(LIBRARY)
+	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
+$(BUILD)/%.o: %.c Makefile
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) -c -o $@ $<
+
+# Tests: one program a file; a test may use the helpers in tests/shared.
+UNIT      = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/unit/*/test_*.c))
+REFERENCE = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/reference/test_*.c))
+CLI       = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/cli/test_*.c))
+PHYSICS   = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/physics/test_*.c))
+SHARED    = $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/shared/*.c))
+TESTS     = $(UNIT) $(REFERENCE) $(CLI) $(PHYSICS)
+.SECONDARY: $(TESTS:=.o) $(SHARED)
+
+$(TESTS): CFLAGS += -Itests
+$(TESTS): %: %.o $(SHARED) $(LIBRARY)
+	$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LDLIBS)
+
+.PHONY: test tests
+tests: all $(TESTS)
+test:
+	$(MAKE) -j$(shell nproc) tests
+	$(MAKE) check
+	$(MAKE) check-physics
+
+check: all $(UNIT) $(REFERENCE) $(CLI)
+	MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(UNIT) $(REFERENCE) $(CLI)
+
+check-physics: all $(PHYSICS)
+	MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(PHYSICS)
+
+asan:
+	$(MAKE) BUILD=build/asan SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=all" \
+	    CFLAGS="-O1 -g -fno-omit-frame-pointer" check-all
+
+.PHONY: check-all
+check-all: $(PROGRAM) $(TESTS)
+	MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(TESTS)
+
+lint: $(LIBRARY)
+	tests/tools/lint.sh $(LIBRARY)
+
+bench: $(PROGRAM)
+	tests/bench/run.sh $(PROGRAM)
+
+clean:
+	rm -rf build mesofit
+
+-include $(OBJECTS:.o=.d) $(TESTS:=.d) $(SHARED:.o=.d)

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Faults of one input, collected in the order found and told together.
+#pragma once
+
+#include "base/status.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum {
+    FAULTS_TOLD = 20,   ///< more than that have one cause, not twenty
+    FAULTS_SIZE = 8000, ///< below the size of a status message, with room for "… and 99 more"
+};
+
+/// Start from {0}. Nothing to free.
+struct faults {
+    size_t count, told;
+    bool full;
+    size_t length;
+    char text[FAULTS_SIZE]; ///< one told fault a line
+};
+
+/// Add one line. After FAULTS_TOLD lines, or when the text is full, faults are only counted.
+void faults_add(struct faults *faults, const char *line);
+
+/// OK if there are none; otherwise BAD_INPUT with all lines and how many were left out.
+enum status faults_status(const struct faults *faults) MUST_USE;

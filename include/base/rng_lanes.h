@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Philox for vector kernels.
+#pragma once
+
+#include "base/lanes.h"
+#include "base/rng.h"
+
+/// How many numbers rng_philox_lanes makes at a time.
+enum { RNG_LANES = 2 * LANES };
+
+/// Word 0 of Philox4x32-10 for RNG_LANES counters (c0, c1[n], c2[n], c3): rng_philox_lane of each.
+///
+/// Even and odd lanes go separately, in the lower halves of 64-bit words whose upper halves hold
+/// rubbish. A round is a chain of seven cycles; the four chains side by side keep a processor busy.
+/// Measured on Zen 3: 44 cycles for 8 numbers, with two chains 47, one number after another 193.
+LANES_INLINE void rng_philox_lanes(uint32_t key0, uint32_t key1, uint32_t c0, const int32_t *c1,
+                                   const int32_t *c2, uint32_t c3, int32_t *word0) {
+    enum { CHAINS = 4 };
+    const lanes_wide multiplier0 = RNG_PHILOX_MULTIPLIER0 + (lanes_wide){0};
+    const lanes_wide multiplier1 = RNG_PHILOX_MULTIPLIER1 + (lanes_wide){0};
+    lanes_wide x0[CHAINS], x1[CHAINS], x2[CHAINS], x3[CHAINS];
+#pragma GCC unroll 4
+    for (int n = 0; n < CHAINS; n++) {
+        const int vector = n / 2 * LANES, odd = n % 2;
+        x0[n] = c0 + (lanes_wide){0};
+        x1[n] = (lanes_wide)lanes_load_int(c1 + vector) >> 32 * odd;
+        x2[n] = (lanes_wide)lanes_load_int(c2 + vector) >> 32 * odd;
+        x3[n] = c3 + (lanes_wide){0};
+    }
+#pragma GCC unroll 10
+    for (uint32_t round = 0; round < 10; round++) {
+        const uint64_t round_key0 = (uint32_t)(key0 + round * RNG_PHILOX_STEP0);
+        const uint64_t round_key1 = (uint32_t)(key1 + round * RNG_PHILOX_STEP1);
+#pragma GCC unroll 4
+        for (int n = 0; n < CHAINS; n++) {
+            const lanes_wide product0 = lanes_multiply_low(x0[n], multiplier0);
+            const lanes_wide product1 = lanes_multiply_low(x2[n], multiplier1);
+            x0[n] = (product1 >> 32) ^ x1[n] ^ round_key0;
+            x1[n] = product1;
+            x2[n] = (product0 >> 32) ^ x3[n] ^ round_key1;
+            x3[n] = product0;
+        }
+    }
+    for (int n = 0; n < CHAINS; n += 2)
+        lanes_store_int(word0 + n / 2 * LANES, (lanes_int)((x0[n] & 0xFFFFFFFF) | x0[n + 1] << 32));
+}

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file How a function says that it failed.
+///
+/// Every function that can fail returns `enum status` and leaves one line for a person in a
+/// buffer of its thread. Libraries never print or exit; `main` prints the line once.
+#pragma once
+
+#include <stdarg.h>
+
+enum status {
+    STATUS_OK = 0,
+    STATUS_BAD_INPUT,   ///< the user's file or option is wrong
+    STATUS_IO,          ///< a file cannot be read or written
+    STATUS_NO_MEMORY,   ///< an allocation failed
+    STATUS_UNSTABLE,    ///< a simulation blew up: a score for a fit, an error for `simulate`
+    STATUS_UNCONVERGED, ///< an iteration ended before its criterion was met
+    STATUS_INTERRUPTED, ///< the user asked to stop
+};
+
+#define MUST_USE __attribute__((warn_unused_result))
+
+/// Record a message for the calling thread and return `status`.
+enum status status_fail(enum status status, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/// Put "prefix: " before the message of the calling thread and return `status` unchanged.
+enum status status_prefix(enum status status, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/// Message of the last failure in the calling thread; never NULL.
+const char *status_message(void);
+
+/// Name of a status as it stands in summary.json, such as "unstable".
+const char *status_name(enum status status);
+
+/// Leave the function with the status of `call` unless it is STATUS_OK.
+#define TRY(call)                                                                                  \
+    do {                                                                                           \
+        const enum status try_status_ = (call);                                                    \
+        if (try_status_ != STATUS_OK)                                                              \
+            return try_status_;                                                                    \
+    } while (0)
+
+/// In a function that owns things: store the status of `call` in the local variable `status` and
+/// go to the label `done` unless it is STATUS_OK.
+#define CHECK(call)                                                                                \
+    do {                                                                                           \
+        status = (call);                                                                           \
+        if (status != STATUS_OK)                                                                   \
+            goto done;                                                                             \
+    } while (0)

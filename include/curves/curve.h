@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file A function of the pair distance: Φ(r) or ω(r), and the record of its family.
+///
+/// A family is one record: name, parameters, value. To add one, write the record and add it to a
+/// list in curve.c.
+#pragma once
+
+#include "base/fields.h"
+#include "base/status.h"
+
+/// Record of a function family.
+struct curve_family {
+    const char *name;           ///< value of "law" in a scene
+    const char *summary;        ///< the formula, one line
+    const struct field *fields; ///< parameters; must contain "cutoff" unless `cutoff` knows better
+    size_t size;                ///< bytes of the parameter struct
+    double (*value)(const void *parameters, double r);
+    double (*cutoff)(const void *parameters);
+    void (*clear)(void *parameters); ///< frees what the parameters own; NULL if nothing
+};
+
+/// A member of a family. Owns its parameters.
+struct curve {
+    const struct curve_family *family;
+    void *parameters;
+};
+
+/// Potentials Φ(r) that a scene can name, NULL-terminated.
+extern const struct curve_family *const curve_potentials[];
+
+/// Weights ω(r) that a scene can name, NULL-terminated.
+extern const struct curve_family *const curve_weights[];
+
+/// Family called `name` in `list`, or NULL.
+const struct curve_family *curve_find(const struct curve_family *const *list, const char *name);
+
+/// Start a curve with the family's default parameters.
+enum status curve_create(struct curve *curve, const struct curve_family *family) MUST_USE;
+
+/// Free the parameters; a zeroed curve is fine.
+void curve_clear(struct curve *curve);
+
+/// Value at distance r ≥ 0 [λ]: Φ [k_B T_0] or ω [sqrt(mass/time)]. Finite for every r ≥ 0.
+/// Threads: any number at once.
+double curve_value(const struct curve *curve, double r);
+
+/// Distance beyond which the value is 0 [λ].
+double curve_cutoff(const struct curve *curve);

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file A curve through given points: the law "table".
+#pragma once
+
+#include "curves/curve.h"
+
+#include <gsl/gsl_spline.h>
+
+/// Cubic spline through points (r_k, y_k); below r_0 the straight line with the spline's slope
+/// there, beyond the cutoff 0.
+extern const struct curve_family sampled_family;
+
+struct sampled_parameters {
+    char file[FIELD_TEXT_SIZE]; ///< where the points came from; "" if from memory
+    double cutoff;              ///< 0 means the last point [λ]
+    gsl_spline *spline;         ///< NULL until sampled_set_points
+    double first_slope;
+};
+
+/// Give a curve of this family its points.
+/// @param[in] r, y  shape [count], r ≥ 0 growing strictly, count ≥ 3   [λ], [curve's unit]
+/// Fails: NO_MEMORY; BAD_INPUT if the last r lies below the cutoff or r does not grow.
+enum status sampled_set_points(struct curve *curve, const double *r, const double *y,
+                               size_t count) MUST_USE;
+
+/// A new curve of this family through points in memory.
+enum status sampled_create(struct curve *curve, const double *r, const double *y,
+                           size_t count) MUST_USE;

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Metropolis Monte Carlo of one configuration.
+///
+/// N. Metropolis et al., J. Chem. Phys. 21, 1087 (1953): each sweep tries to move every particle
+/// once, in the order of the arrays, by a uniform random vector of a cube. Same particles, same
+/// neighbour search and same tables as the dynamics.
+#pragma once
+
+#include "curves/table.h"
+#include "system/neighbours.h"
+
+struct metropolis {
+    struct particles particles;
+    struct neighbours neighbours;  ///< full list
+    const struct table *potential; ///< borrowed; may be exchanged between sweeps
+    double temperature;            ///< [k_B T_0]
+    double step;                   ///< half edge of the cube of moves [λ]
+    uint64_t seed;
+    uint32_t sweep; ///< sweeps so far: the counter of the random numbers
+    uint64_t accepted, tried;
+};
+
+/// `count` particles on a lattice in `box`, ready for sweeps with `potential`.
+/// Fails: NO_MEMORY; BAD_INPUT if the box is below twice the cutoff, with some room for a list.
+enum status metropolis_init(struct metropolis *metropolis, const struct box *box, size_t count,
+                            const struct table *potential, double temperature,
+                            uint64_t seed) MUST_USE;
+void metropolis_clear(struct metropolis *metropolis);
+
+/// Sweeps whose step size is tuned towards 40 % accepted. Fails: NO_MEMORY, INTERRUPTED.
+enum status metropolis_equilibrate(struct metropolis *metropolis, uint32_t sweeps) MUST_USE;
+
+/// Sweeps with a fixed step size, as detailed balance asks. Fails: NO_MEMORY, INTERRUPTED.
+enum status metropolis_run(struct metropolis *metropolis, uint32_t sweeps) MUST_USE;
+
+/// Sort the particles and build the list anew from the positions alone, so that a run that
+/// continues and one that was reloaded here go on with the same bits. Fails: NO_MEMORY.
+enum status metropolis_refresh(struct metropolis *metropolis) MUST_USE;

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file A running simulation: owns the state, steps it, watches over it.
+#pragma once
+
+#include "base/memory.h"
+#include "dynamics/integrator.h"
+#include "forces/pair.h"
+#include "system/neighbours.h"
+#include "system/placement.h"
+
+/// Everything that defines a simulation, but for its tables. Plain data; copy it freely.
+struct simulation_setup {
+    struct box box;
+    struct placement placement;
+    double temperature;       ///< of the start and of the noise              [k_B T_0]
+    double time_step;         ///< Δt                                         [τ]
+    double skin;              ///< of the neighbour list                      [λ]
+    double temperature_limit; ///< above limit × temperature: UNSTABLE
+    const struct integrator *integrator;
+    struct integrator_parameters integrator_parameters;
+    const struct table *potential; ///< Φ(r) or NULL; borrowed
+    const struct table *weight;    ///< ω(r) or NULL; borrowed
+    uint64_t seed;
+};
+
+struct simulation {
+    struct simulation_setup setup;
+    struct particles particles;
+    struct neighbours neighbours;
+    struct pair_law law;
+    uint64_t step;
+    enum pair_wants wants; ///< set before a step whose sums will be read
+    struct pair_sums sums; ///< of the last step, if it was asked for them
+    uint64_t list_builds;
+};
+
+/// Positions [λ] and velocities [λ/τ] from a file; shape [count] each.
+struct simulation_start {
+    const double *position[3];
+    const double *velocity[3]; ///< velocity[0] NULL: draw them
+};
+
+/// Place the particles, draw their velocities and compute the first forces.
+/// @param[in] start  for PLACEMENT_FILE, else NULL
+/// Fails: BAD_INPUT (box below twice the cutoff, no room), NO_MEMORY, UNSTABLE.
+enum status simulation_init(struct simulation *simulation, const struct simulation_setup *setup,
+                            const struct simulation_start *start) MUST_USE;
+void simulation_clear(struct simulation *simulation);
+
+/// Advance by `steps` steps.
+/// Fails: UNSTABLE with the step and the largest force in the message as soon as a velocity is not
+/// finite or the temperature passes its limit; INTERRUPTED if the user asked to stop.
+enum status simulation_run(struct simulation *simulation, uint64_t steps) MUST_USE;
+
+/// @name For integrator_list
+/// v += ½ Δt F, then x += Δt v.
+void simulation_kick_and_drift(struct simulation *simulation);
+
+/// v += ½ Δt F.
+void simulation_kick(struct simulation *simulation);
+
+/// Rebuild the list if it is stale, set kernel velocities to
+/// velocity + ahead · force, and replace the forces by those at the present positions.
+enum status simulation_compute_forces(struct simulation *simulation, double ahead) MUST_USE;
+
+/// Pressure [k_B T_0 / λ^d] from the sums of the last step: ρ k_B T + conservative virial / (d V).
+/// T is the set temperature in a dissipative simulation and the kinetic one otherwise.
+double simulation_pressure(const struct simulation *simulation);
+
+/// @name Restart
+/// The state that, loaded into a simulation made with the same setup and followed by
+/// simulation_restore, goes on with the same bits.
+enum { SIMULATION_SPANS = 18 };
+size_t simulation_spans(struct simulation *simulation, struct memory_span *spans);
+
+/// Rebuild the list as it was when the state was saved. Fails: NO_MEMORY.
+enum status simulation_restore(struct simulation *simulation) MUST_USE;

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The forces between pairs of particles, and one pass over all of them.
+///
+/// With r_ij = r_i − r_j, r̂ = r_ij / r, v_ij = v_i − v_j, the force on i is
+///   F_C = −Φ'(r) r̂,  F_D = −ω(r)² (r̂·v_ij) r̂,  F_R = sqrt(2 k_B T / Δt) ω(r) ζ_ij r̂
+/// with ζ_ij = ζ_ji of mean 0 and variance 1. R. D. Groot and P. B. Warren, J. Chem. Phys. 107,
+/// 4423 (1997), eqs. 4 to 8; ω² here is γ w_D there, and ζ is uniform as in their section II.
+#pragma once
+
+#include "curves/table.h"
+#include "system/neighbours.h"
+#include "system/particles.h"
+
+/// What acts between pairs. The tables belong to the caller.
+struct pair_law {
+    const struct table *potential; ///< Φ(r), or NULL
+    const struct table *weight;    ///< ω(r), or NULL
+    double temperature;            ///< of the noise [k_B T_0]
+    double time_step;              ///< Δt of the noise [τ]
+    uint64_t seed;                 ///< key of the noise
+};
+
+/// Sums over the pairs of one pass.
+struct pair_sums {
+    double energy; ///< Σ Φ(r)                                   [k_B T_0]
+    double virial; ///< Σ r·F_C, the conservative part alone     [k_B T_0]
+};
+
+enum pair_wants { PAIR_FORCES, PAIR_FORCES_AND_SUMS };
+
+/// Largest distance at which a law acts [λ].
+double pair_cutoff(const struct pair_law *law);
+
+/// Replace `force` of all particles by the forces of `law`.
+///
+/// Reads particles.fraction, and kernel_velocity if the law has a weight; the list must be
+/// complete for pair_cutoff. Distances come from fractions of the box (box_fraction), the
+/// arithmetic of a pair is in single precision, the sums over pairs are in double.
+/// @param[in]  step  number of the time step: the counter of the noise
+/// @param[out] sums  NULL unless `wants` asks for them
+/// Fails: never; a NaN shows in the forces. Threads: serial. Tested: test_pair_kernels.
+void pair_forces(const struct pair_law *law, struct particles *particles,
+                 const struct neighbours *neighbours, uint64_t step, enum pair_wants wants,
+                 struct pair_sums *sums);

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The pair forces the slow way: the oracle of the tests, and the configurational
+/// temperature.
+#pragma once
+
+#include "forces/pair.h"
+
+/// Forces from all pairs, nearest image by division, double precision, library random numbers.
+/// Reads `velocity` (not kernel_velocity) and writes `force` [k_B T_0 / λ].
+/// @param[out] sums  energy and virial, or NULL
+void reference_forces(const struct pair_law *law, struct particles *particles, uint64_t step,
+                      struct pair_sums *sums);
+
+/// Configurational temperature Σ_i |F_i|² / Σ_i ∇_i² U [k_B T_0] from the potential alone.
+///   Σ_i ∇_i² U = 2 Σ_pairs [Φ''(r) + (d − 1) Φ'(r)/r]
+/// H. H. Rugh, Phys. Rev. Lett. 78, 772 (1997); O. G. Jepps, G. Ayton and D. J. Evans, Phys. Rev. E
+/// 62, 4757 (2000), eq. 37. It sees positions only, so it shows errors of the time step that the
+/// kinetic temperature hides.
+/// @param[in] neighbours  half list, complete for the cutoff of the potential
+/// @param[out] squares    Σ |F_i|² [(k_B T_0/λ)²]
+/// @param[out] laplacian  Σ ∇_i² U [k_B T_0/λ²]; the temperature is ⟨squares⟩ / ⟨laplacian⟩
+/// Fails: NO_MEMORY.
+enum status reference_configurational(const struct table *potential,
+                                      const struct particles *particles,
+                                      const struct neighbours *neighbours, double *squares,
+                                      double *laplacian) MUST_USE;

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The points at which a fitted potential is known.
+///
+/// Bin centres of the target, in three parts: the core, where the target is 0 and the potential is
+/// continued (core_fill); the known bins; and the cutoff, the upper edge of the last bin, where the
+/// potential is 0.
+#pragma once
+
+#include "inverse/inverse.h"
+
+struct potential_grid {
+    size_t points; ///< core + known + 1
+    size_t core;   ///< points in the core = index of the first known bin
+    size_t known;  ///< bins with a value of their own
+    double *r;     ///< shape [points] [λ]
+    double stiffness;
+};
+
+/// Fails: NO_MEMORY; BAD_INPUT if the target is nowhere above the threshold.
+enum status potential_grid_init(struct potential_grid *grid,
+                                const struct inverse_problem *problem) MUST_USE;
+void potential_grid_clear(struct potential_grid *grid);
+
+/// Complete phi, shape [points], from its known values: core below, 0 at the cutoff.
+void potential_grid_complete(const struct potential_grid *grid, double *phi);
+
+/// Table for the kernels from a completed phi. Fails: NO_MEMORY.
+enum status potential_grid_table(const struct potential_grid *grid, const double *phi,
+                                 struct table *table) MUST_USE;
+
+/// Where a fit begins: the problem's start curve, or the potential of mean force −k_B T ln g*.
+void potential_grid_start(const struct potential_grid *grid, const struct inverse_problem *problem,
+                          double *phi);

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Tables of numbers in text files.
+///
+/// Written: tab-separated, one `#` header line with column names and units, %.17g or fewer digits
+/// where asked; numpy.loadtxt and gnuplot read them as they are.
+/// Read: columns separated by blanks or tabs; `#` and `@` start comment lines; empty lines pass.
+#pragma once
+
+#include "base/status.h"
+
+#include <stddef.h>
+
+struct data_table {
+    size_t rows, columns;
+    double *values; ///< shape [rows, columns], row-major
+    size_t *line;   ///< shape [rows]: line number in the file, for messages
+    char *header;   ///< the last comment line before the data, without `#`; "" if none
+    char *comments; ///< all comment lines before the data, as they stand in the file
+};
+
+/// Read a file. BAD_INPUT with file:line for a word that is not a finite number, a row of another
+/// length than the first, fewer than `least_columns` columns, or no row at all. Only beyond the
+/// first `least_columns` may a word be "nan": what the caller did not ask for may be unknown.
+enum status data_table_read(struct data_table *table, const char *file,
+                            size_t least_columns) MUST_USE;
+
+void data_table_clear(struct data_table *table);
+
+/// Check that column `column` grows strictly and starts at `least` or above.
+/// BAD_INPUT with file:line of the first row that does not.
+enum status data_table_check_increasing(const struct data_table *table, const char *file,
+                                        size_t column, double least) MUST_USE;
+
+/// One column to be written.
+struct data_column {
+    const char *name; ///< with unit, such as "r[lambda]"
+    const double *values;
+    const char *format; ///< printf format of one number, such as "%.6f"; NULL is "%.10g"
+};
+
+/// Write `rows` rows, whole or not at all. `comment` (or NULL) becomes `#` lines above the header.
+enum status data_table_write(const char *file, const char *comment,
+                             const struct data_column *columns, size_t column_count,
+                             size_t rows) MUST_USE;

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Whole text files in memory.
+#pragma once
+
+#include "base/status.h"
+
+#include <stddef.h>
+
+/// Read `file` into a new NUL-terminated text; a byte order mark at its start is dropped.
+/// @param[out] text    to be freed with memory_free; NULL on failure
+/// @param[out] length  bytes without the terminating NUL
+/// IO if it cannot be read or is a folder; BAD_INPUT if it is empty or holds a NUL byte, so that
+/// the text ends where the file ends. Tested: test_data_table, test_json.
+enum status text_file_read(const char *file, char **text, size_t *length) MUST_USE;
+
+/// Where a byte of a text stands; both count from 1, columns in characters of UTF-8.
+struct text_place {
+    size_t line, column;
+};
+
+struct text_place text_file_place(const char *text, const char *at);

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Equilibrate a simulation, then step it and feed its observables.
+#pragma once
+
+#include "base/fields.h"
+#include "observe/rdf.h"
+#include "observe/thermodynamics.h"
+
+/// When to sample. All in steps, so that nothing is rounded.
+struct measure_plan {
+    int64_t equilibration; ///< steps before the first sample
+    int64_t samples;
+    int64_t every; ///< steps between samples
+};
+
+extern const struct field measure_plan_fields[];
+
+/// Steps of a whole plan.
+uint64_t measure_steps(const struct measure_plan *plan);
+
+/// What to measure; NULL members are not computed.
+struct measure_targets {
+    struct rdf *rdf;
+    struct thermodynamics *thermodynamics;
+};
+
+/// Told after each sample; `done` of `total` steps. NULL for none.
+struct measure_listener {
+    void (*tell)(void *context, const struct simulation *simulation, uint64_t done, uint64_t total);
+    void *context;
+};
+
+/// Take the samples of a plan whose equilibration is over: all of them, or after a restart those
+/// that are still due by the number of the simulation's step.
+/// Fails: as simulation_run; NO_MEMORY. What was sampled before a failure stays.
+enum status measure_sample(struct simulation *simulation, const struct measure_plan *plan,
+                           struct measure_targets targets,
+                           const struct measure_listener *listener) MUST_USE;
+
+/// Mean kinetic temperature over the last tenth of an equilibration of plan->equilibration steps,
+/// which it runs [k_B T_0].
+enum status measure_equilibrate(struct simulation *simulation, const struct measure_plan *plan,
+                                double *temperature,
+                                const struct measure_listener *listener) MUST_USE;

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Temperatures, energy and pressure of a simulation, as series with standard errors.
+#pragma once
+
+#include "dynamics/simulation.h"
+
+/// Quantities of one sample, in the order of thermodynamics_names.
+enum thermodynamics_quantity {
+    THERMODYNAMICS_TEMPERATURE,      ///< kinetic, momentum removed            [k_B T_0]
+    THERMODYNAMICS_POTENTIAL_ENERGY, ///< of a particle                        [k_B T_0]
+    THERMODYNAMICS_PRESSURE,         ///< simulation_pressure                  [k_B T_0/λ^d]
+    THERMODYNAMICS_FORCE_SQUARES,    ///< Σ|F|² of the potential, numerator of the configurational
+    THERMODYNAMICS_LAPLACIAN,        ///< Σ∇²U, its denominator
+    THERMODYNAMICS_QUANTITIES
+};
+
+struct thermodynamics {
+    size_t planned, samples;
+    double *values; ///< shape [THERMODYNAMICS_QUANTITIES, planned]
+};
+
+enum status thermodynamics_init(struct thermodynamics *thermodynamics, size_t planned) MUST_USE;
+void thermodynamics_clear(struct thermodynamics *thermodynamics);
+
+/// Add a sample; the simulation's last step must have wanted its sums. Fails: NO_MEMORY.
+enum status thermodynamics_sample(struct thermodynamics *thermodynamics,
+                                  const struct simulation *simulation) MUST_USE;
+
+/// The series of one quantity, shape [samples].
+const double *thermodynamics_series(const struct thermodynamics *thermodynamics,
+                                    enum thermodynamics_quantity quantity);
+
+/// Means over all replicas with standard errors from 20 blocks of each series.
+struct thermodynamics_summary {
+    double temperature, temperature_error;
+    double temperature_configurational, temperature_configurational_error; ///< NaN without Φ
+    double potential_energy, potential_energy_error;
+    double pressure, pressure_error;
+};
+struct thermodynamics_summary thermodynamics_result(const struct thermodynamics *replicas,
+                                                    size_t count);

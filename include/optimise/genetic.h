@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Genetic algorithm over real genes; knows nothing of what they mean.
+///
+/// Ask and tell: read `population`, measure each individual, hand the errors to
+/// genetic_next_generation. The elite is kept apart from the population with the mean of all its
+/// measurements, and a challenger replaces it only by fresh measurements (genetic_offer), so that
+/// no individual survives by one lucky draw of a noisy error.
+///
+/// Operators: A. G. Baydin (thesis, 2008), as its text describes them; D. E. Goldberg, Genetic
+/// Algorithms in Search, Optimization and Machine Learning (1989).
+#pragma once
+
+#include "base/fields.h"
+#include "base/status.h"
+
+#include <stdint.h>
+
+/// Error of an individual that could not be measured (its simulation blew up): worse than any.
+#define GENETIC_FAILED 1e9
+
+struct genetic_parameters {
+    int64_t population;                ///< individuals
+    int64_t genes;                     ///< genes of each
+    double gene_minimum, gene_maximum; ///< range of the first generation [gene]
+    double crossover;                  ///< probability of one-point crossover of two parents
+    double mutation;                   ///< probability for each gene
+    double additive;                   ///< share of mutations that add instead of scaling
+    int64_t tournament_size;           ///< individuals drawn for a tournament
+    double tournament_probability;     ///< with which the better of a pairing wins
+    int64_t generations;
+};
+
+extern const struct field genetic_fields[];
+
+struct genetic {
+    struct genetic_parameters parameters;
+    uint64_t seed;
+    uint32_t generation; ///< of `population`, from 0
+    double *population;  ///< shape [population, genes]; individual 0 is the elite once there is one
+    double *offspring;   ///< shape [population, genes]: scratch
+    double *elite;       ///< shape [genes]
+    double elite_error;  ///< mean of its measurements; GENETIC_FAILED if there is no elite yet
+    double elite_measured; ///< how many they were
+};
+
+/// First generation: genes uniform in their range.
+enum status genetic_init(struct genetic *genetic, const struct genetic_parameters *parameters,
+                         uint64_t seed) MUST_USE;
+void genetic_clear(struct genetic *genetic);
+
+/// Genes of one individual, shape [genes].
+const double *genetic_individual(const struct genetic *genetic, int64_t index);
+
+/// Add a fresh measurement of the elite to its mean.
+void genetic_remeasure_elite(struct genetic *genetic, double error);
+
+/// Make `genes` the elite if `error`, the mean of `measured` fresh measurements, is below the
+/// elite's. Returns whether it did.
+bool genetic_offer(struct genetic *genetic, const double *genes, double error, double measured);
+
+/// Replace the population by its offspring; individual 0 becomes the elite.
+/// @param[in] errors  shape [population]
+void genetic_next_generation(struct genetic *genetic, const double *errors);
+
+/// Mean over genes of the standard deviation over individuals, as a fraction of the first
+/// generation's range.
+double genetic_diversity(const struct genetic *genetic);
+
+/// @name Operators (genetic_operators.c)
+struct rng_sequence;
+
+/// Index of the winner: `size` individuals are drawn; each in turn meets the winner so far, and
+/// the one with the smaller error wins with probability `probability`.
+int64_t genetic_tournament(const double *errors, int64_t population, int64_t size,
+                           double probability, struct rng_sequence *random);
+
+/// Exchange the genes beyond one random point of two individuals, in place.
+void genetic_crossover(double *a, double *b, int64_t genes, struct rng_sequence *random);
+
+/// Each gene mutates with probability `mutation`: it is scaled by 2^u, u uniform in (−1, 1), which
+/// has no drift; or, in a share `additive` of cases, a normal number of a tenth of the range is
+/// added, since a scale alone never crosses zero.
+void genetic_mutate(double *genes, const struct genetic_parameters *parameters,
+                    struct rng_sequence *random);

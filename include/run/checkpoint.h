@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file State on disk, from which a run goes on with the same bits.
+///
+/// One file, `checkpoint.bin` in the run's folder: a header, the digest of used.json, then the
+/// spans in order, each with its length. Only the program and processor kind that wrote it need to
+/// read it.
+#pragma once
+
+#include "base/memory.h"
+
+#include <stdint.h>
+
+/// Save spans, whole or not at all.
+enum status checkpoint_save(const char *file, uint64_t digest, const struct memory_span *spans,
+                            size_t count) MUST_USE;
+
+/// Load into the same spans. BAD_INPUT if the file is of other settings (digest), another version
+/// or shape; nothing is loaded then.
+enum status checkpoint_load(const char *file, uint64_t digest, const struct memory_span *spans,
+                            size_t count) MUST_USE;
+
+/// Digest of a file's bytes (FNV-1a, 64 bits).
+enum status checkpoint_digest(const char *file, uint64_t *digest) MUST_USE;
+
+/// Go on with a digest over what the settings only name: a target, a table.
+void checkpoint_digest_add(uint64_t *digest, const void *memory, size_t bytes);

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Several finished fits side by side.
+#pragma once
+
+#include "base/status.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/// Compare the fits in `folders`: print a table on stdout unless `quiet`, and write to the folder
+/// `out` (made if missing)
+///   compare.tsv            one row a fit; comment lines give each index its name
+///   rdf_compare.tsv        r, target, target_error, result, result_error
+///   potential_compare.tsv  r, phi
+///   error_compare.tsv      iteration, evaluations, seconds, error, noise
+///   figures/compare.svg and .png
+/// The last three tables hold one block a fit, two empty lines apart (gnuplot's `index`).
+/// A fit is called after the last part of its path that is not "out", with as many parts before
+/// it as are needed to tell the fits apart; the same folder again gets a number.
+/// Fails: BAD_INPUT or IO with one line that names the file. A figure that fails is a warning on
+/// stderr. Tested: test_compare.
+enum status compare_folders(const char *const *folders, size_t count, const char *out,
+                            bool quiet) MUST_USE;

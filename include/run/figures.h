@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Figures of a run, drawn by gnuplot from the tables in the run's folder.
+///
+/// The scripts are those of plots/, found from the place of the program: in a folder `plots` or
+/// `share/mesofit/plots` of the program's folder or of any folder above it. A failure is worth a
+/// warning and no more: the tables are there, and the figures can be drawn later.
+#pragma once
+
+#include "base/status.h"
+
+/// Draw every figure whose tables are in `folder`, to figures/<name>.svg and .png in it.
+/// IO with one line if gnuplot is missing or a figure fails; the others are drawn all the same.
+/// Threads: one at a time, since the environment is changed. Tested: test_figures.
+enum status figures_draw(const char *folder) MUST_USE;
+
+/// Draw figures/compare.svg and .png from the tables that compare_folders wrote to `folder`.
+enum status figures_draw_comparison(const char *folder) MUST_USE;

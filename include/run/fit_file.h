@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file A run file of `mesofit fit`: target, scene, method.
+#pragma once
+
+#include "inverse/evaluate.h"
+#include "run/heading.h"
+#include "run/run_folder.h"
+#include "run/scene.h"
+#include "run/target.h"
+
+/// Numbers of the object "core".
+struct fit_core {
+    double threshold, stiffness;
+};
+
+extern const struct field fit_core_fields[];
+
+/// Owns everything that the problem borrows.
+struct fit_file {
+    struct heading heading;
+    struct target target;
+    struct scene scene;
+    struct curve start; ///< family NULL: begin with −k_B T ln g*
+    struct curve truth; ///< the true potential where it is known, else family NULL
+    struct fit_core core;
+    const struct inverse_method *method;
+    void *method_parameters;
+    struct evaluate_verification_parameters verification;
+    struct inverse_problem problem;
+};
+
+/// Read and check a run file. Fails: BAD_INPUT with all faults; IO; NO_MEMORY.
+enum status fit_file_read(struct fit_file *fit, const char *file,
+                          const struct run_options *options) MUST_USE;
+void fit_file_clear(struct fit_file *fit);
+
+/// Write all values, defaults filled in, so that running the written file gives the same bits.
+enum status fit_file_write(const struct fit_file *fit, const char *path) MUST_USE;

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What a fit writes besides its history.
+#pragma once
+
+#include "inverse/potential_grid.h"
+#include "run/fit_file.h"
+
+/// The result of a fit so far.
+struct fit_result {
+    enum status status; ///< OK: converged; UNCONVERGED; INTERRUPTED
+    uint64_t iterations, evaluations, engine_steps;
+    double seconds;                                   ///< of the fit, without its verification
+    const double *phi, *phi_error;                    ///< shape [grid.points]; an error may be NaN
+    const struct evaluate_verification *verification; ///< NULL if there was none
+};
+
+/// potential.tsv and omega.tsv.
+enum status fit_output_potential(const struct fit_file *fit, const struct potential_grid *grid,
+                                 const struct fit_result *result,
+                                 const struct run_folder *folder) MUST_USE;
+
+/// rdf.tsv from the verification.
+enum status fit_output_rdf(const struct fit_file *fit, const struct fit_result *result,
+                           const struct run_folder *folder) MUST_USE;
+
+/// summary.json.
+enum status fit_output_summary(const struct fit_file *fit, const struct potential_grid *grid,
+                               const struct fit_result *result,
+                               const struct run_folder *folder) MUST_USE;
+
+/// How far a fitted potential is from the known true one, over the bins with a target above 0.1.
+struct fit_truth {
+    double rms;              ///< of Φ − Φ_true [k_B T_0]
+    double ramp;             ///< A of the ramp A(1 − r/r_c) that explains most of it [k_B T_0]
+    double rms_without_ramp; ///< of what is left
+};
+struct fit_truth fit_output_truth(const struct fit_file *fit, const struct potential_grid *grid,
+                                  const double *phi);

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Progress of long work: one updating line on a terminal, a line every few seconds at most
+/// in a pipe, nothing with --quiet. Always on stderr.
+#pragma once
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct progress {
+    bool quiet, terminal;
+    double started;       ///< clock at the begin [s]
+    double last;          ///< clock of the last line [s]
+    uint64_t done_before; ///< parts that a run before a restart had done
+    bool open_line;       ///< the terminal's line has no end yet
+};
+
+struct progress progress_begin(bool quiet);
+
+/// Seconds since progress_begin.
+double progress_seconds(const struct progress *progress);
+
+/// Tell that `done` of `total` parts are done; `text` says the rest. Adds rate and time left.
+void progress_tell(struct progress *progress, uint64_t done, uint64_t total, const char *unit,
+                   const char *text);
+
+/// End the updating line, if there is one, and print a line of its own unless quiet.
+void progress_say(struct progress *progress, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file A scene: what a JSON file says of a simulation, read, checked and written back.
+#pragma once
+
+#include "curves/curve.h"
+#include "dynamics/simulation.h"
+#include "io/json.h"
+#include "run/units.h"
+
+enum scene_potential {
+    SCENE_HAS_POTENTIAL,  ///< "conservative" is part of the scene
+    SCENE_FITS_POTENTIAL, ///< the potential is what a fit looks for
+};
+
+/// Owns its curves, tables and arrays; `setup` borrows them.
+struct scene {
+    struct simulation_setup setup;
+    struct curve potential, weight; ///< family NULL: none
+    struct table potential_table, weight_table;
+    struct units units;
+    struct simulation_start start; ///< arrays of a placement file
+    double *start_values;
+};
+
+/// Fields of the scene itself, for `mesofit describe`.
+extern const struct field scene_fields[];
+
+/// Read the objects of a scene from `object`. Faults go to its document; *scene may then be
+/// incomplete but is safe to clear. Fails: NO_MEMORY.
+enum status scene_read(struct scene *scene, struct json_object *object,
+                       enum scene_potential potential) MUST_USE;
+void scene_clear(struct scene *scene);
+
+/// Write everything that scene_read reads, defaults filled in.
+void scene_write(const struct scene *scene, struct json_writer *writer);
+
+/// Add the tables that a scene only names to the digest of a checkpoint.
+void scene_digest(const struct scene *scene, uint64_t *digest);
+
+/// Read {"law": …} at `key` into a curve; an absent object or "none" leaves it empty.
+enum status scene_read_curve(struct curve *curve, struct json_object *parent, const char *key,
+                             const struct curve_family *const *list) MUST_USE;
+void scene_write_curve(const struct curve *curve, struct json_writer *writer, const char *key);

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Verlet list from a cell grid.
+///
+/// L. Verlet, Phys. Rev. 159, 98 (1967). The list holds every pair nearer than range = cutoff +
+/// skin at the time it was built, and stays complete for the cutoff until some particle has moved
+/// by half the skin *since the last build* (not since the last step).
+#pragma once
+
+#include "system/particles.h"
+
+#include <stdbool.h>
+
+enum neighbours_kind {
+    NEIGHBOURS_HALF, ///< each pair once: for forces
+    NEIGHBOURS_FULL, ///< each pair from both sides: for single-particle moves
+};
+
+/// In a half list the entries of each particle fill rows of this many; what is left over of the
+/// last row holds the particle itself. Vector kernels can so go through the list from end to end,
+/// which is a fifth faster for short lists than a loop for each particle. The AVX2 vector.
+enum { NEIGHBOURS_ROW = 8 };
+
+struct neighbours {
+    enum neighbours_kind kind;
+    double range;   ///< cutoff + skin [λ]
+    double skin;    ///< [λ]
+    size_t count;   ///< particles
+    size_t *start;  ///< shape [count + 1]: neighbours of k are list[start[k] … start[k + 1])
+    int32_t *list;  ///< indices of particles
+    int32_t *owner; ///< of a half list: the particle to which each row belongs
+    size_t list_capacity;
+    double *built[3]; ///< positions at the last build, unwrapped like `position` since then
+    int cells[3];     ///< along each axis; the last is the fastest
+    int reach[3];     ///< neighbours lie within so many cells
+    size_t cell_total;
+    uint32_t *cell_start; ///< shape [cell_total + 1]; particles are sorted by cell
+    uint32_t *cell_of;    ///< shape [count]
+    uint32_t *order;      ///< shape [count]
+    /// Scratch of the search, shape [count + PARTICLES_PADDING] each.
+    int32_t *around[3], *around_index;
+    unsigned *around_mask;
+};
+
+/// Prepare for particles in `box`. Fails: NO_MEMORY; BAD_INPUT if the box is shorter than twice the
+/// cutoff, where the nearest image is no longer the only one in range.
+enum status neighbours_init(struct neighbours *neighbours, enum neighbours_kind kind,
+                            const struct box *box, size_t count, double cutoff,
+                            double skin) MUST_USE;
+void neighbours_clear(struct neighbours *neighbours);
+
+/// Wrap and sort the particles in space, then build the list. Fails: NO_MEMORY.
+enum status neighbours_sort_and_build(struct neighbours *neighbours,
+                                      struct particles *particles) MUST_USE;
+
+/// Build the list for the present order of the particles, as left by an earlier sort, from the
+/// positions in `built`; for a restart. Fails: NO_MEMORY.
+enum status neighbours_rebuild(struct neighbours *neighbours, struct particles *particles) MUST_USE;
+
+/// True if some particle has moved by half the skin or more since the last build.
+bool neighbours_are_stale(const struct neighbours *neighbours, const struct particles *particles);
+
+/// Hand the squared distances [λ²] of all pairs nearer than `range` (≤ the complete range of a half
+/// list) to `visit`, in batches, in the order of the list.
+void neighbours_visit_distances(
+    const struct neighbours *neighbours, const struct particles *particles, double range,
+    void (*visit)(void *context, const float *squared_distances, size_t count), void *context);

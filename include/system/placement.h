@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Where particles start.
+#pragma once
+
+#include "base/fields.h"
+#include "system/particles.h"
+
+enum placement_kind { PLACEMENT_LATTICE, PLACEMENT_RANDOM, PLACEMENT_FILE };
+
+/// How the particles of a scene are placed.
+struct placement {
+    int64_t count;
+    int kind;          ///< enum placement_kind
+    double jitter;     ///< lattice: largest shift along an axis, as a fraction of the spacing
+    double separation; ///< random: least distance of any two [λ]
+    char file[FIELD_TEXT_SIZE];
+};
+
+extern const struct field placement_fields[];
+
+/// Simple cubic (square) lattice of the smallest size that holds all particles, filled evenly,
+/// each particle shifted by a uniform random amount.
+void placement_lattice(struct particles *particles, double jitter, uint64_t seed);
+
+/// Uniform random positions no two of which are nearer than `separation` (sequential addition).
+/// Fails: BAD_INPUT when no place is found in 10,000 trials: the density is too high for it.
+enum status placement_random(struct particles *particles, double separation,
+                             uint64_t seed) MUST_USE;

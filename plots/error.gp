@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# How the error fell: over simulations, which counts work, and over seconds, which counts waiting.
+# Reads history.tsv: iteration, evaluations, engine_steps, error, noise, …
+# and timing.tsv: iteration, seconds.
+
+load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
+
+# seconds, evaluations, error, noise of the iterations that both tables have
+joined = "< awk '/^#/ { next } FILENAME == \"timing.tsv\" { seconds[$1] = $2; next } \
+    $1 in seconds { print seconds[$1], $2, $4, $5 }' timing.tsv history.tsv"
+
+stats "history.tsv" using 2 name "N" nooutput
+stats "timing.tsv" using 2 name "S" nooutput
+stats "history.tsv" using (high(known(4), known(5))) name "E" nooutput
+stats "history.tsv" using (low(positive(4), positive(5))) name "L" nooutput
+dots = E_records > 50 ? 0 : 0.5
+
+do for [kind in kinds] {
+    eval open(kind, "error", 860, 420)
+    set multiplot
+    set tmargin at screen 0.9
+    set bmargin at screen 0.165
+    eval log_range("y", L_min, E_max)
+    set format y "%h"
+    set key on at screen 0.975, screen 0.985 right top vertical maxrows 1
+
+    set lmargin at screen 0.105
+    set rmargin at screen 0.535
+    set xrange [0:end_of(N_max)]
+    set xtics step_of(N_max / 3)
+    set xlabel "simulations"
+    eval name_axis("rmse of {/:Italic g}", 0.02)
+    plot "history.tsv" using 2:5 with lines title "statistical noise" \
+            linewidth 1.4 dashtype 2 linecolor rgb faint, \
+        "" using 2:4 with linespoints title "error" \
+            linewidth 2.2 pointtype 7 pointsize dots linecolor rgb blue
+
+    set lmargin at screen 0.57
+    set rmargin at screen 0.975
+    set xrange [0:end_of(S_max)]
+    set xtics step_of(S_max / 3)
+    set format y ""
+    set xlabel "time / s"
+    unset label 1
+    set key off
+    plot joined using 1:4 with lines linewidth 1.4 dashtype 2 linecolor rgb faint, \
+        "" using 1:3 with linespoints \
+            linewidth 2.2 pointtype 7 pointsize dots linecolor rgb blue
+    unset multiplot
+    eval close
+}

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The potential that was found, on the potentials of the iterations before it, light to dark.
+# Reads potential.tsv: r, phi, force, phi_error (nan where not known), …
+# and, if it is there, potential_history.tsv: r, then one column an iteration.
+
+load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
+
+# Number of columns, and of the first and last iteration, from the header. Of many iterations
+# every n-th is drawn: more than `most_lines` cannot be told apart.
+most_lines = 16
+columns = 1
+if (has("potential_history.tsv")) {
+    found = system("awk -F '\t' '/^#/ { count = split($0, name, FS) } END { \
+        gsub(/\\[.*|[^0-9]/, \"\", name[2]); gsub(/\\[.*|[^0-9]/, \"\", name[count]); \
+        print count, name[2] + 0, name[count] + 0 }' potential_history.tsv")
+    columns = int(word(found, 1))
+    first = real(word(found, 2))
+    last = columns > 2 ? real(word(found, 3)) : first + 1
+}
+every = high(1, ceil((columns - 1) / real(most_lines)))
+iteration_of(column) = first + (last - first) * (column - 2.0) / high(1, columns - 2)
+
+# The iterations may go a little lower than the result.
+stats "potential.tsv" using 2 name "P" nooutput
+bottom = low(0, P_min)
+top = potential_top(bottom, P_max)
+stats "potential.tsv" using ($2 < top ? $1 : NaN) name "R" nooutput
+begin = is_soft(P_max) ? 0 : floor(10 * (R_min - 0.06)) / 10.0
+lowest = 2 * bottom - 0.2
+do for [k = columns:2:-every] {
+    stats "potential_history.tsv" using k name "H" nooutput
+    bottom = low(bottom, high(lowest, H_min))
+}
+bottom = bottom - 0.06 * (top - bottom)
+
+with_error = int(system("awk '!/^#/ && $4 ~ /[1-9]/ { found = 1 } END { print found + 0 }' \
+    potential.tsv"))
+
+do for [kind in kinds] {
+    eval open(kind, "potential", 720, 480)
+    set lmargin at screen 0.13
+    set rmargin at screen 0.97
+    set tmargin at screen 0.97
+    set bmargin at screen 0.14
+    set xrange [begin:R_max]
+    set yrange [bottom:top]
+    set xlabel r_label
+    eval name_axis(phi_label, 0.024)
+    set key at graph 0.985, graph 0.97 right top
+    if (columns > 1) {
+        set palette defined (0 "#d9e0e6", 1 "#41749c")
+        set cbrange [first:last]
+        set colorbox horizontal user origin graph 0.765, graph 0.74 size graph 0.2, graph 0.02 \
+            noborder
+        set cbtics (first, last) scale 0 offset 0, 0.5
+        set label 2 "iteration" at graph 0.865, graph 0.785 center
+    }
+    plot for [k = 2 + (columns - 2) % every:columns:every] "potential_history.tsv" \
+            using 1:k:(iteration_of(k)) with lines linewidth 0.9 linecolor palette, \
+        0 linewidth 0.8 linecolor rgb ink, \
+        for [i = 1:with_error] "potential.tsv" using 1:($2 - $4):($2 + $4) \
+            with filledcurves @band linecolor rgb blue title "± 1 standard error", \
+        "potential.tsv" using 1:2 with lines title "result" linewidth 2.6 linecolor rgb blue
+    eval close
+}

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# One simulation: its radial distribution function, and how it came to equilibrium.
+# Reads thermodynamics.tsv: step, time, temperature, potential_energy, pressure,
+# temperature_configurational (nan on steps where it was not measured),
+# and, if it is there, rdf.tsv: r, g, g_error.
+
+load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
+
+with_rdf = has("rdf.tsv")
+if (with_rdf) {
+    stats "rdf.tsv" using 1 name "R" nooutput
+    stats "rdf.tsv" using ($2 + known(3)) name "G" nooutput
+}
+stats "thermodynamics.tsv" using 2 name "T" nooutput
+stats "thermodynamics.tsv" using (valid(6) ? low($3, $6) : $3) name "L" nooutput
+stats "thermodynamics.tsv" using (valid(6) ? high($3, $6) : $3) name "H" nooutput
+stats "thermodynamics.tsv" using 4 name "U" nooutput
+stats "thermodynamics.tsv" using 5 name "P" nooutput
+configurational = int(system("awk '!/^#/ && $6 ~ /[0-9]/ { found = 1 } END { print found + 0 }' \
+    thermodynamics.tsv"))
+
+left = with_rdf ? 0.60 : 0.13
+label = with_rdf ? 0.515 : 0.03
+ceiling(panel) = 0.93 - 0.275 * panel
+begin_panel(panel) = sprintf("set tmargin at screen %g; set bmargin at screen %g", \
+    ceiling(panel), ceiling(panel) - 0.24)
+# A value that never changes still gets a range.
+pad(a, b) = b > a ? 0.06 * (b - a) : 0.1 + 0.1 * abs(a)
+value_range(a, b) = sprintf("; set yrange [%.10g:%.10g]; set ytics %g", \
+    a - pad(a, b), b + pad(a, b), step_of((b - a + 2 * pad(a, b)) / 2))
+
+do for [kind in kinds] {
+    eval open(kind, "simulation", with_rdf ? 980 : 560, 500)
+    set multiplot
+    if (with_rdf) {
+        set lmargin at screen 0.075
+        set rmargin at screen 0.485
+        set tmargin at screen 0.93
+        set bmargin at screen 0.14
+        set xrange [0:R_max]
+        set ytics autofreq
+        set yrange [0:G_max > 0 ? 1.08 * G_max : 1]
+        set format x "%h"
+        set xlabel r_label
+        eval name_axis(g_label, 0.018)
+        set key off
+        plot "rdf.tsv" using 1:($2 - $3):($2 + $3) with filledcurves @band linecolor rgb blue, \
+            "" using 1:2 with lines linewidth 2.2 linecolor rgb blue
+    }
+    set lmargin at screen left
+    set rmargin at screen 0.98
+    set xrange [T_min < T_max ? T_min : T_min - 1:T_max]
+    set format x ""
+    unset xlabel
+
+    eval begin_panel(0) . value_range(L_min, H_max)
+    eval name_axis("{/:Italic T} / {/:Italic T}_0", label)
+    set key on at graph 1, graph 1.22 right top vertical maxrows 1
+    plot "thermodynamics.tsv" using 2:3 with lines title "kinetic" \
+            linewidth 1.2 linecolor rgb blue, \
+        for [i = 1:configurational] "" using 2:6 with points title "configurational" \
+            pointtype 7 pointsize 0.5 linecolor rgb vermillion
+
+    eval begin_panel(1) . value_range(U_min, U_max)
+    eval name_axis("{/:Italic U} / {/:Italic k}_B{/:Italic T}_0", label)
+    set key off
+    plot "thermodynamics.tsv" using 2:4 with lines linewidth 1.2 linecolor rgb green
+
+    eval begin_panel(2) . value_range(P_min, P_max)
+    eval name_axis("{/:Italic p λ}^3 / {/:Italic k}_B{/:Italic T}_0", label)
+    set format x "%h"
+    set xlabel "{/:Italic t} / {/:Italic τ}"
+    plot "thermodynamics.tsv" using 2:5 with lines linewidth 1.2 linecolor rgb purple
+    unset multiplot
+    eval close
+}

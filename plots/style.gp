@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What all figures share: terminals, fonts, colours, grid, axes and the texts beside them.
+
+set encoding utf8
+set minussign
+
+# A figure is drawn once for each kind, between eval open(…) and eval close: its file is
+# figures/<name>.<kind>, width and height count pixels of the SVG. The PNG has twice as many, for
+# print.
+kinds = "svg png"
+svg(width, height) = sprintf("set terminal svg size %d,%d font 'Helvetica,13' " . \
+    "background '#ffffff' round; ", width, height)
+png(width, height) = sprintf("set terminal pngcairo size %d,%d font 'Liberation Sans,13' " . \
+    "fontscale 2 linewidth 2 pointscale 2 background '#ffffff' rounded; ", 2 * width, 2 * height)
+open(kind, name, width, height) = (kind eq "svg" ? svg(width, height) : png(width, height)) . \
+    sprintf("set output 'figures/%s.%s'", name, kind)
+close = "set output"
+
+# Colours that stay apart for every common form of colour blindness, after M. Okabe and K. Ito,
+# Color Universal Design (2008), without their yellow, which is too light for lines.
+ink        = "#222222"
+faint      = "#8a8a8a"
+blue       = "#0072b2"
+vermillion = "#d55e00"
+green      = "#009e73"
+purple     = "#aa4499"
+orange     = "#e69f00"
+sky        = "#56b4e9"
+colour_of(i) = word("#0072b2 #d55e00 #009e73 #aa4499 #e69f00 #56b4e9 #882255 #7a7a1f", i % 8 + 1)
+band = "fillstyle transparent solid 0.22"
+
+set format "%h"
+set border 3 linewidth 0.8 linecolor rgb ink
+set tics nomirror out scale 0.6
+set grid xtics ytics linetype 1 linewidth 0.5 linecolor rgb "#e4e4e4"
+set key noautotitle noenhanced samplen 2.2 spacing 1.25 textcolor rgb ink
+set style fill solid noborder
+
+r_label   = "{/:Italic r} / {/:Italic λ}"
+g_label   = "{/:Italic g}({/:Italic r})"
+phi_label = "{/:Italic Φ}({/:Italic r}) / {/:Italic k}_B{/:Italic T}"
+
+# Command that names the vertical axis of a panel, x from the figure's edge: the names of all
+# panels stand in one line.
+name_axis(text, x) = sprintf("set label 1 '%s' at screen %g, graph 0.5 center rotate", text, x)
+
+low(a, b)  = a < b ? a : b
+high(a, b) = a > b ? a : b
+
+# Columns that may hold nan, which makes every expression around it undefined: 0 where the number
+# is not known, and, for the lower end of a logarithmic axis, the numbers that it can show.
+known(n) = valid(n) ? column(n) : 0
+positive(n) = known(n) > 0 ? column(n) : 1e300
+
+# 1 if a file is there. Names in commands are fixed and relative, so no quoting is needed.
+has(file) = int(system("test -r " . file . " && echo 1 || echo 0"))
+
+# The largest of 1, 2 or 5 times a power of ten that is not above x: a distance of tics.
+power(x) = 10**floor(log10(x))
+step_of(x) = x <= 0 ? 1 : power(x) * (x >= 5 * power(x) ? 5 : x >= 2 * power(x) ? 2 : 1)
+
+# End of an axis from 0 to x, with a little room.
+end_of(x) = x > 0 ? 1.04 * x : 1
+
+# Commands for a logarithmic axis with a little room around the values a to b, labelled at 1, 2 and
+# 5 times the powers of ten, or at the powers only when there are many.
+decade(p, many) = many ? sprintf("%g, ", p) : sprintf("%g, %g, %g, ", p, 2 * p, 5 * p)
+decades(p, b, many) = p > b ? "" : decade(p, many) . decades(10 * p, b, many)
+log_tics(axis, a, b) = sprintf("set %stics (%s%g)", axis, \
+    decades(power(a), b, log10(b / a) > 2.2), 10**ceil(log10(b)))
+log_axis(axis, a, b) = sprintf("set logscale %s; set %srange [%g:%g]; ", axis, axis, a, b) . \
+    log_tics(axis, a, b)
+log_range(axis, a, b) = a > b ? log_axis(axis, 0.1, 1) : log_axis(axis, a / 1.4, b * 1.4)
+
+# Upper end of a potential's axis. A core that no particle enters would squeeze everything else into
+# a line: it is cut off at three depths of the well. A soft core is shown whole.
+is_soft(highest) = highest <= 20
+potential_top(lowest, highest) = is_soft(highest) ? highest : low(4, high(1, -3 * lowest))

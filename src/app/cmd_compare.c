@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command.h"
+#include "run/compare.h"
+
+static enum status run(const struct command_line *line) {
+    return compare_folders(line->files, line->file_count,
+                           line->options.folder ? line->options.folder : "compare",
+                           line->options.quiet);
+}
+
+const struct command cmd_compare = {
+    .name = "compare",
+    .usage = "DIR DIR...",
+    .summary = "put finished fits side by side: one table, one figure",
+    .least_files = 1,
+    .most_files = COMMAND_MAX_FILES,
+    .run = run,
+};

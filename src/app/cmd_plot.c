@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command.h"
+#include "run/figures.h"
+
+static enum status run(const struct command_line *line) {
+    return figures_draw(line->files[0]);
+}
+
+const struct command cmd_plot = {
+    .name = "plot",
+    .usage = "DIR",
+    .summary = "draw the figures of a run's folder again",
+    .least_files = 1,
+    .most_files = 1,
+    .run = run,
+};

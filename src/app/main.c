@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command.h"
+
+#include "base/interrupt.h"
+#include "base/nearest.h"
+#include "mesofit.h"
+
+#include <errno.h>
+#include <gsl/gsl_errno.h>
+#include <omp.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct command *const commands[] = {&cmd_simulate, &cmd_fit, &cmd_plot, &cmd_compare,
+                                                 &cmd_describe};
+enum { COMMANDS = sizeof commands / sizeof *commands };
+
+static void print_help(void) {
+    printf("mesofit " MESOFIT_VERSION
+           ": fit the pair interactions of a coarse liquid to measurements\n\nusage:\n");
+    for (size_t k = 0; k < COMMANDS; k++)
+        printf("  mesofit %-9s %-12s %s\n", commands[k]->name, commands[k]->usage,
+               commands[k]->summary);
+    printf("\noptions:\n"
+           "  -o DIR        folder for the results (default: \"out\" beside the input file)\n"
+           "  --threads N   threads (default: all processors); results do not depend on it\n"
+           "  --seed N      seed, instead of the file's\n"
+           "  --resume      go on with an interrupted run in its folder\n"
+           "  --quiet       no progress\n"
+           "  --help, --version\n"
+           "\nexit code: 0 done; 1 not converged or unstable; 2 bad input, files or options;\n"
+           "3 out of memory; 130 interrupted\n");
+}
+
+static int exit_code(enum status status) {
+    switch (status) {
+    case STATUS_OK:
+        return 0;
+    case STATUS_UNSTABLE:
+    case STATUS_UNCONVERGED:
+        return 1;
+    case STATUS_BAD_INPUT:
+    case STATUS_IO:
+        return 2;
+    case STATUS_NO_MEMORY:
+        return 3;
+    case STATUS_INTERRUPTED:
+        return 130;
+    }
+    return 1;
+}
+
+/// A whole number from `least` to `most`.
+static enum status parse_number(const char *option, const char *text, uint64_t least, uint64_t most,
+                                uint64_t *number) {
+    char *end = NULL;
+    errno = 0;
+    *number = text ? strtoull(text, &end, 10) : 0;
+    if (text == NULL || end == text || *end != '\0' || errno || *text == '-' || *number < least ||
+        *number > most)
+        return status_fail(STATUS_BAD_INPUT, "%s takes a whole number from %llu to %llu", option,
+                           (unsigned long long)least, (unsigned long long)most);
+    return STATUS_OK;
+}
+
+/// One option with its value, if it takes one; *used is how many words it took.
+static enum status parse_option(const char *word, const char *value, struct run_options *options,
+                                int *used) {
+    static const char *const known[] = {"-o",      "--threads", "--seed",   "--resume",
+                                        "--quiet", "--help",    "--version"};
+    uint64_t number;
+    *used = 2;
+    if (strcmp(word, "-o") == 0) {
+        if (value == NULL || *value == '\0' || *value == '-')
+            return status_fail(STATUS_BAD_INPUT, "-o takes a folder");
+        options->folder = value;
+    } else if (strcmp(word, "--threads") == 0) {
+        TRY(parse_number(word, value, 1, 1024, &number));
+        options->threads = (int)number;
+    } else if (strcmp(word, "--seed") == 0) {
+        TRY(parse_number(word, value, 0, (uint64_t)FIELD_LARGEST_INTEGER - 1, &options->seed));
+        options->has_seed = true;
+    } else {
+        *used = 1;
+        if (strcmp(word, "--resume") == 0) {
+            options->resume = true;
+        } else if (strcmp(word, "--quiet") == 0) {
+            options->quiet = true;
+        } else {
+            char hint[256];
+            nearest_hint(word, known, sizeof known / sizeof *known, hint, sizeof hint);
+            return status_fail(STATUS_BAD_INPUT, "unknown option %s; %s", word, hint);
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status parse_line(int count, char **words, struct command_line *line) {
+    line->options.threads = omp_get_max_threads();
+    for (int k = 0; k < count;) {
+        int used = 1;
+        if (words[k][0] == '-')
+            TRY(parse_option(words[k], k + 1 < count ? words[k + 1] : NULL, &line->options, &used));
+        else if (line->file_count == COMMAND_MAX_FILES)
+            return status_fail(STATUS_BAD_INPUT, "more than %d files", COMMAND_MAX_FILES);
+        else
+            line->files[line->file_count++] = words[k];
+        k += used;
+    }
+    return STATUS_OK;
+}
+
+static enum status find_command(const char *name, const struct command **command) {
+    const char *names[COMMANDS];
+    char hint[256];
+    for (size_t k = 0; k < COMMANDS; k++) {
+        names[k] = commands[k]->name;
+        if (strcmp(name, commands[k]->name) == 0) {
+            *command = commands[k];
+            return STATUS_OK;
+        }
+    }
+    nearest_hint(name, names, COMMANDS, hint, sizeof hint);
+    return status_fail(STATUS_BAD_INPUT, "unknown command \"%s\"; %s", name, hint);
+}
+
+static enum status run(int count, char **words) {
+    const struct command *command = NULL;
+    struct command_line line = {0};
+    TRY(find_command(words[0], &command));
+    TRY(parse_line(count - 1, words + 1, &line));
+    if (line.file_count < command->least_files || line.file_count > command->most_files)
+        return status_fail(STATUS_BAD_INPUT, "usage: mesofit %s %s", command->name, command->usage);
+    return command->run(&line);
+}
+
+static bool asks_for(int count, char **words, const char *option) {
+    for (int k = 1; k < count; k++)
+        if (strcmp(words[k], option) == 0)
+            return true;
+    return false;
+}
+
+/// Errors come back as statuses, not as signals or aborts.
+static void install_handlers(void) {
+    gsl_set_error_handler_off();
+    signal(SIGXFSZ, SIG_IGN); // a write beyond the file size limit fails like a full disk
+    interrupt_install();
+}
+
+int main(int count, char **words) {
+    if (count < 2 || asks_for(count, words, "--help")) {
+        print_help();
+        return count < 2 ? 2 : 0;
+    }
+    if (asks_for(count, words, "--version")) {
+        printf("mesofit " MESOFIT_VERSION "\n");
+        return 0;
+    }
+    install_handlers();
+    const enum status status = run(count - 1, words + 1);
+    if (status != STATUS_OK)
+        fprintf(stderr, "mesofit: %s\n", status_message());
+    return exit_code(status);
+}

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/comoments.h"
+
+#include "base/memory.h"
+
+#include <string.h>
+
+enum status comoments_init(struct comoments *moments, size_t size) {
+    enum status status = STATUS_OK;
+    *moments = (struct comoments){.size = size};
+    NEW_ARRAY(moments->mean, size);
+    NEW_ARRAY(moments->comoment, size * size);
+    NEW_ARRAY(moments->scratch, size);
+done:
+    if (status != STATUS_OK)
+        comoments_clear(moments);
+    return status;
+}
+
+void comoments_clear(struct comoments *moments) {
+    memory_free(moments->mean);
+    memory_free(moments->comoment);
+    memory_free(moments->scratch);
+    *moments = (struct comoments){0};
+}
+
+void comoments_reset(struct comoments *moments) {
+    moments->count = 0;
+    memset(moments->mean, 0, moments->size * sizeof *moments->mean);
+    memset(moments->comoment, 0, moments->size * moments->size * sizeof *moments->comoment);
+}
+
+/// comoment += weight · d dᵀ with d in `scratch`.
+static void add_outer_product(struct comoments *moments, double weight) {
+    const size_t n = moments->size;
+    const double *d = moments->scratch;
+    for (size_t a = 0; a < n; a++) {
+        const double factor = weight * d[a];
+        double *row = moments->comoment + a * n;
+        for (size_t b = 0; b < n; b++)
+            row[b] += factor * d[b];
+    }
+}
+
+void comoments_add(struct comoments *moments, const double *x) {
+    const double before = moments->count;
+    moments->count += 1;
+    for (size_t a = 0; a < moments->size; a++) {
+        moments->scratch[a] = x[a] - moments->mean[a];
+        moments->mean[a] += moments->scratch[a] / moments->count;
+    }
+    add_outer_product(moments, before / moments->count);
+}
+
+void comoments_merge(struct comoments *moments, const struct comoments *other) {
+    if (other->count == 0)
+        return;
+    const double before = moments->count;
+    moments->count += other->count;
+    const double fraction = other->count / moments->count;
+    for (size_t a = 0; a < moments->size; a++) {
+        moments->scratch[a] = other->mean[a] - moments->mean[a];
+        moments->mean[a] += fraction * moments->scratch[a];
+    }
+    for (size_t k = 0; k < moments->size * moments->size; k++)
+        moments->comoment[k] += other->comoment[k];
+    add_outer_product(moments, before * fraction);
+}
+
+double comoments_covariance(const struct comoments *moments, size_t a, size_t b) {
+    if (moments->count < 1)
+        return 0;
+    return moments->comoment[a * moments->size + b] / moments->count;
+}

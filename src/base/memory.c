@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/memory.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+void *memory_zeroed(size_t count, size_t size) {
+    if (size != 0 && count > (SIZE_MAX - MEMORY_ALIGNMENT) / size) {
+        status_fail(STATUS_NO_MEMORY, "an array of %zu elements is too large", count);
+        return NULL;
+    }
+    const size_t bytes = (count * size + MEMORY_ALIGNMENT) / MEMORY_ALIGNMENT * MEMORY_ALIGNMENT;
+    void *array = aligned_alloc(MEMORY_ALIGNMENT, bytes);
+    if (array == NULL)
+        status_fail(STATUS_NO_MEMORY, "out of memory: %zu bytes wanted", bytes);
+    else
+        memset(array, 0, bytes);
+    return array;
+}
+
+enum status memory_reserve(void *array, size_t *capacity, size_t count, size_t size) {
+    if (count <= *capacity)
+        return STATUS_OK;
+    void *larger = memory_zeroed(count, size);
+    if (larger == NULL)
+        return STATUS_NO_MEMORY;
+    void *old;
+    memcpy(&old, array, sizeof old);
+    memory_free(old);
+    memcpy(array, &larger, sizeof larger);
+    *capacity = count;
+    return STATUS_OK;
+}
+
+void memory_free(void *array) {
+    free(array);
+}

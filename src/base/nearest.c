@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/nearest.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/// Longest name compared; names of the product are far shorter.
+enum { LONGEST_NAME = 63 };
+
+static size_t smaller(size_t a, size_t b) {
+    return a < b ? a : b;
+}
+
+/// Optimal string alignment distance: one edit inserts, deletes or replaces a letter, or swaps two
+/// neighbours. The swap counts once because it is the commonest slip in short names.
+static size_t edit_distance(const char *a, size_t length_a, const char *b, size_t length_b) {
+    size_t cost[LONGEST_NAME + 1][LONGEST_NAME + 1];
+    for (size_t i = 0; i <= length_a; i++)
+        cost[i][0] = i;
+    for (size_t j = 0; j <= length_b; j++)
+        cost[0][j] = j;
+    for (size_t i = 1; i <= length_a; i++)
+        for (size_t j = 1; j <= length_b; j++) {
+            const size_t replace = cost[i - 1][j - 1] + (a[i - 1] != b[j - 1]);
+            cost[i][j] = smaller(replace, 1 + smaller(cost[i - 1][j], cost[i][j - 1]));
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                cost[i][j] = smaller(cost[i][j], cost[i - 2][j - 2] + 1);
+        }
+    return cost[length_a][length_b];
+}
+
+const char *nearest_name(const char *given, const char *const *known, size_t count) {
+    const char *nearest = NULL;
+    size_t least = LONGEST_NAME;
+    const size_t length = strlen(given);
+    for (size_t k = 0; k < count; k++) {
+        const size_t other = strlen(known[k]);
+        const size_t longer = length > other ? length : other;
+        if (longer > LONGEST_NAME || longer < 2)
+            continue;
+        const size_t distance = edit_distance(given, length, known[k], other);
+        const size_t allowed = longer < 6 ? 1 : longer / 3;
+        if (distance <= allowed && distance < least) {
+            least = distance;
+            nearest = known[k];
+        }
+    }
+    return nearest;
+}
+
+void nearest_hint(const char *given, const char *const *known, size_t count, char *text,
+                  size_t size) {
+    const char *nearest = nearest_name(given, known, count);
+    if (nearest) {
+        snprintf(text, size, "did you mean \"%s\"?", nearest);
+        return;
+    }
+    size_t used = (size_t)snprintf(text, size, count ? "known: " : "none is known here");
+    for (size_t k = 0; k < count && used < size; k++)
+        used += (size_t)snprintf(text + used, size - used, "%s%s", k ? ", " : "", known[k]);
+}

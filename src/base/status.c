@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/status.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { MESSAGE_SIZE = 8192 };
+
+static _Thread_local char message[MESSAGE_SIZE];
+
+enum status status_fail(enum status status, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    return status;
+}
+
+enum status status_prefix(enum status status, const char *format, ...) {
+    char rest[MESSAGE_SIZE];
+    memcpy(rest, message, sizeof rest);
+    va_list arguments;
+    va_start(arguments, format);
+    const int length = vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    if (length >= 0 && (size_t)length < sizeof message)
+        snprintf(message + length, sizeof message - (size_t)length, ": %s", rest);
+    return status;
+}
+
+const char *status_message(void) {
+    return message;
+}
+
+const char *status_name(enum status status) {
+    switch (status) {
+    case STATUS_OK:
+        return "ok";
+    case STATUS_BAD_INPUT:
+        return "bad input";
+    case STATUS_IO:
+        return "input/output error";
+    case STATUS_NO_MEMORY:
+        return "out of memory";
+    case STATUS_UNSTABLE:
+        return "unstable";
+    case STATUS_UNCONVERGED:
+        return "unconverged";
+    case STATUS_INTERRUPTED:
+        return "interrupted";
+    }
+    return "unknown";
+}

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "curves/sampled.h"
+
+static double value(const void *parameters, double r) {
+    const struct sampled_parameters *p = parameters;
+    if (r >= p->cutoff)
+        return 0;
+    const double first = p->spline->x[0];
+    if (r < first)
+        return p->spline->y[0] + p->first_slope * (r - first);
+    return gsl_spline_eval(p->spline, r, NULL);
+}
+
+static double cutoff(const void *parameters) {
+    return ((const struct sampled_parameters *)parameters)->cutoff;
+}
+
+static void clear(void *parameters) {
+    gsl_spline_free(((struct sampled_parameters *)parameters)->spline);
+}
+
+static const struct field fields[] = {
+    {"file", FIELD_FILE, .offset = offsetof(struct sampled_parameters, file), .required = true,
+     .unit = "", .help = "columns r, value"},
+    {"cutoff", FIELD_NUMBER, .offset = offsetof(struct sampled_parameters, cutoff), .initial = 0,
+     .minimum = 0, .maximum = DBL_MAX, .unit = "lambda",
+     .help = "distance beyond which the value is 0; 0 means the table's last r"},
+    FIELD_END,
+};
+
+const struct curve_family sampled_family = {
+    .name = "table",
+    .summary = "cubic spline through the points of a file",
+    .fields = fields,
+    .size = sizeof(struct sampled_parameters),
+    .value = value,
+    .cutoff = cutoff,
+    .clear = clear,
+};
+
+enum status sampled_set_points(struct curve *curve, const double *r, const double *y,
+                               size_t count) {
+    struct sampled_parameters *p = curve->parameters;
+    if (count < 3)
+        return status_fail(STATUS_BAD_INPUT, "a table needs at least 3 points, not %zu", count);
+    for (size_t k = 1; k < count; k++)
+        if (!(r[k] > r[k - 1]))
+            return status_fail(STATUS_BAD_INPUT, "r does not grow at point %zu", k + 1);
+    const double last = r[count - 1];
+    // One part in 10^9 forgives a cutoff that was rounded when the table was written.
+    if (p->cutoff > last * (1 + 1e-9))
+        return status_fail(STATUS_BAD_INPUT, "the table ends at r = %g, before the cutoff %g", last,
+                           p->cutoff);
+    if (p->cutoff == 0 || p->cutoff > last)
+        p->cutoff = last;
+    p->spline = gsl_spline_alloc(gsl_interp_cspline, count);
+    if (p->spline == NULL || gsl_spline_init(p->spline, r, y, count) != 0)
+        return status_fail(STATUS_NO_MEMORY, "no memory for a table of %zu points", count);
+    p->first_slope = gsl_spline_eval_deriv(p->spline, r[0], NULL);
+    return STATUS_OK;
+}
+
+enum status sampled_create(struct curve *curve, const double *r, const double *y, size_t count) {
+    TRY(curve_create(curve, &sampled_family));
+    const enum status status = sampled_set_points(curve, r, y, count);
+    if (status != STATUS_OK)
+        curve_clear(curve);
+    return status;
+}

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "curves/table.h"
+
+#include "base/memory.h"
+
+static enum status allocate(struct table *table, const struct curve *curve, int terms) {
+    enum status status = STATUS_OK;
+    const double cutoff = curve_cutoff(curve);
+    *table = (struct table){
+        .cutoff = cutoff, .inverse_spacing = TABLE_INTERVALS / cutoff, .terms = terms};
+    const size_t size = (size_t)(TABLE_INTERVALS + 1) * (size_t)terms;
+    NEW_ARRAY(table->coefficient, size);
+    NEW_ARRAY(table->single, TABLE_INTERVALS + 1);
+done:
+    return status;
+}
+
+static void fill_single(struct table *table) {
+    const double h = table->inverse_spacing;
+    for (int k = 0; k <= TABLE_INTERVALS; k++) {
+        const double *c = table->coefficient + k * table->terms;
+        float *single = table->single[k];
+        single[0] = (float)c[0];
+        if (table->terms == 2) {
+            single[1] = (float)c[1];
+        } else {
+            single[1] = (float)(0 - h * c[1]);
+            single[2] = (float)(0 - 2 * h * c[2]);
+            single[3] = (float)(0 - 3 * h * c[3]);
+        }
+    }
+}
+
+static double node(int k, double cutoff) {
+    return cutoff * k / TABLE_INTERVALS;
+}
+
+/// Curve value just inside the cutoff for the last node, where curves drop to 0 by definition.
+static double value_at_node(const struct curve *curve, int k, double cutoff) {
+    return curve_value(curve, k == TABLE_INTERVALS ? cutoff * (1 - 1e-12) : node(k, cutoff));
+}
+
+/// Slope at an end from three points on its inner side, in units of the spacing.
+static double end_slope(const struct curve *curve, double cutoff, int end) {
+    const double step = cutoff / TABLE_INTERVALS / 16;
+    const double at = end == 0 ? 0 : cutoff * (1 - 1e-12);
+    const double inward = end == 0 ? step : -step;
+    const double y0 = curve_value(curve, at), y1 = curve_value(curve, at + inward),
+                 y2 = curve_value(curve, at + 2 * inward);
+    return (-1.5 * y0 + 2 * y1 - 0.5 * y2) / inward * cutoff / TABLE_INTERVALS;
+}
+
+/// Slopes m of the clamped C² spline in units of the spacing: m_{k−1} + 4 m_k + m_{k+1} =
+/// 3 (y_{k+1} − y_{k−1}), by the Thomas algorithm.
+static void spline_slopes(const double *y, double *m, double *ratio) {
+    ratio[0] = 0;
+    for (int k = 1; k < TABLE_INTERVALS; k++) {
+        const double pivot = 1 / (4 - ratio[k - 1]);
+        ratio[k] = pivot;
+        m[k] = (3 * (y[k + 1] - y[k - 1]) - m[k - 1]) * pivot;
+    }
+    for (int k = TABLE_INTERVALS - 1; k > 0; k--)
+        m[k] -= ratio[k] * m[k + 1];
+}
+
+enum status table_init_potential(struct table *table, const struct curve *curve) {
+    enum status status = STATUS_OK;
+    double *y = NULL, *m = NULL, *ratio = NULL;
+    CHECK(allocate(table, curve, 4));
+    NEW_ARRAY(y, TABLE_INTERVALS + 1);
+    NEW_ARRAY(m, TABLE_INTERVALS + 1);
+    NEW_ARRAY(ratio, TABLE_INTERVALS + 1);
+    for (int k = 0; k <= TABLE_INTERVALS; k++)
+        y[k] = value_at_node(curve, k, table->cutoff);
+    for (int k = 0; k <= TABLE_INTERVALS; k++)
+        y[k] -= y[TABLE_INTERVALS];
+    m[0] = end_slope(curve, table->cutoff, 0);
+    m[TABLE_INTERVALS] = end_slope(curve, table->cutoff, TABLE_INTERVALS);
+    spline_slopes(y, m, ratio);
+    for (int k = 0; k < TABLE_INTERVALS; k++) {
+        double *c = table->coefficient + 4 * k;
+        c[0] = y[k];
+        c[1] = m[k];
+        c[2] = 3 * (y[k + 1] - y[k]) - 2 * m[k] - m[k + 1];
+        c[3] = 2 * (y[k] - y[k + 1]) + m[k] + m[k + 1];
+    }
+    fill_single(table);
+done:
+    memory_free(y);
+    memory_free(m);
+    memory_free(ratio);
+    if (status != STATUS_OK)
+        table_clear(table);
+    return status;
+}
+
+enum status table_init_weight(struct table *table, const struct curve *curve) {
+    enum status status = STATUS_OK;
+    CHECK(allocate(table, curve, 2));
+    for (int k = 0; k < TABLE_INTERVALS; k++) {
+        const double low = value_at_node(curve, k, table->cutoff);
+        table->coefficient[2 * k] = low;
+        table->coefficient[2 * k + 1] = value_at_node(curve, k + 1, table->cutoff) - low;
+    }
+    fill_single(table);
+done:
+    if (status != STATUS_OK)
+        table_clear(table);
+    return status;
+}
+
+void table_clear(struct table *table) {
+    memory_free(table->coefficient);
+    memory_free(table->single);
+    *table = (struct table){0};
+}
+
+void table_evaluate(const struct table *table, double r, double *value, double *slope,
+                    double *curvature) {
+    const int k = table_interval(table, r);
+    const double h = table->inverse_spacing, f = r * h - k;
+    const double *c = table->coefficient + (ptrdiff_t)table->terms * k;
+    const double c2 = table->terms == 4 ? c[2] : 0, c3 = table->terms == 4 ? c[3] : 0;
+    if (value)
+        *value = c[0] + f * (c[1] + f * (c2 + f * c3));
+    if (slope)
+        *slope = h * (c[1] + f * (2 * c2 + f * 3 * c3));
+    if (curvature)
+        *curvature = h * h * (2 * c2 + 6 * f * c3);
+}

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dynamics/simulation.h"
+
+/// The forces see velocities predicted to v(t) + λ Δt F(t); after the half kick that is
+/// v + (λ − ½) Δt F.
+static enum status step(struct simulation *simulation) {
+    const double lambda = simulation->setup.integrator_parameters.lambda;
+    simulation_kick_and_drift(simulation);
+    TRY(simulation_compute_forces(simulation, (lambda - 0.5) * simulation->setup.time_step));
+    simulation_kick(simulation);
+    return STATUS_OK;
+}
+
+static const struct field fields[] = {
+    {"lambda", FIELD_NUMBER, offsetof(struct integrator_parameters, lambda), .initial = 0.5,
+     .minimum = 0, .maximum = 1, .unit = "",
+     .help = "how far velocities are predicted for the friction, in time steps"},
+    FIELD_END,
+};
+
+const struct integrator dpd_verlet = {
+    .name = "dpd-verlet",
+    .summary = "DPD velocity Verlet; R. D. Groot and P. B. Warren, J. Chem. Phys. 107, 4423 "
+               "(1997), eq. 21",
+    .fields = fields,
+    .dissipative = true,
+    .step = step,
+};

@@ -1,0 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dynamics/integrator.h"
+
+const struct integrator *const integrator_list[] = {&velocity_verlet, &dpd_verlet, NULL};

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dynamics/simulation.h"
+
+#include "base/interrupt.h"
+
+static enum status place(struct simulation *simulation, const struct simulation_start *start) {
+    const struct simulation_setup *setup = &simulation->setup;
+    struct particles *particles = &simulation->particles;
+    switch ((enum placement_kind)setup->placement.kind) {
+    case PLACEMENT_LATTICE:
+        placement_lattice(particles, setup->placement.jitter, setup->seed);
+        break;
+    case PLACEMENT_RANDOM:
+        TRY(placement_random(particles, setup->placement.separation, setup->seed));
+        break;
+    case PLACEMENT_FILE:
+        for (int d = 0; d < setup->box.dimensions; d++)
+            memcpy(particles->position[d], start->position[d],
+                   particles->count * sizeof *particles->position[d]);
+        break;
+    }
+    if (start == NULL || start->velocity[0] == NULL) {
+        particles_draw_velocities(particles, setup->temperature, setup->seed);
+        return STATUS_OK;
+    }
+    for (int d = 0; d < setup->box.dimensions; d++)
+        memcpy(particles->velocity[d], start->velocity[d],
+               particles->count * sizeof *particles->velocity[d]);
+    return STATUS_OK;
+}
+
+enum status simulation_init(struct simulation *simulation, const struct simulation_setup *setup,
+                            const struct simulation_start *start) {
+    enum status status = STATUS_OK;
+    *simulation = (struct simulation){
+        .setup = *setup,
+        .law = {.potential = setup->potential,
+                .weight = setup->weight,
+                .temperature = setup->temperature,
+                .time_step = setup->time_step,
+                .seed = setup->seed},
+    };
+    const size_t count = (size_t)setup->placement.count;
+    CHECK(particles_init(&simulation->particles, &setup->box, count));
+    CHECK(neighbours_init(&simulation->neighbours, NEIGHBOURS_HALF, &setup->box, count,
+                          pair_cutoff(&simulation->law), setup->skin));
+    CHECK(place(simulation, start));
+    CHECK(neighbours_sort_and_build(&simulation->neighbours, &simulation->particles));
+    CHECK(simulation_compute_forces(simulation, 0));
+done:
+    if (status != STATUS_OK)
+        simulation_clear(simulation);
+    return status;
+}
+
+void simulation_clear(struct simulation *simulation) {
+    particles_clear(&simulation->particles);
+    neighbours_clear(&simulation->neighbours);
+}
+
+void simulation_kick_and_drift(struct simulation *simulation) {
+    struct particles *particles = &simulation->particles;
+    const double dt = simulation->setup.time_step;
+    for (int d = 0; d < particles->box.dimensions; d++) {
+        double *restrict x = particles->position[d], *restrict v = particles->velocity[d];
+        const double *restrict force = particles->force[d];
+        for (size_t k = 0; k < particles->count; k++) {
+            v[k] += 0.5 * dt * force[k];
+            x[k] += dt * v[k];
+        }
+    }
+}
+
+void simulation_kick(struct simulation *simulation) {
+    struct particles *particles = &simulation->particles;
+    const double dt = simulation->setup.time_step;
+    for (int d = 0; d < particles->box.dimensions; d++) {
+        double *restrict v = particles->velocity[d];
+        const double *restrict force = particles->force[d];
+        for (size_t k = 0; k < particles->count; k++)
+            v[k] += 0.5 * dt * force[k];
+    }
+}
+
+static enum status fail_unstable(const struct simulation *simulation, double square_velocities) {
+    const struct simulation_setup *setup = &simulation->setup;
+    const struct particles *particles = &simulation->particles;
+    const double degrees = particles->box.dimensions * ((double)particles->count - 1);
+    return status_fail(STATUS_UNSTABLE,
+                       "unstable at step %llu: kinetic temperature %.3g (limit %g), largest force "
+                       "%.3g; lower \"time_step\" or soften the potential",
+                       (unsigned long long)simulation->step, square_velocities / degrees,
+                       setup->temperature_limit * setup->temperature,
+                       particles_largest_force(particles));
+}
+
+/// Before a list is built: particles flung beyond the reach of box_fraction would meet on a few
+/// spots, where the list is one of all pairs and takes minutes.
+static enum status watch_flight(const struct simulation *simulation) {
+    const struct particles *particles = &simulation->particles;
+    const double squares = particles_square_velocities(particles);
+    if (simulation->setup.time_step * sqrt(squares) <= 0x1p18 * box_shortest(&particles->box))
+        return STATUS_OK;
+    return fail_unstable(simulation, squares);
+}
+
+enum status simulation_compute_forces(struct simulation *simulation, double ahead) {
+    struct particles *particles = &simulation->particles;
+    struct neighbours *neighbours = &simulation->neighbours;
+    if (neighbours_are_stale(neighbours, particles)) {
+        TRY(watch_flight(simulation));
+        TRY(neighbours_sort_and_build(neighbours, particles));
+        simulation->list_builds++;
+    } else {
+        particles_update_fractions(particles);
+    }
+    if (simulation->law.weight)
+        particles_update_motion(particles, ahead);
+    pair_forces(&simulation->law, particles, neighbours, simulation->step, simulation->wants,
+                &simulation->sums);
+    return STATUS_OK;
+}
+
+/// Σ v² tells at once of NaN, overflow and a runaway temperature.
+static enum status watch(const struct simulation *simulation) {
+    const struct simulation_setup *setup = &simulation->setup;
+    const struct particles *particles = &simulation->particles;
+    const double degrees = particles->box.dimensions * ((double)particles->count - 1);
+    const double squares = particles_square_velocities(particles);
+    if (squares / degrees <= setup->temperature_limit * setup->temperature)
+        return STATUS_OK;
+    return fail_unstable(simulation, squares);
+}
+
+enum status simulation_run(struct simulation *simulation, uint64_t steps) {
+    for (uint64_t k = 0; k < steps; k++) {
+        if (interrupt_requested())
+            return status_fail(STATUS_INTERRUPTED, "interrupted");
+        simulation->step++;
+        TRY(simulation->setup.integrator->step(simulation));
+        TRY(watch(simulation));
+    }
+    return STATUS_OK;
+}
+
+double simulation_pressure(const struct simulation *simulation) {
+    const struct particles *particles = &simulation->particles;
+    const double temperature =
+        simulation->law.weight ? simulation->setup.temperature : particles_temperature(particles);
+    return particles_density(particles) * temperature +
+           simulation->sums.virial / (particles->box.dimensions * box_volume(&particles->box));
+}
+
+size_t simulation_spans(struct simulation *simulation, struct memory_span *spans) {
+    struct particles *particles = &simulation->particles;
+    const size_t numbers = particles->count * sizeof(double), words = particles->count * 4;
+    size_t n = 0;
+    for (int d = 0; d < particles->box.dimensions; d++) {
+        spans[n++] = (struct memory_span){particles->position[d], numbers};
+        spans[n++] = (struct memory_span){particles->velocity[d], numbers};
+        spans[n++] = (struct memory_span){particles->force[d], numbers};
+        spans[n++] = (struct memory_span){particles->image[d], words};
+        spans[n++] = (struct memory_span){simulation->neighbours.built[d], numbers};
+    }
+    spans[n++] = (struct memory_span){particles->id, words};
+    spans[n++] = (struct memory_span){&simulation->step, sizeof simulation->step};
+    spans[n++] = (struct memory_span){&simulation->list_builds, sizeof simulation->list_builds};
+    return n;
+}
+
+enum status simulation_restore(struct simulation *simulation) {
+    return neighbours_rebuild(&simulation->neighbours, &simulation->particles);
+}

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/simd.h"
+
+#if SIMD_X86
+#pragma GCC target("avx2,fma,popcnt")
+#include "pair_loop.h"
+
+PAIR_INSTANCES(pair_avx2)
+#endif

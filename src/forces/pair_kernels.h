@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The instances of the pair loop, by instruction set.
+#pragma once
+
+#include "forces/pair.h"
+
+#define PAIR_KERNEL_ARGUMENTS                                                                      \
+    const struct pair_law *law, struct particles *particles, const struct neighbours *neighbours,  \
+        uint64_t step, struct pair_sums *sums
+
+typedef void (*pair_kernel)(PAIR_KERNEL_ARGUMENTS);
+
+/// [dimensions − 2][potential][weight][sums]
+extern const pair_kernel pair_portable[2][2][2][2], pair_avx2[2][2][2][2], pair_avx512[2][2][2][2];

@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The one body of the pair loop.
+///
+/// Included by pair_portable.c, pair_avx2.c and pair_avx512.c, which compile it for an instruction
+/// set and for each combination of the constant arguments. Pairs within the cutoff are collected
+/// from the list into a batch; the law is evaluated for the batch, column by column; the forces are
+/// added to the particles.
+///
+/// Each step is a short loop of its own over columns in the first-level cache. One loop from the
+/// list to the forces reads as well but takes 1.7 times as long: a pair is a chain of 110 cycles
+/// there, and a processor cannot look far enough ahead to overlap several.
+#pragma once
+
+#include "base/rng_lanes.h"
+#include "pair_kernels.h"
+
+#define INLINE static inline __attribute__((always_inline))
+
+enum {
+    PAIR_BATCH = 128, ///< pairs evaluated together; always as many, so that loops are predictable
+    PAIR_PIECE = 64,  ///< entries of the list looked at together
+    PAIR_ROOM = PAIR_BATCH + PAIR_PIECE + RNG_LANES,
+};
+
+/// Entries of the list: separations, and masks of those in range, one a vector.
+struct pair_piece {
+    float dx[PAIR_PIECE], dy[PAIR_PIECE], dz[PAIR_PIECE];
+    unsigned near[PAIR_PIECE / LANES], far[PAIR_PIECE / LANES];
+};
+
+/// Pairs in range.
+struct pair_batch {
+    int count;
+    int32_t i[PAIR_ROOM], j[PAIR_ROOM];
+    float dx[PAIR_ROOM], dy[PAIR_ROOM], dz[PAIR_ROOM];
+};
+
+/// Where distances lie in a table.
+struct pair_places {
+    int32_t interval[PAIR_BATCH];
+    float fraction[PAIR_BATCH];
+};
+
+/// What is computed from a batch, column by column.
+struct pair_columns {
+    float r[PAIR_BATCH], inverse_r[PAIR_BATCH];
+    struct pair_places potential, weight;
+    float force_over_r[PAIR_BATCH];
+    float r_dot_v[PAIR_BATCH];
+    int32_t low_id[PAIR_BATCH], high_id[PAIR_BATCH], noise[PAIR_BATCH];
+    float force[PAIR_BATCH][4];
+};
+
+/// What stays the same from pair to pair.
+struct pair_scene {
+    const struct pair_law *law;
+    struct particles *particles;
+    struct pair_sums *sums;
+    uint64_t step;
+    float scale[3];              ///< box edges in units of 2³²: fractions to lengths
+    float cutoff2, near_cutoff2; ///< squared: of the law, of its dissipative part
+    bool has_far;                ///< the potential reaches farther than ω
+};
+
+/// One coordinate of the particles to which the entries of the list in a vector belong.
+INLINE lanes_uint pair_owner(const struct particle_place *place, const int32_t *owner, int d) {
+    lanes_uint x = (uint32_t)place[owner[0]].fraction[d] - (lanes_uint){0};
+    for (int lane = NEIGHBOURS_ROW; lane < LANES; lane++)
+        x[lane] = (uint32_t)place[owner[1]].fraction[d];
+    return x;
+}
+
+/// Separations r_i − r_j of `count` entries of the list, and which of them are in range.
+INLINE void pair_separate(struct pair_piece *piece, const struct pair_scene *scene,
+                          const int32_t *list, const int32_t *owner, int count, const int dim,
+                          const bool has_far) {
+    const struct particle_place *place = scene->particles->kernel_place;
+    for (int k = 0; k < count; k += LANES) {
+        const struct lanes_record j = lanes_load_records(place, list + k);
+        lanes_float dr[3], r2 = lanes_all(0);
+        for (int d = 0; d < dim; d++) {
+            // Differences of unsigned fractions wrap around: read as signed, they are those of the
+            // nearest images (box_fraction).
+            const lanes_uint x = pair_owner(place, owner + k / NEIGHBOURS_ROW, d);
+            dr[d] = scene->scale[d] * lanes_to_float((lanes_int)(x - (lanes_uint)j.word[d]));
+            r2 += dr[d] * dr[d];
+        }
+        lanes_store(piece->dx + k, dr[0]);
+        lanes_store(piece->dy + k, dr[1]);
+        if (dim == 3)
+            lanes_store(piece->dz + k, dr[2]);
+        // Rows are filled up with their owner, whose distance from itself is 0.
+        const unsigned in_range =
+            lanes_below(lanes_all(0), r2) & lanes_below(r2, lanes_all(scene->cutoff2));
+        unsigned near = in_range;
+        if (has_far)
+            near &= lanes_below(r2, lanes_all(scene->near_cutoff2));
+        piece->near[k / LANES] = near;
+        piece->far[k / LANES] = in_range & ~near;
+    }
+}
+
+/// Append the pairs of the masks.
+INLINE void pair_collect(struct pair_batch *batch, const struct pair_piece *piece,
+                         const unsigned *masks, const int32_t *list, const int32_t *owner,
+                         int count, const int dim) {
+    int n = batch->count;
+    for (int k = 0; k < count; k += LANES) {
+        const unsigned mask = masks[k / LANES];
+        const lanes_int order = lanes_set_bits(mask);
+        lanes_int i = lanes_all_int(owner[k / NEIGHBOURS_ROW]);
+        if (LANES > NEIGHBOURS_ROW) {
+            for (int lane = NEIGHBOURS_ROW; lane < LANES; lane++)
+                i[lane] = owner[k / NEIGHBOURS_ROW + 1];
+            i = lanes_permute_int(i, order);
+        }
+        lanes_store_int(batch->i + n, i);
+        lanes_store_int(batch->j + n, lanes_permute_int(lanes_load_int(list + k), order));
+        lanes_store(batch->dx + n, lanes_permute(lanes_load(piece->dx + k), order));
+        lanes_store(batch->dy + n, lanes_permute(lanes_load(piece->dy + k), order));
+        if (dim == 3)
+            lanes_store(batch->dz + n, lanes_permute(lanes_load(piece->dz + k), order));
+        n += __builtin_popcount(mask);
+    }
+    batch->count = n;
+}
+
+INLINE void pair_place(struct pair_places *places, int k, const struct table *table,
+                       lanes_float r) {
+    const float inverse_spacing = (float)table->inverse_spacing;
+    // Beyond the cutoff is the last row, of zeros.
+    const lanes_float place = lanes_least(r * inverse_spacing, lanes_all(TABLE_INTERVALS));
+    const lanes_int interval = lanes_to_int(place);
+    lanes_store_int(places->interval + k, interval);
+    lanes_store(places->fraction + k, place - lanes_to_float(interval));
+}
+
+INLINE void pair_distances(struct pair_columns *columns, const struct pair_batch *batch, int count,
+                           const struct pair_law *law, const int dim, const bool conservative,
+                           const bool dissipative) {
+    for (int k = 0; k < count; k += LANES) {
+        const lanes_float dx = lanes_load(batch->dx + k), dy = lanes_load(batch->dy + k);
+        lanes_float r2 = dx * dx + dy * dy;
+        if (dim == 3) {
+            const lanes_float dz = lanes_load(batch->dz + k);
+            r2 += dz * dz;
+        }
+        // Exact root and quotient: an estimate with a Newton step is no faster, since the other
+        // steps leave the divider idle, and differs between makes of processors.
+        const lanes_float r = lanes_sqrt(r2);
+        lanes_store(columns->r + k, r);
+        lanes_store(columns->inverse_r + k, 1 / r);
+        if (conservative)
+            pair_place(&columns->potential, k, law->potential, r);
+        if (dissipative)
+            pair_place(&columns->weight, k, law->weight, r);
+    }
+}
+
+/// F_C / r = −Φ'(r) / r, and the sums.
+INLINE void pair_conservative(struct pair_columns *columns, int count,
+                              const struct table *potential, struct pair_sums *sums,
+                              const bool wants_sums) {
+    const float spacing = (float)(1 / potential->inverse_spacing);
+    lanes_float energy = lanes_all(0), virial = lanes_all(0);
+    for (int k = 0; k < count; k += LANES) {
+        const struct lanes_record c =
+            lanes_load_records(potential->single, columns->potential.interval + k);
+        const lanes_float f = lanes_load(columns->potential.fraction + k);
+        const lanes_float force = c.word[1] + f * (c.word[2] + f * c.word[3]);
+        lanes_store(columns->force_over_r + k, force * lanes_load(columns->inverse_r + k));
+        if (wants_sums) {
+            const lanes_float c2 = c.word[2] / 2, c3 = c.word[3] / 3;
+            energy += c.word[0] - spacing * f * (c.word[1] + f * (c2 + f * c3));
+            virial += force * lanes_load(columns->r + k);
+        }
+    }
+    if (wants_sums) {
+        sums->energy += lanes_sum(energy);
+        sums->virial += lanes_sum(virial);
+    }
+}
+
+/// r·v_ij, and the ordered ids that key the noise.
+INLINE void pair_velocities(struct pair_columns *columns, const struct pair_batch *batch, int count,
+                            const struct particle_motion *motion, const int dim) {
+    for (int k = 0; k < count; k += LANES) {
+        const struct lanes_record i = lanes_load_records(motion, batch->i + k);
+        const struct lanes_record j = lanes_load_records(motion, batch->j + k);
+        lanes_float r_dot_v = lanes_load(batch->dx + k) * (i.word[0] - j.word[0]) +
+                              lanes_load(batch->dy + k) * (i.word[1] - j.word[1]);
+        if (dim == 3)
+            r_dot_v += lanes_load(batch->dz + k) * (i.word[2] - j.word[2]);
+        const lanes_int id_i = (lanes_int)i.word[3], id_j = (lanes_int)j.word[3];
+        lanes_store(columns->r_dot_v + k, r_dot_v);
+        lanes_store_int(columns->low_id + k, lanes_least_int(id_i, id_j));
+        lanes_store_int(columns->high_id + k, lanes_most_int(id_i, id_j));
+    }
+}
+
+INLINE void pair_noise(struct pair_columns *columns, int count, uint64_t seed, uint64_t step) {
+    const uint32_t stream = rng_stream_word(RNG_PAIR_NOISE, (uint32_t)(step >> 32));
+    for (int k = 0; k < count; k += RNG_LANES)
+        rng_philox_lanes((uint32_t)seed, (uint32_t)(seed >> 32), (uint32_t)step,
+                         columns->low_id + k, columns->high_id + k, stream, columns->noise + k);
+}
+
+/// Adds (F_D + F_R) / r = ω/r (sqrt(2 k_B T / Δt) ζ − ω/r r·v_ij).
+INLINE void pair_dissipative(struct pair_columns *columns, int count, const struct pair_law *law,
+                             const bool conservative) {
+    // ζ = sqrt(12) (u − ½) with u uniform; the word as a signed integer is (u − ½) 2³².
+    const float amplitude =
+        (float)(sqrt(2 * law->temperature / law->time_step) * sqrt(12) * 0x1p-32);
+    for (int k = 0; k < count; k += LANES) {
+        const struct lanes_record c =
+            lanes_load_records(law->weight->single, columns->weight.interval + k);
+        const lanes_float omega = c.word[0] + lanes_load(columns->weight.fraction + k) * c.word[1];
+        const lanes_float omega_over_r = omega * lanes_load(columns->inverse_r + k);
+        const lanes_float noise = amplitude * lanes_to_float(lanes_load_int(columns->noise + k));
+        lanes_float force_over_r =
+            omega_over_r * (noise - omega_over_r * lanes_load(columns->r_dot_v + k));
+        if (conservative)
+            force_over_r += lanes_load(columns->force_over_r + k);
+        lanes_store(columns->force_over_r + k, force_over_r);
+    }
+}
+
+/// F = F/r (r_i − r_j), in records.
+INLINE void pair_vectors(struct pair_columns *columns, const struct pair_batch *batch, int count,
+                         const int dim) {
+    for (int k = 0; k < count; k += LANES) {
+        const lanes_float force_over_r = lanes_load(columns->force_over_r + k);
+        lanes_store_records(columns->force + k, force_over_r * lanes_load(batch->dx + k),
+                            force_over_r * lanes_load(batch->dy + k),
+                            dim == 3 ? force_over_r * lanes_load(batch->dz + k) : lanes_all(0));
+    }
+}
+
+/// force_i += F, force_j −= F: the same F, in double precision.
+INLINE void pair_scatter(const struct pair_columns *columns, struct pair_batch *batch, int count,
+                         lanes_double4 *force) {
+    const int32_t after = batch->i[count];
+    batch->i[count] = -1;
+    for (int k = 0; k < count;) {
+        const int32_t i = batch->i[k];
+        // Two sums, because each addition waits for the one before.
+        lanes_double4 sum[2] = {{0}, {0}};
+        for (;;) {
+            const lanes_double4 even = lanes_load_double4(columns->force[k]);
+            force[batch->j[k]] -= even;
+            sum[0] += even;
+            if (batch->i[++k] != i)
+                break;
+            const lanes_double4 odd = lanes_load_double4(columns->force[k]);
+            force[batch->j[k]] -= odd;
+            sum[1] += odd;
+            if (batch->i[++k] != i)
+                break;
+        }
+        force[i] += sum[0] + sum[1];
+    }
+    batch->i[count] = after;
+}
+
+/// The forces of the first `count` pairs of a batch.
+INLINE void pair_evaluate(struct pair_batch *batch, int count, const struct pair_scene *scene,
+                          const int dim, const bool conservative, const bool dissipative,
+                          const bool wants_sums) {
+    const struct pair_law *law = scene->law;
+    struct pair_columns columns;
+    pair_distances(&columns, batch, count, law, dim, conservative, dissipative);
+    if (conservative)
+        pair_conservative(&columns, count, law->potential, scene->sums, wants_sums);
+    if (dissipative) {
+        pair_velocities(&columns, batch, count, scene->particles->kernel_motion, dim);
+        pair_noise(&columns, count, law->seed, scene->step);
+        pair_dissipative(&columns, count, law, conservative);
+    }
+    pair_vectors(&columns, batch, count, dim);
+    pair_scatter(&columns, batch, count, (lanes_double4 *)scene->particles->kernel_force);
+}
+
+/// Evaluate a full batch, and move what is beyond to the front.
+INLINE void pair_evaluate_full(struct pair_batch *batch, const struct pair_scene *scene,
+                               const int dim, const bool conservative, const bool dissipative,
+                               const bool wants_sums) {
+    if (batch->count < PAIR_BATCH)
+        return;
+    pair_evaluate(batch, PAIR_BATCH, scene, dim, conservative, dissipative, wants_sums);
+    batch->count -= PAIR_BATCH;
+    for (int k = 0; k < batch->count; k += LANES) {
+        lanes_store_int(batch->i + k, lanes_load_int(batch->i + PAIR_BATCH + k));
+        lanes_store_int(batch->j + k, lanes_load_int(batch->j + PAIR_BATCH + k));
+        lanes_store(batch->dx + k, lanes_load(batch->dx + PAIR_BATCH + k));
+        lanes_store(batch->dy + k, lanes_load(batch->dy + PAIR_BATCH + k));
+        if (dim == 3)
+            lanes_store(batch->dz + k, lanes_load(batch->dz + PAIR_BATCH + k));
+    }
+}
+
+/// Evaluate what is left. The last vector is filled up with pairs beyond the cutoff, without force.
+INLINE void pair_evaluate_rest(struct pair_batch *batch, const struct pair_scene *scene,
+                               const int dim, const bool conservative, const bool dissipative,
+                               const bool wants_sums) {
+    const float beyond = 2 * sqrtf(scene->cutoff2);
+    for (int k = batch->count; k < batch->count + RNG_LANES; k++) {
+        batch->i[k] = batch->j[k] = 0;
+        batch->dx[k] = beyond;
+        batch->dy[k] = batch->dz[k] = 0;
+    }
+    pair_evaluate(batch, batch->count, scene, dim, conservative, dissipative, wants_sums);
+}
+
+INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
+                      const struct neighbours *neighbours, uint64_t step, struct pair_sums *sums,
+                      const int dim, const bool conservative, const bool dissipative,
+                      const bool wants_sums) {
+    const double cutoff = pair_cutoff(law);
+    const double near_cutoff = dissipative ? law->weight->cutoff : cutoff;
+    struct pair_scene scene = {.law = law,
+                               .particles = particles,
+                               .sums = sums,
+                               .step = step,
+                               .cutoff2 = (float)(cutoff * cutoff),
+                               .near_cutoff2 = (float)(near_cutoff * near_cutoff)};
+    for (int d = 0; d < 3; d++)
+        scene.scale[d] = (float)(particles->box.length[d] * 0x1p-32);
+    // Near pairs feel the whole law, far ones the potential alone.
+    const bool has_far = conservative && dissipative && near_cutoff < cutoff;
+    struct pair_batch near, far;
+    struct pair_piece piece;
+    near.count = far.count = 0;
+    const size_t entries = neighbours->start[particles->count];
+    for (size_t k = 0; k < entries; k += PAIR_PIECE) {
+        const int32_t *list = neighbours->list + k, *owner = neighbours->owner + k / NEIGHBOURS_ROW;
+        const int count = entries - k < PAIR_PIECE ? (int)(entries - k) : PAIR_PIECE;
+        pair_separate(&piece, &scene, list, owner, count, dim, has_far);
+        pair_collect(&near, &piece, piece.near, list, owner, count, dim);
+        pair_evaluate_full(&near, &scene, dim, conservative, dissipative, wants_sums);
+        if (has_far) {
+            pair_collect(&far, &piece, piece.far, list, owner, count, dim);
+            pair_evaluate_full(&far, &scene, dim, conservative, false, wants_sums);
+        }
+    }
+    pair_evaluate_rest(&near, &scene, dim, conservative, dissipative, wants_sums);
+    if (has_far)
+        pair_evaluate_rest(&far, &scene, dim, conservative, false, wants_sums);
+}
+
+#define PAIR_INSTANCE(name, dim, conservative, dissipative, wants_sums)                            \
+    static void name(PAIR_KERNEL_ARGUMENTS) {                                                      \
+        pair_loop(law, particles, neighbours, step, sums, dim, conservative, dissipative,          \
+                  wants_sums);                                                                     \
+    }
+
+/// All instances for one instruction set, by name, and the table from which pair_kernels.c chooses.
+#define PAIR_INSTANCES(set)                                                                        \
+    PAIR_INSTANCE(set##_2d_d, 2, false, true, false)                                               \
+    PAIR_INSTANCE(set##_2d_ds, 2, false, true, true)                                               \
+    PAIR_INSTANCE(set##_2d_c, 2, true, false, false)                                               \
+    PAIR_INSTANCE(set##_2d_cs, 2, true, false, true)                                               \
+    PAIR_INSTANCE(set##_2d_cd, 2, true, true, false)                                               \
+    PAIR_INSTANCE(set##_2d_cds, 2, true, true, true)                                               \
+    PAIR_INSTANCE(set##_3d_d, 3, false, true, false)                                               \
+    PAIR_INSTANCE(set##_3d_ds, 3, false, true, true)                                               \
+    PAIR_INSTANCE(set##_3d_c, 3, true, false, false)                                               \
+    PAIR_INSTANCE(set##_3d_cs, 3, true, false, true)                                               \
+    PAIR_INSTANCE(set##_3d_cd, 3, true, true, false)                                               \
+    PAIR_INSTANCE(set##_3d_cds, 3, true, true, true)                                               \
+    const pair_kernel set[2][2][2][2] = {                                                          \
+        {{{NULL, NULL}, {set##_2d_d, set##_2d_ds}},                                                \
+         {{set##_2d_c, set##_2d_cs}, {set##_2d_cd, set##_2d_cds}}},                                \
+        {{{NULL, NULL}, {set##_3d_d, set##_3d_ds}},                                                \
+         {{set##_3d_c, set##_3d_cs}, {set##_3d_cd, set##_3d_cds}}}};

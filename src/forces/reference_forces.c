@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "forces/reference_forces.h"
+
+#include "base/memory.h"
+#include "base/rng.h"
+
+/// Separation of the nearest images of particles i and j; returns its length.
+static double separation(const struct particles *particles, size_t i, size_t j, double r_ij[3]) {
+    double square = 0;
+    for (int d = 0; d < particles->box.dimensions; d++) {
+        r_ij[d] = box_nearest(particles->position[d][i] - particles->position[d][j],
+                              particles->box.length[d]);
+        square += r_ij[d] * r_ij[d];
+    }
+    return sqrt(square);
+}
+
+static double pair_noise(const struct pair_law *law, uint32_t a, uint32_t b, uint64_t step) {
+    const uint32_t low = a < b ? a : b, high = a < b ? b : a;
+    const uint32_t word =
+        rng_philox_lane((uint32_t)law->seed, (uint32_t)(law->seed >> 32), (uint32_t)step, low, high,
+                        rng_stream_word(RNG_PAIR_NOISE, (uint32_t)(step >> 32)));
+    return sqrt(12) * (double)(int32_t)word * 0x1p-32;
+}
+
+/// (F_D + F_R) · r̂ on particle i.
+static double friction_and_noise(const struct pair_law *law, const struct particles *particles,
+                                 size_t i, size_t j, const double r_ij[3], double r,
+                                 uint64_t step) {
+    double omega, speed = 0;
+    table_evaluate(law->weight, r, &omega, NULL, NULL);
+    for (int d = 0; d < particles->box.dimensions; d++)
+        speed += r_ij[d] / r * (particles->velocity[d][i] - particles->velocity[d][j]);
+    const double zeta = pair_noise(law, particles->id[i], particles->id[j], step);
+    return -omega * omega * speed + sqrt(2 * law->temperature / law->time_step) * omega * zeta;
+}
+
+void reference_forces(const struct pair_law *law, struct particles *particles, uint64_t step,
+                      struct pair_sums *sums) {
+    const int dimensions = particles->box.dimensions;
+    for (int d = 0; d < dimensions; d++)
+        memset(particles->force[d], 0, particles->count * sizeof *particles->force[d]);
+    struct pair_sums total = {0};
+    for (size_t i = 0; i < particles->count; i++)
+        for (size_t j = i + 1; j < particles->count; j++) {
+            double r_ij[3];
+            const double r = separation(particles, i, j, r_ij);
+            double force = 0;
+            if (law->potential && r < law->potential->cutoff) {
+                double phi, slope;
+                table_evaluate(law->potential, r, &phi, &slope, NULL);
+                force -= slope;
+                total.energy += phi;
+                total.virial -= slope * r;
+            }
+            if (law->weight && r < law->weight->cutoff)
+                force += friction_and_noise(law, particles, i, j, r_ij, r, step);
+            for (int d = 0; d < dimensions; d++) {
+                particles->force[d][i] += force * r_ij[d] / r;
+                particles->force[d][j] -= force * r_ij[d] / r;
+            }
+        }
+    if (sums)
+        *sums = total;
+}
+
+enum status reference_configurational(const struct table *potential,
+                                      const struct particles *particles,
+                                      const struct neighbours *neighbours, double *squares,
+                                      double *laplacian) {
+    enum status status = STATUS_OK;
+    const int dimensions = particles->box.dimensions;
+    double *force = NULL;
+    *squares = *laplacian = 0;
+    NEW_ARRAY(force, 3 * particles->count);
+    for (size_t i = 0; i < particles->count; i++)
+        for (size_t k = neighbours->start[i]; k < neighbours->start[i + 1]; k++) {
+            const size_t j = (size_t)neighbours->list[k];
+            if (j == i) // what is left of a row
+                continue;
+            double r_ij[3], slope, curvature;
+            const double r = separation(particles, i, j, r_ij);
+            if (r >= potential->cutoff)
+                continue;
+            table_evaluate(potential, r, NULL, &slope, &curvature);
+            *laplacian += 2 * (curvature + (dimensions - 1) * slope / r);
+            for (int d = 0; d < dimensions; d++) {
+                force[3 * i + (size_t)d] -= slope * r_ij[d] / r;
+                force[3 * j + (size_t)d] += slope * r_ij[d] / r;
+            }
+        }
+    for (size_t k = 0; k < 3 * particles->count; k++)
+        *squares += force[k] * force[k];
+done:
+    memory_free(force);
+    return status;
+}

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/data_table.h"
+
+#include "base/memory.h"
+#include "io/output.h"
+#include "io/text_file.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char blanks[] = " \t\r\f\v";
+
+/// One line of the text, without its line end.
+struct line {
+    const char *begin, *end;
+    size_t number; ///< from 1
+};
+
+static struct line first_line(const char *text) {
+    return (struct line){text, text + strcspn(text, "\n"), 1};
+}
+
+/// Step to the next line; false at the end of the text.
+static bool next_line(struct line *line) {
+    if (*line->end == '\0')
+        return false;
+    const char *begin = line->end + 1;
+    *line = (struct line){begin, begin + strcspn(begin, "\n"), line->number + 1};
+    return true;
+}
+
+static const char *first_word(const struct line *line) {
+    return line->begin + strspn(line->begin, blanks);
+}
+
+static bool is_comment(const struct line *line) {
+    const char *word = first_word(line);
+    return *word == '#' || *word == '@';
+}
+
+static bool is_data(const struct line *line) {
+    return first_word(line) < line->end && !is_comment(line);
+}
+
+static size_t word_length(const char *word) {
+    return strcspn(word, " \t\r\f\v\n");
+}
+
+static size_t count_words(const struct line *line) {
+    size_t count = 0;
+    for (const char *word = first_word(line); word < line->end; count++) {
+        word += word_length(word);
+        word += strspn(word, blanks);
+    }
+    return count;
+}
+
+/// Count the rows and take the number of columns from the first one.
+static enum status measure(struct data_table *table, const char *file, const char *text,
+                           size_t least_columns) {
+    struct line line = first_line(text);
+    do {
+        if (!is_data(&line))
+            continue;
+        if (table->rows++ == 0)
+            table->columns = count_words(&line);
+        if (table->columns < least_columns)
+            return status_fail(STATUS_BAD_INPUT, "%s:%zu: %zu columns, at least %zu are needed",
+                               file, line.number, table->columns, least_columns);
+    } while (next_line(&line));
+    if (table->rows == 0)
+        return status_fail(STATUS_BAD_INPUT, "%s:%zu: the file ends without a row of numbers", file,
+                           line.number);
+    return STATUS_OK;
+}
+
+/// Read the number that is exactly the word at `word`. strtod alone would take nan, inf and 0x10.
+static enum status read_number(const char *file, size_t line, size_t column, size_t strict,
+                               const char *word, double *value) {
+    const size_t length = word_length(word);
+    char *end;
+    *value = strtod(word, &end);
+    if (column >= strict && length == 3 && isnan(*value))
+        return STATUS_OK;
+    const bool plain = strspn(word, "0123456789+-.eE") >= length;
+    if (end != word + length || !plain || !isfinite(*value))
+        return status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: \"%.*s\" is not a finite number",
+                           file, line, column + 1, length > 40 ? 40 : (int)length, word);
+    return STATUS_OK;
+}
+
+static enum status read_row(const struct data_table *table, const char *file, size_t strict,
+                            const struct line *line, double *row) {
+    const size_t words = count_words(line);
+    const char *word = first_word(line);
+    for (size_t column = 0; column < words && column < table->columns; column++) {
+        TRY(read_number(file, line->number, column, strict, word, &row[column]));
+        word += word_length(word);
+        word += strspn(word, blanks);
+    }
+    if (words != table->columns)
+        return status_fail(STATUS_BAD_INPUT, "%s:%zu: %zu columns, the first row has %zu", file,
+                           line->number, words, table->columns);
+    return STATUS_OK;
+}
+
+static enum status read_rows(struct data_table *table, const char *file, size_t strict,
+                             const char *text) {
+    struct line line = first_line(text);
+    size_t row = 0;
+    do {
+        if (!is_data(&line))
+            continue;
+        table->line[row] = line.number;
+        TRY(read_row(table, file, strict, &line, table->values + row * table->columns));
+        row++;
+    } while (next_line(&line));
+    return STATUS_OK;
+}
+
+/// Copy `line` from `begin` on, without blanks at its end, to `text`; returns its length.
+static size_t copy_line(char *text, const struct line *line, const char *begin) {
+    size_t length = (size_t)(line->end - begin);
+    while (length > 0 && strchr(blanks, begin[length - 1]))
+        length--;
+    memcpy(text, begin, length);
+    text[length] = '\0';
+    return length;
+}
+
+static void read_comments(struct data_table *table, const char *text) {
+    struct line line = first_line(text);
+    char *end = table->comments;
+    do {
+        if (is_data(&line))
+            return;
+        if (!is_comment(&line))
+            continue;
+        const char *after_mark = first_word(&line) + 1;
+        copy_line(table->header, &line, after_mark + strspn(after_mark, blanks));
+        end += copy_line(end, &line, line.begin);
+        *end++ = '\n';
+    } while (next_line(&line));
+}
+
+enum status data_table_read(struct data_table *table, const char *file, size_t least_columns) {
+    enum status status = STATUS_OK;
+    char *text = NULL;
+    size_t length = 0;
+    *table = (struct data_table){0};
+    CHECK(text_file_read(file, &text, &length));
+    CHECK(measure(table, file, text, least_columns));
+    NEW_ARRAY(table->values, table->rows * table->columns);
+    NEW_ARRAY(table->line, table->rows);
+    NEW_ARRAY(table->header, length + 1);
+    NEW_ARRAY(table->comments, length + 2);
+    CHECK(read_rows(table, file, least_columns, text));
+    read_comments(table, text);
+done:
+    memory_free(text);
+    if (status != STATUS_OK)
+        data_table_clear(table);
+    return status;
+}
+
+void data_table_clear(struct data_table *table) {
+    memory_free(table->values);
+    memory_free(table->line);
+    memory_free(table->header);
+    memory_free(table->comments);
+    *table = (struct data_table){0};
+}
+
+enum status data_table_check_increasing(const struct data_table *table, const char *file,
+                                        size_t column, double least) {
+    if (column >= table->columns)
+        return status_fail(STATUS_BAD_INPUT, "%s: there is no column %zu", file, column + 1);
+    for (size_t row = 0; row < table->rows; row++) {
+        const double value = table->values[row * table->columns + column];
+        const size_t line = table->line[row];
+        if (row == 0 && !(value >= least))
+            return status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: %.15g is below %.15g", file,
+                               line, column + 1, value, least);
+        const double before = row ? table->values[(row - 1) * table->columns + column] : -INFINITY;
+        if (!(value > before))
+            return status_fail(STATUS_BAD_INPUT,
+                               "%s:%zu: column %zu: %.15g does not grow from %.15g in line %zu",
+                               file, line, column + 1, value, before, table->line[row - 1]);
+    }
+    return STATUS_OK;
+}
+
+static void write_comment(FILE *stream, const char *comment) {
+    struct line line = first_line(comment);
+    do
+        fprintf(stream, "# %.*s\n", (int)(line.end - line.begin), line.begin);
+    while (next_line(&line) && *line.begin);
+}
+
+static void write_header(FILE *stream, const struct data_column *columns, size_t count) {
+    fputs("# ", stream);
+    for (size_t column = 0; column < count; column++)
+        fprintf(stream, "%s%s", column ? "\t" : "", columns[column].name);
+    fputc('\n', stream);
+}
+
+static void write_row(FILE *stream, const struct data_column *columns, size_t count, size_t row) {
+    for (size_t column = 0; column < count; column++) {
+        const char *format = columns[column].format ? columns[column].format : "%.10g";
+        const double value = columns[column].values[row];
+        if (column > 0)
+            fputc('\t', stream);
+        if (isnan(value))
+            fputs("nan", stream); // printf would add the sign that a NaN happens to carry
+        else
+            fprintf(stream, format, value);
+    }
+    fputc('\n', stream);
+}
+
+enum status data_table_write(const char *file, const char *comment,
+                             const struct data_column *columns, size_t column_count, size_t rows) {
+    struct output output;
+    TRY(output_open(&output, file));
+    if (comment)
+        write_comment(output.stream, comment);
+    write_header(output.stream, columns, column_count);
+    for (size_t row = 0; row < rows; row++)
+        write_row(output.stream, columns, column_count, row);
+    return output_commit(&output);
+}

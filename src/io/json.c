@@ -1,0 +1,580 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/json.h"
+
+#include "base/faults.h"
+#include "base/memory.h"
+#include "base/nearest.h"
+#include "io/json_syntax.h"
+#include "io/output.h"
+#include "io/text_file.h"
+
+#include <cJSON.h>
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { LINE_SIZE = 4096 };
+
+struct json_document {
+    cJSON *root;
+    char *file;
+    struct faults faults;
+};
+
+// Faults ------------------------------------------------------------------------------------------
+
+/// "scene.particles" and "count" make "scene.particles.count"; either may be empty.
+static void join_path(char *text, size_t size, const char *path, const char *key) {
+    const char *dot = path[0] && key[0] && key[0] != '[' ? "." : "";
+    if (snprintf(text, size, "%s%s%s", path, dot, key) >= (int)size)
+        memcpy(text + size - 4, "...", 4);
+}
+
+void json_fault(struct json_object *object, const char *key, const char *format, ...) {
+    char path[2 * JSON_PATH_SIZE], message[LINE_SIZE / 2], line[LINE_SIZE];
+    join_path(path, sizeof path, object->path, key ? key : "");
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    snprintf(line, sizeof line, "%.1024s: %s%s%s", object->document->file, path,
+             path[0] ? ": " : "", message);
+    faults_add(&object->document->faults, line);
+}
+
+static void describe_item(const cJSON *item, char *text, size_t size) {
+    if (cJSON_IsString(item))
+        snprintf(text, size, "the text \"%.40s\"", item->valuestring);
+    else if (cJSON_IsNumber(item))
+        snprintf(text, size, "the number %.15g", item->valuedouble);
+    else if (cJSON_IsBool(item))
+        snprintf(text, size, "%s", cJSON_IsTrue(item) ? "true" : "false");
+    else
+        snprintf(text, size, "%s",
+                 cJSON_IsArray(item)    ? "an array"
+                 : cJSON_IsObject(item) ? "an object"
+                                        : "null");
+}
+
+static void fault_wrong_type(struct json_object *object, const char *key, const char *expected,
+                             const cJSON *item) {
+    char found[64];
+    describe_item(item, found, sizeof found);
+    json_fault(object, key, "expected %s, found %s", expected, found);
+}
+
+// Documents and objects ---------------------------------------------------------------------------
+
+static struct json_object view(struct json_document *document, const cJSON *item) {
+    return (struct json_object){.document = document, .item = item};
+}
+
+/// Record each key that an object holds twice, here and in everything below: cJSON would read the
+/// first and pass over the others.
+static void find_duplicates(struct json_object *object) {
+    const cJSON *item = object->item, *member;
+    int index = 0;
+    cJSON_ArrayForEach(member, item) {
+        if (member->string && cJSON_GetObjectItemCaseSensitive(item, member->string) != member)
+            json_fault(object, member->string, "the key stands here twice");
+        if (member->child) {
+            struct json_object inner = view(object->document, member);
+            char place[32];
+            snprintf(place, sizeof place, "[%d]", index);
+            join_path(inner.path, sizeof inner.path, object->path,
+                      member->string ? member->string : place);
+            find_duplicates(&inner);
+        }
+        index++;
+    }
+}
+
+/// The syntax was checked, so what cJSON refuses is a \u escape without a meaning.
+static enum status parse(struct json_document *document, const char *text) {
+    const char *end = text;
+    errno = 0;
+    document->root = cJSON_ParseWithOpts(text, &end, true);
+    if (document->root)
+        return STATUS_OK;
+    if (errno == ENOMEM)
+        return status_fail(STATUS_NO_MEMORY, "%s: out of memory", document->file);
+    const struct text_place place = text_file_place(text, end);
+    return status_fail(STATUS_BAD_INPUT, "%s:%zu:%zu: expected a valid \\u escape", document->file,
+                       place.line, place.column);
+}
+
+static void free_document(struct json_document *document) {
+    cJSON_Delete(document->root);
+    memory_free(document->file);
+    memory_free(document);
+}
+
+enum status json_open(struct json_document **document, const char *file) {
+    enum status status = STATUS_OK;
+    struct json_document *opened = NULL;
+    char *text = NULL;
+    size_t length = 0;
+    *document = NULL;
+    NEW_ARRAY(opened, 1);
+    NEW_ARRAY(opened->file, strlen(file) + 1);
+    memcpy(opened->file, file, strlen(file) + 1);
+    CHECK(text_file_read(file, &text, &length));
+    CHECK(json_syntax_check(file, text));
+    CHECK(parse(opened, text));
+    struct json_object root = view(opened, opened->root);
+    find_duplicates(&root);
+    *document = opened;
+done:
+    memory_free(text);
+    if (status != STATUS_OK && opened)
+        free_document(opened);
+    return status;
+}
+
+struct json_object json_root(struct json_document *document) {
+    struct json_object root = view(document, document->root);
+    if (!cJSON_IsObject(document->root)) {
+        fault_wrong_type(&root, NULL, "an object", document->root);
+        root.item = NULL;
+    }
+    return root;
+}
+
+static bool was_asked(const struct json_object *object, const char *key) {
+    for (size_t k = 0; k < object->asked_count; k++)
+        if (strcmp(object->asked[k], key) == 0)
+            return true;
+    return false;
+}
+
+/// Remember that the reader knows `key`, and find it.
+static const cJSON *ask(struct json_object *object, const char *key) {
+    if (!was_asked(object, key)) {
+        if (object->asked_count < JSON_MAX_KEYS)
+            object->asked[object->asked_count++] = key;
+        else
+            json_fault(object, key, "the reader knows more than %d keys here", JSON_MAX_KEYS);
+    }
+    return cJSON_GetObjectItemCaseSensitive(object->item, key);
+}
+
+struct json_object json_child(struct json_object *parent, const char *key, bool required) {
+    const cJSON *item = ask(parent, key);
+    struct json_object child = view(parent->document, NULL);
+    join_path(child.path, sizeof child.path, parent->path, key);
+    if (cJSON_IsObject(item))
+        child.item = item;
+    else if (item)
+        fault_wrong_type(parent, key, "an object", item);
+    else if (required && parent->item)
+        json_fault(parent, key, "missing: an object is required");
+    return child;
+}
+
+bool json_has(struct json_object *object, const char *key) {
+    return ask(object, key) != NULL;
+}
+
+void json_finish(struct json_object *object) {
+    const cJSON *member;
+    cJSON_ArrayForEach(member, (const cJSON *)object->item) {
+        if (was_asked(object, member->string))
+            continue;
+        char hint[LINE_SIZE / 4];
+        nearest_hint(member->string, object->asked, object->asked_count, hint, sizeof hint);
+        json_fault(object, member->string, "unknown key; %s", hint);
+    }
+}
+
+size_t json_fault_count(const struct json_document *document) {
+    return document->faults.count;
+}
+
+enum status json_close(struct json_document *document) {
+    if (document == NULL)
+        return STATUS_OK;
+    const enum status status = faults_status(&document->faults);
+    free_document(document);
+    return status;
+}
+
+// Values ------------------------------------------------------------------------------------------
+
+static const char *const expected_name[] = {
+    [FIELD_NUMBER] = "a number",     [FIELD_INTEGER] = "a whole number",
+    [FIELD_SEED] = "a whole number", [FIELD_LENGTHS] = "an array of 2 or 3 numbers",
+    [FIELD_TEXT] = "a text",         [FIELD_FILE] = "a text with the name of a file",
+    [FIELD_CHOICE] = "a text",
+};
+
+/// A finite number, or false and a fault.
+static bool read_finite(struct json_object *object, const char *key, const char *expected,
+                        const cJSON *item, double *value) {
+    if (!cJSON_IsNumber(item)) {
+        fault_wrong_type(object, key, expected, item);
+        return false;
+    }
+    if (!isfinite(item->valuedouble)) {
+        json_fault(object, key, "the number is too large; the largest is %.3g", DBL_MAX);
+        return false;
+    }
+    *value = item->valuedouble;
+    return true;
+}
+
+/// A finite whole number whose digits survived, or false and a fault.
+static bool read_whole(struct json_object *object, const char *key, const cJSON *item,
+                       double *value) {
+    if (!read_finite(object, key, "a whole number", item, value))
+        return false;
+    if (*value != floor(*value)) {
+        fault_wrong_type(object, key, "a whole number", item);
+        return false;
+    }
+    if (fabs(*value) >= FIELD_LARGEST_INTEGER) {
+        json_fault(object, key,
+                   "%.0f is out of range: whole numbers of 2^53 (%.0f) and beyond lose digits",
+                   *value, FIELD_LARGEST_INTEGER);
+        return false;
+    }
+    return true;
+}
+
+static bool is_in_range(struct json_object *object, const char *key, const struct field *field,
+                        double value) {
+    if (value >= field->minimum && value <= field->maximum)
+        return true;
+    char range[64];
+    fields_range_text(field, range, sizeof range);
+    json_fault(object, key, "%.15g is out of range; allowed: %s%s%s", value, range,
+               field->unit && field->unit[0] ? " " : "", field->unit ? field->unit : "");
+    return false;
+}
+
+static void read_lengths(struct json_object *object, const struct field *field, const cJSON *item,
+                         char *member) {
+    double lengths[3] = {0};
+    const int count = cJSON_IsArray(item) ? cJSON_GetArraySize(item) : 0;
+    if (count < 2 || count > 3) {
+        if (cJSON_IsArray(item))
+            json_fault(object, field->name, "expected 2 or 3 numbers, found %d", count);
+        else
+            fault_wrong_type(object, field->name, expected_name[FIELD_LENGTHS], item);
+        return;
+    }
+    bool good = true;
+    for (int k = 0; k < count; k++) {
+        char key[JSON_PATH_SIZE];
+        snprintf(key, sizeof key, "%s[%d]", field->name, k);
+        good &= read_finite(object, key, "a number", cJSON_GetArrayItem(item, k), &lengths[k]) &&
+                is_in_range(object, key, field, lengths[k]);
+    }
+    if (good)
+        memcpy(member, lengths, sizeof lengths);
+}
+
+/// A text that is not empty, or NULL and a fault.
+static const char *read_text(struct json_object *object, const char *key, const char *expected,
+                             const cJSON *item) {
+    if (!cJSON_IsString(item))
+        fault_wrong_type(object, key, expected, item);
+    else if (item->valuestring[0] == '\0')
+        json_fault(object, key, "the text is empty");
+    else
+        return item->valuestring;
+    return NULL;
+}
+
+static void read_text_field(struct json_object *object, const struct field *field,
+                            const cJSON *item, char *member) {
+    const char *text = read_text(object, field->name, expected_name[field->type], item);
+    if (text == NULL)
+        return;
+    const char *file = object->document->file, *slash = strrchr(file, '/');
+    const bool joined = field->type == FIELD_FILE && text[0] != '/' && slash;
+    const size_t folder = joined ? (size_t)(slash + 1 - file) : 0;
+    if (folder + strlen(text) >= FIELD_TEXT_SIZE) {
+        json_fault(object, field->name, "the text is longer than %d bytes", FIELD_TEXT_SIZE - 1);
+        return;
+    }
+    memcpy(member, file, folder);
+    strcpy(member + folder, text);
+}
+
+static void read_field(struct json_object *object, const struct field *field, const cJSON *item,
+                       char *member) {
+    const char *key = field->name;
+    double value;
+    switch (field->type) {
+    case FIELD_NUMBER:
+        if (read_finite(object, key, expected_name[FIELD_NUMBER], item, &value) &&
+            is_in_range(object, key, field, value))
+            memcpy(member, &value, sizeof value);
+        break;
+    case FIELD_INTEGER:
+        if (read_whole(object, key, item, &value) && is_in_range(object, key, field, value))
+            memcpy(member, &(int64_t){(int64_t)value}, sizeof(int64_t));
+        break;
+    case FIELD_SEED:
+        if (!read_whole(object, key, item, &value))
+            break;
+        if (value < 0)
+            json_fault(object, key, "%.0f is out of range; allowed: at least 0", value);
+        else
+            memcpy(member, &(uint64_t){(uint64_t)value}, sizeof(uint64_t));
+        break;
+    case FIELD_LENGTHS:
+        read_lengths(object, field, item, member);
+        break;
+    case FIELD_TEXT:
+    case FIELD_FILE:
+        read_text_field(object, field, item, member);
+        break;
+    case FIELD_CHOICE:
+        if (json_choice(object, key, field->choices, NULL))
+            memcpy(member, &(int){fields_choice_index(field, item->valuestring)}, sizeof(int));
+        break;
+    }
+}
+
+void json_fields(struct json_object *object, const struct field *fields, void *parameters) {
+    fields_set_defaults(fields, parameters);
+    for (const struct field *field = fields; field->name; field++) {
+        const cJSON *item = ask(object, field->name);
+        if (item)
+            read_field(object, field, item, (char *)parameters + field->offset);
+        else if (field->required && object->item)
+            json_fault(object, field->name, "missing: %s is required (%s)",
+                       expected_name[field->type], field->help ? field->help : field->name);
+    }
+}
+
+const char *json_choice(struct json_object *object, const char *key, const char *const *known,
+                        const char *fallback) {
+    const cJSON *item = ask(object, key);
+    if (item == NULL) {
+        if (fallback == NULL && object->item)
+            json_fault(object, key, "missing: a text is required");
+        return fallback;
+    }
+    const char *text = read_text(object, key, "a text", item);
+    if (text == NULL || known == NULL)
+        return text;
+    size_t count = 0;
+    for (; known[count]; count++)
+        if (strcmp(known[count], text) == 0)
+            return text;
+    char hint[LINE_SIZE / 4];
+    nearest_hint(text, known, count, hint, sizeof hint);
+    json_fault(object, key, "\"%.60s\" is unknown; %s", text, hint);
+    return NULL;
+}
+
+enum status json_numbers(struct json_object *object, const char *key, double **values,
+                         size_t *count) {
+    const cJSON *item = ask(object, key), *element;
+    const size_t faults = object->document->faults.count;
+    *values = NULL;
+    *count = 0;
+    if (item && !cJSON_IsArray(item))
+        fault_wrong_type(object, key, "an array of numbers", item);
+    if (!cJSON_IsArray(item) || item->child == NULL)
+        return STATUS_OK;
+    double *read = memory_zeroed((size_t)cJSON_GetArraySize(item), sizeof *read);
+    if (read == NULL)
+        return STATUS_NO_MEMORY;
+    size_t index = 0;
+    cJSON_ArrayForEach(element, item) {
+        char place[JSON_PATH_SIZE];
+        snprintf(place, sizeof place, "%s[%zu]", key, index);
+        read_finite(object, place, "a number", element, &read[index++]);
+    }
+    if (object->document->faults.count > faults) {
+        memory_free(read);
+        return STATUS_OK;
+    }
+    *values = read;
+    *count = index;
+    return STATUS_OK;
+}
+
+// Writing -----------------------------------------------------------------------------------------
+
+enum { DEEPEST_OBJECT = 16 };
+
+struct json_writer {
+    cJSON *object[DEEPEST_OBJECT]; ///< the root and the objects entered; NULL where that failed
+    int depth;
+    char problem[256]; ///< the first one; "" while all is well
+};
+
+struct json_writer *json_writer_create(void) {
+    struct json_writer *writer = memory_zeroed(1, sizeof *writer);
+    if (writer == NULL)
+        return NULL;
+    writer->object[0] = cJSON_CreateObject();
+    if (writer->object[0])
+        return writer;
+    memory_free(writer);
+    status_fail(STATUS_NO_MEMORY, "out of memory");
+    return NULL;
+}
+
+void json_writer_free(struct json_writer *writer) {
+    if (writer)
+        cJSON_Delete(writer->object[0]);
+    memory_free(writer);
+}
+
+static void note_problem(struct json_writer *writer, const char *key, const char *problem) {
+    if (writer->problem[0] == '\0')
+        snprintf(writer->problem, sizeof writer->problem, "\"%s\" %s", key, problem);
+}
+
+/// Put `item`, which may be NULL for want of memory, into the current object.
+static void put(struct json_writer *writer, const char *key, cJSON *item) {
+    cJSON *object = writer->object[writer->depth];
+    if (cJSON_GetObjectItemCaseSensitive(object, key))
+        note_problem(writer, key, "is given twice");
+    else if (item == NULL || object == NULL)
+        note_problem(writer, key, "does not fit into the memory");
+    else if (cJSON_AddItemToObject(object, key, item))
+        return;
+    else
+        note_problem(writer, key, "does not fit into the memory");
+    cJSON_Delete(item);
+}
+
+void json_begin(struct json_writer *writer, const char *key) {
+    if (writer->depth + 1 == DEEPEST_OBJECT) {
+        note_problem(writer, key, "is nested too deeply");
+        return;
+    }
+    put(writer, key, cJSON_CreateObject());
+    cJSON *object = cJSON_GetObjectItemCaseSensitive(writer->object[writer->depth], key);
+    writer->object[++writer->depth] = object;
+}
+
+void json_end(struct json_writer *writer) {
+    if (writer->depth > 0)
+        writer->depth--;
+}
+
+/// cJSON's own numbers are close to the value, not equal, and NaN becomes null.
+static cJSON *create_number(struct json_writer *writer, const char *key, double value) {
+    char text[32];
+    if (!isfinite(value))
+        note_problem(writer, key, "is not a finite number");
+    snprintf(text, sizeof text, "%.15g", value);
+    if (strtod(text, NULL) != value)
+        snprintf(text, sizeof text, "%.17g", value);
+    return cJSON_CreateRaw(text);
+}
+
+void json_put_number(struct json_writer *writer, const char *key, double value) {
+    put(writer, key, create_number(writer, key, value));
+}
+
+void json_put_integer(struct json_writer *writer, const char *key, int64_t value) {
+    char text[32];
+    snprintf(text, sizeof text, "%" PRId64, value);
+    put(writer, key, cJSON_CreateRaw(text));
+}
+
+static void put_seed(struct json_writer *writer, const char *key, uint64_t value) {
+    char text[32];
+    snprintf(text, sizeof text, "%" PRIu64, value);
+    put(writer, key, cJSON_CreateRaw(text));
+}
+
+void json_put_text(struct json_writer *writer, const char *key, const char *value) {
+    put(writer, key, cJSON_CreateString(value));
+}
+
+void json_put_numbers(struct json_writer *writer, const char *key, const double *values,
+                      size_t count) {
+    cJSON *array = cJSON_CreateArray();
+    for (size_t k = 0; array && k < count; k++) {
+        cJSON *item = create_number(writer, key, values[k]);
+        if (!cJSON_AddItemToArray(array, item))
+            note_problem(writer, key, "does not fit into the memory");
+    }
+    put(writer, key, array);
+}
+
+static void put_file(struct json_writer *writer, const char *key, const char *file) {
+    char folder[OUTPUT_PATH_SIZE], path[OUTPUT_PATH_SIZE + FIELD_TEXT_SIZE];
+    if (file[0] == '/') {
+        json_put_text(writer, key, file);
+        return;
+    }
+    if (getcwd(folder, sizeof folder) == NULL)
+        note_problem(writer, key, "lies in a folder without a name");
+    else {
+        snprintf(path, sizeof path, "%s/%s", folder, file);
+        json_put_text(writer, key, path);
+    }
+}
+
+static void put_field(struct json_writer *writer, const struct field *field, const char *member) {
+    double number[3];
+    int64_t integer;
+    uint64_t seed;
+    int choice;
+    switch (field->type) {
+    case FIELD_NUMBER:
+        memcpy(number, member, sizeof *number);
+        json_put_number(writer, field->name, number[0]);
+        break;
+    case FIELD_INTEGER:
+        memcpy(&integer, member, sizeof integer);
+        json_put_integer(writer, field->name, integer);
+        break;
+    case FIELD_SEED:
+        memcpy(&seed, member, sizeof seed);
+        put_seed(writer, field->name, seed);
+        break;
+    case FIELD_LENGTHS:
+        memcpy(number, member, sizeof number);
+        if (number[0] != 0 || number[1] != 0 || number[2] != 0)
+            json_put_numbers(writer, field->name, number, number[2] != 0 ? 3 : 2);
+        break;
+    case FIELD_TEXT:
+        if (member[0])
+            json_put_text(writer, field->name, member);
+        break;
+    case FIELD_FILE:
+        if (member[0])
+            put_file(writer, field->name, member);
+        break;
+    case FIELD_CHOICE:
+        memcpy(&choice, member, sizeof choice);
+        json_put_text(writer, field->name, field->choices[choice]);
+        break;
+    }
+}
+
+void json_put_fields(struct json_writer *writer, const struct field *fields,
+                     const void *parameters) {
+    for (const struct field *field = fields; field->name; field++)
+        put_field(writer, field, (const char *)parameters + field->offset);
+}
+
+enum status json_write(const struct json_writer *writer, const char *file) {
+    if (writer->problem[0])
+        return status_fail(STATUS_IO, "cannot write %s: %s", file, writer->problem);
+    char *text = cJSON_Print(writer->object[0]);
+    if (text == NULL)
+        return status_fail(STATUS_NO_MEMORY, "cannot write %s: out of memory", file);
+    struct output output;
+    const enum status status = output_open(&output, file);
+    if (status == STATUS_OK)
+        fprintf(output.stream, "%s\n", text);
+    cJSON_free(text);
+    return status == STATUS_OK ? output_commit(&output) : status;
+}

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/text_file.h"
+
+#include "base/memory.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+struct text_place text_file_place(const char *text, const char *at) {
+    struct text_place place = {1, 1};
+    for (const char *c = text; c < at; c++) {
+        if (*c == '\n')
+            place = (struct text_place){place.line + 1, 1};
+        else if (((unsigned char)*c & 0xC0) != 0x80)
+            place.column++;
+    }
+    return place;
+}
+
+/// Read to the end of the stream rather than trust its size: pipes have none.
+static enum status read_all(FILE *stream, const char *file, char **text, size_t *length) {
+    size_t capacity = 0, used = 0;
+    char *bytes = NULL;
+    while (!feof(stream)) {
+        if (used + 1 >= capacity) {
+            const size_t larger = capacity ? 2 * capacity : 65536;
+            char *grown = memory_zeroed(larger, 1);
+            if (grown && used)
+                memcpy(grown, bytes, used);
+            memory_free(bytes);
+            if (grown == NULL)
+                return STATUS_NO_MEMORY;
+            bytes = grown;
+            capacity = larger;
+        }
+        used += fread(bytes + used, 1, capacity - 1 - used, stream);
+        if (ferror(stream)) {
+            memory_free(bytes);
+            return status_fail(STATUS_IO, "%s: %s", file, strerror(errno));
+        }
+    }
+    bytes[used] = '\0';
+    *text = bytes;
+    *length = used;
+    return STATUS_OK;
+}
+
+static void drop_byte_order_mark(char *text, size_t *length) {
+    if (strncmp(text, "\xEF\xBB\xBF", 3) != 0)
+        return;
+    *length -= 3;
+    memmove(text, text + 3, *length + 1);
+}
+
+static enum status check_is_text(const char *file, const char *text, size_t length) {
+    if (length == 0)
+        return status_fail(STATUS_BAD_INPUT, "%s: the file is empty", file);
+    const char *nul = memchr(text, '\0', length);
+    if (nul == NULL)
+        return STATUS_OK;
+    const struct text_place place = text_file_place(text, nul);
+    return status_fail(STATUS_BAD_INPUT, "%s:%zu:%zu: a NUL byte: this is not a UTF-8 text file",
+                       file, place.line, place.column);
+}
+
+enum status text_file_read(const char *file, char **text, size_t *length) {
+    enum status status = STATUS_OK;
+    *text = NULL;
+    *length = 0;
+    struct stat about;
+    if (stat(file, &about) == 0 && S_ISDIR(about.st_mode))
+        return status_fail(STATUS_IO, "%s: is a folder, not a file", file);
+    FILE *stream = fopen(file, "rb");
+    if (stream == NULL)
+        return status_fail(STATUS_IO, "%s: %s", file, strerror(errno));
+    CHECK(read_all(stream, file, text, length));
+    drop_byte_order_mark(*text, length);
+    CHECK(check_is_text(file, *text, *length));
+done:
+    fclose(stream);
+    if (status != STATUS_OK) {
+        memory_free(*text);
+        *text = NULL;
+    }
+    return status;
+}

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "observe/measure.h"
+
+#define MEMBER(name) .offset = offsetof(struct measure_plan, name)
+const struct field measure_plan_fields[] = {
+    {"equilibration", FIELD_INTEGER, MEMBER(equilibration), .initial = 1000, .minimum = 0,
+     .maximum = 1e12, .unit = "steps", .help = "before the first sample"},
+    {"samples", FIELD_INTEGER, MEMBER(samples), .initial = 200, .minimum = 1, .maximum = 1e8,
+     .unit = "", .help = "number of samples"},
+    {"every", FIELD_INTEGER, MEMBER(every), .initial = 25, .minimum = 1, .maximum = 1e9,
+     .unit = "steps", .help = "between samples"},
+    FIELD_END,
+};
+
+uint64_t measure_steps(const struct measure_plan *plan) {
+    return (uint64_t)(plan->equilibration + plan->samples * plan->every);
+}
+
+static void tell(const struct measure_listener *listener, const struct simulation *simulation,
+                 const struct measure_plan *plan) {
+    if (listener)
+        listener->tell(listener->context, simulation, simulation->step, measure_steps(plan));
+}
+
+/// Run until `step`, which a restart may already have passed.
+static enum status run_until(struct simulation *simulation, int64_t step) {
+    const int64_t now = (int64_t)simulation->step;
+    return now < step ? simulation_run(simulation, (uint64_t)(step - now)) : STATUS_OK;
+}
+
+enum status measure_equilibrate(struct simulation *simulation, const struct measure_plan *plan,
+                                double *temperature, const struct measure_listener *listener) {
+    // Pieces short enough to tell of progress; their temperatures over the last tenth are averaged.
+    enum { PIECES = 100, LAST = 10 };
+    double sum = 0;
+    simulation->wants = PAIR_FORCES;
+    for (int64_t piece = 1; piece <= PIECES; piece++) {
+        TRY(run_until(simulation, plan->equilibration * piece / PIECES));
+        if (piece > PIECES - LAST)
+            sum += particles_temperature(&simulation->particles);
+        tell(listener, simulation, plan);
+    }
+    *temperature = sum / LAST;
+    return STATUS_OK;
+}
+
+enum status measure_sample(struct simulation *simulation, const struct measure_plan *plan,
+                           struct measure_targets targets,
+                           const struct measure_listener *listener) {
+    const int64_t begun = (int64_t)simulation->step - plan->equilibration;
+    for (int64_t sample = begun / plan->every; sample < plan->samples; sample++) {
+        const int64_t due = plan->equilibration + (sample + 1) * plan->every;
+        simulation->wants = PAIR_FORCES;
+        TRY(run_until(simulation, due - 1));
+        if (targets.thermodynamics)
+            simulation->wants = PAIR_FORCES_AND_SUMS;
+        TRY(run_until(simulation, due));
+        if (targets.rdf)
+            TRY(rdf_sample(targets.rdf, &simulation->particles, &simulation->neighbours));
+        if (targets.thermodynamics)
+            TRY(thermodynamics_sample(targets.thermodynamics, simulation));
+        tell(listener, simulation, plan);
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "observe/rdf.h"
+
+#include "base/memory.h"
+#include "base/statistics.h"
+
+#include <math.h>
+
+/// Blocks for the standard error: 20 give the error to about 16 %.
+enum { BLOCKS = 20 };
+
+double rdf_bins_edge(const struct rdf_bins *bins, size_t k) {
+    return bins->low + bins->width * (double)k;
+}
+
+double rdf_bins_centre(const struct rdf_bins *bins, size_t k) {
+    return bins->low + bins->width * ((double)k + 0.5);
+}
+
+double rdf_bins_range(const struct rdf_bins *bins) {
+    return rdf_bins_edge(bins, bins->count);
+}
+
+double rdf_ideal_pairs(const struct rdf_bins *bins, size_t k, const struct box *box, size_t count) {
+    const double pairs = 0.5 * (double)count * ((double)count - 1);
+    return pairs * box_shell_volume(box, rdf_bins_edge(bins, k), rdf_bins_edge(bins, k + 1)) /
+           box_volume(box);
+}
+
+double rdf_finite_size_factor(size_t from, size_t to) {
+    return (1 - 1 / (double)from) / (1 - 1 / (double)to);
+}
+
+struct counting {
+    const struct rdf_bins *bins;
+    double *histogram;
+};
+
+static void count_batch(void *context, const float *squared_distances, size_t count) {
+    const struct counting *counting = context;
+    const struct rdf_bins *bins = counting->bins;
+    const double inverse_width = 1 / bins->width;
+    for (size_t k = 0; k < count; k++) {
+        const double place = (sqrt((double)squared_distances[k]) - bins->low) * inverse_width;
+        if (place >= 0 && place < (double)bins->count)
+            counting->histogram[(size_t)place] += 1;
+    }
+}
+
+void rdf_count_pairs(const struct rdf_bins *bins, const struct particles *particles,
+                     const struct neighbours *neighbours, double *histogram) {
+    struct counting counting = {bins, histogram};
+    neighbours_visit_distances(neighbours, particles, rdf_bins_range(bins), count_batch, &counting);
+}
+
+enum status rdf_init(struct rdf *rdf, const struct rdf_bins *bins, const struct box *box,
+                     size_t particle_count, double list_cutoff, size_t planned) {
+    enum status status = STATUS_OK;
+    *rdf = (struct rdf){.bins = *bins,
+                        .box = *box,
+                        .particle_count = particle_count,
+                        .planned = planned,
+                        .blocks = planned < BLOCKS ? planned : BLOCKS,
+                        // A part in 10⁹ forgives a range that was rounded in another unit.
+                        .needs_own_list = rdf_bins_range(bins) > list_cutoff * (1 + 1e-9)};
+    NEW_ARRAY(rdf->histogram, rdf->blocks * bins->count);
+    NEW_ARRAY(rdf->block_samples, rdf->blocks);
+    if (rdf->needs_own_list) {
+        if (box_shortest(box) < 2 * rdf_bins_range(bins)) {
+            status = status_fail(STATUS_BAD_INPUT,
+                                 "the box is too small for the RDF: its shortest edge %g is below "
+                                 "twice the range %g",
+                                 box_shortest(box), rdf_bins_range(bins));
+            goto done;
+        }
+        CHECK(particles_init(&rdf->own_particles, box, particle_count));
+        CHECK(neighbours_init(&rdf->own_list, NEIGHBOURS_HALF, box, particle_count,
+                              rdf_bins_range(bins), 0));
+    }
+done:
+    if (status != STATUS_OK)
+        rdf_clear(rdf);
+    return status;
+}
+
+void rdf_clear(struct rdf *rdf) {
+    memory_free(rdf->histogram);
+    memory_free(rdf->block_samples);
+    particles_clear(&rdf->own_particles);
+    neighbours_clear(&rdf->own_list);
+    *rdf = (struct rdf){0};
+}
+
+/// A sorted copy of the particles with a list of the bins' range.
+static enum status make_own_list(struct rdf *rdf, const struct particles *particles) {
+    for (int d = 0; d < particles->box.dimensions; d++)
+        memcpy(rdf->own_particles.position[d], particles->position[d],
+               particles->count * sizeof *particles->position[d]);
+    return neighbours_sort_and_build(&rdf->own_list, &rdf->own_particles);
+}
+
+enum status rdf_sample(struct rdf *rdf, const struct particles *particles,
+                       const struct neighbours *neighbours) {
+    size_t block = rdf->samples * rdf->blocks / rdf->planned;
+    if (block >= rdf->blocks)
+        block = rdf->blocks - 1;
+    double *histogram = rdf->histogram + block * rdf->bins.count;
+    if (rdf->needs_own_list) {
+        TRY(make_own_list(rdf, particles));
+        rdf_count_pairs(&rdf->bins, &rdf->own_particles, &rdf->own_list, histogram);
+    } else {
+        rdf_count_pairs(&rdf->bins, particles, neighbours, histogram);
+    }
+    rdf->block_samples[block] += 1;
+    rdf->samples++;
+    return STATUS_OK;
+}
+
+void rdf_result(const struct rdf *replicas, size_t count, double *g, double *error) {
+    const struct rdf_bins *bins = &replicas->bins;
+    for (size_t k = 0; k < bins->count; k++) {
+        const double ideal = rdf_ideal_pairs(bins, k, &replicas->box, replicas->particle_count);
+        struct running_mean blocks = {0};
+        double pairs = 0, samples = 0;
+        for (size_t r = 0; r < count; r++)
+            for (size_t b = 0; b < replicas[r].blocks; b++) {
+                const double here = replicas[r].histogram[b * bins->count + k];
+                if (replicas[r].block_samples[b] == 0)
+                    continue;
+                pairs += here;
+                samples += replicas[r].block_samples[b];
+                statistics_add(&blocks, here / replicas[r].block_samples[b] / ideal);
+            }
+        g[k] = samples > 0 ? pairs / samples / ideal : 0;
+        if (error)
+            error[k] = statistics_standard_error(&blocks);
+    }
+}
+
+double rdf_rmse(const double *g, const double *target, size_t count) {
+    double sum = 0;
+    for (size_t k = 0; k < count; k++)
+        sum += (g[k] - target[k]) * (g[k] - target[k]);
+    return sqrt(sum / (double)count);
+}
+
+enum status rdf_distance(const struct rdf *replicas, size_t count, const double *target,
+                         double *rmse, double *error) {
+    enum status status = STATUS_OK;
+    const struct rdf_bins *bins = &replicas->bins;
+    double *g = NULL, *without = NULL, samples = 0;
+    struct running_mean jackknife = {0};
+    NEW_ARRAY(g, bins->count);
+    NEW_ARRAY(without, bins->count);
+    rdf_result(replicas, count, g, NULL);
+    *rmse = rdf_rmse(g, target, bins->count);
+    for (size_t r = 0; r < count; r++)
+        samples += (double)replicas[r].samples;
+    for (size_t r = 0; error && r < count; r++)
+        for (size_t b = 0; b < replicas[r].blocks; b++) {
+            const double here = replicas[r].block_samples[b];
+            if (here == 0 || samples == here)
+                continue;
+            for (size_t k = 0; k < bins->count; k++) {
+                const double ideal =
+                    rdf_ideal_pairs(bins, k, &replicas->box, replicas->particle_count);
+                without[k] = (g[k] * samples - replicas[r].histogram[b * bins->count + k] / ideal) /
+                             (samples - here);
+            }
+            statistics_add(&jackknife, rdf_rmse(without, target, bins->count));
+        }
+    if (error)
+        *error = jackknife.count < 2
+                     ? 0
+                     : sqrt(jackknife.squares * (jackknife.count - 1) / jackknife.count);
+done:
+    memory_free(g);
+    memory_free(without);
+    return status;
+}

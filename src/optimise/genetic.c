@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "optimise/genetic.h"
+
+#include "base/memory.h"
+#include "base/rng.h"
+#include "base/statistics.h"
+
+#include <math.h>
+#include <string.h>
+
+#define MEMBER(name) .offset = offsetof(struct genetic_parameters, name)
+#define PROBABILITY .minimum = 0, .maximum = 1, .unit = ""
+const struct field genetic_fields[] = {
+    {"population", FIELD_INTEGER, MEMBER(population), .initial = 250, .minimum = 2, .maximum = 1e6,
+     .unit = "", .help = "individuals of a generation"},
+    {"genes", FIELD_INTEGER, MEMBER(genes), .initial = 100, .minimum = 1, .maximum = 1000,
+     .unit = "", .help = "control points of the Bezier curve"},
+    {"gene_minimum", FIELD_NUMBER, MEMBER(gene_minimum), .initial = 0, .minimum = -DBL_MAX,
+     .maximum = DBL_MAX, .unit = "k_B T_0", .help = "least gene of the first generation"},
+    {"gene_maximum", FIELD_NUMBER, MEMBER(gene_maximum), .initial = 6.5, .minimum = -DBL_MAX,
+     .maximum = DBL_MAX, .unit = "k_B T_0", .help = "largest gene of the first generation"},
+    {"crossover", FIELD_NUMBER, MEMBER(crossover), .initial = 0.91, PROBABILITY,
+     .help = "probability of one-point crossover of two parents"},
+    {"mutation", FIELD_NUMBER, MEMBER(mutation), .initial = 0.1, PROBABILITY,
+     .help = "probability of mutation of each gene, by a factor in (1/2, 2)"},
+    {"additive", FIELD_NUMBER, MEMBER(additive), .initial = 0.1, PROBABILITY,
+     .help = "share of mutations that add a normal number of a tenth of the range instead"},
+    {"tournament_size", FIELD_INTEGER, MEMBER(tournament_size), .initial = 8, .minimum = 1,
+     .maximum = 1e6, .unit = "", .help = "individuals drawn for a tournament"},
+    {"tournament_probability", FIELD_NUMBER, MEMBER(tournament_probability), .initial = 0.75,
+     PROBABILITY, .help = "with which the better of a pairing wins"},
+    {"generations", FIELD_INTEGER, MEMBER(generations), .initial = 21, .minimum = 1, .maximum = 1e6,
+     .unit = "", .help = "after which the fit ends"},
+    FIELD_END,
+};
+
+static size_t total_genes(const struct genetic *genetic) {
+    return (size_t)(genetic->parameters.population * genetic->parameters.genes);
+}
+
+enum status genetic_init(struct genetic *genetic, const struct genetic_parameters *parameters,
+                         uint64_t seed) {
+    enum status status = STATUS_OK;
+    *genetic =
+        (struct genetic){.parameters = *parameters, .seed = seed, .elite_error = GENETIC_FAILED};
+    NEW_ARRAY(genetic->population, total_genes(genetic));
+    // Children come in pairs: one place more for the last of an odd population.
+    NEW_ARRAY(genetic->offspring, total_genes(genetic) + (size_t)parameters->genes);
+    NEW_ARRAY(genetic->elite, (size_t)parameters->genes);
+    struct rng_sequence random = rng_sequence_begin(seed, RNG_INITIAL, 0, 0);
+    for (size_t k = 0; k < total_genes(genetic); k++)
+        genetic->population[k] =
+            parameters->gene_minimum +
+            (parameters->gene_maximum - parameters->gene_minimum) * rng_sequence_uniform(&random);
+done:
+    if (status != STATUS_OK)
+        genetic_clear(genetic);
+    return status;
+}
+
+void genetic_clear(struct genetic *genetic) {
+    memory_free(genetic->population);
+    memory_free(genetic->offspring);
+    memory_free(genetic->elite);
+    *genetic = (struct genetic){0};
+}
+
+const double *genetic_individual(const struct genetic *genetic, int64_t index) {
+    return genetic->population + index * genetic->parameters.genes;
+}
+
+void genetic_remeasure_elite(struct genetic *genetic, double error) {
+    genetic->elite_measured += 1;
+    genetic->elite_error += (error - genetic->elite_error) / genetic->elite_measured;
+}
+
+bool genetic_offer(struct genetic *genetic, const double *genes, double error, double measured) {
+    if (error >= genetic->elite_error)
+        return false;
+    memcpy(genetic->elite, genes, (size_t)genetic->parameters.genes * sizeof *genes);
+    genetic->elite_error = error;
+    genetic->elite_measured = measured;
+    return true;
+}
+
+/// A copy of the winner of a tournament.
+static void copy_winner(const struct genetic *genetic, const double *errors, double *child,
+                        struct rng_sequence *random) {
+    const struct genetic_parameters *p = &genetic->parameters;
+    const int64_t winner = genetic_tournament(errors, p->population, p->tournament_size,
+                                              p->tournament_probability, random);
+    memcpy(child, genetic_individual(genetic, winner), (size_t)p->genes * sizeof *child);
+}
+
+void genetic_next_generation(struct genetic *genetic, const double *errors) {
+    const struct genetic_parameters *p = &genetic->parameters;
+    genetic->generation++;
+    for (int64_t pair = 0; pair < p->population; pair += 2) {
+        struct rng_sequence random =
+            rng_sequence_begin(genetic->seed, RNG_SELECTION, genetic->generation, (uint32_t)pair);
+        double *first = genetic->offspring + pair * p->genes, *second = first + p->genes;
+        copy_winner(genetic, errors, first, &random);
+        copy_winner(genetic, errors, second, &random);
+        if (rng_sequence_uniform(&random) < p->crossover)
+            genetic_crossover(first, second, p->genes, &random);
+        genetic_mutate(first, p, &random);
+        genetic_mutate(second, p, &random);
+    }
+    memcpy(genetic->population, genetic->offspring, total_genes(genetic) * sizeof(double));
+    if (genetic->elite_measured > 0)
+        memcpy(genetic->population, genetic->elite, (size_t)p->genes * sizeof(double));
+}
+
+double genetic_diversity(const struct genetic *genetic) {
+    const struct genetic_parameters *p = &genetic->parameters;
+    double sum = 0;
+    for (int64_t gene = 0; gene < p->genes; gene++) {
+        struct running_mean over = {0};
+        for (int64_t k = 0; k < p->population; k++)
+            statistics_add(&over, genetic_individual(genetic, k)[gene]);
+        sum += sqrt(over.squares / over.count);
+    }
+    return sum / (double)p->genes / (p->gene_maximum - p->gene_minimum);
+}

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/history.h"
+
+#include "base/memory.h"
+#include "io/data_table.h"
+
+#include <string.h>
+
+enum { COMMON = 5, MOST_COLUMNS = COMMON + 4 };
+
+enum status history_init(struct history *history, const struct inverse_method *method,
+                         size_t points, size_t capacity) {
+    enum status status = STATUS_OK;
+    *history = (struct history){.capacity = capacity, .points = points};
+    while (method->columns[history->extra])
+        history->extra++;
+    NEW_ARRAY(history->rows, capacity * (COMMON + history->extra));
+    NEW_ARRAY(history->seconds, capacity);
+    NEW_ARRAY(history->phi, capacity * points);
+done:
+    return status;
+}
+
+void history_clear(struct history *history) {
+    memory_free(history->rows);
+    memory_free(history->seconds);
+    memory_free(history->phi);
+    *history = (struct history){0};
+}
+
+void history_add(struct history *history, const struct inverse_step *step, double seconds) {
+    const size_t k = history->iterations++;
+    double *row = history->rows + k * (COMMON + history->extra);
+    row[0] = (double)step->iteration;
+    row[1] = (double)step->evaluations;
+    row[2] = (double)step->engine_steps;
+    row[3] = step->error;
+    row[4] = step->noise;
+    memcpy(row + COMMON, step->extra, history->extra * sizeof *row);
+    history->seconds[k] = seconds;
+    memcpy(history->phi + k * history->points, step->phi, history->points * sizeof *step->phi);
+}
+
+/// Write a row-major table of `rows` by `columns` numbers, transposed into columns.
+static enum status write_transposed(const char *path, const double *values, size_t rows,
+                                    size_t columns, const struct data_column *first,
+                                    size_t first_count, const char *const *names) {
+    enum status status = STATUS_OK;
+    double *transposed = NULL;
+    struct data_column *column = NULL;
+    NEW_ARRAY(transposed, rows * columns);
+    NEW_ARRAY(column, first_count + columns);
+    for (size_t k = 0; k < first_count; k++)
+        column[k] = first[k];
+    for (size_t c = 0; c < columns; c++) {
+        for (size_t k = 0; k < rows; k++)
+            transposed[c * rows + k] = values[k * columns + c];
+        column[first_count + c] = (struct data_column){names[c], transposed + c * rows, NULL};
+    }
+    CHECK(data_table_write(path, NULL, column, first_count + columns, rows));
+done:
+    memory_free(transposed);
+    memory_free(column);
+    return status;
+}
+
+static enum status write_history(const struct history *history, const struct inverse_method *method,
+                                 const struct run_folder *folder) {
+    const char *names[MOST_COLUMNS] = {"iteration", "evaluations", "engine_steps", "error[1]",
+                                       "noise[1]"};
+    char path[OUTPUT_PATH_SIZE];
+    for (size_t k = 0; k < history->extra; k++)
+        names[COMMON + k] = method->columns[k];
+    run_folder_file(folder, "history.tsv", path);
+    return write_transposed(path, history->rows, history->iterations, COMMON + history->extra, NULL,
+                            0, names);
+}
+
+static enum status write_timing(const struct history *history, const struct run_folder *folder) {
+    enum status status = STATUS_OK;
+    double *iteration = NULL;
+    char path[OUTPUT_PATH_SIZE];
+    NEW_ARRAY(iteration, history->iterations);
+    for (size_t k = 0; k < history->iterations; k++)
+        iteration[k] = history->rows[k * (COMMON + history->extra)];
+    const struct data_column columns[] = {{"iteration", iteration, NULL},
+                                          {"seconds[s]", history->seconds, "%.3f"}};
+    run_folder_file(folder, "timing.tsv", path);
+    CHECK(data_table_write(path, NULL, columns, 2, history->iterations));
+done:
+    memory_free(iteration);
+    return status;
+}
+
+/// One column an iteration, named by its number.
+static enum status write_potentials(const struct history *history, const double *r,
+                                    const struct run_folder *folder) {
+    enum { NAME_SIZE = 24 };
+    enum status status = STATUS_OK;
+    struct data_column *columns = NULL;
+    char *names = NULL;
+    char path[OUTPUT_PATH_SIZE];
+    NEW_ARRAY(columns, history->iterations + 1);
+    NEW_ARRAY(names, history->iterations * NAME_SIZE);
+    columns[0] = (struct data_column){"r[lambda]", r, NULL};
+    for (size_t k = 0; k < history->iterations; k++) {
+        snprintf(names + k * NAME_SIZE, NAME_SIZE, "%zu", k);
+        columns[k + 1] =
+            (struct data_column){names + k * NAME_SIZE, history->phi + k * history->points, "%.6g"};
+    }
+    run_folder_file(folder, "potential_history.tsv", path);
+    CHECK(data_table_write(path, NULL, columns, history->iterations + 1, history->points));
+done:
+    memory_free(columns);
+    memory_free(names);
+    return status;
+}
+
+enum status history_write(const struct history *history, const struct inverse_method *method,
+                          const double *r, const struct run_folder *folder) {
+    TRY(write_history(history, method, folder));
+    TRY(write_timing(history, folder));
+    return write_potentials(history, r, folder);
+}
+
+size_t history_spans(struct history *history, struct memory_span *spans) {
+    const size_t columns = COMMON + history->extra, n = history->capacity;
+    size_t count = 0;
+    spans[count++] = (struct memory_span){&history->iterations, sizeof history->iterations};
+    spans[count++] = (struct memory_span){history->rows, n * columns * sizeof(double)};
+    spans[count++] = (struct memory_span){history->seconds, n * sizeof(double)};
+    spans[count++] = (struct memory_span){history->phi, n * history->points * sizeof(double)};
+    return count;
+}

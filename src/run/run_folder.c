@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/run_folder.h"
+
+#include "run/figures.h"
+
+#include <errno.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char *const results[] = {
+    "summary.json", "history.tsv",        "timing.tsv", "potential.tsv",  "potential_history.tsv",
+    "rdf.tsv",      "thermodynamics.tsv", "omega.tsv",  "checkpoint.bin",
+};
+
+static enum status remove_results(const struct run_folder *folder) {
+    for (size_t k = 0; k < sizeof results / sizeof *results; k++) {
+        char path[OUTPUT_PATH_SIZE];
+        run_folder_file(folder, results[k], path);
+        if (unlink(path) != 0 && errno != ENOENT)
+            return status_fail(STATUS_IO, "%s: %s", path, strerror(errno));
+    }
+    return STATUS_OK;
+}
+
+/// Find out now, and not after an hour, that the folder cannot be written.
+static enum status check_writable(const struct run_folder *folder) {
+    if (access(folder->path, W_OK | X_OK) == 0)
+        return STATUS_OK;
+    return status_fail(STATUS_IO, "%s: %s", folder->path, strerror(errno));
+}
+
+enum status run_folder_open(struct run_folder *folder, const char *input,
+                            const struct run_options *options) {
+    const char *slash = strrchr(input, '/');
+    if (options->folder)
+        snprintf(folder->path, sizeof folder->path, "%s", options->folder);
+    else
+        snprintf(folder->path, sizeof folder->path, "%.*sout", slash ? (int)(slash - input + 1) : 0,
+                 input);
+    TRY(output_make_folder(folder->path));
+    TRY(check_writable(folder));
+    return options->resume ? STATUS_OK : remove_results(folder);
+}
+
+void run_folder_file(const struct run_folder *folder, const char *name, char *path) {
+    // A path cut short here fails to open, with the cut path in the message.
+    snprintf(path, OUTPUT_PATH_SIZE, "%.*s/%s", OUTPUT_PATH_SIZE - 64, folder->path, name);
+}
+
+void run_folder_draw(const struct run_folder *folder) {
+    if (figures_draw(folder->path) != STATUS_OK)
+        fprintf(stderr, "mesofit: warning: %s\n", status_message());
+}

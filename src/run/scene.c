@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/scene.h"
+
+#include "base/memory.h"
+#include "curves/sampled.h"
+#include "io/data_table.h"
+#include "run/checkpoint.h"
+
+/// The members of a scene that stand at its top.
+struct top {
+    int64_t dimensions;
+    double box[3];
+    double temperature, time_step, skin, temperature_limit;
+};
+
+/// Positions are known to 2^-32 of the box: 2e-4 lambda in the largest.
+#define LARGEST_BOX 1e6
+
+#define MEMBER(name) .offset = offsetof(struct top, name)
+const struct field scene_fields[] = {
+    {"dimensions", FIELD_INTEGER, MEMBER(dimensions), .initial = 3, .minimum = 2, .maximum = 3,
+     .unit = "", .help = "of space"},
+    {"box", FIELD_LENGTHS, MEMBER(box), .required = true, .minimum = FIELD_ABOVE_ZERO,
+     .maximum = LARGEST_BOX, .unit = "lambda", .help = "edges of the periodic box"},
+    {"temperature", FIELD_NUMBER, MEMBER(temperature), .initial = 1, .minimum = FIELD_ABOVE_ZERO,
+     .maximum = DBL_MAX, .unit = "T_0", .help = "of the first velocities and of the noise"},
+    {"time_step", FIELD_NUMBER, MEMBER(time_step), .initial = 0.01, .minimum = FIELD_ABOVE_ZERO,
+     .maximum = DBL_MAX, .unit = "tau", .help = "of the integrator"},
+    {"skin", FIELD_NUMBER, MEMBER(skin), .initial = 0.35, .minimum = 0, .maximum = DBL_MAX,
+     .unit = "lambda", .help = "of the neighbour list: changes speed, not results"},
+    {"temperature_limit", FIELD_NUMBER, MEMBER(temperature_limit), .initial = 20, .minimum = 1,
+     .maximum = DBL_MAX, .unit = "",
+     .help = "a kinetic temperature above this multiple of the "
+             "temperature ends the simulation as unstable"},
+    FIELD_END,
+};
+
+/// Points of a table file for a curve of the law "table".
+static enum status load_points(struct curve *curve, struct json_object *object) {
+    struct sampled_parameters *parameters = curve->parameters;
+    struct data_table table = {0};
+    double *r = NULL, *value = NULL;
+    enum status status = data_table_read(&table, parameters->file, 2);
+    if (status == STATUS_OK)
+        status = data_table_check_increasing(&table, parameters->file, 0, 0);
+    if (status != STATUS_OK) {
+        json_fault(object, "file", "%s", status_message());
+        data_table_clear(&table);
+        return status == STATUS_NO_MEMORY ? status : STATUS_OK;
+    }
+    NEW_ARRAY(r, table.rows);
+    NEW_ARRAY(value, table.rows);
+    for (size_t k = 0; k < table.rows; k++) {
+        r[k] = table.values[k * table.columns];
+        value[k] = table.values[k * table.columns + 1];
+    }
+    if (sampled_set_points(curve, r, value, table.rows) != STATUS_OK)
+        json_fault(object, "file", "%s: %s", parameters->file, status_message());
+done:
+    memory_free(r);
+    memory_free(value);
+    data_table_clear(&table);
+    return status;
+}
+
+/// A table that could not be loaded has no points: forget the curve, the fault is recorded.
+static bool is_usable(const struct curve *curve) {
+    return curve->family != &sampled_family ||
+           ((const struct sampled_parameters *)curve->parameters)->spline != NULL;
+}
+
+enum status scene_read_curve(struct curve *curve, struct json_object *parent, const char *key,
+                             const struct curve_family *const *list) {
+    enum { MOST = 16 };
+    const char *names[MOST] = {"none"};
+    for (size_t k = 0; list[k] && k + 2 < MOST; k++)
+        names[k + 1] = list[k]->name;
+    struct json_object object = json_child(parent, key, false);
+    if (object.item == NULL)
+        return STATUS_OK;
+    const char *law = json_choice(&object, "law", names, NULL);
+    const struct curve_family *family = law ? curve_find(list, law) : NULL;
+    if (family) {
+        const size_t faults = json_fault_count(object.document);
+        TRY(curve_create(curve, family));
+        json_fields(&object, family->fields, curve->parameters);
+        if (family == &sampled_family && json_fault_count(object.document) == faults)
+            TRY(load_points(curve, &object));
+        if (!is_usable(curve))
+            curve_clear(curve);
+    }
+    if (law)
+        json_finish(&object);
+    return STATUS_OK;
+}
+
+static enum status read_weight(struct scene *scene, struct json_object *object) {
+    TRY(scene_read_curve(&scene->weight, object, "dissipative", curve_weights));
+    if (scene->weight.family == NULL)
+        return STATUS_OK;
+    TRY(table_init_weight(&scene->weight_table, &scene->weight));
+    for (int k = 0; k <= TABLE_INTERVALS; k++)
+        if (scene->weight_table.coefficient[2 * k] < 0) {
+            json_fault(object, "dissipative", "omega is negative at r = %g",
+                       k / scene->weight_table.inverse_spacing);
+            break;
+        }
+    return STATUS_OK;
+}
+
+static void read_top(struct scene *scene, struct json_object *object) {
+    struct top top;
+    json_fields(object, scene_fields, &top);
+    struct simulation_setup *setup = &scene->setup;
+    setup->box.dimensions = (int)top.dimensions;
+    for (int d = 0; d < 3; d++)
+        setup->box.length[d] = d < top.dimensions ? top.box[d] : 1;
+    if (top.box[0] > 0 && (top.box[2] > 0) != (top.dimensions == 3))
+        json_fault(object, "box", "has %d edges, but the scene has %d dimensions",
+                   top.box[2] > 0 ? 3 : 2, (int)top.dimensions);
+    setup->temperature = top.temperature;
+    setup->time_step = top.time_step;
+    setup->skin = top.skin;
+    setup->temperature_limit = top.temperature_limit;
+}
+
+static void read_dynamics(struct scene *scene, struct json_object *object) {
+    enum { MOST = 16 };
+    const char *names[MOST] = {NULL};
+    for (size_t k = 0; integrator_list[k] && k + 1 < MOST; k++)
+        names[k] = integrator_list[k]->name;
+    struct json_object dynamics = json_child(object, "dynamics", false);
+    const bool dissipative = scene->weight.family != NULL;
+    const char *name = dissipative ? dpd_verlet.name : velocity_verlet.name;
+    if (dynamics.item)
+        name = json_choice(&dynamics, "integrator", names, name);
+    const struct integrator *integrator = NULL;
+    for (size_t k = 0; name && integrator_list[k]; k++)
+        if (strcmp(integrator_list[k]->name, name) == 0)
+            integrator = integrator_list[k];
+    if (integrator == NULL)
+        return;
+    scene->setup.integrator = integrator;
+    json_fields(&dynamics, integrator->fields, &scene->setup.integrator_parameters);
+    if (dynamics.item)
+        json_finish(&dynamics);
+    if (dissipative && !integrator->dissipative)
+        json_fault(object, "dynamics",
+                   "%s knows no friction; use \"dpd-verlet\" with \"dissipative\"",
+                   integrator->name);
+}
+
+/// Columns x, y (, z) and, if there are as many again, the velocities.
+static enum status read_positions(struct scene *scene, struct json_object *particles) {
+    const struct placement *placement = &scene->setup.placement;
+    const size_t dimensions = (size_t)scene->setup.box.dimensions;
+    struct data_table table = {0};
+    enum status status = data_table_read(&table, placement->file, dimensions);
+    if (status != STATUS_OK) {
+        json_fault(particles, "file", "%s", status_message());
+        return status == STATUS_NO_MEMORY ? status : STATUS_OK;
+    }
+    if (table.rows != (size_t)placement->count ||
+        (table.columns != dimensions && table.columns != 2 * dimensions)) {
+        json_fault(particles, "file", "%s: %zu rows of %zu numbers, not %lld of %zu or %zu",
+                   placement->file, table.rows, table.columns, (long long)placement->count,
+                   dimensions, 2 * dimensions);
+        goto done;
+    }
+    NEW_ARRAY(scene->start_values, table.rows * table.columns);
+    for (size_t column = 0; column < table.columns; column++) {
+        double *values = scene->start_values + column * table.rows;
+        for (size_t k = 0; k < table.rows; k++)
+            values[k] = table.values[k * table.columns + column];
+        if (column < dimensions)
+            scene->start.position[column] = values;
+        else
+            scene->start.velocity[column - dimensions] = values;
+    }
+done:
+    data_table_clear(&table);
+    return status;
+}
+
+static enum status read_particles(struct scene *scene, struct json_object *object) {
+    struct json_object particles = json_child(object, "particles", true);
+    struct placement *placement = &scene->setup.placement;
+    json_fields(&particles, placement_fields, placement);
+    if (particles.item == NULL)
+        return STATUS_OK;
+    json_finish(&particles);
+    if (placement->kind != PLACEMENT_FILE)
+        return STATUS_OK;
+    if (placement->file[0] == '\0') {
+        json_fault(&particles, "file", "is required with \"placement\": \"file\"");
+        return STATUS_OK;
+    }
+    return read_positions(scene, &particles);
+}
+
+enum status scene_read(struct scene *scene, struct json_object *object,
+                       enum scene_potential potential) {
+    *scene = (struct scene){0};
+    read_top(scene, object);
+    TRY(read_particles(scene, object));
+    if (potential == SCENE_HAS_POTENTIAL) {
+        TRY(scene_read_curve(&scene->potential, object, "conservative", curve_potentials));
+        if (scene->potential.family)
+            TRY(table_init_potential(&scene->potential_table, &scene->potential));
+    }
+    TRY(read_weight(scene, object));
+    read_dynamics(scene, object);
+    struct json_object units = json_child(object, "units", false);
+    json_fields(&units, units_fields, &scene->units);
+    if (units.item)
+        json_finish(&units);
+    scene->setup.potential = scene->potential.family ? &scene->potential_table : NULL;
+    scene->setup.weight = scene->weight.family ? &scene->weight_table : NULL;
+    return STATUS_OK;
+}
+
+void scene_clear(struct scene *scene) {
+    curve_clear(&scene->potential);
+    curve_clear(&scene->weight);
+    table_clear(&scene->potential_table);
+    table_clear(&scene->weight_table);
+    memory_free(scene->start_values);
+    *scene = (struct scene){0};
+}
+
+void scene_write_curve(const struct curve *curve, struct json_writer *writer, const char *key) {
+    json_begin(writer, key);
+    json_put_text(writer, "law", curve->family ? curve->family->name : "none");
+    if (curve->family)
+        json_put_fields(writer, curve->family->fields, curve->parameters);
+    json_end(writer);
+}
+
+void scene_write(const struct scene *scene, struct json_writer *writer) {
+    const struct simulation_setup *setup = &scene->setup;
+    struct top top = {.dimensions = setup->box.dimensions,
+                      .temperature = setup->temperature,
+                      .time_step = setup->time_step,
+                      .skin = setup->skin,
+                      .temperature_limit = setup->temperature_limit};
+    for (int d = 0; d < setup->box.dimensions; d++)
+        top.box[d] = setup->box.length[d];
+    json_put_fields(writer, scene_fields, &top);
+    json_begin(writer, "particles");
+    json_put_fields(writer, placement_fields, &setup->placement);
+    json_end(writer);
+    if (scene->potential.family)
+        scene_write_curve(&scene->potential, writer, "conservative");
+    scene_write_curve(&scene->weight, writer, "dissipative");
+    json_begin(writer, "dynamics");
+    json_put_text(writer, "integrator", setup->integrator->name);
+    json_put_fields(writer, setup->integrator->fields, &setup->integrator_parameters);
+    json_end(writer);
+    if (units_known(&scene->units)) {
+        json_begin(writer, "units");
+        json_put_fields(writer, units_fields, &scene->units);
+        json_end(writer);
+    }
+}
+
+static void digest_table(const struct table *table, uint64_t *digest) {
+    checkpoint_digest_add(digest, table->coefficient,
+                          (size_t)((TABLE_INTERVALS + 1) * table->terms) * sizeof(double));
+}
+
+void scene_digest(const struct scene *scene, uint64_t *digest) {
+    digest_table(&scene->potential_table, digest);
+    digest_table(&scene->weight_table, digest);
+    const size_t count = (size_t)scene->setup.placement.count;
+    for (int d = 0; d < scene->setup.box.dimensions; d++) {
+        checkpoint_digest_add(digest, scene->start.position[d], count * sizeof(double));
+        checkpoint_digest_add(digest, scene->start.velocity[d], count * sizeof(double));
+    }
+}

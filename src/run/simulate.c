@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/simulate.h"
+
+#include "base/memory.h"
+#include "io/data_table.h"
+#include "mesofit.h"
+#include "observe/measure.h"
+#include "run/checkpoint.h"
+#include "run/heading.h"
+#include "run/progress.h"
+#include "run/scene.h"
+
+#include <math.h>
+
+/// Seconds between checkpoints of a long simulation.
+static const double checkpoint_interval = 60;
+
+struct rdf_parameters {
+    double range;
+    int64_t bins;
+};
+
+#define MEMBER(name) .offset = offsetof(struct rdf_parameters, name)
+const struct field simulate_rdf_fields[] = {
+    {"range", FIELD_NUMBER, MEMBER(range), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
+     .unit = "lambda", .help = "of g(r); 0 means the cutoff of the forces"},
+    {"bins", FIELD_INTEGER, MEMBER(bins), .initial = 100, .minimum = 1, .maximum = 100000,
+     .unit = "", .help = "of g(r)"},
+    FIELD_END,
+};
+
+struct run {
+    struct run_folder folder;
+    struct progress progress;
+    struct scene scene;
+    struct measure_plan plan;
+    struct rdf_parameters rdf_parameters;
+    struct heading heading;
+    uint64_t digest; ///< of used.json
+    double last_checkpoint;
+    struct simulation simulation;
+    struct rdf rdf;
+    struct thermodynamics thermodynamics;
+};
+
+static enum status read_file(struct run *run, const char *file, const struct run_options *options) {
+    struct json_document *document;
+    TRY(json_open(&document, file));
+    struct json_object root = json_root(document);
+    json_fields(&root, heading_fields, &run->heading);
+    const enum status status = scene_read(&run->scene, &root, SCENE_HAS_POTENTIAL);
+    struct json_object measure = json_child(&root, "measure", false);
+    json_fields(&measure, measure_plan_fields, &run->plan);
+    if (measure.item)
+        json_finish(&measure);
+    struct json_object rdf = json_child(&root, "rdf", false);
+    json_fields(&rdf, simulate_rdf_fields, &run->rdf_parameters);
+    if (rdf.item)
+        json_finish(&rdf);
+    json_finish(&root);
+    TRY(json_close(document));
+    TRY(status);
+    if (options->has_seed)
+        run->heading.seed = options->seed;
+    run->scene.setup.seed = run->heading.seed;
+    return STATUS_OK;
+}
+
+/// Write all settings to used.json and take their digest. A run that is resumed leaves used.json
+/// alone, since the settings may turn out to be others.
+static enum status write_used(struct run *run, bool resume) {
+    char path[OUTPUT_PATH_SIZE];
+    struct json_writer *writer = json_writer_create();
+    json_put_fields(writer, heading_fields, &run->heading);
+    scene_write(&run->scene, writer);
+    json_begin(writer, "measure");
+    json_put_fields(writer, measure_plan_fields, &run->plan);
+    json_end(writer);
+    json_begin(writer, "rdf");
+    json_put_fields(writer, simulate_rdf_fields, &run->rdf_parameters);
+    json_end(writer);
+    run_folder_file(&run->folder, resume ? "used.json.resumed" : "used.json", path);
+    const enum status status = json_write(writer, path);
+    json_writer_free(writer);
+    TRY(status);
+    TRY(checkpoint_digest(path, &run->digest));
+    scene_digest(&run->scene, &run->digest);
+    if (resume)
+        remove(path);
+    return STATUS_OK;
+}
+
+enum { MAX_SPANS = SIMULATION_SPANS + 6 };
+
+static size_t run_spans(struct run *run, struct memory_span *spans) {
+    size_t n = simulation_spans(&run->simulation, spans);
+    const struct rdf *rdf = &run->rdf;
+    spans[n++] = (struct memory_span){&run->rdf.samples, sizeof rdf->samples};
+    spans[n++] = (struct memory_span){rdf->histogram, rdf->blocks * rdf->bins.count * 8};
+    spans[n++] = (struct memory_span){rdf->block_samples, rdf->blocks * 8};
+    spans[n++] = (struct memory_span){&run->thermodynamics.samples, sizeof rdf->samples};
+    spans[n++] = (struct memory_span){run->thermodynamics.values,
+                                      THERMODYNAMICS_QUANTITIES * run->thermodynamics.planned * 8};
+    return n;
+}
+
+static enum status save(struct run *run) {
+    struct memory_span spans[MAX_SPANS];
+    char path[OUTPUT_PATH_SIZE];
+    run_folder_file(&run->folder, "checkpoint.bin", path);
+    run->last_checkpoint = progress_seconds(&run->progress);
+    return checkpoint_save(path, run->digest, spans, run_spans(run, spans));
+}
+
+static enum status load(struct run *run) {
+    struct memory_span spans[MAX_SPANS];
+    char path[OUTPUT_PATH_SIZE];
+    run_folder_file(&run->folder, "checkpoint.bin", path);
+    TRY(checkpoint_load(path, run->digest, spans, run_spans(run, spans)));
+    run->progress.done_before = run->simulation.step;
+    return simulation_restore(&run->simulation);
+}
+
+static void tell(void *context, const struct simulation *simulation, uint64_t done,
+                 uint64_t total) {
+    struct run *run = context;
+    char text[96];
+    snprintf(text, sizeof text, "step %llu  T %.3f", (unsigned long long)done,
+             particles_temperature(&simulation->particles));
+    progress_tell(&run->progress, done, total, "steps", text);
+    if (progress_seconds(&run->progress) - run->last_checkpoint > checkpoint_interval &&
+        save(run) != STATUS_OK)
+        progress_say(&run->progress, "mesofit: warning: %s", status_message());
+}
+
+static enum status write_rdf(const struct run *run) {
+    enum status status = STATUS_OK;
+    const struct rdf_bins *bins = &run->rdf.bins;
+    char path[OUTPUT_PATH_SIZE];
+    double *r = NULL, *g = NULL, *error = NULL;
+    NEW_ARRAY(r, bins->count);
+    NEW_ARRAY(g, bins->count);
+    NEW_ARRAY(error, bins->count);
+    for (size_t k = 0; k < bins->count; k++)
+        r[k] = rdf_bins_centre(bins, k);
+    rdf_result(&run->rdf, 1, g, error);
+    const struct data_column columns[] = {
+        {"r[lambda]", r, NULL}, {"g[1]", g, "%.8g"}, {"g_error[1]", error, "%.3g"}};
+    run_folder_file(&run->folder, "rdf.tsv", path);
+    CHECK(data_table_write(path, NULL, columns, 3, bins->count));
+done:
+    memory_free(r);
+    memory_free(g);
+    memory_free(error);
+    return status;
+}
+
+static enum status write_thermodynamics(const struct run *run) {
+    enum status status = STATUS_OK;
+    const struct thermodynamics *t = &run->thermodynamics;
+    char path[OUTPUT_PATH_SIZE];
+    double *step = NULL, *time = NULL, *configurational = NULL;
+    NEW_ARRAY(step, t->samples);
+    NEW_ARRAY(time, t->samples);
+    NEW_ARRAY(configurational, t->samples);
+    for (size_t k = 0; k < t->samples; k++) {
+        step[k] = (double)(run->plan.equilibration + (int64_t)(k + 1) * run->plan.every);
+        time[k] = step[k] * run->scene.setup.time_step;
+        configurational[k] = thermodynamics_series(t, THERMODYNAMICS_FORCE_SQUARES)[k] /
+                             thermodynamics_series(t, THERMODYNAMICS_LAPLACIAN)[k];
+    }
+    const struct data_column columns[] = {
+        {"step", step, NULL},
+        {"time[tau]", time, NULL},
+        {"temperature[T_0]", thermodynamics_series(t, THERMODYNAMICS_TEMPERATURE), "%.8g"},
+        {"potential_energy[k_B.T_0]", thermodynamics_series(t, THERMODYNAMICS_POTENTIAL_ENERGY),
+         "%.12g"},
+        {"pressure[k_B.T_0/lambda^d]", thermodynamics_series(t, THERMODYNAMICS_PRESSURE), "%.8g"},
+        {"temperature_configurational[T_0]", configurational, "%.8g"}};
+    run_folder_file(&run->folder, "thermodynamics.tsv", path);
+    CHECK(data_table_write(path, NULL, columns, 6, t->samples));
+done:
+    memory_free(step);
+    memory_free(time);
+    memory_free(configurational);
+    return status;
+}
+
+static enum status write_summary(const struct run *run, double seconds) {
+    const struct thermodynamics_summary s = thermodynamics_result(&run->thermodynamics, 1);
+    struct json_writer *writer = json_writer_create();
+    char path[OUTPUT_PATH_SIZE];
+    json_put_text(writer, "status", status_name(STATUS_OK));
+    json_put_text(writer, "method", "simulate");
+    json_put_number(writer, "seconds", seconds);
+    json_put_number(writer, "engine_steps", (double)run->simulation.step);
+    json_put_number(writer, "steps_per_second",
+                    (double)(run->simulation.step - run->progress.done_before) / seconds);
+    json_put_number(writer, "temperature", s.temperature);
+    json_put_number(writer, "temperature_error", s.temperature_error);
+    if (isfinite(s.temperature_configurational)) {
+        json_put_number(writer, "temperature_configurational", s.temperature_configurational);
+        json_put_number(writer, "temperature_configurational_error",
+                        s.temperature_configurational_error);
+    }
+    json_put_number(writer, "potential_energy", s.potential_energy);
+    json_put_number(writer, "potential_energy_error", s.potential_energy_error);
+    json_put_number(writer, "pressure", s.pressure);
+    json_put_number(writer, "pressure_error", s.pressure_error);
+    json_put_number(writer, "seed", (double)run->heading.seed);
+    json_put_text(writer, "version", MESOFIT_VERSION);
+    units_put(&run->scene.units, writer, s.potential_energy, s.pressure);
+    run_folder_file(&run->folder, "summary.json", path);
+    const enum status status = json_write(writer, path);
+    json_writer_free(writer);
+    return status;
+}
+
+static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
+    TRY(read_file(run, file, options));
+    TRY(run_folder_open(&run->folder, file, options));
+    TRY(write_used(run, options->resume));
+    const struct simulation_setup *setup = &run->scene.setup;
+    enum status status = simulation_init(&run->simulation, setup, &run->scene.start);
+    if (status != STATUS_OK)
+        return status_prefix(status, "%s", file);
+    const double cutoff = pair_cutoff(&run->simulation.law);
+    const double range = run->rdf_parameters.range > 0 ? run->rdf_parameters.range : cutoff;
+    const struct rdf_bins bins = {.width = range / (double)run->rdf_parameters.bins,
+                                  .count = (size_t)run->rdf_parameters.bins};
+    status = rdf_init(&run->rdf, &bins, &setup->box, run->simulation.particles.count, cutoff,
+                      (size_t)run->plan.samples);
+    if (status != STATUS_OK)
+        return status_prefix(status, "%s", file);
+    TRY(thermodynamics_init(&run->thermodynamics, (size_t)run->plan.samples));
+    return options->resume ? load(run) : STATUS_OK;
+}
+
+static enum status carry_out(struct run *run) {
+    const struct measure_listener listener = {tell, run};
+    double temperature;
+    TRY(measure_equilibrate(&run->simulation, &run->plan, &temperature, &listener));
+    return measure_sample(&run->simulation, &run->plan,
+                          (struct measure_targets){&run->rdf, &run->thermodynamics}, &listener);
+}
+
+static enum status write_results(struct run *run) {
+    const double seconds = progress_seconds(&run->progress);
+    TRY(write_rdf(run));
+    TRY(write_thermodynamics(run));
+    TRY(write_summary(run, seconds));
+    run_folder_draw(&run->folder);
+    progress_say(&run->progress, "%llu steps in %.3g s; results in %s",
+                 (unsigned long long)run->simulation.step, seconds, run->folder.path);
+    return STATUS_OK;
+}
+
+enum status simulate_file(const char *file, const struct run_options *options) {
+    enum status status = STATUS_OK;
+    struct run *run = NULL;
+    NEW_ARRAY(run, 1);
+    run->progress = progress_begin(options->quiet);
+    CHECK(prepare(run, file, options));
+    status = carry_out(run);
+    if (status == STATUS_INTERRUPTED) {
+        CHECK(save(run));
+        status = status_fail(STATUS_INTERRUPTED, "interrupted at step %llu; go on with --resume",
+                             (unsigned long long)run->simulation.step);
+    }
+    if (status == STATUS_OK)
+        status = write_results(run);
+done:
+    if (run) {
+        simulation_clear(&run->simulation);
+        rdf_clear(&run->rdf);
+        thermodynamics_clear(&run->thermodynamics);
+        scene_clear(&run->scene);
+    }
+    memory_free(run);
+    return status;
+}

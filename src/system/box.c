@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "system/box.h"
+
+double box_volume(const struct box *box) {
+    double volume = 1;
+    for (int d = 0; d < box->dimensions; d++)
+        volume *= box->length[d];
+    return volume;
+}
+
+double box_shortest(const struct box *box) {
+    double shortest = box->length[0];
+    for (int d = 1; d < box->dimensions; d++)
+        shortest = fmin(shortest, box->length[d]);
+    return shortest;
+}
+
+double box_shell_volume(const struct box *box, double low, double high) {
+    if (box->dimensions == 2)
+        return M_PI * (high - low) * (high + low);
+    return 4 * M_PI / 3 * (high - low) * (high * high + high * low + low * low);
+}

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "system/placement.h"
+
+#include "base/memory.h"
+#include "base/rng.h"
+
+static const char *const kinds[] = {"lattice", "random", "file", NULL};
+
+#define MEMBER(name) .offset = offsetof(struct placement, name)
+const struct field placement_fields[] = {
+    {"count", FIELD_INTEGER, MEMBER(count), .required = true, .minimum = 2, .maximum = 1e8,
+     .unit = "", .help = "number of particles"},
+    {"placement", FIELD_CHOICE, MEMBER(kind), .initial = PLACEMENT_LATTICE, .choices = kinds,
+     .unit = "",
+     .help = "simple cubic lattice with jitter, random without overlap, or a file of "
+             "coordinates"},
+    {"jitter", FIELD_NUMBER, MEMBER(jitter), .initial = 0.05, .minimum = 0, .maximum = 0.5,
+     .unit = "lattice spacings", .help = "lattice: largest random shift along an axis"},
+    {"separation", FIELD_NUMBER, MEMBER(separation), .initial = 0.5, .minimum = 0,
+     .maximum = DBL_MAX, .unit = "lambda", .help = "random: least distance of any two"},
+    {"file", FIELD_FILE, MEMBER(file), .unit = "",
+     .help = "file: columns x, y (, z) and, if wanted, the velocities"},
+    FIELD_END,
+};
+
+/// Lattice cells along each axis: the smallest grid of nearly cubic cells with room for all.
+static void lattice_shape(const struct particles *particles, size_t cells[3]) {
+    const struct box *box = &particles->box;
+    double spacing = pow(box_volume(box) / (double)particles->count, 1.0 / box->dimensions);
+    for (;; spacing *= 0.999) {
+        double room = 1;
+        for (int d = 0; d < 3; d++) {
+            // A part in 10⁹ forgives the rounding of count = n³ and length = n · spacing.
+            cells[d] = d < box->dimensions
+                           ? (size_t)fmax(1, floor(box->length[d] / spacing * (1 + 1e-9)))
+                           : 1;
+            room *= (double)cells[d];
+        }
+        if (room >= (double)particles->count)
+            return;
+    }
+}
+
+void placement_lattice(struct particles *particles, double jitter, uint64_t seed) {
+    const struct box *box = &particles->box;
+    size_t cells[3];
+    lattice_shape(particles, cells);
+    const double sites = (double)(cells[0] * cells[1] * cells[2]);
+    for (size_t k = 0; k < particles->count; k++) {
+        // Spread the empty sites evenly over the lattice.
+        size_t site = (size_t)floor((double)k * sites / (double)particles->count);
+        const struct rng_block block = rng_philox(seed, RNG_PLACEMENT, (uint32_t)k, 0, 0);
+        for (int d = box->dimensions - 1; d >= 0; d--) {
+            const double spacing = box->length[d] / (double)cells[d];
+            const double shift = jitter * (2 * rng_uniform(block.word[d], 0) - 1);
+            particles->position[d][k] = spacing * ((double)(site % cells[d]) + 0.5 + shift);
+            site /= cells[d];
+        }
+    }
+    particles_wrap(particles);
+    particles_update_fractions(particles);
+}
+
+/// Linked cells of an edge of at least `separation`, at most a few for each particle.
+struct occupied {
+    int cells[3];
+    int32_t *first, *next;
+};
+
+static enum status occupied_init(struct occupied *occupied, const struct particles *particles,
+                                 double separation) {
+    enum status status = STATUS_OK;
+    *occupied = (struct occupied){0};
+    size_t total = 1;
+    const double most = fmax(1, floor(cbrt((double)particles->count)));
+    for (int d = 0; d < 3; d++) {
+        const double fit = separation > 0 ? particles->box.length[d] / separation : most;
+        occupied->cells[d] =
+            d < particles->box.dimensions ? (int)fmax(1, fmin(most, floor(fit))) : 1;
+        total *= (size_t)occupied->cells[d];
+    }
+    NEW_ARRAY(occupied->first, total);
+    NEW_ARRAY(occupied->next, particles->count);
+    for (size_t c = 0; c < total; c++)
+        occupied->first[c] = -1;
+done:
+    return status;
+}
+
+static void cell_of(const struct occupied *occupied, const struct box *box, const double x[3],
+                    int cell[3]) {
+    for (int d = 0; d < 3; d++) {
+        const int n = occupied->cells[d];
+        cell[d] = d < box->dimensions ? (int)fmin(n - 1, floor(x[d] / box->length[d] * n)) : 0;
+    }
+}
+
+static int32_t *head(struct occupied *occupied, int x, int y, int z) {
+    const int *n = occupied->cells;
+    return &occupied->first[(((x + n[0]) % n[0]) * n[1] + (y + n[1]) % n[1]) * n[2] +
+                            (z + n[2]) % n[2]];
+}
+
+static bool is_free(struct occupied *occupied, const struct particles *particles, const double x[3],
+                    double separation) {
+    const struct box *box = &particles->box;
+    int cell[3];
+    cell_of(occupied, box, x, cell);
+    for (int n = 0; n < 27; n++) {
+        int32_t other =
+            *head(occupied, cell[0] + n % 3 - 1, cell[1] + n / 3 % 3 - 1, cell[2] + n / 9 - 1);
+        for (; other >= 0; other = occupied->next[other]) {
+            double square = 0;
+            for (int d = 0; d < box->dimensions; d++) {
+                const double dx = box_nearest(x[d] - particles->position[d][other], box->length[d]);
+                square += dx * dx;
+            }
+            if (square < separation * separation)
+                return false;
+        }
+    }
+    return true;
+}
+
+enum status placement_random(struct particles *particles, double separation, uint64_t seed) {
+    enum { TRIALS = 10000 };
+    enum status status = STATUS_OK;
+    const struct box *box = &particles->box;
+    struct occupied occupied = {0};
+    CHECK(occupied_init(&occupied, particles, separation));
+    for (size_t k = 0; k < particles->count; k++) {
+        double x[3] = {0};
+        uint32_t trial = 0;
+        do {
+            if (trial == TRIALS) {
+                status = status_fail(STATUS_BAD_INPUT,
+                                     "no room for particle %zu of %zu at a least distance of %g: "
+                                     "lower \"separation\" or place on a lattice",
+                                     k + 1, particles->count, separation);
+                goto done;
+            }
+            const struct rng_block block = rng_philox(seed, RNG_PLACEMENT, (uint32_t)k, ++trial, 0);
+            for (int d = 0; d < box->dimensions; d++)
+                x[d] = box->length[d] * rng_uniform(block.word[d], block.word[3]);
+        } while (!is_free(&occupied, particles, x, separation));
+        int cell[3];
+        cell_of(&occupied, box, x, cell);
+        int32_t *first = head(&occupied, cell[0], cell[1], cell[2]);
+        occupied.next[k] = *first;
+        *first = (int32_t)k;
+        for (int d = 0; d < box->dimensions; d++)
+            particles->position[d][k] = x[d];
+    }
+    particles_update_fractions(particles);
+done:
+    memory_free(occupied.first);
+    memory_free(occupied.next);
+    return status;
+}

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Files that cannot be right: exit code 2, one clear line for each fault, nothing left behind.
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/temporary_folder.h"
+#include "shared/testing.h"
+
+static const char good_table[] = "# r value\n0 10\n0.5 3\n1 0\n";
+
+enum { MOST_WORDS = 5 };
+
+/// A file that differs from the good one in one place, and words of the lines that tell of it.
+struct fault {
+    const char *what;
+    const char *from, *to;         ///< in the JSON file
+    const char *words[MOST_WORDS]; ///< of the message; NULL-terminated
+    const char *table;             ///< instead of the good table or target
+};
+
+static void check_fault(struct temporary_folder *folder, const char *verb, const char *good,
+                        const struct fault *fault) {
+    static struct run_program_result result;
+    const char *table = fault->table && fault->from ? fault->table : good_table;
+    const char *target = fault->table && !fault->from ? fault->table : small_inputs_target;
+    small_inputs_write(folder, "table.tsv", table, NULL, NULL);
+    small_inputs_write(folder, "target.tsv", target, NULL, NULL);
+    small_inputs_write(folder, "input.json", good, fault->from, fault->to);
+    RUN_PROGRAM(&result, verb, "input.json");
+    run_program_assert_refused(&result, ".", fault->what, 1, fault->words);
+}
+
+#define WITH_TABLE(name, old, new, rows, ...)                                                      \
+    {                                                                                              \
+        .what = (name), .from = (old), .to = (new), .table = (rows), .words = { __VA_ARGS__ }      \
+    }
+#define FAULT(name, old, new, ...) WITH_TABLE(name, old, new, NULL, __VA_ARGS__)
+#define TARGET(name, rows, ...) WITH_TABLE(name, NULL, NULL, rows, __VA_ARGS__)
+
+#define PARTICLES "\"particles\": {\"count\": 81}"
+#define DISSIPATIVE "{\"law\": \"power\", \"sigma\": 2}"
+#define STEP "\"time_step\": 0.02"
+#define TABLE_WEIGHT "{\"law\": \"table\", \"file\": \"table.tsv\"}"
+
+/// Faults of what both kinds of file have. The key in the message is looked for without "scene.".
+static const struct fault common_faults[] = {
+    FAULT("malformed", STEP, "\"time_step\" 0.02", "input.json:", "expected"),
+    FAULT("ends early", "}\n", "", "input.json:"),
+    FAULT("two documents", "{\n", "{}\n{", "input.json:2:1"),
+    FAULT("unknown key", STEP, "\"time_stp\": 0.02", "input.json", "time_stp",
+          "did you mean \"time_step\"?"),
+    FAULT("wrong case", STEP, "\"Time_step\": 0.02", "Time_step", "did you mean \"time_step\"?"),
+    FAULT("text for a number", STEP, "\"time_step\": \"0.02\"", "input.json",
+          "time_step: expected a number, found the text"),
+    FAULT("number for an object", PARTICLES, "\"particles\": 81",
+          "particles: expected an object, found the number 81"),
+    FAULT("null", STEP, "\"time_step\": null", "time_step: expected a number, found null"),
+    FAULT("missing", PARTICLES, "\"particles\": {}", "particles.count: missing"),
+    FAULT("negative", STEP, "\"time_step\": -0.02", "time_step: -0.02 is out of range", "above 0"),
+    FAULT("too few", "81", "1", "particles.count: 1 is out of range"),
+    FAULT("fraction", "81", "81.5", "particles.count", "whole number"),
+    FAULT("NaN", "0.02", "NaN", "input.json:"),
+    FAULT("-Infinity", "0.02", "-Infinity", "input.json:"),
+    FAULT("1e999", "0.02", "1e999", "time_step: the number is too large"),
+    FAULT("duplicate", STEP, STEP ", \"time_step\": 0.03", "time_step: the key stands here twice"),
+    FAULT("seed of 2^53", "\"seed\": 1", "\"seed\": 9007199254740992", "seed", "2^53"),
+    FAULT("seed below 0", "\"seed\": 1", "\"seed\": -1", "seed: -1 is out of range"),
+    FAULT("small box", "[3, 3, 3]", "[3, 1.9, 3]", "input.json", "box", "1.9"),
+    FAULT("flat box", "[3, 3, 3]", "[3, 3]", "box: has 2 edges", "3 dimensions"),
+    FAULT("box of 0", "[3, 3, 3]", "[3, 0, 3]", "box[1]: 0 is out of range"),
+    FAULT("enormous box", "[3, 3, 3]", "[3, 3, 1e300]", "box[2]: 1e+300 is out of range"),
+    FAULT("no room", PARTICLES,
+          "\"particles\": {\"count\": 81, \"placement\": \"random\", \"separation\": 1}",
+          "input.json", "no room for particle", "separation"),
+    FAULT("unknown law", "\"power\"", "\"powr\"", "dissipative.law", "did you mean \"power\"?"),
+    FAULT("friction without an integrator for it", STEP,
+          STEP ", \"dynamics\": {\"integrator\": \"velocity-verlet\"}",
+          "dynamics: velocity-verlet knows no friction", "\"dpd-verlet\""),
+    WITH_TABLE("negative omega", DISSIPATIVE, TABLE_WEIGHT, "0 1\n0.5 -0.5\n1 0\n1.1 0\n",
+               "dissipative", "omega is negative at r = "),
+    FAULT("short table", DISSIPATIVE,
+          "{\"law\": \"table\", \"file\": \"table.tsv\", \"cutoff\": 1.5}", "dissipative.file",
+          "table.tsv", "ends at r = 1, before the cutoff 1.5"),
+    WITH_TABLE("unsorted table", DISSIPATIVE, TABLE_WEIGHT, "0 1\n0.7 0.5\n0.5 0.4\n1 0\n",
+               "dissipative.file", "table.tsv:3"),
+    FAULT("missing table", DISSIPATIVE, "{\"law\": \"table\", \"file\": \"no.tsv\"}",
+          "dissipative.file", "no.tsv: No such file"),
+
+};
+
+static const struct fault scene_faults[] = {
+    FAULT("small box for the RDF", "\"measure\"", "\"rdf\": {\"range\": 1.6}, \"measure\"",
+          "input.json", "box", "RDF", "1.6"),
+    FAULT("no samples", "\"samples\": 4", "\"samples\": 0", "measure.samples: 0 is out of range"),
+    FAULT("short table of a potential", "{\"law\": \"soft-repulsion\", \"a\": 25}",
+          "{\"law\": \"table\", \"file\": \"table.tsv\", \"cutoff\": 2}", "conservative.file",
+          "table.tsv", "before the cutoff 2"),
+    FAULT("a method in a scene", "\"measure\"", "\"method\": {}, \"measure\"", "method: unknown"),
+
+};
+
+#define ROWS(middle) "0.1 0.3 0.1\n0.3 0.6 0.1\n0.5 0.8 0.1\n" middle "1.1 1 0.1\n1.3 1 0.1\n"
+
+static const struct fault run_faults[] = {
+    FAULT("no target", "target.tsv", "no.tsv", "target.file", "no.tsv: No such file"),
+    TARGET("a gap", ROWS("0.7 1 0.1\n"), "target.file", "target.tsv:5", "gap"),
+    TARGET("unsorted", ROWS("0.9 1 0.1\n0.7 1 0.1\n"), "target.tsv:5", "column 1"),
+    TARGET("negative r", "-0.1 0 0\n0.1 0.3 0\n0.3 0.6 0\n0.5 1 0\n", "target.tsv:1",
+           "-0.1 is below 0"),
+    TARGET("negative g", ROWS("0.7 -1 0.1\n0.9 1 0.1\n"), "target.tsv:4", "negative"),
+    TARGET("a word", ROWS("0.7 one 0.1\n0.9 1 0.1\n"), "target.tsv:4", "column 2",
+           "\"one\" is not a finite number"),
+    TARGET("nan", ROWS("0.7 nan 0.1\n0.9 1 0.1\n"), "target.tsv:4", "\"nan\""),
+    TARGET("too few columns", "0.1 1\n0.3 1\n0.5 1\n0.7 1\n", "target.tsv:1",
+           "2 columns, at least 3"),
+    TARGET("a short row", ROWS("0.7 1\n0.9 1 0.1\n"), "target.tsv:4", "2 columns"),
+    TARGET("nothing above 0", "0.1 0 0\n0.3 0 0\n0.5 0 0\n0.7 0 0\n", "input.json",
+           "target is nowhere above"),
+    TARGET("no rows", "# r g error\n", "target.tsv", "without a row"),
+    FAULT("small box for the target", "[3, 3, 3]", "[3, 3, 1.99]", "input.json", "scene.box",
+          "1.99", "range of the target"),
+    FAULT("small box for the weight", DISSIPATIVE, "{\"law\": \"power\", \"cutoff\": 1.6}",
+          "input.json", "box", "1.6"),
+    FAULT("unknown method", "\"imc\"", "\"imcc\"", "method.name", "did you mean \"imc\"?"),
+    FAULT("a key of another method", "\"samples\": 8", "\"generations\": 8",
+          "method.generations: unknown"),
+    FAULT("a potential in a fit", STEP, STEP ", \"conservative\": {}", "input.json",
+          "scene.conservative"),
+
+};
+
+static void check_faults(struct temporary_folder *folder, const char *verb, const char *good,
+                         const struct fault *faults, size_t count) {
+    for (size_t k = 0; k < count; k++)
+        check_fault(folder, verb, good, &faults[k]);
+}
+
+#define CHECK_FAULTS(folder, verb, good, faults)                                                   \
+    check_faults((folder), (verb), (good), (faults), sizeof(faults) / sizeof *(faults))
+
+static void test_simulate_refuses_with_a_line_for_each_fault(void **state) {
+    CHECK_FAULTS(*state, "simulate", small_inputs_scene, common_faults);
+    CHECK_FAULTS(*state, "simulate", small_inputs_scene, scene_faults);
+}
+
+static void test_fit_refuses_with_a_line_for_each_fault(void **state) {
+    CHECK_FAULTS(*state, "fit", small_inputs_run, common_faults);
+    CHECK_FAULTS(*state, "fit", small_inputs_run, run_faults);
+}
+
+static void test_fit_tells_of_all_faults_at_once(void **state) {
+    static const char bad[] =
+        "{\"seed\": -1, \"target\": {\"file\": \"target.tsv\"},\n"
+        "\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81},\n"
+        "\"time_step\": 0}, \"method\": {\"name\": \"imc\", \"replicas\": 1}}";
+    const char *const words[] = {"input.json: seed: ", "input.json: scene.time_step: ",
+                                 "input.json: method.replicas: ", NULL};
+    static struct run_program_result result;
+    small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
+    small_inputs_write(*state, "input.json", bad, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "input.json");
+    run_program_assert_refused(&result, ".", "three faults", 3, words);
+}
+
+/// The good files are good: the faults above are what is refused.
+static void test_good_files_are_accepted(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
+    small_inputs_write(*state, "scene.json", small_inputs_scene, NULL, NULL);
+    small_inputs_write(*state, "run.json", small_inputs_run, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "fit", "run.json");
+    assert_in_range(result.code, 0, 1);
+    assert_true(temporary_folder_exists("out/summary.json"));
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        TEST(test_simulate_refuses_with_a_line_for_each_fault),
+        TEST(test_fit_refuses_with_a_line_for_each_fault),
+        TEST(test_fit_tells_of_all_faults_at_once),
+        TEST(test_good_files_are_accepted),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

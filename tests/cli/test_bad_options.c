@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Command lines that cannot be right, and folders that cannot be written.
+#define _GNU_SOURCE // unshare
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <sched.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <sys/mount.h>
+#include <sys/stat.h>
+
+enum { MOST_WORDS = 8 };
+
+struct command_line {
+    const char *words[MOST_WORDS];
+    const char *says[3];
+};
+
+static const struct command_line bad_lines[] = {
+    {{"simulat", "scene.json"}, {"unknown command \"simulat\"", "did you mean \"simulate\"?"}},
+    {{"dance"}, {"unknown command \"dance\"", "known: simulate, fit"}},
+    {{"simulate", "scene.json", "--thread", "2"},
+     {"unknown option --thread", "did you mean \"--threads\"?"}},
+    {{"simulate", "scene.json", "--fast"}, {"unknown option --fast", "known: -o"}},
+    {{"simulate", "scene.json", "-o"}, {"-o takes a folder"}},
+    {{"simulate", "scene.json", "-o", ""}, {"-o takes a folder"}},
+    {{"simulate", "scene.json", "--threads"}, {"--threads takes a whole number from 1"}},
+    {{"simulate", "scene.json", "--threads", "0"}, {"--threads takes a whole number from 1"}},
+    {{"simulate", "scene.json", "--threads", "two"}, {"--threads takes a whole number from 1"}},
+    {{"simulate", "scene.json", "--seed", "9007199254740992"}, {"--seed", "to 9007199254740991"}},
+    {{"simulate", "scene.json", "--seed", "99999999999999999999"}, {"--seed takes a whole number"}},
+    {{"simulate", "scene.json", "--seed", "-1"}, {"--seed takes a whole number"}},
+    {{"simulate", "scene.json", "--seed", "1.5"}, {"--seed takes a whole number"}},
+    {{"simulate"}, {"usage: mesofit simulate SCENE.json"}},
+    {{"fit"}, {"usage: mesofit fit RUN.json"}},
+    {{"fit", "scene.json", "scene.json"}, {"usage: mesofit fit RUN.json"}},
+    {{"compare"}, {"usage: mesofit compare DIR"}},
+    {{"describe", "gaussan"}, {"\"gaussan\" is not known", "did you mean \"gaussian\"?"}},
+    {{"simulate", "no/such.json"}, {"no/such.json: No such file"}},
+    {{"fit", "no/such.json"}, {"no/such.json: No such file"}},
+    {{"fit", "/"}, {"/: is a folder"}},
+    {{"plot", "no/such"}, {"no/such"}},
+    {{"compare", "no/such", "no/such"}, {"no/such"}},
+    {{"simulate", "scene.json", "--resume"}, {"checkpoint.bin: No such file"}},
+};
+
+static void test_bad_lines_are_refused_with_a_hint(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "scene.json", small_inputs_scene, NULL, NULL);
+    for (size_t k = 0; k < sizeof bad_lines / sizeof *bad_lines; k++) {
+        run_program(&result, &(struct run_program_how){0}, bad_lines[k].words);
+        run_program_assert_refused(&result, ".", bad_lines[k].says[0], 1, bad_lines[k].says);
+    }
+}
+
+static void test_help_is_on_stdout_when_asked_for(void **state) {
+    static struct run_program_result result;
+    (void)state;
+    RUN_PROGRAM(&result, "fit", "--help");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "--resume");
+    assert_string_equal(result.err, "");
+    RUN_PROGRAM(&result, "--version");
+    run_program_assert_code(&result, 0);
+    assert_int_equal(run_program_lines(result.out), 1);
+}
+
+/// Permissions mean nothing to root: a regular file in the way and /proc mean something to all.
+static void test_unwritable_folders_are_refused_before_any_step(void **state) {
+    static struct run_program_result result;
+    static const char *const folders[] = {"scene.json/out", "/proc/mesofit", "/proc/self/task"};
+    small_inputs_write(*state, "scene.json", small_inputs_scene, NULL, NULL);
+    for (size_t k = 0; k < 3; k++) {
+        RUN_PROGRAM(&result, "simulate", "scene.json", "-o", folders[k]);
+        run_program_assert_refused(&result, ".", folders[k], 1, (const char *[]){folders[k], NULL});
+    }
+}
+
+/// Run until files grow to `limit` bytes: a failed write ends the run with exit code 2 and the name
+/// of the file.
+static void check_file_limit(const char *verb, const char *input, long limit) {
+    static struct run_program_result result;
+    const struct run_program_how how = {.largest_file = limit};
+    run_program(&result, &how, (const char *const[]){verb, input, "--quiet", NULL});
+    run_program_assert_refused(&result, ".", verb, 1,
+                               (const char *[]){"cannot write out/", "File too large", NULL});
+}
+
+/// used.json has about a thousand bytes, rdf.tsv and history.tsv come later and hold more or less:
+/// each limit meets another file.
+static void test_full_disk_is_an_error_and_leaves_nothing_half_written(void **state) {
+    small_inputs_write(*state, "scene.json", small_inputs_scene, NULL, NULL);
+    small_inputs_write(*state, "run.json", small_inputs_run, NULL, NULL);
+    small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
+    for (long limit = 1; limit < 4000; limit = 3 * limit + 100) {
+        if (limit < 2000)
+            check_file_limit("simulate", "scene.json", limit);
+        check_file_limit("fit", "run.json", limit);
+    }
+}
+
+/// A file system of so many pages in a name space of this process alone.
+static bool mount_small(const char *path, int pages) {
+    char size[32];
+    snprintf(size, sizeof size, "size=%dk", 4 * pages);
+    if (unshare(CLONE_NEWNS) != 0 && unshare(CLONE_NEWUSER | CLONE_NEWNS) != 0)
+        return false;
+    return mount("none", "/", NULL, MS_REC | MS_PRIVATE, NULL) == 0 &&
+           mount("none", path, "tmpfs", 0, size) == 0;
+}
+
+/// From a disk that holds nothing to one that holds all: the fit fails at one file after another.
+static void test_full_file_system_is_an_error_wherever_it_is_met(void **state) {
+    static struct run_program_result result;
+    int failures = 0;
+    assert_int_equal(mkdir("disk", 0777), 0);
+    small_inputs_write(*state, "run.json", small_inputs_run, NULL, NULL);
+    small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
+    for (int pages = 1; failures == pages - 1; pages++) {
+        if (!mount_small("disk", pages))
+            skip();
+        RUN_PROGRAM(&result, "fit", "run.json", "--quiet", "-o", "disk");
+        if (result.code == 2) {
+            run_program_assert_refused(
+                &result, ".", "full file system", 1,
+                (const char *[]){"cannot write disk/", "No space left", NULL});
+            failures++;
+        }
+        umount("disk");
+    }
+    assert_in_range(result.code, 0, 1);
+    assert_in_range(failures, 8, 100);
+}
+
+static int leave_disk(void **state) {
+    umount("disk"); // if the test has failed
+    return small_inputs_leave(state);
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        TEST(test_bad_lines_are_refused_with_a_hint),
+        TEST(test_help_is_on_stdout_when_asked_for),
+        TEST(test_unwritable_folders_are_refused_before_any_step),
+        TEST(test_full_disk_is_an_error_and_leaves_nothing_half_written),
+        cmocka_unit_test_setup_teardown(test_full_file_system_is_an_error_wherever_it_is_met,
+                                        small_inputs_enter, leave_disk),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// `mesofit fit` from outside: its files, the same bits for any threads and after any interruption,
+// and what `compare` and `plot` make of the results.
+#include "shared/results.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+/// A soft fluid whose g(r) is the target.
+static const char soft_fluid[] =
+    "{\"seed\": 5, \"box\": [3, 3, 3], \"particles\": {\"count\": 81}, \"time_step\": 0.04,\n"
+    "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25},\n"
+    "\"dissipative\": {\"law\": \"power\", \"sigma\": 3},\n"
+    "\"measure\": {\"equilibration\": 100, \"samples\": 40, \"every\": 10},\n"
+    "\"rdf\": {\"range\": 1, \"bins\": 20}}\n";
+
+#define METHOD "METHOD"
+static const char fit[] =
+    "{\"seed\": 3, \"target\": {\"file\": \"target/rdf.tsv\"},\n"
+    "\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, \"time_step\": 0.02,\n"
+    "\"dissipative\": {\"law\": \"power\", \"sigma\": 3}},\n"
+    "\"method\": {" METHOD "}, \"core\": {\"threshold\": 0.05, \"stiffness\": 50},\n"
+    "\"verification\": {\"replicas\": 2, \"equilibration\": 50, \"samples\": 10, \"every\": 5}}\n";
+
+#define IMC                                                                                        \
+    "\"name\": \"imc\", \"replicas\": 4, \"equilibration\": 10, \"samples\": 30, \"every\": 2, "   \
+    "\"iterations\": 4, \"precision\": 1e-4"
+
+/// An odd population.
+#define GENETIC(tolerance)                                                                         \
+    "\"name\": \"genetic\", \"population\": 7, \"genes\": 5, \"generations\": 3, "                 \
+    "\"gene_maximum\": 8, \"equilibration\": 60, \"samples\": 10, \"every\": 5, "                  \
+    "\"temperature_tolerance\": " tolerance
+
+static const char *const tables[] = {"history.tsv",           "rdf.tsv",   "potential.tsv",
+                                     "potential_history.tsv", "omega.tsv", NULL};
+
+/// A fit that was not given the time to converge.
+enum { CONVERGED = 0, UNCONVERGED = 1 };
+
+static void write_fit(struct temporary_folder *folder, const char *method) {
+    static struct run_program_result result;
+    small_inputs_write(folder, "scene.json", soft_fluid, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "target", "--quiet");
+    run_program_assert_code(&result, 0);
+    small_inputs_write(folder, "run.json", fit, METHOD, method);
+}
+
+static void run_fit(const char *out, const char *threads, int code) {
+    static struct run_program_result result;
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", out, "--threads", threads, "--quiet");
+    run_program_assert_code(&result, code);
+}
+
+static void check_threads(int code) {
+    run_fit("1", "1", code);
+    for (int threads = 2; threads <= 4; threads++) {
+        char out[16], summary[64];
+        snprintf(out, sizeof out, "%d", threads);
+        snprintf(summary, sizeof summary, "%s/summary.json", out);
+        run_fit(out, out, code);
+        results_assert_same("1", out, tables);
+        results_assert_number(summary, "threads", threads);
+    }
+}
+
+static void test_imc_gives_the_same_bits_for_any_threads(void **state) {
+    write_fit(*state, IMC);
+    check_threads(UNCONVERGED);
+}
+
+static void test_genetic_gives_the_same_bits_for_any_threads(void **state) {
+    write_fit(*state, GENETIC("0.3"));
+    check_threads(CONVERGED);
+}
+
+static void check_used(int code) {
+    static struct run_program_result result;
+    run_fit("a/one", "2", code);
+    RUN_PROGRAM(&result, "fit", "a/one/used.json", "-o", "two", "--quiet");
+    run_program_assert_code(&result, code);
+    results_assert_same("a/one", "two", tables);
+    results_assert_same("a/one", "two", (const char *const[]){"used.json", NULL});
+}
+
+static void test_imc_gives_the_same_bits_from_its_used_settings(void **state) {
+    write_fit(*state, IMC);
+    check_used(UNCONVERGED);
+}
+
+static void test_genetic_gives_the_same_bits_from_its_used_settings(void **state) {
+    write_fit(*state, GENETIC("0.3"));
+    check_used(CONVERGED);
+}
+
+/// Interrupted again and again at different places, the fit ends with the bits of one in peace.
+static void check_interruption(double first, int code) {
+    static const char *const words[] = {"fit", "run.json", "-o", "pieces", "--threads", "2", NULL};
+    static const char *const numbers[] = {"iterations", "evaluations", "engine_steps", "rdf_rmse"};
+    run_fit("whole", "2", code);
+    run_program_in_pieces(first, code, words);
+    results_assert_same("whole", "pieces", tables);
+    results_assert_same("whole", "pieces", (const char *const[]){"used.json", NULL});
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
+        results_assert_number("pieces/summary.json", numbers[k],
+                              results_number("whole/summary.json", numbers[k]));
+}
+
+static void test_interrupted_imc_goes_on_with_the_same_bits(void **state) {
+    write_fit(*state, IMC);
+    check_interruption(0.05, UNCONVERGED);
+}
+
+static void test_interrupted_genetic_goes_on_with_the_same_bits(void **state) {
+    write_fit(*state, GENETIC("0.3"));
+    check_interruption(0.02, CONVERGED);
+}
+
+static void test_interrupted_fit_says_so_and_refuses_other_settings(void **state) {
+    static struct run_program_result result;
+    const struct run_program_how how = {.interrupt_after = 0.001};
+    write_fit(*state, IMC ", \"particles\": 4000");
+    run_program(&result, &how, (const char *const[]){"fit", "run.json", NULL});
+    run_program_assert_code(&result, 130);
+    assert_contains(result.err, "mesofit: interrupted after 0 iterations");
+    assert_contains(result.err, "--resume");
+    char *used = temporary_folder_read("out/used.json");
+    RUN_PROGRAM(&result, "fit", "run.json", "--resume", "--seed", "4");
+    run_program_assert_refused(&result, "out", "another seed", 1,
+                               (const char *[]){"checkpoint.bin", "settings have changed", NULL});
+    char *used_now = temporary_folder_read("out/used.json");
+    assert_string_equal(used, used_now);
+    free(used);
+    free(used_now);
+}
+
+static void test_summary_has_what_other_programs_read(void **state) {
+    static const char *const numbers[] = {
+        "seconds",        "threads",   "iterations", "evaluations", "engine_steps",
+        "rdf_rmse",       "rdf_noise", "seed",       "temperature", "temperature_configurational",
+        "rdf_rmse_error", "pressure",  NULL};
+    write_fit(*state, IMC);
+    run_fit("out", "2", UNCONVERGED);
+    results_assert_text("out/summary.json", "status", "unconverged");
+    results_assert_text("out/summary.json", "method", "imc");
+    results_assert_text("out/summary.json", "version", "0.1.0");
+    results_assert_numbers("out/summary.json", numbers);
+    results_assert_number("out/summary.json", "iterations", 4);
+    results_assert_number("out/summary.json", "evaluations", 16);
+    results_assert_number("out/summary.json", "seed", 3);
+    results_assert_table("out/history.tsv", 9, 4);
+    results_assert_table("out/timing.tsv", 2, 4);
+    results_assert_table("out/rdf.tsv", 5, 20);
+    results_assert_table("out/potential.tsv", 4, 21);
+    results_assert_table("out/potential_history.tsv", 5, 21);
+    results_assert_table("out/omega.tsv", 2, 0);
+}
+
+/// A tolerance that no simulation keeps to, and a time step at which the verification fails too.
+static void test_genetic_without_a_survivor_ends_and_says_so(void **state) {
+    static struct run_program_result result;
+    write_fit(*state, GENETIC("1e-9"));
+    RUN_PROGRAM(&result, "fit", "run.json", "--quiet");
+    run_program_assert_code(&result, UNCONVERGED);
+    assert_contains(result.err, "not one simulation of the fit succeeded");
+    results_assert_table("out/history.tsv", 9, 3);
+    char *history = temporary_folder_read("out/history.tsv");
+    assert_contains(history, "\tnan\t");
+    assert_null(strstr(history, "1000000000"));
+    free(history);
+    char *summary = temporary_folder_read("out/summary.json");
+    assert_null(strstr(summary, "\"converged\""));
+    free(summary);
+    small_inputs_write(*state, "run.json", fit, METHOD, GENETIC("0.3"));
+    char *text = temporary_folder_read("run.json");
+    small_inputs_write(*state, "run.json", text, "0.02", "2");
+    free(text);
+    RUN_PROGRAM(&result, "fit", "run.json", "--quiet");
+    run_program_assert_code(&result, 1);
+    assert_contains(result.err, "not one simulation of the fit succeeded");
+    assert_contains(result.err, "unstable at step 1");
+    results_assert_text("out/summary.json", "status", "unstable");
+}
+
+static bool is_drawn(const char *name) {
+    char svg[256], png[256];
+    snprintf(svg, sizeof svg, "%s.svg", name);
+    snprintf(png, sizeof png, "%s.png", name);
+    return temporary_folder_exists(svg) && temporary_folder_exists(png);
+}
+
+static void test_results_are_drawn_compared_and_drawn_again(void **state) {
+    static struct run_program_result result;
+    small_inputs_need_gnuplot();
+    write_fit(*state, IMC);
+    run_fit("one", "2", UNCONVERGED);
+    small_inputs_write(*state, "run.json", fit, METHOD, GENETIC("0.3"));
+    run_fit("two", "2", CONVERGED);
+    assert_true(is_drawn("one/figures/rdf"));
+    assert_true(is_drawn("one/figures/potential"));
+    assert_true(is_drawn("one/figures/error"));
+    assert_false(is_drawn("one/figures/generations"));
+    assert_true(is_drawn("two/figures/generations"));
+    remove("two/figures/rdf.svg");
+    RUN_PROGRAM(&result, "plot", "two");
+    run_program_assert_code(&result, 0);
+    assert_true(is_drawn("two/figures/rdf"));
+    RUN_PROGRAM(&result, "compare", "one", "two", "-o", "both");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "one");
+    assert_contains(result.out, "two");
+    assert_true(is_drawn("both/figures/compare"));
+    assert_true(temporary_folder_exists("both/compare.tsv"));
+    assert_string_equal(result.err, "");
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
+#define TEST_WITHOUT_FIGURES(name)                                                                 \
+    cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        TEST(test_results_are_drawn_compared_and_drawn_again),
+        TEST_WITHOUT_FIGURES(test_imc_gives_the_same_bits_for_any_threads),
+        TEST_WITHOUT_FIGURES(test_genetic_gives_the_same_bits_for_any_threads),
+        TEST_WITHOUT_FIGURES(test_imc_gives_the_same_bits_from_its_used_settings),
+        TEST_WITHOUT_FIGURES(test_genetic_gives_the_same_bits_from_its_used_settings),
+        TEST_WITHOUT_FIGURES(test_interrupted_imc_goes_on_with_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_interrupted_genetic_goes_on_with_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_interrupted_fit_says_so_and_refuses_other_settings),
+        TEST_WITHOUT_FIGURES(test_summary_has_what_other_programs_read),
+        TEST_WITHOUT_FIGURES(test_genetic_without_a_survivor_ends_and_says_so),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

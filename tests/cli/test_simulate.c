@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// `mesofit simulate` from outside: its files, the same bits again, interruption, instability.
+#include "shared/results.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <stdlib.h>
+
+/// The fluid of Groot and Warren (1997): density 3, a = 25, sigma^2 = 4.5, time step 0.04.
+static const char groot_warren[] =
+    "{\"seed\": 5, \"box\": [4.64, 4.64, 4.64], \"particles\": {\"count\": 300},\n"
+    "\"time_step\": 0.04, \"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25},\n"
+    "\"dissipative\": {\"law\": \"power\", \"sigma\": 2.1213},\n"
+    "\"measure\": {\"equilibration\": 100, \"samples\": 20, \"every\": 10},\n"
+    "\"units\": {\"length\": 0.7, \"temperature\": 300, \"mass\": 9e-26}}\n";
+
+#define LONG_MEASURE "\"measure\": {\"equilibration\": 1200, \"samples\": 60, \"every\": 20}"
+
+static const char flat[] =
+    "{\"seed\": 5, \"dimensions\": 2, \"box\": [11, 11], \"particles\": {\"count\": 300},\n"
+    "\"conservative\": {\"law\": \"gaussian\", \"epsilon\": 2, \"cutoff\": 2.5},\n"
+    "\"dissipative\": {\"law\": \"power\", \"sigma\": 3}, " LONG_MEASURE "}\n";
+
+/// NVE, with a range of g(r) beyond the cutoff.
+static const char conservative[] =
+    "{\"seed\": 5, \"box\": [7.3, 7.1, 7.2], \"particles\": {\"count\": 300},\n"
+    "\"time_step\": 0.002, \"conservative\": {\"law\": \"lennard-jones\"},\n"
+    "\"rdf\": {\"range\": 3.5, \"bins\": 70}, " LONG_MEASURE "}\n";
+
+static const char *const tables[] = {"rdf.tsv", "thermodynamics.tsv", NULL};
+
+static void write_scene(struct temporary_folder *folder, const char *text, const char *from,
+                        const char *to) {
+    small_inputs_write(folder, "scene.json", text, from, to);
+}
+
+static void simulate(struct run_program_result *result, const char *out) {
+    RUN_PROGRAM(result, "simulate", "scene.json", "-o", out);
+    run_program_assert_code(result, 0);
+}
+
+static void test_simulate_leaves_all_files_of_a_run(void **state) {
+    static struct run_program_result result;
+    write_scene(*state, groot_warren, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json");
+    run_program_assert_code(&result, 0);
+    assert_string_equal(result.out, "");
+    results_assert_table("out/rdf.tsv", 3, 100);
+    results_assert_table("out/thermodynamics.tsv", 6, 20);
+    assert_true(temporary_folder_exists("out/used.json"));
+    static const char *const numbers[] = {"seconds",
+                                          "engine_steps",
+                                          "steps_per_second",
+                                          "seed",
+                                          "temperature",
+                                          "temperature_error",
+                                          "pressure",
+                                          "pressure_error",
+                                          "potential_energy",
+                                          "temperature_configurational",
+                                          "physical.time_unit_ps",
+                                          "physical.pressure_bar",
+                                          NULL};
+    results_assert_numbers("out/summary.json", numbers);
+    results_assert_text("out/summary.json", "status", "ok");
+    results_assert_number("out/summary.json", "engine_steps", 300);
+    results_assert_number("out/summary.json", "seed", 5);
+    assert_false(temporary_folder_exists("out/checkpoint.bin"));
+}
+
+static void test_simulate_draws_its_figure_when_gnuplot_is_there(void **state) {
+    static struct run_program_result result;
+    small_inputs_need_gnuplot();
+    write_scene(*state, groot_warren, NULL, NULL);
+    simulate(&result, "out");
+    assert_true(temporary_folder_exists("out/figures/simulation.svg"));
+    assert_true(temporary_folder_exists("out/figures/simulation.png"));
+    if (strstr(result.err, "warning"))
+        fail_msg("%s", result.err);
+}
+
+static void test_used_settings_run_again_give_the_same_bits(void **state) {
+    static struct run_program_result result;
+    write_scene(*state, groot_warren, NULL, NULL);
+    simulate(&result, "a/b/one");
+    RUN_PROGRAM(&result, "simulate", "a/b/one/used.json", "-o", "two");
+    run_program_assert_code(&result, 0);
+    results_assert_same("a/b/one", "two", tables);
+    results_assert_same("a/b/one", "two", (const char *const[]){"used.json", NULL});
+}
+
+static void test_the_seed_of_the_command_line_counts(void **state) {
+    static struct run_program_result result;
+    write_scene(*state, groot_warren, NULL, NULL);
+    simulate(&result, "one");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "two", "--seed", "6");
+    run_program_assert_code(&result, 0);
+    results_assert_number("two/summary.json", "seed", 6);
+    results_assert_differ("one", "two", "rdf.tsv");
+    write_scene(*state, groot_warren, "\"seed\": 5", "\"seed\": 6");
+    simulate(&result, "three");
+    results_assert_same("three", "two", tables);
+}
+
+static void test_threads_do_not_change_the_bits(void **state) {
+    static struct run_program_result result;
+    write_scene(*state, groot_warren, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "one", "--threads", "1");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "two", "--threads", "3");
+    run_program_assert_code(&result, 0);
+    results_assert_same("one", "two", tables);
+}
+
+/// Interrupted again and again at different places, the run ends with the bits of one in peace.
+static void check_interruption(struct temporary_folder *folder, const char *scene, const char *from,
+                               const char *to) {
+    static struct run_program_result result;
+    write_scene(folder, scene, from, to);
+    simulate(&result, "whole");
+    const char *const words[] = {"simulate", "scene.json", "-o", "pieces", NULL};
+    run_program_in_pieces(0.02, 0, words);
+    assert_true(temporary_folder_exists("pieces/checkpoint.bin"));
+    results_assert_same("whole", "pieces", tables);
+    results_assert_same("whole", "pieces", (const char *const[]){"used.json", NULL});
+}
+
+static void test_interrupted_dpd_goes_on_with_the_same_bits(void **state) {
+    check_interruption(*state, groot_warren,
+                       "\"measure\": {\"equilibration\": 100, \"samples\": 20, \"every\": 10}",
+                       LONG_MEASURE);
+}
+
+static void test_interrupted_dpd_in_the_plane_goes_on_with_the_same_bits(void **state) {
+    check_interruption(*state, flat, NULL, NULL);
+}
+
+static void test_interrupted_nve_goes_on_with_the_same_bits(void **state) {
+    check_interruption(*state, conservative, NULL, NULL);
+}
+
+static void test_interrupted_run_says_so_and_refuses_other_settings(void **state) {
+    static struct run_program_result result;
+    const struct run_program_how how = {.interrupt_after = 0.001};
+    write_scene(*state, groot_warren, "\"samples\": 20", "\"samples\": 100000");
+    run_program(&result, &how, (const char *const[]){"simulate", "scene.json", NULL});
+    run_program_assert_code(&result, 130);
+    assert_contains(result.err, "mesofit: interrupted at step ");
+    assert_contains(result.err, "--resume");
+    assert_true(temporary_folder_exists("out/checkpoint.bin"));
+    assert_false(temporary_folder_exists("out/summary.json"));
+    char *used = temporary_folder_read("out/used.json");
+    write_scene(*state, groot_warren, "\"samples\": 20", "\"samples\": 100001");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--resume");
+    run_program_assert_refused(&result, ".", "other settings", 1,
+                               (const char *[]){"checkpoint.bin", "settings have changed", NULL});
+    char *used_now = temporary_folder_read("out/used.json");
+    assert_string_equal(used, used_now);
+    free(used);
+    free(used_now);
+}
+
+static void test_a_new_run_removes_the_results_of_the_one_before(void **state) {
+    static struct run_program_result result;
+    write_scene(*state, groot_warren, NULL, NULL);
+    simulate(&result, "out");
+    temporary_folder_write(*state, "out/checkpoint.bin", "old", 3);
+    write_scene(*state, groot_warren, "0.04", "4");
+    RUN_PROGRAM(&result, "simulate", "scene.json");
+    run_program_assert_code(&result, 1);
+    assert_false(temporary_folder_exists("out/summary.json"));
+    assert_false(temporary_folder_exists("out/rdf.tsv"));
+    assert_false(temporary_folder_exists("out/checkpoint.bin"));
+}
+
+static void test_unstable_scene_ends_with_step_and_force(void **state) {
+    static struct run_program_result result;
+    write_scene(*state, groot_warren, "0.04", "4");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--quiet");
+    run_program_assert_code(&result, 1);
+    assert_contains(result.err, "mesofit: unstable at step 1: ");
+    assert_contains(result.err, "largest force ");
+    assert_int_equal(run_program_lines(result.err), 1);
+    assert_false(temporary_folder_exists("out/summary.json"));
+}
+
+static void test_quiet_run_says_nothing(void **state) {
+    static struct run_program_result result;
+    small_inputs_need_gnuplot();
+    write_scene(*state, groot_warren, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--quiet");
+    run_program_assert_code(&result, 0);
+    assert_string_equal(result.out, "");
+    assert_string_equal(result.err, "");
+}
+
+/// A first line, a last one, one with the result, and between them one every five seconds.
+static void test_progress_in_a_pipe_is_a_few_plain_lines(void **state) {
+    static struct run_program_result result;
+    small_inputs_need_gnuplot();
+    write_scene(*state, groot_warren, NULL, NULL);
+    simulate(&result, "out");
+    assert_in_range(run_program_lines(result.err), 2, 3 + (size_t)(result.seconds / 5));
+    assert_null(strchr(result.err, '\r'));
+    assert_null(strchr(result.err, '\033'));
+}
+
+/// One sample has no error and no scatter, and is a result all the same.
+static void test_one_sample_is_enough(void **state) {
+    static struct run_program_result result;
+    write_scene(*state, groot_warren, "\"samples\": 20", "\"samples\": 1");
+    simulate(&result, "out");
+    results_assert_table("out/thermodynamics.tsv", 6, 1);
+    results_assert_number("out/summary.json", "engine_steps", 110);
+}
+
+static void test_ideal_gas_has_no_configurational_temperature(void **state) {
+    static struct run_program_result result;
+    write_scene(*state, conservative, "\"conservative\": {\"law\": \"lennard-jones\"}",
+                "\"temperature\": 1");
+    simulate(&result, "out");
+    results_assert_text("out/summary.json", "status", "ok");
+    char *table = temporary_folder_read("out/thermodynamics.tsv");
+    assert_contains(table, "\tnan\n");
+    assert_null(strstr(table, "-nan"));
+    free(table);
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
+#define TEST_WITHOUT_FIGURES(name)                                                                 \
+    cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        TEST(test_simulate_draws_its_figure_when_gnuplot_is_there),
+        TEST(test_quiet_run_says_nothing),
+        TEST(test_progress_in_a_pipe_is_a_few_plain_lines),
+        TEST_WITHOUT_FIGURES(test_simulate_leaves_all_files_of_a_run),
+        TEST_WITHOUT_FIGURES(test_used_settings_run_again_give_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_the_seed_of_the_command_line_counts),
+        TEST_WITHOUT_FIGURES(test_threads_do_not_change_the_bits),
+        TEST_WITHOUT_FIGURES(test_interrupted_dpd_goes_on_with_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_interrupted_dpd_in_the_plane_goes_on_with_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_interrupted_nve_goes_on_with_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_interrupted_run_says_so_and_refuses_other_settings),
+        TEST_WITHOUT_FIGURES(test_a_new_run_removes_the_results_of_the_one_before),
+        TEST_WITHOUT_FIGURES(test_unstable_scene_ends_with_step_and_force),
+        TEST_WITHOUT_FIGURES(test_one_sample_is_enough),
+        TEST_WITHOUT_FIGURES(test_ideal_gas_has_no_configurational_temperature),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Metropolis Monte Carlo and thermostatted dynamics sample the same distribution by different code:
+// the same g(r) and the same mean energy, within their errors.
+#include "dynamics/metropolis.h"
+#include "forces/reference_forces.h"
+#include "observe/rdf.h"
+#include "shared/fluids.h"
+#include "shared/hotelling.h"
+#include "shared/is_close.h"
+#include "shared/testing.h"
+
+enum { BLOCKS = 20, BINS = 8, SAMPLES = 40 };
+
+/// Probability of a difference like this by chance. Six comparisons are made here: with a new seed
+/// the file would fail once in 170 times.
+static const double false_alarm_rate = 0.001;
+
+/// How a scene is sampled, so that blocks are independent: a gap of a few correlation times, then
+/// SAMPLES configurations.
+struct schedule {
+    uint64_t equilibration, gap, every; ///< steps, or sweeps
+};
+
+/// Means of the blocks.
+struct measurement {
+    struct comoments energy; ///< size 1: of a particle
+    struct comoments g;      ///< size BINS
+};
+
+static void measurement_init(struct measurement *measurement) {
+    assert_ok(comoments_init(&measurement->energy, 1));
+    assert_ok(comoments_init(&measurement->g, BINS));
+}
+
+static void measurement_clear(struct measurement *measurement) {
+    comoments_clear(&measurement->energy);
+    comoments_clear(&measurement->g);
+}
+
+/// End a block: `energy` [total, summed over samples] and the RDF that saw its samples.
+static void add_block(struct measurement *measurement, double energy, const struct rdf *rdf) {
+    double g[BINS];
+    rdf_result(rdf, 1, g, NULL);
+    comoments_add(&measurement->g, g);
+    energy /= SAMPLES * (double)rdf->particle_count;
+    comoments_add(&measurement->energy, &energy);
+}
+
+static void measure_dynamics(const struct simulation_setup *setup, const struct rdf_bins *bins,
+                             const struct schedule *schedule, struct measurement *measurement) {
+    struct simulation simulation;
+    measurement_init(measurement);
+    assert_ok(simulation_init(&simulation, setup, NULL));
+    simulation.wants = PAIR_FORCES_AND_SUMS;
+    assert_ok(simulation_run(&simulation, schedule->equilibration));
+    for (int block = 0; block < BLOCKS; block++) {
+        struct rdf rdf;
+        double energy = 0;
+        assert_ok(rdf_init(&rdf, bins, &setup->box, (size_t)setup->placement.count,
+                           setup->potential->cutoff, SAMPLES));
+        assert_ok(simulation_run(&simulation, schedule->gap));
+        for (int sample = 0; sample < SAMPLES; sample++) {
+            assert_ok(simulation_run(&simulation, schedule->every));
+            assert_ok(rdf_sample(&rdf, &simulation.particles, &simulation.neighbours));
+            energy += simulation.sums.energy;
+        }
+        add_block(measurement, energy, &rdf);
+        rdf_clear(&rdf);
+    }
+    simulation_clear(&simulation);
+}
+
+static void measure_monte_carlo(const struct simulation_setup *setup, const struct rdf_bins *bins,
+                                const struct schedule *schedule, struct measurement *measurement) {
+    const struct pair_law law = {.potential = setup->potential};
+    const size_t count = (size_t)setup->placement.count;
+    struct metropolis metropolis;
+    measurement_init(measurement);
+    assert_ok(metropolis_init(&metropolis, &setup->box, count, setup->potential, setup->temperature,
+                              setup->seed));
+    assert_ok(metropolis_equilibrate(&metropolis, (uint32_t)schedule->equilibration));
+    for (int block = 0; block < BLOCKS; block++) {
+        struct rdf rdf;
+        double energy = 0;
+        // The list of the sampler is a full one: the RDF has to make its own.
+        assert_ok(rdf_init(&rdf, bins, &setup->box, count, 0, SAMPLES));
+        assert_ok(metropolis_run(&metropolis, (uint32_t)schedule->gap));
+        for (int sample = 0; sample < SAMPLES; sample++) {
+            struct pair_sums sums;
+            assert_ok(metropolis_run(&metropolis, (uint32_t)schedule->every));
+            assert_ok(rdf_sample(&rdf, &metropolis.particles, &metropolis.neighbours));
+            reference_forces(&law, &metropolis.particles, 0, &sums);
+            energy += sums.energy;
+        }
+        add_block(measurement, energy, &rdf);
+        rdf_clear(&rdf);
+    }
+    metropolis_clear(&metropolis);
+}
+
+static double standard_error(const struct comoments *moments, size_t k) {
+    return sqrt(comoments_covariance(moments, k, k) / (moments->count - 1));
+}
+
+static void assert_equal_within_errors(const struct measurement *dynamics,
+                                       const struct measurement *monte_carlo) {
+    const double p_energy = hotelling_two_samples(&dynamics->energy, &monte_carlo->energy);
+    const double p_g = hotelling_two_samples(&dynamics->g, &monte_carlo->g);
+    print_message("U/N: dynamics %.4f(%.4f), Monte Carlo %.4f(%.4f), p = %.3f\n",
+                  dynamics->energy.mean[0], standard_error(&dynamics->energy, 0),
+                  monte_carlo->energy.mean[0], standard_error(&monte_carlo->energy, 0), p_energy);
+    print_message("g: p = %.3f\n", p_g);
+    assert_true(p_energy > false_alarm_rate);
+    assert_true(p_g > false_alarm_rate);
+}
+
+static void compare(const struct fluid *fluid, const struct rdf_bins *bins,
+                    const struct schedule *dynamics, const struct schedule *monte_carlo) {
+    struct measurement first, second;
+    measure_dynamics(&fluid->setup, bins, dynamics, &first);
+    measure_monte_carlo(&fluid->setup, bins, monte_carlo, &second);
+    assert_equal_within_errors(&first, &second);
+    measurement_clear(&first);
+    measurement_clear(&second);
+}
+
+// The time steps below are so small that their error in the configurational temperature, of second
+// order, is below the statistical errors: 0.001 for the soft fluids (a quarter of 0.0036, that at
+// Δt = 0.01) and about as much for Lennard-Jones.
+
+static void test_metropolis_agrees_with_dynamics_when_the_liquid_is_lennard_jones(void **state) {
+    (void)state;
+    struct fluid fluid;
+    fluid_lennard_jones(&fluid, 500, 0.003);
+    compare(&fluid, &(struct rdf_bins){0.85, 0.2, BINS}, &(struct schedule){2000, 200, 15},
+            &(struct schedule){1000, 200, 15});
+    fluid_clear(&fluid);
+}
+
+static void test_metropolis_agrees_with_dynamics_when_the_fluid_is_soft(void **state) {
+    (void)state;
+    struct fluid fluid;
+    fluid_groot_warren(&fluid, 648, 0.005);
+    compare(&fluid, &(struct rdf_bins){0.2, 0.1, BINS}, &(struct schedule){1000, 100, 10},
+            &(struct schedule){500, 50, 5});
+    fluid_clear(&fluid);
+}
+
+static void test_metropolis_agrees_with_dynamics_when_the_scene_is_flat(void **state) {
+    (void)state;
+    struct fluid fluid;
+    fluid_soft_discs(&fluid, 400, 0.005);
+    // Beyond the cutoff of 1.
+    compare(&fluid, &(struct rdf_bins){0.1, 0.25, BINS}, &(struct schedule){1000, 100, 10},
+            &(struct schedule){500, 50, 5});
+    fluid_clear(&fluid);
+}
+
+/// True if particle j is on the list of particle i.
+static bool is_listed(const struct neighbours *neighbours, size_t i, size_t j) {
+    for (size_t k = neighbours->start[i]; k < neighbours->start[i + 1]; k++)
+        if ((size_t)neighbours->list[k] == j)
+            return true;
+    return false;
+}
+
+/// Pairs within the cutoff that the list does not hold.
+static size_t count_missing(const struct metropolis *metropolis) {
+    const struct particles *particles = &metropolis->particles;
+    const double cutoff = metropolis->potential->cutoff;
+    size_t missing = 0;
+    for (size_t i = 0; i < particles->count; i++)
+        for (size_t j = 0; j < particles->count; j++) {
+            double square = 0;
+            for (int d = 0; d < particles->box.dimensions; d++) {
+                const double dx = box_nearest(particles->position[d][i] - particles->position[d][j],
+                                              particles->box.length[d]);
+                square += dx * dx;
+            }
+            missing +=
+                i != j && square < cutoff * cutoff && !is_listed(&metropolis->neighbours, i, j);
+        }
+    return missing;
+}
+
+static void test_metropolis_list_is_complete_when_the_step_is_the_first_or_tuned(void **state) {
+    (void)state;
+    struct fluid fluid;
+    struct metropolis metropolis;
+    fluid_groot_warren(&fluid, 300, 0.01);
+    assert_ok(metropolis_init(&metropolis, &fluid.setup.box, 300, &fluid.potential, 1, 3));
+    for (int sweep = 0; sweep < 30; sweep++) {
+        assert_ok(metropolis_run(&metropolis, 1));
+        assert_int_equal(count_missing(&metropolis), 0);
+    }
+    assert_ok(metropolis_equilibrate(&metropolis, 200));
+    for (int sweep = 0; sweep < 30; sweep++) {
+        assert_ok(metropolis_run(&metropolis, 1));
+        assert_int_equal(count_missing(&metropolis), 0);
+    }
+    metropolis_clear(&metropolis);
+    fluid_clear(&fluid);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_metropolis_agrees_with_dynamics_when_the_liquid_is_lennard_jones),
+        cmocka_unit_test(test_metropolis_agrees_with_dynamics_when_the_fluid_is_soft),
+        cmocka_unit_test(test_metropolis_agrees_with_dynamics_when_the_scene_is_flat),
+        cmocka_unit_test(test_metropolis_list_is_complete_when_the_step_is_the_first_or_tuned),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

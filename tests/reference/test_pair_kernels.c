@@ -1,0 +1,562 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Every instance of the pair kernels against the sum over all pairs in double precision.
+#include "base/simd.h"
+#include "forces/pair.h"
+
+#include "base/memory.h"
+#include "base/rng.h"
+#include "curves/formula.h"
+#include "curves/sampled.h"
+#include "forces/reference_forces.h"
+#include "shared/is_close.h"
+#include "shared/testing.h"
+#include "system/placement.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+/// Error of a force, relative to the sum over its pairs of |F| + r |dF/dr|: a dozen roundings of
+/// 6e-8 in F each, most of them in the same direction at worst, and as many in r.
+static const double force_tolerance = 1e-6;
+
+/// Energy and virial, relative to Σ |Φ| and Σ |r Φ'|.
+static const double sum_tolerance = 1e-5;
+
+/// What the order of double-precision additions can change, relative to the largest partial sum.
+static const double rounding = 1e-13;
+
+static const char *const instruction_sets[] = {"portable", "avx2", "avx512"};
+enum { INSTRUCTION_SETS = 3 };
+
+/// Interactions used by all tests.
+static struct {
+    struct table soft, lennard_jones, gaussian, sampled, weight, thesis_weight;
+} tables;
+
+static void make_sampled(struct curve *curve) {
+    enum { POINTS = 60 };
+    double r[POINTS], phi[POINTS];
+    for (int k = 0; k < POINTS; k++) {
+        r[k] = 0.4 + 1.2 * k / (POINTS - 1);
+        phi[k] = 5 * exp(-4 * r[k]) * cos(6 * r[k]) * (1.6 - r[k]);
+    }
+    assert_ok(sampled_create(curve, r, phi, POINTS));
+}
+
+static int make_tables(void **state) {
+    (void)state;
+    struct curve curve;
+    assert_ok(curve_create(&curve, &formula_soft_repulsion));
+    assert_ok(table_init_potential(&tables.soft, &curve));
+    curve_clear(&curve);
+    assert_ok(curve_create(&curve, &formula_lennard_jones));
+    assert_ok(table_init_potential(&tables.lennard_jones, &curve));
+    curve_clear(&curve);
+    assert_ok(curve_create(&curve, &formula_gaussian));
+    ((struct formula_gaussian_parameters *)curve.parameters)->cutoff = 2;
+    assert_ok(table_init_potential(&tables.gaussian, &curve));
+    curve_clear(&curve);
+    make_sampled(&curve);
+    assert_ok(table_init_potential(&tables.sampled, &curve));
+    curve_clear(&curve);
+    assert_ok(curve_create(&curve, &formula_power_weight));
+    assert_ok(table_init_weight(&tables.weight, &curve));
+    struct formula_power_weight_parameters *weight = curve.parameters;
+    *weight = (struct formula_power_weight_parameters){
+        .sigma = 2.589, .exponent = 1, .inner_cutoff = 0.596, .cutoff = 1.72};
+    assert_ok(table_init_weight(&tables.thesis_weight, &curve));
+    curve_clear(&curve);
+    return 0;
+}
+
+static int clear_tables(void **state) {
+    (void)state;
+    table_clear(&tables.soft);
+    table_clear(&tables.lennard_jones);
+    table_clear(&tables.gaussian);
+    table_clear(&tables.sampled);
+    table_clear(&tables.weight);
+    table_clear(&tables.thesis_weight);
+    return 0;
+}
+
+/// Where the particles of a system are.
+enum arrangement { LATTICE, RANDOM, CLUSTERED };
+
+struct system {
+    struct box box;
+    size_t count;
+    enum arrangement arrangement;
+    double skin;
+};
+
+static struct pair_law make_law(const struct table *potential, const struct table *weight) {
+    return (struct pair_law){.potential = potential,
+                             .weight = weight,
+                             .temperature = 1.3,
+                             .time_step = 0.02,
+                             .seed = 0x123456789ABCDEF};
+}
+
+/// Uniform random positions; CLUSTERED: within 0.6 of the corner, on all sides of it.
+static void place_random(struct particles *particles, double reach, uint64_t seed) {
+    struct rng_sequence sequence = rng_sequence_begin(seed, RNG_PLACEMENT, 0, 0);
+    for (size_t k = 0; k < particles->count; k++)
+        for (int d = 0; d < particles->box.dimensions; d++) {
+            const double width = reach > 0 ? 2 * reach : particles->box.length[d];
+            particles->position[d][k] = width * (rng_sequence_uniform(&sequence) - 0.5);
+        }
+    particles_wrap(particles);
+}
+
+static void make_particles(struct particles *particles, const struct system *system) {
+    assert_ok(particles_init(particles, &system->box, system->count));
+    if (system->arrangement == LATTICE)
+        placement_lattice(particles, 0.1, 5);
+    else
+        place_random(particles, system->arrangement == CLUSTERED ? 0.6 : 0, 5);
+    particles_draw_velocities(particles, 1.3, 6);
+}
+
+/// Particles, sorted, with their list and what the kernels read.
+static void make_system(struct particles *particles, struct neighbours *neighbours,
+                        const struct system *system, const struct pair_law *law) {
+    make_particles(particles, system);
+    assert_ok(neighbours_init(neighbours, NEIGHBOURS_HALF, &system->box, system->count,
+                              pair_cutoff(law), system->skin));
+    assert_ok(neighbours_sort_and_build(neighbours, particles));
+    particles_update_motion(particles, 0);
+}
+
+static double *copy_forces(const struct particles *particles) {
+    double *copy = memory_zeroed(3 * particles->count, sizeof *copy);
+    assert_non_null(copy);
+    for (int d = 0; d < particles->box.dimensions; d++)
+        memcpy(copy + (size_t)d * particles->count, particles->force[d],
+               particles->count * sizeof *copy);
+    return copy;
+}
+
+static double separation(const struct particles *particles, size_t i, size_t j) {
+    double square = 0;
+    for (int d = 0; d < particles->box.dimensions; d++) {
+        const double dx = box_nearest(particles->position[d][i] - particles->position[d][j],
+                                      particles->box.length[d]);
+        square += dx * dx;
+    }
+    return sqrt(square);
+}
+
+/// What errors are relative to: Σ (|F| + r |dF/dr|) on each particle, Σ |Φ| and Σ |r Φ'|.
+struct scales {
+    double *force, energy, virial;
+};
+
+/// |F| + r |dF/dr| of the potential.
+static double conservative_scale(const struct table *potential, double r) {
+    double slope, curvature;
+    table_evaluate(potential, r, NULL, &slope, &curvature);
+    return fabs(slope) + r * fabs(curvature);
+}
+
+/// The same for friction at a relative velocity of 4 and noise at its largest. Where ω jumps, the
+/// slope is that of one interval of the table; a rounding may fall on either side of its ends.
+static double dissipative_scale(const struct pair_law *law, double r) {
+    double omega = 0, slope = 0;
+    for (int side = -1; side <= 1; side++) {
+        double value, steepness;
+        table_evaluate(law->weight, fmin(r * (1 + 1e-6 * side), law->weight->cutoff), &value,
+                       &steepness, NULL);
+        omega = fmax(omega, fabs(value));
+        slope = fmax(slope, fabs(steepness));
+    }
+    const double noise = sqrt(2 * law->temperature / law->time_step) * sqrt(3);
+    return noise * (omega + r * slope) + 4 * omega * (omega + 2 * r * slope);
+}
+
+static struct scales find_scales(const struct pair_law *law, const struct particles *particles) {
+    struct scales scales = {.force = memory_zeroed(particles->count, sizeof(double))};
+    assert_non_null(scales.force);
+    for (size_t i = 0; i < particles->count; i++)
+        for (size_t j = i + 1; j < particles->count; j++) {
+            const double r = separation(particles, i, j);
+            double force = 0, phi, slope;
+            if (law->potential && r < law->potential->cutoff) {
+                table_evaluate(law->potential, r, &phi, &slope, NULL);
+                scales.energy += fabs(phi);
+                scales.virial += fabs(r * slope);
+                force += conservative_scale(law->potential, r);
+            }
+            if (law->weight && r < law->weight->cutoff)
+                force += dissipative_scale(law, r);
+            scales.force[i] += force;
+            scales.force[j] += force;
+        }
+    return scales;
+}
+
+static void check_forces(const struct particles *particles, const double *expected,
+                         const double *scale, double tolerance, const char *label) {
+    for (int d = 0; d < particles->box.dimensions; d++)
+        for (size_t k = 0; k < particles->count; k++) {
+            const double force = particles->force[d][k];
+            const double reference = expected[(size_t)d * particles->count + k];
+            if (!is_close(force, reference, tolerance * scale[k]))
+                fail_msg("%s: force[%d][%zu] = %.9g, but %.9g from all pairs (scale %.3g)", label,
+                         d, k, force, reference, scale[k]);
+        }
+}
+
+/// Σ F = 0 up to the rounding of double additions.
+static void check_momentum(const struct particles *particles, const char *label) {
+    for (int d = 0; d < particles->box.dimensions; d++) {
+        double sum = 0, size = 0;
+        for (size_t k = 0; k < particles->count; k++) {
+            sum += particles->force[d][k];
+            size += fabs(particles->force[d][k]);
+        }
+        if (!is_close(sum, 0, rounding * size))
+            fail_msg("%s: the forces along %d sum to %g, of %g", label, d, sum, size);
+    }
+}
+
+static void check_sums(const struct pair_sums *sums, const struct pair_sums *expected,
+                       const struct scales *scales) {
+    assert_close(sums->energy, expected->energy, sum_tolerance * scales->energy);
+    assert_close(sums->virial, expected->virial, sum_tolerance * scales->virial);
+}
+
+/// One law on one system, with every instruction set that the processor has, with and without
+/// sums.
+static void check_law(const struct system *system, const struct pair_law *law) {
+    struct particles particles;
+    struct neighbours neighbours;
+    struct pair_sums expected, sums;
+    const uint64_t step = 0x100000007;
+    make_system(&particles, &neighbours, system, law);
+    reference_forces(law, &particles, step, &expected);
+    double *reference = copy_forces(&particles);
+    const struct scales scales = find_scales(law, &particles);
+    int tried = 0;
+    for (int s = 0; s < INSTRUCTION_SETS; s++) {
+        if (!simd_select(instruction_sets[s]))
+            continue;
+        tried++;
+        assert_string_equal(simd_name(), instruction_sets[s]);
+        char label[100];
+        snprintf(label, sizeof label, "%s, %dD, N = %zu, potential %d, weight %d",
+                 instruction_sets[s], system->box.dimensions, system->count, law->potential != NULL,
+                 law->weight != NULL);
+        pair_forces(law, &particles, &neighbours, step, PAIR_FORCES, NULL);
+        check_forces(&particles, reference, scales.force, force_tolerance, label);
+        check_momentum(&particles, label);
+        double *without_sums = copy_forces(&particles);
+        pair_forces(law, &particles, &neighbours, step, PAIR_FORCES_AND_SUMS, &sums);
+        check_forces(&particles, without_sums, scales.force, 0, label);
+        check_sums(&sums, &expected, &scales);
+        memory_free(without_sums);
+    }
+    assert_true(tried >= 1);
+    memory_free(reference);
+    memory_free(scales.force);
+    particles_clear(&particles);
+    neighbours_clear(&neighbours);
+}
+
+/// Potential alone, weight alone, and both; the weight's range equal to, below and above Φ's.
+static void check_all_laws(const struct system *system, const struct table *potential) {
+    const struct table *weights[] = {&tables.weight, &tables.thesis_weight};
+    struct pair_law law = make_law(potential, NULL);
+    check_law(system, &law);
+    for (int w = 0; w < 2; w++) {
+        law = make_law(potential, weights[w]);
+        check_law(system, &law);
+        law = make_law(NULL, weights[w]);
+        check_law(system, &law);
+    }
+}
+
+static void test_pair_kernels_agree_with_all_pairs_when_on_a_lattice(void **state) {
+    (void)state;
+    const struct system three = {{3, {7.3, 6.1, 5.7}}, 210, LATTICE, 0.3};
+    const struct system two = {{2, {11, 13.5, 1}}, 121, LATTICE, 0.2};
+    check_all_laws(&three, &tables.lennard_jones);
+    check_all_laws(&two, &tables.lennard_jones);
+}
+
+static void test_pair_kernels_agree_with_all_pairs_when_random(void **state) {
+    (void)state;
+    const struct system three = {{3, {5.1, 4.6, 6.3}}, 443, RANDOM, 0.25};
+    const struct system two = {{2, {9.1, 7.7, 1}}, 301, RANDOM, 0.25};
+    check_all_laws(&three, &tables.soft);
+    check_all_laws(&three, &tables.sampled);
+    check_all_laws(&three, &tables.gaussian);
+    check_all_laws(&two, &tables.soft);
+    check_all_laws(&two, &tables.sampled);
+    check_all_laws(&two, &tables.gaussian);
+}
+
+static void test_pair_kernels_agree_with_all_pairs_when_box_is_very_long(void **state) {
+    (void)state;
+    const struct system three = {{3, {60, 4.1, 4.3}}, 700, RANDOM, 0.3};
+    const struct system two = {{2, {4.2, 80, 1}}, 500, RANDOM, 0.3};
+    check_all_laws(&three, &tables.soft);
+    check_all_laws(&two, &tables.soft);
+}
+
+static void test_pair_kernels_agree_with_all_pairs_when_box_is_two_cutoffs(void **state) {
+    (void)state;
+    const struct system three = {{3, {3.4401, 3.45, 3.47}}, 157, RANDOM, 0.4};
+    const struct system two = {{2, {3.4401, 3.45, 1}}, 61, RANDOM, 0.4};
+    check_all_laws(&three, &tables.soft);
+    check_all_laws(&two, &tables.soft);
+    const struct system lattice = {{3, {5.0001, 5.0001, 5.0001}}, 125, LATTICE, 0.4};
+    const struct pair_law law = make_law(&tables.lennard_jones, &tables.weight);
+    check_law(&lattice, &law);
+}
+
+/// Every remainder of the number of lanes, in pairs and in particles.
+static void test_pair_kernels_agree_with_all_pairs_when_particles_are_few(void **state) {
+    (void)state;
+    for (size_t count = 2; count <= 40; count++) {
+        const struct system three = {{3, {4.1, 4.4, 4.8}}, count, CLUSTERED, 0.3};
+        const struct system two = {{2, {4.1, 4.4, 1}}, count, CLUSTERED, 0.3};
+        check_all_laws(&three, &tables.soft);
+        check_all_laws(&two, &tables.soft);
+    }
+}
+
+static void test_pair_kernels_give_no_force_when_pairs_are_out_of_range(void **state) {
+    (void)state;
+    const struct system system = {{3, {12, 12, 12}}, 27, LATTICE, 0.3};
+    const struct pair_law law = make_law(&tables.soft, &tables.weight);
+    check_law(&system, &law);
+}
+
+static void test_pair_kernels_give_no_force_when_there_is_no_law(void **state) {
+    (void)state;
+    const struct system system = {{3, {5, 5, 5}}, 60, RANDOM, 0.3};
+    const struct pair_law some = make_law(&tables.soft, NULL), none = make_law(NULL, NULL);
+    struct particles particles;
+    struct neighbours neighbours;
+    struct pair_sums sums = {1, 1};
+    make_system(&particles, &neighbours, &system, &some);
+    pair_forces(&some, &particles, &neighbours, 1, PAIR_FORCES, NULL);
+    assert_true(particles_largest_force(&particles) > 0);
+    pair_forces(&none, &particles, &neighbours, 1, PAIR_FORCES_AND_SUMS, &sums);
+    assert_identical(particles_largest_force(&particles), 0);
+    assert_identical(sums.energy, 0);
+    assert_identical(sums.virial, 0);
+    assert_identical(pair_cutoff(&none), 0);
+    particles_clear(&particles);
+    neighbours_clear(&neighbours);
+}
+
+/// Two particles on one spot have no direction: no force, not NaN.
+static void test_pair_kernels_give_no_force_when_particles_coincide(void **state) {
+    (void)state;
+    const struct system system = {{3, {5, 5, 5}}, 2, CLUSTERED, 0.3};
+    const struct pair_law law = make_law(&tables.soft, &tables.weight);
+    for (int s = 0; s < INSTRUCTION_SETS; s++) {
+        if (!simd_select(instruction_sets[s]))
+            continue;
+        struct particles particles;
+        struct neighbours neighbours;
+        make_particles(&particles, &system);
+        for (int d = 0; d < 3; d++)
+            particles.position[d][1] = particles.position[d][0];
+        assert_ok(neighbours_init(&neighbours, NEIGHBOURS_HALF, &system.box, 2, 1, 0.3));
+        assert_ok(neighbours_sort_and_build(&neighbours, &particles));
+        particles_update_motion(&particles, 0);
+        pair_forces(&law, &particles, &neighbours, 1, PAIR_FORCES, NULL);
+        assert_identical(particles_largest_force(&particles), 0);
+        particles_clear(&particles);
+        neighbours_clear(&neighbours);
+    }
+}
+
+static void test_pair_kernels_show_nan_when_a_velocity_is_nan(void **state) {
+    (void)state;
+    const struct system system = {{3, {5, 5, 5}}, 300, RANDOM, 0.3};
+    const struct pair_law law = make_law(&tables.soft, &tables.weight);
+    struct particles particles;
+    struct neighbours neighbours;
+    make_system(&particles, &neighbours, &system, &law);
+    particles.velocity[1][7] = NAN;
+    particles_update_motion(&particles, 0);
+    for (int s = 0; s < INSTRUCTION_SETS; s++)
+        if (simd_select(instruction_sets[s])) {
+            pair_forces(&law, &particles, &neighbours, 1, PAIR_FORCES, NULL);
+            assert_true(isnan(particles_largest_force(&particles)));
+        }
+    particles_clear(&particles);
+    neighbours_clear(&neighbours);
+}
+
+/// Forces by id, in double precision.
+static double *forces_by_id(const struct particles *particles) {
+    double *forces = memory_zeroed(3 * particles->count, sizeof *forces);
+    assert_non_null(forces);
+    for (int d = 0; d < particles->box.dimensions; d++)
+        for (size_t k = 0; k < particles->count; k++)
+            forces[3 * particles->id[k] + (size_t)d] = particles->force[d][k];
+    return forces;
+}
+
+/// Forces by id of a system whose arrays were shuffled before the sort, with another skin.
+static double *shuffled_forces(const struct system *system, const struct pair_law *law,
+                               uint64_t shuffle, double skin) {
+    struct particles particles;
+    struct neighbours neighbours;
+    make_particles(&particles, system);
+    uint32_t *order = memory_zeroed(system->count, sizeof *order);
+    assert_non_null(order);
+    struct rng_sequence sequence = rng_sequence_begin(shuffle, RNG_SELECTION, 0, 0);
+    for (uint32_t k = 0; k < system->count; k++) {
+        const uint32_t other = shuffle ? rng_sequence_below(&sequence, k + 1) : k;
+        order[k] = order[other];
+        order[other] = k;
+    }
+    particles_permute(&particles, order);
+    assert_ok(neighbours_init(&neighbours, NEIGHBOURS_HALF, &system->box, system->count,
+                              pair_cutoff(law), skin));
+    assert_ok(neighbours_sort_and_build(&neighbours, &particles));
+    particles_update_motion(&particles, 0);
+    pair_forces(law, &particles, &neighbours, 3, PAIR_FORCES, NULL);
+    double *forces = forces_by_id(&particles);
+    memory_free(order);
+    particles_clear(&particles);
+    neighbours_clear(&neighbours);
+    return forces;
+}
+
+/// The arithmetic of a pair is symmetric, so only the order of the double additions is left.
+static void test_pair_forces_do_not_depend_on_order_or_skin_when_ids_are_the_same(void **state) {
+    (void)state;
+    const struct system system = {{3, {5.1, 4.6, 6.3}}, 443, RANDOM, 0.25};
+    const struct pair_law law = make_law(&tables.soft, &tables.thesis_weight);
+    for (int s = 0; s < INSTRUCTION_SETS; s++) {
+        if (!simd_select(instruction_sets[s]))
+            continue;
+        double *first = shuffled_forces(&system, &law, 0, 0.25);
+        for (uint64_t shuffle = 1; shuffle < 5; shuffle++) {
+            double *again = shuffled_forces(&system, &law, shuffle, 0.1 * (double)shuffle);
+            for (size_t k = 0; k < 3 * system.count; k++)
+                // Partial sums on a particle stay below some hundreds.
+                assert_close(again[k], first[k], 1e3 * rounding);
+            memory_free(again);
+        }
+        memory_free(first);
+    }
+}
+
+static void test_pair_noise_changes_when_seed_or_step_changes(void **state) {
+    (void)state;
+    const struct system system = {{3, {4, 4, 4}}, 50, RANDOM, 0.25};
+    struct pair_law law = make_law(NULL, &tables.weight);
+    struct particles particles;
+    struct neighbours neighbours;
+    make_system(&particles, &neighbours, &system, &law);
+    pair_forces(&law, &particles, &neighbours, 3, PAIR_FORCES, NULL);
+    const double first = particles.force[0][0];
+    pair_forces(&law, &particles, &neighbours, 3, PAIR_FORCES, NULL);
+    assert_identical(particles.force[0][0], first);
+    pair_forces(&law, &particles, &neighbours, 3 + (UINT64_C(1) << 32), PAIR_FORCES, NULL);
+    assert_true(fabs(particles.force[0][0] - first) > 1e-3);
+    law.seed += UINT64_C(1) << 32;
+    pair_forces(&law, &particles, &neighbours, 3, PAIR_FORCES, NULL);
+    assert_true(fabs(particles.force[0][0] - first) > 1e-3);
+    particles_clear(&particles);
+    neighbours_clear(&neighbours);
+}
+
+/// Slope against central differences of the value, from table and kernel alike.
+static void check_gradient(const struct table *potential, double first) {
+    // The third derivative is bounded by some 1e5 k_B T/λ³ in the range looked at, so the error of
+    // the difference is below 1e-5; the C² spline's kinks add less.
+    const double h = 1e-5, tolerance = 1e-4;
+    for (double r = first; r < potential->cutoff - 0.01; r += 0.0037) {
+        double low, high, slope;
+        table_evaluate(potential, r - h, &low, NULL, NULL);
+        table_evaluate(potential, r + h, &high, NULL, NULL);
+        table_evaluate(potential, r, NULL, &slope, NULL);
+        assert_close(slope, (high - low) / (2 * h), tolerance * (1 + fabs(slope)));
+    }
+}
+
+static void test_table_slope_is_the_derivative_of_its_value_when_differenced(void **state) {
+    (void)state;
+    check_gradient(&tables.soft, 0.05);
+    check_gradient(&tables.lennard_jones, 0.85);
+    check_gradient(&tables.gaussian, 0.05);
+    check_gradient(&tables.sampled, 0.05);
+}
+
+/// Force on one of two particles at distance r, and their energy, from the kernel.
+static double two_particle_force(const struct table *potential, double r, double *energy) {
+    const struct box box = {3, {8, 8, 8}};
+    const struct pair_law law = make_law(potential, NULL);
+    struct particles particles;
+    struct neighbours neighbours;
+    struct pair_sums sums;
+    assert_ok(particles_init(&particles, &box, 2));
+    particles.position[0][0] = 7.9;
+    particles.position[0][1] = 7.9 + r;
+    assert_ok(neighbours_init(&neighbours, NEIGHBOURS_HALF, &box, 2, potential->cutoff, 0.2));
+    assert_ok(neighbours_sort_and_build(&neighbours, &particles));
+    pair_forces(&law, &particles, &neighbours, 1, PAIR_FORCES_AND_SUMS, &sums);
+    *energy = sums.energy;
+    const double force = particles.id[0] == 1 ? particles.force[0][0] : particles.force[0][1];
+    particles_clear(&particles);
+    neighbours_clear(&neighbours);
+    return force;
+}
+
+/// Step h = 0.01: the single-precision energy, good to 1e-7 of terms of order 10, leaves 1e-4, and
+/// the third derivative h²/6 Φ‴, for which twice the difference of the curvatures stands.
+static void test_pair_force_is_minus_the_gradient_of_the_energy_when_differenced(void **state) {
+    (void)state;
+    const double h = 0.01;
+    const struct table *potentials[] = {&tables.soft, &tables.lennard_jones, &tables.gaussian,
+                                        &tables.sampled};
+    for (int p = 0; p < 4; p++)
+        for (double r = potentials[p] == &tables.lennard_jones ? 1 : 0.2;
+             r < potentials[p]->cutoff - 0.02; r += 0.043) {
+            double low, high, energy, curvature_low, curvature_high;
+            two_particle_force(potentials[p], r - h, &low);
+            two_particle_force(potentials[p], r + h, &high);
+            table_evaluate(potentials[p], r - h, NULL, NULL, &curvature_low);
+            table_evaluate(potentials[p], r + h, NULL, NULL, &curvature_high);
+            const double force = two_particle_force(potentials[p], r, &energy);
+            assert_close(force, -(high - low) / (2 * h),
+                         1e-3 + 2 * h / 12 * fabs(curvature_high - curvature_low));
+        }
+}
+
+static void test_simd_select_refuses_when_the_name_is_unknown(void **state) {
+    (void)state;
+    assert_true(simd_select("portable"));
+    assert_false(simd_select("mmx"));
+    assert_string_equal(simd_name(), "portable");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_pair_kernels_agree_with_all_pairs_when_on_a_lattice),
+        cmocka_unit_test(test_pair_kernels_agree_with_all_pairs_when_random),
+        cmocka_unit_test(test_pair_kernels_agree_with_all_pairs_when_box_is_very_long),
+        cmocka_unit_test(test_pair_kernels_agree_with_all_pairs_when_box_is_two_cutoffs),
+        cmocka_unit_test(test_pair_kernels_agree_with_all_pairs_when_particles_are_few),
+        cmocka_unit_test(test_pair_kernels_give_no_force_when_pairs_are_out_of_range),
+        cmocka_unit_test(test_pair_kernels_give_no_force_when_there_is_no_law),
+        cmocka_unit_test(test_pair_kernels_give_no_force_when_particles_coincide),
+        cmocka_unit_test(test_pair_kernels_show_nan_when_a_velocity_is_nan),
+        cmocka_unit_test(test_pair_forces_do_not_depend_on_order_or_skin_when_ids_are_the_same),
+        cmocka_unit_test(test_pair_noise_changes_when_seed_or_step_changes),
+        cmocka_unit_test(test_table_slope_is_the_derivative_of_its_value_when_differenced),
+        cmocka_unit_test(test_pair_force_is_minus_the_gradient_of_the_energy_when_differenced),
+        cmocka_unit_test(test_simd_select_refuses_when_the_name_is_unknown),
+    };
+    return cmocka_run_group_tests(tests, make_tables, clear_tables);
+}

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The pairs that rdf_sample counts from the simulation's list, and from a list of its own beyond
+// it, are exactly those of a double loop over all particles in double precision.
+#include "dynamics/metropolis.h"
+#include "observe/rdf.h"
+#include "shared/fluids.h"
+#include "shared/is_close.h"
+#include "shared/testing.h"
+
+enum { MOST_BINS = 40, PARTICLES = 200 };
+
+/// Distances in the lists are single-precision: off by up to about 4e-7 at r = 2.5. A pair nearer
+/// than this to an edge may be counted on either side of it: about one pair of a configuration.
+static const double edge_rounding = 1e-6;
+
+/// What a double loop says of each bin.
+struct counts {
+    double certain[MOST_BINS];  ///< pairs well inside
+    double possible[MOST_BINS]; ///< these and the pairs on an edge
+};
+
+static void count_pair(const struct rdf_bins *bins, double r, struct counts *counts) {
+    for (size_t k = 0; k < bins->count; k++) {
+        const double low = rdf_bins_edge(bins, k), high = rdf_bins_edge(bins, k + 1);
+        counts->certain[k] += r > low + edge_rounding && r < high - edge_rounding;
+        counts->possible[k] += r > low - edge_rounding && r < high + edge_rounding;
+    }
+}
+
+static void count_all(const struct rdf_bins *bins, const struct particles *particles,
+                      struct counts *counts) {
+    *counts = (struct counts){0};
+    for (size_t i = 0; i < particles->count; i++)
+        for (size_t j = 0; j < i; j++) {
+            double square = 0;
+            for (int d = 0; d < particles->box.dimensions; d++) {
+                const double dx = box_nearest(particles->position[d][i] - particles->position[d][j],
+                                              particles->box.length[d]);
+                square += dx * dx;
+            }
+            count_pair(bins, sqrt(square), counts);
+        }
+}
+
+/// A histogram with `times` the pairs of `counts`.
+static void assert_histogram(const double *histogram, const struct counts *counts, size_t bins,
+                             double times) {
+    double pairs = 0, uncertain = 0;
+    for (size_t k = 0; k < bins; k++) {
+        assert_true(histogram[k] >= times * counts->certain[k]);
+        assert_true(histogram[k] <= times * counts->possible[k]);
+        pairs += counts->certain[k];
+        uncertain += counts->possible[k] - counts->certain[k];
+    }
+    // A comparison of nothing proves nothing, nor one that lets much pass.
+    assert_true(pairs > 100);
+    assert_true(uncertain < 20);
+}
+
+/// One sample of an RDF on `bins` is the same as count_all, bin by bin.
+static void assert_counts(const struct rdf_bins *bins, const struct particles *particles,
+                          const struct neighbours *neighbours, double list_cutoff,
+                          bool needs_own_list) {
+    struct counts counts;
+    struct rdf rdf;
+    count_all(bins, particles, &counts);
+    assert_ok(rdf_init(&rdf, bins, &particles->box, particles->count, list_cutoff, 1));
+    assert_int_equal(rdf.needs_own_list, needs_own_list);
+    assert_ok(rdf_sample(&rdf, particles, neighbours));
+    assert_histogram(rdf.histogram, &counts, bins->count, 1);
+    rdf_clear(&rdf);
+}
+
+/// A fluid after some steps, so that particles have moved since the last build of the list and some
+/// have left the box.
+static void run_fluid(struct fluid *fluid, struct simulation *simulation) {
+    assert_ok(simulation_init(simulation, &fluid->setup, NULL));
+    assert_ok(simulation_run(simulation, 203));
+}
+
+static void assert_fluid_counts(struct fluid *fluid) {
+    struct simulation simulation;
+    run_fluid(fluid, &simulation);
+    // Within the list's cutoff of 1, to its end, and beyond it to half the box.
+    const double half = box_shortest(&fluid->setup.box) / 2;
+    const struct rdf_bins within = {0, 0.025, 40}, above_zero = {0.31, 0.023, 30},
+                          beyond = {0, half / 40, 40}, far = {1.1, 0.03, 20};
+    assert_counts(&within, &simulation.particles, &simulation.neighbours, 1, false);
+    assert_counts(&above_zero, &simulation.particles, &simulation.neighbours, 1, false);
+    assert_counts(&beyond, &simulation.particles, &simulation.neighbours, 1, true);
+    assert_counts(&far, &simulation.particles, &simulation.neighbours, 1, true);
+    simulation_clear(&simulation);
+    fluid_clear(fluid);
+}
+
+static void test_rdf_counts_every_pair_once_when_the_box_is_a_cube(void **state) {
+    (void)state;
+    struct fluid fluid;
+    fluid_groot_warren(&fluid, PARTICLES, 0.04);
+    assert_fluid_counts(&fluid);
+}
+
+static void test_rdf_counts_every_pair_once_when_the_box_is_long(void **state) {
+    (void)state;
+    struct fluid fluid;
+    fluid_groot_warren(&fluid, PARTICLES, 0.04);
+    fluid.setup.box.length[0] = 3.6;
+    fluid.setup.box.length[1] = 7;
+    fluid.setup.box.length[2] = 3.5;
+    assert_fluid_counts(&fluid);
+}
+
+static void test_rdf_counts_every_pair_once_when_the_scene_is_flat(void **state) {
+    (void)state;
+    struct fluid fluid;
+    fluid_soft_discs(&fluid, PARTICLES, 0.04);
+    assert_fluid_counts(&fluid);
+}
+
+static void test_rdf_counts_every_pair_twice_when_the_list_is_full(void **state) {
+    (void)state;
+    enum { BINS = 20 };
+    const struct rdf_bins bins = {0, 0.05, BINS};
+    double counted[BINS] = {0};
+    struct counts counts;
+    struct fluid fluid;
+    struct metropolis metropolis;
+    fluid_groot_warren(&fluid, PARTICLES, 0.01);
+    assert_ok(metropolis_init(&metropolis, &fluid.setup.box, PARTICLES, &fluid.potential, 1, 6));
+    assert_ok(metropolis_equilibrate(&metropolis, 51));
+    count_all(&bins, &metropolis.particles, &counts);
+    rdf_count_pairs(&bins, &metropolis.particles, &metropolis.neighbours, counted);
+    assert_histogram(counted, &counts, BINS, 2);
+    metropolis_clear(&metropolis);
+    fluid_clear(&fluid);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_rdf_counts_every_pair_once_when_the_box_is_a_cube),
+        cmocka_unit_test(test_rdf_counts_every_pair_once_when_the_box_is_long),
+        cmocka_unit_test(test_rdf_counts_every_pair_once_when_the_scene_is_flat),
+        cmocka_unit_test(test_rdf_counts_every_pair_twice_when_the_list_is_full),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shared/fluids.h"
+
+#include "curves/formula.h"
+#include "shared/testing.h"
+
+static void make_weight(struct fluid *fluid, double sigma, double cutoff) {
+    struct formula_power_weight_parameters parameters = {sigma, 1, 0, cutoff};
+    const struct curve curve = {&formula_power_weight, &parameters};
+    assert_ok(table_init_weight(&fluid->weight, &curve));
+    fluid->setup.weight = &fluid->weight;
+}
+
+static void make_soft_table(struct table *table, double a) {
+    struct formula_soft_repulsion_parameters parameters = {a, 1};
+    const struct curve curve = {&formula_soft_repulsion, &parameters};
+    assert_ok(table_init_potential(table, &curve));
+}
+
+static void make_soft_potential(struct fluid *fluid) {
+    make_soft_table(&fluid->potential, 25);
+    fluid->setup.potential = &fluid->potential;
+}
+
+/// What all fluids share. The limit of the temperature is far from any fluctuation.
+static void begin(struct fluid *fluid, int dimensions, int64_t count, double density,
+                  double time_step) {
+    const double edge = pow((double)count / density, 1.0 / dimensions);
+    *fluid = (struct fluid){
+        .setup = {.box = {dimensions, {edge, edge, dimensions == 3 ? edge : 1}},
+                  .placement = {.count = count, .kind = PLACEMENT_LATTICE, .jitter = 0.05},
+                  .temperature = 1,
+                  .time_step = time_step,
+                  .skin = 0.3,
+                  .temperature_limit = 10,
+                  .integrator = &dpd_verlet,
+                  .integrator_parameters = {.lambda = 0.5},
+                  .seed = 1},
+    };
+}
+
+void fluid_lennard_jones(struct fluid *fluid, int64_t count, double time_step) {
+    begin(fluid, 3, count, 0.8442, time_step);
+    fluid->setup.temperature = 0.7;
+    struct formula_lennard_jones_parameters parameters = {1, 1, 2.5};
+    const struct curve curve = {&formula_lennard_jones, &parameters};
+    assert_ok(table_init_potential(&fluid->potential, &curve));
+    fluid->setup.potential = &fluid->potential;
+    make_weight(fluid, 1.5, 2.5);
+}
+
+void fluid_groot_warren(struct fluid *fluid, int64_t count, double time_step) {
+    begin(fluid, 3, count, 3, time_step);
+    make_soft_potential(fluid);
+    make_weight(fluid, sqrt(4.5), 1);
+}
+
+void fluid_soft_discs(struct fluid *fluid, int64_t count, double time_step) {
+    begin(fluid, 2, count, 2, time_step);
+    make_soft_potential(fluid);
+    make_weight(fluid, sqrt(4.5), 1);
+}
+
+void fluid_ideal_gas(struct fluid *fluid, int dimensions, int64_t count, double time_step) {
+    begin(fluid, dimensions, count, (double)count / pow(5, dimensions), time_step);
+    for (int d = 0; d < dimensions; d++)
+        fluid->setup.box.length[d] = 5; // a root is exact only by luck
+    fluid->setup.placement.kind = PLACEMENT_RANDOM;
+    fluid->setup.placement.separation = 0;
+    make_weight(fluid, sqrt(4.5), 1);
+}
+
+void fluid_no_potential(struct table *table) {
+    make_soft_table(table, 0);
+}
+
+void fluid_clear(struct fluid *fluid) {
+    table_clear(&fluid->potential);
+    table_clear(&fluid->weight);
+}
+
+void fluid_continue(struct simulation *simulation, const struct simulation_setup *setup,
+                    const struct simulation *from) {
+    struct simulation_setup here = *setup;
+    struct simulation_start start = {0};
+    here.placement.kind = PLACEMENT_FILE;
+    for (int d = 0; d < setup->box.dimensions; d++) {
+        start.position[d] = from->particles.position[d];
+        start.velocity[d] = from->particles.velocity[d];
+    }
+    assert_ok(simulation_init(simulation, &here, &start));
+}

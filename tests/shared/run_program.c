@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shared/run_program.h"
+#include "shared/testing.h"
+
+#include <ftw.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+extern char **environ;
+
+enum { MOST_WORDS = 32 };
+
+/// A running program.
+struct child {
+    pid_t process;
+    int out, err; ///< ends to read from; −1 once at its end
+    size_t out_length, err_length;
+    double started, first_words; ///< clock [s]; first_words 0: none yet
+};
+
+static double clock_seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static const char *program_path(void) {
+    const char *path = getenv("MESOFIT");
+    if (path == NULL)
+        fail_msg("the environment variable MESOFIT does not say where the program is");
+    return path;
+}
+
+/// posix_spawn knows no limits: the child inherits ours, which nothing here can run into.
+static int spawn_limited(pid_t *process, long largest_file,
+                         const posix_spawn_file_actions_t *actions,
+                         const posix_spawnattr_t *attributes, char *const *words) {
+    struct rlimit before;
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    const struct rlimit limit = {largest_file > 0 ? (rlim_t)largest_file : before.rlim_cur,
+                                 before.rlim_max};
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+    const int error = posix_spawn(process, words[0], actions, attributes, words, environ);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+    return error;
+}
+
+/// Signals that a parent ignored, such as a shell's background job, take effect in the program.
+static void init_attributes(posix_spawnattr_t *attributes) {
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGINT);
+    sigaddset(&signals, SIGXFSZ);
+    posix_spawnattr_init(attributes);
+    posix_spawnattr_setsigdefault(attributes, &signals);
+    posix_spawnattr_setflags(attributes, POSIX_SPAWN_SETSIGDEF);
+}
+
+static struct child start(const struct run_program_how *how, const char *const *words) {
+    char *line[MOST_WORDS + 2] = {strdup(program_path())};
+    for (int k = 0; words[k]; k++) {
+        assert_true(k < MOST_WORDS);
+        line[k + 1] = strdup(words[k]);
+    }
+    int out[2], err[2];
+    assert_int_equal(pipe(out), 0);
+    assert_int_equal(pipe(err), 0);
+    posix_spawn_file_actions_t actions;
+    posix_spawnattr_t attributes;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", 0, 0);
+    posix_spawn_file_actions_adddup2(&actions, out[1], STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, err[1], STDERR_FILENO);
+    for (int end = 0; end < 2; end++) {
+        posix_spawn_file_actions_addclose(&actions, out[end]);
+        posix_spawn_file_actions_addclose(&actions, err[end]);
+    }
+    init_attributes(&attributes);
+    struct child child = {.out = out[0], .err = err[0], .started = clock_seconds()};
+    const int error = spawn_limited(&child.process, how->largest_file, &actions, &attributes, line);
+    posix_spawn_file_actions_destroy(&actions);
+    posix_spawnattr_destroy(&attributes);
+    close(out[1]);
+    close(err[1]);
+    if (error != 0)
+        fail_msg("cannot start %s: %s", line[0], strerror(error));
+    for (int k = 0; line[k]; k++)
+        free(line[k]);
+    return child;
+}
+
+/// Append what there is to read; at the end of the stream *file becomes −1.
+static void take(int *file, char *text, size_t size, size_t *length) {
+    if (*length + 1 >= size)
+        fail_msg("the program says more than %zu bytes", size);
+    const ssize_t count = read(*file, text + *length, size - 1 - *length);
+    if (count > 0) {
+        *length += (size_t)count;
+        text[*length] = '\0';
+        return;
+    }
+    close(*file);
+    *file = -1;
+}
+
+/// Wait at most ten milliseconds for something to read, and take it.
+static void listen_to(struct child *child, struct run_program_result *result) {
+    struct pollfd ends[] = {{.fd = child->out, .events = POLLIN},
+                            {.fd = child->err, .events = POLLIN}};
+    if (poll(ends, 2, 10) <= 0)
+        return;
+    if (ends[0].revents)
+        take(&child->out, result->out, sizeof result->out, &child->out_length);
+    if (ends[1].revents)
+        take(&child->err, result->err, sizeof result->err, &child->err_length);
+    if (child->err_length > 0 && child->first_words == 0)
+        child->first_words = clock_seconds();
+}
+
+static void kill_if_late(const struct child *child, const struct run_program_how *how,
+                         const struct run_program_result *result) {
+    const double limit = how->time_limit > 0 ? how->time_limit : 120;
+    if (clock_seconds() - child->started < limit)
+        return;
+    kill(child->process, SIGKILL);
+    waitpid(child->process, NULL, 0);
+    fail_msg("the program has not ended after %g s; it says: %s", limit, result->err);
+}
+
+void run_program(struct run_program_result *result, const struct run_program_how *how,
+                 const char *const *words) {
+    *result = (struct run_program_result){0};
+    struct child child = start(how, words);
+    double interrupt_after = how->interrupt_after;
+    int status;
+    while (child.out >= 0 || child.err >= 0) {
+        listen_to(&child, result);
+        kill_if_late(&child, how, result);
+        if (interrupt_after > 0 && child.first_words > 0 &&
+            clock_seconds() - child.first_words >= interrupt_after) {
+            interrupt_after = 0;
+            kill(child.process, SIGINT);
+        }
+    }
+    assert_int_equal(waitpid(child.process, &status, 0), child.process);
+    result->code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+    result->seconds = clock_seconds() - child.started;
+}
+
+void run_program_assert_code(const struct run_program_result *result, int expected) {
+    if (result->code != expected)
+        fail_msg("exit code %d instead of %d; it says: %s%s", result->code, expected, result->out,
+                 result->err);
+}
+
+static int refuse_results(const char *path, const struct stat *about, int type, struct FTW *place) {
+    (void)about, (void)type;
+    const char *dot = strrchr(path, '.');
+    if ((dot && strcmp(dot, ".partial") == 0) || strcmp(path + place->base, "summary.json") == 0)
+        fail_msg("%s was left behind", path);
+    return 0;
+}
+
+void run_program_assert_refused(const struct run_program_result *result, const char *folder,
+                                const char *what, size_t lines, const char *const *words) {
+    if (result->code != 2 || result->out[0] || strncmp(result->err, "mesofit: ", 9) != 0)
+        fail_msg("%s: exit code %d, stdout \"%s\", stderr \"%s\"", what, result->code, result->out,
+                 result->err);
+    if (run_program_lines(result->err) != lines)
+        fail_msg("%s: not %zu lines: %s", what, lines, result->err);
+    for (; *words; words++)
+        if (strstr(result->err, *words) == NULL)
+            fail_msg("%s: \"%s\" is not in: %s", what, *words, result->err);
+    assert_int_equal(nftw(folder, refuse_results, 16, FTW_PHYS), 0);
+}
+
+int run_program_in_pieces(double first, int code, const char *const *words) {
+    static struct run_program_result result;
+    enum { MOST_PIECES = 12, INTERRUPTED = 130 };
+    const char *resumed[MOST_WORDS] = {NULL};
+    int count = 0;
+    for (; words[count]; count++)
+        resumed[count] = words[count];
+    resumed[count] = "--resume";
+    for (int piece = 0; piece < MOST_PIECES; piece++) {
+        const struct run_program_how how = {.interrupt_after = first * (1 << piece)};
+        run_program(&result, &how, piece ? resumed : words);
+        if (result.code != INTERRUPTED) {
+            run_program_assert_code(&result, code);
+            assert_true(piece > 0);
+            return piece;
+        }
+        assert_contains(result.err, "--resume");
+    }
+    fail_msg("no end after %d interruptions", MOST_PIECES);
+    return 0;
+}
+
+size_t run_program_lines(const char *text) {
+    size_t lines = 0;
+    for (; *text; text++)
+        lines += *text == '\n' || text[1] == '\0';
+    return lines;
+}

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The program from outside: start it with some words, catch what it says.
+///
+/// The environment variable MESOFIT is the path of the program, from the root. Both streams are
+/// pipes, so that a limit on the size of files does not reach them.
+#pragma once
+
+#include <stddef.h>
+
+/// How to run it; zeros are the plain way.
+struct run_program_how {
+    long largest_file;      ///< RLIMIT_FSIZE of the program [bytes]; 0: none
+    double interrupt_after; ///< SIGINT so long after its first words on stderr [s]; 0: never
+    double time_limit;      ///< the test fails if it takes longer [s]; 0: two minutes
+};
+
+struct run_program_result {
+    int code;       ///< exit code, or −n if it died of signal n
+    double seconds; ///< that it took
+    char out[32768], err[32768];
+};
+
+/// Run the program with `words`, NULL-terminated, and wait for its end. A text that does not fit
+/// and a program that cannot be started fail the test.
+void run_program(struct run_program_result *result, const struct run_program_how *how,
+                 const char *const *words);
+
+/// run_program the plain way: RUN_PROGRAM(&result, "simulate", file).
+#define RUN_PROGRAM(result, ...)                                                                   \
+    run_program((result), &(struct run_program_how){0}, (const char *const[]){__VA_ARGS__, NULL})
+
+/// The program ended with `expected`; its words are shown if not.
+void run_program_assert_code(const struct run_program_result *result, int expected);
+
+/// The program refused: exit code 2, nothing on stdout, `lines` lines on stderr that begin with
+/// "mesofit: " and contain each of `words`, and in `folder` no *.partial and no summary.json.
+/// @param[in] what  names the case when the check fails
+void run_program_assert_refused(const struct run_program_result *result, const char *folder,
+                                const char *what, size_t lines, const char *const *words);
+
+/// Run with `words`, interrupting after `first` seconds, then again with --resume after twice the
+/// time, and so on until it ends by itself; its exit code must be `code`, and at least one run must
+/// have been interrupted. Returns how many were.
+int run_program_in_pieces(double first, int code, const char *const *words);
+
+/// Lines of a text; one without an end counts too.
+size_t run_program_lines(const char *text);

@@ -1,0 +1,60 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+#
+# check_layers.sh: every include "layer/…" follows src/layers.txt, and each foreign library or
+# program is known to one file only. Run at the root of the source tree.
+set -u
+
+# Prints "file:line: layer may not include other" for each include that breaks a rule.
+includes_against_the_rules() {
+    find src include -mindepth 2 -type f -name '*.[ch]' -exec awk '
+        BEGIN {
+            while ((getline line < "src/layers.txt") > 0) {
+                if (line ~ /^#/ || line !~ /:/)
+                    continue
+                layer = line
+                sub(/:.*/, "", layer)
+                sub(/^[^:]*:/, "", line)
+                known[layer] = 1
+                allowed[layer, layer] = 1
+                count = split(line, uses, " ")
+                for (i = 1; i <= count; i++)
+                    allowed[layer, uses[i]] = 1
+            }
+        }
+        FNR == 1 {
+            split(FILENAME, parts, "/")
+            layer = parts[2]
+            if (!(layer in known))
+                print FILENAME ": layer " layer " is not in src/layers.txt"
+        }
+        /^[ \t]*#[ \t]*include[ \t]*"/ {
+            split($0, quoted, "\"")
+            if (quoted[2] !~ /\//)
+                next # a private header beside the file
+            used = quoted[2]
+            sub(/\/.*/, "", used)
+            if (!((layer, used) in allowed))
+                print FILENAME ":" FNR ": " layer " may not include " quoted[2]
+        }' {} +
+}
+
+# only_in FILE PATTERN WHAT: prints the lines of other files that match the extended regex.
+only_in() {
+    grep -rnE --include='*.[ch]' "$2" src include | grep -v "^$1:" |
+        sed "s|\$|    ($3 belongs in $1 only)|"
+}
+
+faults=$(
+    includes_against_the_rules
+    only_in src/io/json.c 'include.*cJSON\.h' 'cJSON'
+    only_in src/optimise/nlopt_driver.c 'include.*nlopt\.h' 'NLopt'
+    only_in src/run/figures.c '"([^" ]*/)?gnuplot[" ]' 'gnuplot'
+    only_in src/run/figures.c '\b(fork|vfork|popen|system|exec[lv]p?e?|posix_spawnp?) ?\(' \
+        'starting a program'
+)
+if [ -n "$faults" ]; then
+    printf 'layers:\n%s\n' "$faults"
+    exit 1
+fi
+echo 'layers: OK'

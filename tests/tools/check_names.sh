@@ -1,0 +1,29 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+#
+# check_names.sh LIBRARY: every external function and object of x_y.o is called x_y or begins with x_,
+# the first word of its file: files of one module, such as genetic.c and genetic_operators.c, share it.
+set -u
+
+symbols=$(nm --defined-only --extern-only --format=posix "$1") || exit 1
+if [ -z "$symbols" ]; then
+    echo "names: no symbol found in $1"
+    exit 1
+fi
+faults=$(printf '%s\n' "$symbols" | awk '
+    /\.o\]?:$/ {
+        file = $0
+        sub(/^.*[[\/]/, "", file)
+        sub(/\.o\]?:$/, "", file)
+        word = file
+        sub(/_.*$/, "", word)
+        next
+    }
+    NF >= 2 && $1 != file && index($1, word "_") != 1 {
+        print file ".c: " $1 " should begin with " word "_"
+    }')
+if [ -n "$faults" ]; then
+    printf 'names:\n%s\n' "$faults"
+    exit 1
+fi
+echo 'names: OK'

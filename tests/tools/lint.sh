@@ -1,0 +1,69 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+#
+# lint.sh LIBRARY: every check that needs no run of the program. One line "name: OK" a check, or
+# the offending lines; the exit status says whether all passed.
+set -u
+
+library=$(realpath "$1")
+cd "$(dirname "$0")/../.." || exit 1
+
+# Files that belong to the project, committed or not yet, one a line. What came with a target
+# stays as it was when the target was measured.
+project_files() {
+    git ls-files --cached --others --exclude-standard -- "$@" ':!targets' | while IFS= read -r file; do
+        [ -f "$file" ] && printf '%s\n' "$file"
+    done
+}
+
+# report NAME FAULTS
+report() {
+    if [ -z "$2" ]; then
+        echo "$1: OK"
+    else
+        printf '%s:\n%s\n' "$1" "$2"
+        failed=1
+    fi
+}
+
+# or_failure NAME COMMAND…: prints what the command prints if it fails, and never nothing then.
+or_failure() {
+    name=$1
+    shift
+    if ! output=$("$@" 2>&1); then
+        printf '%s\n' "${output:-$name failed without a word}"
+    fi
+}
+
+check_format() {
+    project_files '*.c' '*.h' | or_failure clang-format xargs -d '\n' -r clang-format --dry-run -Werror
+}
+
+# The analysis of unchanged files is kept beside the library. Only one configuration is looked at:
+# the one of the Makefile, on the C library's declarations that cppcheck brings along.
+# internalAstError: cppcheck 2.10 gives up on &(type){value}, which is good C.
+check_cppcheck() {
+    analysed=$(dirname "$library")/cppcheck
+    mkdir -p "$analysed"
+    project_files 'src/*.c' 'tests/*.c' |
+        or_failure cppcheck cppcheck --quiet --std=c11 --language=c --library=posix \
+            --enable=warning,performance,portability --inline-suppr --error-exitcode=1 \
+            --suppress=missingIncludeSystem --suppress=internalAstError \
+            --template='{file}:{line}: {message} [{id}]' --cppcheck-build-dir="$analysed" \
+            -j "$(nproc)" -Iinclude -Itests -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 --file-list=-
+}
+
+check_licence_lines() {
+    project_files '*.c' '*.h' '*.sh' '*.gp' Makefile .ci/run | while IFS= read -r file; do
+        head -n 3 "$file" | grep -q 'SPDX-License-Identifier: GPL-3.0-or-later' ||
+            echo "$file: no SPDX line among the first three"
+    done
+}
+
+failed=0
+report format "$(check_format)"
+report cppcheck "$(check_cppcheck)"
+tests/tools/check_layers.sh || failed=1
+tests/tools/check_names.sh "$library" || failed=1
+report licence "$(check_licence_lines)"
+exit $failed

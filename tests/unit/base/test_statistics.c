@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/comoments.h"
+#include "base/statistics.h"
+#include "base/rng.h"
+#include "shared/is_close.h"
+#include "shared/testing.h"
+
+#include <math.h>
+
+enum { SIZE = 3, SAMPLES = 1000 };
+
+/// Rounding of a thousand additions of numbers of order 1: 1000 · 2^-53, with a factor of ten.
+static const double rounding = 1e-12;
+
+/// Numbers about `offset` are stored to 2^-27 of a unit at 1e8, each rounding being independent.
+static const double rounding_at_large_offset = 1e-7;
+
+/// Correlated samples of order 1, shape [SAMPLES, SIZE], moved by `offset`.
+static void make_samples(double samples[SAMPLES][SIZE], double offset) {
+    for (uint32_t n = 0; n < SAMPLES; n++) {
+        double normal[4];
+        rng_normal4(rng_philox(11, RNG_INITIAL, n, 0, 0), normal);
+        samples[n][0] = offset + normal[0];
+        samples[n][1] = offset + 0.5 * normal[0] + normal[1];
+        samples[n][2] = offset - normal[1] + 0.1 * normal[2];
+    }
+}
+
+/// Two-pass covariance in long double: the slow twin.
+static double covariance_two_pass(double samples[SAMPLES][SIZE], size_t a, size_t b) {
+    long double mean_a = 0, mean_b = 0, sum = 0;
+    for (int n = 0; n < SAMPLES; n++) {
+        mean_a += samples[n][a];
+        mean_b += samples[n][b];
+    }
+    mean_a /= SAMPLES;
+    mean_b /= SAMPLES;
+    for (int n = 0; n < SAMPLES; n++)
+        sum += (samples[n][a] - mean_a) * (samples[n][b] - mean_b);
+    return (double)(sum / SAMPLES);
+}
+
+static void assert_two_pass(const struct comoments *moments, double samples[SAMPLES][SIZE],
+                            double tolerance) {
+    assert_identical(moments->count, (double)SAMPLES);
+    for (size_t a = 0; a < SIZE; a++)
+        for (size_t b = 0; b < SIZE; b++)
+            assert_close(comoments_covariance(moments, a, b), covariance_two_pass(samples, a, b),
+                         tolerance);
+}
+
+static void test_statistics_add_equals_two_passes_when_numbers_are_of_order_one(void **state) {
+    (void)state;
+    double samples[SAMPLES][SIZE];
+    make_samples(samples, 0);
+    struct running_mean running = {0};
+    long double sum = 0;
+    for (int n = 0; n < SAMPLES; n++) {
+        statistics_add(&running, samples[n][1]);
+        sum += samples[n][1];
+    }
+    const double variance = covariance_two_pass(samples, 1, 1) * SAMPLES / (SAMPLES - 1);
+    assert_close(running.mean, (double)(sum / SAMPLES), rounding);
+    assert_close(statistics_standard_error(&running), sqrt(variance / SAMPLES), rounding);
+}
+
+static void test_statistics_add_keeps_the_variance_when_the_mean_is_large(void **state) {
+    (void)state;
+    struct running_mean running = {0};
+    for (int n = 0; n < SAMPLES; n++)
+        statistics_add(&running, 1e8 + n % 2);
+    assert_close(running.mean, 1e8 + 0.5, rounding_at_large_offset);
+    assert_close(running.squares / SAMPLES, 0.25, rounding_at_large_offset);
+}
+
+static void test_statistics_standard_error_is_zero_when_there_are_fewer_than_two(void **state) {
+    (void)state;
+    struct running_mean running = {0};
+    assert_identical(statistics_standard_error(&running), 0.0);
+    statistics_add(&running, 3);
+    assert_identical(statistics_standard_error(&running), 0.0);
+    assert_identical(running.mean, 3.0);
+    statistics_add(&running, 5);
+    assert_close(statistics_standard_error(&running), 1, rounding);
+}
+
+static void test_comoments_equal_two_passes_when_samples_are_added(void **state) {
+    (void)state;
+    double samples[SAMPLES][SIZE];
+    make_samples(samples, 0);
+    struct comoments moments;
+    assert_ok(comoments_init(&moments, SIZE));
+    for (int n = 0; n < SAMPLES; n++)
+        comoments_add(&moments, samples[n]);
+    assert_two_pass(&moments, samples, rounding);
+    comoments_clear(&moments);
+}
+
+static void test_comoments_do_not_cancel_when_the_offset_is_large(void **state) {
+    (void)state;
+    double samples[SAMPLES][SIZE];
+    make_samples(samples, 1e8);
+    struct comoments moments;
+    assert_ok(comoments_init(&moments, SIZE));
+    for (int n = 0; n < SAMPLES; n++)
+        comoments_add(&moments, samples[n]);
+    assert_two_pass(&moments, samples, rounding_at_large_offset);
+    comoments_clear(&moments);
+}
+
+/// Moments of the samples in three unequal parts, merged in the order of `order`.
+static void merge_parts(struct comoments *merged, double samples[SAMPLES][SIZE],
+                        const int order[3]) {
+    static const int begin[] = {0, 10, 400, SAMPLES};
+    assert_ok(comoments_init(merged, SIZE));
+    for (int k = 0; k < 3; k++) {
+        struct comoments part;
+        assert_ok(comoments_init(&part, SIZE));
+        for (int n = begin[order[k]]; n < begin[order[k] + 1]; n++)
+            comoments_add(&part, samples[n]);
+        comoments_merge(merged, &part);
+        comoments_clear(&part);
+    }
+}
+
+static void test_comoments_merge_equals_two_passes_when_parts_come_in_any_order(void **state) {
+    (void)state;
+    static const int orders[][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2},
+                                    {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+    double samples[SAMPLES][SIZE];
+    for (int large = 0; large < 2; large++) {
+        make_samples(samples, large ? 1e8 : 0);
+        for (size_t k = 0; k < sizeof orders / sizeof *orders; k++) {
+            struct comoments merged;
+            merge_parts(&merged, samples, orders[k]);
+            assert_two_pass(&merged, samples, large ? rounding_at_large_offset : rounding);
+            comoments_clear(&merged);
+        }
+    }
+}
+
+static void test_comoments_merge_gives_the_same_bits_when_the_order_is_the_same(void **state) {
+    (void)state;
+    double samples[SAMPLES][SIZE];
+    make_samples(samples, 0);
+    struct comoments first, second;
+    merge_parts(&first, samples, (int[]){2, 0, 1});
+    merge_parts(&second, samples, (int[]){2, 0, 1});
+    assert_memory_equal(first.mean, second.mean, SIZE * sizeof(double));
+    assert_memory_equal(first.comoment, second.comoment, SIZE * SIZE * sizeof(double));
+    comoments_clear(&first);
+    comoments_clear(&second);
+}
+
+static void test_comoments_merge_changes_nothing_when_the_other_is_empty(void **state) {
+    (void)state;
+    struct comoments moments, empty;
+    assert_ok(comoments_init(&moments, SIZE));
+    assert_ok(comoments_init(&empty, SIZE));
+    comoments_merge(&moments, &empty);
+    assert_identical(comoments_covariance(&moments, 0, 0), 0.0);
+    comoments_add(&moments, (double[SIZE]){1, 2, 3});
+    comoments_add(&moments, (double[SIZE]){3, 2, 1});
+    comoments_merge(&moments, &empty);
+    assert_identical(moments.count, 2.0);
+    assert_identical(comoments_covariance(&moments, 0, 2), -1.0);
+    comoments_clear(&moments);
+    comoments_clear(&empty);
+}
+
+static void test_comoments_reset_forgets_all_when_used_again(void **state) {
+    (void)state;
+    double samples[SAMPLES][SIZE];
+    make_samples(samples, 0);
+    struct comoments moments;
+    assert_ok(comoments_init(&moments, SIZE));
+    comoments_add(&moments, (double[SIZE]){1e9, -5, 7});
+    comoments_add(&moments, (double[SIZE]){-3, 1e9, 7});
+    comoments_reset(&moments);
+    for (int n = 0; n < SAMPLES; n++)
+        comoments_add(&moments, samples[n]);
+    assert_two_pass(&moments, samples, rounding);
+    comoments_clear(&moments);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_statistics_add_equals_two_passes_when_numbers_are_of_order_one),
+        cmocka_unit_test(test_statistics_add_keeps_the_variance_when_the_mean_is_large),
+        cmocka_unit_test(test_statistics_standard_error_is_zero_when_there_are_fewer_than_two),
+        cmocka_unit_test(test_comoments_equal_two_passes_when_samples_are_added),
+        cmocka_unit_test(test_comoments_do_not_cancel_when_the_offset_is_large),
+        cmocka_unit_test(test_comoments_merge_equals_two_passes_when_parts_come_in_any_order),
+        cmocka_unit_test(test_comoments_merge_gives_the_same_bits_when_the_order_is_the_same),
+        cmocka_unit_test(test_comoments_merge_changes_nothing_when_the_other_is_empty),
+        cmocka_unit_test(test_comoments_reset_forgets_all_when_used_again),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "curves/bezier.h"
+#include "curves/core.h"
+#include "curves/curve.h"
+#include "curves/formula.h"
+#include "curves/sampled.h"
+#include "curves/table.h"
+#include "shared/is_close.h"
+#include "shared/testing.h"
+
+#include <math.h>
+
+/// A curve of the family with its default parameters.
+static struct curve make(const struct curve_family *family) {
+    struct curve curve;
+    assert_ok(curve_create(&curve, family));
+    return curve;
+}
+
+static void test_curve_find_knows_every_family_when_named(void **state) {
+    (void)state;
+    assert_ptr_equal(curve_find(curve_potentials, "lennard-jones"), &formula_lennard_jones);
+    assert_ptr_equal(curve_find(curve_potentials, "soft-repulsion"), &formula_soft_repulsion);
+    assert_ptr_equal(curve_find(curve_potentials, "gaussian"), &formula_gaussian);
+    assert_ptr_equal(curve_find(curve_potentials, "table"), &sampled_family);
+    assert_ptr_equal(curve_find(curve_weights, "power"), &formula_power_weight);
+    assert_null(curve_find(curve_weights, "lennard-jones"));
+    assert_null(curve_find(curve_potentials, ""));
+}
+
+static void test_lennard_jones_has_its_textbook_values_when_shifted(void **state) {
+    (void)state;
+    struct curve curve = make(&formula_lennard_jones);
+    const double shift = 4 * (pow(2.5, -12) - pow(2.5, -6));
+    assert_close(curve_cutoff(&curve), 2.5, 0);
+    assert_close(curve_value(&curve, 1), -shift, 1e-14);
+    assert_close(curve_value(&curve, pow(2, 1.0 / 6)), -1 - shift, 1e-14);
+    assert_close(curve_value(&curve, 2), 4 * (pow(2, -12) - pow(2, -6)) - shift, 1e-14);
+    assert_close(curve_value(&curve, 2.5 * (1 - 1e-9)), 0, 1e-8);
+    assert_identical(curve_value(&curve, 2.5), 0);
+    assert_identical(curve_value(&curve, 9), 0);
+    curve_clear(&curve);
+}
+
+/// Below σ/2 it is straight: value and slope continuous, finite at 0.
+static void test_lennard_jones_is_straight_when_particles_overlap(void **state) {
+    (void)state;
+    struct curve curve = make(&formula_lennard_jones);
+    const double at = curve_value(&curve, 0.5);
+    // Φ'(σ/2) = −24 (2 · 2¹² − 2⁶) · 2
+    const double expected = -24 * (2 * 4096.0 - 64) * 2;
+    assert_close_relative(curve_value(&curve, 0.5 - 1e-6) - at, -1e-6 * expected, 1e-6);
+    assert_close_relative(curve_value(&curve, 0.5 + 1e-6) - at, 1e-6 * expected, 1e-4);
+    assert_close_relative(curve_value(&curve, 0) - at, -0.5 * expected, 1e-12);
+    curve_clear(&curve);
+}
+
+static void test_soft_repulsion_has_the_force_of_groot_and_warren_when_differenced(void **state) {
+    (void)state;
+    struct curve curve = make(&formula_soft_repulsion);
+    *(struct formula_soft_repulsion_parameters *)curve.parameters =
+        (struct formula_soft_repulsion_parameters){.a = 18.75, .cutoff = 1.3};
+    assert_close(curve_value(&curve, 0), 0.5 * 18.75 * 1.3, 1e-14);
+    for (double r = 0.05; r < 1.25; r += 0.1) {
+        const double force =
+            -(curve_value(&curve, r + 1e-5) - curve_value(&curve, r - 1e-5)) / 2e-5;
+        assert_close(force, 18.75 * (1 - r / 1.3), 1e-8);
+    }
+    assert_identical(curve_value(&curve, 1.3), 0);
+    assert_identical(curve_value(&curve, 2), 0);
+    curve_clear(&curve);
+}
+
+static void test_gaussian_has_its_values_when_shifted(void **state) {
+    (void)state;
+    struct curve curve = make(&formula_gaussian);
+    *(struct formula_gaussian_parameters *)curve.parameters =
+        (struct formula_gaussian_parameters){.epsilon = -2, .sigma = 0.5, .cutoff = 1};
+    const double shift = -2 * exp(-4);
+    assert_close(curve_value(&curve, 0), -2 - shift, 1e-15);
+    assert_close(curve_value(&curve, 0.5), -2 / M_E - shift, 1e-15);
+    assert_identical(curve_value(&curve, 1), 0);
+    curve_clear(&curve);
+}
+
+static void test_power_weight_is_zero_outside_its_shell_when_it_has_an_inner_cutoff(void **state) {
+    (void)state;
+    struct curve curve = make(&formula_power_weight);
+    // The default is γ = 4.5, σ = 3 of Groot and Warren.
+    assert_close(pow(curve_value(&curve, 0), 2), 4.5, 1e-14);
+    assert_close(pow(curve_value(&curve, 0.5), 2), 4.5 / 4, 1e-14);
+    *(struct formula_power_weight_parameters *)curve.parameters =
+        (struct formula_power_weight_parameters){
+            .sigma = 2.589, .exponent = 1, .inner_cutoff = 0.596, .cutoff = 1.72};
+    assert_identical(curve_value(&curve, 0), 0);
+    assert_identical(curve_value(&curve, 0.596), 0);
+    assert_close(curve_value(&curve, 0.6), 2.589 * (1 - 0.6 / 1.72), 1e-14);
+    assert_close(curve_value(&curve, 1.29), 2.589 / 4, 1e-14);
+    assert_identical(curve_value(&curve, 1.72), 0);
+    ((struct formula_power_weight_parameters *)curve.parameters)->exponent = 0.25;
+    assert_close(curve_value(&curve, 1.29), 2.589 * sqrt(0.5), 1e-14);
+    curve_clear(&curve);
+}
+
+/// Largest difference of a table and its curve: value and force, from `first` to the cutoff.
+struct difference {
+    double value, slope;
+};
+
+static struct difference compare(const struct curve *curve, const struct table *table,
+                                 double first) {
+    struct difference largest = {0};
+    const double cutoff = curve_cutoff(curve), h = 1e-6;
+    for (int k = 0; k < 7919; k++) {
+        const double r = first + (cutoff - first - 1e-4) * (k + 0.5) / 7919;
+        double value, slope;
+        table_evaluate(table, r, &value, &slope, NULL);
+        const double expected = (curve_value(curve, r + h) - curve_value(curve, r - h)) / (2 * h);
+        largest.value = fmax(largest.value, fabs(value - curve_value(curve, r)));
+        largest.slope = fmax(largest.slope, fabs(slope - expected) / (1 + fabs(expected)));
+    }
+    return largest;
+}
+
+/// Bounds: twice what was measured when the test was written; table.h quotes the second.
+static void test_table_follows_its_potential_when_smooth(void **state) {
+    (void)state;
+    struct curve curve = make(&formula_soft_repulsion);
+    struct table table;
+    assert_ok(table_init_potential(&table, &curve));
+    struct difference difference = compare(&curve, &table, 0.001);
+    assert_true(difference.value < 1e-12); // a parabola is a cubic
+    assert_true(difference.slope < 1e-7);
+    table_clear(&table);
+    curve_clear(&curve);
+
+    curve = make(&formula_lennard_jones);
+    assert_ok(table_init_potential(&table, &curve));
+    difference = compare(&curve, &table, 0.9);
+    assert_true(difference.value < 2e-6);
+    assert_true(difference.slope < 1e-5);
+    table_clear(&table);
+    curve_clear(&curve);
+
+    curve = make(&formula_gaussian);
+    assert_ok(table_init_potential(&table, &curve));
+    difference = compare(&curve, &table, 0.001);
+    assert_true(difference.value < 1e-10);
+    assert_true(difference.slope < 1e-7);
+    table_clear(&table);
+    curve_clear(&curve);
+}
+
+static void test_table_is_zero_when_beyond_the_cutoff(void **state) {
+    (void)state;
+    struct curve curve = make(&formula_gaussian);
+    struct table table;
+    assert_ok(table_init_potential(&table, &curve));
+    double value, slope, curvature;
+    const double far[] = {table.cutoff, 2 * table.cutoff, 1e9};
+    for (int k = 0; k < 3; k++) {
+        table_evaluate(&table, far[k], &value, &slope, &curvature);
+        assert_identical(value, 0);
+        assert_identical(slope, 0);
+        assert_identical(curvature, 0);
+    }
+    for (int k = 0; k < 4; k++)
+        assert_identical(table.single[TABLE_INTERVALS][k], 0);
+    table_clear(&table);
+    curve_clear(&curve);
+}
+
+/// Value and slope are continuous at every node, and so is the curvature.
+static void test_table_is_twice_continuous_when_a_potential(void **state) {
+    (void)state;
+    struct curve curve = make(&formula_lennard_jones);
+    struct table table;
+    assert_ok(table_init_potential(&table, &curve));
+    for (int k = 400; k < TABLE_INTERVALS - 1; k++) {
+        const double *c = table.coefficient + 4 * k, *next = c + 4;
+        const double size = 1e-9 * (1 + fabs(c[0]) + fabs(c[1]) + fabs(c[2]) + fabs(c[3]));
+        assert_close(c[0] + c[1] + c[2] + c[3], next[0], size);
+        assert_close(c[1] + 2 * c[2] + 3 * c[3], next[1], size);
+        assert_close(2 * c[2] + 6 * c[3], 2 * next[2], size);
+    }
+    table_clear(&table);
+    curve_clear(&curve);
+}
+
+static void test_table_of_a_weight_jumps_within_one_interval_when_the_weight_does(void **state) {
+    (void)state;
+    struct curve curve = make(&formula_power_weight);
+    struct formula_power_weight_parameters *p = curve.parameters;
+    p->inner_cutoff = 0.4;
+    struct table table;
+    assert_ok(table_init_weight(&table, &curve));
+    const double spacing = 1.0 / TABLE_INTERVALS;
+    for (double r = 0.0003; r < 1; r += 0.0017) {
+        double value;
+        table_evaluate(&table, r, &value, NULL, NULL);
+        if (fabs(r - 0.4) > spacing)
+            assert_close(value, curve_value(&curve, r), 1e-11); // the last node is 1e-12 inside
+        else
+            assert_true(value >= 0 && value <= p->sigma * 0.6 + 1e-3);
+    }
+    double value;
+    table_evaluate(&table, 1, &value, NULL, NULL);
+    assert_identical(value, 0);
+    table_clear(&table);
+    curve_clear(&curve);
+}
+
+static void test_sampled_curve_goes_through_its_points_when_evaluated(void **state) {
+    (void)state;
+    enum { POINTS = 40 };
+    double r[POINTS], y[POINTS];
+    for (int k = 0; k < POINTS; k++) {
+        r[k] = 0.5 + 1.5 * k / (POINTS - 1);
+        y[k] = cos(2 * r[k]) * (2 - r[k]);
+    }
+    struct curve curve;
+    assert_ok(sampled_create(&curve, r, y, POINTS));
+    assert_close(curve_cutoff(&curve), 2, 0);
+    for (int k = 0; k < POINTS - 1; k++)
+        assert_close(curve_value(&curve, r[k]), y[k], 1e-14);
+    // Between points: the natural spline's error is some 1e-4 near its ends, far less inside.
+    assert_close(curve_value(&curve, 1.234), cos(2.468) * (2 - 1.234), 1e-6);
+    // Below the first point the straight line with the slope there.
+    const double slope = (curve_value(&curve, 0.5 + 1e-6) - curve_value(&curve, 0.5)) / 1e-6;
+    assert_close(curve_value(&curve, 0.2), y[0] - 0.3 * slope, 1e-5);
+    assert_identical(curve_value(&curve, 2), 0);
+    assert_identical(curve_value(&curve, 3), 0);
+    curve_clear(&curve);
+}
+
+static void test_sampled_create_refuses_when_points_are_bad(void **state) {
+    (void)state;
+    struct curve curve;
+    const double r[] = {0, 1, 1, 2}, y[] = {3, 2, 1, 0};
+    assert_fails(sampled_create(&curve, r, y, 4), STATUS_BAD_INPUT, "does not grow at point 3");
+    assert_fails(sampled_create(&curve, r, y, 2), STATUS_BAD_INPUT, "at least 3 points");
+    const double nan[] = {0, NAN, 2};
+    assert_fails(sampled_create(&curve, nan, y, 3), STATUS_BAD_INPUT, "does not grow");
+    assert_ok(curve_create(&curve, &sampled_family));
+    ((struct sampled_parameters *)curve.parameters)->cutoff = 3;
+    const double good[] = {0, 1, 1.5, 2};
+    assert_fails(sampled_set_points(&curve, good, y, 4), STATUS_BAD_INPUT, "before the cutoff");
+    curve_clear(&curve);
+}
+
+static double binomial(int n, int k) {
+    double product = 1;
+    for (int m = 1; m <= k; m++)
+        product *= (double)(n - k + m) / m;
+    return product;
+}
+
+/// Σ C(n, k) t^k (1 − t)^(n−k) x_k − x_n with n = count − 1, for small n.
+static double bernstein(const double *genes, int count, double t) {
+    double sum = 0;
+    for (int k = 0; k < count; k++)
+        sum += binomial(count - 1, k) * pow(t, k) * pow(1 - t, count - 1 - k) * genes[k];
+    return sum - genes[count - 1];
+}
+
+enum { BEZIER_POINTS = 501 };
+
+/// BEZIER_POINTS places from 0 to 1 in equal steps.
+static const double *equal_places(void) {
+    static double places[BEZIER_POINTS];
+    for (int p = 0; p < BEZIER_POINTS; p++)
+        places[p] = p / (BEZIER_POINTS - 1.0);
+    return places;
+}
+
+static void test_bezier_values_are_bernstein_sums_when_genes_are_few(void **state) {
+    (void)state;
+    const double *t = equal_places();
+    const double genes[] = {3, -1, 4, 1, -5, 9, 2, -6, 5, 3};
+    double values[BEZIER_POINTS];
+    for (int count = 1; count <= 10; count++) {
+        assert_ok(bezier_values(genes, (size_t)count, t, values, BEZIER_POINTS));
+        for (int p = 0; p < BEZIER_POINTS; p++)
+            assert_close(values[p], bernstein(genes, count, t[p]), 1e-13);
+        assert_identical(values[0], genes[0] - genes[count - 1]);
+        assert_identical(values[BEZIER_POINTS - 1], 0);
+    }
+}
+
+/// A Bézier curve stays in the hull of its control points, and equal ones make a constant.
+static void test_bezier_values_stay_in_the_hull_when_genes_are_a_hundred(void **state) {
+    (void)state;
+    enum { GENES = 100 };
+    double genes[GENES], values[BEZIER_POINTS], largest = 0;
+    for (int k = 0; k < GENES; k++)
+        genes[k] = (k * 7919 % 101) / 100.0 * 6.5;
+    const double last = genes[GENES - 1];
+    assert_ok(bezier_values(genes, GENES, equal_places(), values, BEZIER_POINTS));
+    for (int p = 0; p < BEZIER_POINTS; p++) {
+        assert_true(values[p] + last >= 0 && values[p] + last <= 6.5);
+        if (p > 0)
+            largest = fmax(largest, fabs(values[p] - values[p - 1]));
+    }
+    // The steepest slope is n · 6.5 over 1, at an end.
+    assert_true(largest <= 6.5 * (GENES - 1) / (BEZIER_POINTS - 1.0));
+    for (int k = 0; k < GENES; k++)
+        genes[k] = 2;
+    assert_ok(bezier_values(genes, GENES, equal_places(), values, BEZIER_POINTS));
+    for (int p = 0; p < BEZIER_POINTS; p++)
+        assert_close(values[p], 0, 1e-13);
+}
+
+/// Genes on a line give the line; equal ones before a last 0 give 1 − t^n: every Bernstein weight
+/// of degree 99 has its say.
+static void test_bezier_values_are_known_when_a_hundred_genes_are_simple(void **state) {
+    (void)state;
+    enum { GENES = 100 };
+    const double *t = equal_places();
+    double genes[GENES], values[BEZIER_POINTS];
+    for (int k = 0; k < GENES; k++)
+        genes[k] = 5 - 0.25 * k;
+    assert_ok(bezier_values(genes, GENES, t, values, BEZIER_POINTS));
+    for (int p = 0; p < BEZIER_POINTS; p++)
+        assert_close(values[p], 0.25 * 99 * (1 - t[p]), 1e-12);
+    for (int k = 0; k < GENES - 1; k++)
+        genes[k] = 2;
+    genes[GENES - 1] = 0;
+    assert_ok(bezier_values(genes, GENES, t, values, BEZIER_POINTS));
+    for (int p = 0; p < BEZIER_POINTS; p++)
+        assert_close(values[p], 2 * (1 - pow(t[p], 99)), 1e-13);
+}
+
+static void test_core_continues_value_and_slope_when_the_potential_repels(void **state) {
+    (void)state;
+    const double r[] = {0, 0.2, 0.4, 0.6 - 1e-6, 0.6, 0.8};
+    double phi[] = {99, 99, 99, 99, 1.5, 1};
+    core_fill(r, phi, 4, -3, 2000);
+    assert_identical(phi[4], 1.5);
+    assert_identical(phi[5], 1);
+    assert_close((phi[4] - phi[3]) / 1e-6, -3, 2e-3);
+    assert_close(phi[2], 1.5 + 0.2 * 3 + 0.5 * 2000 * 0.04, 1e-12);
+    assert_close(phi[0], 1.5 + 0.6 * 3 + 0.5 * 2000 * 0.36, 1e-12);
+    for (int k = 1; k < 5; k++)
+        assert_true(phi[k] < phi[k - 1]);
+}
+
+static void test_core_starts_flat_when_the_potential_attracts_inwards(void **state) {
+    (void)state;
+    const double r[] = {0, 0.6 - 1e-6, 0.6};
+    double phi[] = {99, 99, 1.5};
+    core_fill(r, phi, 2, 4, 2000);
+    assert_close((phi[2] - phi[1]) / 1e-6, 0, 2e-3);
+    assert_close(phi[0], 1.5 + 0.5 * 2000 * 0.36, 1e-12);
+    phi[0] = 7;
+    core_fill(r, phi, 0, 4, 2000); // nothing is below the first known point
+    assert_identical(phi[0], 7);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_curve_find_knows_every_family_when_named),
+        cmocka_unit_test(test_lennard_jones_has_its_textbook_values_when_shifted),
+        cmocka_unit_test(test_lennard_jones_is_straight_when_particles_overlap),
+        cmocka_unit_test(test_soft_repulsion_has_the_force_of_groot_and_warren_when_differenced),
+        cmocka_unit_test(test_gaussian_has_its_values_when_shifted),
+        cmocka_unit_test(test_power_weight_is_zero_outside_its_shell_when_it_has_an_inner_cutoff),
+        cmocka_unit_test(test_table_follows_its_potential_when_smooth),
+        cmocka_unit_test(test_table_is_zero_when_beyond_the_cutoff),
+        cmocka_unit_test(test_table_is_twice_continuous_when_a_potential),
+        cmocka_unit_test(test_table_of_a_weight_jumps_within_one_interval_when_the_weight_does),
+        cmocka_unit_test(test_sampled_curve_goes_through_its_points_when_evaluated),
+        cmocka_unit_test(test_sampled_create_refuses_when_points_are_bad),
+        cmocka_unit_test(test_bezier_values_are_bernstein_sums_when_genes_are_few),
+        cmocka_unit_test(test_bezier_values_stay_in_the_hull_when_genes_are_a_hundred),
+        cmocka_unit_test(test_bezier_values_are_known_when_a_hundred_genes_are_simple),
+        cmocka_unit_test(test_core_continues_value_and_slope_when_the_potential_repels),
+        cmocka_unit_test(test_core_starts_flat_when_the_potential_attracts_inwards),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

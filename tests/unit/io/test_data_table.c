@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/data_table.h"
+#include "shared/is_close.h"
+#include "shared/temporary_folder.h"
+#include "shared/testing.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const char *write_text(void **state, const char *text) {
+    return temporary_folder_write(*state, "t.dat", text, strlen(text));
+}
+
+static void assert_refused(void **state, const char *text, const char *part) {
+    struct data_table table;
+    assert_fails(data_table_read(&table, write_text(state, text), 2), STATUS_BAD_INPUT, part);
+    assert_null(table.values);
+}
+
+static void test_data_table_read_finds_rows_when_comments_and_blanks_surround_them(void **state) {
+    struct data_table table;
+    const char *text = "@ title \"rdf\"\n"
+                       "#\tr[nm]  g \n"
+                       "\n"
+                       "  0.5\t1e-3  \n"
+                       "# between\n"
+                       "\t1.5 -2.5E+2\n"
+                       "   \n"
+                       "2.5 .5";
+    assert_ok(data_table_read(&table, write_text(state, text), 2));
+    assert_int_equal(table.rows, 3);
+    assert_int_equal(table.columns, 2);
+    const double expected[] = {0.5, 1e-3, 1.5, -250, 2.5, 0.5};
+    for (int k = 0; k < 6; k++)
+        assert_identical(table.values[k], expected[k]);
+    assert_int_equal(table.line[0], 4);
+    assert_int_equal(table.line[1], 6);
+    assert_int_equal(table.line[2], 8);
+    assert_string_equal(table.header, "r[nm]  g");
+    assert_string_equal(table.comments, "@ title \"rdf\"\n#\tr[nm]  g\n");
+    data_table_clear(&table);
+    assert_null(table.values);
+}
+
+static void test_data_table_read_takes_windows_line_ends_when_present(void **state) {
+    struct data_table table;
+    assert_ok(
+        data_table_read(&table, write_text(state, "\xEF\xBB\xBF# r g\r\n1 2\r\n\r\n3 4\r\n"), 2));
+    assert_int_equal(table.rows, 2);
+    assert_int_equal(table.columns, 2);
+    assert_identical(table.values[3], 4.0);
+    assert_int_equal(table.line[1], 4);
+    assert_string_equal(table.header, "r g");
+    assert_string_equal(table.comments, "# r g\n");
+    data_table_clear(&table);
+}
+
+static void test_data_table_read_has_an_empty_header_when_there_is_no_comment(void **state) {
+    struct data_table table;
+    assert_ok(data_table_read(&table, write_text(state, "1\n# late\n2\n"), 1));
+    assert_string_equal(table.header, "");
+    assert_string_equal(table.comments, "");
+    assert_int_equal(table.rows, 2);
+    data_table_clear(&table);
+}
+
+static void test_data_table_read_takes_nan_when_it_stands_beyond_the_wanted_columns(void **state) {
+    struct data_table table;
+    assert_ok(data_table_read(&table, write_text(state, "1 2 nan\n3 4 5\n"), 2));
+    assert_true(isnan(table.values[2]));
+    assert_identical(table.values[5], 5.0);
+    data_table_clear(&table);
+    assert_refused(state, "1 2 3\n3 4 inf\n", ":2: column 3: \"inf\"");
+}
+
+static void test_data_table_read_names_the_line_when_a_word_is_not_a_finite_number(void **state) {
+    assert_refused(state, "1 2\n3 abc\n", "t.dat:2: column 2: \"abc\" is not a finite number");
+    assert_refused(state, "1 2\n3 nan\n", ":2: column 2: \"nan\"");
+    assert_refused(state, "inf 2\n", ":1: column 1: \"inf\"");
+    assert_refused(state, "1 1e999\n", ":1: column 2: \"1e999\"");
+    assert_refused(state, "1 0x10\n", ":1: column 2: \"0x10\"");
+    assert_refused(state, "1,5 2\n", ":1: column 1: \"1,5\"");
+    assert_refused(state, "1 2-3\n", ":1: column 2: \"2-3\"");
+    assert_refused(state, "1 2 # note\n", ":1: column 3: \"#\"");
+}
+
+static void test_data_table_read_names_the_line_when_a_row_has_another_length(void **state) {
+    assert_refused(state, "1 2\n3 4\n5\n", "t.dat:3: 1 columns, the first row has 2");
+    assert_refused(state, "1 2\n3 4 5\n", "t.dat:2: 3 columns, the first row has 2");
+    assert_refused(state, "# r\n1\n2\n", "t.dat:2: 1 columns, at least 2 are needed");
+}
+
+static void test_data_table_read_says_so_when_there_is_nothing_to_read(void **state) {
+    struct data_table table;
+    assert_refused(state, "", "t.dat: the file is empty");
+    assert_refused(state, "# only\n\n", "t.dat:3: the file ends without a row of numbers");
+    assert_fails(
+        data_table_read(&table, temporary_folder_write(*state, "t.dat", "1 2\n3 \0 4\n", 10), 2),
+        STATUS_BAD_INPUT, "t.dat:2:3: a NUL byte");
+    assert_fails(data_table_read(&table, temporary_folder_file(*state, "none"), 2), STATUS_IO,
+                 "none: No such file or directory");
+    assert_fails(data_table_read(&table, ((struct temporary_folder *)*state)->path, 2), STATUS_IO,
+                 "is a folder, not a file");
+}
+
+static void test_data_table_read_takes_long_files_when_they_outgrow_the_buffer(void **state) {
+    struct data_table table;
+    enum { ROWS = 30000 };
+    double *values = calloc(ROWS, sizeof *values);
+    assert_non_null(values);
+    for (int k = 0; k < ROWS; k++)
+        values[k] = k / 7.0;
+    const struct data_column columns[] = {{"x", values, "%.17g"}};
+    const char *file = temporary_folder_file(*state, "long.dat");
+    assert_ok(data_table_write(file, NULL, columns, 1, ROWS));
+    assert_ok(data_table_read(&table, file, 1));
+    assert_int_equal(table.rows, ROWS);
+    assert_memory_equal(table.values, values, ROWS * sizeof *values);
+    data_table_clear(&table);
+    free(values);
+}
+
+static void test_data_table_check_increasing_names_the_line_when_a_row_does_not_grow(void **state) {
+    struct data_table table;
+    const char *file = write_text(state, "# r\n0 5\n1 4\n\n1 6\n");
+    assert_ok(data_table_read(&table, file, 2));
+    assert_fails(data_table_check_increasing(&table, file, 0, 0), STATUS_BAD_INPUT,
+                 "t.dat:5: column 1: 1 does not grow from 1 in line 3");
+    assert_fails(data_table_check_increasing(&table, file, 1, 0), STATUS_BAD_INPUT,
+                 "t.dat:3: column 2: 4 does not grow from 5 in line 2");
+    assert_fails(data_table_check_increasing(&table, file, 0, 0.5), STATUS_BAD_INPUT,
+                 "t.dat:2: column 1: 0 is below 0.5");
+    assert_fails(data_table_check_increasing(&table, file, 2, 0), STATUS_BAD_INPUT,
+                 "there is no column 3");
+    table.rows = 2;
+    assert_ok(data_table_check_increasing(&table, file, 0, 0));
+    data_table_clear(&table);
+}
+
+static void test_data_table_write_prints_comment_header_and_rows_when_asked(void **state) {
+    const double r[] = {0.125, 2}, g[] = {1.0 / 3, -1e-20};
+    const struct data_column columns[] = {{"r[lambda]", r, "%.3f"}, {"g", g, NULL}};
+    const char *file = temporary_folder_file(*state, "t.dat");
+    assert_ok(data_table_write(file, "made by a test\nseed 7\n", columns, 2, 2));
+    char *text = temporary_folder_read(file);
+    assert_string_equal(text, "# made by a test\n# seed 7\n# r[lambda]\tg\n"
+                              "0.125\t0.3333333333\n2.000\t-1e-20\n");
+    free(text);
+
+    struct data_table table;
+    assert_ok(data_table_read(&table, file, 2));
+    assert_string_equal(table.header, "r[lambda]\tg");
+    data_table_clear(&table);
+}
+
+static void test_data_table_write_names_the_file_when_it_cannot_be_made(void **state) {
+    const struct data_column columns[] = {{"x", (double[]){1}, NULL}};
+    assert_fails(data_table_write(temporary_folder_file(*state, "no/t.dat"), NULL, columns, 1, 1),
+                 STATUS_IO, "no/t.dat: No such file or directory");
+}
+
+#define IN_FOLDER(test)                                                                            \
+    cmocka_unit_test_setup_teardown(test, temporary_folder_create, temporary_folder_remove)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        IN_FOLDER(test_data_table_read_finds_rows_when_comments_and_blanks_surround_them),
+        IN_FOLDER(test_data_table_read_takes_windows_line_ends_when_present),
+        IN_FOLDER(test_data_table_read_has_an_empty_header_when_there_is_no_comment),
+        IN_FOLDER(test_data_table_read_takes_nan_when_it_stands_beyond_the_wanted_columns),
+        IN_FOLDER(test_data_table_read_names_the_line_when_a_word_is_not_a_finite_number),
+        IN_FOLDER(test_data_table_read_names_the_line_when_a_row_has_another_length),
+        IN_FOLDER(test_data_table_read_says_so_when_there_is_nothing_to_read),
+        IN_FOLDER(test_data_table_read_takes_long_files_when_they_outgrow_the_buffer),
+        IN_FOLDER(test_data_table_check_increasing_names_the_line_when_a_row_does_not_grow),
+        IN_FOLDER(test_data_table_write_prints_comment_header_and_rows_when_asked),
+        IN_FOLDER(test_data_table_write_names_the_file_when_it_cannot_be_made),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

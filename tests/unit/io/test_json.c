@@ -1,0 +1,469 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/json.h"
+#include "shared/is_close.h"
+#include "shared/temporary_folder.h"
+#include "shared/testing.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+struct sample {
+    double strength;
+    int64_t steps;
+    uint64_t seed;
+    double lengths[3];
+    char name[FIELD_TEXT_SIZE], file[FIELD_TEXT_SIZE];
+    int kind;
+};
+
+static const char *const kinds[] = {"soft", "hard", NULL};
+
+static const struct field fields[] = {
+    {"strength", FIELD_NUMBER, offsetof(struct sample, strength), false, 0.1, 0, 1, NULL, "k_B T",
+     "how strong"},
+    {"steps", FIELD_INTEGER, offsetof(struct sample, steps), false, 5, 1, FIELD_LARGEST_INTEGER,
+     NULL, "", "a count"},
+    {"seed", FIELD_SEED, offsetof(struct sample, seed), false, 42, 0, 0, NULL, "", "a seed"},
+    {"lengths", FIELD_LENGTHS, offsetof(struct sample, lengths), false, 0, FIELD_ABOVE_ZERO,
+     DBL_MAX, NULL, "", "box"},
+    {"name", FIELD_TEXT, offsetof(struct sample, name), false, 0, 0, 0, NULL, "", "a name"},
+    {"file", FIELD_FILE, offsetof(struct sample, file), false, 0, 0, 0, NULL, "", "a file"},
+    {"kind", FIELD_CHOICE, offsetof(struct sample, kind), false, 1, 0, 0, kinds, "", "a kind"},
+    FIELD_END,
+};
+
+static const struct field required_fields[] = {
+    {"strength", FIELD_NUMBER, offsetof(struct sample, strength), true, 0, 0, 1, NULL, "",
+     "how strong"},
+    FIELD_END,
+};
+
+static const char *write_text(void **state, const char *text) {
+    return temporary_folder_write(*state, "run.json", text, strlen(text));
+}
+
+static struct json_document *open_text(void **state, const char *text) {
+    struct json_document *document = NULL;
+    assert_ok(json_open(&document, write_text(state, text)));
+    return document;
+}
+
+/// Read the whole text as one `sample`, unknown keys being faults.
+static enum status read_sample(void **state, const char *text, struct sample *sample) {
+    struct json_document *document = open_text(state, text);
+    struct json_object root = json_root(document);
+    json_fields(&root, fields, sample);
+    json_finish(&root);
+    return json_close(document);
+}
+
+static void assert_fault(void **state, const char *text, const char *part) {
+    struct sample sample;
+    assert_fails(read_sample(state, text, &sample), STATUS_BAD_INPUT, part);
+    assert_null(strchr(status_message(), '\n'));
+}
+
+static void assert_malformed(void **state, const char *text, const char *part) {
+    struct json_document *document;
+    assert_fails(json_open(&document, write_text(state, text)), STATUS_BAD_INPUT, part);
+    assert_null(document);
+    assert_null(strchr(status_message(), '\n'));
+}
+
+// Whole files -------------------------------------------------------------------------------------
+
+static void test_json_open_gives_the_place_when_the_text_is_malformed(void **state) {
+    assert_malformed(state, "{\n  \"a\": 1\n  \"b\": 2\n}",
+                     "run.json:3:3: expected ',' or '}', found '\"'");
+    assert_malformed(state, "{\"a\": \"\\ud800\"}", "expected a valid \\u escape");
+}
+
+static void test_json_open_says_what_is_wrong_when_there_is_no_text(void **state) {
+    struct json_document *document;
+    struct temporary_folder *folder = *state;
+    assert_malformed(state, "", "run.json: the file is empty");
+    assert_fails(json_open(&document, temporary_folder_file(folder, "none.json")), STATUS_IO,
+                 "none.json: No such file or directory");
+    assert_fails(json_open(&document, folder->path), STATUS_IO, ": is a folder, not a file");
+    assert_fails(json_open(&document, temporary_folder_write(folder, "nul", "{\n\0}", 4)),
+                 STATUS_BAD_INPUT, "nul:2:1: a NUL byte");
+    assert_null(document);
+}
+
+static void test_json_open_skips_the_byte_order_mark_when_there_is_one(void **state) {
+    struct sample sample;
+    assert_ok(read_sample(state, "\xEF\xBB\xBF{\"seed\": 3}\r\n", &sample));
+    assert_int_equal(sample.seed, 3);
+}
+
+static void test_json_root_is_a_fault_when_it_is_not_an_object(void **state) {
+    assert_fault(state, "[1]", "run.json: expected an object, found an array");
+    assert_fault(state, "\"x\"", "run.json: expected an object, found the text \"x\"");
+}
+
+// Fields ------------------------------------------------------------------------------------------
+
+static void test_json_fields_reads_every_type_when_all_are_given(void **state) {
+    struct sample sample;
+    assert_ok(read_sample(state,
+                          "{\"strength\": 0.25, \"steps\": 1e3, \"seed\": 9007199254740991,"
+                          " \"lengths\": [1, 2.5], \"name\": \"\\u00e9\\\"\", \"file\": \"/x/y\","
+                          " \"kind\": \"soft\"}",
+                          &sample));
+    assert_identical(sample.strength, 0.25);
+    assert_int_equal(sample.steps, 1000);
+    assert_int_equal(sample.seed, 9007199254740991);
+    assert_identical(sample.lengths[0], 1.0);
+    assert_identical(sample.lengths[1], 2.5);
+    assert_identical(sample.lengths[2], 0.0);
+    assert_string_equal(sample.name, "é\"");
+    assert_string_equal(sample.file, "/x/y");
+    assert_int_equal(sample.kind, 0);
+}
+
+static void test_json_fields_gives_defaults_when_nothing_is_given(void **state) {
+    struct sample sample;
+    memset(&sample, 0x5A, sizeof sample);
+    assert_ok(read_sample(state, "{}", &sample));
+    assert_identical(sample.strength, 0.1);
+    assert_int_equal(sample.steps, 5);
+    assert_int_equal(sample.seed, 42);
+    assert_identical(sample.lengths[0], 0.0);
+    assert_string_equal(sample.name, "");
+    assert_int_equal(sample.kind, 1);
+}
+
+static void test_json_fields_joins_the_folder_when_a_file_is_relative(void **state) {
+    struct temporary_folder *folder = *state;
+    struct sample sample;
+    char expected[2048];
+    assert_ok(read_sample(state, "{\"file\": \"a/b.dat\", \"name\": \"a/b.dat\"}", &sample));
+    snprintf(expected, sizeof expected, "%s/a/b.dat", folder->path);
+    assert_string_equal(sample.file, expected);
+    assert_string_equal(sample.name, "a/b.dat");
+}
+
+static void test_json_fields_gives_value_and_range_when_out_of_range(void **state) {
+    struct sample sample;
+    assert_fault(state, "{\"strength\": 1.5}",
+                 "run.json: strength: 1.5 is out of range; allowed: 0 to 1 k_B T");
+    assert_fault(state, "{\"strength\": -1e-9}", "strength: -1e-09 is out of range");
+    assert_fault(state, "{\"steps\": 0}", "steps: 0 is out of range; allowed: at least 1");
+    assert_fault(state, "{\"seed\": -1}", "seed: -1 is out of range; allowed: at least 0");
+    assert_fault(state, "{\"lengths\": [1, 0]}", "lengths[1]: 0 is out of range; allowed: above 0");
+    assert_int_equal(read_sample(state, "{\"strength\": 1.5}", &sample), STATUS_BAD_INPUT);
+    assert_identical(sample.strength, 0.1);
+    assert_int_equal(read_sample(state, "{\"lengths\": [1, 0]}", &sample), STATUS_BAD_INPUT);
+    assert_identical(sample.lengths[0], 0.0);
+}
+
+static void test_json_fields_refuses_numbers_when_they_are_not_finite_or_lose_digits(void **state) {
+    assert_fault(state, "{\"strength\": 1e999}", "strength: the number is too large");
+    assert_fault(state, "{\"strength\": -1e999}", "strength: the number is too large");
+    assert_fault(state, "{\"lengths\": [1, 1e999]}", "lengths[1]: the number is too large");
+    assert_fault(state, "{\"seed\": 1e999}", "seed: the number is too large");
+    assert_fault(state, "{\"seed\": 9007199254740993}",
+                 "seed: 9007199254740992 is out of range: whole numbers of 2^53");
+    assert_fault(state, "{\"seed\": 9007199254740992}", "and beyond lose digits");
+    assert_fault(state, "{\"steps\": 1e300}", "and beyond lose digits");
+    assert_fault(state, "{\"steps\": 2.5}", "steps: expected a whole number, found the number 2.5");
+}
+
+static void test_json_fields_says_what_it_found_when_the_type_is_wrong(void **state) {
+    assert_fault(state, "{\"strength\": \"0.5\"}",
+                 "strength: expected a number, found the text \"0.5\"");
+    assert_fault(state, "{\"strength\": null}", "strength: expected a number, found null");
+    assert_fault(state, "{\"steps\": true}", "steps: expected a whole number, found true");
+    assert_fault(state, "{\"name\": 3}", "name: expected a text, found the number 3");
+    assert_fault(state, "{\"name\": \"\"}", "name: the text is empty");
+    assert_fault(state, "{\"file\": {}}",
+                 "file: expected a text with the name of a file, found an "
+                 "object");
+    assert_fault(state, "{\"lengths\": 3}", "lengths: expected an array of 2 or 3 numbers, found");
+    assert_fault(state, "{\"lengths\": [3]}", "lengths: expected 2 or 3 numbers, found 1");
+    assert_fault(state, "{\"lengths\": [1,2,3,4]}", "lengths: expected 2 or 3 numbers, found 4");
+    assert_fault(state, "{\"lengths\": [1,\"2\"]}",
+                 "lengths[1]: expected a number, found the text");
+    assert_fault(state, "{\"kind\": 0}", "kind: expected a text, found the number 0");
+    assert_fault(state, "{\"kind\": \"sotf\"}",
+                 "kind: \"sotf\" is unknown; did you mean \"soft\"?");
+    assert_fault(state, "{\"kind\": \"liquid\"}", "kind: \"liquid\" is unknown; known: soft, hard");
+}
+
+static void test_json_fields_refuses_texts_when_they_do_not_fit(void **state) {
+    char text[FIELD_TEXT_SIZE + 64];
+    snprintf(text, sizeof text, "{\"name\": \"%01024d\"}", 0);
+    assert_fault(state, text, "name: the text is longer than 1023 bytes");
+    snprintf(text, sizeof text, "{\"file\": \"%01022d\"}", 0);
+    assert_fault(state, text, "file: the text is longer than 1023 bytes");
+}
+
+static void test_json_fields_demands_required_ones_when_the_object_is_there(void **state) {
+    struct sample sample;
+    struct json_document *document = open_text(state, "{\"here\": {}}");
+    struct json_object root = json_root(document);
+    struct json_object here = json_child(&root, "here", false);
+    struct json_object absent = json_child(&root, "absent", false);
+    json_fields(&absent, required_fields, &sample);
+    assert_int_equal(json_fault_count(document), 0);
+    json_fields(&here, required_fields, &sample);
+    assert_int_equal(json_fault_count(document), 1);
+    json_finish(&root);
+    assert_fails(json_close(document), STATUS_BAD_INPUT,
+                 "run.json: here.strength: missing: a number is required (how strong)");
+}
+
+// Keys and objects --------------------------------------------------------------------------------
+
+static void test_json_finish_suggests_the_nearest_key_when_one_is_unknown(void **state) {
+    assert_fault(state, "{\"sede\": 1}", "run.json: sede: unknown key; did you mean \"seed\"?");
+    assert_fault(state, "{\"Seed\": 1}", "Seed: unknown key; did you mean \"seed\"?");
+    assert_fault(
+        state, "{\"temperature\": 1}",
+        "temperature: unknown key; known: strength, steps, seed, lengths, name, file, kind");
+}
+
+static void test_json_open_records_a_fault_when_a_key_stands_twice(void **state) {
+    assert_fault(state, "{\"seed\": 1, \"seed\": 1}", "run.json: seed: the key stands here twice");
+    struct json_document *document =
+        open_text(state, "{\"a\": [{\"x\": 1}, {\"b\": {\"c\": 1, \"d\": 2, \"c\": 3}}]}");
+    assert_fails(json_close(document), STATUS_BAD_INPUT, "run.json: a[1].b.c: the key stands");
+}
+
+static void test_json_child_reports_paths_when_objects_are_nested(void **state) {
+    struct json_document *document = open_text(state, "{\"a\": {\"b\": {\"x\": 1}, \"c\": 3}}");
+    struct json_object root = json_root(document);
+    struct json_object a = json_child(&root, "a", true);
+    struct json_object b = json_child(&a, "b", true);
+    struct json_object c = json_child(&a, "c", false);
+    struct json_object d = json_child(&a, "d", true);
+    assert_true(json_has(&a, "b"));
+    assert_false(json_has(&a, "B"));
+    assert_null(c.item);
+    assert_null(d.item);
+    json_fault(&b, "x", "must be below %d", 1);
+    json_fault(&b, NULL, "is odd");
+    json_finish(&d);
+    json_finish(&b);
+    char expected[8192];
+    const char *file = ((struct temporary_folder *)*state)->file;
+    snprintf(expected, sizeof expected,
+             "%s: a.c: expected an object, found the number 3\n"
+             "%s: a.d: missing: an object is required\n"
+             "%s: a.b.x: must be below 1\n"
+             "%s: a.b: is odd\n"
+             "%s: a.b.x: unknown key; none is known here",
+             file, file, file, file, file);
+    assert_int_equal(json_close(document), STATUS_BAD_INPUT);
+    assert_string_equal(status_message(), expected);
+}
+
+static void test_json_choice_returns_known_texts_when_given_or_falls_back(void **state) {
+    struct json_document *document =
+        open_text(state, "{\"law\": \"soft\", \"odd\": \"hrad\", \"number\": 1}");
+    struct json_object root = json_root(document);
+    assert_string_equal(json_choice(&root, "law", kinds, NULL), "soft");
+    assert_string_equal(json_choice(&root, "law", NULL, NULL), "soft");
+    assert_string_equal(json_choice(&root, "none", kinds, "hard"), "hard");
+    assert_int_equal(json_fault_count(document), 0);
+    assert_null(json_choice(&root, "odd", kinds, NULL));
+    assert_null(json_choice(&root, "number", kinds, "hard"));
+    assert_null(json_choice(&root, "missing", kinds, NULL));
+    json_finish(&root);
+    assert_int_equal(json_fault_count(document), 3);
+    assert_fails(json_close(document), STATUS_BAD_INPUT, "did you mean \"hard\"?");
+    assert_contains(status_message(), "number: expected a text, found the number 1");
+    assert_contains(status_message(), "missing: missing: a text is required");
+}
+
+static void test_json_numbers_reads_an_array_when_all_are_numbers(void **state) {
+    struct json_document *document =
+        open_text(state, "{\"a\": [1, -2.5, 3e-3], \"none\": [], \"bad\": [1, null], \"x\": 3}");
+    struct json_object root = json_root(document);
+    double *values;
+    size_t count;
+    assert_ok(json_numbers(&root, "a", &values, &count));
+    assert_int_equal(count, 3);
+    assert_identical(values[1], -2.5);
+    assert_identical(values[2], 3e-3);
+    free(values);
+    static const char *const empty[] = {"none", "absent", "bad", "x"};
+    for (int k = 0; k < 4; k++) {
+        assert_ok(json_numbers(&root, empty[k], &values, &count));
+        assert_int_equal(count, 0);
+        assert_null(values);
+    }
+    json_finish(&root);
+    assert_int_equal(json_fault_count(document), 2);
+    assert_fails(json_close(document), STATUS_BAD_INPUT, "bad[1]: expected a number, found null");
+    assert_contains(status_message(), "x: expected an array of numbers, found the number 3");
+}
+
+static void test_json_close_counts_the_rest_when_faults_are_many(void **state) {
+    struct json_document *document = open_text(state, "{}");
+    struct json_object root = json_root(document);
+    for (int k = 0; k < 27; k++)
+        json_fault(&root, NULL, "fault %d", k);
+    assert_int_equal(json_fault_count(document), 27);
+    assert_fails(json_close(document), STATUS_BAD_INPUT, "fault 19\n… and 7 more faults");
+    assert_null(strstr(status_message(), "fault 20"));
+}
+
+static void test_json_close_drops_whole_lines_when_faults_are_long(void **state) {
+    struct json_document *document = open_text(state, "{}");
+    struct json_object root = json_root(document);
+    for (int k = 0; k < 10; k++)
+        json_fault(&root, NULL, "%01500d end", k);
+    assert_fails(json_close(document), STATUS_BAD_INPUT, "04 end\n… and 5 more faults");
+}
+
+// Writing -----------------------------------------------------------------------------------------
+
+static void assert_round_trip(void **state, const struct sample *sample) {
+    const char *file = temporary_folder_file(*state, "run.json");
+    struct json_writer *writer = json_writer_create();
+    assert_non_null(writer);
+    json_put_fields(writer, fields, sample);
+    assert_ok(json_write(writer, file));
+    json_writer_free(writer);
+
+    struct sample again;
+    struct json_document *document;
+    assert_ok(json_open(&document, file));
+    struct json_object root = json_root(document);
+    json_fields(&root, fields, &again);
+    json_finish(&root);
+    assert_ok(json_close(document));
+    assert_identical(again.strength, sample->strength);
+    assert_int_equal(again.steps, sample->steps);
+    assert_int_equal(again.seed, sample->seed);
+    assert_memory_equal(again.lengths, sample->lengths, sizeof again.lengths);
+    assert_string_equal(again.name, sample->name);
+    assert_string_equal(again.file, sample->file);
+    assert_int_equal(again.kind, sample->kind);
+}
+
+static void test_json_put_fields_reads_back_the_same_bits_when_digits_are_many(void **state) {
+    struct sample sample = {.strength = 1.0 / 3,
+                            .steps = 9007199254740991,
+                            .seed = 9007199254740991,
+                            .lengths = {0.1 + 0.2, DBL_MIN, DBL_MAX},
+                            .name = "tab\t, \"quote\", é",
+                            .file = "/a/b",
+                            .kind = 1};
+    assert_round_trip(state, &sample);
+    sample = (struct sample){.strength = nextafter(0.1, 1), .steps = 1, .lengths = {1, 2, 0}};
+    assert_round_trip(state, &sample);
+    sample = (struct sample){.strength = 5e-324, .steps = 1};
+    assert_round_trip(state, &sample);
+    sample = (struct sample){.strength = -0.0, .steps = 1};
+    assert_round_trip(state, &sample);
+}
+
+static void test_json_put_fields_makes_a_file_absolute_when_it_is_relative(void **state) {
+    const struct sample sample = {.file = "a/b.dat"};
+    struct json_writer *writer = json_writer_create();
+    json_put_fields(writer, fields, &sample);
+    const char *file = temporary_folder_file(*state, "used.json");
+    assert_ok(json_write(writer, file));
+    json_writer_free(writer);
+    char *text = temporary_folder_read(file);
+    assert_contains(text, "\"file\":\t\"/");
+    assert_contains(text, "/a/b.dat\"");
+    assert_null(strstr(text, "\"name\""));
+    assert_null(strstr(text, "\"lengths\""));
+    free(text);
+}
+
+static void test_json_write_prints_the_tree_when_objects_are_nested(void **state) {
+    struct json_writer *writer = json_writer_create();
+    assert_non_null(writer);
+    json_put_text(writer, "name", "x");
+    json_begin(writer, "scene");
+    json_begin(writer, "box");
+    json_put_numbers(writer, "sides", (double[]){1, 0.1, 1e300}, 3);
+    json_end(writer);
+    json_put_integer(writer, "steps", INT64_MIN);
+    json_end(writer);
+    json_put_number(writer, "score", 0.1);
+    json_put_numbers(writer, "none", NULL, 0);
+    const char *file = temporary_folder_file(*state, "out.json");
+    assert_ok(json_write(writer, file));
+    json_writer_free(writer);
+    char *text = temporary_folder_read(file);
+    assert_string_equal(text, "{\n\t\"name\":\t\"x\",\n\t\"scene\":\t{\n\t\t\"box\":\t{\n"
+                              "\t\t\t\"sides\":\t[1, 0.1, 1e+300]\n\t\t},\n"
+                              "\t\t\"steps\":\t-9223372036854775808\n\t},\n"
+                              "\t\"score\":\t0.1,\n\t\"none\":\t[]\n}\n");
+    free(text);
+}
+
+static void write_number(struct json_writer *writer) {
+    json_put_number(writer, "distance", NAN);
+}
+
+static void write_numbers(struct json_writer *writer) {
+    json_put_numbers(writer, "distance", (double[]){1, INFINITY}, 2);
+}
+
+static void write_twice(struct json_writer *writer) {
+    json_put_integer(writer, "distance", 1);
+    json_put_integer(writer, "distance", 1);
+}
+
+static void write_too_deep(struct json_writer *writer) {
+    for (int k = 0; k < 20; k++)
+        json_begin(writer, "distance");
+}
+
+static void test_json_write_writes_nothing_when_the_tree_has_a_problem(void **state) {
+    static const struct {
+        void (*build)(struct json_writer *);
+        const char *part;
+    } cases[] = {{write_number, "out.json: \"distance\" is not a finite number"},
+                 {write_numbers, "out.json: \"distance\" is not a finite number"},
+                 {write_twice, "out.json: \"distance\" is given twice"},
+                 {write_too_deep, "out.json: \"distance\" is nested too deeply"}};
+    const char *file = temporary_folder_file(*state, "out.json");
+    for (int k = 0; k < 4; k++) {
+        struct json_writer *writer = json_writer_create();
+        assert_non_null(writer);
+        cases[k].build(writer);
+        assert_fails(json_write(writer, file), STATUS_IO, cases[k].part);
+        assert_false(temporary_folder_exists(file));
+        json_writer_free(writer);
+    }
+}
+
+#define IN_FOLDER(test)                                                                            \
+    cmocka_unit_test_setup_teardown(test, temporary_folder_create, temporary_folder_remove)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        IN_FOLDER(test_json_open_gives_the_place_when_the_text_is_malformed),
+        IN_FOLDER(test_json_open_says_what_is_wrong_when_there_is_no_text),
+        IN_FOLDER(test_json_open_skips_the_byte_order_mark_when_there_is_one),
+        IN_FOLDER(test_json_root_is_a_fault_when_it_is_not_an_object),
+        IN_FOLDER(test_json_fields_reads_every_type_when_all_are_given),
+        IN_FOLDER(test_json_fields_gives_defaults_when_nothing_is_given),
+        IN_FOLDER(test_json_fields_joins_the_folder_when_a_file_is_relative),
+        IN_FOLDER(test_json_fields_gives_value_and_range_when_out_of_range),
+        IN_FOLDER(test_json_fields_refuses_numbers_when_they_are_not_finite_or_lose_digits),
+        IN_FOLDER(test_json_fields_says_what_it_found_when_the_type_is_wrong),
+        IN_FOLDER(test_json_fields_refuses_texts_when_they_do_not_fit),
+        IN_FOLDER(test_json_fields_demands_required_ones_when_the_object_is_there),
+        IN_FOLDER(test_json_finish_suggests_the_nearest_key_when_one_is_unknown),
+        IN_FOLDER(test_json_open_records_a_fault_when_a_key_stands_twice),
+        IN_FOLDER(test_json_child_reports_paths_when_objects_are_nested),
+        IN_FOLDER(test_json_choice_returns_known_texts_when_given_or_falls_back),
+        IN_FOLDER(test_json_numbers_reads_an_array_when_all_are_numbers),
+        IN_FOLDER(test_json_close_counts_the_rest_when_faults_are_many),
+        IN_FOLDER(test_json_close_drops_whole_lines_when_faults_are_long),
+        IN_FOLDER(test_json_put_fields_reads_back_the_same_bits_when_digits_are_many),
+        IN_FOLDER(test_json_put_fields_makes_a_file_absolute_when_it_is_relative),
+        IN_FOLDER(test_json_write_prints_the_tree_when_objects_are_nested),
+        IN_FOLDER(test_json_write_writes_nothing_when_the_tree_has_a_problem),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/output.h"
+#include "shared/temporary_folder.h"
+#include "shared/testing.h"
+
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static void assert_file_holds(const char *path, const char *expected) {
+    char *text = temporary_folder_read(path);
+    assert_string_equal(text, expected);
+    free(text);
+}
+
+static void assert_no_partial(const struct output *output) {
+    assert_false(temporary_folder_exists(output->temporary));
+}
+
+static void test_output_commit_replaces_the_file_when_all_was_written(void **state) {
+    const char *path = temporary_folder_write(*state, "a.txt", "old", 3);
+    struct output output;
+    assert_ok(output_open(&output, path));
+    fputs("new\n", output.stream);
+    assert_file_holds(path, "old");
+    assert_ok(output_commit(&output));
+    assert_file_holds(path, "new\n");
+    assert_no_partial(&output);
+    output_abandon(&output);
+    assert_file_holds(path, "new\n");
+}
+
+static void test_output_abandon_keeps_the_old_file_when_called_before_commit(void **state) {
+    const char *path = temporary_folder_write(*state, "a.txt", "old", 3);
+    struct output output;
+    assert_ok(output_open(&output, path));
+    fputs("new\n", output.stream);
+    output_abandon(&output);
+    assert_file_holds(path, "old");
+    assert_no_partial(&output);
+}
+
+/// /dev/full takes no byte: the disk is full. The stream's buffer hides it until commit.
+static void test_output_commit_reports_and_cleans_up_when_the_disk_is_full(void **state) {
+    const char *path = temporary_folder_write(*state, "a.txt", "old", 3);
+    struct output output;
+    for (int bytes = 1; bytes < 2000000; bytes *= 1000) {
+        assert_ok(output_open(&output, path));
+        assert_non_null(freopen("/dev/full", "w", output.stream));
+        for (int k = 0; k < bytes; k++)
+            fputc('x', output.stream);
+        assert_fails(output_commit(&output), STATUS_IO, "a.txt: No space left on device");
+        assert_no_partial(&output);
+        output_abandon(&output);
+        assert_file_holds(path, "old");
+    }
+}
+
+static void test_output_commit_reports_and_cleans_up_when_the_file_grows_too_large(void **state) {
+    const char *path = temporary_folder_write(*state, "a.txt", "old", 3);
+    struct rlimit before;
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &(struct rlimit){1000, before.rlim_max}), 0);
+    struct output output;
+    const enum status opened = output_open(&output, path);
+    for (int k = 0; opened == STATUS_OK && k < 100000; k++)
+        fputc('x', output.stream);
+    const enum status status = opened == STATUS_OK ? output_commit(&output) : opened;
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+    assert_fails(status, STATUS_IO, "a.txt: File too large");
+    assert_no_partial(&output);
+    assert_file_holds(path, "old");
+}
+
+static void test_output_commit_reports_and_cleans_up_when_a_folder_is_in_the_way(void **state) {
+    const char *path = temporary_folder_file(*state, "a.txt");
+    assert_int_equal(mkdir(path, 0777), 0);
+    struct output output;
+    assert_ok(output_open(&output, path));
+    assert_fails(output_commit(&output), STATUS_IO, "a.txt: Is a directory");
+    assert_no_partial(&output);
+}
+
+static void test_output_open_names_the_file_when_the_folder_is_missing(void **state) {
+    struct output output;
+    const char *path = temporary_folder_file(*state, "no/a.txt");
+    assert_fails(output_open(&output, path), STATUS_IO, "no/a.txt: No such file or directory");
+    output_abandon(&output);
+}
+
+static void test_output_open_refuses_when_the_path_is_too_long(void **state) {
+    (void)state;
+    char path[OUTPUT_PATH_SIZE + 1];
+    memset(path, 'x', sizeof path - 1);
+    path[sizeof path - 1] = '\0';
+    struct output output;
+    assert_fails(output_open(&output, path), STATUS_IO, "longer than 4095 bytes");
+    output_abandon(&output);
+}
+
+static void test_output_make_folder_makes_parents_when_they_are_missing(void **state) {
+    const char *path = temporary_folder_file(*state, "a/b/c");
+    assert_ok(output_make_folder(path));
+    assert_true(temporary_folder_exists(path));
+    assert_ok(output_make_folder(path));
+    assert_ok(output_make_folder(temporary_folder_file(*state, "a//d/")));
+    assert_true(temporary_folder_exists(temporary_folder_file(*state, "a/d")));
+    assert_ok(output_make_folder("/"));
+    assert_ok(output_make_folder("."));
+}
+
+static void test_output_make_folder_names_the_path_when_a_file_is_in_the_way(void **state) {
+    temporary_folder_write(*state, "a", "", 0);
+    assert_fails(output_make_folder(temporary_folder_file(*state, "a")), STATUS_IO,
+                 "/a is not a folder");
+    assert_fails(output_make_folder(temporary_folder_file(*state, "a/b")), STATUS_IO,
+                 "/a is not a folder");
+    assert_fails(output_make_folder("/proc/no/folder"), STATUS_IO, "/proc/no/folder");
+    assert_fails(output_make_folder(""), STATUS_IO, "cannot make folder \"\"");
+}
+
+static void test_output_copy_file_copies_all_bytes_when_the_file_is_large(void **state) {
+    struct temporary_folder *folder = *state;
+    enum { SIZE = 200000 };
+    char *bytes = calloc(SIZE + 1, 1);
+    assert_non_null(bytes);
+    for (int k = 0; k < SIZE; k++)
+        bytes[k] = (char)('a' + k % 23);
+    char to[sizeof folder->file];
+    strcpy(to, temporary_folder_file(folder, "to"));
+    assert_ok(output_copy_file(temporary_folder_write(folder, "from", bytes, SIZE), to));
+    assert_file_holds(to, bytes);
+    free(bytes);
+}
+
+static void test_output_copy_file_names_the_culprit_when_it_fails(void **state) {
+    struct temporary_folder *folder = *state;
+    char to[sizeof folder->file];
+    strcpy(to, temporary_folder_file(folder, "to"));
+    assert_fails(output_copy_file(temporary_folder_file(folder, "none"), to), STATUS_IO,
+                 "none: No such file or directory");
+    assert_fails(output_copy_file(folder->path, to), STATUS_IO, "Is a directory");
+    assert_false(temporary_folder_exists(to));
+    assert_false(temporary_folder_exists(temporary_folder_file(folder, "to.partial")));
+    assert_fails(output_copy_file(temporary_folder_write(folder, "from", "x", 1), "/no/to"),
+                 STATUS_IO, "/no/to: No such file or directory");
+}
+
+#define IN_FOLDER(test)                                                                            \
+    cmocka_unit_test_setup_teardown(test, temporary_folder_create, temporary_folder_remove)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        IN_FOLDER(test_output_commit_replaces_the_file_when_all_was_written),
+        IN_FOLDER(test_output_abandon_keeps_the_old_file_when_called_before_commit),
+        IN_FOLDER(test_output_commit_reports_and_cleans_up_when_the_disk_is_full),
+        IN_FOLDER(test_output_commit_reports_and_cleans_up_when_the_file_grows_too_large),
+        IN_FOLDER(test_output_commit_reports_and_cleans_up_when_a_folder_is_in_the_way),
+        IN_FOLDER(test_output_open_names_the_file_when_the_folder_is_missing),
+        cmocka_unit_test(test_output_open_refuses_when_the_path_is_too_long),
+        IN_FOLDER(test_output_make_folder_makes_parents_when_they_are_missing),
+        IN_FOLDER(test_output_make_folder_names_the_path_when_a_file_is_in_the_way),
+        IN_FOLDER(test_output_copy_file_copies_all_bytes_when_the_file_is_large),
+        IN_FOLDER(test_output_copy_file_names_the_culprit_when_it_fails),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

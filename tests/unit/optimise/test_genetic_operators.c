@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Fixed seeds; bounds are five standard errors, or for χ² and Kolmogorov the value that a right
+// operator exceeds for one seed in a million.
+#include "base/rng.h"
+#include "optimise/genetic.h"
+#include "shared/is_close.h"
+#include "shared/testing.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { DRAWS = 60000 };
+
+static struct rng_sequence begin(uint64_t seed) {
+    return rng_sequence_begin(seed, RNG_SELECTION, 0, 0);
+}
+
+// Tournament --------------------------------------------------------------------------------------
+
+enum { POPULATION = 6 };
+
+/// Probability of each individual to win, by the rule: the winner so far meets a random rival, and
+/// the better of the two wins with probability p.
+static void expected_winners(const double *errors, int size, double p, double *probability) {
+    for (int k = 0; k < POPULATION; k++)
+        probability[k] = 1.0 / POPULATION;
+    for (int round = 1; round < size; round++) {
+        double next[POPULATION] = {0};
+        for (int winner = 0; winner < POPULATION; winner++)
+            for (int rival = 0; rival < POPULATION; rival++) {
+                const int better = errors[rival] < errors[winner] ? rival : winner;
+                const int worse = better == rival ? winner : rival;
+                next[better] += p * probability[winner] / POPULATION;
+                next[worse] += (1 - p) * probability[winner] / POPULATION;
+            }
+        memcpy(probability, next, sizeof next);
+    }
+}
+
+static void check_tournament(int size, double p) {
+    static const double errors[POPULATION] = {0.3, 0.1, 2, 0.2, GENETIC_FAILED, 0.5};
+    double probability[POPULATION], chi_squared = 0;
+    int wins[POPULATION] = {0};
+    struct rng_sequence random = begin((uint64_t)size);
+    for (int k = 0; k < DRAWS; k++)
+        wins[genetic_tournament(errors, POPULATION, size, p, &random)]++;
+    expected_winners(errors, size, p, probability);
+    for (int k = 0; k < POPULATION; k++) {
+        const double expected = DRAWS * probability[k];
+        if (expected > 0)
+            chi_squared += (wins[k] - expected) * (wins[k] - expected) / expected;
+        else
+            assert_int_equal(wins[k], 0);
+    }
+    if (!(chi_squared < 35.9)) // 5 degrees of freedom
+        fail_msg("size %d, probability %g: chi squared %g", size, p, chi_squared);
+}
+
+static void test_genetic_tournament_wins_with_the_probabilities_of_its_rule(void **state) {
+    (void)state;
+    check_tournament(1, 0.75);
+    check_tournament(2, 0.75);
+    check_tournament(2, 1);
+    check_tournament(3, 0.5);
+    check_tournament(8, 0.75);
+    check_tournament(8, 1);
+}
+
+// Crossover ---------------------------------------------------------------------------------------
+
+static void test_genetic_crossover_exchanges_all_genes_beyond_one_point(void **state) {
+    enum { GENES = 6 };
+    int points[GENES + 1] = {0};
+    struct rng_sequence random = begin(1);
+    (void)state;
+    for (int trial = 0; trial < DRAWS; trial++) {
+        double a[GENES], b[GENES];
+        int point = GENES;
+        for (int k = 0; k < GENES; k++) {
+            a[k] = k;
+            b[k] = 100 + k;
+        }
+        genetic_crossover(a, b, GENES, &random);
+        while (point > 0 && a[point - 1] >= 100)
+            point--;
+        for (int k = 0; k < GENES; k++) {
+            assert_close(a[k], k < point ? k : 100 + k, 0);
+            assert_close(b[k], k < point ? 100 + k : k, 0);
+        }
+        points[point]++;
+    }
+    double chi_squared = 0;
+    for (int point = 1; point < GENES; point++)
+        chi_squared += pow(points[point] - DRAWS / 5.0, 2) / (DRAWS / 5.0);
+    assert_int_equal(points[0] + points[GENES], 0);
+    assert_true(chi_squared < 33.4); // 4 degrees of freedom
+}
+
+static void test_genetic_crossover_leaves_single_genes_alone(void **state) {
+    double a = 1, b = 2;
+    struct rng_sequence random = begin(1);
+    (void)state;
+    genetic_crossover(&a, &b, 1, &random);
+    assert_close(a, 1, 0);
+    assert_close(b, 2, 0);
+}
+
+// Mutation ----------------------------------------------------------------------------------------
+
+static const struct genetic_parameters scaling = {
+    .genes = DRAWS, .gene_minimum = -2, .gene_maximum = 8, .mutation = 1, .additive = 0};
+
+/// DRAWS genes of one value, mutated; free() them.
+static double *mutated(double gene, const struct genetic_parameters *parameters, uint64_t seed) {
+    struct rng_sequence random = begin(seed);
+    double *genes = calloc(DRAWS, sizeof *genes);
+    assert_non_null(genes);
+    for (int k = 0; k < DRAWS; k++)
+        genes[k] = gene;
+    genetic_mutate(genes, parameters, &random);
+    return genes;
+}
+
+static int compare_numbers(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/// log2 of the factor is uniform in (−1, 1) by the test of Kolmogorov; so its mean is 0, and genes
+/// do not drift.
+static void test_genetic_mutate_scales_without_drift(void **state) {
+    double *genes = mutated(-3, &scaling, 2), mean = 0, largest = 0;
+    (void)state;
+    for (int k = 0; k < DRAWS; k++) {
+        genes[k] = log2(genes[k] / -3);
+        mean += genes[k] / DRAWS;
+    }
+    qsort(genes, DRAWS, sizeof *genes, compare_numbers);
+    assert_true(genes[0] > -1 && genes[DRAWS - 1] < 1);
+    for (int k = 0; k < DRAWS; k++)
+        largest = fmax(largest, fabs(0.5 * (genes[k] + 1) - (k + 0.5) / DRAWS));
+    assert_true(largest * sqrt(DRAWS) < 2.7);
+    assert_close(mean, 0, 5 / sqrt(3.0 * DRAWS));
+    free(genes);
+}
+
+/// A normal number of a tenth of the range, 1 here, is added: half of the genes near 0 change sign.
+static void test_genetic_mutate_crosses_zero_when_it_adds(void **state) {
+    struct genetic_parameters adding = scaling;
+    int negative = 0;
+    double squares = 0, mean = 0;
+    (void)state;
+    adding.additive = 1;
+    double *genes = mutated(0, &adding, 3);
+    for (int k = 0; k < DRAWS; k++) {
+        negative += genes[k] < 0;
+        mean += genes[k] / DRAWS;
+        squares += genes[k] * genes[k] / DRAWS;
+    }
+    assert_close(negative, 0.5 * DRAWS, 2.5 * sqrt(DRAWS));
+    assert_close(mean, 0, 5 / sqrt(DRAWS));
+    assert_close(squares, 1, 5 * sqrt(2.0 / DRAWS));
+    free(genes);
+}
+
+/// Genes that are 0 stay 0 when scaled: those that do not are the additive share.
+static void test_genetic_mutate_keeps_to_its_probabilities(void **state) {
+    struct genetic_parameters rare = scaling;
+    int scaled = 0, added = 0;
+    (void)state;
+    rare.mutation = 0.2;
+    rare.additive = 0.3;
+    double *ones = mutated(1, &rare, 4), *zeros = mutated(0, &rare, 5);
+    for (int k = 0; k < DRAWS; k++) {
+        scaled += ones[k] != 1;
+        added += zeros[k] != 0;
+    }
+    assert_close(scaled, 0.2 * DRAWS, 5 * sqrt(0.2 * 0.8 * DRAWS));
+    assert_close(added, 0.06 * DRAWS, 5 * sqrt(0.06 * 0.94 * DRAWS));
+    free(ones);
+    free(zeros);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_genetic_tournament_wins_with_the_probabilities_of_its_rule),
+        cmocka_unit_test(test_genetic_crossover_exchanges_all_genes_beyond_one_point),
+        cmocka_unit_test(test_genetic_crossover_leaves_single_genes_alone),
+        cmocka_unit_test(test_genetic_mutate_scales_without_drift),
+        cmocka_unit_test(test_genetic_mutate_crosses_zero_when_it_adds),
+        cmocka_unit_test(test_genetic_mutate_keeps_to_its_probabilities),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

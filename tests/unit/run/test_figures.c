@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/figures.h"
+
+#include "io/output.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { PATH = 512 };
+
+static char root[] = "/tmp/mesofit_figures_XXXXXX";
+
+static void write_table(const char *folder, const char *name, const char *text) {
+    char path[PATH + 64];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *stream = fopen(path, "w");
+    assert_non_null(stream);
+    fputs(text, stream);
+    assert_int_equal(fclose(stream), 0);
+}
+
+/// A new folder of that name below the root, for the caller's `path`.
+static void make_folder(char path[PATH], const char *name) {
+    snprintf(path, PATH, "%s/%s", root, name);
+    assert_int_equal(output_make_folder(path), STATUS_OK);
+}
+
+static bool is_drawn(const char *folder, const char *name) {
+    char svg[PATH + 64], png[PATH + 64];
+    snprintf(svg, sizeof svg, "%s/figures/%s.svg", folder, name);
+    snprintf(png, sizeof png, "%s/figures/%s.png", folder, name);
+    assert_int_equal(access(svg, F_OK), access(png, F_OK));
+    return access(svg, F_OK) == 0;
+}
+
+static void skip_without_gnuplot(void) {
+    if (system("gnuplot --version >/dev/null 2>&1") != 0)
+        skip();
+}
+
+static const char fit_rdf[] =
+    "# r[lambda]\ttarget[1]\ttarget_error[1]\tresult[1]\tresult_error[1]\n"
+    "0.5\t0\t0\t0\t0\n1\t1.5\tnan\t1.4\t0.1\n1.5\t1\t0.1\t1.1\t0.1\n";
+static const char ga_history[] =
+    "# iteration[1]\tevaluations[1]\tengine_steps[1]\terror[1]\tnoise[1]\tbest[1]\tmean[1]\t"
+    "diversity[1]\tfailures[1]\n0\t10\t100\t0.5\t0\t0.5\t1\t2\t0\n1\t20\t200\t0.4\tnan\t0."
+    "4\t1\t1\t0\n";
+static const char imc_history[] =
+    "# iteration[1]\tevaluations[1]\tengine_steps[1]\terror[1]\tnoise[1]\tdamping[1]\t"
+    "regularisation[1]\n0\t1\t100\t0.5\t0.01\t1\t0\n";
+static const char timing[] = "# iteration[1]\tseconds[s]\n0\t0\n1\t2\n";
+
+static void test_draws_what_the_tables_allow(void **state) {
+    (void)state;
+    skip_without_gnuplot();
+    char folder[PATH];
+    make_folder(folder, "it's a \"fit\" $HOME\\");
+    write_table(folder, "rdf.tsv", fit_rdf);
+    write_table(folder, "potential.tsv",
+                "# r[lambda]\tphi[k_BT_0]\tforce[k_BT_0/lambda]\tphi_error[k_BT_0]\n"
+                "0.5\t1000\t0\tnan\n1\t-0.5\t0\tnan\n1.5\t0\t0\tnan\n");
+    write_table(folder, "history.tsv", ga_history);
+    write_table(folder, "timing.tsv", timing);
+    if (figures_draw(folder) != STATUS_OK)
+        fail_msg("%s", status_message());
+    assert_true(is_drawn(folder, "rdf"));
+    assert_true(is_drawn(folder, "potential"));
+    assert_true(is_drawn(folder, "error"));
+    assert_true(is_drawn(folder, "generations"));
+    assert_false(is_drawn(folder, "simulation"));
+}
+
+static void test_draws_no_generations_without_diversity(void **state) {
+    (void)state;
+    skip_without_gnuplot();
+    char folder[PATH];
+    make_folder(folder, "imc");
+    write_table(folder, "history.tsv", imc_history);
+    write_table(folder, "timing.tsv", timing);
+    assert_int_equal(figures_draw(folder), STATUS_OK);
+    assert_true(is_drawn(folder, "error"));
+    assert_false(is_drawn(folder, "generations"));
+}
+
+static void test_draws_simulation_and_no_fit(void **state) {
+    (void)state;
+    skip_without_gnuplot();
+    char folder[PATH];
+    make_folder(folder, "simulation");
+    write_table(folder, "rdf.tsv", "# r[lambda]\tg[1]\tg_error[1]\n0.5\t0\t0\n1\t1\t0.1\n");
+    write_table(folder, "thermodynamics.tsv",
+                "# step[1]\ttime[tau]\ttemperature[T_0]\tpotential_energy[k_BT_0]\t"
+                "pressure[k_BT_0/lambda^3]\ttemperature_configurational[T_0]\n"
+                "0\t0\t1\t0\t3\tnan\n1\t0.1\t1\t0\t3\tnan\n");
+    assert_int_equal(figures_draw(folder), STATUS_OK);
+    assert_true(is_drawn(folder, "simulation"));
+    assert_false(is_drawn(folder, "rdf"));
+}
+
+static void test_draws_nothing_without_tables(void **state) {
+    (void)state;
+    char folder[PATH], figures[PATH + 64];
+    make_folder(folder, "empty");
+    assert_int_equal(figures_draw(folder), STATUS_OK);
+    snprintf(figures, sizeof figures, "%s/figures", folder);
+    assert_int_not_equal(access(figures, F_OK), 0);
+}
+
+static void test_broken_tables_spoil_their_figures_only(void **state) {
+    (void)state;
+    skip_without_gnuplot();
+    char folder[PATH];
+    make_folder(folder, "broken/figures"); // with figures of an earlier run
+    write_table(folder, "rdf.svg", "old");
+    write_table(folder, "rdf.png", "old");
+    make_folder(folder, "broken");
+    write_table(folder, "potential.tsv", "# r phi force phi_error\nnot a number\n");
+    write_table(folder, "rdf.tsv", "# r target target_error result result_error\nnot a number\n");
+    write_table(folder, "history.tsv", imc_history);
+    write_table(folder, "timing.tsv", timing);
+    assert_int_equal(figures_draw(folder), STATUS_IO);
+    assert_non_null(strstr(status_message(), "/broken/figures/rdf: gnuplot failed: "));
+    assert_non_null(strstr(status_message(), "rdf.gp\" line "));
+    assert_null(strchr(status_message(), '\n'));
+    assert_false(is_drawn(folder, "rdf"));
+    assert_true(is_drawn(folder, "error"));
+}
+
+static void test_missing_gnuplot_is_one_clear_line(void **state) {
+    (void)state;
+    char folder[PATH], message[2 * PATH], *path = strdup(getenv("PATH"));
+    make_folder(folder, "no_gnuplot");
+    write_table(folder, "rdf.tsv", fit_rdf);
+    assert_int_equal(setenv("PATH", root, 1), 0);
+    const enum status status = figures_draw(folder);
+    assert_int_equal(setenv("PATH", path, 1), 0);
+    free(path);
+    assert_int_equal(status, STATUS_IO);
+    snprintf(message, sizeof message, "no figure %s/figures/rdf: gnuplot is not installed", folder);
+    assert_string_equal(status_message(), message);
+}
+
+static void test_comparison_needs_its_table(void **state) {
+    (void)state;
+    assert_int_equal(figures_draw_comparison(root), STATUS_IO);
+    assert_non_null(strstr(status_message(), "no compare.tsv in "));
+}
+
+static int make_root(void **state) {
+    (void)state;
+    return mkdtemp(root) ? 0 : -1;
+}
+
+static int remove_root(void **state) {
+    (void)state;
+    char command[PATH];
+    snprintf(command, sizeof command, "rm -r '%s'", root);
+    return system(command);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_draws_what_the_tables_allow),
+        cmocka_unit_test(test_draws_no_generations_without_diversity),
+        cmocka_unit_test(test_draws_simulation_and_no_fit),
+        cmocka_unit_test(test_draws_nothing_without_tables),
+        cmocka_unit_test(test_broken_tables_spoil_their_figures_only),
+        cmocka_unit_test(test_missing_gnuplot_is_one_clear_line),
+        cmocka_unit_test(test_comparison_needs_its_table),
+    };
+    return cmocka_run_group_tests(tests, make_root, remove_root);
+}

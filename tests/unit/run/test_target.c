@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/target.h"
+#include "shared/is_close.h"
+#include "shared/temporary_folder.h"
+#include "shared/testing.h"
+
+#include <stdio.h>
+
+/// Read the target `table` with more members of its object; the status is that of the document.
+static enum status read(void **state, const char *table, const char *members,
+                        struct target *target) {
+    char text[512];
+    struct json_document *document;
+    temporary_folder_write(*state, "g.tsv", table, strlen(table));
+    const int length =
+        snprintf(text, sizeof text, "{\"target\": {\"file\": \"g.tsv\"%s}}", members);
+    assert_ok(json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
+    struct json_object root = json_root(document);
+    assert_ok(target_read(target, &root));
+    json_finish(&root);
+    return json_close(document);
+}
+
+static void assert_refused(void **state, const char *table, const char *members, const char *part) {
+    struct target target;
+    assert_fails(read(state, table, members, &target), STATUS_BAD_INPUT, part);
+    assert_contains(status_message(), "a.json: target");
+    target_clear(&target);
+}
+
+static void test_target_read_takes_the_bins_from_their_centres(void **state) {
+    struct target target;
+    assert_ok(
+        read(state, "# r g\n0.05 0 0\n0.15 0.5 0.1\n0.25 1.5 0.2\n0.35 1 0.3\n", "", &target));
+    assert_int_equal(target.bins.count, 4);
+    assert_close(target.bins.low, 0, 0);
+    assert_close(target.bins.width, 0.1, 1e-15);
+    assert_close(target.g[2], 1.5, 0);
+    assert_close(target.error[3], 0.3, 0);
+    target_clear(&target);
+}
+
+static void test_target_read_lets_the_first_bin_begin_above_0(void **state) {
+    struct target target;
+    assert_ok(read(state, "0.25 0 0\n0.35 0.5 0\n0.45 1.5 0\n0.55 1 0\n", "", &target));
+    assert_close(target.bins.low, 0.2, 1e-15);
+    target_clear(&target);
+}
+
+static void test_target_read_forgives_the_rounding_of_the_file(void **state) {
+    struct target target;
+    // Bins of 1/300, given with five decimals.
+    assert_ok(read(state, "0.00167 0 0\n0.005 0.5 0\n0.00833 1.5 0\n0.01167 1 0\n0.015 1 0\n", "",
+                   &target));
+    assert_close(target.bins.low, 0, 0);
+    assert_close_relative(target.bins.width, 1.0 / 300, 1e-3);
+    target_clear(&target);
+}
+
+static void test_target_read_takes_the_columns_it_is_told(void **state) {
+    struct target target;
+    static const char table[] = "9 0.1 8 0.5\n9 0.2 8 1.5\n9 0.3 8 1\n9 0.4 8 2\n";
+    assert_ok(
+        read(state, table, ", \"r_column\": 2, \"g_column\": 4, \"error_column\": 0", &target));
+    assert_close(target.bins.low, 0.05, 1e-15);
+    assert_close(target.g[3], 2, 0);
+    assert_close(target.error[3], 0, 0);
+    target_clear(&target);
+    assert_refused(state, table, ", \"g_column\": 5", "g.tsv:1: 4 columns, at least 5");
+    assert_refused(state, table, ", \"r_column\": 0", "target.r_column: 0 is out of range");
+}
+
+/// The line behind the gap is named, wherever it is and although it shifts the mean step.
+static void test_target_read_names_the_line_behind_a_gap(void **state) {
+    enum { BINS = 10 };
+    for (int gap = 1; gap < BINS - 1; gap++) {
+        char table[512] = "# r g error\n", where[128];
+        for (int k = 0; k < BINS; k++)
+            if (k != gap)
+                snprintf(table + strlen(table), sizeof table - strlen(table), "%g 1 0\n",
+                         0.1 * k + 0.05);
+        snprintf(where, sizeof where, "g.tsv:%d: the bins are not equally spaced: a step of 0.2",
+                 gap + 2);
+        assert_refused(state, table, "", where);
+    }
+}
+
+static void test_target_read_refuses_what_is_no_g_of_r(void **state) {
+    assert_refused(state, "0.1 1 0\n0.3 1 0\n0.2 1 0\n0.4 1 0\n", "", "g.tsv:3: column 1");
+    assert_refused(state, "0.1 1 0\n0.1 1 0\n0.2 1 0\n0.4 1 0\n", "", "g.tsv:2: column 1");
+    assert_refused(state, "-0.1 1 0\n0 1 0\n0.1 1 0\n0.2 1 0\n", "", "-0.1 is below 0");
+    assert_refused(state, "0 1 0\n0.1 1 0\n0.2 1 0\n0.3 1 0\n", "",
+                   "g.tsv:1: r = 0 is not the centre");
+    assert_refused(state, "0.1 1 0\n0.2 1 0\n0.3 1 0\n", "", "only 3 bins");
+    assert_refused(state, "0.1 1 0\n0.2 -1 0\n0.3 1 0\n0.4 1 0\n", "", "g.tsv:2: a negative");
+    assert_refused(state, "0.1 1 0\n0.2 1 -1\n0.3 1 0\n0.4 1 0\n", "", "g.tsv:2: a negative");
+    assert_refused(state, "0.1 1 0\n0.2 1e999 0\n0.3 1 0\n0.4 1 0\n", "", "g.tsv:2: column 2");
+}
+
+#define TEST(name)                                                                                 \
+    cmocka_unit_test_setup_teardown(name, temporary_folder_create, temporary_folder_remove)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        TEST(test_target_read_takes_the_bins_from_their_centres),
+        TEST(test_target_read_lets_the_first_bin_begin_above_0),
+        TEST(test_target_read_forgives_the_rounding_of_the_file),
+        TEST(test_target_read_takes_the_columns_it_is_told),
+        TEST(test_target_read_names_the_line_behind_a_gap),
+        TEST(test_target_read_refuses_what_is_no_g_of_r),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "system/placement.h"
+
+#include "shared/is_close.h"
+#include "shared/testing.h"
+
+/// Least distance of any two particles, nearest images.
+static double least_distance(const struct particles *particles) {
+    double least = INFINITY;
+    for (size_t i = 0; i < particles->count; i++)
+        for (size_t j = i + 1; j < particles->count; j++) {
+            double square = 0;
+            for (int d = 0; d < particles->box.dimensions; d++) {
+                const double dx = box_nearest(particles->position[d][i] - particles->position[d][j],
+                                              particles->box.length[d]);
+                square += dx * dx;
+            }
+            least = fmin(least, square);
+        }
+    return sqrt(least);
+}
+
+/// All positions are in the box, and the fractions are up to date.
+static void check_in_box(const struct particles *particles) {
+    for (int d = 0; d < particles->box.dimensions; d++)
+        for (size_t k = 0; k < particles->count; k++) {
+            const double x = particles->position[d][k], length = particles->box.length[d];
+            assert_true(x >= 0 && x < length);
+            assert_int_equal(particles->fraction[d][k], box_fraction(x, 1 / length));
+        }
+}
+
+static void test_placement_lattice_is_simple_cubic_when_count_is_a_cube(void **state) {
+    (void)state;
+    struct particles particles;
+    const struct box box = {3, {9.427, 9.427, 9.427}};
+    assert_ok(particles_init(&particles, &box, 2744));
+    placement_lattice(&particles, 0, 1);
+    check_in_box(&particles);
+    assert_close(least_distance(&particles), 9.427 / 14, 1e-12);
+    particles_clear(&particles);
+}
+
+static void test_placement_lattice_is_square_when_in_two_dimensions(void **state) {
+    (void)state;
+    struct particles particles;
+    const struct box box = {2, {6, 6, 1}};
+    assert_ok(particles_init(&particles, &box, 144));
+    placement_lattice(&particles, 0, 1);
+    check_in_box(&particles);
+    assert_close(least_distance(&particles), 0.5, 1e-12);
+    particles_clear(&particles);
+}
+
+/// No site is used twice, whatever the count and shape; the sites are no finer than needed.
+static void test_placement_lattice_keeps_particles_apart_when_count_is_odd(void **state) {
+    (void)state;
+    static const struct box boxes[] = {
+        {3, {5, 5, 5}}, {3, {20, 3, 4}}, {2, {7, 7, 1}}, {2, {2, 30, 1}}};
+    for (int b = 0; b < 4; b++)
+        for (size_t count = 2; count < 130; count += 7) {
+            struct particles particles;
+            assert_ok(particles_init(&particles, &boxes[b], count));
+            placement_lattice(&particles, 0, 1);
+            check_in_box(&particles);
+            const double spacing =
+                pow(box_volume(&boxes[b]) / (double)count, 1.0 / boxes[b].dimensions);
+            assert_true(least_distance(&particles) > 0.55 * spacing);
+            particles_clear(&particles);
+        }
+}
+
+static void test_placement_lattice_shifts_within_the_jitter_when_asked(void **state) {
+    (void)state;
+    struct particles even, shifted, again, other;
+    const struct box box = {3, {6, 6, 6}};
+    assert_ok(particles_init(&even, &box, 216));
+    assert_ok(particles_init(&shifted, &box, 216));
+    assert_ok(particles_init(&again, &box, 216));
+    assert_ok(particles_init(&other, &box, 216));
+    placement_lattice(&even, 0, 1);
+    placement_lattice(&shifted, 0.3, 1);
+    placement_lattice(&again, 0.3, 1);
+    placement_lattice(&other, 0.3, 2);
+    check_in_box(&shifted);
+    double largest = 0, difference = 0;
+    for (int d = 0; d < 3; d++)
+        for (size_t k = 0; k < 216; k++) {
+            const double shift = fabs(shifted.position[d][k] - even.position[d][k]);
+            assert_true(shift <= 0.3 + 1e-12); // the spacing is 1
+            largest = fmax(largest, shift);
+            assert_identical(again.position[d][k], shifted.position[d][k]);
+            difference = fmax(difference, fabs(other.position[d][k] - shifted.position[d][k]));
+        }
+    assert_true(largest > 0.29);
+    assert_true(difference > 0.3);
+    particles_clear(&even);
+    particles_clear(&shifted);
+    particles_clear(&again);
+    particles_clear(&other);
+}
+
+static void check_random(const struct box *box, size_t count, double separation) {
+    struct particles particles, again;
+    assert_ok(particles_init(&particles, box, count));
+    assert_ok(particles_init(&again, box, count));
+    assert_ok(placement_random(&particles, separation, 3));
+    assert_ok(placement_random(&again, separation, 3));
+    check_in_box(&particles);
+    assert_true(least_distance(&particles) >= separation);
+    for (int d = 0; d < box->dimensions; d++)
+        assert_memory_equal(particles.position[d], again.position[d], count * sizeof(double));
+    particles_clear(&particles);
+    particles_clear(&again);
+}
+
+static void test_placement_random_keeps_the_separation_when_there_is_room(void **state) {
+    (void)state;
+    check_random(&(struct box){3, {6, 7, 5}}, 200, 0.8);
+    check_random(&(struct box){3, {20, 1.3, 1.2}}, 30, 0.6);
+    check_random(&(struct box){2, {8, 9, 1}}, 60, 0.7);
+    check_random(&(struct box){3, {6, 7, 5}}, 200, 0);
+}
+
+/// Octants of the box are equally likely: χ² of 7 degrees is below 24.3 with probability 0.999.
+static void test_placement_random_is_uniform_when_there_is_no_separation(void **state) {
+    (void)state;
+    enum { COUNT = 8000 };
+    struct particles particles;
+    const struct box box = {3, {4, 5, 6}};
+    assert_ok(particles_init(&particles, &box, COUNT));
+    assert_ok(placement_random(&particles, 0, 17));
+    int hits[8] = {0};
+    for (size_t k = 0; k < COUNT; k++)
+        hits[(particles.position[0][k] > 2) + 2 * (particles.position[1][k] > 2.5) +
+             4 * (particles.position[2][k] > 3)]++;
+    double chi2 = 0;
+    for (int o = 0; o < 8; o++)
+        chi2 += (hits[o] - COUNT / 8.0) * (hits[o] - COUNT / 8.0) / (COUNT / 8.0);
+    assert_true(chi2 < 24.3);
+    particles_clear(&particles);
+}
+
+static void test_placement_random_fails_when_the_density_is_too_high(void **state) {
+    (void)state;
+    struct particles particles;
+    assert_ok(particles_init(&particles, &(struct box){3, {3, 3, 3}}, 200));
+    assert_fails(placement_random(&particles, 1, 1), STATUS_BAD_INPUT, "no room for particle");
+    particles_clear(&particles);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_placement_lattice_is_simple_cubic_when_count_is_a_cube),
+        cmocka_unit_test(test_placement_lattice_is_square_when_in_two_dimensions),
+        cmocka_unit_test(test_placement_lattice_keeps_particles_apart_when_count_is_odd),
+        cmocka_unit_test(test_placement_lattice_shifts_within_the_jitter_when_asked),
+        cmocka_unit_test(test_placement_random_keeps_the_separation_when_there_is_room),
+        cmocka_unit_test(test_placement_random_is_uniform_when_there_is_no_separation),
+        cmocka_unit_test(test_placement_random_fails_when_the_density_is_too_high),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
