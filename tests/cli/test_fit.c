@@ -98,11 +98,11 @@ static void test_genetic_gives_the_same_bits_from_its_used_settings(void **state
 }
 
 /// Interrupted again and again at different places, the fit ends with the bits of one in peace.
-static void check_interruption(double first, int code) {
+static void check_interruption(int code) {
     static const char *const words[] = {"fit", "run.json", "-o", "pieces", "--threads", "2", NULL};
     static const char *const numbers[] = {"iterations", "evaluations", "engine_steps", "rdf_rmse"};
     run_fit("whole", "2", code);
-    run_program_in_pieces(first, code, words);
+    run_program_in_pieces(code, words);
     results_assert_same("whole", "pieces", tables);
     results_assert_same("whole", "pieces", (const char *const[]){"used.json", NULL});
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
@@ -112,12 +112,12 @@ static void check_interruption(double first, int code) {
 
 static void test_interrupted_imc_goes_on_with_the_same_bits(void **state) {
     write_fit(*state, IMC);
-    check_interruption(0.05, UNCONVERGED);
+    check_interruption(UNCONVERGED);
 }
 
 static void test_interrupted_genetic_goes_on_with_the_same_bits(void **state) {
     write_fit(*state, GENETIC("0.3"));
-    check_interruption(0.02, CONVERGED);
+    check_interruption(CONVERGED);
 }
 
 static void test_interrupted_fit_says_so_and_refuses_other_settings(void **state) {
