@@ -8,10 +8,12 @@
 # make lint           formatting, static analysis, layers, names, licence lines
 # make bench          speed of the engine on this machine
 # make WERROR=1 …     warnings are errors
+# make VERBOSE=1 …    shows the whole commands
 
 MAKEFLAGS += --no-print-directory
 
 BUILD   ?= build
+AT       = $(if $(VERBOSE),,@)
 PACKAGES = gsl libcjson
 WARN     = -Wall -Wextra -Wshadow -Wpointer-arith -Wstrict-prototypes -Wmissing-prototypes \
            -Wvla -Wundef $(if $(WERROR),-Werror)
@@ -37,14 +39,17 @@ mesofit: $(PROGRAM)
 
 $(LIBRARY): $(filter-out $(BUILD)/src/app/%,$(OBJECTS))
 	@rm -f $@
-	ar rcs $@ $^
+	@echo "ar $@"
+	$(AT)ar rcs $@ $^
 
 $(PROGRAM): $(filter $(BUILD)/src/app/%,$(OBJECTS)) $(LIBRARY)
-	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+	@echo "ld $@"
+	$(AT)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
 $(BUILD)/%.o: %.c Makefile
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) -c -o $@ $<
+	@echo "cc $<"
+	$(AT)$(CC) $(CFLAGS) -c -o $@ $<
 
 # Tests: one program a file; a test may use the helpers in tests/shared.
 UNIT      = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/unit/*/test_*.c))
@@ -57,7 +62,8 @@ TESTS     = $(UNIT) $(REFERENCE) $(CLI) $(PHYSICS)
 
 $(TESTS): CFLAGS += -Itests
 $(TESTS): %: %.o $(SHARED) $(LIBRARY)
-	$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LDLIBS)
+	@echo "ld $@"
+	$(AT)$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LDLIBS)
 
 .PHONY: test tests
 tests: all $(TESTS)

@@ -13,11 +13,6 @@ enum { MEMORY_ALIGNMENT = 64 };
 /// @return NULL if there is no memory or count × size overflows; the message is set.
 void *memory_zeroed(size_t count, size_t size) MUST_USE;
 
-/// Make `*array` at least `count` elements long; the contents are lost when it has to grow.
-/// @param[in,out] array     from memory_zeroed, or NULL with *capacity = 0
-/// @param[in,out] capacity  elements that fit now
-enum status memory_reserve(void *array, size_t *capacity, size_t count, size_t size) MUST_USE;
-
 /// A piece of state that a checkpoint keeps.
 struct memory_span {
     void *memory;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Strict JSON: the only file that knows cJSON.
+/// @file Strict reading of JSON.
 ///
-/// Reading collects every fault of a file (unknown key with the nearest known one, wrong type, out
+/// It collects every fault of a file (unknown key with the nearest known one, wrong type, out
 /// of range, missing, duplicate) and reports them together. A document is read through
 /// `struct json_object` views; a view remembers which keys were asked for, so that whatever is
 /// left over is an unknown key. Numbers must be finite; integers must be below 2^53, because 2^53
@@ -14,8 +14,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-
-/// @name Reading
 
 struct json_document;
 
@@ -55,10 +53,6 @@ void json_fields(struct json_object *object, const struct field *fields, void *p
 const char *json_choice(struct json_object *object, const char *key, const char *const *known,
                         const char *fallback);
 
-/// Read an array of numbers into a new array from memory_zeroed; *count is 0 if it is absent.
-enum status json_numbers(struct json_object *object, const char *key, double **values,
-                         size_t *count) MUST_USE;
-
 /// Record a fault of the object's own making; `key` may be NULL. The message is printed as
 /// "file: path.key: message".
 void json_fault(struct json_object *object, const char *key, const char *format, ...)
@@ -72,33 +66,3 @@ size_t json_fault_count(const struct json_document *document);
 
 /// Free the document. BAD_INPUT with all faults, one a line, if there were any.
 enum status json_close(struct json_document *document) MUST_USE;
-
-/// @name Writing
-/// A tree is built and then written whole. The first problem (no memory, a number that is not
-/// finite, a key given twice) is remembered and reported by json_write, so that building needs no
-/// checks. Numbers get the fewest digits of %.15g and %.17g that read back to the same bits.
-
-struct json_writer;
-
-struct json_writer *json_writer_create(void); ///< NULL if there is no memory
-void json_writer_free(struct json_writer *writer);
-
-/// Enter a new object at `key` of the current object; leave it with json_end.
-void json_begin(struct json_writer *writer, const char *key);
-void json_end(struct json_writer *writer);
-
-void json_put_number(struct json_writer *writer, const char *key, double value);
-/// All digits are written, but json_fields refuses 2^53 and beyond.
-void json_put_integer(struct json_writer *writer, const char *key, int64_t value);
-void json_put_text(struct json_writer *writer, const char *key, const char *value);
-void json_put_numbers(struct json_writer *writer, const char *key, const double *values,
-                      size_t count);
-
-/// Write every member that `fields` describes; FIELD_TEXT and FIELD_FILE that are empty, and
-/// FIELD_LENGTHS that are all 0, are left out. Reading the result back gives the same bits, except
-/// that a relative FIELD_FILE is written absolute, so that it names the same file from any folder.
-void json_put_fields(struct json_writer *writer, const struct field *fields,
-                     const void *parameters);
-
-/// Write the tree to `file`, whole or not at all (output.h).
-enum status json_write(const struct json_writer *writer, const char *file) MUST_USE;

@@ -27,6 +27,3 @@ void output_abandon(struct output *output);
 
 /// Make a folder and its missing parents; an existing folder is fine.
 enum status output_make_folder(const char *path) MUST_USE;
-
-/// Copy `from` to `to`, whole or not at all.
-enum status output_copy_file(const char *from, const char *to) MUST_USE;

@@ -5,6 +5,7 @@
 #include "curves/curve.h"
 #include "dynamics/simulation.h"
 #include "io/json.h"
+#include "io/json_write.h"
 #include "run/units.h"
 
 enum scene_potential {

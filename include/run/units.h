@@ -4,6 +4,7 @@
 
 #include "base/fields.h"
 #include "io/json.h"
+#include "io/json_write.h"
 
 /// Boltzmann's and Avogadro's constants (exact, SI 2019).
 #define UNITS_BOLTZMANN 1.380649e-23

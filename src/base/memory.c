@@ -19,20 +19,6 @@ void *memory_zeroed(size_t count, size_t size) {
     return array;
 }
 
-enum status memory_reserve(void *array, size_t *capacity, size_t count, size_t size) {
-    if (count <= *capacity)
-        return STATUS_OK;
-    void *larger = memory_zeroed(count, size);
-    if (larger == NULL)
-        return STATUS_NO_MEMORY;
-    void *old;
-    memcpy(&old, array, sizeof old);
-    memory_free(old);
-    memcpy(array, &larger, sizeof larger);
-    *capacity = count;
-    return STATUS_OK;
-}
-
 void memory_free(void *array) {
     free(array);
 }

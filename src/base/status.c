@@ -23,8 +23,9 @@ enum status status_prefix(enum status status, const char *format, ...) {
     va_start(arguments, format);
     const int length = vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
-    if (length >= 0 && (size_t)length < sizeof message)
-        snprintf(message + length, sizeof message - (size_t)length, ": %s", rest);
+    const int room = MESSAGE_SIZE - length - (int)sizeof ": ";
+    if (length >= 0 && room > 0)
+        snprintf(message + length, (size_t)(MESSAGE_SIZE - length), ": %.*s", room, rest);
     return status;
 }
 

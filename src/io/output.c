@@ -77,29 +77,3 @@ enum status output_make_folder(const char *path) {
     }
     return make_one_folder(folder, path);
 }
-
-static enum status copy_stream(FILE *from, const char *name, FILE *to) {
-    char bytes[65536];
-    size_t count;
-    while ((count = fread(bytes, 1, sizeof bytes, from)) > 0)
-        if (fwrite(bytes, 1, count, to) != count)
-            break; // output_commit reports it
-    if (ferror(from))
-        return status_fail(STATUS_IO, "cannot read %s: %s", name, strerror(errno));
-    return STATUS_OK;
-}
-
-enum status output_copy_file(const char *from, const char *to) {
-    enum status status = STATUS_OK;
-    struct output output = {0};
-    FILE *source = fopen(from, "rb");
-    if (source == NULL)
-        return status_fail(STATUS_IO, "cannot read %s: %s", from, strerror(errno));
-    CHECK(output_open(&output, to));
-    CHECK(copy_stream(source, from, output.stream));
-    CHECK(output_commit(&output));
-done:
-    output_abandon(&output);
-    fclose(source);
-    return status;
-}

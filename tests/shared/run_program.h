@@ -38,9 +38,10 @@ void run_program_assert_code(const struct run_program_result *result, int expect
 void run_program_assert_refused(const struct run_program_result *result, const char *folder,
                                 const char *what, size_t lines, const char *const *words);
 
-/// Run with `words`, interrupt it soon after its first words, go on with --resume for twice as long,
-/// and so on until it ends by itself; its exit code must be `code`. A machine that is done before
-/// the first signal gets the signal sooner. Returns how many runs were interrupted, at least one.
+/// Run with `words`, interrupt it soon after its first words, go on with --resume for twice as
+/// long, and so on until it ends by itself; its exit code must be `code`. A machine that is done
+/// before the first signal gets the signal sooner. Returns how many runs were interrupted, at least
+/// one.
 int run_program_in_pieces(int code, const char *const *words);
 
 /// Lines of a text; one without an end counts too.

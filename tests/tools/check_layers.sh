@@ -47,7 +47,7 @@ only_in() {
 
 faults=$(
     includes_against_the_rules
-    only_in src/io/json.c 'include.*cJSON\.h' 'cJSON'
+    only_in 'src/io/json[_a-z]*.c' 'include.*cJSON\.h' 'cJSON'
     only_in src/optimise/nlopt_driver.c 'include.*nlopt\.h' 'NLopt'
     only_in src/run/figures.c '"([^" ]*/)?gnuplot[" ]' 'gnuplot'
     only_in src/run/figures.c '\b(fork|vfork|popen|system|exec[lv]p?e?|posix_spawnp?) ?\(' \

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/json.h"
+#include "io/json_write.h"
 #include "shared/is_close.h"
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
@@ -277,29 +278,6 @@ static void test_json_choice_returns_known_texts_when_given_or_falls_back(void *
     assert_contains(status_message(), "missing: missing: a text is required");
 }
 
-static void test_json_numbers_reads_an_array_when_all_are_numbers(void **state) {
-    struct json_document *document =
-        open_text(state, "{\"a\": [1, -2.5, 3e-3], \"none\": [], \"bad\": [1, null], \"x\": 3}");
-    struct json_object root = json_root(document);
-    double *values;
-    size_t count;
-    assert_ok(json_numbers(&root, "a", &values, &count));
-    assert_int_equal(count, 3);
-    assert_identical(values[1], -2.5);
-    assert_identical(values[2], 3e-3);
-    free(values);
-    static const char *const empty[] = {"none", "absent", "bad", "x"};
-    for (int k = 0; k < 4; k++) {
-        assert_ok(json_numbers(&root, empty[k], &values, &count));
-        assert_int_equal(count, 0);
-        assert_null(values);
-    }
-    json_finish(&root);
-    assert_int_equal(json_fault_count(document), 2);
-    assert_fails(json_close(document), STATUS_BAD_INPUT, "bad[1]: expected a number, found null");
-    assert_contains(status_message(), "x: expected an array of numbers, found the number 3");
-}
-
 static void test_json_close_counts_the_rest_when_faults_are_many(void **state) {
     struct json_document *document = open_text(state, "{}");
     struct json_object root = json_root(document);
@@ -457,7 +435,6 @@ int main(void) {
         IN_FOLDER(test_json_open_records_a_fault_when_a_key_stands_twice),
         IN_FOLDER(test_json_child_reports_paths_when_objects_are_nested),
         IN_FOLDER(test_json_choice_returns_known_texts_when_given_or_falls_back),
-        IN_FOLDER(test_json_numbers_reads_an_array_when_all_are_numbers),
         IN_FOLDER(test_json_close_counts_the_rest_when_faults_are_many),
         IN_FOLDER(test_json_close_drops_whole_lines_when_faults_are_long),
         IN_FOLDER(test_json_put_fields_reads_back_the_same_bits_when_digits_are_many),

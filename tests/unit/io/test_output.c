@@ -122,33 +122,6 @@ static void test_output_make_folder_names_the_path_when_a_file_is_in_the_way(voi
     assert_fails(output_make_folder(""), STATUS_IO, "cannot make folder \"\"");
 }
 
-static void test_output_copy_file_copies_all_bytes_when_the_file_is_large(void **state) {
-    struct temporary_folder *folder = *state;
-    enum { SIZE = 200000 };
-    char *bytes = calloc(SIZE + 1, 1);
-    assert_non_null(bytes);
-    for (int k = 0; k < SIZE; k++)
-        bytes[k] = (char)('a' + k % 23);
-    char to[sizeof folder->file];
-    strcpy(to, temporary_folder_file(folder, "to"));
-    assert_ok(output_copy_file(temporary_folder_write(folder, "from", bytes, SIZE), to));
-    assert_file_holds(to, bytes);
-    free(bytes);
-}
-
-static void test_output_copy_file_names_the_culprit_when_it_fails(void **state) {
-    struct temporary_folder *folder = *state;
-    char to[sizeof folder->file];
-    strcpy(to, temporary_folder_file(folder, "to"));
-    assert_fails(output_copy_file(temporary_folder_file(folder, "none"), to), STATUS_IO,
-                 "none: No such file or directory");
-    assert_fails(output_copy_file(folder->path, to), STATUS_IO, "Is a directory");
-    assert_false(temporary_folder_exists(to));
-    assert_false(temporary_folder_exists(temporary_folder_file(folder, "to.partial")));
-    assert_fails(output_copy_file(temporary_folder_write(folder, "from", "x", 1), "/no/to"),
-                 STATUS_IO, "/no/to: No such file or directory");
-}
-
 #define IN_FOLDER(test)                                                                            \
     cmocka_unit_test_setup_teardown(test, temporary_folder_create, temporary_folder_remove)
 
@@ -163,8 +136,6 @@ int main(void) {
         cmocka_unit_test(test_output_open_refuses_when_the_path_is_too_long),
         IN_FOLDER(test_output_make_folder_makes_parents_when_they_are_missing),
         IN_FOLDER(test_output_make_folder_names_the_path_when_a_file_is_in_the_way),
-        IN_FOLDER(test_output_copy_file_copies_all_bytes_when_the_file_is_large),
-        IN_FOLDER(test_output_copy_file_names_the_culprit_when_it_fails),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Writing of JSON.
+///
+/// A tree is built and then written whole. The first problem (no memory, a number that is not
+/// finite, a key given twice) is remembered and reported by json_write, so that building needs no
+/// checks. Numbers get the fewest digits of %.15g and %.17g that read back to the same bits.
+#pragma once
+
+#include "base/fields.h"
+#include "base/status.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct json_writer;
+
+struct json_writer *json_writer_create(void); ///< NULL if there is no memory
+void json_writer_free(struct json_writer *writer);
+
+/// Enter a new object at `key` of the current object; leave it with json_end.
+void json_begin(struct json_writer *writer, const char *key);
+void json_end(struct json_writer *writer);
+
+void json_put_number(struct json_writer *writer, const char *key, double value);
+/// All digits are written, but json_fields refuses 2^53 and beyond.
+void json_put_integer(struct json_writer *writer, const char *key, int64_t value);
+void json_put_text(struct json_writer *writer, const char *key, const char *value);
+void json_put_numbers(struct json_writer *writer, const char *key, const double *values,
+                      size_t count);
+
+/// Write every member that `fields` describes; FIELD_TEXT and FIELD_FILE that are empty, and
+/// FIELD_LENGTHS that are all 0, are left out. Reading the result back gives the same bits, except
+/// that a relative FIELD_FILE is written absolute, so that it names the same file from any folder.
+void json_put_fields(struct json_writer *writer, const struct field *fields,
+                     const void *parameters);
+
+/// Write the tree to `file`, whole or not at all (output.h).
+enum status json_write(const struct json_writer *writer, const char *file) MUST_USE;

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/json_write.h"
+
+#include "base/memory.h"
+#include "io/output.h"
+
+#include <cJSON.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { DEEPEST_OBJECT = 16 };
+
+struct json_writer {
+    cJSON *object[DEEPEST_OBJECT]; ///< the root and the objects entered; NULL where that failed
+    int depth;
+    char problem[256]; ///< the first one; "" while all is well
+};
+
+struct json_writer *json_writer_create(void) {
+    struct json_writer *writer = memory_zeroed(1, sizeof *writer);
+    if (writer == NULL)
+        return NULL;
+    writer->object[0] = cJSON_CreateObject();
+    if (writer->object[0])
+        return writer;
+    memory_free(writer);
+    status_fail(STATUS_NO_MEMORY, "out of memory");
+    return NULL;
+}
+
+void json_writer_free(struct json_writer *writer) {
+    if (writer)
+        cJSON_Delete(writer->object[0]);
+    memory_free(writer);
+}
+
+static void note_problem(struct json_writer *writer, const char *key, const char *problem) {
+    if (writer->problem[0] == '\0')
+        snprintf(writer->problem, sizeof writer->problem, "\"%s\" %s", key, problem);
+}
+
+/// Put `item`, which may be NULL for want of memory, into the current object.
+static void put(struct json_writer *writer, const char *key, cJSON *item) {
+    cJSON *object = writer->object[writer->depth];
+    if (cJSON_GetObjectItemCaseSensitive(object, key))
+        note_problem(writer, key, "is given twice");
+    else if (item == NULL || object == NULL)
+        note_problem(writer, key, "does not fit into the memory");
+    else if (cJSON_AddItemToObject(object, key, item))
+        return;
+    else
+        note_problem(writer, key, "does not fit into the memory");
+    cJSON_Delete(item);
+}
+
+void json_begin(struct json_writer *writer, const char *key) {
+    if (writer->depth + 1 == DEEPEST_OBJECT) {
+        note_problem(writer, key, "is nested too deeply");
+        return;
+    }
+    put(writer, key, cJSON_CreateObject());
+    cJSON *object = cJSON_GetObjectItemCaseSensitive(writer->object[writer->depth], key);
+    writer->object[++writer->depth] = object;
+}
+
+void json_end(struct json_writer *writer) {
+    if (writer->depth > 0)
+        writer->depth--;
+}
+
+/// cJSON's own numbers are close to the value, not equal, and NaN becomes null.
+static cJSON *create_number(struct json_writer *writer, const char *key, double value) {
+    char text[32];
+    if (!isfinite(value))
+        note_problem(writer, key, "is not a finite number");
+    snprintf(text, sizeof text, "%.15g", value);
+    if (strtod(text, NULL) != value)
+        snprintf(text, sizeof text, "%.17g", value);
+    return cJSON_CreateRaw(text);
+}
+
+void json_put_number(struct json_writer *writer, const char *key, double value) {
+    put(writer, key, create_number(writer, key, value));
+}
+
+void json_put_integer(struct json_writer *writer, const char *key, int64_t value) {
+    char text[32];
+    snprintf(text, sizeof text, "%" PRId64, value);
+    put(writer, key, cJSON_CreateRaw(text));
+}
+
+static void put_seed(struct json_writer *writer, const char *key, uint64_t value) {
+    char text[32];
+    snprintf(text, sizeof text, "%" PRIu64, value);
+    put(writer, key, cJSON_CreateRaw(text));
+}
+
+void json_put_text(struct json_writer *writer, const char *key, const char *value) {
+    put(writer, key, cJSON_CreateString(value));
+}
+
+void json_put_numbers(struct json_writer *writer, const char *key, const double *values,
+                      size_t count) {
+    cJSON *array = cJSON_CreateArray();
+    for (size_t k = 0; array && k < count; k++) {
+        cJSON *item = create_number(writer, key, values[k]);
+        if (!cJSON_AddItemToArray(array, item))
+            note_problem(writer, key, "does not fit into the memory");
+    }
+    put(writer, key, array);
+}
+
+static void put_file(struct json_writer *writer, const char *key, const char *file) {
+    char folder[OUTPUT_PATH_SIZE], path[OUTPUT_PATH_SIZE + FIELD_TEXT_SIZE];
+    if (file[0] == '/') {
+        json_put_text(writer, key, file);
+        return;
+    }
+    if (getcwd(folder, sizeof folder) == NULL)
+        note_problem(writer, key, "lies in a folder without a name");
+    else {
+        snprintf(path, sizeof path, "%s/%s", folder, file);
+        json_put_text(writer, key, path);
+    }
+}
+
+static void put_field(struct json_writer *writer, const struct field *field, const char *member) {
+    double number[3];
+    int64_t integer;
+    uint64_t seed;
+    int choice;
+    switch (field->type) {
+    case FIELD_NUMBER:
+        memcpy(number, member, sizeof *number);
+        json_put_number(writer, field->name, number[0]);
+        break;
+    case FIELD_INTEGER:
+        memcpy(&integer, member, sizeof integer);
+        json_put_integer(writer, field->name, integer);
+        break;
+    case FIELD_SEED:
+        memcpy(&seed, member, sizeof seed);
+        put_seed(writer, field->name, seed);
+        break;
+    case FIELD_LENGTHS:
+        memcpy(number, member, sizeof number);
+        if (number[0] != 0 || number[1] != 0 || number[2] != 0)
+            json_put_numbers(writer, field->name, number, number[2] != 0 ? 3 : 2);
+        break;
+    case FIELD_TEXT:
+        if (member[0])
+            json_put_text(writer, field->name, member);
+        break;
+    case FIELD_FILE:
+        if (member[0])
+            put_file(writer, field->name, member);
+        break;
+    case FIELD_CHOICE:
+        memcpy(&choice, member, sizeof choice);
+        json_put_text(writer, field->name, field->choices[choice]);
+        break;
+    }
+}
+
+void json_put_fields(struct json_writer *writer, const struct field *fields,
+                     const void *parameters) {
+    for (const struct field *field = fields; field->name; field++)
+        put_field(writer, field, (const char *)parameters + field->offset);
+}
+
+enum status json_write(const struct json_writer *writer, const char *file) {
+    if (writer->problem[0])
+        return status_fail(STATUS_IO, "cannot write %s: %s", file, writer->problem);
+    char *text = cJSON_Print(writer->object[0]);
+    if (text == NULL)
+        return status_fail(STATUS_NO_MEMORY, "cannot write %s: out of memory", file);
+    struct output output;
+    const enum status status = output_open(&output, file);
+    if (status == STATUS_OK)
+        fprintf(output.stream, "%s\n", text);
+    cJSON_free(text);
+    return status == STATUS_OK ? output_commit(&output) : status;
+}
