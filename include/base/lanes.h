@@ -98,6 +98,7 @@ LANES_INLINE float lanes_sum(lanes_float a) {
 //   lanes_least_int, lanes_most_int
 //   lanes_set_bits(mask)     numbers of the bits that are set, in order; the rest is arbitrary
 //   lanes_permute(a, order)  lane n becomes lane order[n] of a
+//   lanes_eights(a, b)       a in the first eight lanes, b in the next, as far as there are any
 //   lanes_multiply_low(a, b) 64-bit products of the lower halves
 //   lanes_row(records, index)    records number index[0], index[4], … one after the other
 //   lanes_store_row(to, row)     and back, to every fourth record
@@ -130,6 +131,10 @@ LANES_INLINE lanes_int lanes_set_bits(unsigned mask) {
 
 LANES_INLINE lanes_float lanes_permute(lanes_float a, lanes_int order) {
     return (lanes_float)_mm512_permutexvar_ps((__m512i)order, (__m512)a);
+}
+
+LANES_INLINE lanes_int lanes_eights(int32_t a, int32_t b) {
+    return (lanes_int)_mm512_mask_set1_epi32(_mm512_set1_epi32(a), 0xFF00, b);
 }
 
 LANES_INLINE lanes_wide lanes_multiply_low(lanes_wide a, lanes_wide b) {
@@ -199,6 +204,11 @@ LANES_INLINE lanes_float lanes_permute(lanes_float a, lanes_int order) {
     return (lanes_float)_mm256_permutevar8x32_ps((__m256)a, (__m256i)order);
 }
 
+LANES_INLINE lanes_int lanes_eights(int32_t a, int32_t b) {
+    (void)b;
+    return lanes_all_int(a);
+}
+
 LANES_INLINE lanes_wide lanes_multiply_low(lanes_wide a, lanes_wide b) {
     return (lanes_wide)_mm256_mul_epu32((__m256i)a, (__m256i)b);
 }
@@ -259,6 +269,11 @@ LANES_INLINE lanes_int lanes_set_bits(unsigned mask) {
 
 LANES_INLINE lanes_float lanes_permute(lanes_float a, lanes_int order) {
     return (lanes_float){a[order[0]], a[order[1]], a[order[2]], a[order[3]]};
+}
+
+LANES_INLINE lanes_int lanes_eights(int32_t a, int32_t b) {
+    (void)b;
+    return lanes_all_int(a);
 }
 
 LANES_INLINE lanes_wide lanes_multiply_low(lanes_wide a, lanes_wide b) {

@@ -21,6 +21,16 @@ struct simulation_setup {
     const struct table *potential; ///< Φ(r) or NULL; borrowed
     const struct table *weight;    ///< ω(r) or NULL; borrowed
     uint64_t seed;
+    int precision; ///< enum pair_precision
+    int threads;   ///< of this one simulation, at least 1: the same bits for any number
+};
+
+/// What a simulation spends its time on.
+enum simulation_phase {
+    SIMULATION_MOTION, ///< kicks, drift, watching over it
+    SIMULATION_LIST,   ///< sorting and neighbour search
+    SIMULATION_FORCES,
+    SIMULATION_PHASES
 };
 
 struct simulation {
@@ -32,6 +42,7 @@ struct simulation {
     enum pair_wants wants; ///< set before a step whose sums will be read
     struct pair_sums sums; ///< of the last step, if it was asked for them
     uint64_t list_builds;
+    uint64_t ticks[SIMULATION_PHASES]; ///< clock_ticks spent so far
 };
 
 /// Positions [λ] and velocities [λ/τ] from a file; shape [count] each.

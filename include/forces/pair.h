@@ -11,6 +11,12 @@
 #include "system/neighbours.h"
 #include "system/particles.h"
 
+/// Arithmetic of a pair. Positions, velocities and sums over pairs are in double precision always.
+enum pair_precision {
+    PAIR_MIXED,  ///< single: relative errors of 1e-6 in a force
+    PAIR_DOUBLE, ///< double
+};
+
 /// What acts between pairs. The tables belong to the caller.
 struct pair_law {
     const struct table *potential; ///< Φ(r), or NULL
@@ -18,6 +24,7 @@ struct pair_law {
     double temperature;            ///< of the noise [k_B T_0]
     double time_step;              ///< Δt of the noise [τ]
     uint64_t seed;                 ///< key of the noise
+    enum pair_precision precision;
 };
 
 /// Sums over the pairs of one pass.

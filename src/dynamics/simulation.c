@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/simulation.h"
 
+#include "base/clock.h"
 #include "base/interrupt.h"
 
 static enum status place(struct simulation *simulation, const struct simulation_start *start) {
@@ -38,7 +39,8 @@ enum status simulation_init(struct simulation *simulation, const struct simulati
                 .weight = setup->weight,
                 .temperature = setup->temperature,
                 .time_step = setup->time_step,
-                .seed = setup->seed},
+                .seed = setup->seed,
+                .precision = (enum pair_precision)setup->precision},
     };
     const size_t count = (size_t)setup->placement.count;
     CHECK(particles_init(&simulation->particles, &setup->box, count));
@@ -104,9 +106,18 @@ static enum status watch_flight(const struct simulation *simulation) {
     return fail_unstable(simulation, squares);
 }
 
+/// Count the time since `begin` to a phase; returns the present time.
+static uint64_t count_ticks(struct simulation *simulation, enum simulation_phase phase,
+                            uint64_t begin) {
+    const uint64_t now = clock_ticks();
+    simulation->ticks[phase] += now - begin;
+    return now;
+}
+
 enum status simulation_compute_forces(struct simulation *simulation, double ahead) {
     struct particles *particles = &simulation->particles;
     struct neighbours *neighbours = &simulation->neighbours;
+    uint64_t begin = clock_ticks();
     if (neighbours_are_stale(neighbours, particles)) {
         TRY(watch_flight(simulation));
         TRY(neighbours_sort_and_build(neighbours, particles));
@@ -114,10 +125,12 @@ enum status simulation_compute_forces(struct simulation *simulation, double ahea
     } else {
         particles_update_fractions(particles);
     }
+    begin = count_ticks(simulation, SIMULATION_LIST, begin);
     if (simulation->law.weight)
         particles_update_motion(particles, ahead);
     pair_forces(&simulation->law, particles, neighbours, simulation->step, simulation->wants,
                 &simulation->sums);
+    count_ticks(simulation, SIMULATION_FORCES, begin);
     return STATUS_OK;
 }
 
@@ -136,9 +149,15 @@ enum status simulation_run(struct simulation *simulation, uint64_t steps) {
     for (uint64_t k = 0; k < steps; k++) {
         if (interrupt_requested())
             return status_fail(STATUS_INTERRUPTED, "interrupted");
+        const uint64_t begin = clock_ticks();
+        const uint64_t other =
+            simulation->ticks[SIMULATION_LIST] + simulation->ticks[SIMULATION_FORCES];
         simulation->step++;
         TRY(simulation->setup.integrator->step(simulation));
         TRY(watch(simulation));
+        count_ticks(simulation, SIMULATION_MOTION, begin);
+        simulation->ticks[SIMULATION_MOTION] -=
+            simulation->ticks[SIMULATION_LIST] + simulation->ticks[SIMULATION_FORCES] - other;
     }
     return STATUS_OK;
 }

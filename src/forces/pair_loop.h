@@ -22,12 +22,6 @@ enum {
     PAIR_ROOM = PAIR_BATCH + PAIR_PIECE + RNG_LANES,
 };
 
-/// Entries of the list: separations, and masks of those in range, one a vector.
-struct pair_piece {
-    float dx[PAIR_PIECE], dy[PAIR_PIECE], dz[PAIR_PIECE];
-    unsigned near[PAIR_PIECE / LANES], far[PAIR_PIECE / LANES];
-};
-
 /// Pairs in range.
 struct pair_batch {
     int count;
@@ -62,67 +56,52 @@ struct pair_scene {
     bool has_far;                ///< the potential reaches farther than ω
 };
 
-/// One coordinate of the particles to which the entries of the list in a vector belong.
-INLINE lanes_uint pair_owner(const struct particle_place *place, const int32_t *owner, int d) {
-    lanes_uint x = (uint32_t)place[owner[0]].fraction[d] - (lanes_uint){0};
-    for (int lane = NEIGHBOURS_ROW; lane < LANES; lane++)
-        x[lane] = (uint32_t)place[owner[1]].fraction[d];
-    return x;
+/// Append the entries of a vector whose bits are set to the first `n`; returns their new number.
+INLINE int pair_append(struct pair_batch *batch, int n, unsigned mask, lanes_int i, lanes_int j,
+                       const lanes_float dr[3], const int dim) {
+    const lanes_int order = lanes_set_bits(mask);
+    lanes_store_int(batch->i + n, lanes_permute_int(i, order));
+    lanes_store_int(batch->j + n, lanes_permute_int(j, order));
+    lanes_store(batch->dx + n, lanes_permute(dr[0], order));
+    lanes_store(batch->dy + n, lanes_permute(dr[1], order));
+    if (dim == 3)
+        lanes_store(batch->dz + n, lanes_permute(dr[2], order));
+    return n + __builtin_popcount(mask);
 }
 
-/// Separations r_i − r_j of `count` entries of the list, and which of them are in range.
-INLINE void pair_separate(struct pair_piece *piece, const struct pair_scene *scene,
-                          const int32_t *list, const int32_t *owner, int count, const int dim,
-                          const bool has_far) {
+/// Collect those of `count` entries of the list that are in range.
+INLINE void pair_collect(struct pair_batch *near, struct pair_batch *far,
+                         const struct pair_scene *scene, const int32_t *list, const int32_t *owner,
+                         int count, const int dim, const bool has_far) {
     const struct particle_place *place = scene->particles->kernel_place;
+    int near_count = near->count, far_count = far->count;
     for (int k = 0; k < count; k += LANES) {
+        const int32_t *rows = owner + k / NEIGHBOURS_ROW;
         const struct lanes_record j = lanes_load_records(place, list + k);
         lanes_float dr[3], r2 = lanes_all(0);
         for (int d = 0; d < dim; d++) {
             // Differences of unsigned fractions wrap around: read as signed, they are those of the
             // nearest images (box_fraction).
-            const lanes_uint x = pair_owner(place, owner + k / NEIGHBOURS_ROW, d);
+            const lanes_uint x =
+                (lanes_uint)lanes_eights(place[rows[0]].fraction[d], place[rows[1]].fraction[d]);
             dr[d] = scene->scale[d] * lanes_to_float((lanes_int)(x - (lanes_uint)j.word[d]));
             r2 += dr[d] * dr[d];
         }
-        lanes_store(piece->dx + k, dr[0]);
-        lanes_store(piece->dy + k, dr[1]);
-        if (dim == 3)
-            lanes_store(piece->dz + k, dr[2]);
         // Rows are filled up with their owner, whose distance from itself is 0.
         const unsigned in_range =
             lanes_below(lanes_all(0), r2) & lanes_below(r2, lanes_all(scene->cutoff2));
-        unsigned near = in_range;
-        if (has_far)
-            near &= lanes_below(r2, lanes_all(scene->near_cutoff2));
-        piece->near[k / LANES] = near;
-        piece->far[k / LANES] = in_range & ~near;
-    }
-}
-
-/// Append the pairs of the masks.
-INLINE void pair_collect(struct pair_batch *batch, const struct pair_piece *piece,
-                         const unsigned *masks, const int32_t *list, const int32_t *owner,
-                         int count, const int dim) {
-    int n = batch->count;
-    for (int k = 0; k < count; k += LANES) {
-        const unsigned mask = masks[k / LANES];
-        const lanes_int order = lanes_set_bits(mask);
-        lanes_int i = lanes_all_int(owner[k / NEIGHBOURS_ROW]);
-        if (LANES > NEIGHBOURS_ROW) {
-            for (int lane = NEIGHBOURS_ROW; lane < LANES; lane++)
-                i[lane] = owner[k / NEIGHBOURS_ROW + 1];
-            i = lanes_permute_int(i, order);
+        const lanes_int index_i = lanes_eights(rows[0], rows[1]);
+        const lanes_int index_j = lanes_load_int(list + k);
+        if (!has_far) {
+            near_count = pair_append(near, near_count, in_range, index_i, index_j, dr, dim);
+            continue;
         }
-        lanes_store_int(batch->i + n, i);
-        lanes_store_int(batch->j + n, lanes_permute_int(lanes_load_int(list + k), order));
-        lanes_store(batch->dx + n, lanes_permute(lanes_load(piece->dx + k), order));
-        lanes_store(batch->dy + n, lanes_permute(lanes_load(piece->dy + k), order));
-        if (dim == 3)
-            lanes_store(batch->dz + n, lanes_permute(lanes_load(piece->dz + k), order));
-        n += __builtin_popcount(mask);
+        const unsigned is_near = in_range & lanes_below(r2, lanes_all(scene->near_cutoff2));
+        near_count = pair_append(near, near_count, is_near, index_i, index_j, dr, dim);
+        far_count = pair_append(far, far_count, in_range & ~is_near, index_i, index_j, dr, dim);
     }
-    batch->count = n;
+    near->count = near_count;
+    far->count = far_count;
 }
 
 INLINE void pair_place(struct pair_places *places, int k, const struct table *table,
@@ -328,19 +307,15 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
     // Near pairs feel the whole law, far ones the potential alone.
     const bool has_far = conservative && dissipative && near_cutoff < cutoff;
     struct pair_batch near, far;
-    struct pair_piece piece;
     near.count = far.count = 0;
     const size_t entries = neighbours->start[particles->count];
     for (size_t k = 0; k < entries; k += PAIR_PIECE) {
-        const int32_t *list = neighbours->list + k, *owner = neighbours->owner + k / NEIGHBOURS_ROW;
         const int count = entries - k < PAIR_PIECE ? (int)(entries - k) : PAIR_PIECE;
-        pair_separate(&piece, &scene, list, owner, count, dim, has_far);
-        pair_collect(&near, &piece, piece.near, list, owner, count, dim);
+        pair_collect(&near, &far, &scene, neighbours->list + k,
+                     neighbours->owner + k / NEIGHBOURS_ROW, count, dim, has_far);
         pair_evaluate_full(&near, &scene, dim, conservative, dissipative, wants_sums);
-        if (has_far) {
-            pair_collect(&far, &piece, piece.far, list, owner, count, dim);
+        if (has_far)
             pair_evaluate_full(&far, &scene, dim, conservative, false, wants_sums);
-        }
     }
     pair_evaluate_rest(&near, &scene, dim, conservative, dissipative, wants_sums);
     if (has_far)

@@ -11,7 +11,10 @@ struct top {
     int64_t dimensions;
     double box[3];
     double temperature, time_step, skin, temperature_limit;
+    int precision;
 };
+
+static const char *const precisions[] = {"mixed", "double", NULL}; // enum pair_precision
 
 /// Positions are known to 2^-32 of the box: 2e-4 lambda in the largest.
 #define LARGEST_BOX 1e6
@@ -32,6 +35,9 @@ const struct field scene_fields[] = {
      .maximum = DBL_MAX, .unit = "",
      .help = "a kinetic temperature above this multiple of the "
              "temperature ends the simulation as unstable"},
+    {"precision", FIELD_CHOICE, MEMBER(precision), .choices = precisions, .initial = PAIR_MIXED,
+     .unit = "",
+     .help = "of the arithmetic of a pair; positions, velocities and sums are in double always"},
     FIELD_END,
 };
 
@@ -122,6 +128,8 @@ static void read_top(struct scene *scene, struct json_object *object) {
     setup->time_step = top.time_step;
     setup->skin = top.skin;
     setup->temperature_limit = top.temperature_limit;
+    setup->precision = top.precision;
+    setup->threads = 1;
 }
 
 static void read_dynamics(struct scene *scene, struct json_object *object) {
@@ -242,7 +250,8 @@ void scene_write(const struct scene *scene, struct json_writer *writer) {
                       .temperature = setup->temperature,
                       .time_step = setup->time_step,
                       .skin = setup->skin,
-                      .temperature_limit = setup->temperature_limit};
+                      .temperature_limit = setup->temperature_limit,
+                      .precision = setup->precision};
     for (int d = 0; d < setup->box.dimensions; d++)
         top.box[d] = setup->box.length[d];
     json_put_fields(writer, scene_fields, &top);
