@@ -73,6 +73,11 @@ LANES_INLINE void lanes_store_int(int32_t *to, lanes_int a) {
     memcpy(to, &a, sizeof a);
 }
 
+/// a − from[n] with wrap-around.
+LANES_INLINE lanes_int lanes_difference(int32_t a, const int32_t *from) {
+    return (lanes_int)((uint32_t)a - (lanes_uint)lanes_load_int(from));
+}
+
 LANES_INLINE lanes_float lanes_to_float(lanes_int a) {
     return __builtin_convertvector(a, lanes_float);
 }
@@ -88,6 +93,15 @@ LANES_INLINE float lanes_sum(lanes_float a) {
     for (int lane = 0; lane < LANES; lane++)
         sum += a[lane];
     return sum;
+}
+
+/// The first `count` lanes, all if there are fewer, as bits.
+LANES_INLINE unsigned lanes_first(size_t count) {
+#if defined(__BMI2__)
+    return (unsigned)_bzhi_u64(~UINT64_C(0), (unsigned)(count < 64 ? count : 64)); // no branch
+#else
+    return count < LANES ? (1u << count) - 1 : ~0u;
+#endif
 }
 
 // What each instruction set says in its own way. Masks are the bits of an unsigned: bit n stands

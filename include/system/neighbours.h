@@ -20,25 +20,38 @@ enum neighbours_kind {
 /// which is a fifth faster for short lists than a loop for each particle. The AVX2 vector.
 enum { NEIGHBOURS_ROW = 8 };
 
+/// Consecutive planes of cells along the first axis, with their particles and their stretch of the
+/// list. Pairs of part n reach into part n + 1 (the first after the last) and no other.
+struct neighbours_part {
+    int first_plane, last_plane; ///< the latter is the first of the next
+    size_t first, last;          ///< particles
+    size_t begin, end;           ///< of the list
+};
+
+/// Enough for the processors of a desk.
+enum { NEIGHBOURS_MOST_PARTS = 64 };
+
 struct neighbours {
     enum neighbours_kind kind;
-    double range;   ///< cutoff + skin [λ]
-    double skin;    ///< [λ]
-    size_t count;   ///< particles
-    size_t *start;  ///< shape [count + 1]: neighbours of k are list[start[k] … start[k + 1])
-    int32_t *list;  ///< indices of particles
-    int32_t *owner; ///< of a half list: the particle to which each row belongs
+    double range;         ///< cutoff + skin [λ]
+    double skin;          ///< [λ]
+    size_t count;         ///< particles
+    size_t *start, *stop; ///< shape [count]: neighbours of k are list[start[k] … stop[k])
+    int32_t *list;        ///< indices of particles
+    int32_t *owner;       ///< of a half list: the particle to which each row belongs
     size_t list_capacity;
-    double *built[3]; ///< positions at the last build, unwrapped like `position` since then
-    int cells[3];     ///< along each axis; the last is the fastest
-    int reach[3];     ///< neighbours lie within so many cells
+    double entries_each; ///< places of the list for each particle
+    double *built[3];    ///< positions at the last build, unwrapped like `position` since then
+    int cells[3];        ///< along each axis; the last is the fastest
+    int reach[3];        ///< neighbours lie within so many cells
     size_t cell_total;
     uint32_t *cell_start; ///< shape [cell_total + 1]; particles are sorted by cell
     uint32_t *cell_of;    ///< shape [count]
     uint32_t *order;      ///< shape [count]
-    /// Scratch of the search, shape [count + PARTICLES_PADDING] each.
-    int32_t *around[3], *around_index;
-    unsigned *around_mask;
+    /// 1, or an even number of at least 4, by the cells alone: threads take the even parts, then
+    /// the odd ones, and never meet.
+    int parts;
+    struct neighbours_part part[NEIGHBOURS_MOST_PARTS];
 };
 
 /// Prepare for particles in `box`. Fails: NO_MEMORY; BAD_INPUT if the box is shorter than twice the
@@ -47,6 +60,9 @@ enum status neighbours_init(struct neighbours *neighbours, enum neighbours_kind 
                             const struct box *box, size_t count, double cutoff,
                             double skin) MUST_USE;
 void neighbours_clear(struct neighbours *neighbours);
+
+/// Places on the list of all particles.
+size_t neighbours_entries(const struct neighbours *neighbours);
 
 /// Wrap and sort the particles in space, then build the list. Fails: NO_MEMORY.
 enum status neighbours_sort_and_build(struct neighbours *neighbours,

@@ -26,6 +26,7 @@ struct particle_motion {
 struct particles {
     size_t count;
     struct box box;
+    int threads;          ///< that share a loop over the particles: the same bits for any number
     double *position[3];  ///< shape [count] each, wrapped into the box at every sort    [λ]
     double *velocity[3];  ///< shape [count] each                                        [λ/τ]
     double *force[3];     ///< shape [count] each                            [k_B T_0 / λ]
@@ -36,6 +37,8 @@ struct particles {
     struct particle_motion *kernel_motion; ///< shape [count]
     double (*kernel_force)[4];             ///< shape [count, 4]: sums of the pair kernels
     double *spare;                         ///< shape [count]: room for permutations
+    void *spare_words;                     ///< shape [count]: the same for 32-bit words
+    struct particle_motion *spare_motion;  ///< shape [count]
 };
 
 enum status particles_init(struct particles *particles, const struct box *box,
@@ -54,7 +57,7 @@ void particles_update_fractions(struct particles *particles);
 /// Refresh `kernel_motion`, with velocities predicted by a time `ahead` [τ]: v + ahead · force.
 void particles_update_motion(struct particles *particles, double ahead);
 
-/// Reorder all arrays: new[k] = old[order[k]].
+/// Reorder all arrays but the forces, which are about to be replaced: new[k] = old[order[k]].
 void particles_permute(struct particles *particles, const uint32_t *order);
 
 /// Maxwell velocities at `temperature` [k_B T_0] with zero total momentum; the same for the same

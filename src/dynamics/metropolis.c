@@ -120,7 +120,7 @@ static void try_move(struct metropolis *metropolis, size_t k) {
         from[d] = particles->fraction[d][k];
         to[d] = box_fraction(moved[d], 1 / box->length[d]);
     }
-    const size_t begin = neighbours->start[k], end = neighbours->start[k + 1];
+    const size_t begin = neighbours->start[k], end = neighbours->stop[k];
     const double change = energy_change(particles, metropolis->potential, neighbours->list + begin,
                                         end - begin, from, to);
     metropolis->tried++;

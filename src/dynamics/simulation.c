@@ -3,6 +3,8 @@
 
 #include "base/clock.h"
 #include "base/interrupt.h"
+#include "base/parallel.h"
+#include "base/simd.h"
 
 static enum status place(struct simulation *simulation, const struct simulation_start *start) {
     const struct simulation_setup *setup = &simulation->setup;
@@ -44,6 +46,7 @@ enum status simulation_init(struct simulation *simulation, const struct simulati
     };
     const size_t count = (size_t)setup->placement.count;
     CHECK(particles_init(&simulation->particles, &setup->box, count));
+    simulation->particles.threads = setup->threads > 1 ? setup->threads : 1;
     CHECK(neighbours_init(&simulation->neighbours, NEIGHBOURS_HALF, &setup->box, count,
                           pair_cutoff(&simulation->law), setup->skin));
     CHECK(place(simulation, start));
@@ -60,28 +63,40 @@ void simulation_clear(struct simulation *simulation) {
     neighbours_clear(&simulation->neighbours);
 }
 
-void simulation_kick_and_drift(struct simulation *simulation) {
+SIMD_CLONES static void kick_and_drift(void *context, size_t begin, size_t end) {
+    struct simulation *simulation = context;
     struct particles *particles = &simulation->particles;
     const double dt = simulation->setup.time_step;
     for (int d = 0; d < particles->box.dimensions; d++) {
         double *restrict x = particles->position[d], *restrict v = particles->velocity[d];
         const double *restrict force = particles->force[d];
-        for (size_t k = 0; k < particles->count; k++) {
+        for (size_t k = begin; k < end; k++) {
             v[k] += 0.5 * dt * force[k];
             x[k] += dt * v[k];
         }
     }
 }
 
-void simulation_kick(struct simulation *simulation) {
+void simulation_kick_and_drift(struct simulation *simulation) {
+    const struct particles *particles = &simulation->particles;
+    parallel_for(particles->count, particles->threads, kick_and_drift, simulation);
+}
+
+SIMD_CLONES static void kick(void *context, size_t begin, size_t end) {
+    struct simulation *simulation = context;
     struct particles *particles = &simulation->particles;
     const double dt = simulation->setup.time_step;
     for (int d = 0; d < particles->box.dimensions; d++) {
         double *restrict v = particles->velocity[d];
         const double *restrict force = particles->force[d];
-        for (size_t k = 0; k < particles->count; k++)
+        for (size_t k = begin; k < end; k++)
             v[k] += 0.5 * dt * force[k];
     }
+}
+
+void simulation_kick(struct simulation *simulation) {
+    const struct particles *particles = &simulation->particles;
+    parallel_for(particles->count, particles->threads, kick, simulation);
 }
 
 static enum status fail_unstable(const struct simulation *simulation, double square_velocities) {
@@ -118,6 +133,8 @@ enum status simulation_compute_forces(struct simulation *simulation, double ahea
     struct particles *particles = &simulation->particles;
     struct neighbours *neighbours = &simulation->neighbours;
     uint64_t begin = clock_ticks();
+    if (simulation->law.weight)
+        particles_update_motion(particles, ahead); // before a sort, which does not move the forces
     if (neighbours_are_stale(neighbours, particles)) {
         TRY(watch_flight(simulation));
         TRY(neighbours_sort_and_build(neighbours, particles));
@@ -126,8 +143,6 @@ enum status simulation_compute_forces(struct simulation *simulation, double ahea
         particles_update_fractions(particles);
     }
     begin = count_ticks(simulation, SIMULATION_LIST, begin);
-    if (simulation->law.weight)
-        particles_update_motion(particles, ahead);
     pair_forces(&simulation->law, particles, neighbours, simulation->step, simulation->wants,
                 &simulation->sums);
     count_ticks(simulation, SIMULATION_FORCES, begin);

@@ -2,7 +2,7 @@
 #include "base/simd.h"
 
 #if SIMD_X86
-#pragma GCC target("avx2,fma,popcnt")
+#pragma GCC target("avx2,bmi2,fma,popcnt")
 #include "pair_loop.h"
 
 PAIR_INSTANCES(pair_avx2)

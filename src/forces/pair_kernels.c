@@ -3,6 +3,7 @@
 // The only switch between the instances of the pair loop.
 #include "pair_kernels.h"
 
+#include "base/parallel.h"
 #include "base/simd.h"
 
 double pair_cutoff(const struct pair_law *law) {
@@ -23,16 +24,37 @@ static pair_kernel choose(const struct pair_law *law, int dimensions, enum pair_
     }
 }
 
+static void clear_forces(void *context, size_t begin, size_t end) {
+    struct particles *particles = context;
+    memset(particles->kernel_force + begin, 0, (end - begin) * sizeof *particles->kernel_force);
+}
+
+static void gather_forces(void *context, size_t begin, size_t end) {
+    struct particles *particles = context;
+    for (int d = 0; d < particles->box.dimensions; d++)
+        for (size_t k = begin; k < end; k++)
+            particles->force[d][k] = particles->kernel_force[k][d];
+}
+
 void pair_forces(const struct pair_law *law, struct particles *particles,
                  const struct neighbours *neighbours, uint64_t step, enum pair_wants wants,
                  struct pair_sums *sums) {
     const pair_kernel kernel = choose(law, particles->box.dimensions, wants);
-    memset(particles->kernel_force, 0, particles->count * sizeof *particles->kernel_force);
-    if (sums)
-        *sums = (struct pair_sums){0};
-    if (kernel)
-        kernel(law, particles, neighbours, step, sums);
-    for (int d = 0; d < particles->box.dimensions; d++)
-        for (size_t k = 0; k < particles->count; k++)
-            particles->force[d][k] = particles->kernel_force[k][d];
+    const int parts = kernel ? neighbours->parts : 0, threads = particles->threads;
+    struct pair_sums part_sums[NEIGHBOURS_MOST_PARTS] = {{0}};
+    parallel_for(particles->count, threads, clear_forces, particles);
+    // A part adds to its own particles and to those of the next one: even parts never meet.
+    for (int first = 0; first < 2; first++) {
+#pragma omp parallel for schedule(dynamic) num_threads(threads) if (threads > 1)
+        for (int p = first; p < parts; p += 2)
+            kernel(law, particles, neighbours, &neighbours->part[p], step, &part_sums[p]);
+    }
+    parallel_for(particles->count, threads, gather_forces, particles);
+    if (sums == NULL)
+        return;
+    *sums = (struct pair_sums){0};
+    for (int p = 0; p < parts; p++) {
+        sums->energy += part_sums[p].energy;
+        sums->virial += part_sums[p].virial;
+    }
 }

@@ -6,9 +6,10 @@
 
 #define PAIR_KERNEL_ARGUMENTS                                                                      \
     const struct pair_law *law, struct particles *particles, const struct neighbours *neighbours,  \
-        uint64_t step, struct pair_sums *sums
+        const struct neighbours_part *part, uint64_t step, struct pair_sums *sums
 
 typedef void (*pair_kernel)(PAIR_KERNEL_ARGUMENTS);
 
+/// Adds the forces of the pairs of one part of the list to kernel_force, and their sums to `sums`.
 /// [dimensions − 2][potential][weight][sums]
 extern const pair_kernel pair_portable[2][2][2][2], pair_avx2[2][2][2][2], pair_avx512[2][2][2][2];

@@ -20,6 +20,7 @@ enum {
     PAIR_BATCH = 128, ///< pairs evaluated together; always as many, so that loops are predictable
     PAIR_PIECE = 64,  ///< entries of the list looked at together
     PAIR_ROOM = PAIR_BATCH + PAIR_PIECE + RNG_LANES,
+    PAIR_FEW = 20, ///< entries of a particle on the list, see pair_scatter_few
 };
 
 /// Pairs in range.
@@ -53,7 +54,7 @@ struct pair_scene {
     uint64_t step;
     float scale[3];              ///< box edges in units of 2³²: fractions to lengths
     float cutoff2, near_cutoff2; ///< squared: of the law, of its dissipative part
-    bool has_far;                ///< the potential reaches farther than ω
+    bool has_few;                ///< particles have few pairs each
 };
 
 /// Append the entries of a vector whose bits are set to the first `n`; returns their new number.
@@ -241,6 +242,33 @@ INLINE void pair_scatter(const struct pair_columns *columns, struct pair_batch *
     batch->i[count] = after;
 }
 
+/// The same where particles have few pairs each: the branch at the end of each, which no processor
+/// foresees, costs more than its pairs. So sums from the first pair of all are kept at the ends,
+/// and their differences belong to the particles. Measured on Zen 5: 6 % more steps/s with 6 pairs
+/// a particle, 8 % less with 28, 19 % less with 68.
+INLINE void pair_scatter_few(const struct pair_columns *columns, struct pair_batch *batch,
+                             int count, lanes_double4 *force) {
+    lanes_double4 sum = {0}, sums[PAIR_BATCH];
+    int32_t owner[PAIR_BATCH];
+    int owners = 0;
+    const int32_t after = batch->i[count];
+    batch->i[count] = -1;
+    for (int k = 0; k < count; k++) {
+        const lanes_double4 here = lanes_load_double4(columns->force[k]);
+        force[batch->j[k]] -= here;
+        sum += here;
+        sums[owners] = sum;
+        owner[owners] = batch->i[k];
+        owners += batch->i[k] != batch->i[k + 1];
+    }
+    batch->i[count] = after;
+    lanes_double4 before = {0};
+    for (int n = 0; n < owners; n++) {
+        force[owner[n]] += sums[n] - before;
+        before = sums[n];
+    }
+}
+
 /// The forces of the first `count` pairs of a batch.
 INLINE void pair_evaluate(struct pair_batch *batch, int count, const struct pair_scene *scene,
                           const int dim, const bool conservative, const bool dissipative,
@@ -256,7 +284,11 @@ INLINE void pair_evaluate(struct pair_batch *batch, int count, const struct pair
         pair_dissipative(&columns, count, law, conservative);
     }
     pair_vectors(&columns, batch, count, dim);
-    pair_scatter(&columns, batch, count, (lanes_double4 *)scene->particles->kernel_force);
+    lanes_double4 *force = (lanes_double4 *)scene->particles->kernel_force;
+    if (scene->has_few)
+        pair_scatter_few(&columns, batch, count, force);
+    else
+        pair_scatter(&columns, batch, count, force);
 }
 
 /// Evaluate a full batch, and move what is beyond to the front.
@@ -267,7 +299,7 @@ INLINE void pair_evaluate_full(struct pair_batch *batch, const struct pair_scene
         return;
     pair_evaluate(batch, PAIR_BATCH, scene, dim, conservative, dissipative, wants_sums);
     batch->count -= PAIR_BATCH;
-    for (int k = 0; k < batch->count; k += LANES) {
+    for (int k = 0; k < PAIR_PIECE; k += LANES) { // always as many: predictable
         lanes_store_int(batch->i + k, lanes_load_int(batch->i + PAIR_BATCH + k));
         lanes_store_int(batch->j + k, lanes_load_int(batch->j + PAIR_BATCH + k));
         lanes_store(batch->dx + k, lanes_load(batch->dx + PAIR_BATCH + k));
@@ -291,9 +323,9 @@ INLINE void pair_evaluate_rest(struct pair_batch *batch, const struct pair_scene
 }
 
 INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
-                      const struct neighbours *neighbours, uint64_t step, struct pair_sums *sums,
-                      const int dim, const bool conservative, const bool dissipative,
-                      const bool wants_sums) {
+                      const struct neighbours *neighbours, const struct neighbours_part *part,
+                      uint64_t step, struct pair_sums *sums, const int dim, const bool conservative,
+                      const bool dissipative, const bool wants_sums) {
     const double cutoff = pair_cutoff(law);
     const double near_cutoff = dissipative ? law->weight->cutoff : cutoff;
     struct pair_scene scene = {.law = law,
@@ -302,15 +334,15 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
                                .step = step,
                                .cutoff2 = (float)(cutoff * cutoff),
                                .near_cutoff2 = (float)(near_cutoff * near_cutoff)};
+    scene.has_few = part->end - part->begin < PAIR_FEW * (part->last - part->first);
     for (int d = 0; d < 3; d++)
         scene.scale[d] = (float)(particles->box.length[d] * 0x1p-32);
     // Near pairs feel the whole law, far ones the potential alone.
     const bool has_far = conservative && dissipative && near_cutoff < cutoff;
     struct pair_batch near, far;
     near.count = far.count = 0;
-    const size_t entries = neighbours->start[particles->count];
-    for (size_t k = 0; k < entries; k += PAIR_PIECE) {
-        const int count = entries - k < PAIR_PIECE ? (int)(entries - k) : PAIR_PIECE;
+    for (size_t k = part->begin; k < part->end; k += PAIR_PIECE) {
+        const int count = part->end - k < PAIR_PIECE ? (int)(part->end - k) : PAIR_PIECE;
         pair_collect(&near, &far, &scene, neighbours->list + k,
                      neighbours->owner + k / NEIGHBOURS_ROW, count, dim, has_far);
         pair_evaluate_full(&near, &scene, dim, conservative, dissipative, wants_sums);
@@ -324,7 +356,7 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
 
 #define PAIR_INSTANCE(name, dim, conservative, dissipative, wants_sums)                            \
     static void name(PAIR_KERNEL_ARGUMENTS) {                                                      \
-        pair_loop(law, particles, neighbours, step, sums, dim, conservative, dissipative,          \
+        pair_loop(law, particles, neighbours, part, step, sums, dim, conservative, dissipative,    \
                   wants_sums);                                                                     \
     }
 

@@ -74,7 +74,7 @@ enum status reference_configurational(const struct table *potential,
     *squares = *laplacian = 0;
     NEW_ARRAY(force, 3 * particles->count);
     for (size_t i = 0; i < particles->count; i++)
-        for (size_t k = neighbours->start[i]; k < neighbours->start[i + 1]; k++) {
+        for (size_t k = neighbours->start[i]; k < neighbours->stop[i]; k++) {
             const size_t j = (size_t)neighbours->list[k];
             if (j == i) // what is left of a row
                 continue;

@@ -4,21 +4,24 @@
 
 #include "system/neighbours.h"
 
-/// A cell and the runs of consecutive particles around it, in ascending order.
+/// A cell and the runs of consecutive particles around it. In a half list the first run begins with
+/// the cell itself; the others are wanted whole.
 struct close_cell {
     size_t begin, end; ///< its particles
+    size_t around;     ///< particles in all runs
     int count;
     struct close_run {
         size_t begin, end;
     } * run;
 };
 
-/// Append the neighbours of the particles of `cell` to neighbours->list, which has room for all
-/// that could be found and PARTICLES_PADDING more, from place `used` on, and set their `start`.
-/// @return the new length of the list
+/// Append the neighbours of the particles of `cell` to the list from place `used` on, and set their
+/// `start`, `stop` and rows.
+/// @param[in] limit  first place of the list that must not be written
+/// @return the new length of the list, or SIZE_MAX if there might not be room
 size_t close_portable(struct neighbours *neighbours, const struct particles *particles,
-                      const struct close_cell *cell, size_t used);
+                      const struct close_cell *cell, size_t used, size_t limit);
 size_t close_avx2(struct neighbours *neighbours, const struct particles *particles,
-                  const struct close_cell *cell, size_t used);
+                  const struct close_cell *cell, size_t used, size_t limit);
 size_t close_avx512(struct neighbours *neighbours, const struct particles *particles,
-                    const struct close_cell *cell, size_t used);
+                    const struct close_cell *cell, size_t used, size_t limit);

@@ -3,7 +3,8 @@
 
 #if SIMD_X86
 // 512-bit vectors must be asked for: GCC prefers 256 bits on processors that clock down for them.
-#pragma GCC target("avx512f,avx512dq,avx512bw,avx512vl,avx2,fma,popcnt,prefer-vector-width=512")
+#pragma GCC target(                                                                                \
+    "avx512f,avx512dq,avx512bw,avx512vl,avx2,bmi2,fma,popcnt,prefer-vector-width=512")
 #include "close_loop.h"
 
 CLOSE_INSTANCE(close_avx512)

@@ -5,92 +5,110 @@
 #include "base/lanes.h"
 #include "close.h"
 
-/// Copy the particles around a cell together, so that the vectors of the search are full.
-/// @param[out] own  place of the cell's first particle among them
-/// @return their number
-LANES_INLINE size_t close_collect(struct neighbours *neighbours, const struct particles *particles,
-                                  const struct close_cell *cell, size_t *own, const int dim) {
-    size_t count = 0;
+/// What stays the same from particle to particle. Passed by value, so that the stores to the list
+/// cannot change it as far as a compiler knows.
+struct close_search {
+    const int32_t *x, *y, *z; ///< fractions of the box
+    lanes_float scale[3];     ///< box edges in units of 2³²: fractions to lengths
+    lanes_float range2;
+};
+
+/// Write those of the particles begin … end − 1 that are within range of particle k to `list`.
+/// Whole vectors are read and written, also beyond the end; one at least, since runs are rarely
+/// empty.
+/// @return the end of what was written
+LANES_INLINE int32_t *close_select(const struct close_search search, size_t k, size_t begin,
+                                   size_t end, int32_t *list, const int dim) {
+    const int32_t x = search.x[k], y = search.y[k], z = dim == 3 ? search.z[k] : 0;
+    do {
+        // Differences of unsigned fractions wrap around (box_fraction).
+        const lanes_float dx =
+            search.scale[0] * lanes_to_float(lanes_difference(x, search.x + begin));
+        const lanes_float dy =
+            search.scale[1] * lanes_to_float(lanes_difference(y, search.y + begin));
+        lanes_float r2 = dx * dx + dy * dy;
+        if (dim == 3) {
+            const lanes_float dz =
+                search.scale[2] * lanes_to_float(lanes_difference(z, search.z + begin));
+            r2 += dz * dz;
+        }
+        const unsigned mask = lanes_below(r2, search.range2) & lanes_first(end - begin);
+        lanes_store_int(list, (int32_t)begin + lanes_set_bits(mask));
+        list += __builtin_popcount(mask);
+        begin += LANES;
+    } while (begin < end);
+    return list;
+}
+
+/// Fill the last row of particle k with itself, and say whose its rows are.
+/// @return the end of its rows
+LANES_INLINE size_t close_fill_rows(struct neighbours *neighbours, size_t k, size_t begin,
+                                    size_t used) {
+    lanes_store_int(neighbours->list + used, lanes_all_int((int32_t)k));
+    if (LANES < NEIGHBOURS_ROW)
+        lanes_store_int(neighbours->list + used + LANES, lanes_all_int((int32_t)k));
+    const size_t end = (used + NEIGHBOURS_ROW - 1) / NEIGHBOURS_ROW * NEIGHBOURS_ROW;
+    // Whole vectors: rows beyond the end are written again by the next particle.
+    for (size_t row = begin / NEIGHBOURS_ROW; row < end / NEIGHBOURS_ROW; row += LANES)
+        lanes_store_int(neighbours->owner + row, lanes_all_int((int32_t)k));
+    return end;
+}
+
+/// The neighbours of particle k in a half list: those behind it in the first run, and in the
+/// others.
+LANES_INLINE int32_t *close_half(const struct close_search search, const struct close_cell *cell,
+                                 size_t k, int32_t *list, const int dim) {
+    list = close_select(search, k, k + 1, cell->run[0].end, list, dim);
+    for (int r = 1; r < cell->count; r++)
+        list = close_select(search, k, cell->run[r].begin, cell->run[r].end, list, dim);
+    return list;
+}
+
+/// The neighbours of particle k in a full list: all but itself.
+LANES_INLINE int32_t *close_full(const struct close_search search, const struct close_cell *cell,
+                                 size_t k, int32_t *list, const int dim) {
     for (int r = 0; r < cell->count; r++) {
-        const size_t begin = cell->run[r].begin, end = cell->run[r].end;
-        if (begin <= cell->begin && cell->begin < end)
-            *own = count + (cell->begin - begin);
-        // Whole vectors; what is too much is overwritten by the next run.
-        for (size_t k = begin; k < end; k += LANES) {
-            const size_t to = count + (k - begin);
-            for (int d = 0; d < dim; d++)
-                lanes_store_int(neighbours->around[d] + to,
-                                lanes_load_int(particles->fraction[d] + k));
-            lanes_store_int(neighbours->around_index + to, (int32_t)k + lanes_number());
-        }
-        count += end - begin;
+        const struct close_run run = cell->run[r];
+        const bool has_own = run.begin <= k && k < run.end;
+        list = close_select(search, k, run.begin, has_own ? k : run.end, list, dim);
+        if (has_own)
+            list = close_select(search, k, k + 1, run.end, list, dim);
     }
-    return count;
+    return list;
 }
 
-/// Append those of around[from … to − 1] that are within range of the one at `centre` to the list.
-/// Two loops, first masks and then the list: together they are one long chain and take 1.7 times as
-/// long.
-/// @return the new length of the list
-LANES_INLINE size_t close_select(struct neighbours *neighbours, size_t centre, size_t from,
-                                 size_t to, const float scale[3], size_t used, const int dim) {
-    // Copies of the pointers, which the stores below might change as far as a compiler knows.
-    const int32_t *around[3], *index = neighbours->around_index + from;
-    int32_t *list = neighbours->list;
-    unsigned *masks = neighbours->around_mask;
-    uint32_t x[3];
-    for (int d = 0; d < dim; d++) {
-        around[d] = neighbours->around[d] + from;
-        x[d] = (uint32_t)neighbours->around[d][centre];
-    }
-    const lanes_float range2 = lanes_all((float)(neighbours->range * neighbours->range));
-    const size_t count = to - from, vectors = (count + LANES - 1) / LANES;
-    for (size_t v = 0; v < vectors; v++) {
-        lanes_float r2 = lanes_all(0);
-        for (int d = 0; d < dim; d++) {
-            const lanes_uint other = (lanes_uint)lanes_load_int(around[d] + v * LANES);
-            const lanes_float dx = scale[d] * lanes_to_float((lanes_int)(x[d] - other));
-            r2 += dx * dx;
-        }
-        masks[v] = lanes_below(r2, range2);
-    }
-    if (count % LANES != 0)
-        masks[vectors - 1] &= (1u << count % LANES) - 1;
-    for (size_t v = 0; v < vectors; v++) {
-        lanes_store_int(list + used, lanes_permute_int(lanes_load_int(index + v * LANES),
-                                                       lanes_set_bits(masks[v])));
-        used += (size_t)__builtin_popcount(masks[v]);
-    }
-    return used;
-}
-
-LANES_INLINE size_t close_search(struct neighbours *neighbours, const struct particles *particles,
-                                 const struct close_cell *cell, size_t used, const int dim) {
-    float scale[3];
+LANES_INLINE size_t close_loop(struct neighbours *neighbours, const struct particles *particles,
+                               const struct close_cell *cell, size_t used, size_t limit,
+                               const int dim, const bool half) {
+    struct close_search search = {
+        .x = particles->fraction[0],
+        .y = particles->fraction[1],
+        .z = particles->fraction[2],
+        .range2 = lanes_all((float)(neighbours->range * neighbours->range)),
+    };
     for (int d = 0; d < 3; d++)
-        scale[d] = (float)(particles->box.length[d] * 0x1p-32);
-    size_t own = 0;
-    const size_t count = close_collect(neighbours, particles, cell, &own, dim);
-    for (size_t k = cell->begin; k < cell->end; k++, own++) {
+        search.scale[d] = lanes_all((float)(particles->box.length[d] * 0x1p-32));
+    int32_t *const list = neighbours->list;
+    for (size_t k = cell->begin; k < cell->end; k++) {
+        if (used + cell->around + 2 * PARTICLES_PADDING > limit)
+            return SIZE_MAX;
         neighbours->start[k] = used;
-        if (neighbours->kind == NEIGHBOURS_FULL) {
-            used = close_select(neighbours, own, 0, own, scale, used, dim);
-            used = close_select(neighbours, own, own + 1, count, scale, used, dim);
-            continue;
-        }
-        used = close_select(neighbours, own, own + 1, count, scale, used, dim);
-        for (; used % NEIGHBOURS_ROW != 0; used++)
-            neighbours->list[used] = (int32_t)k;
-        for (size_t row = neighbours->start[k] / NEIGHBOURS_ROW; row < used / NEIGHBOURS_ROW; row++)
-            neighbours->owner[row] = (int32_t)k;
+        const int32_t *end = half ? close_half(search, cell, k, list + used, dim)
+                                  : close_full(search, cell, k, list + used, dim);
+        used = (size_t)(end - list);
+        if (half)
+            used = close_fill_rows(neighbours, k, neighbours->start[k], used);
+        neighbours->stop[k] = used;
     }
     return used;
 }
 
 #define CLOSE_INSTANCE(name)                                                                       \
     size_t name(struct neighbours *neighbours, const struct particles *particles,                  \
-                const struct close_cell *cell, size_t used) {                                      \
-        return particles->box.dimensions == 2                                                      \
-                   ? close_search(neighbours, particles, cell, used, 2)                            \
-                   : close_search(neighbours, particles, cell, used, 3);                           \
+                const struct close_cell *cell, size_t used, size_t limit) {                        \
+        const bool half = neighbours->kind == NEIGHBOURS_HALF;                                     \
+        if (particles->box.dimensions == 2)                                                        \
+            return close_loop(neighbours, particles, cell, used, limit, 2, half);                  \
+        return half ? close_loop(neighbours, particles, cell, used, limit, 3, true)                \
+                    : close_loop(neighbours, particles, cell, used, limit, 3, false);              \
     }

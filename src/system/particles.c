@@ -2,13 +2,15 @@
 #include "system/particles.h"
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "base/rng.h"
+#include "base/simd.h"
 
 #include <stdlib.h>
 
 enum status particles_init(struct particles *particles, const struct box *box, size_t count) {
     enum status status = STATUS_OK;
-    *particles = (struct particles){.count = count, .box = *box};
+    *particles = (struct particles){.count = count, .box = *box, .threads = 1};
     for (int d = 0; d < 3; d++) {
         NEW_ARRAY(particles->position[d], count);
         NEW_ARRAY(particles->velocity[d], count);
@@ -21,6 +23,9 @@ enum status particles_init(struct particles *particles, const struct box *box, s
     NEW_ARRAY(particles->kernel_force, count);
     NEW_ARRAY(particles->id, count);
     NEW_ARRAY(particles->spare, count);
+    NEW_ARRAY(particles->spare_motion, count);
+    particles->spare_words = memory_zeroed(count, sizeof(uint32_t));
+    CHECK(particles->spare_words ? STATUS_OK : STATUS_NO_MEMORY);
     for (size_t k = 0; k < count; k++)
         particles->id[k] = (uint32_t)k;
 done:
@@ -42,6 +47,8 @@ void particles_clear(struct particles *particles) {
     memory_free(particles->kernel_force);
     memory_free(particles->id);
     memory_free(particles->spare);
+    memory_free(particles->spare_motion);
+    memory_free(particles->spare_words);
     *particles = (struct particles){0};
 }
 
@@ -49,68 +56,116 @@ double particles_density(const struct particles *particles) {
     return (double)particles->count / box_volume(&particles->box);
 }
 
-void particles_wrap(struct particles *particles) {
+SIMD_CLONES static void wrap(void *context, size_t begin, size_t end) {
+    struct particles *particles = context;
     for (int d = 0; d < particles->box.dimensions; d++) {
         const double length = particles->box.length[d];
-        double *x = particles->position[d];
-        for (size_t k = 0; k < particles->count; k++) {
+        double *restrict x = particles->position[d];
+        int32_t *restrict image = particles->image[d];
+        for (size_t k = begin; k < end; k++) {
             const double boxes = floor(x[k] / length);
             const double inside = x[k] - boxes * length;
             // A tiny negative x rounds to exactly `length`: that is the next box's corner.
             const double carry = inside >= length ? 1 : 0;
             x[k] = inside - carry * length;
-            particles->image[d][k] += (int32_t)(boxes + carry);
+            image[k] += (int32_t)(boxes + carry);
         }
     }
 }
 
-void particles_update_fractions(struct particles *particles) {
+void particles_wrap(struct particles *particles) {
+    parallel_for(particles->count, particles->threads, wrap, particles);
+}
+
+SIMD_CLONES static void update_fractions(void *context, size_t begin, size_t end) {
+    struct particles *particles = context;
     for (int d = 0; d < particles->box.dimensions; d++) {
         const double inverse_length = 1 / particles->box.length[d];
-        const double *x = particles->position[d];
-        int32_t *fraction = particles->fraction[d];
-        for (size_t k = 0; k < particles->count; k++)
+        const double *restrict x = particles->position[d];
+        int32_t *restrict fraction = particles->fraction[d];
+        for (size_t k = begin; k < end; k++)
             fraction[k] = box_fraction(x[k], inverse_length);
-        for (size_t k = 0; k < particles->count; k++)
+        for (size_t k = begin; k < end; k++)
             particles->kernel_place[k].fraction[d] = fraction[k];
     }
 }
 
-void particles_update_motion(struct particles *particles, double ahead) {
+void particles_update_fractions(struct particles *particles) {
+    parallel_for(particles->count, particles->threads, update_fractions, particles);
+}
+
+struct prediction {
+    struct particles *particles;
+    double ahead;
+};
+
+SIMD_CLONES static void update_motion(void *context, size_t begin, size_t end) {
+    const struct prediction *prediction = context;
+    const struct particles *particles = prediction->particles;
     struct particle_motion *restrict motion = particles->kernel_motion;
     for (int d = 0; d < particles->box.dimensions; d++) {
         const double *restrict v = particles->velocity[d], *restrict force = particles->force[d];
-        for (size_t k = 0; k < particles->count; k++)
-            motion[k].velocity[d] = (float)(v[k] + ahead * force[k]);
+        for (size_t k = begin; k < end; k++)
+            motion[k].velocity[d] = (float)(v[k] + prediction->ahead * force[k]);
     }
-    for (size_t k = 0; k < particles->count; k++)
+    for (size_t k = begin; k < end; k++)
         motion[k].id = particles->id[k];
 }
 
-static void permute_doubles(double **array, double **spare, const uint32_t *order, size_t count) {
-    for (size_t k = 0; k < count; k++)
-        (*spare)[k] = (*array)[order[k]];
-    double *permuted = *spare;
-    *spare = *array;
-    *array = permuted;
+void particles_update_motion(struct particles *particles, double ahead) {
+    struct prediction prediction = {particles, ahead};
+    parallel_for(particles->count, particles->threads, update_motion, &prediction);
 }
 
-static void permute_words(uint32_t *array, double *spare, const uint32_t *order, size_t count) {
-    uint32_t *copy = (void *)spare;
-    memcpy(copy, array, count * sizeof *array);
-    for (size_t k = 0; k < count; k++)
-        array[k] = copy[order[k]];
+/// One array on its way into another order.
+struct permutation {
+    const uint32_t *order;
+    const void *from;
+    void *to;
+};
+
+static void permute_doubles(void *context, size_t begin, size_t end) {
+    const struct permutation *p = context;
+    const double *restrict from = p->from;
+    double *restrict to = p->to;
+    for (size_t k = begin; k < end; k++)
+        to[k] = from[p->order[k]];
 }
+
+static void permute_words(void *context, size_t begin, size_t end) {
+    const struct permutation *p = context;
+    const uint32_t *restrict from = p->from;
+    uint32_t *restrict to = p->to;
+    for (size_t k = begin; k < end; k++)
+        to[k] = from[p->order[k]];
+}
+
+static void permute_motions(void *context, size_t begin, size_t end) {
+    const struct permutation *p = context;
+    const struct particle_motion *restrict from = p->from;
+    struct particle_motion *restrict to = p->to;
+    for (size_t k = begin; k < end; k++)
+        to[k] = from[p->order[k]];
+}
+
+/// Permute *array into *spare, and exchange them.
+#define PERMUTE(particles, array, spare, order, permute)                                           \
+    do {                                                                                           \
+        struct permutation permutation = {(order), (array), (spare)};                              \
+        void *old = (array);                                                                       \
+        parallel_for((particles)->count, (particles)->threads, (permute), &permutation);           \
+        (array) = (spare);                                                                         \
+        (spare) = old;                                                                             \
+    } while (0)
 
 void particles_permute(struct particles *particles, const uint32_t *order) {
-    const size_t count = particles->count;
     for (int d = 0; d < particles->box.dimensions; d++) {
-        permute_doubles(&particles->position[d], &particles->spare, order, count);
-        permute_doubles(&particles->velocity[d], &particles->spare, order, count);
-        permute_doubles(&particles->force[d], &particles->spare, order, count);
-        permute_words((uint32_t *)particles->image[d], particles->spare, order, count);
+        PERMUTE(particles, particles->position[d], particles->spare, order, permute_doubles);
+        PERMUTE(particles, particles->velocity[d], particles->spare, order, permute_doubles);
+        PERMUTE(particles, particles->image[d], particles->spare_words, order, permute_words);
     }
-    permute_words(particles->id, particles->spare, order, count);
+    PERMUTE(particles, particles->id, particles->spare_words, order, permute_words);
+    PERMUTE(particles, particles->kernel_motion, particles->spare_motion, order, permute_motions);
 }
 
 void particles_draw_velocities(struct particles *particles, double temperature, uint64_t seed) {
@@ -135,15 +190,23 @@ void particles_remove_momentum(struct particles *particles) {
     }
 }
 
-double particles_square_velocities(const struct particles *particles) {
-    double sum = 0;
+SIMD_CLONES static double square_velocities(const void *context, size_t begin, size_t end) {
+    const struct particles *particles = context;
+    double sum[8] = {0};
     for (int d = 0; d < particles->box.dimensions; d++) {
-        const double *v = particles->velocity[d];
-#pragma omp simd reduction(+ : sum)
-        for (size_t k = 0; k < particles->count; k++)
-            sum += v[k] * v[k];
+        const double *v = particles->velocity[d] + begin;
+        const size_t count = end - begin;
+        for (size_t k = 0; k + 8 <= count; k += 8)
+            for (int lane = 0; lane < 8; lane++)
+                sum[lane] += v[k + lane] * v[k + lane];
+        for (size_t k = count / 8 * 8; k < count; k++)
+            sum[0] += v[k] * v[k];
     }
-    return sum;
+    return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
+}
+
+double particles_square_velocities(const struct particles *particles) {
+    return parallel_sum(particles->count, particles->threads, square_velocities, particles);
 }
 
 double particles_temperature(const struct particles *particles) {

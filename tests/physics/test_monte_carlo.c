@@ -159,7 +159,7 @@ static void test_metropolis_agrees_with_dynamics_when_the_scene_is_flat(void **s
 
 /// True if particle j is on the list of particle i.
 static bool is_listed(const struct neighbours *neighbours, size_t i, size_t j) {
-    for (size_t k = neighbours->start[i]; k < neighbours->start[i + 1]; k++)
+    for (size_t k = neighbours->start[i]; k < neighbours->stop[i]; k++)
         if ((size_t)neighbours->list[k] == j)
             return true;
     return false;

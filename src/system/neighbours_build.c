@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "neighbours_build.h"
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/simd.h"
+#include "close.h"
+
+#include <stdlib.h>
+
+enum { WIDEST = 2 * NEIGHBOURS_MOST_REACH + 1 };
+
+// Sorting -----------------------------------------------------------------------------------------
+
+struct sorting {
+    struct neighbours *neighbours;
+    const struct particles *particles;
+};
+
+static void find_cells_of(void *context, size_t begin, size_t end) {
+    const struct sorting *sorting = context;
+    const struct particles *particles = sorting->particles;
+    for (size_t k = begin; k < end; k++) {
+        uint32_t cell = 0;
+        for (int d = 0; d < particles->box.dimensions; d++) {
+            const uint64_t fraction = (uint32_t)particles->fraction[d][k];
+            const uint32_t n = (uint32_t)sorting->neighbours->cells[d];
+            cell = cell * n + (uint32_t)(fraction * n >> 32);
+        }
+        sorting->neighbours->cell_of[k] = cell;
+    }
+}
+
+void neighbours_sort(struct neighbours *neighbours, const struct particles *particles) {
+    struct sorting sorting = {neighbours, particles};
+    uint32_t *start = neighbours->cell_start;
+    parallel_for(particles->count, particles->threads, find_cells_of, &sorting);
+    memset(start, 0, (neighbours->cell_total + 1) * sizeof *start);
+    for (size_t k = 0; k < particles->count; k++)
+        start[neighbours->cell_of[k] + 1]++;
+    for (size_t c = 0; c < neighbours->cell_total; c++)
+        start[c + 1] += start[c];
+    for (size_t k = 0; k < particles->count; k++)
+        neighbours->order[start[neighbours->cell_of[k]]++] = (uint32_t)k;
+    memmove(start + 1, start, neighbours->cell_total * sizeof *start);
+    start[0] = 0;
+}
+
+// Which cells -------------------------------------------------------------------------------------
+
+/// Consecutive cells along an axis.
+struct stretch {
+    int begin, end;
+};
+
+/// The cells within `reach` of one, in ascending order: two stretches if they wrap.
+static int find_stretches(int cell, int reach, int n, struct stretch stretch[2]) {
+    const int begin = cell - reach, end = cell + reach + 1;
+    if (end - begin >= n) {
+        stretch[0] = (struct stretch){0, n};
+        return 1;
+    }
+    if (begin >= 0 && end <= n) {
+        stretch[0] = (struct stretch){begin, end};
+        return 1;
+    }
+    stretch[0] = (struct stretch){0, end > n ? end - n : end};
+    stretch[1] = (struct stretch){begin < 0 ? begin + n : begin, n};
+    return 2;
+}
+
+/// The same cell by cell.
+static int find_cells(int cell, int reach, int n, int around[WIDEST]) {
+    struct stretch stretch[2];
+    const int count = find_stretches(cell, reach, n, stretch);
+    int found = 0;
+    for (int s = 0; s < count; s++)
+        for (int c = stretch[s].begin; c < stretch[s].end; c++)
+            around[found++] = c;
+    return found;
+}
+
+/// Cells between two along an axis: the particles in them are at least as far apart.
+static int find_gap(int a, int b, int n) {
+    const int apart = abs(a - b), nearest = apart < n - apart ? apart : n - apart;
+    return nearest > 1 ? nearest - 1 : 0;
+}
+
+/// How far neighbours reach along the last axis, given the gaps along the others: −1 where there
+/// are none.
+static int find_depth(const struct neighbours *neighbours, const struct box *box, int gap_x,
+                      int gap_y) {
+    const double x = gap_x * box->length[0] / neighbours->cells[0];
+    const double y = gap_y * box->length[1] / neighbours->cells[1];
+    const double left = neighbours->range * neighbours->range - x * x - y * y;
+    if (left < 0)
+        return -1;
+    const double width = box->length[2] / neighbours->cells[2];
+    return (int)fmin(ceil(sqrt(left) / width), neighbours->cells[2]);
+}
+
+/// Whether the pairs between two planes stand in the list of the one at `plane`.
+///
+/// With planes enough, those from it up to its reach ahead, across the boundary of the box too: so
+/// a part of the system reaches only into the next. Else those behind it in the order of memory.
+static bool owns_pairs(const struct neighbours *neighbours, int plane, int other) {
+    const int n = neighbours->cells[0], reach = neighbours->reach[0];
+    if (n <= 2 * reach)
+        return other > plane;
+    return other != plane && (other - plane + n) % n <= reach;
+}
+
+/// Rows of cells along the last axis that are searched for the cells of one row, its own first.
+struct rows {
+    int count;
+    struct {
+        const uint32_t *cell_start; ///< of the first cell
+        int depth;                  ///< cells to search on both sides
+    } row[WIDEST * WIDEST];
+};
+
+static void find_rows(const struct neighbours *neighbours, const struct box *box, int a, int b,
+                      struct rows *rows) {
+    const int *n = neighbours->cells, *reach = neighbours->reach;
+    const bool half = neighbours->kind == NEIGHBOURS_HALF;
+    int x[WIDEST], y[WIDEST];
+    const int x_count = find_cells(a, reach[0], n[0], x);
+    const int y_count = find_cells(b, reach[1], n[1], y);
+    rows->row[0].cell_start =
+        neighbours->cell_start + ((size_t)a * (size_t)n[1] + (size_t)b) * (size_t)n[2];
+    rows->row[0].depth = find_depth(neighbours, box, 0, 0);
+    rows->count = 1;
+    for (int i = 0; i < x_count; i++)
+        for (int j = 0; j < y_count; j++) {
+            const bool same_plane = x[i] == a;
+            if (same_plane && y[j] == b)
+                continue;
+            if (half && !(same_plane ? y[j] > b : owns_pairs(neighbours, a, x[i])))
+                continue;
+            const int depth =
+                find_depth(neighbours, box, find_gap(x[i], a, n[0]), find_gap(y[j], b, n[1]));
+            if (depth < 0)
+                continue;
+            rows->row[rows->count].cell_start =
+                neighbours->cell_start +
+                ((size_t)x[i] * (size_t)n[1] + (size_t)y[j]) * (size_t)n[2];
+            rows->row[rows->count++].depth = depth;
+        }
+}
+
+static void add_run(struct close_cell *cell, size_t begin, size_t end) {
+    if (begin >= end)
+        return;
+    cell->run[cell->count++] = (struct close_run){begin, end};
+    cell->around += end - begin;
+}
+
+/// The runs of particles around cell number c of its row. A half list begins with the cell itself.
+static void find_runs(const struct neighbours *neighbours, const struct rows *rows, int c,
+                      struct close_cell *cell) {
+    const size_t first = neighbours->kind == NEIGHBOURS_HALF ? cell->begin : 0;
+    cell->around = 0;
+    cell->count = 0;
+    for (int r = 0; r < rows->count; r++) {
+        struct stretch z[2];
+        const int count = find_stretches(c, rows->row[r].depth, neighbours->cells[2], z);
+        for (int s = 0; s < count; s++) {
+            const size_t begin = rows->row[r].cell_start[z[s].begin];
+            const size_t end = rows->row[r].cell_start[z[s].end];
+            add_run(cell, r == 0 && begin < first ? first : begin, end);
+        }
+    }
+}
+
+// Search ------------------------------------------------------------------------------------------
+
+static size_t search(struct neighbours *neighbours, const struct particles *particles,
+                     const struct close_cell *cell, size_t used, size_t limit) {
+    switch (simd_used()) {
+#if SIMD_X86
+    case SIMD_AVX512:
+        return close_avx512(neighbours, particles, cell, used, limit);
+    case SIMD_AVX2:
+        return close_avx2(neighbours, particles, cell, used, limit);
+#endif
+    default:
+        return close_portable(neighbours, particles, cell, used, limit);
+    }
+}
+
+/// Append the neighbours of a row of cells.
+/// @return the new length of the list, or SIZE_MAX if it is too short
+static size_t search_row(struct neighbours *neighbours, const struct particles *particles,
+                         const struct rows *rows, size_t used, size_t limit) {
+    struct close_run run[2 * WIDEST * WIDEST];
+    struct close_cell cell = {.run = run};
+    const uint32_t *start = rows->row[0].cell_start;
+    for (int c = 0; c < neighbours->cells[2] && used != SIZE_MAX; c++) {
+        cell.begin = start[c];
+        cell.end = start[c + 1];
+        if (cell.begin == cell.end)
+            continue;
+        find_runs(neighbours, rows, c, &cell);
+        used = search(neighbours, particles, &cell, used, limit);
+    }
+    return used;
+}
+
+/// Build the list of one part; its end becomes SIZE_MAX if the list is too short.
+static void build_part(struct neighbours *neighbours, const struct particles *particles,
+                       struct neighbours_part *part, size_t limit) {
+    struct rows rows;
+    size_t used = part->begin;
+    for (int a = part->first_plane; a < part->last_plane && used != SIZE_MAX; a++)
+        for (int b = 0; b < neighbours->cells[1] && used != SIZE_MAX; b++) {
+            find_rows(neighbours, &particles->box, a, b, &rows);
+            used = search_row(neighbours, particles, &rows, used, limit);
+        }
+    part->end = used;
+    if (neighbours->kind == NEIGHBOURS_FULL || used == SIZE_MAX)
+        return;
+    // One empty row more, for vectors that are longer than a row.
+    memset(neighbours->list + used, 0, NEIGHBOURS_ROW * sizeof *neighbours->list);
+    neighbours->owner[used / NEIGHBOURS_ROW] = 0;
+}
+
+/// Lay out the parts on the list, each with places for its particles.
+static void place_parts(struct neighbours *neighbours) {
+    const size_t plane = (size_t)neighbours->cells[1] * (size_t)neighbours->cells[2];
+    for (int p = 0; p < neighbours->parts; p++) {
+        struct neighbours_part *part = &neighbours->part[p];
+        part->first = neighbours->cell_start[(size_t)part->first_plane * plane];
+        part->last = neighbours->cell_start[(size_t)part->last_plane * plane];
+        part->begin = (size_t)(neighbours->entries_each * (double)part->first) / 16 * 16 +
+                      (size_t)p * 16 * PARTICLES_PADDING;
+    }
+}
+
+/// A list with as many places for each particle as entries_each says. Its contents are lost.
+static enum status reserve_list(struct neighbours *neighbours) {
+    enum status status = STATUS_OK;
+    const size_t capacity = (size_t)(neighbours->entries_each * (double)neighbours->count) +
+                            (size_t)(neighbours->parts + 1) * 16 * PARTICLES_PADDING;
+    if (capacity <= neighbours->list_capacity)
+        return STATUS_OK;
+    memory_free(neighbours->list);
+    memory_free(neighbours->owner);
+    neighbours->list = neighbours->owner = NULL;
+    neighbours->list_capacity = 0;
+    NEW_ARRAY(neighbours->list, capacity);
+    NEW_ARRAY(neighbours->owner, capacity / NEIGHBOURS_ROW + PARTICLES_PADDING);
+    neighbours->list_capacity = capacity;
+done:
+    return status;
+}
+
+/// Try to build all parts; *complete tells whether the list had room.
+static enum status build_parts(struct neighbours *neighbours, const struct particles *particles,
+                               bool *complete) {
+    const int parts = neighbours->parts, threads = particles->threads;
+    TRY(reserve_list(neighbours));
+    place_parts(neighbours);
+#pragma omp parallel for schedule(dynamic) num_threads(threads) if (threads > 1)
+    for (int p = 0; p < parts; p++)
+        build_part(neighbours, particles, &neighbours->part[p],
+                   p + 1 < parts ? neighbours->part[p + 1].begin : neighbours->list_capacity);
+    *complete = true;
+    for (int p = 0; p < parts; p++)
+        *complete &= neighbours->part[p].end != SIZE_MAX;
+    return STATUS_OK;
+}
+
+enum status neighbours_build(struct neighbours *neighbours, const struct particles *particles) {
+    bool complete;
+    TRY(build_parts(neighbours, particles, &complete));
+    while (!complete) {
+        neighbours->entries_each *= 1.5;
+        TRY(build_parts(neighbours, particles, &complete));
+    }
+    return STATUS_OK;
+}

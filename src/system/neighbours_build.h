@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file From particles to a list: sorting by cell, and the search part by part.
+#pragma once
+
+#include "system/neighbours.h"
+
+/// Cells are at least as wide as the range, or as half of it: neighbours lie within `reach` cells.
+enum { NEIGHBOURS_MOST_REACH = 2 };
+
+/// Counting sort by cell: fills cell_of, cell_start and order. Stable, so sorted stays sorted.
+void neighbours_sort(struct neighbours *neighbours, const struct particles *particles);
+
+/// Build the list of sorted particles. Fails: NO_MEMORY.
+enum status neighbours_build(struct neighbours *neighbours,
+                             const struct particles *particles) MUST_USE;
