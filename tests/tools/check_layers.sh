@@ -50,7 +50,8 @@ faults=$(
     only_in 'src/io/json[_a-z]*.c' 'include.*cJSON\.h' 'cJSON'
     only_in src/optimise/nlopt_driver.c 'include.*nlopt\.h' 'NLopt'
     only_in src/run/figures.c '"([^" ]*/)?gnuplot[" ]' 'gnuplot'
-    only_in src/run/figures.c '\b(fork|vfork|popen|system|exec[lv]p?e?|posix_spawnp?) ?\(' \
+    only_in src/run/bench_lammps.c '"([^" ]*/)?lmp[" ]' 'LAMMPS'
+    only_in src/run/program.c '\b(fork|vfork|popen|system|exec[lv]p?e?|posix_spawnp?) ?\(' \
         'starting a program'
 )
 if [ -n "$faults" ]; then
