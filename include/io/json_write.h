@@ -11,13 +11,16 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 struct json_writer;
 
-struct json_writer *json_writer_create(void); ///< NULL if there is no memory
+struct json_writer *json_writer_create(void);      ///< NULL if there is no memory
+struct json_writer *json_writer_create_list(void); ///< the tree is a list of objects
 void json_writer_free(struct json_writer *writer);
 
-/// Enter a new object at `key` of the current object; leave it with json_end.
+/// Enter a new object at `key` of the current object, or with `key` NULL a new last object of the
+/// list; leave it with json_end.
 void json_begin(struct json_writer *writer, const char *key);
 void json_end(struct json_writer *writer);
 
@@ -36,3 +39,7 @@ void json_put_fields(struct json_writer *writer, const struct field *fields,
 
 /// Write the tree to `file`, whole or not at all (output.h).
 enum status json_write(const struct json_writer *writer, const char *file) MUST_USE;
+
+/// Print the tree to an open stream, which `name` names in messages. Fails: IO, NO_MEMORY.
+enum status json_write_stream(const struct json_writer *writer, FILE *stream,
+                              const char *name) MUST_USE;

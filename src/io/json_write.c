@@ -6,9 +6,10 @@
 
 #include <cJSON.h>
 
+#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -21,16 +22,24 @@ struct json_writer {
     char problem[256]; ///< the first one; "" while all is well
 };
 
-struct json_writer *json_writer_create(void) {
+static struct json_writer *create(cJSON *root) {
     struct json_writer *writer = memory_zeroed(1, sizeof *writer);
-    if (writer == NULL)
-        return NULL;
-    writer->object[0] = cJSON_CreateObject();
-    if (writer->object[0])
+    if (writer && root) {
+        writer->object[0] = root;
         return writer;
+    }
+    cJSON_Delete(root);
     memory_free(writer);
     status_fail(STATUS_NO_MEMORY, "out of memory");
     return NULL;
+}
+
+struct json_writer *json_writer_create(void) {
+    return create(cJSON_CreateObject());
+}
+
+struct json_writer *json_writer_create_list(void) {
+    return create(cJSON_CreateArray());
 }
 
 void json_writer_free(struct json_writer *writer) {
@@ -58,7 +67,23 @@ static void put(struct json_writer *writer, const char *key, cJSON *item) {
     cJSON_Delete(item);
 }
 
+/// Put a new last object into the list, which is the root.
+static void begin_in_list(struct json_writer *writer) {
+    if (writer->depth > 0 || !cJSON_IsArray(writer->object[0])) {
+        note_problem(writer, "", "is an object without a key");
+        return;
+    }
+    cJSON *item = cJSON_CreateObject();
+    if (!cJSON_AddItemToArray(writer->object[0], item))
+        note_problem(writer, "", "does not fit into the memory");
+    writer->object[++writer->depth] = item;
+}
+
 void json_begin(struct json_writer *writer, const char *key) {
+    if (key == NULL) {
+        begin_in_list(writer);
+        return;
+    }
     if (writer->depth + 1 == DEEPEST_OBJECT) {
         note_problem(writer, key, "is nested too deeply");
         return;
@@ -173,16 +198,34 @@ void json_put_fields(struct json_writer *writer, const struct field *fields,
         put_field(writer, field, (const char *)parameters + field->offset);
 }
 
-enum status json_write(const struct json_writer *writer, const char *file) {
+/// The tree as a text that cJSON_free frees.
+static enum status print(const struct json_writer *writer, const char *name, char **text) {
+    *text = NULL;
     if (writer->problem[0])
-        return status_fail(STATUS_IO, "cannot write %s: %s", file, writer->problem);
-    char *text = cJSON_Print(writer->object[0]);
-    if (text == NULL)
-        return status_fail(STATUS_NO_MEMORY, "cannot write %s: out of memory", file);
+        return status_fail(STATUS_IO, "cannot write %s: %s", name, writer->problem);
+    *text = cJSON_Print(writer->object[0]);
+    if (*text == NULL)
+        return status_fail(STATUS_NO_MEMORY, "cannot write %s: out of memory", name);
+    return STATUS_OK;
+}
+
+enum status json_write(const struct json_writer *writer, const char *file) {
+    char *text;
+    TRY(print(writer, file, &text));
     struct output output;
     const enum status status = output_open(&output, file);
     if (status == STATUS_OK)
         fprintf(output.stream, "%s\n", text);
     cJSON_free(text);
     return status == STATUS_OK ? output_commit(&output) : status;
+}
+
+enum status json_write_stream(const struct json_writer *writer, FILE *stream, const char *name) {
+    char *text;
+    TRY(print(writer, name, &text));
+    const bool written = fprintf(stream, "%s\n", text) >= 0 && fflush(stream) == 0;
+    const int error = errno;
+    cJSON_free(text);
+    return written ? STATUS_OK
+                   : status_fail(STATUS_IO, "cannot write %s: %s", name, strerror(error));
 }

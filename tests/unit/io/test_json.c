@@ -395,6 +395,10 @@ static void write_too_deep(struct json_writer *writer) {
         json_begin(writer, "distance");
 }
 
+static void write_nameless(struct json_writer *writer) {
+    json_begin(writer, NULL);
+}
+
 static void test_json_write_writes_nothing_when_the_tree_has_a_problem(void **state) {
     static const struct {
         void (*build)(struct json_writer *);
@@ -402,9 +406,10 @@ static void test_json_write_writes_nothing_when_the_tree_has_a_problem(void **st
     } cases[] = {{write_number, "out.json: \"distance\" is not a finite number"},
                  {write_numbers, "out.json: \"distance\" is not a finite number"},
                  {write_twice, "out.json: \"distance\" is given twice"},
-                 {write_too_deep, "out.json: \"distance\" is nested too deeply"}};
+                 {write_too_deep, "out.json: \"distance\" is nested too deeply"},
+                 {write_nameless, "out.json: \"\" is an object without a key"}};
     const char *file = temporary_folder_file(*state, "out.json");
-    for (int k = 0; k < 4; k++) {
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         struct json_writer *writer = json_writer_create();
         assert_non_null(writer);
         cases[k].build(writer);
@@ -412,6 +417,48 @@ static void test_json_write_writes_nothing_when_the_tree_has_a_problem(void **st
         assert_false(temporary_folder_exists(file));
         json_writer_free(writer);
     }
+}
+
+static void test_json_write_stream_prints_a_list_when_the_root_is_one(void **state) {
+    char text[256];
+    const char *file = temporary_folder_file(*state, "stream");
+    FILE *stream = fopen(file, "w+");
+    assert_non_null(stream);
+    struct json_writer *writer = json_writer_create_list();
+    assert_non_null(writer);
+    assert_ok(json_write_stream(writer, stream, "stream"));
+    for (int k = 0; k < 2; k++) {
+        json_begin(writer, NULL);
+        json_put_integer(writer, "number", k);
+        json_begin(writer, "inside");
+        json_end(writer);
+        json_end(writer);
+    }
+    assert_ok(json_write_stream(writer, stream, "stream"));
+    rewind(stream);
+    const size_t length = fread(text, 1, sizeof text - 1, stream);
+    text[length] = '\0';
+    assert_string_equal(text, "[]\n[{\n\t\t\"number\":\t0,\n\t\t\"inside\":\t{\n\t\t}\n\t}, {\n"
+                              "\t\t\"number\":\t1,\n\t\t\"inside\":\t{\n\t\t}\n\t}]\n");
+    assert_int_equal(fclose(stream), 0);
+    json_writer_free(writer);
+}
+
+static void test_json_write_stream_fails_when_the_tree_or_the_stream_is_bad(void **state) {
+    (void)state;
+    struct json_writer *writer = json_writer_create_list();
+    assert_non_null(writer);
+    FILE *full = fopen("/dev/full", "w");
+    assert_non_null(full);
+    assert_fails(json_write_stream(writer, full, "stdout"), STATUS_IO,
+                 "cannot write stdout: No space left");
+    fclose(full);
+    json_begin(writer, NULL);
+    json_put_number(writer, "distance", NAN);
+    json_end(writer);
+    assert_fails(json_write_stream(writer, stdout, "stdout"), STATUS_IO,
+                 "cannot write stdout: \"distance\" is not a finite number");
+    json_writer_free(writer);
 }
 
 #define IN_FOLDER(test)                                                                            \
@@ -441,6 +488,8 @@ int main(void) {
         IN_FOLDER(test_json_put_fields_makes_a_file_absolute_when_it_is_relative),
         IN_FOLDER(test_json_write_prints_the_tree_when_objects_are_nested),
         IN_FOLDER(test_json_write_writes_nothing_when_the_tree_has_a_problem),
+        IN_FOLDER(test_json_write_stream_prints_a_list_when_the_root_is_one),
+        cmocka_unit_test(test_json_write_stream_fails_when_the_tree_or_the_stream_is_bad),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
