@@ -16,20 +16,32 @@ static const struct command *const commands[] = {&cmd_simulate, &cmd_fit, &cmd_p
                                                  &cmd_describe};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
+static void print_own_options(const struct command *command) {
+    if (command->options)
+        printf("\noptions of %s:\n", command->name);
+    for (const struct command_option *own = command->options; own && own->name; own++)
+        printf("  %s%s%-*s  %s\n", own->name, own->value ? " " : "",
+               16 - (int)strlen(own->name) - (own->value ? 1 : 0), own->value ? own->value : "",
+               own->help);
+}
+
 static void print_help(void) {
     printf("mesofit " MESOFIT_VERSION
            ": fit the pair interactions of a coarse liquid to measurements\n\nusage:\n");
     for (size_t k = 0; k < COMMANDS; k++)
-        printf("  mesofit %-9s %-12s %s\n", commands[k]->name, commands[k]->usage,
+        printf("  mesofit %-9s %-22s  %s\n", commands[k]->name, commands[k]->usage,
                commands[k]->summary);
     printf("\noptions:\n"
            "  -o DIR        folder for the results (default: \"out\" beside the input file)\n"
-           "  --threads N   threads (default: all processors); results do not depend on it\n"
+           "  --threads N   threads (default: all processors); results do not depend on "
+           "it\n"
            "  --seed N      seed, instead of the file's\n"
            "  --resume      go on with an interrupted run in its folder\n"
            "  --quiet       no progress\n"
-           "  --help, --version\n"
-           "\nexit code: 0 done; 1 not converged or unstable; 2 bad input, files or options;\n"
+           "  --help, --version\n");
+    for (size_t k = 0; k < COMMANDS; k++)
+        print_own_options(commands[k]);
+    printf("\nexit code: 0 done; 1 not converged or unstable; 2 bad input, files or options;\n"
            "3 out of memory; 130 interrupted\n");
 }
 
@@ -64,12 +76,43 @@ static enum status parse_number(const char *option, const char *text, uint64_t l
     return STATUS_OK;
 }
 
+/// An option of the subcommand itself, if `word` is one: *used is then how many words it took.
+static enum status parse_own_option(const struct command *command, const char *word,
+                                    const char *value, struct command_line *line, int *used) {
+    for (size_t k = 0; command->options && command->options[k].name; k++) {
+        const struct command_option *own = &command->options[k];
+        if (strcmp(word, own->name) != 0)
+            continue;
+        if (own->value && (value == NULL || *value == '\0' || *value == '-'))
+            return status_fail(STATUS_BAD_INPUT, "%s takes %s", word, own->value);
+        line->own[k] = own->value ? value : own->name;
+        *used = own->value ? 2 : 1;
+        return STATUS_OK;
+    }
+    return STATUS_OK;
+}
+
+static enum status fail_unknown_option(const struct command *command, const char *word) {
+    const char *known[16 + COMMAND_MAX_OPTIONS] = {"-o",      "--threads", "--seed",   "--resume",
+                                                   "--quiet", "--help",    "--version"};
+    size_t count = 7;
+    for (const struct command_option *own = command->options; own && own->name; own++)
+        if (strcmp(own->name, "-o") != 0)
+            known[count++] = own->name;
+    char hint[256];
+    nearest_hint(word, known, count, hint, sizeof hint);
+    return status_fail(STATUS_BAD_INPUT, "unknown option %s; %s", word, hint);
+}
+
 /// One option with its value, if it takes one; *used is how many words it took.
-static enum status parse_option(const char *word, const char *value, struct run_options *options,
-                                int *used) {
-    static const char *const known[] = {"-o",      "--threads", "--seed",   "--resume",
-                                        "--quiet", "--help",    "--version"};
+static enum status parse_option(const struct command *command, const char *word, const char *value,
+                                struct command_line *line, int *used) {
+    struct run_options *options = &line->options;
     uint64_t number;
+    *used = 0;
+    TRY(parse_own_option(command, word, value, line, used));
+    if (*used > 0)
+        return STATUS_OK;
     *used = 2;
     if (strcmp(word, "-o") == 0) {
         if (value == NULL || *value == '\0' || *value == '-')
@@ -88,20 +131,19 @@ static enum status parse_option(const char *word, const char *value, struct run_
         } else if (strcmp(word, "--quiet") == 0) {
             options->quiet = true;
         } else {
-            char hint[256];
-            nearest_hint(word, known, sizeof known / sizeof *known, hint, sizeof hint);
-            return status_fail(STATUS_BAD_INPUT, "unknown option %s; %s", word, hint);
+            return fail_unknown_option(command, word);
         }
     }
     return STATUS_OK;
 }
 
-static enum status parse_line(int count, char **words, struct command_line *line) {
-    line->options.threads = omp_get_max_threads();
+static enum status parse_line(const struct command *command, int count, char **words,
+                              struct command_line *line) {
+    line->options.threads = command->threads > 0 ? command->threads : omp_get_max_threads();
     for (int k = 0; k < count;) {
         int used = 1;
         if (words[k][0] == '-')
-            TRY(parse_option(words[k], k + 1 < count ? words[k + 1] : NULL, &line->options, &used));
+            TRY(parse_option(command, words[k], k + 1 < count ? words[k + 1] : NULL, line, &used));
         else if (line->file_count == COMMAND_MAX_FILES)
             return status_fail(STATUS_BAD_INPUT, "more than %d files", COMMAND_MAX_FILES);
         else
@@ -129,7 +171,7 @@ static enum status run(int count, char **words) {
     const struct command *command = NULL;
     struct command_line line = {0};
     TRY(find_command(words[0], &command));
-    TRY(parse_line(count - 1, words + 1, &line));
+    TRY(parse_line(command, count - 1, words + 1, &line));
     if (line.file_count < command->least_files || line.file_count > command->most_files)
         return status_fail(STATUS_BAD_INPUT, "usage: mesofit %s %s", command->name, command->usage);
     return command->run(&line);
