@@ -6,7 +6,7 @@
 # make check-physics  laws and exact limits (minutes)
 # make asan           the whole test suite under address and undefined-behaviour sanitizers
 # make lint           formatting, static analysis, layers, names, licence lines
-# make bench          speed of the engine on this machine
+# make bench          speed of the engine on this machine, to tests/bench/results
 # make WERROR=1 …     warnings are errors
 # make VERBOSE=1 …    shows the whole commands
 

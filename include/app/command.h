@@ -35,4 +35,4 @@ struct command {
     enum status (*run)(const struct command_line *line);
 };
 
-extern const struct command cmd_simulate, cmd_fit, cmd_plot, cmd_compare, cmd_describe;
+extern const struct command cmd_simulate, cmd_fit, cmd_plot, cmd_compare, cmd_describe, cmd_bench;

@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct command *const commands[] = {&cmd_simulate, &cmd_fit, &cmd_plot, &cmd_compare,
-                                                 &cmd_describe};
+static const struct command *const commands[] = {&cmd_simulate, &cmd_fit,      &cmd_plot,
+                                                 &cmd_compare,  &cmd_describe, &cmd_bench};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static void print_own_options(const struct command *command) {
@@ -33,7 +33,7 @@ static void print_help(void) {
                commands[k]->summary);
     printf("\noptions:\n"
            "  -o DIR        folder for the results (default: \"out\" beside the input file)\n"
-           "  --threads N   threads (default: all processors); results do not depend on "
+           "  --threads N   threads (default: all processors; bench: 1); results do not depend on "
            "it\n"
            "  --seed N      seed, instead of the file's\n"
            "  --resume      go on with an interrupted run in its folder\n"

@@ -1,20 +1,21 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Speed of the engine: every scene of tests/bench/scenes on one thread, best of three runs.
+# Speed of the engine on this machine, on one thread: tables for people, and the same numbers in
+# tests/bench/results/<cpu>.tsv, to be compared with those of other days. Nothing else should run.
 # Usage: tests/bench/run.sh PROGRAM
 set -euo pipefail
 program=$1
-here=$(dirname "$0")
-out=$(mktemp -d)
-trap 'rm -rf "$out"' EXIT
-printf '# processor: %s\n' "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)"
-printf '# scene\tsteps_per_second\n'
-for scene in "$here"/scenes/*.json; do
-    best=0
-    for _ in 1 2 3; do
-        "$program" simulate "$scene" -o "$out" --threads 1 --quiet
-        rate=$(sed -n 's/.*"steps_per_second":[[:space:]]*\([0-9.]*\).*/\1/p' "$out/summary.json")
-        best=$(awk -v a="$best" -v b="$rate" 'BEGIN { print (a > b ? a : b) }')
-    done
-    printf '%s\t%.0f\n' "$(basename "$scene" .json)" "$best"
-done
+results=$(dirname "$0")/results
+
+# cpuinfo KEY: what /proc/cpuinfo says of the first processor.
+cpuinfo() {
+    sed -n "s/^$1[[:space:]]*: //p" /proc/cpuinfo | head -n 1
+}
+
+# "AMD EPYC" of family 26, model 2 is amd-epyc-26-2; other processors than x86 go by `uname -m`.
+name=$(cpuinfo 'model name' | sed 's/([RTM]*)//g; s/ CPU.*//; s/ @.*//')
+cpu=$(printf '%s %s %s' "${name:-$(uname -m)}" "$(cpuinfo 'cpu family')" "$(cpuinfo model)" |
+    tr '[:upper:]' '[:lower:]' | sed 's/[^a-z0-9]\{1,\}/-/g; s/^-//; s/-$//')
+mkdir -p "$results"
+"$program" bench engine -o "$results/$cpu.tsv"
+printf '\nresults in %s\n' "$results/$cpu.tsv"

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// `mesofit bench engine` from outside: its JSON and its table, bad input, no LAMMPS.
+#include "shared/results.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <stdlib.h>
+
+/// A list of one object becomes that object in a file, for the checks of results.
+static void write_object(struct temporary_folder *folder, const char *list) {
+    const size_t length = strlen(list);
+    assert_int_equal(list[0], '[');
+    assert_string_equal(list + length - 2, "]\n");
+    temporary_folder_write(folder, "object.json", list + 1, length - 3);
+}
+
+static void test_bench_prints_json_and_writes_a_table(void **state) {
+    static struct run_program_result result;
+    static const char *const numbers[] = {"particles",
+                                          "threads",
+                                          "steps_per_second",
+                                          "steps_per_second_best",
+                                          "steps_per_second_spread",
+                                          "particle_steps_per_second",
+                                          "pairs_per_second",
+                                          "ns_per_pair",
+                                          "cycles_per_pair",
+                                          "list_share",
+                                          "forces_share",
+                                          "motion_share",
+                                          "list_efficiency",
+                                          "steps_per_build",
+                                          NULL};
+    small_inputs_write(*state, "small.json", small_inputs_scene, NULL, NULL);
+    RUN_PROGRAM(&result, "bench", "engine", "small.json", "--json", "--isa", "portable",
+                "--precision", "double", "-o", "speed.tsv");
+    run_program_assert_code(&result, 0);
+    assert_string_equal(result.err, "");
+    write_object(*state, result.out);
+    results_assert_text("object.json", "scene", "small");
+    results_assert_text("object.json", "isa", "portable");
+    results_assert_text("object.json", "precision", "double");
+    results_assert_number("object.json", "particles", 81);
+    results_assert_number("object.json", "threads", 1);
+    results_assert_numbers("object.json", numbers);
+    assert_true(temporary_folder_exists("speed.tsv"));
+    assert_false(temporary_folder_exists("speed.tsv.partial"));
+}
+
+static const struct {
+    const char *words[6];
+    const char *says[3];
+} bad_lines[] = {
+    {{"bench"}, {"usage: mesofit bench engine [SCENE.json...]"}},
+    {{"bench", "motor"}, {"bench: \"motor\" is not known", "engine"}},
+    {{"bench", "engine", "no/such.json"}, {"no/such.json: No such file"}},
+    {{"bench", "engine", "bad.json"}, {"bad.json: box: missing"}},
+    {{"bench", "engine", "narrow.json"}, {"narrow: ", "box"}},
+    {{"bench", "engine", "--isa", "avx3"}, {"--isa: \"avx3\" is not known", "\"avx2\"?"}},
+    {{"bench", "engine", "--precision", "duble"}, {"--precision: \"duble\"", "\"double\"?"}},
+    {{"bench", "engine", "--isa"}, {"--isa takes NAME"}},
+    {{"bench", "engine", "-o", "--json"}, {"-o takes FILE.tsv"}},
+    {{"bench", "engine", "-o", "no/such/file.tsv"}, {"cannot write no/such/file.tsv"}},
+    {{"bench", "engine", "--jsn"}, {"unknown option --jsn", "did you mean \"--json\"?"}},
+    {{"fit", "run.json", "--json"}, {"unknown option --json"}},
+    {{"bench", "engine", "--against-lammps", "--threads", "2"}, {"compares single threads"}},
+};
+
+static void test_bad_bench_lines_are_refused_before_anything_is_timed(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "bad.json", small_inputs_scene, "  \"box\": [3, 3, 3],\n", "");
+    small_inputs_write(*state, "narrow.json", small_inputs_scene, "[3, 3, 3]", "[3, 1.5, 3]");
+    for (size_t k = 0; k < sizeof bad_lines / sizeof *bad_lines; k++) {
+        run_program(&result, &(struct run_program_how){0}, bad_lines[k].words);
+        run_program_assert_refused(&result, ".", bad_lines[k].says[0], 1, bad_lines[k].says);
+    }
+}
+
+static void test_comparison_without_lammps_is_one_clear_line(void **state) {
+    static struct run_program_result result;
+    (void)state; // PATH leads nowhere
+    RUN_PROGRAM(&result, "bench", "engine", "--against-lammps");
+    run_program_assert_refused(&result, ".", "no lmp", 1,
+                               (const char *[]){"--against-lammps", "lmp is not installed", NULL});
+}
+
+static void test_comparison_leaves_out_scenes_with_friction(void **state) {
+    static struct run_program_result result;
+    if (system("command -v lmp >/dev/null") != 0)
+        skip();
+    small_inputs_write(*state, "small.json", small_inputs_scene, NULL, NULL);
+    RUN_PROGRAM(&result, "bench", "engine", "small.json", "--against-lammps", "--json");
+    run_program_assert_code(&result, 0);
+    assert_string_equal(result.out, "[]\n");
+    assert_contains(result.err, "small is not compared: ");
+    assert_int_equal(run_program_lines(result.err), 1);
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        TEST(test_bench_prints_json_and_writes_a_table),
+        TEST(test_bad_bench_lines_are_refused_before_anything_is_timed),
+        cmocka_unit_test_setup_teardown(test_comparison_without_lammps_is_one_clear_line,
+                                        small_inputs_enter_without_gnuplot, small_inputs_leave),
+        TEST(test_comparison_leaves_out_scenes_with_friction),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
