@@ -8,6 +8,7 @@
 #include "shared/hotelling.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
+#include "shared/variants.h"
 
 enum { PARTICLES = 120, REPLICAS = 40, BINS = 10, SAMPLES = 40 };
 

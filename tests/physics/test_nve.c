@@ -5,6 +5,7 @@
 #include "shared/fluids.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
+#include "shared/variants.h"
 
 enum { PARTICLES = 864 };
 
@@ -94,39 +95,56 @@ static double fluctuation(const struct energies *energies) {
     return sqrt(sum / PARTS);
 }
 
-static void test_velocity_verlet_keeps_the_energy_when_the_time_step_is_small(void **state) {
-    (void)state;
+/// NVE of the liquid with each variant from the same start, which the first one made.
+static void for_each_variant(void (*check)(const struct fluid *fluid,
+                                           const struct simulation *start)) {
+    struct variant variants[VARIANTS_MOST];
+    const int variant_count = variants_find(variants);
     struct fluid fluid;
     struct simulation start;
-    struct energies energies;
-    double slope, square;
     prepare(&fluid, &start);
-    follow(&fluid, &start, 0.001, 10, 0.01, &energies);
-    fit_line(&energies, 0, energies.count, &slope, &square);
-    print_message("drift %.2e per particle and time unit\n", slope);
-    assert_true(fabs(slope) < largest_drift);
+    for (int v = 0; v < variant_count; v++) {
+        variants_select(&variants[v]);
+        fluid.setup.precision = (int)variants[v].precision;
+        print_message("%s:\n", variants[v].name);
+        check(&fluid, &start);
+    }
+    variants_select(&variants[0]);
     simulation_clear(&start);
     fluid_clear(&fluid);
 }
 
-static void test_velocity_verlet_is_of_second_order_when_the_time_step_is_halved(void **state) {
+static void check_drift(const struct fluid *fluid, const struct simulation *start) {
+    struct energies energies;
+    double slope, square;
+    follow(fluid, start, 0.001, 10, 0.01, &energies);
+    fit_line(&energies, 0, energies.count, &slope, &square);
+    print_message("drift %.2e per particle and time unit\n", slope);
+    assert_true(fabs(slope) < largest_drift);
+}
+
+static void test_velocity_verlet_keeps_the_energy_when_the_time_step_is_small(void **state) {
     (void)state;
+    for_each_variant(check_drift);
+}
+
+static void check_order(const struct fluid *fluid, const struct simulation *start) {
     static const double time_steps[] = {0.004, 0.002, 0.001};
-    struct fluid fluid;
-    struct simulation start;
     struct energies energies;
     double scatter[3];
-    prepare(&fluid, &start);
     for (int k = 0; k < 3; k++) {
-        follow(&fluid, &start, time_steps[k], 2, 0.004, &energies);
+        follow(fluid, start, time_steps[k], 2, 0.004, &energies);
         scatter[k] = fluctuation(&energies);
         print_message("time step %g: fluctuation of the energy of a particle %.3e\n", time_steps[k],
                       scatter[k]);
     }
     assert_close(scatter[0] / scatter[1], order_ratio, order_band);
     assert_close(scatter[1] / scatter[2], order_ratio, order_band);
-    simulation_clear(&start);
-    fluid_clear(&fluid);
+}
+
+static void test_velocity_verlet_is_of_second_order_when_the_time_step_is_halved(void **state) {
+    (void)state;
+    for_each_variant(check_order);
 }
 
 /// Largest component of the total momentum.
@@ -141,17 +159,27 @@ static double momentum(const struct particles *particles) {
     return largest;
 }
 
-static void assert_momentum_stays_zero(const struct simulation_setup *setup) {
-    struct simulation simulation;
-    assert_ok(simulation_init(&simulation, setup, NULL));
-    double largest = momentum(&simulation.particles);
-    for (int k = 0; k < 100; k++) {
-        assert_ok(simulation_run(&simulation, 100));
-        largest = fmax(largest, momentum(&simulation.particles));
+/// Over 10^4 steps with the first variant, and 10^3 with the others.
+static void assert_momentum_stays_zero(struct simulation_setup *setup) {
+    struct variant variants[VARIANTS_MOST];
+    const int variant_count = variants_find(variants);
+    for (int v = 0; v < variant_count; v++) {
+        const uint64_t steps = v == 0 ? 10000 : 1000;
+        struct simulation simulation;
+        variants_select(&variants[v]);
+        setup->precision = (int)variants[v].precision;
+        assert_ok(simulation_init(&simulation, setup, NULL));
+        double largest = momentum(&simulation.particles);
+        while (simulation.step < steps) {
+            assert_ok(simulation_run(&simulation, 100));
+            largest = fmax(largest, momentum(&simulation.particles));
+        }
+        print_message("%s, %s: largest momentum in %d steps %.2e\n", setup->integrator->name,
+                      variants[v].name, (int)steps, largest);
+        assert_true(largest < momentum_rounding);
+        simulation_clear(&simulation);
     }
-    print_message("%s: largest momentum in 10^4 steps %.2e\n", setup->integrator->name, largest);
-    assert_true(largest < momentum_rounding);
-    simulation_clear(&simulation);
+    variants_select(&variants[0]);
 }
 
 static void test_momentum_stays_zero_when_forces_are_conservative(void **state) {
