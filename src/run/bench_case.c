@@ -112,9 +112,9 @@ static void sample(struct bench_case *bench) {
     neighbours_visit_distances(neighbours, &simulation->particles, pair_cutoff(&simulation->law),
                                count_distances, &bench->in_range);
     for (size_t k = 0; k < neighbours->count; k++)
-        for (size_t place = neighbours->start[k]; place < neighbours->start[k + 1]; place++)
+        for (size_t place = neighbours->start[k]; place < neighbours->stop[k]; place++)
             bench->listed += neighbours->list[place] != (int32_t)k;
-    bench->places += (double)neighbours->start[neighbours->count];
+    bench->places += (double)neighbours_entries(neighbours);
     bench->temperature += particles_temperature(&simulation->particles);
 }
 

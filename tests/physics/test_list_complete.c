@@ -111,7 +111,7 @@ static void set(struct watcher *watcher, size_t i, size_t j) {
 }
 
 static size_t list_end(const struct neighbours *neighbours, size_t i) {
-    return neighbours->start[i + 1];
+    return neighbours->stop[i];
 }
 
 /// Pairs in range of those on the list.
