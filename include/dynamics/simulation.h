@@ -4,6 +4,7 @@
 
 #include "base/memory.h"
 #include "dynamics/integrator.h"
+#include "dynamics/skin.h"
 #include "forces/pair.h"
 #include "system/neighbours.h"
 #include "system/placement.h"
@@ -14,7 +15,7 @@ struct simulation_setup {
     struct placement placement;
     double temperature;       ///< of the start and of the noise              [k_B T_0]
     double time_step;         ///< Δt                                         [τ]
-    double skin;              ///< of the neighbour list                      [λ]
+    double skin;              ///< of the neighbour list; 0: the code chooses [λ]
     double temperature_limit; ///< above limit × temperature: UNSTABLE
     const struct integrator *integrator;
     struct integrator_parameters integrator_parameters;
@@ -73,6 +74,9 @@ void simulation_kick(struct simulation *simulation);
 /// Rebuild the list if it is stale, set kernel velocities to
 /// velocity + ahead · force, and replace the forces by those at the present positions.
 enum status simulation_compute_forces(struct simulation *simulation, double ahead) MUST_USE;
+
+/// What the choice of a skin depends on.
+struct skin_scene simulation_skin_scene(const struct simulation *simulation);
 
 /// Pressure [k_B T_0 / λ^d] from the sums of the last step: ρ k_B T + conservative virial / (d V).
 /// T is the set temperature in a dissipative simulation and the kinetic one otherwise.

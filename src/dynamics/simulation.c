@@ -32,6 +32,20 @@ static enum status place(struct simulation *simulation, const struct simulation_
     return STATUS_OK;
 }
 
+struct skin_scene simulation_skin_scene(const struct simulation *simulation) {
+    const struct simulation_setup *setup = &simulation->setup;
+    return (struct skin_scene){.box = &setup->box,
+                               .count = (size_t)setup->placement.count,
+                               .cutoff = pair_cutoff(&simulation->law),
+                               .temperature = setup->temperature,
+                               .time_step = setup->time_step};
+}
+
+static double find_skin(const struct simulation *simulation) {
+    const struct skin_scene scene = simulation_skin_scene(simulation);
+    return simulation->setup.skin > 0 ? simulation->setup.skin : skin_choose(&scene);
+}
+
 enum status simulation_init(struct simulation *simulation, const struct simulation_setup *setup,
                             const struct simulation_start *start) {
     enum status status = STATUS_OK;
@@ -48,7 +62,7 @@ enum status simulation_init(struct simulation *simulation, const struct simulati
     CHECK(particles_init(&simulation->particles, &setup->box, count));
     simulation->particles.threads = setup->threads > 1 ? setup->threads : 1;
     CHECK(neighbours_init(&simulation->neighbours, NEIGHBOURS_HALF, &setup->box, count,
-                          pair_cutoff(&simulation->law), setup->skin));
+                          pair_cutoff(&simulation->law), find_skin(simulation)));
     CHECK(place(simulation, start));
     CHECK(neighbours_sort_and_build(&simulation->neighbours, &simulation->particles));
     CHECK(simulation_compute_forces(simulation, 0));

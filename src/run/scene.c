@@ -29,8 +29,9 @@ const struct field scene_fields[] = {
      .maximum = DBL_MAX, .unit = "T_0", .help = "of the first velocities and of the noise"},
     {"time_step", FIELD_NUMBER, MEMBER(time_step), .initial = 0.01, .minimum = FIELD_ABOVE_ZERO,
      .maximum = DBL_MAX, .unit = "tau", .help = "of the integrator"},
-    {"skin", FIELD_NUMBER, MEMBER(skin), .initial = 0.35, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "lambda", .help = "of the neighbour list: changes speed, not results"},
+    {"skin", FIELD_NUMBER, MEMBER(skin), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
+     .unit = "lambda",
+     .help = "of the neighbour list: changes speed, not results; 0: the program chooses"},
     {"temperature_limit", FIELD_NUMBER, MEMBER(temperature_limit), .initial = 20, .minimum = 1,
      .maximum = DBL_MAX, .unit = "",
      .help = "a kinetic temperature above this multiple of the "
