@@ -63,6 +63,7 @@ static enum status read_file(struct run *run, const char *file, const struct run
     if (options->has_seed)
         run->heading.seed = options->seed;
     run->scene.setup.seed = run->heading.seed;
+    run->scene.setup.threads = options->threads;
     return STATUS_OK;
 }
 

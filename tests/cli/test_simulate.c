@@ -6,6 +6,7 @@
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 /// The fluid of Groot and Warren (1997): density 3, a = 25, sigma^2 = 4.5, time step 0.04.
@@ -104,14 +105,20 @@ static void test_the_seed_of_the_command_line_counts(void **state) {
     results_assert_same("three", "two", tables);
 }
 
+/// Scenes whose lists have four parts or more, so that threads do share them.
 static void test_threads_do_not_change_the_bits(void **state) {
     static struct run_program_result result;
-    write_scene(*state, groot_warren, NULL, NULL);
-    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "one", "--threads", "1");
-    run_program_assert_code(&result, 0);
-    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "two", "--threads", "3");
-    run_program_assert_code(&result, 0);
-    results_assert_same("one", "two", tables);
+    static const char *const scenes[] = {groot_warren, flat};
+    for (int s = 0; s < 2; s++) {
+        write_scene(*state, scenes[s], NULL, NULL);
+        for (int threads = 1; threads <= 4; threads++) {
+            char number[8];
+            snprintf(number, sizeof number, "%d", threads);
+            RUN_PROGRAM(&result, "simulate", "scene.json", "-o", number, "--threads", number);
+            run_program_assert_code(&result, 0);
+            results_assert_same("1", number, tables);
+        }
+    }
 }
 
 /// Interrupted again and again at different places, the run ends with the bits of one in peace.
