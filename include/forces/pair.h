@@ -17,7 +17,14 @@ enum pair_precision {
     PAIR_DOUBLE, ///< double
 };
 
-/// What acts between pairs. The tables belong to the caller.
+/// Distances counted in passing: bin k holds those from low + k width on.
+struct pair_histogram {
+    double low, width; ///< [λ]
+    size_t bins;
+    uint32_t *counts; ///< shape [NEIGHBOURS_MOST_PARTS, bins + 1]: the last is for all other pairs
+};
+
+/// What acts between pairs, and what is counted of them. The tables belong to the caller.
 struct pair_law {
     const struct table *potential; ///< Φ(r), or NULL
     const struct table *weight;    ///< ω(r), or NULL
@@ -25,6 +32,7 @@ struct pair_law {
     double time_step;              ///< Δt of the noise [τ]
     uint64_t seed;                 ///< key of the noise
     enum pair_precision precision;
+    const struct pair_histogram *histogram; ///< of the pairs in range, or NULL
 };
 
 /// Sums over the pairs of one pass.

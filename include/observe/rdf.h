@@ -6,7 +6,7 @@
 #pragma once
 
 #include "base/status.h"
-#include "system/neighbours.h"
+#include "forces/pair.h"
 
 #include <stddef.h>
 
@@ -45,9 +45,10 @@ struct rdf {
     size_t particle_count;
     size_t planned, samples;
     size_t blocks;
-    double *histogram;     ///< shape [blocks, bins.count]
-    double *block_samples; ///< shape [blocks]
-    bool needs_own_list;   ///< the range exceeds that of the simulation's list
+    double *histogram;             ///< shape [blocks, bins.count]
+    double *block_samples;         ///< shape [blocks]
+    bool needs_own_list;           ///< the range exceeds that of the simulation's list
+    struct pair_histogram counted; ///< by the force pass
     struct particles own_particles;
     struct neighbours own_list;
 };
@@ -57,6 +58,13 @@ struct rdf {
 enum status rdf_init(struct rdf *rdf, const struct rdf_bins *bins, const struct box *box,
                      size_t particle_count, double list_cutoff, size_t planned) MUST_USE;
 void rdf_clear(struct rdf *rdf);
+
+/// What a force pass is to count for the next sample, cleared: for pair_law.histogram. NULL if the
+/// range exceeds that of the forces; then rdf_sample makes a list of its own.
+const struct pair_histogram *rdf_histogram(struct rdf *rdf);
+
+/// Add the configuration that a force pass has counted.
+void rdf_sample_counted(struct rdf *rdf);
 
 /// Add the present configuration. Fails: NO_MEMORY.
 enum status rdf_sample(struct rdf *rdf, const struct particles *particles,

@@ -47,7 +47,7 @@ void pair_forces(const struct pair_law *law, struct particles *particles,
     for (int first = 0; first < 2; first++) {
 #pragma omp parallel for schedule(dynamic) num_threads(threads) if (threads > 1)
         for (int p = first; p < parts; p += 2)
-            kernel(law, particles, neighbours, &neighbours->part[p], step, &part_sums[p]);
+            kernel(law, particles, neighbours, p, step, &part_sums[p]);
     }
     parallel_for(particles->count, threads, gather_forces, particles);
     if (sums == NULL)

@@ -6,7 +6,7 @@
 
 #define PAIR_KERNEL_ARGUMENTS                                                                      \
     const struct pair_law *law, struct particles *particles, const struct neighbours *neighbours,  \
-        const struct neighbours_part *part, uint64_t step, struct pair_sums *sums
+        int part, uint64_t step, struct pair_sums *sums
 
 typedef void (*pair_kernel)(PAIR_KERNEL_ARGUMENTS);
 

@@ -51,6 +51,7 @@ struct pair_scene {
     const struct pair_law *law;
     struct particles *particles;
     struct pair_sums *sums;
+    uint32_t *counts; ///< of the histogram, or NULL
     uint64_t step;
     float scale[3];              ///< box edges in units of 2³²: fractions to lengths
     float cutoff2, near_cutoff2; ///< squared: of the law, of its dissipative part
@@ -269,6 +270,16 @@ INLINE void pair_scatter_few(const struct pair_columns *columns, struct pair_bat
     }
 }
 
+INLINE void pair_count(const struct pair_columns *columns, int count,
+                       const struct pair_histogram *histogram, uint32_t *counts) {
+    const float low = (float)histogram->low, inverse_width = (float)(1 / histogram->width);
+    const float bins = (float)histogram->bins;
+    for (int k = 0; k < count; k++) {
+        const float place = (columns->r[k] - low) * inverse_width;
+        counts[place >= 0 && place < bins ? (size_t)place : histogram->bins]++;
+    }
+}
+
 /// The forces of the first `count` pairs of a batch.
 INLINE void pair_evaluate(struct pair_batch *batch, int count, const struct pair_scene *scene,
                           const int dim, const bool conservative, const bool dissipative,
@@ -276,6 +287,8 @@ INLINE void pair_evaluate(struct pair_batch *batch, int count, const struct pair
     const struct pair_law *law = scene->law;
     struct pair_columns columns;
     pair_distances(&columns, batch, count, law, dim, conservative, dissipative);
+    if (scene->counts)
+        pair_count(&columns, count, law->histogram, scene->counts);
     if (conservative)
         pair_conservative(&columns, count, law->potential, scene->sums, wants_sums);
     if (dissipative) {
@@ -323,9 +336,11 @@ INLINE void pair_evaluate_rest(struct pair_batch *batch, const struct pair_scene
 }
 
 INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
-                      const struct neighbours *neighbours, const struct neighbours_part *part,
-                      uint64_t step, struct pair_sums *sums, const int dim, const bool conservative,
+                      const struct neighbours *neighbours, int part_number, uint64_t step,
+                      struct pair_sums *sums, const int dim, const bool conservative,
                       const bool dissipative, const bool wants_sums) {
+    const struct neighbours_part *part = &neighbours->part[part_number];
+    const struct pair_histogram *histogram = law->histogram;
     const double cutoff = pair_cutoff(law);
     const double near_cutoff = dissipative ? law->weight->cutoff : cutoff;
     struct pair_scene scene = {.law = law,
@@ -334,6 +349,8 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
                                .step = step,
                                .cutoff2 = (float)(cutoff * cutoff),
                                .near_cutoff2 = (float)(near_cutoff * near_cutoff)};
+    if (histogram)
+        scene.counts = histogram->counts + (size_t)part_number * (histogram->bins + 1);
     scene.has_few = part->end - part->begin < PAIR_FEW * (part->last - part->first);
     for (int d = 0; d < 3; d++)
         scene.scale[d] = (float)(particles->box.length[d] * 0x1p-32);

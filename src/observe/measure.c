@@ -44,6 +44,22 @@ enum status measure_equilibrate(struct simulation *simulation, const struct meas
     return STATUS_OK;
 }
 
+/// The last step before a sample, in which the force pass counts and sums what the sample needs.
+static enum status run_sampled_step(struct simulation *simulation, int64_t due,
+                                    struct measure_targets targets) {
+    simulation->wants = targets.thermodynamics ? PAIR_FORCES_AND_SUMS : PAIR_FORCES;
+    simulation->law.histogram = targets.rdf ? rdf_histogram(targets.rdf) : NULL;
+    const enum status status = run_until(simulation, due);
+    const bool counted = simulation->law.histogram != NULL;
+    simulation->law.histogram = NULL;
+    TRY(status);
+    if (counted)
+        rdf_sample_counted(targets.rdf);
+    else if (targets.rdf)
+        TRY(rdf_sample(targets.rdf, &simulation->particles, &simulation->neighbours));
+    return STATUS_OK;
+}
+
 enum status measure_sample(struct simulation *simulation, const struct measure_plan *plan,
                            struct measure_targets targets,
                            const struct measure_listener *listener) {
@@ -52,11 +68,7 @@ enum status measure_sample(struct simulation *simulation, const struct measure_p
         const int64_t due = plan->equilibration + (sample + 1) * plan->every;
         simulation->wants = PAIR_FORCES;
         TRY(run_until(simulation, due - 1));
-        if (targets.thermodynamics)
-            simulation->wants = PAIR_FORCES_AND_SUMS;
-        TRY(run_until(simulation, due));
-        if (targets.rdf)
-            TRY(rdf_sample(targets.rdf, &simulation->particles, &simulation->neighbours));
+        TRY(run_sampled_step(simulation, due, targets));
         if (targets.thermodynamics)
             TRY(thermodynamics_sample(targets.thermodynamics, simulation));
         tell(listener, simulation, plan);

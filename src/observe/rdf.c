@@ -65,6 +65,8 @@ enum status rdf_init(struct rdf *rdf, const struct rdf_bins *bins, const struct 
                         .needs_own_list = rdf_bins_range(bins) > list_cutoff * (1 + 1e-9)};
     NEW_ARRAY(rdf->histogram, rdf->blocks * bins->count);
     NEW_ARRAY(rdf->block_samples, rdf->blocks);
+    rdf->counted = (struct pair_histogram){bins->low, bins->width, bins->count, NULL};
+    NEW_ARRAY(rdf->counted.counts, NEIGHBOURS_MOST_PARTS * (bins->count + 1));
     if (rdf->needs_own_list) {
         if (box_shortest(box) < 2 * rdf_bins_range(bins)) {
             status = status_fail(STATUS_BAD_INPUT,
@@ -86,6 +88,7 @@ done:
 void rdf_clear(struct rdf *rdf) {
     memory_free(rdf->histogram);
     memory_free(rdf->block_samples);
+    memory_free(rdf->counted.counts);
     particles_clear(&rdf->own_particles);
     neighbours_clear(&rdf->own_list);
     *rdf = (struct rdf){0};
@@ -99,20 +102,40 @@ static enum status make_own_list(struct rdf *rdf, const struct particles *partic
     return neighbours_sort_and_build(&rdf->own_list, &rdf->own_particles);
 }
 
-enum status rdf_sample(struct rdf *rdf, const struct particles *particles,
-                       const struct neighbours *neighbours) {
+/// The histogram of the next sample's block.
+static double *next_block(struct rdf *rdf) {
     size_t block = rdf->samples * rdf->blocks / rdf->planned;
     if (block >= rdf->blocks)
         block = rdf->blocks - 1;
-    double *histogram = rdf->histogram + block * rdf->bins.count;
+    rdf->block_samples[block] += 1;
+    rdf->samples++;
+    return rdf->histogram + block * rdf->bins.count;
+}
+
+const struct pair_histogram *rdf_histogram(struct rdf *rdf) {
+    if (rdf->needs_own_list)
+        return NULL;
+    memset(rdf->counted.counts, 0,
+           NEIGHBOURS_MOST_PARTS * (rdf->bins.count + 1) * sizeof *rdf->counted.counts);
+    return &rdf->counted;
+}
+
+void rdf_sample_counted(struct rdf *rdf) {
+    double *histogram = next_block(rdf);
+    for (size_t part = 0; part < NEIGHBOURS_MOST_PARTS; part++)
+        for (size_t k = 0; k < rdf->bins.count; k++)
+            histogram[k] += rdf->counted.counts[part * (rdf->bins.count + 1) + k];
+}
+
+enum status rdf_sample(struct rdf *rdf, const struct particles *particles,
+                       const struct neighbours *neighbours) {
+    double *histogram = next_block(rdf);
     if (rdf->needs_own_list) {
         TRY(make_own_list(rdf, particles));
         rdf_count_pairs(&rdf->bins, &rdf->own_particles, &rdf->own_list, histogram);
     } else {
         rdf_count_pairs(&rdf->bins, particles, neighbours, histogram);
     }
-    rdf->block_samples[block] += 1;
-    rdf->samples++;
     return STATUS_OK;
 }
 

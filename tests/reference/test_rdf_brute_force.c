@@ -72,6 +72,21 @@ static void assert_counts(const struct rdf_bins *bins, const struct particles *p
     rdf_clear(&rdf);
 }
 
+/// What a force pass counts is the same, too.
+static void assert_passing_counts(const struct rdf_bins *bins, struct simulation *simulation) {
+    struct counts counts;
+    struct rdf rdf;
+    count_all(bins, &simulation->particles, &counts);
+    assert_ok(rdf_init(&rdf, bins, &simulation->particles.box, simulation->particles.count, 1, 1));
+    struct pair_law law = simulation->law;
+    law.histogram = rdf_histogram(&rdf);
+    assert_non_null(law.histogram);
+    pair_forces(&law, &simulation->particles, &simulation->neighbours, 1, PAIR_FORCES, NULL);
+    rdf_sample_counted(&rdf);
+    assert_histogram(rdf.histogram, &counts, bins->count, 1);
+    rdf_clear(&rdf);
+}
+
 /// A fluid after some steps, so that particles have moved since the last build of the list and some
 /// have left the box.
 static void run_fluid(struct fluid *fluid, struct simulation *simulation) {
@@ -88,6 +103,8 @@ static void assert_fluid_counts(struct fluid *fluid) {
                           beyond = {0, half / 40, 40}, far = {1.1, 0.03, 20};
     assert_counts(&within, &simulation.particles, &simulation.neighbours, 1, false);
     assert_counts(&above_zero, &simulation.particles, &simulation.neighbours, 1, false);
+    assert_passing_counts(&within, &simulation);
+    assert_passing_counts(&above_zero, &simulation);
     assert_counts(&beyond, &simulation.particles, &simulation.neighbours, 1, true);
     assert_counts(&far, &simulation.particles, &simulation.neighbours, 1, true);
     simulation_clear(&simulation);
