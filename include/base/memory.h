@@ -19,6 +19,12 @@ struct memory_span {
     size_t bytes;
 };
 
+/// Keep freed memory for the next array instead of giving it back to the system: the simulations of
+/// a fit come and go by the thousand, and each worker works in the pages of its last one. Measured
+/// for the quick genetic fit: system time falls from 2.6 to 1.6 % of the whole. Call it once,
+/// before there are threads.
+void memory_keep(void);
+
 /// Free an array of memory_zeroed; NULL is allowed.
 void memory_free(void *array);
 

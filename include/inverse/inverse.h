@@ -60,6 +60,8 @@ struct inverse_method {
     size_t parameters_size;
     size_t state_size;
     uint32_t (*most_iterations)(const void *parameters);
+    /// Steps between the samples of an evaluation; 0 if the method does not simulate dynamics.
+    int64_t (*sampled_every)(const void *parameters);
     bool keeps_parts;
     const char *const *columns; ///< names of `extra`, NULL-terminated
     enum status (*create)(void *state, const struct inverse_problem *problem,

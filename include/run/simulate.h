@@ -12,3 +12,6 @@ extern const struct field simulate_rdf_fields[];
 /// figures into the run's folder.
 /// Fails: BAD_INPUT, IO; UNSTABLE; INTERRUPTED with a checkpoint in the folder.
 enum status simulate_file(const char *file, const struct run_options *options) MUST_USE;
+
+/// Print what the scene in `file` will pay for, and run nothing. Fails: BAD_INPUT.
+enum status simulate_explain(const char *file, const struct run_options *options) MUST_USE;

@@ -2,7 +2,16 @@
 #include "app/command.h"
 #include "run/fit.h"
 
+enum { EXPLAIN };
+
+static const struct command_option options[] = {
+    [EXPLAIN] = {"--explain", NULL, "print what a step will pay for and why; run nothing"},
+    {NULL, NULL, NULL},
+};
+
 static enum status run(const struct command_line *line) {
+    if (line->own[EXPLAIN])
+        return fit_explain(line->files[0], &line->options);
     return fit_run(line->files[0], &line->options);
 }
 
@@ -12,5 +21,6 @@ const struct command cmd_fit = {
     .summary = "find the potential that reproduces a target",
     .least_files = 1,
     .most_files = 1,
+    .options = options,
     .run = run,
 };

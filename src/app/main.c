@@ -2,6 +2,7 @@
 #include "app/command.h"
 
 #include "base/interrupt.h"
+#include "base/memory.h"
 #include "base/nearest.h"
 #include "mesofit.h"
 
@@ -201,6 +202,7 @@ int main(int count, char **words) {
         return 0;
     }
     install_handlers();
+    memory_keep();
     const enum status status = run(count - 1, words + 1);
     if (status != STATUS_OK)
         fprintf(stderr, "mesofit: %s\n", status_message());

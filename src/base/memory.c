@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/memory.h"
 
+#include <malloc.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,4 +22,10 @@ void *memory_zeroed(size_t count, size_t size) {
 
 void memory_free(void *array) {
     free(array);
+}
+
+void memory_keep(void) {
+    enum { LARGE = 1 << 28 };
+    mallopt(M_MMAP_THRESHOLD, LARGE);
+    mallopt(M_TRIM_THRESHOLD, LARGE);
 }

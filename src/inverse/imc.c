@@ -92,6 +92,11 @@ static const struct field fields[] = {
 static const char *const columns[] = {"damping[1]", "regularisation[1]", "own_noise[1]",
                                       "misfit[1]", NULL};
 
+static int64_t sampled_every(const void *parameters) {
+    (void)parameters;
+    return 0;
+}
+
 static uint32_t most_iterations(const void *parameters) {
     return (uint32_t)((const struct parameters *)parameters)->iterations;
 }
@@ -401,6 +406,7 @@ const struct inverse_method imc = {
     .parameters_size = sizeof(struct parameters),
     .state_size = sizeof(struct state),
     .most_iterations = most_iterations,
+    .sampled_every = sampled_every,
     .columns = columns,
     .create = create,
     .destroy = destroy,

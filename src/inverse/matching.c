@@ -65,6 +65,10 @@ static uint32_t most_iterations(const void *parameters) {
     return (uint32_t)((const struct parameters *)parameters)->genetic.generations;
 }
 
+static int64_t sampled_every(const void *parameters) {
+    return ((const struct parameters *)parameters)->plan.every;
+}
+
 static int64_t population(const struct state *state) {
     return state->parameters.genetic.population;
 }
@@ -293,6 +297,7 @@ const struct inverse_method matching = {
     .parameters_size = sizeof(struct parameters),
     .state_size = sizeof(struct state),
     .most_iterations = most_iterations,
+    .sampled_every = sampled_every,
     .keeps_parts = true,
     .columns = columns,
     .create = create,

@@ -6,14 +6,18 @@
 
 int64_t genetic_tournament(const double *errors, int64_t population, int64_t size,
                            double probability, struct rng_sequence *random) {
-    int64_t winner = rng_sequence_below(random, (uint32_t)population);
-    for (int64_t drawn = 1; drawn < size; drawn++) {
+    int64_t ranked[GENETIC_LARGEST_TOURNAMENT];
+    for (int64_t drawn = 0; drawn < size; drawn++) {
         const int64_t rival = rng_sequence_below(random, (uint32_t)population);
-        const int64_t better = errors[rival] < errors[winner] ? rival : winner;
-        const int64_t worse = better == rival ? winner : rival;
-        winner = rng_sequence_uniform(random) < probability ? better : worse;
+        int64_t rank = drawn;
+        for (; rank > 0 && errors[rival] < errors[ranked[rank - 1]]; rank--)
+            ranked[rank] = ranked[rank - 1];
+        ranked[rank] = rival;
     }
-    return winner;
+    int64_t winner = 0;
+    while (winner + 1 < size && rng_sequence_uniform(random) >= probability)
+        winner++;
+    return ranked[winner];
 }
 
 void genetic_crossover(double *a, double *b, int64_t genes, struct rng_sequence *random) {

@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "run/checkpoint.h"
+#include "run/explain.h"
 #include "run/fit_output.h"
 #include "run/history.h"
 #include "run/progress.h"
@@ -283,5 +284,31 @@ done:
         fit_file_clear(&run->fit);
     }
     memory_free(run);
+    return status;
+}
+
+enum status fit_explain(const char *file, const struct run_options *options) {
+    struct fit_file fit;
+    const enum status status = fit_file_read(&fit, file, options);
+    if (status == STATUS_OK) {
+        const double cutoff = rdf_bins_range(&fit.target.bins);
+        const struct explain_measured verified = {.cutoff = cutoff,
+                                                  .rdf_range = cutoff,
+                                                  .sums = true,
+                                                  .every = fit.verification.plan.every};
+        const int64_t every = fit.method->sampled_every(fit.method_parameters);
+        if (every > 0) {
+            const struct explain_measured evaluated = {
+                .cutoff = cutoff, .rdf_range = cutoff, .every = every};
+            printf("An evaluation of the method \"%s\", one a thread:\n", fit.method->name);
+            explain_scene(stdout, &fit.scene.setup, &evaluated);
+        } else {
+            printf("The method \"%s\" samples by Monte Carlo: no velocities, no forces.\n",
+                   fit.method->name);
+        }
+        printf("A replica of the verification, one a thread:\n");
+        explain_scene(stdout, &fit.scene.setup, &verified);
+    }
+    fit_file_clear(&fit);
     return status;
 }

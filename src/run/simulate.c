@@ -6,6 +6,7 @@
 #include "mesofit.h"
 #include "observe/measure.h"
 #include "run/checkpoint.h"
+#include "run/explain.h"
 #include "run/heading.h"
 #include "run/progress.h"
 #include "run/scene.h"
@@ -277,6 +278,27 @@ done:
         thermodynamics_clear(&run->thermodynamics);
         scene_clear(&run->scene);
     }
+    memory_free(run);
+    return status;
+}
+
+enum status simulate_explain(const char *file, const struct run_options *options) {
+    enum status status = STATUS_OK;
+    struct run *run = NULL;
+    NEW_ARRAY(run, 1);
+    CHECK(read_file(run, file, options));
+    const struct simulation_setup *setup = &run->scene.setup;
+    const struct pair_law law = {.potential = setup->potential, .weight = setup->weight};
+    const double cutoff = pair_cutoff(&law);
+    const struct explain_measured measured = {
+        .cutoff = cutoff,
+        .rdf_range = run->rdf_parameters.range > 0 ? run->rdf_parameters.range : cutoff,
+        .sums = true,
+        .every = run->plan.every};
+    explain_scene(stdout, setup, &measured);
+done:
+    if (run)
+        scene_clear(&run->scene);
     memory_free(run);
     return status;
 }

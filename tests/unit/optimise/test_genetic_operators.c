@@ -20,21 +20,29 @@ static struct rng_sequence begin(uint64_t seed) {
 
 enum { POPULATION = 6 };
 
-/// Probability of each individual to win, by the rule: the winner so far meets a random rival, and
-/// the better of the two wins with probability p.
+/// Probability that at most `most` of n draws fall on a share of the population.
+static double at_most(int most, int n, double share) {
+    double sum = 0, choose = 1;
+    for (int k = 0; k <= most; k++) {
+        sum += choose * pow(share, k) * pow(1 - share, n - k);
+        choose *= (double)(n - k) / (k + 1);
+    }
+    return sum;
+}
+
+/// Probability of each individual to win: the one of rank m of the population is number j among n
+/// drawn ones if at least j + 1 of these are of rank m or better, but not of rank m − 1 or better.
 static void expected_winners(const double *errors, int size, double p, double *probability) {
-    for (int k = 0; k < POPULATION; k++)
-        probability[k] = 1.0 / POPULATION;
-    for (int round = 1; round < size; round++) {
-        double next[POPULATION] = {0};
-        for (int winner = 0; winner < POPULATION; winner++)
-            for (int rival = 0; rival < POPULATION; rival++) {
-                const int better = errors[rival] < errors[winner] ? rival : winner;
-                const int worse = better == rival ? winner : rival;
-                next[better] += p * probability[winner] / POPULATION;
-                next[worse] += (1 - p) * probability[winner] / POPULATION;
-            }
-        memcpy(probability, next, sizeof next);
+    for (int k = 0; k < POPULATION; k++) {
+        int better = 0;
+        for (int other = 0; other < POPULATION; other++)
+            better += errors[other] < errors[k];
+        probability[k] = 0;
+        for (int j = 0; j < size; j++) {
+            const double wins = j + 1 < size ? p * pow(1 - p, j) : pow(1 - p, j);
+            probability[k] += wins * (at_most(j, size, (double)better / POPULATION) -
+                                      at_most(j, size, (better + 1.0) / POPULATION));
+        }
     }
 }
 
@@ -48,7 +56,7 @@ static void check_tournament(int size, double p) {
     expected_winners(errors, size, p, probability);
     for (int k = 0; k < POPULATION; k++) {
         const double expected = DRAWS * probability[k];
-        if (expected > 0)
+        if (expected > 1e-9)
             chi_squared += (wins[k] - expected) * (wins[k] - expected) / expected;
         else
             assert_int_equal(wins[k], 0);

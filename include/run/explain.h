@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What a scene will pay for: every stage of a step, on or off and why.
+#pragma once
+
+#include "dynamics/simulation.h"
+
+#include <stdio.h>
+
+/// What is measured of a simulation.
+struct explain_measured {
+    double cutoff;    ///< of the forces [λ]
+    double rdf_range; ///< 0: no g(r) [λ]
+    bool sums;        ///< energy, pressure, temperatures
+    int64_t every;    ///< steps between samples
+};
+
+/// Print the stages of a step with the share of the time that each is expected to take, from costs
+/// measured on one processor: shares are good to some percent of the whole.
+void explain_scene(FILE *out, const struct simulation_setup *setup,
+                   const struct explain_measured *measured);
