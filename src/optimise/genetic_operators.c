@@ -6,7 +6,7 @@
 
 int64_t genetic_tournament(const double *errors, int64_t population, int64_t size,
                            double probability, struct rng_sequence *random) {
-    int64_t ranked[GENETIC_LARGEST_TOURNAMENT];
+    int64_t ranked[GENETIC_LARGEST_TOURNAMENT] = {0};
     for (int64_t drawn = 0; drawn < size; drawn++) {
         const int64_t rival = rng_sequence_below(random, (uint32_t)population);
         int64_t rank = drawn;
@@ -34,8 +34,10 @@ void genetic_crossover(double *a, double *b, int64_t genes, struct rng_sequence 
 void genetic_mutate(double *genes, const struct genetic_parameters *parameters,
                     struct rng_sequence *random) {
     const double range = parameters->gene_maximum - parameters->gene_minimum;
+    if (rng_sequence_uniform(random) >= parameters->mutation)
+        return;
     for (int64_t k = 0; k < parameters->genes; k++) {
-        if (rng_sequence_uniform(random) >= parameters->mutation)
+        if (rng_sequence_uniform(random) >= parameters->mutated_genes)
             continue;
         const double u = rng_sequence_uniform(random), v = rng_sequence_uniform(random);
         if (rng_sequence_uniform(random) < parameters->additive)

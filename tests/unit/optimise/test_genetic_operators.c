@@ -116,8 +116,12 @@ static void test_genetic_crossover_leaves_single_genes_alone(void **state) {
 
 // Mutation ----------------------------------------------------------------------------------------
 
-static const struct genetic_parameters scaling = {
-    .genes = DRAWS, .gene_minimum = -2, .gene_maximum = 8, .mutation = 1, .additive = 0};
+static const struct genetic_parameters scaling = {.genes = DRAWS,
+                                                  .gene_minimum = -2,
+                                                  .gene_maximum = 8,
+                                                  .mutation = 1,
+                                                  .mutated_genes = 1,
+                                                  .additive = 0};
 
 /// DRAWS genes of one value, mutated; free() them.
 static double *mutated(double gene, const struct genetic_parameters *parameters, uint64_t seed) {
@@ -177,7 +181,7 @@ static void test_genetic_mutate_keeps_to_its_probabilities(void **state) {
     struct genetic_parameters rare = scaling;
     int scaled = 0, added = 0;
     (void)state;
-    rare.mutation = 0.2;
+    rare.mutated_genes = 0.2;
     rare.additive = 0.3;
     double *ones = mutated(1, &rare, 4), *zeros = mutated(0, &rare, 5);
     for (int k = 0; k < DRAWS; k++) {
@@ -190,6 +194,26 @@ static void test_genetic_mutate_keeps_to_its_probabilities(void **state) {
     free(zeros);
 }
 
+static void test_genetic_mutate_spares_the_children_that_are_not_drawn(void **state) {
+    (void)state;
+    enum { CHILDREN = 20000, GENES = 4 };
+    const struct genetic_parameters some = {
+        .genes = GENES, .gene_maximum = 1, .mutation = 0.3, .mutated_genes = 1};
+    struct rng_sequence random = begin(11);
+    int mutated = 0;
+    for (int child = 0; child < CHILDREN; child++) {
+        double genes[GENES] = {1, 1, 1, 1};
+        genetic_mutate(genes, &some, &random);
+        int changed = 0;
+        for (int k = 0; k < GENES; k++)
+            changed += genes[k] != 1;
+        assert_true(changed == 0 || changed == GENES);
+        mutated += changed > 0;
+    }
+    // Five standard deviations of a binomial number.
+    assert_close(mutated, 0.3 * CHILDREN, 5 * sqrt(CHILDREN * 0.3 * 0.7));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_genetic_tournament_wins_with_the_probabilities_of_its_rule),
@@ -198,6 +222,7 @@ int main(void) {
         cmocka_unit_test(test_genetic_mutate_scales_without_drift),
         cmocka_unit_test(test_genetic_mutate_crosses_zero_when_it_adds),
         cmocka_unit_test(test_genetic_mutate_keeps_to_its_probabilities),
+        cmocka_unit_test(test_genetic_mutate_spares_the_children_that_are_not_drawn),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
