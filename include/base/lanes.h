@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Vectors of LANES numbers: the one place with intrinsics.
+/// @file Vectors of LANES numbers: the one place with intrinsics, with lanes_single.h and
+/// lanes_double.h.
 ///
 /// A kernel is written once on these types and compiled for each instruction set: a file that
-/// selects one by a pragma (pair_avx2.c) includes this header and then the kernel. Arithmetic is
-/// C's own: `a * b + c` works lane by lane, with numbers among the vectors too. Below are only the
-/// operations for which C has no sign. The vectors have typedefs, unlike anything else here,
-/// because the attribute cannot be written at each use.
+/// selects one by a pragma (pair_avx2.c) includes this header and then the kernel. A lane's real
+/// number, REAL, is a float; a file that defines LANES_DOUBLE before this header gets doubles
+/// (pair_avx2_double.c). Arithmetic is C's own: `a * b + c` works lane by lane, with numbers among
+/// the vectors too. Below are only the operations for which C has no sign. The vectors have
+/// typedefs, unlike anything else here, because the attribute cannot be written at each use.
 #pragma once
 
 #include <math.h>
@@ -17,27 +19,37 @@
 #include <immintrin.h>
 #endif
 
+/// Bytes of a register.
 #if defined(__AVX512F__)
-#define LANES 16
+#define LANES_BYTES 64
 #elif defined(__AVX2__)
-#define LANES 8
+#define LANES_BYTES 32
 #else
-#define LANES 4
+#define LANES_BYTES 16
+#endif
+
+// Four lanes at least, as many as a record has words: GCC splits what a register cannot hold.
+#if defined(LANES_DOUBLE)
+#define REAL double
+#define LANES (LANES_BYTES == 64 ? 8 : 4)
+#else
+#define REAL float
+#define LANES (LANES_BYTES / 4)
 #endif
 
 // All is inlined, so how a vector would be passed to a function does not matter.
 #pragma GCC diagnostic ignored "-Wpsabi"
 #define LANES_INLINE static inline __attribute__((always_inline))
 
-typedef float lanes_float __attribute__((vector_size(4 * LANES)));
+typedef REAL lanes_real __attribute__((vector_size(sizeof(REAL) * LANES)));
 typedef int32_t lanes_int __attribute__((vector_size(4 * LANES)));
 typedef uint32_t lanes_uint __attribute__((vector_size(4 * LANES)));
-typedef uint64_t lanes_wide __attribute__((vector_size(4 * LANES))); ///< half as many
+typedef uint64_t lanes_wide __attribute__((vector_size(LANES_BYTES))); ///< a register, always
 typedef double lanes_double4 __attribute__((vector_size(32)));
 
 /// The same number in every lane.
-LANES_INLINE lanes_float lanes_all(float x) {
-    return x - (lanes_float){0};
+LANES_INLINE lanes_real lanes_all(REAL x) {
+    return x - (lanes_real){0};
 }
 
 LANES_INLINE lanes_int lanes_all_int(int32_t x) {
@@ -53,8 +65,8 @@ LANES_INLINE lanes_int lanes_number(void) {
 }
 
 // Loads and stores need no alignment.
-LANES_INLINE lanes_float lanes_load(const float *from) {
-    lanes_float a;
+LANES_INLINE lanes_real lanes_load(const REAL *from) {
+    lanes_real a;
     memcpy(&a, from, sizeof a);
     return a;
 }
@@ -65,11 +77,21 @@ LANES_INLINE lanes_int lanes_load_int(const int32_t *from) {
     return a;
 }
 
-LANES_INLINE void lanes_store(float *to, lanes_float a) {
+LANES_INLINE void lanes_store(REAL *to, lanes_real a) {
     memcpy(to, &a, sizeof a);
 }
 
 LANES_INLINE void lanes_store_int(int32_t *to, lanes_int a) {
+    memcpy(to, &a, sizeof a);
+}
+
+LANES_INLINE lanes_wide lanes_load_wide(const int32_t *from) {
+    lanes_wide a;
+    memcpy(&a, from, sizeof a);
+    return a;
+}
+
+LANES_INLINE void lanes_store_wide(int32_t *to, lanes_wide a) {
     memcpy(to, &a, sizeof a);
 }
 
@@ -78,18 +100,18 @@ LANES_INLINE lanes_int lanes_difference(int32_t a, const int32_t *from) {
     return (lanes_int)((uint32_t)a - (lanes_uint)lanes_load_int(from));
 }
 
-LANES_INLINE lanes_float lanes_to_float(lanes_int a) {
-    return __builtin_convertvector(a, lanes_float);
+LANES_INLINE lanes_real lanes_to_real(lanes_int a) {
+    return __builtin_convertvector(a, lanes_real);
 }
 
 /// Rounded towards 0.
-LANES_INLINE lanes_int lanes_to_int(lanes_float a) {
+LANES_INLINE lanes_int lanes_to_int(lanes_real a) {
     return __builtin_convertvector(a, lanes_int);
 }
 
 /// Σ of all lanes.
-LANES_INLINE float lanes_sum(lanes_float a) {
-    float sum = 0;
+LANES_INLINE REAL lanes_sum(lanes_real a) {
+    REAL sum = 0;
     for (int lane = 0; lane < LANES; lane++)
         sum += a[lane];
     return sum;
@@ -104,32 +126,13 @@ LANES_INLINE unsigned lanes_first(size_t count) {
 #endif
 }
 
-// What each instruction set says in its own way. Masks are the bits of an unsigned: bit n stands
-// for lane n.
-//   lanes_below(a, b)        in which lanes a < b; never where one is NaN
-//   lanes_sqrt(a)
-//   lanes_least(a, b)        the smaller of two; b where a is NaN
+// What each instruction set says in its own way: of integers here, of reals in lanes_single.h and
+// lanes_double.h. Masks are the bits of an unsigned: bit n stands for lane n.
 //   lanes_least_int, lanes_most_int
 //   lanes_set_bits(mask)     numbers of the bits that are set, in order; the rest is arbitrary
-//   lanes_permute(a, order)  lane n becomes lane order[n] of a
 //   lanes_eights(a, b)       a in the first eight lanes, b in the next, as far as there are any
 //   lanes_multiply_low(a, b) 64-bit products of the lower halves
-//   lanes_row(records, index)    records number index[0], index[4], … one after the other
-//   lanes_store_row(to, row)     and back, to every fourth record
-//   LANES_ZIP_LOW …              exchanges within blocks of four lanes, see lanes_transposed
 #if LANES == 16
-
-LANES_INLINE unsigned lanes_below(lanes_float a, lanes_float b) {
-    return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_LT_OQ);
-}
-
-LANES_INLINE lanes_float lanes_sqrt(lanes_float a) {
-    return (lanes_float)_mm512_sqrt_ps((__m512)a);
-}
-
-LANES_INLINE lanes_float lanes_least(lanes_float a, lanes_float b) {
-    return (lanes_float)_mm512_min_ps((__m512)a, (__m512)b);
-}
 
 LANES_INLINE lanes_int lanes_least_int(lanes_int a, lanes_int b) {
     return (lanes_int)_mm512_min_epi32((__m512i)a, (__m512i)b);
@@ -143,50 +146,11 @@ LANES_INLINE lanes_int lanes_set_bits(unsigned mask) {
     return (lanes_int)_mm512_maskz_compress_epi32((__mmask16)mask, (__m512i)lanes_number());
 }
 
-LANES_INLINE lanes_float lanes_permute(lanes_float a, lanes_int order) {
-    return (lanes_float)_mm512_permutexvar_ps((__m512i)order, (__m512)a);
-}
-
 LANES_INLINE lanes_int lanes_eights(int32_t a, int32_t b) {
     return (lanes_int)_mm512_mask_set1_epi32(_mm512_set1_epi32(a), 0xFF00, b);
 }
 
-LANES_INLINE lanes_wide lanes_multiply_low(lanes_wide a, lanes_wide b) {
-    return (lanes_wide)_mm512_mul_epu32((__m512i)a, (__m512i)b);
-}
-
-LANES_INLINE lanes_float lanes_row(const float (*records)[4], const int32_t *index) {
-    __m512 row = _mm512_castps128_ps512(_mm_loadu_ps(records[index[0]]));
-    row = _mm512_insertf32x4(row, _mm_loadu_ps(records[index[4]]), 1);
-    row = _mm512_insertf32x4(row, _mm_loadu_ps(records[index[8]]), 2);
-    return (lanes_float)_mm512_insertf32x4(row, _mm_loadu_ps(records[index[12]]), 3);
-}
-
-LANES_INLINE void lanes_store_row(float (*to)[4], lanes_float row) {
-    _mm_storeu_ps(to[0], _mm512_castps512_ps128((__m512)row));
-    _mm_storeu_ps(to[4], _mm512_extractf32x4_ps((__m512)row, 1));
-    _mm_storeu_ps(to[8], _mm512_extractf32x4_ps((__m512)row, 2));
-    _mm_storeu_ps(to[12], _mm512_extractf32x4_ps((__m512)row, 3));
-}
-
-#define LANES_ZIP_LOW(a, b) (lanes_float) _mm512_unpacklo_ps((__m512)(a), (__m512)(b))
-#define LANES_ZIP_HIGH(a, b) (lanes_float) _mm512_unpackhi_ps((__m512)(a), (__m512)(b))
-#define LANES_PAIR_LOW(a, b) (lanes_float) _mm512_unpacklo_pd((__m512d)(a), (__m512d)(b))
-#define LANES_PAIR_HIGH(a, b) (lanes_float) _mm512_unpackhi_pd((__m512d)(a), (__m512d)(b))
-
 #elif LANES == 8
-
-LANES_INLINE unsigned lanes_below(lanes_float a, lanes_float b) {
-    return (unsigned)_mm256_movemask_ps(_mm256_cmp_ps((__m256)a, (__m256)b, _CMP_LT_OQ));
-}
-
-LANES_INLINE lanes_float lanes_sqrt(lanes_float a) {
-    return (lanes_float)_mm256_sqrt_ps((__m256)a);
-}
-
-LANES_INLINE lanes_float lanes_least(lanes_float a, lanes_float b) {
-    return (lanes_float)_mm256_min_ps((__m256)a, (__m256)b);
-}
 
 LANES_INLINE lanes_int lanes_least_int(lanes_int a, lanes_int b) {
     return (lanes_int)_mm256_min_epi32((__m256i)a, (__m256i)b);
@@ -195,6 +159,14 @@ LANES_INLINE lanes_int lanes_least_int(lanes_int a, lanes_int b) {
 LANES_INLINE lanes_int lanes_most_int(lanes_int a, lanes_int b) {
     return (lanes_int)_mm256_max_epi32((__m256i)a, (__m256i)b);
 }
+
+#if defined(__AVX512VL__)
+
+LANES_INLINE lanes_int lanes_set_bits(unsigned mask) {
+    return (lanes_int)_mm256_maskz_compress_epi32((__mmask8)mask, (__m256i)lanes_number());
+}
+
+#else
 
 // Byte n of entry m is the number of the n-th set bit of m. From a table: pext makes it in three
 // instructions, but takes hundreds of cycles on Zen 1 and 2.
@@ -214,53 +186,14 @@ LANES_INLINE lanes_int lanes_set_bits(unsigned mask) {
     return (lanes_int)_mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)&lanes_bits[mask]));
 }
 
-LANES_INLINE lanes_float lanes_permute(lanes_float a, lanes_int order) {
-    return (lanes_float)_mm256_permutevar8x32_ps((__m256)a, (__m256i)order);
-}
+#endif
 
 LANES_INLINE lanes_int lanes_eights(int32_t a, int32_t b) {
     (void)b;
     return lanes_all_int(a);
 }
 
-LANES_INLINE lanes_wide lanes_multiply_low(lanes_wide a, lanes_wide b) {
-    return (lanes_wide)_mm256_mul_epu32((__m256i)a, (__m256i)b);
-}
-
-LANES_INLINE lanes_float lanes_row(const float (*records)[4], const int32_t *index) {
-    const __m256 row = _mm256_castps128_ps256(_mm_loadu_ps(records[index[0]]));
-    return (lanes_float)_mm256_insertf128_ps(row, _mm_loadu_ps(records[index[4]]), 1);
-}
-
-LANES_INLINE void lanes_store_row(float (*to)[4], lanes_float row) {
-    _mm_storeu_ps(to[0], _mm256_castps256_ps128((__m256)row));
-    _mm_storeu_ps(to[4], _mm256_extractf128_ps((__m256)row, 1));
-}
-
-#define LANES_ZIP_LOW(a, b) (lanes_float) _mm256_unpacklo_ps((__m256)(a), (__m256)(b))
-#define LANES_ZIP_HIGH(a, b) (lanes_float) _mm256_unpackhi_ps((__m256)(a), (__m256)(b))
-#define LANES_PAIR_LOW(a, b) (lanes_float) _mm256_unpacklo_pd((__m256d)(a), (__m256d)(b))
-#define LANES_PAIR_HIGH(a, b) (lanes_float) _mm256_unpackhi_pd((__m256d)(a), (__m256d)(b))
-
-#else // plain C, but for two places where x86 has the instruction and GCC does not find it
-
-LANES_INLINE unsigned lanes_below(lanes_float a, lanes_float b) {
-#if defined(__SSE2__)
-    return (unsigned)_mm_movemask_ps(_mm_cmplt_ps((__m128)a, (__m128)b));
 #else
-    const lanes_int below = a < b;
-    return (unsigned)(-below[0] - 2 * below[1] - 4 * below[2] - 8 * below[3]);
-#endif
-}
-
-LANES_INLINE lanes_float lanes_sqrt(lanes_float a) {
-    return (lanes_float){sqrtf(a[0]), sqrtf(a[1]), sqrtf(a[2]), sqrtf(a[3])};
-}
-
-LANES_INLINE lanes_float lanes_least(lanes_float a, lanes_float b) {
-    const lanes_int less = a < b;
-    return (lanes_float)((less & (lanes_int)a) | (~less & (lanes_int)b));
-}
 
 LANES_INLINE lanes_int lanes_least_int(lanes_int a, lanes_int b) {
     const lanes_int less = a < b;
@@ -281,58 +214,46 @@ LANES_INLINE lanes_int lanes_set_bits(unsigned mask) {
     return lanes_bits[mask];
 }
 
-LANES_INLINE lanes_float lanes_permute(lanes_float a, lanes_int order) {
-    return (lanes_float){a[order[0]], a[order[1]], a[order[2]], a[order[3]]};
-}
-
 LANES_INLINE lanes_int lanes_eights(int32_t a, int32_t b) {
     (void)b;
     return lanes_all_int(a);
 }
 
+#endif
+
 LANES_INLINE lanes_wide lanes_multiply_low(lanes_wide a, lanes_wide b) {
-#if defined(__SSE2__)
+#if LANES_BYTES == 64
+    return (lanes_wide)_mm512_mul_epu32((__m512i)a, (__m512i)b);
+#elif LANES_BYTES == 32
+    return (lanes_wide)_mm256_mul_epu32((__m256i)a, (__m256i)b);
+#elif defined(__SSE2__)
     return (lanes_wide)_mm_mul_epu32((__m128i)a, (__m128i)b);
 #else
     return (a & 0xFFFFFFFF) * (b & 0xFFFFFFFF);
 #endif
 }
 
-LANES_INLINE lanes_float lanes_row(const float (*records)[4], const int32_t *index) {
-    return lanes_load(records[index[0]]);
-}
-
-LANES_INLINE void lanes_store_row(float (*to)[4], lanes_float row) {
-    lanes_store(to[0], row);
-}
-
-#define LANES_ZIP_LOW(a, b) ((lanes_float){(a)[0], (b)[0], (a)[1], (b)[1]})
-#define LANES_ZIP_HIGH(a, b) ((lanes_float){(a)[2], (b)[2], (a)[3], (b)[3]})
-#define LANES_PAIR_LOW(a, b) ((lanes_float){(a)[0], (a)[1], (b)[0], (b)[1]})
-#define LANES_PAIR_HIGH(a, b) ((lanes_float){(a)[2], (a)[3], (b)[2], (b)[3]})
-
-#endif
-
-LANES_INLINE lanes_int lanes_permute_int(lanes_int a, lanes_int order) {
-    return (lanes_int)lanes_permute((lanes_float)a, order);
-}
-
 /// Four words for each lane.
 struct lanes_record {
-    lanes_float word[4];
+    lanes_real word[4];
 };
 
-/// Exchange rows and columns in blocks of 4 × 4.
-LANES_INLINE struct lanes_record lanes_transposed(lanes_float a, lanes_float b, lanes_float c,
-                                                  lanes_float d) {
-    const lanes_float ab_low = LANES_ZIP_LOW(a, b), ab_high = LANES_ZIP_HIGH(a, b);
-    const lanes_float cd_low = LANES_ZIP_LOW(c, d), cd_high = LANES_ZIP_HIGH(c, d);
-    return (struct lanes_record){{LANES_PAIR_LOW(ab_low, cd_low), LANES_PAIR_HIGH(ab_low, cd_low),
-                                  LANES_PAIR_LOW(ab_high, cd_high),
-                                  LANES_PAIR_HIGH(ab_high, cd_high)}};
-}
+// Of reals:
+//   lanes_below(a, b)        in which lanes a < b; never where one is NaN
+//   lanes_sqrt(a)
+//   lanes_least(a, b)        the smaller of two; b where a is NaN
+//   lanes_permute(a, order), lanes_permute_int    lane n becomes lane order[n] of a
+//   lanes_row(records, index)    records number index[0], index[4], … one after the other
+//   lanes_store_row(to, row)     and back, to every fourth record
+//   lanes_transposed(a, b, c, d) rows and columns exchanged in blocks of 4 × 4
+//   lanes_load_double4(from)     four reals as doubles
+#if defined(LANES_DOUBLE)
+#include "base/lanes_double.h"
+#else
+#include "base/lanes_single.h"
+#endif
 
-/// Records number index[0 … LANES − 1] of an array of records of 16 bytes: one for each lane.
+/// Records number index[0 … LANES − 1] of an array of records of four words: one for each lane.
 /// Whole records are loaded and transposed: gather instructions take four times as long on Zen 3.
 LANES_INLINE struct lanes_record lanes_load_records(const void *records, const int32_t *index) {
     return lanes_transposed(lanes_row(records, index), lanes_row(records, index + 1),
@@ -340,17 +261,8 @@ LANES_INLINE struct lanes_record lanes_load_records(const void *records, const i
 }
 
 /// Store LANES records (x, y, z, 0), one after the other.
-LANES_INLINE void lanes_store_records(float (*to)[4], lanes_float x, lanes_float y, lanes_float z) {
+LANES_INLINE void lanes_store_records(REAL (*to)[4], lanes_real x, lanes_real y, lanes_real z) {
     const struct lanes_record row = lanes_transposed(x, y, z, lanes_all(0));
     for (int k = 0; k < 4; k++)
         lanes_store_row(to + k, row.word[k]);
-}
-
-/// Four floats as doubles.
-LANES_INLINE lanes_double4 lanes_load_double4(const float from[4]) {
-#if defined(__AVX__)
-    return (lanes_double4)_mm256_cvtps_pd(_mm_loadu_ps(from)); // GCC would make five of this one
-#else
-    return (lanes_double4){from[0], from[1], from[2], from[3]};
-#endif
 }

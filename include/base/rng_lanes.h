@@ -5,8 +5,9 @@
 #include "base/lanes.h"
 #include "base/rng.h"
 
-/// How many numbers rng_philox_lanes makes at a time.
-enum { RNG_LANES = 2 * LANES };
+/// Numbers in a register, and how many rng_philox_lanes makes at a time: they are integers, so that
+/// the precision of a kernel does not matter.
+enum { RNG_WORDS = LANES_BYTES / 4, RNG_LANES = 2 * RNG_WORDS };
 
 /// Word 0 of Philox4x32-10 for RNG_LANES counters (c0, c1[n], c2[n], c3): rng_philox_lane of each.
 ///
@@ -21,10 +22,10 @@ LANES_INLINE void rng_philox_lanes(uint32_t key0, uint32_t key1, uint32_t c0, co
     lanes_wide x0[CHAINS], x1[CHAINS], x2[CHAINS], x3[CHAINS];
 #pragma GCC unroll 4
     for (int n = 0; n < CHAINS; n++) {
-        const int vector = n / 2 * LANES, odd = n % 2;
+        const int vector = n / 2 * RNG_WORDS, odd = n % 2;
         x0[n] = c0 + (lanes_wide){0};
-        x1[n] = (lanes_wide)lanes_load_int(c1 + vector) >> 32 * odd;
-        x2[n] = (lanes_wide)lanes_load_int(c2 + vector) >> 32 * odd;
+        x1[n] = lanes_load_wide(c1 + vector) >> 32 * odd;
+        x2[n] = lanes_load_wide(c2 + vector) >> 32 * odd;
         x3[n] = c3 + (lanes_wide){0};
     }
 #pragma GCC unroll 10
@@ -42,5 +43,5 @@ LANES_INLINE void rng_philox_lanes(uint32_t key0, uint32_t key1, uint32_t c0, co
         }
     }
     for (int n = 0; n < CHAINS; n += 2)
-        lanes_store_int(word0 + n / 2 * LANES, (lanes_int)((x0[n] & 0xFFFFFFFF) | x0[n + 1] << 32));
+        lanes_store_wide(word0 + n / 2 * RNG_WORDS, (x0[n] & 0xFFFFFFFF) | x0[n + 1] << 32);
 }

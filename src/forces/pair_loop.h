@@ -60,7 +60,7 @@ struct pair_scene {
 
 /// Append the entries of a vector whose bits are set to the first `n`; returns their new number.
 INLINE int pair_append(struct pair_batch *batch, int n, unsigned mask, lanes_int i, lanes_int j,
-                       const lanes_float dr[3], const int dim) {
+                       const lanes_real dr[3], const int dim) {
     const lanes_int order = lanes_set_bits(mask);
     lanes_store_int(batch->i + n, lanes_permute_int(i, order));
     lanes_store_int(batch->j + n, lanes_permute_int(j, order));
@@ -80,13 +80,13 @@ INLINE void pair_collect(struct pair_batch *near, struct pair_batch *far,
     for (int k = 0; k < count; k += LANES) {
         const int32_t *rows = owner + k / NEIGHBOURS_ROW;
         const struct lanes_record j = lanes_load_records(place, list + k);
-        lanes_float dr[3], r2 = lanes_all(0);
+        lanes_real dr[3], r2 = lanes_all(0);
         for (int d = 0; d < dim; d++) {
             // Differences of unsigned fractions wrap around: read as signed, they are those of the
             // nearest images (box_fraction).
             const lanes_uint x =
                 (lanes_uint)lanes_eights(place[rows[0]].fraction[d], place[rows[1]].fraction[d]);
-            dr[d] = scene->scale[d] * lanes_to_float((lanes_int)(x - (lanes_uint)j.word[d]));
+            dr[d] = scene->scale[d] * lanes_to_real((lanes_int)(x - (lanes_uint)j.word[d]));
             r2 += dr[d] * dr[d];
         }
         // Rows are filled up with their owner, whose distance from itself is 0.
@@ -106,29 +106,28 @@ INLINE void pair_collect(struct pair_batch *near, struct pair_batch *far,
     far->count = far_count;
 }
 
-INLINE void pair_place(struct pair_places *places, int k, const struct table *table,
-                       lanes_float r) {
+INLINE void pair_place(struct pair_places *places, int k, const struct table *table, lanes_real r) {
     const float inverse_spacing = (float)table->inverse_spacing;
     // Beyond the cutoff is the last row, of zeros.
-    const lanes_float place = lanes_least(r * inverse_spacing, lanes_all(TABLE_INTERVALS));
+    const lanes_real place = lanes_least(r * inverse_spacing, lanes_all(TABLE_INTERVALS));
     const lanes_int interval = lanes_to_int(place);
     lanes_store_int(places->interval + k, interval);
-    lanes_store(places->fraction + k, place - lanes_to_float(interval));
+    lanes_store(places->fraction + k, place - lanes_to_real(interval));
 }
 
 INLINE void pair_distances(struct pair_columns *columns, const struct pair_batch *batch, int count,
                            const struct pair_law *law, const int dim, const bool conservative,
                            const bool dissipative) {
     for (int k = 0; k < count; k += LANES) {
-        const lanes_float dx = lanes_load(batch->dx + k), dy = lanes_load(batch->dy + k);
-        lanes_float r2 = dx * dx + dy * dy;
+        const lanes_real dx = lanes_load(batch->dx + k), dy = lanes_load(batch->dy + k);
+        lanes_real r2 = dx * dx + dy * dy;
         if (dim == 3) {
-            const lanes_float dz = lanes_load(batch->dz + k);
+            const lanes_real dz = lanes_load(batch->dz + k);
             r2 += dz * dz;
         }
         // Exact root and quotient: an estimate with a Newton step is no faster, since the other
         // steps leave the divider idle, and differs between makes of processors.
-        const lanes_float r = lanes_sqrt(r2);
+        const lanes_real r = lanes_sqrt(r2);
         lanes_store(columns->r + k, r);
         lanes_store(columns->inverse_r + k, 1 / r);
         if (conservative)
@@ -143,15 +142,15 @@ INLINE void pair_conservative(struct pair_columns *columns, int count,
                               const struct table *potential, struct pair_sums *sums,
                               const bool wants_sums) {
     const float spacing = (float)(1 / potential->inverse_spacing);
-    lanes_float energy = lanes_all(0), virial = lanes_all(0);
+    lanes_real energy = lanes_all(0), virial = lanes_all(0);
     for (int k = 0; k < count; k += LANES) {
         const struct lanes_record c =
             lanes_load_records(potential->single, columns->potential.interval + k);
-        const lanes_float f = lanes_load(columns->potential.fraction + k);
-        const lanes_float force = c.word[1] + f * (c.word[2] + f * c.word[3]);
+        const lanes_real f = lanes_load(columns->potential.fraction + k);
+        const lanes_real force = c.word[1] + f * (c.word[2] + f * c.word[3]);
         lanes_store(columns->force_over_r + k, force * lanes_load(columns->inverse_r + k));
         if (wants_sums) {
-            const lanes_float c2 = c.word[2] / 2, c3 = c.word[3] / 3;
+            const lanes_real c2 = c.word[2] / 2, c3 = c.word[3] / 3;
             energy += c.word[0] - spacing * f * (c.word[1] + f * (c2 + f * c3));
             virial += force * lanes_load(columns->r + k);
         }
@@ -168,8 +167,8 @@ INLINE void pair_velocities(struct pair_columns *columns, const struct pair_batc
     for (int k = 0; k < count; k += LANES) {
         const struct lanes_record i = lanes_load_records(motion, batch->i + k);
         const struct lanes_record j = lanes_load_records(motion, batch->j + k);
-        lanes_float r_dot_v = lanes_load(batch->dx + k) * (i.word[0] - j.word[0]) +
-                              lanes_load(batch->dy + k) * (i.word[1] - j.word[1]);
+        lanes_real r_dot_v = lanes_load(batch->dx + k) * (i.word[0] - j.word[0]) +
+                             lanes_load(batch->dy + k) * (i.word[1] - j.word[1]);
         if (dim == 3)
             r_dot_v += lanes_load(batch->dz + k) * (i.word[2] - j.word[2]);
         const lanes_int id_i = (lanes_int)i.word[3], id_j = (lanes_int)j.word[3];
@@ -195,10 +194,10 @@ INLINE void pair_dissipative(struct pair_columns *columns, int count, const stru
     for (int k = 0; k < count; k += LANES) {
         const struct lanes_record c =
             lanes_load_records(law->weight->single, columns->weight.interval + k);
-        const lanes_float omega = c.word[0] + lanes_load(columns->weight.fraction + k) * c.word[1];
-        const lanes_float omega_over_r = omega * lanes_load(columns->inverse_r + k);
-        const lanes_float noise = amplitude * lanes_to_float(lanes_load_int(columns->noise + k));
-        lanes_float force_over_r =
+        const lanes_real omega = c.word[0] + lanes_load(columns->weight.fraction + k) * c.word[1];
+        const lanes_real omega_over_r = omega * lanes_load(columns->inverse_r + k);
+        const lanes_real noise = amplitude * lanes_to_real(lanes_load_int(columns->noise + k));
+        lanes_real force_over_r =
             omega_over_r * (noise - omega_over_r * lanes_load(columns->r_dot_v + k));
         if (conservative)
             force_over_r += lanes_load(columns->force_over_r + k);
@@ -210,7 +209,7 @@ INLINE void pair_dissipative(struct pair_columns *columns, int count, const stru
 INLINE void pair_vectors(struct pair_columns *columns, const struct pair_batch *batch, int count,
                          const int dim) {
     for (int k = 0; k < count; k += LANES) {
-        const lanes_float force_over_r = lanes_load(columns->force_over_r + k);
+        const lanes_real force_over_r = lanes_load(columns->force_over_r + k);
         lanes_store_records(columns->force + k, force_over_r * lanes_load(batch->dx + k),
                             force_over_r * lanes_load(batch->dy + k),
                             dim == 3 ? force_over_r * lanes_load(batch->dz + k) : lanes_all(0));

@@ -9,8 +9,8 @@
 /// cannot change it as far as a compiler knows.
 struct close_search {
     const int32_t *x, *y, *z; ///< fractions of the box
-    lanes_float scale[3];     ///< box edges in units of 2³²: fractions to lengths
-    lanes_float range2;
+    lanes_real scale[3];     ///< box edges in units of 2³²: fractions to lengths
+    lanes_real range2;
 };
 
 /// Write those of the particles begin … end − 1 that are within range of particle k to `list`.
@@ -22,14 +22,14 @@ LANES_INLINE int32_t *close_select(const struct close_search search, size_t k, s
     const int32_t x = search.x[k], y = search.y[k], z = dim == 3 ? search.z[k] : 0;
     do {
         // Differences of unsigned fractions wrap around (box_fraction).
-        const lanes_float dx =
-            search.scale[0] * lanes_to_float(lanes_difference(x, search.x + begin));
-        const lanes_float dy =
-            search.scale[1] * lanes_to_float(lanes_difference(y, search.y + begin));
-        lanes_float r2 = dx * dx + dy * dy;
+        const lanes_real dx =
+            search.scale[0] * lanes_to_real(lanes_difference(x, search.x + begin));
+        const lanes_real dy =
+            search.scale[1] * lanes_to_real(lanes_difference(y, search.y + begin));
+        lanes_real r2 = dx * dx + dy * dy;
         if (dim == 3) {
-            const lanes_float dz =
-                search.scale[2] * lanes_to_float(lanes_difference(z, search.z + begin));
+            const lanes_real dz =
+                search.scale[2] * lanes_to_real(lanes_difference(z, search.z + begin));
             r2 += dz * dz;
         }
         const unsigned mask = lanes_below(r2, search.range2) & lanes_first(end - begin);
