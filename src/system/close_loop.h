@@ -5,11 +5,17 @@
 #include "base/lanes.h"
 #include "close.h"
 
+/// By how much squared distances may be too large in single precision, relative to the range: nine
+/// roundings of 6e-8, and half a unit of either fraction, which is 1e-6 if the box is 2000 times as
+/// long as the range. Without it a list with no skin would lack a pair at the very cutoff, which
+/// kernels in double precision would notice.
+static const double wider = 2e-6;
+
 /// What stays the same from particle to particle. Passed by value, so that the stores to the list
 /// cannot change it as far as a compiler knows.
 struct close_search {
     const int32_t *x, *y, *z; ///< fractions of the box
-    lanes_real scale[3];     ///< box edges in units of 2³²: fractions to lengths
+    lanes_real scale[3];      ///< box edges in units of 2³²: fractions to lengths
     lanes_real range2;
 };
 
@@ -84,7 +90,7 @@ LANES_INLINE size_t close_loop(struct neighbours *neighbours, const struct parti
         .x = particles->fraction[0],
         .y = particles->fraction[1],
         .z = particles->fraction[2],
-        .range2 = lanes_all((float)(neighbours->range * neighbours->range)),
+        .range2 = lanes_all((float)(neighbours->range * neighbours->range * (1 + wider))),
     };
     for (int d = 0; d < 3; d++)
         search.scale[d] = lanes_all((float)(particles->box.length[d] * 0x1p-32));

@@ -14,10 +14,6 @@
 #include "shared/testing.h"
 #include "shared/variants.h"
 
-/// Of the cutoff: nearer pairs must be listed. With no skin the list is made for the cutoff itself,
-/// by distances in single precision.
-static const double rounding = 1e-6;
-
 /// Of a temperature at one instant: six standard deviations sqrt(2/(d N)) at least.
 static const double temperature_band = 0.4;
 
@@ -38,7 +34,7 @@ struct watcher {
 
 static void watcher_init(struct watcher *watcher, const struct simulation *simulation) {
     const struct box *box = &simulation->particles.box;
-    const double limit = pair_cutoff(&simulation->law) * (1 - rounding);
+    const double limit = pair_cutoff(&simulation->law);
     *watcher = (struct watcher){.count = simulation->particles.count, .limit = limit * limit};
     watcher->bytes = watcher->count * watcher->count / 8 + 1;
     watcher->listed = memory_zeroed(watcher->bytes, 1);
