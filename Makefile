@@ -15,8 +15,9 @@ MAKEFLAGS += --no-print-directory
 BUILD   ?= build
 AT       = $(if $(VERBOSE),,@)
 PACKAGES = gsl libcjson
+# No psabi: all functions of vectors are inlined, so how one would be passed does not matter.
 WARN     = -Wall -Wextra -Wshadow -Wpointer-arith -Wstrict-prototypes -Wmissing-prototypes \
-           -Wvla -Wundef $(if $(WERROR),-Werror)
+           -Wvla -Wundef -Wno-psabi $(if $(WERROR),-Werror)
 # No -ffast-math: NaN must stay visible. These two only drop errno and FP exception flags, which
 # nothing here reads, and let sqrt and comparisons vectorise.
 OPTIMISE = -O3 -fno-math-errno -fno-trapping-math -ffp-contract=fast

@@ -37,8 +37,6 @@
 #define LANES (LANES_BYTES / 4)
 #endif
 
-// All is inlined, so how a vector would be passed to a function does not matter.
-#pragma GCC diagnostic ignored "-Wpsabi"
 #define LANES_INLINE static inline __attribute__((always_inline))
 
 typedef REAL lanes_real __attribute__((vector_size(sizeof(REAL) * LANES)));

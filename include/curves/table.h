@@ -19,10 +19,11 @@ struct table {
     double inverse_spacing; ///< intervals / cutoff [1/λ]
     int terms;              ///< coefficients an interval: 4 (potential) or 2 (weight)
     double *coefficient;    ///< shape [TABLE_INTERVALS + 1, terms]; the last row is 0
-    /// In single precision what kernels want, 16 bytes a row for one load; f is the fraction of
-    /// the interval. Potential: value at f = 0, then the force F = c1 + f(c2 + f c3), so that
-    /// Φ = c0 − f(c1 + f(c2/2 + f c3/3)) / inverse_spacing. Weight: ω = c0 + f c1.
-    float (*single)[4];
+    /// What kernels want, a row for one load; f is the fraction of the interval. Potential: value
+    /// at f = 0, then the force F = c1 + f(c2 + f c3), so that Φ = c0 − f(c1 + f(c2/2 + f c3/3)) /
+    /// inverse_spacing. Weight: ω = c0 + f c1.
+    double (*precise)[4];
+    float (*single)[4]; ///< the same rounded
 };
 
 /// Potential: cubic spline, shifted so that Φ(cutoff) = 0.

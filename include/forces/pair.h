@@ -11,10 +11,11 @@
 #include "system/neighbours.h"
 #include "system/particles.h"
 
-/// Arithmetic of a pair. Positions, velocities and sums over pairs are in double precision always.
+/// Arithmetic of a pair. The state of particles and the sums over pairs are in double precision
+/// always.
 enum pair_precision {
-    PAIR_MIXED,  ///< single: relative errors of 1e-6 in a force
-    PAIR_DOUBLE, ///< double
+    PAIR_MIXED,  ///< single, from 32-bit fractions of the box: relative errors of 1e-6 in a force
+    PAIR_DOUBLE, ///< double, from double positions; the noise is the same
 };
 
 /// Distances counted in passing: bin k holds those from low + k width on.
@@ -48,9 +49,9 @@ double pair_cutoff(const struct pair_law *law);
 
 /// Replace `force` of all particles by the forces of `law`.
 ///
-/// Reads particles.fraction, and kernel_velocity if the law has a weight; the list must be
-/// complete for pair_cutoff. Distances come from fractions of the box (box_fraction), the
-/// arithmetic of a pair is in single precision, the sums over pairs are in double.
+/// Reads kernel_place, and kernel_motion if the law has a weight; with PAIR_DOUBLE precise_place
+/// and precise_motion, which particles_keep_precise must have asked for. The list must be complete
+/// for pair_cutoff.
 /// @param[in]  step  number of the time step: the counter of the noise
 /// @param[out] sums  NULL unless `wants` asks for them
 /// Fails: never; a NaN shows in the forces. Threads: serial. Tested: test_pair_kernels.

@@ -13,7 +13,7 @@
 /// Vectors of kernels may read this far beyond the last particle.
 enum { PARTICLES_PADDING = 16 };
 
-/// What the pair kernels read of a particle, in records of 16 bytes: one load a particle.
+/// What the pair kernels read of a particle, in records of four words: one load a particle.
 struct particle_place {
     int32_t fraction[3]; ///< box_fraction
     int32_t unused;
@@ -21,6 +21,16 @@ struct particle_place {
 struct particle_motion {
     float velocity[3]; ///< [λ/τ]
     uint32_t id;
+};
+
+/// The same for the kernels in double precision.
+struct particle_precise_place {
+    double position[3]; ///< [λ]
+    double unused;
+};
+struct particle_precise_motion {
+    double velocity[3]; ///< [λ/τ]
+    double id;
 };
 
 struct particles {
@@ -33,17 +43,23 @@ struct particles {
     int32_t *image[3];    ///< boxes crossed: unwrapped x = position + image · length
     uint32_t *id;         ///< 0 … count − 1, as placed
     int32_t *fraction[3]; ///< box_fraction; room for PARTICLES_PADDING more
-    struct particle_place *kernel_place;   ///< shape [count]: the same for the pair kernels
-    struct particle_motion *kernel_motion; ///< shape [count]
-    double (*kernel_force)[4];             ///< shape [count, 4]: sums of the pair kernels
-    double *spare;                         ///< shape [count]: room for permutations
-    void *spare_words;                     ///< shape [count]: the same for 32-bit words
-    struct particle_motion *spare_motion;  ///< shape [count]
+    struct particle_place *kernel_place;          ///< shape [count]: the same for the pair kernels
+    struct particle_motion *kernel_motion;        ///< shape [count]
+    struct particle_precise_place *precise_place; ///< shape [count], or NULL without
+    struct particle_precise_motion *precise_motion; ///< … particles_keep_precise
+    double (*kernel_force)[4];                      ///< shape [count, 4]: sums of the pair kernels
+    double *spare;                                  ///< shape [count]: room for permutations
+    void *spare_words;                              ///< shape [count]: the same for 32-bit words
+    struct particle_motion *spare_motion;           ///< shape [count]
+    struct particle_precise_motion *spare_precise_motion; ///< shape [count] or NULL
 };
 
 enum status particles_init(struct particles *particles, const struct box *box,
                            size_t count) MUST_USE;
 void particles_clear(struct particles *particles);
+
+/// Keep also what the kernels read in double precision, from the next updates on. Fails: NO_MEMORY.
+enum status particles_keep_precise(struct particles *particles) MUST_USE;
 
 /// Particles per volume [1/λ^d].
 double particles_density(const struct particles *particles);
@@ -51,10 +67,11 @@ double particles_density(const struct particles *particles);
 /// Put every position into [0, length) and count the boxes crossed.
 void particles_wrap(struct particles *particles);
 
-/// Refresh `fraction` and `kernel_place` from `position`.
+/// Refresh `fraction`, `kernel_place` and `precise_place` from `position`.
 void particles_update_fractions(struct particles *particles);
 
-/// Refresh `kernel_motion`, with velocities predicted by a time `ahead` [τ]: v + ahead · force.
+/// Refresh `kernel_motion` and `precise_motion`, with velocities predicted by a time `ahead` [τ]:
+/// v + ahead · force.
 void particles_update_motion(struct particles *particles, double ahead);
 
 /// Reorder all arrays but the forces, which are about to be replaced: new[k] = old[order[k]].

@@ -10,24 +10,28 @@ static enum status allocate(struct table *table, const struct curve *curve, int 
         .cutoff = cutoff, .inverse_spacing = TABLE_INTERVALS / cutoff, .terms = terms};
     const size_t size = (size_t)(TABLE_INTERVALS + 1) * (size_t)terms;
     NEW_ARRAY(table->coefficient, size);
+    NEW_ARRAY(table->precise, TABLE_INTERVALS + 1);
     NEW_ARRAY(table->single, TABLE_INTERVALS + 1);
 done:
     return status;
 }
 
-static void fill_single(struct table *table) {
+/// Rows for the kernels from the coefficients.
+static void fill_rows(struct table *table) {
     const double h = table->inverse_spacing;
     for (int k = 0; k <= TABLE_INTERVALS; k++) {
         const double *c = table->coefficient + k * table->terms;
-        float *single = table->single[k];
-        single[0] = (float)c[0];
+        double *row = table->precise[k];
+        row[0] = c[0];
         if (table->terms == 2) {
-            single[1] = (float)c[1];
+            row[1] = c[1];
         } else {
-            single[1] = (float)(0 - h * c[1]);
-            single[2] = (float)(0 - 2 * h * c[2]);
-            single[3] = (float)(0 - 3 * h * c[3]);
+            row[1] = 0 - h * c[1];
+            row[2] = 0 - 2 * h * c[2];
+            row[3] = 0 - 3 * h * c[3];
         }
+        for (int n = 0; n < 4; n++)
+            table->single[k][n] = (float)row[n];
     }
 }
 
@@ -84,7 +88,7 @@ enum status table_init_potential(struct table *table, const struct curve *curve)
         c[2] = 3 * (y[k + 1] - y[k]) - 2 * m[k] - m[k + 1];
         c[3] = 2 * (y[k] - y[k + 1]) + m[k] + m[k + 1];
     }
-    fill_single(table);
+    fill_rows(table);
 done:
     memory_free(y);
     memory_free(m);
@@ -102,7 +106,7 @@ enum status table_init_weight(struct table *table, const struct curve *curve) {
         table->coefficient[2 * k] = low;
         table->coefficient[2 * k + 1] = value_at_node(curve, k + 1, table->cutoff) - low;
     }
-    fill_single(table);
+    fill_rows(table);
 done:
     if (status != STATUS_OK)
         table_clear(table);
@@ -111,6 +115,7 @@ done:
 
 void table_clear(struct table *table) {
     memory_free(table->coefficient);
+    memory_free(table->precise);
     memory_free(table->single);
     *table = (struct table){0};
 }

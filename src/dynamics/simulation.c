@@ -60,6 +60,8 @@ enum status simulation_init(struct simulation *simulation, const struct simulati
     };
     const size_t count = (size_t)setup->placement.count;
     CHECK(particles_init(&simulation->particles, &setup->box, count));
+    if (simulation->law.precision == PAIR_DOUBLE)
+        CHECK(particles_keep_precise(&simulation->particles));
     simulation->particles.threads = setup->threads > 1 ? setup->threads : 1;
     CHECK(neighbours_init(&simulation->neighbours, NEIGHBOURS_HALF, &setup->box, count,
                           pair_cutoff(&simulation->law), find_skin(simulation)));

@@ -10,18 +10,24 @@ double pair_cutoff(const struct pair_law *law) {
     return fmax(law->potential ? law->potential->cutoff : 0, law->weight ? law->weight->cutoff : 0);
 }
 
-static pair_kernel choose(const struct pair_law *law, int dimensions, enum pair_wants wants) {
-    const int conservative = law->potential != NULL, dissipative = law->weight != NULL;
+/// Kernels for the instruction set in use.
+static pair_kernels *choose_set(bool is_double) {
     switch (simd_used()) {
 #if SIMD_X86
     case SIMD_AVX512:
-        return pair_avx512[dimensions - 2][conservative][dissipative][wants];
+        return is_double ? &pair_avx512_double : &pair_avx512;
     case SIMD_AVX2:
-        return pair_avx2[dimensions - 2][conservative][dissipative][wants];
+        return is_double ? &pair_avx2_double : &pair_avx2;
 #endif
     default:
-        return pair_portable[dimensions - 2][conservative][dissipative][wants];
+        return is_double ? &pair_portable_double : &pair_portable;
     }
+}
+
+static pair_kernel choose(const struct pair_law *law, int dimensions, enum pair_wants wants) {
+    const int conservative = law->potential != NULL, dissipative = law->weight != NULL;
+    return (*choose_set(law->precision ==
+                        PAIR_DOUBLE))[dimensions - 2][conservative][dissipative][wants];
 }
 
 static void clear_forces(void *context, size_t begin, size_t end) {

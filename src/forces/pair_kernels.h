@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The instances of the pair loop, by instruction set.
+/// @file The instances of the pair loop, by instruction set and precision.
 #pragma once
 
 #include "forces/pair.h"
@@ -12,4 +12,7 @@ typedef void (*pair_kernel)(PAIR_KERNEL_ARGUMENTS);
 
 /// Adds the forces of the pairs of one part of the list to kernel_force, and their sums to `sums`.
 /// [dimensions − 2][potential][weight][sums]
-extern const pair_kernel pair_portable[2][2][2][2], pair_avx2[2][2][2][2], pair_avx512[2][2][2][2];
+typedef const pair_kernel pair_kernels[2][2][2][2];
+
+extern pair_kernels pair_portable, pair_avx2, pair_avx512;
+extern pair_kernels pair_portable_double, pair_avx2_double, pair_avx512_double;

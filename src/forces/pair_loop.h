@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file The one body of the pair loop.
 ///
-/// Included by pair_portable.c, pair_avx2.c and pair_avx512.c, which compile it for an instruction
-/// set and for each combination of the constant arguments. Pairs within the cutoff are collected
-/// from the list into a batch; the law is evaluated for the batch, column by column; the forces are
-/// added to the particles.
+/// Included by pair_portable.c, pair_avx2.c and pair_avx512.c, and by their twins for double
+/// precision, which compile it for an instruction set and for each combination of the constant
+/// arguments. What differs between the precisions is in pair_precision.h. Pairs within the cutoff
+/// are collected from the list into a batch; the law is evaluated for the batch, column by column;
+/// the forces are added to the particles.
 ///
 /// Each step is a short loop of its own over columns in the first-level cache. One loop from the
 /// list to the forces reads as well but takes 1.7 times as long: a pair is a chain of 110 cycles
@@ -13,8 +14,7 @@
 
 #include "base/rng_lanes.h"
 #include "pair_kernels.h"
-
-#define INLINE static inline __attribute__((always_inline))
+#include "pair_precision.h"
 
 enum {
     PAIR_BATCH = 128, ///< pairs evaluated together; always as many, so that loops are predictable
@@ -27,23 +27,23 @@ enum {
 struct pair_batch {
     int count;
     int32_t i[PAIR_ROOM], j[PAIR_ROOM];
-    float dx[PAIR_ROOM], dy[PAIR_ROOM], dz[PAIR_ROOM];
+    REAL dx[PAIR_ROOM], dy[PAIR_ROOM], dz[PAIR_ROOM];
 };
 
 /// Where distances lie in a table.
 struct pair_places {
     int32_t interval[PAIR_BATCH];
-    float fraction[PAIR_BATCH];
+    REAL fraction[PAIR_BATCH];
 };
 
 /// What is computed from a batch, column by column.
 struct pair_columns {
-    float r[PAIR_BATCH], inverse_r[PAIR_BATCH];
+    REAL r[PAIR_BATCH], inverse_r[PAIR_BATCH];
     struct pair_places potential, weight;
-    float force_over_r[PAIR_BATCH];
-    float r_dot_v[PAIR_BATCH];
+    REAL force_over_r[PAIR_BATCH];
+    REAL r_dot_v[PAIR_BATCH];
     int32_t low_id[PAIR_BATCH], high_id[PAIR_BATCH], noise[PAIR_BATCH];
-    float force[PAIR_BATCH][4];
+    REAL force[PAIR_BATCH][4];
 };
 
 /// What stays the same from pair to pair.
@@ -53,9 +53,9 @@ struct pair_scene {
     struct pair_sums *sums;
     uint32_t *counts; ///< of the histogram, or NULL
     uint64_t step;
-    float scale[3];              ///< box edges in units of 2³²: fractions to lengths
-    float cutoff2, near_cutoff2; ///< squared: of the law, of its dissipative part
-    bool has_few;                ///< particles have few pairs each
+    struct pair_box box;
+    REAL cutoff2, near_cutoff2; ///< squared: of the law, of its dissipative part
+    bool has_few;               ///< particles have few pairs each
 };
 
 /// Append the entries of a vector whose bits are set to the first `n`; returns their new number.
@@ -75,18 +75,14 @@ INLINE int pair_append(struct pair_batch *batch, int n, unsigned mask, lanes_int
 INLINE void pair_collect(struct pair_batch *near, struct pair_batch *far,
                          const struct pair_scene *scene, const int32_t *list, const int32_t *owner,
                          int count, const int dim, const bool has_far) {
-    const struct particle_place *place = scene->particles->kernel_place;
+    const struct PAIR_PLACE *place = scene->particles->PAIR_PLACES;
     int near_count = near->count, far_count = far->count;
     for (int k = 0; k < count; k += LANES) {
         const int32_t *rows = owner + k / NEIGHBOURS_ROW;
         const struct lanes_record j = lanes_load_records(place, list + k);
         lanes_real dr[3], r2 = lanes_all(0);
         for (int d = 0; d < dim; d++) {
-            // Differences of unsigned fractions wrap around: read as signed, they are those of the
-            // nearest images (box_fraction).
-            const lanes_uint x =
-                (lanes_uint)lanes_eights(place[rows[0]].fraction[d], place[rows[1]].fraction[d]);
-            dr[d] = scene->scale[d] * lanes_to_real((lanes_int)(x - (lanes_uint)j.word[d]));
+            dr[d] = pair_separation(&scene->box, &place[rows[0]], &place[rows[1]], &j, d);
             r2 += dr[d] * dr[d];
         }
         // Rows are filled up with their owner, whose distance from itself is 0.
@@ -107,7 +103,7 @@ INLINE void pair_collect(struct pair_batch *near, struct pair_batch *far,
 }
 
 INLINE void pair_place(struct pair_places *places, int k, const struct table *table, lanes_real r) {
-    const float inverse_spacing = (float)table->inverse_spacing;
+    const REAL inverse_spacing = (REAL)table->inverse_spacing;
     // Beyond the cutoff is the last row, of zeros.
     const lanes_real place = lanes_least(r * inverse_spacing, lanes_all(TABLE_INTERVALS));
     const lanes_int interval = lanes_to_int(place);
@@ -141,11 +137,11 @@ INLINE void pair_distances(struct pair_columns *columns, const struct pair_batch
 INLINE void pair_conservative(struct pair_columns *columns, int count,
                               const struct table *potential, struct pair_sums *sums,
                               const bool wants_sums) {
-    const float spacing = (float)(1 / potential->inverse_spacing);
+    const REAL spacing = (REAL)(1 / potential->inverse_spacing);
     lanes_real energy = lanes_all(0), virial = lanes_all(0);
     for (int k = 0; k < count; k += LANES) {
         const struct lanes_record c =
-            lanes_load_records(potential->single, columns->potential.interval + k);
+            lanes_load_records(potential->PAIR_ROWS, columns->potential.interval + k);
         const lanes_real f = lanes_load(columns->potential.fraction + k);
         const lanes_real force = c.word[1] + f * (c.word[2] + f * c.word[3]);
         lanes_store(columns->force_over_r + k, force * lanes_load(columns->inverse_r + k));
@@ -163,7 +159,7 @@ INLINE void pair_conservative(struct pair_columns *columns, int count,
 
 /// r·v_ij, and the ordered ids that key the noise.
 INLINE void pair_velocities(struct pair_columns *columns, const struct pair_batch *batch, int count,
-                            const struct particle_motion *motion, const int dim) {
+                            const struct PAIR_MOTION *motion, const int dim) {
     for (int k = 0; k < count; k += LANES) {
         const struct lanes_record i = lanes_load_records(motion, batch->i + k);
         const struct lanes_record j = lanes_load_records(motion, batch->j + k);
@@ -171,7 +167,7 @@ INLINE void pair_velocities(struct pair_columns *columns, const struct pair_batc
                              lanes_load(batch->dy + k) * (i.word[1] - j.word[1]);
         if (dim == 3)
             r_dot_v += lanes_load(batch->dz + k) * (i.word[2] - j.word[2]);
-        const lanes_int id_i = (lanes_int)i.word[3], id_j = (lanes_int)j.word[3];
+        const lanes_int id_i = pair_id(&i), id_j = pair_id(&j);
         lanes_store(columns->r_dot_v + k, r_dot_v);
         lanes_store_int(columns->low_id + k, lanes_least_int(id_i, id_j));
         lanes_store_int(columns->high_id + k, lanes_most_int(id_i, id_j));
@@ -189,11 +185,10 @@ INLINE void pair_noise(struct pair_columns *columns, int count, uint64_t seed, u
 INLINE void pair_dissipative(struct pair_columns *columns, int count, const struct pair_law *law,
                              const bool conservative) {
     // ζ = sqrt(12) (u − ½) with u uniform; the word as a signed integer is (u − ½) 2³².
-    const float amplitude =
-        (float)(sqrt(2 * law->temperature / law->time_step) * sqrt(12) * 0x1p-32);
+    const REAL amplitude = (REAL)(sqrt(2 * law->temperature / law->time_step) * sqrt(12) * 0x1p-32);
     for (int k = 0; k < count; k += LANES) {
         const struct lanes_record c =
-            lanes_load_records(law->weight->single, columns->weight.interval + k);
+            lanes_load_records(law->weight->PAIR_ROWS, columns->weight.interval + k);
         const lanes_real omega = c.word[0] + lanes_load(columns->weight.fraction + k) * c.word[1];
         const lanes_real omega_over_r = omega * lanes_load(columns->inverse_r + k);
         const lanes_real noise = amplitude * lanes_to_real(lanes_load_int(columns->noise + k));
@@ -245,7 +240,8 @@ INLINE void pair_scatter(const struct pair_columns *columns, struct pair_batch *
 /// The same where particles have few pairs each: the branch at the end of each, which no processor
 /// foresees, costs more than its pairs. So sums from the first pair of all are kept at the ends,
 /// and their differences belong to the particles. Measured on Zen 5: 6 % more steps/s with 6 pairs
-/// a particle, 8 % less with 28, 19 % less with 68.
+/// a particle, 8 % less with 28, 19 % less with 68. Not for forces in double precision, of which
+/// the differences would lose the last digits: sums of floats have room for that.
 INLINE void pair_scatter_few(const struct pair_columns *columns, struct pair_batch *batch,
                              int count, lanes_double4 *force) {
     lanes_double4 sum = {0}, sums[PAIR_BATCH];
@@ -271,10 +267,10 @@ INLINE void pair_scatter_few(const struct pair_columns *columns, struct pair_bat
 
 INLINE void pair_count(const struct pair_columns *columns, int count,
                        const struct pair_histogram *histogram, uint32_t *counts) {
-    const float low = (float)histogram->low, inverse_width = (float)(1 / histogram->width);
-    const float bins = (float)histogram->bins;
+    const REAL low = (REAL)histogram->low, inverse_width = (REAL)(1 / histogram->width);
+    const REAL bins = (REAL)histogram->bins;
     for (int k = 0; k < count; k++) {
-        const float place = (columns->r[k] - low) * inverse_width;
+        const REAL place = (columns->r[k] - low) * inverse_width;
         counts[place >= 0 && place < bins ? (size_t)place : histogram->bins]++;
     }
 }
@@ -291,7 +287,7 @@ INLINE void pair_evaluate(struct pair_batch *batch, int count, const struct pair
     if (conservative)
         pair_conservative(&columns, count, law->potential, scene->sums, wants_sums);
     if (dissipative) {
-        pair_velocities(&columns, batch, count, scene->particles->kernel_motion, dim);
+        pair_velocities(&columns, batch, count, scene->particles->PAIR_MOTIONS, dim);
         pair_noise(&columns, count, law->seed, scene->step);
         pair_dissipative(&columns, count, law, conservative);
     }
@@ -325,7 +321,7 @@ INLINE void pair_evaluate_full(struct pair_batch *batch, const struct pair_scene
 INLINE void pair_evaluate_rest(struct pair_batch *batch, const struct pair_scene *scene,
                                const int dim, const bool conservative, const bool dissipative,
                                const bool wants_sums) {
-    const float beyond = 2 * sqrtf(scene->cutoff2);
+    const REAL beyond = 2 * (REAL)sqrt(scene->cutoff2);
     for (int k = batch->count; k < batch->count + RNG_LANES; k++) {
         batch->i[k] = batch->j[k] = 0;
         batch->dx[k] = beyond;
@@ -346,13 +342,13 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
                                .particles = particles,
                                .sums = sums,
                                .step = step,
-                               .cutoff2 = (float)(cutoff * cutoff),
-                               .near_cutoff2 = (float)(near_cutoff * near_cutoff)};
+                               .box = pair_box_of(&particles->box),
+                               .cutoff2 = (REAL)(cutoff * cutoff),
+                               .near_cutoff2 = (REAL)(near_cutoff * near_cutoff)};
     if (histogram)
         scene.counts = histogram->counts + (size_t)part_number * (histogram->bins + 1);
-    scene.has_few = part->end - part->begin < PAIR_FEW * (part->last - part->first);
-    for (int d = 0; d < 3; d++)
-        scene.scale[d] = (float)(particles->box.length[d] * 0x1p-32);
+    scene.has_few =
+        sizeof(REAL) == 4 && part->end - part->begin < PAIR_FEW * (part->last - part->first);
     // Near pairs feel the whole law, far ones the potential alone.
     const bool has_far = conservative && dissipative && near_cutoff < cutoff;
     struct pair_batch near, far;
@@ -376,7 +372,8 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
                   wants_sums);                                                                     \
     }
 
-/// All instances for one instruction set, by name, and the table from which pair_kernels.c chooses.
+/// All instances for one instruction set and precision, by name, and the table from which
+/// pair_kernels.c chooses.
 #define PAIR_INSTANCES(set)                                                                        \
     PAIR_INSTANCE(set##_2d_d, 2, false, true, false)                                               \
     PAIR_INSTANCE(set##_2d_ds, 2, false, true, true)                                               \

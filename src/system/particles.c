@@ -34,6 +34,15 @@ done:
     return status;
 }
 
+enum status particles_keep_precise(struct particles *particles) {
+    enum status status = STATUS_OK;
+    NEW_ARRAY(particles->precise_place, particles->count);
+    NEW_ARRAY(particles->precise_motion, particles->count);
+    NEW_ARRAY(particles->spare_precise_motion, particles->count);
+done:
+    return status;
+}
+
 void particles_clear(struct particles *particles) {
     for (int d = 0; d < 3; d++) {
         memory_free(particles->position[d]);
@@ -44,6 +53,9 @@ void particles_clear(struct particles *particles) {
     }
     memory_free(particles->kernel_place);
     memory_free(particles->kernel_motion);
+    memory_free(particles->precise_place);
+    memory_free(particles->precise_motion);
+    memory_free(particles->spare_precise_motion);
     memory_free(particles->kernel_force);
     memory_free(particles->id);
     memory_free(particles->spare);
@@ -90,8 +102,17 @@ SIMD_CLONES static void update_fractions(void *context, size_t begin, size_t end
     }
 }
 
+SIMD_CLONES static void update_precise_places(void *context, size_t begin, size_t end) {
+    const struct particles *particles = context;
+    for (int d = 0; d < particles->box.dimensions; d++)
+        for (size_t k = begin; k < end; k++)
+            particles->precise_place[k].position[d] = particles->position[d][k];
+}
+
 void particles_update_fractions(struct particles *particles) {
     parallel_for(particles->count, particles->threads, update_fractions, particles);
+    if (particles->precise_place)
+        parallel_for(particles->count, particles->threads, update_precise_places, particles);
 }
 
 struct prediction {
@@ -112,9 +133,24 @@ SIMD_CLONES static void update_motion(void *context, size_t begin, size_t end) {
         motion[k].id = particles->id[k];
 }
 
+SIMD_CLONES static void update_precise_motion(void *context, size_t begin, size_t end) {
+    const struct prediction *prediction = context;
+    const struct particles *particles = prediction->particles;
+    struct particle_precise_motion *restrict motion = particles->precise_motion;
+    for (int d = 0; d < particles->box.dimensions; d++) {
+        const double *restrict v = particles->velocity[d], *restrict force = particles->force[d];
+        for (size_t k = begin; k < end; k++)
+            motion[k].velocity[d] = v[k] + prediction->ahead * force[k];
+    }
+    for (size_t k = begin; k < end; k++)
+        motion[k].id = particles->id[k];
+}
+
 void particles_update_motion(struct particles *particles, double ahead) {
     struct prediction prediction = {particles, ahead};
     parallel_for(particles->count, particles->threads, update_motion, &prediction);
+    if (particles->precise_motion)
+        parallel_for(particles->count, particles->threads, update_precise_motion, &prediction);
 }
 
 /// One array on its way into another order.
@@ -148,6 +184,14 @@ static void permute_motions(void *context, size_t begin, size_t end) {
         to[k] = from[p->order[k]];
 }
 
+static void permute_precise_motions(void *context, size_t begin, size_t end) {
+    const struct permutation *p = context;
+    const struct particle_precise_motion *restrict from = p->from;
+    struct particle_precise_motion *restrict to = p->to;
+    for (size_t k = begin; k < end; k++)
+        to[k] = from[p->order[k]];
+}
+
 /// Permute *array into *spare, and exchange them.
 #define PERMUTE(particles, array, spare, order, permute)                                           \
     do {                                                                                           \
@@ -166,6 +210,9 @@ void particles_permute(struct particles *particles, const uint32_t *order) {
     }
     PERMUTE(particles, particles->id, particles->spare_words, order, permute_words);
     PERMUTE(particles, particles->kernel_motion, particles->spare_motion, order, permute_motions);
+    if (particles->precise_motion)
+        PERMUTE(particles, particles->precise_motion, particles->spare_precise_motion, order,
+                permute_precise_motions);
 }
 
 void particles_draw_velocities(struct particles *particles, double temperature, uint64_t seed) {

@@ -202,6 +202,7 @@ static void make_scene(struct scene *scene, const struct plan *plan) {
     assert_non_null(scene->probe);
     assert_non_null(scene->mirror);
     assert_ok(particles_init(&scene->particles, &box, motifs * (plan->motif == DIMERS ? 2 : 3)));
+    assert_ok(particles_keep_precise(&scene->particles));
     add_motifs(scene, plan);
     if (plan->reversed)
         reverse(&scene->particles);
@@ -476,6 +477,41 @@ static void test_pair_noise_is_the_same_when_the_variant_changes(void **state) {
                   largest);
 }
 
+/// The word of Philox that a pair's ζ is made of.
+static int32_t word_of(const struct scene *scene, size_t pair, uint64_t step) {
+    const uint32_t a = scene->particles.id[scene->probe[pair].particle],
+                   b = scene->particles.id[scene->mirror[pair].particle];
+    const uint64_t seed = scene->law.seed;
+    return (int32_t)rng_philox_lane((uint32_t)seed, (uint32_t)(seed >> 32), (uint32_t)step,
+                                    a < b ? a : b, a < b ? b : a,
+                                    rng_stream_word(RNG_PAIR_NOISE, (uint32_t)(step >> 32)));
+}
+
+/// Mixed and double precision draw the same 32 bits. In double precision a ζ, good to 1e-14, tells
+/// all of them; in mixed precision the 17 highest or more.
+static void test_pair_noise_is_made_of_the_same_word_when_the_precision_changes(void **state) {
+    (void)state;
+    struct variant variants[VARIANTS_MOST];
+    const int variant_count = variants_find(variants);
+    const struct plan plan = small_plan(DIMERS, IDS_SHUFFLED, 3);
+    struct scene scene;
+    make_scene(&scene, &plan);
+    double *zeta = new_numbers(scene.pairs);
+    for (int v = 0; v < variant_count; v++) {
+        variants_select(&variants[v]);
+        scene.law.precision = variants[v].precision;
+        const double lost = variants[v].precision == PAIR_DOUBLE ? 0.01 : zeta_tolerance * 0x1p32;
+        for (int k = 0; k < FEW_STEPS; k++) {
+            draw(&scene, 0xABCDEF0123456789, few_step(k), zeta);
+            for (size_t p = 0; p < scene.pairs; p++)
+                assert_close(zeta[p] * 0x1p32 / sqrt(12), word_of(&scene, p, few_step(k)), lost);
+        }
+    }
+    memory_free(zeta);
+    clear_scene(&scene);
+    variants_select(&variants[0]);
+}
+
 static void test_pair_noise_is_opposite_when_read_on_the_other_particle(void **state) {
     (void)state;
     struct variant variants[VARIANTS_MOST];
@@ -557,6 +593,7 @@ int main(void) {
         cmocka_unit_test(test_pair_noise_is_white_when_steps_and_seeds_change),
         cmocka_unit_test(test_pair_noise_is_independent_when_pairs_share_a_particle),
         cmocka_unit_test(test_pair_noise_is_the_same_when_the_variant_changes),
+        cmocka_unit_test(test_pair_noise_is_made_of_the_same_word_when_the_precision_changes),
         cmocka_unit_test(test_pair_noise_is_opposite_when_read_on_the_other_particle),
         cmocka_unit_test(test_pair_noise_is_the_same_when_particles_are_stored_the_other_way_round),
     };

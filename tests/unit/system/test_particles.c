@@ -143,6 +143,33 @@ static void test_particles_motion_is_ahead_when_time_is_given(void **state) {
     particles_clear(&particles);
 }
 
+static void test_particles_precise_records_are_exact_when_kept(void **state) {
+    (void)state;
+    enum { COUNT = 50 };
+    struct particles particles;
+    uint32_t order[COUNT];
+    make(&particles, &three, COUNT);
+    assert_null(particles.precise_place);
+    assert_null(particles.precise_motion);
+    assert_ok(particles_keep_precise(&particles));
+    particles_update_motion(&particles, 0.25);
+    for (uint32_t k = 0; k < COUNT; k++)
+        order[k] = COUNT - 1 - k;
+    particles_permute(&particles, order);
+    particles_update_fractions(&particles);
+    for (size_t k = 0; k < COUNT; k++) {
+        assert_identical(particles.precise_motion[k].id, particles.id[k]);
+        for (int d = 0; d < 3; d++) {
+            assert_identical(particles.precise_place[k].position[d], particles.position[d][k]);
+            // The forces did not move: they were those of the particles in the old order.
+            assert_close_relative(
+                particles.precise_motion[k].velocity[d],
+                particles.velocity[d][k] + 0.25 * particles.force[d][COUNT - 1 - k], 1e-15);
+        }
+    }
+    particles_clear(&particles);
+}
+
 static void test_particles_permute_moves_every_array_when_reversed(void **state) {
     (void)state;
     enum { COUNT = 33 };
@@ -259,6 +286,7 @@ int main(void) {
         cmocka_unit_test(
             test_particles_fractions_differ_by_the_nearest_image_when_positions_are_unwrapped),
         cmocka_unit_test(test_particles_motion_is_ahead_when_time_is_given),
+        cmocka_unit_test(test_particles_precise_records_are_exact_when_kept),
         cmocka_unit_test(test_particles_permute_moves_every_array_when_reversed),
         cmocka_unit_test(test_particles_draw_velocities_gives_maxwell_when_many),
         cmocka_unit_test(test_particles_draw_velocities_goes_by_id_when_order_differs),
