@@ -252,8 +252,7 @@ static void check_law(const struct system *system, const struct pair_law *of_any
         law.precision = variants[v].precision;
         char label[100];
         snprintf(label, sizeof label, "%s, %dD, N = %zu, potential %d, weight %d", variants[v].name,
-                 system->box.dimensions, system->count, law.potential != NULL,
-                 law.weight != NULL);
+                 system->box.dimensions, system->count, law.potential != NULL, law.weight != NULL);
         pair_forces(&law, &particles, &neighbours, step, PAIR_FORCES, NULL);
         check_forces(&particles, reference, scales.force, allowed.force, label);
         check_momentum(&particles, label);
