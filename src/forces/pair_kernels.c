@@ -26,8 +26,8 @@ static pair_kernels *choose_set(bool is_double) {
 
 static pair_kernel choose(const struct pair_law *law, int dimensions, enum pair_wants wants) {
     const int conservative = law->potential != NULL, dissipative = law->weight != NULL;
-    return (*choose_set(law->precision ==
-                        PAIR_DOUBLE))[dimensions - 2][conservative][dissipative][wants];
+    pair_kernels *kernels = choose_set(law->precision == PAIR_DOUBLE);
+    return (*kernels)[dimensions - 2][conservative][dissipative][wants];
 }
 
 static void clear_forces(void *context, size_t begin, size_t end) {

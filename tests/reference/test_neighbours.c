@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "base/rng.h"
+#include "base/simd.h"
 #include "curves/formula.h"
 #include "dynamics/simulation.h"
 #include "shared/is_close.h"
@@ -384,6 +385,47 @@ static void test_neighbours_visit_distances_finds_all_pairs_when_in_range(void *
     check_visit(&(struct box){2, {9.5, 6.5, 1}}, 300, 1.1);
 }
 
+/// One pair at a distance of cutoff, less up to 5e-12 of it, in a random direction, and no skin:
+/// distances in single precision are as often beyond the cutoff as within.
+static void check_very_cutoff(const struct box *box, double cutoff) {
+    enum { TRIES = 500 };
+    struct rng_sequence sequence = rng_sequence_begin(11, RNG_PLACEMENT, 0, 0);
+    struct particles particles;
+    struct neighbours neighbours;
+    assert_ok(particles_init(&particles, box, 2));
+    assert_ok(neighbours_init(&neighbours, NEIGHBOURS_FULL, box, 2, cutoff, 0));
+    for (int k = 0; k < TRIES; k++) {
+        double direction[3], square = 0;
+        for (int d = 0; d < box->dimensions; d++) {
+            direction[d] = rng_sequence_uniform(&sequence) - 0.5;
+            square += direction[d] * direction[d];
+        }
+        for (int d = 0; d < box->dimensions; d++) {
+            particles.position[d][0] = box->length[d] * rng_sequence_uniform(&sequence);
+            particles.position[d][1] =
+                particles.position[d][0] + direction[d] / sqrt(square) * cutoff * (1 - 1e-14 * k);
+        }
+        assert_ok(neighbours_sort_and_build(&neighbours, &particles));
+        // Wrapping may have rounded it beyond.
+        if (square_distance(&particles, 0, 1) < cutoff * cutoff)
+            assert_int_equal(neighbours.stop[0] - neighbours.start[0], 1);
+    }
+    particles_clear(&particles);
+    neighbours_clear(&neighbours);
+}
+
+static void test_neighbours_list_a_pair_when_it_is_at_the_very_cutoff(void **state) {
+    (void)state;
+    static const char *const instruction_sets[] = {"portable", "avx2", "avx512"};
+    for (int s = 0; s < 3; s++) {
+        if (!simd_select(instruction_sets[s]))
+            continue;
+        check_very_cutoff(&(struct box){3, {4.1, 3.3, 3.9}}, 1.3);
+        check_very_cutoff(&(struct box){2, {7.5, 6.1, 1}}, 1.3);
+        check_very_cutoff(&(struct box){3, {1300, 2.7, 2.9}}, 1.3);
+    }
+}
+
 static void test_neighbours_init_refuses_when_the_box_is_below_two_cutoffs(void **state) {
     (void)state;
     struct neighbours neighbours;
@@ -409,6 +451,7 @@ int main(void) {
             test_neighbours_are_stale_when_a_particle_moved_half_the_skin_in_small_steps),
         cmocka_unit_test(test_neighbours_rebuild_gives_the_same_list_when_restarted),
         cmocka_unit_test(test_neighbours_visit_distances_finds_all_pairs_when_in_range),
+        cmocka_unit_test(test_neighbours_list_a_pair_when_it_is_at_the_very_cutoff),
         cmocka_unit_test(test_neighbours_init_refuses_when_the_box_is_below_two_cutoffs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
