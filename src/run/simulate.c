@@ -44,6 +44,15 @@ struct run {
     struct thermodynamics thermodynamics;
 };
 
+/// Threads meet a dozen times in a step: with fewer particles than this each, and a busy machine,
+/// they wait for each other all day. Two threads gain 1.46 with 500 each on an idle one.
+enum { PARTICLES_A_THREAD = 500 };
+
+static int find_threads(const struct simulation_setup *setup, int wanted) {
+    const int most = (int)(setup->placement.count / PARTICLES_A_THREAD);
+    return most < 1 ? 1 : wanted < most ? wanted : most;
+}
+
 static enum status read_file(struct run *run, const char *file, const struct run_options *options) {
     struct json_document *document;
     TRY(json_open(&document, file));
@@ -64,7 +73,7 @@ static enum status read_file(struct run *run, const char *file, const struct run
     if (options->has_seed)
         run->heading.seed = options->seed;
     run->scene.setup.seed = run->heading.seed;
-    run->scene.setup.threads = options->threads;
+    run->scene.setup.threads = find_threads(&run->scene.setup, options->threads);
     return STATUS_OK;
 }
 

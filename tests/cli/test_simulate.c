@@ -105,20 +105,34 @@ static void test_the_seed_of_the_command_line_counts(void **state) {
     results_assert_same("three", "two", tables);
 }
 
-/// Scenes whose lists have four parts or more, so that threads do share them.
+/// Every stage has a line, on or off with the reason, and nothing is run or written.
+static void test_explain_tells_what_is_on_and_off(void **state) {
+    static struct run_program_result result;
+    write_scene(*state, groot_warren, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "300 particles: about ");
+    assert_contains(result.out, "friction and noise                 on ");
+    assert_contains(result.out, "counted in the force pass of one step in 10");
+    write_scene(*state, conservative, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "friction and noise                 off         no weight");
+    assert_contains(result.out, "to 3.5, beyond the forces: a list of its own");
+    assert_false(temporary_folder_exists("out"));
+    RUN_PROGRAM(&result, "simulate", "none.json", "--explain");
+    run_program_assert_code(&result, 2);
+}
+
 static void test_threads_do_not_change_the_bits(void **state) {
     static struct run_program_result result;
-    static const char *const scenes[] = {groot_warren, flat};
-    for (int s = 0; s < 2; s++) {
-        write_scene(*state, scenes[s], NULL, NULL);
-        for (int threads = 1; threads <= 4; threads++) {
-            char number[8];
-            snprintf(number, sizeof number, "%d", threads);
-            RUN_PROGRAM(&result, "simulate", "scene.json", "-o", number, "--threads", number);
-            run_program_assert_code(&result, 0);
-            results_assert_same("1", number, tables);
-        }
-    }
+    write_scene(*state, groot_warren, "4.64, 4.64, 4.64], \"particles\": {\"count\": 300}",
+                "6.94, 6.94, 6.94], \"particles\": {\"count\": 1000}");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "one", "--threads", "1");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "two", "--threads", "2");
+    run_program_assert_code(&result, 0);
+    results_assert_same("one", "two", tables);
 }
 
 /// Interrupted again and again at different places, the run ends with the bits of one in peace.
@@ -247,6 +261,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_simulate_leaves_all_files_of_a_run),
         TEST_WITHOUT_FIGURES(test_used_settings_run_again_give_the_same_bits),
         TEST_WITHOUT_FIGURES(test_the_seed_of_the_command_line_counts),
+        TEST_WITHOUT_FIGURES(test_explain_tells_what_is_on_and_off),
         TEST_WITHOUT_FIGURES(test_threads_do_not_change_the_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_dpd_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_dpd_in_the_plane_goes_on_with_the_same_bits),

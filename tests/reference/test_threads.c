@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// One simulation shared between threads has the bits of one thread alone.
+#include "observe/rdf.h"
+#include "shared/fluids.h"
+#include "shared/is_close.h"
+#include "shared/testing.h"
+
+#include <string.h>
+
+/// Few: on a busy machine threads wait long for each other, a dozen times in a step.
+enum { STEPS = 15, MOST_PARTICLES = 2500, BINS = 50 };
+
+/// All that a run leaves, by id.
+struct outcome {
+    double position[MOST_PARTICLES][3], velocity[MOST_PARTICLES][3], histogram[BINS];
+    struct pair_sums sums;
+    uint64_t list_builds;
+};
+
+static void run(const struct simulation_setup *setup, int threads, struct outcome *outcome) {
+    static struct simulation simulation;
+    struct rdf rdf;
+    struct simulation_setup shared = *setup;
+    shared.threads = threads;
+    assert_ok(simulation_init(&simulation, &shared, NULL));
+    assert_true(simulation.neighbours.parts >= 4);
+    const double cutoff = pair_cutoff(&simulation.law);
+    const struct rdf_bins bins = {0, cutoff / BINS, BINS};
+    const size_t count = simulation.particles.count;
+    assert_ok(rdf_init(&rdf, &bins, &shared.box, count, cutoff, 1));
+    assert_ok(simulation_run(&simulation, STEPS - 1));
+    simulation.wants = PAIR_FORCES_AND_SUMS;
+    simulation.law.histogram = rdf_histogram(&rdf);
+    assert_ok(simulation_run(&simulation, 1));
+    rdf_sample_counted(&rdf);
+    memset(outcome, 0, sizeof *outcome);
+    for (int d = 0; d < shared.box.dimensions; d++)
+        for (size_t k = 0; k < count; k++) {
+            outcome->position[simulation.particles.id[k]][d] = simulation.particles.position[d][k];
+            outcome->velocity[simulation.particles.id[k]][d] = simulation.particles.velocity[d][k];
+        }
+    memcpy(outcome->histogram, rdf.histogram, sizeof outcome->histogram);
+    outcome->sums = simulation.sums;
+    outcome->list_builds = simulation.list_builds;
+    rdf_clear(&rdf);
+    simulation_clear(&simulation);
+}
+
+static void check(struct fluid *fluid) {
+    static struct outcome alone, shared;
+    for (int precision = PAIR_MIXED; precision <= PAIR_DOUBLE; precision++) {
+        fluid->setup.precision = precision;
+        run(&fluid->setup, 1, &alone);
+        assert_true(alone.list_builds > 0);
+        for (int threads = 2; threads <= 4; threads++) {
+            run(&fluid->setup, threads, &shared);
+            assert_memory_equal(&shared, &alone, sizeof alone);
+        }
+    }
+    fluid_clear(fluid);
+}
+
+static void test_threads_give_the_same_bits_when_there_is_friction_and_noise(void **state) {
+    (void)state;
+    struct fluid fluid;
+    fluid_groot_warren(&fluid, 1000, 0.04);
+    check(&fluid);
+}
+
+static void test_threads_give_the_same_bits_when_energy_is_conserved(void **state) {
+    (void)state;
+    struct fluid fluid;
+    fluid_lennard_jones(&fluid, 2048, 0.005);
+    fluid.setup.weight = NULL;
+    fluid.setup.integrator = &velocity_verlet;
+    fluid.setup.temperature = 4;
+    check(&fluid);
+}
+
+static void test_threads_give_the_same_bits_when_the_scene_is_flat(void **state) {
+    (void)state;
+    struct fluid fluid;
+    fluid_soft_discs(&fluid, 800, 0.04);
+    check(&fluid);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_threads_give_the_same_bits_when_there_is_friction_and_noise),
+        cmocka_unit_test(test_threads_give_the_same_bits_when_energy_is_conserved),
+        cmocka_unit_test(test_threads_give_the_same_bits_when_the_scene_is_flat),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
