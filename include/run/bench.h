@@ -11,6 +11,7 @@ struct bench_options {
     const char *output;          ///< a TSV file, or NULL
     bool json;                   ///< instead of tables for people
     bool against_lammps;         ///< compare with LAMMPS; the best instruction set alone
+    bool skips;                  ///< what each part of a step costs; the best instruction set alone
 };
 
 /// Time the scenes in `files`, or those that ship with the program if there are none, and print

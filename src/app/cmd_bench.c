@@ -5,11 +5,12 @@
 
 #include <string.h>
 
-enum { JSON, AGAINST_LAMMPS, ISA, PRECISION, OUTPUT };
+enum { JSON, AGAINST_LAMMPS, SKIPS, ISA, PRECISION, OUTPUT };
 
 static const struct command_option options[] = {
     [JSON] = {"--json", NULL, "print a JSON list instead of tables"},
     [AGAINST_LAMMPS] = {"--against-lammps", NULL, "time LAMMPS (lmp) in turn, print the ratio"},
+    [SKIPS] = {"--skips", NULL, "time steps with and without each of their parts"},
     [ISA] = {"--isa", "NAME", "portable, avx2 or avx512 alone"},
     [PRECISION] = {"--precision", "NAME", "mixed or double alone"},
     [OUTPUT] = {"-o", "FILE.tsv", "write the results to a table, too"},
@@ -30,6 +31,7 @@ static enum status run(const struct command_line *line) {
         .output = line->own[OUTPUT],
         .json = line->own[JSON] != NULL,
         .against_lammps = line->own[AGAINST_LAMMPS] != NULL,
+        .skips = line->own[SKIPS] != NULL,
     };
     return bench_engine(line->files + 1, line->file_count - 1, &line->options, &chosen);
 }

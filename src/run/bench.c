@@ -7,6 +7,7 @@
 #include "run/bench_case.h"
 #include "run/bench_lammps.h"
 #include "run/bench_output.h"
+#include "run/bench_skips.h"
 #include "run/heading.h"
 #include "run/program.h"
 #include "run/progress.h"
@@ -78,7 +79,7 @@ static enum status choose_cases(struct run *run) {
     TRY(check_choice("--precision", options->precision, precisions, MOST_PRECISIONS));
     if (options->isa && !simd_select(options->isa))
         return status_fail(STATUS_BAD_INPUT, "--isa: this processor lacks %s", options->isa);
-    if (options->isa || options->against_lammps) {
+    if (options->isa || options->against_lammps || options->skips) {
         add_kernel(run, simd_name());
         return STATUS_OK;
     }
@@ -202,7 +203,16 @@ static enum status time_scene(struct run *run, const struct bench_scene *scene) 
     return STATUS_OK;
 }
 
+static enum status time_skips(struct run *run) {
+    for (size_t s = 0; s < run->scene_count; s++)
+        for (size_t k = 0; k < run->how_count; k++)
+            TRY(bench_skips(stdout, &run->scenes[s], &run->hows[k]));
+    return STATUS_OK;
+}
+
 static enum status time_scenes(struct run *run) {
+    if (run->options->skips)
+        return time_skips(run);
     for (size_t k = 0; k < run->scene_count; k++)
         if (!is_left_out(run, &run->scenes[k]))
             TRY(time_scene(run, &run->scenes[k]));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/bench_case.h"
+#include "base/simd.h"
+#include "run/bench_skips.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
@@ -105,12 +106,44 @@ static void test_bench_case_begin_refuses_kernels_that_are_not_there(void **stat
     bench_case_clear(&bench);
 }
 
+/// A line for each part that the scene has, the plain step first.
+static void check_skips(bool dissipative, size_t lines) {
+    struct fluid fluid;
+    struct bench_scene scene = {.name = "tiny"};
+    const struct bench_how how = {simd_name(), "mixed", 1, 1e-4};
+    char text[1024] = "";
+    size_t count = 0;
+    fluid_groot_warren(&fluid, 100, 0.04);
+    if (!dissipative) {
+        fluid.setup.weight = NULL;
+        fluid.setup.integrator = &velocity_verlet;
+    }
+    scene.scene.setup = fluid.setup;
+    FILE *out = fmemopen(text, sizeof text, "w");
+    assert_non_null(out);
+    assert_ok(bench_skips(out, &scene, &how));
+    fclose(out);
+    for (const char *c = text; *c; c++)
+        count += *c == '\n';
+    assert_int_equal(count, lines);
+    assert_contains(text, "tiny: 100 particles");
+    assert_contains(text, "with g(r) at every step");
+    fluid_clear(&fluid);
+}
+
+static void test_bench_skips_has_a_line_for_each_part_of_the_scene(void **state) {
+    (void)state;
+    check_skips(true, 5);
+    check_skips(false, 4);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_bench_median_and_spread_ignore_the_order),
         cmocka_unit_test(test_bench_case_result_is_what_the_sums_say),
         cmocka_unit_test(test_bench_case_counts_pairs_and_keeps_the_temperature),
         cmocka_unit_test(test_bench_case_begin_refuses_kernels_that_are_not_there),
+        cmocka_unit_test(test_bench_skips_has_a_line_for_each_part_of_the_scene),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
