@@ -76,7 +76,7 @@ void simulation_kick(struct simulation *simulation);
 enum status simulation_compute_forces(struct simulation *simulation, double ahead) MUST_USE;
 
 /// What the choice of a skin depends on.
-struct skin_scene simulation_skin_scene(const struct simulation *simulation);
+struct skin_scene simulation_skin_scene(const struct simulation_setup *setup, double cutoff);
 
 /// Pressure [k_B T_0 / λ^d] from the sums of the last step: ρ k_B T + conservative virial / (d V).
 /// T is the set temperature in a dissipative simulation and the kinetic one otherwise.

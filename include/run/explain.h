@@ -8,10 +8,11 @@
 
 /// What is measured of a simulation.
 struct explain_measured {
-    double cutoff;    ///< of the forces [λ]
-    double rdf_range; ///< 0: no g(r) [λ]
-    bool sums;        ///< energy, pressure, temperatures
-    int64_t every;    ///< steps between samples
+    bool has_potential; ///< of its own or to be fitted
+    double cutoff;      ///< of the forces [λ]
+    double rdf_range;   ///< 0: no g(r) [λ]
+    bool sums;          ///< energy, pressure, temperatures
+    int64_t every;      ///< steps between samples
 };
 
 /// Print the stages of a step with the share of the time that each is expected to take, from costs

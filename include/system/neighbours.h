@@ -64,6 +64,9 @@ void neighbours_clear(struct neighbours *neighbours);
 /// Places on the list of all particles.
 size_t neighbours_entries(const struct neighbours *neighbours);
 
+/// Entries without what fills the rows: pairs on a half list, twice as many on a full one.
+size_t neighbours_listed(const struct neighbours *neighbours);
+
 /// Wrap and sort the particles in space, then build the list. Fails: NO_MEMORY.
 enum status neighbours_sort_and_build(struct neighbours *neighbours,
                                       struct particles *particles) MUST_USE;

@@ -32,17 +32,17 @@ static enum status place(struct simulation *simulation, const struct simulation_
     return STATUS_OK;
 }
 
-struct skin_scene simulation_skin_scene(const struct simulation *simulation) {
-    const struct simulation_setup *setup = &simulation->setup;
+struct skin_scene simulation_skin_scene(const struct simulation_setup *setup, double cutoff) {
     return (struct skin_scene){.box = &setup->box,
                                .count = (size_t)setup->placement.count,
-                               .cutoff = pair_cutoff(&simulation->law),
+                               .cutoff = cutoff,
                                .temperature = setup->temperature,
                                .time_step = setup->time_step};
 }
 
 static double find_skin(const struct simulation *simulation) {
-    const struct skin_scene scene = simulation_skin_scene(simulation);
+    const struct skin_scene scene =
+        simulation_skin_scene(&simulation->setup, pair_cutoff(&simulation->law));
     return simulation->setup.skin > 0 ? simulation->setup.skin : skin_choose(&scene);
 }
 

@@ -14,7 +14,7 @@ static bool has_collapsed(const struct simulation *simulation) {
     const double count = (double)simulation->particles.count;
     const double uniform = 0.5 * count * particles_density(&simulation->particles) *
                            box_shell_volume(&simulation->particles.box, 0, neighbours->range);
-    return (double)neighbours_entries(neighbours) > collapse_factor * uniform;
+    return (double)neighbours_listed(neighbours) > collapse_factor * uniform;
 }
 
 static enum status equilibrate(struct simulation *simulation, const struct measure_plan *plan,

@@ -111,9 +111,7 @@ static void sample(struct bench_case *bench) {
     const struct neighbours *neighbours = &simulation->neighbours;
     neighbours_visit_distances(neighbours, &simulation->particles, pair_cutoff(&simulation->law),
                                count_distances, &bench->in_range);
-    for (size_t k = 0; k < neighbours->count; k++)
-        for (size_t place = neighbours->start[k]; place < neighbours->stop[k]; place++)
-            bench->listed += neighbours->list[place] != (int32_t)k;
+    bench->listed += (double)neighbours_listed(neighbours);
     bench->places += (double)neighbours_entries(neighbours);
     bench->temperature += particles_temperature(&simulation->particles);
 }

@@ -52,11 +52,7 @@ static double pairs_within(const struct simulation_setup *setup, double r) {
 }
 
 static void add_list(struct plan *plan, const struct simulation_setup *setup, double cutoff) {
-    const struct skin_scene scene = {.box = &setup->box,
-                                     .count = (size_t)setup->placement.count,
-                                     .cutoff = cutoff,
-                                     .temperature = setup->temperature,
-                                     .time_step = setup->time_step};
+    const struct skin_scene scene = simulation_skin_scene(setup, cutoff);
     const bool given = setup->skin > 0;
     const double skin = given ? setup->skin : skin_choose(&scene);
     const double interval = skin_interval(&scene, skin);
@@ -68,12 +64,16 @@ static void add_list(struct plan *plan, const struct simulation_setup *setup, do
         "%.0f entries a particle, of which %.0f in range", entries, pairs_within(setup, cutoff));
 }
 
-static void add_forces(struct plan *plan, const struct simulation_setup *setup, double cutoff) {
-    const double pairs = pairs_within(setup, cutoff);
+static void add_forces(struct plan *plan, const struct simulation_setup *setup,
+                       const struct explain_measured *measured) {
+    const double cutoff = measured->cutoff, pairs = pairs_within(setup, cutoff);
     add(plan, "distances and forces on particles", true, cost.pair * pairs, "%s, %s precision",
         simd_name(), setup->precision == PAIR_DOUBLE ? "double" : "mixed");
-    add(plan, "conservative force", true, cost.conservative * pairs, "a potential with cutoff %.3g",
-        cutoff);
+    if (measured->has_potential)
+        add(plan, "conservative force", true, cost.conservative * pairs,
+            "a potential with cutoff %.3g", cutoff);
+    else
+        add(plan, "conservative force", false, 0, "no potential");
     const bool dissipative = setup->weight != NULL;
     const double reach = dissipative ? setup->weight->cutoff : 0;
     if (dissipative)
@@ -115,7 +115,7 @@ void explain_scene(FILE *out, const struct simulation_setup *setup,
     add(&plan, "motion", true, cost.move, "%s, and a watch over the velocities",
         setup->integrator->name);
     add_list(&plan, setup, measured->cutoff);
-    add_forces(&plan, setup, measured->cutoff);
+    add_forces(&plan, setup, measured);
     add_samples(&plan, setup, measured);
     double total = 0;
     for (int k = 0; k < plan.count; k++)

@@ -292,14 +292,15 @@ enum status fit_explain(const char *file, const struct run_options *options) {
     const enum status status = fit_file_read(&fit, file, options);
     if (status == STATUS_OK) {
         const double cutoff = rdf_bins_range(&fit.target.bins);
-        const struct explain_measured verified = {.cutoff = cutoff,
+        const struct explain_measured verified = {.has_potential = true,
+                                                  .cutoff = cutoff,
                                                   .rdf_range = cutoff,
                                                   .sums = true,
                                                   .every = fit.verification.plan.every};
         const int64_t every = fit.method->sampled_every(fit.method_parameters);
         if (every > 0) {
             const struct explain_measured evaluated = {
-                .cutoff = cutoff, .rdf_range = cutoff, .every = every};
+                .has_potential = true, .cutoff = cutoff, .rdf_range = cutoff, .every = every};
             printf("An evaluation of the method \"%s\", one a thread:\n", fit.method->name);
             explain_scene(stdout, &fit.scene.setup, &evaluated);
         } else {

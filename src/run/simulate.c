@@ -300,6 +300,7 @@ enum status simulate_explain(const char *file, const struct run_options *options
     const struct pair_law law = {.potential = setup->potential, .weight = setup->weight};
     const double cutoff = pair_cutoff(&law);
     const struct explain_measured measured = {
+        .has_potential = setup->potential != NULL,
         .cutoff = cutoff,
         .rdf_range = run->rdf_parameters.range > 0 ? run->rdf_parameters.range : cutoff,
         .sums = true,

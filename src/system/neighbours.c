@@ -107,6 +107,14 @@ size_t neighbours_entries(const struct neighbours *neighbours) {
     return entries;
 }
 
+size_t neighbours_listed(const struct neighbours *neighbours) {
+    size_t listed = 0;
+    for (size_t i = 0; i < neighbours->count; i++)
+        for (size_t k = neighbours->start[i]; k < neighbours->stop[i]; k++)
+            listed += neighbours->list[k] != (int32_t)i;
+    return listed;
+}
+
 enum status neighbours_sort_and_build(struct neighbours *neighbours, struct particles *particles) {
     particles_wrap(particles);
     particles_update_fractions(particles);

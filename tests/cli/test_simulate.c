@@ -120,6 +120,13 @@ static void test_explain_tells_what_is_on_and_off(void **state) {
     assert_contains(result.out, "friction and noise                 off         no weight");
     assert_contains(result.out, "to 3.5, beyond the forces: a list of its own");
     assert_false(temporary_folder_exists("out"));
+    write_scene(*state,
+                "{\"box\": [5, 5, 5], \"particles\": {\"count\": 100},\n"
+                "\"dissipative\": {\"law\": \"power\"}}\n",
+                NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "conservative force                 off         no potential");
     RUN_PROGRAM(&result, "simulate", "none.json", "--explain");
     run_program_assert_code(&result, 2);
 }

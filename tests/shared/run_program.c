@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shared/run_program.h"
+
+#include "base/clock.h"
 #include "shared/testing.h"
 
 #include <ftw.h>
@@ -24,12 +26,6 @@ struct child {
     size_t out_length, err_length;
     double started, first_words; ///< clock [s]; first_words 0: none yet
 };
-
-static double clock_seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static const char *program_path(void) {
     const char *path = getenv("MESOFIT");
