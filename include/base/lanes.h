@@ -93,11 +93,6 @@ LANES_INLINE void lanes_store_wide(int32_t *to, lanes_wide a) {
     memcpy(to, &a, sizeof a);
 }
 
-/// a − from[n] with wrap-around.
-LANES_INLINE lanes_int lanes_difference(int32_t a, const int32_t *from) {
-    return (lanes_int)((uint32_t)a - (lanes_uint)lanes_load_int(from));
-}
-
 LANES_INLINE lanes_real lanes_to_real(lanes_int a) {
     return __builtin_convertvector(a, lanes_real);
 }
@@ -107,21 +102,19 @@ LANES_INLINE lanes_int lanes_to_int(lanes_real a) {
     return __builtin_convertvector(a, lanes_int);
 }
 
+/// The nearest integers to numbers below 2²² (of floats; 2⁵¹ of doubles) in size: adding and
+/// subtracting a large number leaves no room for a fraction.
+LANES_INLINE lanes_real lanes_nearest(lanes_real a) {
+    const REAL large = sizeof(REAL) == 4 ? (REAL)0x1.8p23 : (REAL)0x1.8p52;
+    return a + large - large;
+}
+
 /// Σ of all lanes.
 LANES_INLINE REAL lanes_sum(lanes_real a) {
     REAL sum = 0;
     for (int lane = 0; lane < LANES; lane++)
         sum += a[lane];
     return sum;
-}
-
-/// The first `count` lanes, all if there are fewer, as bits.
-LANES_INLINE unsigned lanes_first(size_t count) {
-#if defined(__BMI2__)
-    return (unsigned)_bzhi_u64(~UINT64_C(0), (unsigned)(count < 64 ? count : 64)); // no branch
-#else
-    return count < LANES ? (1u << count) - 1 : ~0u;
-#endif
 }
 
 // What each instruction set says in its own way: of integers here, of reals in lanes_single.h and

@@ -20,6 +20,9 @@ double box_volume(const struct box *box);
 /// Shortest edge [λ].
 double box_shortest(const struct box *box);
 
+/// Longest edge [λ].
+double box_longest(const struct box *box);
+
 /// Volume of the shell (ring) low ≤ r < high: exact [λ^d].
 double box_shell_volume(const struct box *box, double low, double high);
 

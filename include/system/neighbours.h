@@ -28,6 +28,18 @@ struct neighbours_part {
     size_t begin, end;           ///< of the list
 };
 
+/// Copies of the particles for the search, in rows of cells along the last axis. Both ends of a row
+/// have a margin of images of the cells at the other end, so what is around a cell follows each
+/// other in memory.
+struct neighbours_rows {
+    int margin;        ///< cells of images at either end; none if the last axis is short
+    bool wrap;         ///< an axis is so short that its nearest images must be looked for
+    size_t cells;      ///< of a row, with its margins
+    uint32_t *start;   ///< shape [rows, cells + 1]: places where cells begin, and where rows end
+    float *place[3];   ///< [λ]
+    int32_t *particle; ///< at each place
+};
+
 /// Enough for the processors of a desk.
 enum { NEIGHBOURS_MOST_PARTS = 64 };
 
@@ -48,6 +60,7 @@ struct neighbours {
     uint32_t *cell_start; ///< shape [cell_total + 1]; particles are sorted by cell
     uint32_t *cell_of;    ///< shape [count]
     uint32_t *order;      ///< shape [count]
+    struct neighbours_rows rows;
     /// 1, or an even number of at least 4, by the cells alone: threads take the even parts, then
     /// the odd ones, and never meet.
     int parts;
@@ -60,6 +73,11 @@ enum status neighbours_init(struct neighbours *neighbours, enum neighbours_kind 
                             const struct box *box, size_t count, double cutoff,
                             double skin) MUST_USE;
 void neighbours_clear(struct neighbours *neighbours);
+
+/// Whether the cells within reach along an axis are all that there are.
+static inline bool neighbours_span_axis(const struct neighbours *neighbours, int d) {
+    return neighbours->cells[d] <= 2 * neighbours->reach[d];
+}
 
 /// Places on the list of all particles.
 size_t neighbours_entries(const struct neighbours *neighbours);

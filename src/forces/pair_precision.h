@@ -36,9 +36,7 @@ INLINE lanes_real pair_separation(const struct pair_box *box,
                                   const struct lanes_record *j, int d) {
     (void)next;
     const lanes_real x = owner->position[d] - j->word[d];
-    // Adding and subtracting 1.5·2⁵² leaves the nearest integer.
-    const lanes_real boxes = x * box->inverse_length[d] + 0x1.8p52 - 0x1.8p52;
-    return x - boxes * box->length[d];
+    return x - lanes_nearest(x * box->inverse_length[d]) * box->length[d];
 }
 
 INLINE lanes_int pair_id(const struct lanes_record *motion) {

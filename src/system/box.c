@@ -15,6 +15,13 @@ double box_shortest(const struct box *box) {
     return shortest;
 }
 
+double box_longest(const struct box *box) {
+    double longest = box->length[0];
+    for (int d = 1; d < box->dimensions; d++)
+        longest = fmax(longest, box->length[d]);
+    return longest;
+}
+
 double box_shell_volume(const struct box *box, double low, double high) {
     if (box->dimensions == 2)
         return M_PI * (high - low) * (high + low);

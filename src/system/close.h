@@ -1,27 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Who is close to the particles of one cell: the inner loop of list building.
+/// @file Who is close to the particles of one row of cells: the inner loops of list building.
 #pragma once
 
 #include "system/neighbours.h"
 
-/// A cell and the runs of consecutive particles around it. In a half list the first run begins with
-/// the cell itself; the others are wanted whole.
-struct close_cell {
-    size_t begin, end; ///< its particles
-    size_t around;     ///< particles in all runs
+enum { CLOSE_MOST_ROWS = 25 };
+
+/// The cells of a row, and the rows that are searched for their neighbours, itself first.
+struct close_rows {
+    size_t first; ///< particle of the first cell
+    int cells;    ///< without the margins of struct neighbours_rows
+    int margin;
     int count;
-    struct close_run {
-        size_t begin, end;
-    } * run;
+    struct close_row {
+        const uint32_t *start; ///< of the first cell in the box: neighbours_rows.start
+        int depth;             ///< cells to search on both sides
+        float shift[2];        ///< of this image along the first two axes [λ]
+    } row[CLOSE_MOST_ROWS];
 };
 
-/// Append the neighbours of the particles of `cell` to the list from place `used` on, and set their
-/// `start`, `stop` and rows.
+/// Append the neighbours of the particles of a row to the list from place `used` on, and set their
+/// `start`, `stop` and rows of entries.
 /// @param[in] limit  first place of the list that must not be written
 /// @return the new length of the list, or SIZE_MAX if there might not be room
 size_t close_portable(struct neighbours *neighbours, const struct particles *particles,
-                      const struct close_cell *cell, size_t used, size_t limit);
+                      const struct close_rows *rows, size_t used, size_t limit);
 size_t close_avx2(struct neighbours *neighbours, const struct particles *particles,
-                  const struct close_cell *cell, size_t used, size_t limit);
+                  const struct close_rows *rows, size_t used, size_t limit);
 size_t close_avx512(struct neighbours *neighbours, const struct particles *particles,
-                    const struct close_cell *cell, size_t used, size_t limit);
+                    const struct close_rows *rows, size_t used, size_t limit);

@@ -5,41 +5,41 @@
 #include "base/lanes.h"
 #include "close.h"
 
-/// By how much squared distances may be too large in single precision, relative to the range: nine
-/// roundings of 6e-8, and half a unit of either fraction, which is 1e-6 if the box is 2000 times as
-/// long as the range. Without it a list with no skin would lack a pair at the very cutoff, which
-/// kernels in double precision would notice.
+/// By how much distances may be too large in single precision, relative to the longest edge of the
+/// box: places up to twice as long are rounded four times to 24 bits. Without it a list with no
+/// skin would lack a pair at the very cutoff.
 static const double wider = 2e-6;
 
 /// What stays the same from particle to particle. Passed by value, so that the stores to the list
 /// cannot change it as far as a compiler knows.
 struct close_search {
-    const int32_t *x, *y, *z; ///< fractions of the box
-    lanes_real scale[3];      ///< box edges in units of 2³²: fractions to lengths
-    lanes_real range2;
+    const float *place[3];
+    const int32_t *particle;
+    float length[3], inverse_length[3]; ///< the latter is 0 where images need not be looked for
+    float range2;
 };
 
-/// Write those of the particles begin … end − 1 that are within range of particle k to `list`.
-/// Whole vectors are read and written, also beyond the end; one at least, since runs are rarely
-/// empty.
+/// Write those of a run that are within range of a place to `list`. Whole vectors are read, also
+/// beyond the end, where nothing is in range (or belongs to the run as well), and written; one at
+/// least, since runs are rarely empty.
+/// @param[in] self  place to be left out of a full list
 /// @return the end of what was written
-LANES_INLINE int32_t *close_select(const struct close_search search, size_t k, size_t begin,
-                                   size_t end, int32_t *list, const int dim) {
-    const int32_t x = search.x[k], y = search.y[k], z = dim == 3 ? search.z[k] : 0;
+LANES_INLINE int32_t *close_select(const struct close_search search, const lanes_real from[3],
+                                   size_t begin, size_t end, size_t self, int32_t *list,
+                                   const int dim, const bool wrap, const bool half) {
     do {
-        // Differences of unsigned fractions wrap around (box_fraction).
-        const lanes_real dx =
-            search.scale[0] * lanes_to_real(lanes_difference(x, search.x + begin));
-        const lanes_real dy =
-            search.scale[1] * lanes_to_real(lanes_difference(y, search.y + begin));
-        lanes_real r2 = dx * dx + dy * dy;
-        if (dim == 3) {
-            const lanes_real dz =
-                search.scale[2] * lanes_to_real(lanes_difference(z, search.z + begin));
-            r2 += dz * dz;
+        lanes_real r2 = lanes_all(0);
+        for (int d = 0; d < dim; d++) {
+            lanes_real x = from[d] - lanes_load(search.place[d] + begin);
+            if (wrap)
+                x -= search.length[d] * lanes_nearest(search.inverse_length[d] * x);
+            r2 += x * x;
         }
-        const unsigned mask = lanes_below(r2, search.range2) & lanes_first(end - begin);
-        lanes_store_int(list, (int32_t)begin + lanes_set_bits(mask));
+        unsigned mask = lanes_below(r2, lanes_all(search.range2));
+        if (!half && self - begin < LANES)
+            mask &= ~(1u << (self - begin));
+        lanes_store_int(
+            list, lanes_permute_int(lanes_load_int(search.particle + begin), lanes_set_bits(mask)));
         list += __builtin_popcount(mask);
         begin += LANES;
     } while (begin < end);
@@ -60,61 +60,93 @@ LANES_INLINE size_t close_fill_rows(struct neighbours *neighbours, size_t k, siz
     return end;
 }
 
-/// The neighbours of particle k in a half list: those behind it in the first run, and in the
-/// others.
-LANES_INLINE int32_t *close_half(const struct close_search search, const struct close_cell *cell,
-                                 size_t k, int32_t *list, const int dim) {
-    list = close_select(search, k, k + 1, cell->run[0].end, list, dim);
-    for (int r = 1; r < cell->count; r++)
-        list = close_select(search, k, cell->run[r].begin, cell->run[r].end, list, dim);
-    return list;
+/// Places around a cell, a run from each row. In a half list the first begins with the cell itself;
+/// the others are wanted whole.
+struct close_runs {
+    uint32_t begin[CLOSE_MOST_ROWS], end[CLOSE_MOST_ROWS];
+    size_t places; ///< in all of them
+};
+
+LANES_INLINE void close_find_runs(struct close_runs *runs, const struct close_rows *rows, int cell,
+                                  const bool half) {
+    const int lowest = -rows->margin, highest = rows->cells + rows->margin;
+    runs->places = 0;
+    for (int r = 0; r < rows->count; r++) {
+        const struct close_row *row = &rows->row[r];
+        const int first = cell - row->depth, last = cell + row->depth + 1;
+        runs->begin[r] = row->start[first > lowest ? first : lowest];
+        runs->end[r] = row->start[last < highest ? last : highest];
+        runs->places += runs->end[r] - runs->begin[r];
+    }
+    if (half)
+        runs->begin[0] = rows->row[0].start[cell];
 }
 
-/// The neighbours of particle k in a full list: all but itself.
-LANES_INLINE int32_t *close_full(const struct close_search search, const struct close_cell *cell,
-                                 size_t k, int32_t *list, const int dim) {
-    for (int r = 0; r < cell->count; r++) {
-        const struct close_run run = cell->run[r];
-        const bool has_own = run.begin <= k && k < run.end;
-        list = close_select(search, k, run.begin, has_own ? k : run.end, list, dim);
-        if (has_own)
-            list = close_select(search, k, k + 1, run.end, list, dim);
+/// The neighbours of the particle at a place: in a half list those behind it in the first run, and
+/// in the others; in a full list all but itself.
+LANES_INLINE int32_t *close_around(const struct close_search search, const struct close_rows *rows,
+                                   const struct close_runs *runs, size_t self, int32_t *list,
+                                   const int dim, const bool wrap, const bool half) {
+    const lanes_real x = lanes_all(search.place[0][self]), y = lanes_all(search.place[1][self]);
+    const lanes_real z = dim == 3 ? lanes_all(search.place[2][self]) : x;
+    const lanes_real here[3] = {x, y, z};
+    list = close_select(search, here, half ? self + 1 : runs->begin[0], runs->end[0], self, list,
+                        dim, wrap, half);
+    for (int r = 1; r < rows->count; r++) {
+        const float *shift = rows->row[r].shift;
+        const lanes_real from[3] = {x - shift[0], y - shift[1], z};
+        list =
+            close_select(search, from, runs->begin[r], runs->end[r], self, list, dim, wrap, half);
     }
     return list;
 }
 
+LANES_INLINE struct close_search close_prepare(const struct neighbours *neighbours,
+                                               const struct box *box) {
+    const double range = neighbours->range + wider * box_longest(box);
+    struct close_search search = {.particle = neighbours->rows.particle,
+                                  .range2 = (float)(range * range)};
+    for (int d = 0; d < 3; d++) {
+        search.place[d] = neighbours->rows.place[d];
+        search.length[d] = (float)box->length[d];
+        search.inverse_length[d] = neighbours_span_axis(neighbours, d) ? 1 / search.length[d] : 0;
+    }
+    return search;
+}
+
 LANES_INLINE size_t close_loop(struct neighbours *neighbours, const struct particles *particles,
-                               const struct close_cell *cell, size_t used, size_t limit,
-                               const int dim, const bool half) {
-    struct close_search search = {
-        .x = particles->fraction[0],
-        .y = particles->fraction[1],
-        .z = particles->fraction[2],
-        .range2 = lanes_all((float)(neighbours->range * neighbours->range * (1 + wider))),
-    };
-    for (int d = 0; d < 3; d++)
-        search.scale[d] = lanes_all((float)(particles->box.length[d] * 0x1p-32));
+                               const struct close_rows *rows, size_t used, size_t limit,
+                               const int dim, const bool wrap, const bool half) {
+    const struct close_search search = close_prepare(neighbours, &particles->box);
+    const uint32_t *const start = rows->row[0].start;
     int32_t *const list = neighbours->list;
-    for (size_t k = cell->begin; k < cell->end; k++) {
-        if (used + cell->around + 2 * PARTICLES_PADDING > limit)
-            return SIZE_MAX;
-        neighbours->start[k] = used;
-        const int32_t *end = half ? close_half(search, cell, k, list + used, dim)
-                                  : close_full(search, cell, k, list + used, dim);
-        used = (size_t)(end - list);
-        if (half)
-            used = close_fill_rows(neighbours, k, neighbours->start[k], used);
-        neighbours->stop[k] = used;
+    struct close_runs runs;
+    size_t k = rows->first;
+    for (int cell = 0; cell < rows->cells; cell++) {
+        close_find_runs(&runs, rows, cell, half);
+        for (size_t self = start[cell]; self < start[cell + 1]; self++, k++) {
+            if (used + runs.places + 2 * PARTICLES_PADDING > limit)
+                return SIZE_MAX;
+            neighbours->start[k] = used;
+            const int32_t *end =
+                close_around(search, rows, &runs, self, list + used, dim, wrap, half);
+            used = (size_t)(end - list);
+            if (half)
+                used = close_fill_rows(neighbours, k, neighbours->start[k], used);
+            neighbours->stop[k] = used;
+        }
     }
     return used;
 }
 
 #define CLOSE_INSTANCE(name)                                                                       \
     size_t name(struct neighbours *neighbours, const struct particles *particles,                  \
-                const struct close_cell *cell, size_t used, size_t limit) {                        \
+                const struct close_rows *rows, size_t used, size_t limit) {                        \
         const bool half = neighbours->kind == NEIGHBOURS_HALF;                                     \
         if (particles->box.dimensions == 2)                                                        \
-            return close_loop(neighbours, particles, cell, used, limit, 2, half);                  \
-        return half ? close_loop(neighbours, particles, cell, used, limit, 3, true)                \
-                    : close_loop(neighbours, particles, cell, used, limit, 3, false);              \
+            return close_loop(neighbours, particles, rows, used, limit, 2, true, half);            \
+        if (neighbours->rows.wrap)                                                                 \
+            return close_loop(neighbours, particles, rows, used, limit, 3, true, half);            \
+        return half ? close_loop(neighbours, particles, rows, used, limit, 3, false, true)         \
+                    : close_loop(neighbours, particles, rows, used, limit, 3, false, false);       \
     }

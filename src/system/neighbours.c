@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "base/simd.h"
 #include "neighbours_build.h"
+#include "neighbours_rows.h"
 
 /// Cells are halved along one axis after the other, the fastest first, as long as this many
 /// particles remain in one: fewer candidates are looked at, but fewer particles share the work of
@@ -79,6 +80,7 @@ enum status neighbours_init(struct neighbours *neighbours, enum neighbours_kind 
     NEW_ARRAY(neighbours->cell_start, neighbours->cell_total + 1);
     NEW_ARRAY(neighbours->cell_of, count);
     NEW_ARRAY(neighbours->order, count);
+    CHECK(neighbours_init_rows(neighbours, box));
     for (int d = 0; d < box->dimensions; d++)
         NEW_ARRAY(neighbours->built[d], count);
 done:
@@ -95,6 +97,7 @@ void neighbours_clear(struct neighbours *neighbours) {
     memory_free(neighbours->cell_start);
     memory_free(neighbours->cell_of);
     memory_free(neighbours->order);
+    neighbours_clear_rows(neighbours);
     for (int d = 0; d < 3; d++)
         memory_free(neighbours->built[d]);
     *neighbours = (struct neighbours){0};

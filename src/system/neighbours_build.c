@@ -5,10 +5,12 @@
 #include "base/parallel.h"
 #include "base/simd.h"
 #include "close.h"
+#include "neighbours_rows.h"
 
 #include <stdlib.h>
 
 enum { WIDEST = 2 * NEIGHBOURS_MOST_REACH + 1 };
+_Static_assert(CLOSE_MOST_ROWS >= WIDEST * WIDEST, "rows in reach");
 
 // Sorting -----------------------------------------------------------------------------------------
 
@@ -48,35 +50,25 @@ void neighbours_sort(struct neighbours *neighbours, const struct particles *part
 
 // Which cells -------------------------------------------------------------------------------------
 
-/// Consecutive cells along an axis.
-struct stretch {
-    int begin, end;
+/// A plane or row of cells nearby, and in which image of the box.
+struct nearby {
+    int cell, image;
 };
 
-/// The cells within `reach` of one, in ascending order: two stretches if they wrap.
-static int find_stretches(int cell, int reach, int n, struct stretch stretch[2]) {
-    const int begin = cell - reach, end = cell + reach + 1;
-    if (end - begin >= n) {
-        stretch[0] = (struct stretch){0, n};
-        return 1;
-    }
-    if (begin >= 0 && end <= n) {
-        stretch[0] = (struct stretch){begin, end};
-        return 1;
-    }
-    stretch[0] = (struct stretch){0, end > n ? end - n : end};
-    stretch[1] = (struct stretch){begin < 0 ? begin + n : begin, n};
-    return 2;
-}
-
-/// The same cell by cell.
-static int find_cells(int cell, int reach, int n, int around[WIDEST]) {
-    struct stretch stretch[2];
-    const int count = find_stretches(cell, reach, n, stretch);
+/// Those within reach of one along axis d: all of them once, if the axis is short.
+static int find_nearby(const struct neighbours *neighbours, int d, int cell,
+                       struct nearby nearby[WIDEST]) {
+    const int n = neighbours->cells[d], reach = neighbours->reach[d];
     int found = 0;
-    for (int s = 0; s < count; s++)
-        for (int c = stretch[s].begin; c < stretch[s].end; c++)
-            around[found++] = c;
+    if (neighbours_span_axis(neighbours, d)) {
+        for (int c = 0; c < n; c++)
+            nearby[found++] = (struct nearby){c, 0};
+        return found;
+    }
+    for (int c = cell - reach; c <= cell + reach; c++) {
+        const int image = c < 0 ? -1 : c < n ? 0 : 1;
+        nearby[found++] = (struct nearby){c - image * n, image};
+    }
     return found;
 }
 
@@ -86,8 +78,8 @@ static int find_gap(int a, int b, int n) {
     return nearest > 1 ? nearest - 1 : 0;
 }
 
-/// How far neighbours reach along the last axis, given the gaps along the others: −1 where there
-/// are none.
+/// How many cells neighbours reach along the last axis, given the gaps along the others: −1 where
+/// there are none.
 static int find_depth(const struct neighbours *neighbours, const struct box *box, int gap_x,
                       int gap_y) {
     const double x = gap_x * box->length[0] / neighbours->cells[0];
@@ -96,7 +88,9 @@ static int find_depth(const struct neighbours *neighbours, const struct box *box
     if (left < 0)
         return -1;
     const double width = box->length[2] / neighbours->cells[2];
-    return (int)fmin(ceil(sqrt(left) / width), neighbours->cells[2]);
+    if (neighbours_span_axis(neighbours, 2))
+        return neighbours->cells[2];
+    return (int)fmin(ceil(sqrt(left) / width), neighbours->reach[2]);
 }
 
 /// Whether the pairs between two planes stand in the list of the one at `plane`.
@@ -110,106 +104,67 @@ static bool owns_pairs(const struct neighbours *neighbours, int plane, int other
     return other != plane && (other - plane + n) % n <= reach;
 }
 
-/// Rows of cells along the last axis that are searched for the cells of one row, its own first.
-struct rows {
-    int count;
-    struct {
-        const uint32_t *cell_start; ///< of the first cell
-        int depth;                  ///< cells to search on both sides
-    } row[WIDEST * WIDEST];
-};
+static void add_row(struct close_rows *rows, const struct neighbours *neighbours,
+                    const struct box *box, struct nearby x, struct nearby y, int depth) {
+    const size_t number = (size_t)x.cell * (size_t)neighbours->cells[1] + (size_t)y.cell;
+    rows->row[rows->count++] = (struct close_row){
+        .start = neighbours->rows.start + number * (neighbours->rows.cells + 1) +
+                 neighbours->rows.margin,
+        .depth = depth,
+        .shift = {(float)(x.image * box->length[0]), (float)(y.image * box->length[1])},
+    };
+}
 
+/// The rows that are searched for the neighbours of row a, b.
 static void find_rows(const struct neighbours *neighbours, const struct box *box, int a, int b,
-                      struct rows *rows) {
-    const int *n = neighbours->cells, *reach = neighbours->reach;
+                      struct close_rows *rows) {
+    const int *n = neighbours->cells;
     const bool half = neighbours->kind == NEIGHBOURS_HALF;
-    int x[WIDEST], y[WIDEST];
-    const int x_count = find_cells(a, reach[0], n[0], x);
-    const int y_count = find_cells(b, reach[1], n[1], y);
-    rows->row[0].cell_start =
-        neighbours->cell_start + ((size_t)a * (size_t)n[1] + (size_t)b) * (size_t)n[2];
-    rows->row[0].depth = find_depth(neighbours, box, 0, 0);
-    rows->count = 1;
+    struct nearby x[WIDEST], y[WIDEST];
+    const int x_count = find_nearby(neighbours, 0, a, x);
+    const int y_count = find_nearby(neighbours, 1, b, y);
+    rows->first = neighbours->cell_start[((size_t)a * (size_t)n[1] + (size_t)b) * (size_t)n[2]];
+    rows->cells = n[2];
+    rows->margin = neighbours->rows.margin;
+    rows->count = 0;
+    add_row(rows, neighbours, box, (struct nearby){a, 0}, (struct nearby){b, 0},
+            find_depth(neighbours, box, 0, 0));
     for (int i = 0; i < x_count; i++)
         for (int j = 0; j < y_count; j++) {
-            const bool same_plane = x[i] == a;
-            if (same_plane && y[j] == b)
+            const bool same_plane = x[i].cell == a;
+            if (same_plane && y[j].cell == b)
                 continue;
-            if (half && !(same_plane ? y[j] > b : owns_pairs(neighbours, a, x[i])))
+            if (half && !(same_plane ? y[j].cell > b : owns_pairs(neighbours, a, x[i].cell)))
                 continue;
-            const int depth =
-                find_depth(neighbours, box, find_gap(x[i], a, n[0]), find_gap(y[j], b, n[1]));
-            if (depth < 0)
-                continue;
-            rows->row[rows->count].cell_start =
-                neighbours->cell_start +
-                ((size_t)x[i] * (size_t)n[1] + (size_t)y[j]) * (size_t)n[2];
-            rows->row[rows->count++].depth = depth;
+            const int depth = find_depth(neighbours, box, find_gap(x[i].cell, a, n[0]),
+                                         find_gap(y[j].cell, b, n[1]));
+            if (depth >= 0)
+                add_row(rows, neighbours, box, x[i], y[j], depth);
         }
-}
-
-static void add_run(struct close_cell *cell, size_t begin, size_t end) {
-    if (begin >= end)
-        return;
-    cell->run[cell->count++] = (struct close_run){begin, end};
-    cell->around += end - begin;
-}
-
-/// The runs of particles around cell number c of its row. A half list begins with the cell itself.
-static void find_runs(const struct neighbours *neighbours, const struct rows *rows, int c,
-                      struct close_cell *cell) {
-    const size_t first = neighbours->kind == NEIGHBOURS_HALF ? cell->begin : 0;
-    cell->around = 0;
-    cell->count = 0;
-    for (int r = 0; r < rows->count; r++) {
-        struct stretch z[2];
-        const int count = find_stretches(c, rows->row[r].depth, neighbours->cells[2], z);
-        for (int s = 0; s < count; s++) {
-            const size_t begin = rows->row[r].cell_start[z[s].begin];
-            const size_t end = rows->row[r].cell_start[z[s].end];
-            add_run(cell, r == 0 && begin < first ? first : begin, end);
-        }
-    }
 }
 
 // Search ------------------------------------------------------------------------------------------
 
-static size_t search(struct neighbours *neighbours, const struct particles *particles,
-                     const struct close_cell *cell, size_t used, size_t limit) {
-    switch (simd_used()) {
-#if SIMD_X86
-    case SIMD_AVX512:
-        return close_avx512(neighbours, particles, cell, used, limit);
-    case SIMD_AVX2:
-        return close_avx2(neighbours, particles, cell, used, limit);
-#endif
-    default:
-        return close_portable(neighbours, particles, cell, used, limit);
-    }
-}
-
 /// Append the neighbours of a row of cells.
 /// @return the new length of the list, or SIZE_MAX if it is too short
 static size_t search_row(struct neighbours *neighbours, const struct particles *particles,
-                         const struct rows *rows, size_t used, size_t limit) {
-    struct close_run run[2 * WIDEST * WIDEST];
-    struct close_cell cell = {.run = run};
-    const uint32_t *start = rows->row[0].cell_start;
-    for (int c = 0; c < neighbours->cells[2] && used != SIZE_MAX; c++) {
-        cell.begin = start[c];
-        cell.end = start[c + 1];
-        if (cell.begin == cell.end)
-            continue;
-        find_runs(neighbours, rows, c, &cell);
-        used = search(neighbours, particles, &cell, used, limit);
+                         const struct close_rows *rows, size_t used, size_t limit) {
+    switch (simd_used()) {
+#if SIMD_X86
+    case SIMD_AVX512:
+        return close_avx512(neighbours, particles, rows, used, limit);
+    case SIMD_AVX2:
+        return close_avx2(neighbours, particles, rows, used, limit);
+#endif
+    default:
+        return close_portable(neighbours, particles, rows, used, limit);
     }
-    return used;
 }
 
 /// Build the list of one part; its end becomes SIZE_MAX if the list is too short.
 static void build_part(struct neighbours *neighbours, const struct particles *particles,
                        struct neighbours_part *part, size_t limit) {
-    struct rows rows;
+    struct close_rows rows;
     size_t used = part->begin;
     for (int a = part->first_plane; a < part->last_plane && used != SIZE_MAX; a++)
         for (int b = 0; b < neighbours->cells[1] && used != SIZE_MAX; b++) {
@@ -272,6 +227,7 @@ static enum status build_parts(struct neighbours *neighbours, const struct parti
 
 enum status neighbours_build(struct neighbours *neighbours, const struct particles *particles) {
     bool complete;
+    neighbours_fill_rows(neighbours, particles);
     TRY(build_parts(neighbours, particles, &complete));
     while (!complete) {
         neighbours->entries_each *= 1.5;

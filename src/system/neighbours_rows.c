@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "neighbours_rows.h"
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/simd.h"
+
+/// Vectors of the search may read so far beyond the end of a row: it ends with places that are
+/// nowhere near anything.
+enum { ROW_PADDING = PARTICLES_PADDING };
+
+static size_t row_count(const struct neighbours *neighbours) {
+    return (size_t)neighbours->cells[0] * (size_t)neighbours->cells[1];
+}
+
+enum status neighbours_init_rows(struct neighbours *neighbours, const struct box *box) {
+    enum status status = STATUS_OK;
+    struct neighbours_rows *rows = &neighbours->rows;
+    rows->wrap = false;
+    for (int d = 0; d < box->dimensions; d++)
+        rows->wrap |= neighbours_span_axis(neighbours, d);
+    rows->margin = neighbours_span_axis(neighbours, 2) ? 0 : neighbours->reach[2];
+    const size_t images = rows->margin > 0 ? 2 * neighbours->count : 0;
+    const size_t room = neighbours->count + images + row_count(neighbours) * ROW_PADDING;
+    for (int d = 0; d < 3; d++)
+        NEW_ARRAY(rows->place[d], room);
+    NEW_ARRAY(rows->particle, room);
+    rows->cells = (size_t)(neighbours->cells[2] + 2 * rows->margin);
+    NEW_ARRAY(rows->start, row_count(neighbours) * (rows->cells + 1));
+done:
+    return status;
+}
+
+void neighbours_clear_rows(struct neighbours *neighbours) {
+    struct neighbours_rows *rows = &neighbours->rows;
+    for (int d = 0; d < 3; d++)
+        memory_free(rows->place[d]);
+    memory_free(rows->particle);
+    memory_free(rows->start);
+}
+
+/// Lay out the rows one after the other.
+static void place_rows(struct neighbours *neighbours) {
+    struct neighbours_rows *rows = &neighbours->rows;
+    const int n = neighbours->cells[2];
+    const uint32_t *cell_start = neighbours->cell_start;
+    uint32_t *start = rows->start, at = 0;
+    for (size_t row = 0; row < row_count(neighbours); row++) {
+        for (int c = -rows->margin; c < n + rows->margin; c++) {
+            const int cell = c < 0 ? c + n : c < n ? c : c - n;
+            *start++ = at;
+            at += cell_start[cell + 1] - cell_start[cell];
+        }
+        *start++ = at;
+        at += ROW_PADDING;
+        cell_start += n;
+    }
+}
+
+struct filling {
+    struct neighbours *neighbours;
+    const struct particles *particles;
+};
+
+/// Copy particles first … last − 1 to place `at`, moved along the last axis by `shift`.
+static void copy_stretch(const struct neighbours_rows *rows, const struct particles *particles,
+                         size_t first, size_t last, size_t at, float shift) {
+    const int dimensions = particles->box.dimensions;
+    for (int d = 0; d < dimensions; d++) {
+        const float scale = (float)(particles->box.length[d] * 0x1p-32);
+        const float offset = d == 2 ? shift : 0;
+        const int32_t *restrict fraction = particles->fraction[d] + first;
+        float *restrict place = rows->place[d] + at;
+        for (size_t k = 0; k < last - first; k++)
+            place[k] = scale * (float)(uint32_t)fraction[k] + offset;
+    }
+    int32_t *restrict particle = rows->particle + at;
+    for (size_t k = 0; k < last - first; k++)
+        particle[k] = (int32_t)(first + k);
+}
+
+SIMD_CLONES static void fill_rows(void *context, size_t begin, size_t end) {
+    const struct filling *filling = context;
+    const struct neighbours *neighbours = filling->neighbours;
+    const struct neighbours_rows *rows = &neighbours->rows;
+    const size_t n = (size_t)neighbours->cells[2], margin = (size_t)rows->margin;
+    const float length = (float)filling->particles->box.length[2];
+    for (size_t row = begin; row < end; row++) {
+        const uint32_t *cell_start = neighbours->cell_start + row * n;
+        const uint32_t *start = rows->start + row * (rows->cells + 1);
+        copy_stretch(rows, filling->particles, cell_start[n - margin], cell_start[n], start[0],
+                     -length);
+        copy_stretch(rows, filling->particles, cell_start[0], cell_start[n], start[margin], 0);
+        copy_stretch(rows, filling->particles, cell_start[0], cell_start[margin], start[margin + n],
+                     length);
+        for (size_t k = 0; k < ROW_PADDING; k++)
+            rows->place[0][start[rows->cells] + k] = INFINITY;
+    }
+}
+
+void neighbours_fill_rows(struct neighbours *neighbours, const struct particles *particles) {
+    struct filling filling = {neighbours, particles};
+    place_rows(neighbours);
+    parallel_for(row_count(neighbours), particles->threads, fill_rows, &filling);
+}

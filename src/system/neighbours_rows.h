@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Particles as the neighbour search reads them: rows of cells with images at both ends.
+#pragma once
+
+#include "system/neighbours.h"
+
+/// Fails: NO_MEMORY.
+enum status neighbours_init_rows(struct neighbours *neighbours, const struct box *box) MUST_USE;
+void neighbours_clear_rows(struct neighbours *neighbours);
+
+/// Copy sorted particles into the rows.
+void neighbours_fill_rows(struct neighbours *neighbours, const struct particles *particles);
