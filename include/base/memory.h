@@ -13,6 +13,9 @@ enum { MEMORY_ALIGNMENT = 64 };
 /// @return NULL if there is no memory or count × size overflows; the message is set.
 void *memory_zeroed(size_t count, size_t size) MUST_USE;
 
+/// The same, but for the zeros: pages that are never written take no memory.
+void *memory_uncleared(size_t count, size_t size) MUST_USE;
+
 /// A piece of state that a checkpoint keeps.
 struct memory_span {
     void *memory;

@@ -6,6 +6,7 @@
 
 #include "base/fields.h"
 #include "base/status.h"
+#include "forces/friction.h"
 
 struct simulation;
 
@@ -14,13 +15,18 @@ struct integrator {
     const char *summary;        ///< method and citation, one line
     const struct field *fields; ///< of struct integrator_parameters
     bool dissipative;           ///< understands ω(r)
-    /// Advance by one step: positions, then forces (simulation_compute_forces), then velocities.
+    /// What it makes of ω, if it splits friction and noise off the forces; NULL: they are forces.
+    friction_method *friction;
+    /// Forces are computed in the middle of the step: those at its end take a pass of their own.
+    bool forces_midway;
+    /// Advance by one step, with one call of simulation_compute_forces.
     enum status (*step)(struct simulation *simulation);
 };
 
 /// Parameters of all integrator_list; a record's field table names those it reads.
 struct integrator_parameters {
-    double lambda; ///< dpd-verlet
+    double lambda;    ///< dpd-verlet
+    double tolerance; ///< aboba-implicit
 };
 
 /// All integrator_list, NULL-terminated.
@@ -28,3 +34,8 @@ extern const struct integrator *const integrator_list[];
 
 extern const struct integrator velocity_verlet;
 extern const struct integrator dpd_verlet;
+extern const struct integrator dpd_vv;
+extern const struct integrator shardlow;
+extern const struct integrator aboba;
+extern const struct integrator aboba_implicit;
+extern const struct integrator lowe_andersen;

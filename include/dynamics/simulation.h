@@ -39,9 +39,11 @@ struct simulation {
     struct particles particles;
     struct neighbours neighbours;
     struct pair_law law;
+    struct friction friction; ///< of an integrator that splits it off
     uint64_t step;
     enum pair_wants wants; ///< set before a step whose sums will be read
     struct pair_sums sums; ///< of the last step, if it was asked for them
+    double temperature;    ///< kinetic, where the integrator's is unbiased; NaN: at the end of a step
     uint64_t list_builds;
     uint64_t ticks[SIMULATION_PHASES]; ///< clock_ticks spent so far
 };
@@ -71,9 +73,23 @@ void simulation_kick_and_drift(struct simulation *simulation);
 /// v += ½ Δt F.
 void simulation_kick(struct simulation *simulation);
 
+/// x += ½ Δt v.
+void simulation_drift_half(struct simulation *simulation);
+
+/// Take the kinetic temperature here, if this step's is wanted.
+void simulation_take_temperature(struct simulation *simulation);
+
 /// Rebuild the list if it is stale, set kernel velocities to
 /// velocity + ahead · force, and replace the forces by those at the present positions.
 enum status simulation_compute_forces(struct simulation *simulation, double ahead) MUST_USE;
+
+/// Energy, virial and forces of the potential at the present positions, for an integrator whose
+/// forces belong to the middle of the step.
+enum status simulation_compute_potential(struct simulation *simulation) MUST_USE;
+
+/// Kinetic temperature of the last step [k_B T_0], taken where in the step the integrator keeps it
+/// unbiased, if the step was asked for its sums, and at the end of the step otherwise.
+double simulation_temperature(const struct simulation *simulation);
 
 /// What the choice of a skin depends on.
 struct skin_scene simulation_skin_scene(const struct simulation_setup *setup, double cutoff);

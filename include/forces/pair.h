@@ -8,6 +8,7 @@
 #pragma once
 
 #include "curves/table.h"
+#include "forces/friction.h"
 #include "system/neighbours.h"
 #include "system/particles.h"
 
@@ -34,6 +35,8 @@ struct pair_law {
     uint64_t seed;                 ///< key of the noise
     enum pair_precision precision;
     const struct pair_histogram *histogram; ///< of the pairs in range, or NULL
+    struct friction *friction; ///< keeps the pairs within the cutoff of ω instead of adding their
+                               ///< friction and noise to the forces; NULL: adds them
 };
 
 /// Sums over the pairs of one pass.

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-void *memory_zeroed(size_t count, size_t size) {
+void *memory_uncleared(size_t count, size_t size) {
     if (size != 0 && count > (SIZE_MAX - MEMORY_ALIGNMENT) / size) {
         status_fail(STATUS_NO_MEMORY, "an array of %zu elements is too large", count);
         return NULL;
@@ -15,8 +15,13 @@ void *memory_zeroed(size_t count, size_t size) {
     void *array = aligned_alloc(MEMORY_ALIGNMENT, bytes);
     if (array == NULL)
         status_fail(STATUS_NO_MEMORY, "out of memory: %zu bytes wanted", bytes);
-    else
-        memset(array, 0, bytes);
+    return array;
+}
+
+void *memory_zeroed(size_t count, size_t size) {
+    void *array = memory_uncleared(count, size);
+    if (array)
+        memset(array, 0, count * size);
     return array;
 }
 

@@ -65,6 +65,9 @@ enum status simulation_init(struct simulation *simulation, const struct simulati
     simulation->particles.threads = setup->threads > 1 ? setup->threads : 1;
     CHECK(neighbours_init(&simulation->neighbours, NEIGHBOURS_HALF, &setup->box, count,
                           pair_cutoff(&simulation->law), find_skin(simulation)));
+    if (setup->weight && setup->integrator->friction)
+        CHECK(friction_init(&simulation->friction, setup->weight, setup->time_step,
+                            setup->temperature, setup->integrator->friction));
     CHECK(place(simulation, start));
     CHECK(neighbours_sort_and_build(&simulation->neighbours, &simulation->particles));
     CHECK(simulation_compute_forces(simulation, 0));
@@ -77,6 +80,7 @@ done:
 void simulation_clear(struct simulation *simulation) {
     particles_clear(&simulation->particles);
     neighbours_clear(&simulation->neighbours);
+    friction_clear(&simulation->friction);
 }
 
 SIMD_CLONES static void kick_and_drift(void *context, size_t begin, size_t end) {
@@ -115,6 +119,30 @@ void simulation_kick(struct simulation *simulation) {
     parallel_for(particles->count, particles->threads, kick, simulation);
 }
 
+SIMD_CLONES static void drift_half(void *context, size_t begin, size_t end) {
+    struct simulation *simulation = context;
+    struct particles *particles = &simulation->particles;
+    const double dt = simulation->setup.time_step;
+    for (int d = 0; d < particles->box.dimensions; d++)
+        for (size_t k = begin; k < end; k++)
+            particles->position[d][k] += 0.5 * dt * particles->velocity[d][k];
+}
+
+void simulation_drift_half(struct simulation *simulation) {
+    const struct particles *particles = &simulation->particles;
+    parallel_for(particles->count, particles->threads, drift_half, simulation);
+}
+
+void simulation_take_temperature(struct simulation *simulation) {
+    if (simulation->wants == PAIR_FORCES_AND_SUMS)
+        simulation->temperature = particles_temperature(&simulation->particles);
+}
+
+double simulation_temperature(const struct simulation *simulation) {
+    return isfinite(simulation->temperature) ? simulation->temperature
+                                             : particles_temperature(&simulation->particles);
+}
+
 static enum status fail_unstable(const struct simulation *simulation, double square_velocities) {
     const struct simulation_setup *setup = &simulation->setup;
     const struct particles *particles = &simulation->particles;
@@ -145,23 +173,43 @@ static uint64_t count_ticks(struct simulation *simulation, enum simulation_phase
     return now;
 }
 
+static enum status refresh_list(struct simulation *simulation) {
+    struct particles *particles = &simulation->particles;
+    if (!neighbours_are_stale(&simulation->neighbours, particles)) {
+        particles_update_fractions(particles);
+        return STATUS_OK;
+    }
+    TRY(watch_flight(simulation));
+    TRY(neighbours_sort_and_build(&simulation->neighbours, particles));
+    simulation->list_builds++;
+    return STATUS_OK;
+}
+
 enum status simulation_compute_forces(struct simulation *simulation, double ahead) {
     struct particles *particles = &simulation->particles;
     struct neighbours *neighbours = &simulation->neighbours;
+    struct pair_law law = simulation->law;
     uint64_t begin = clock_ticks();
-    if (simulation->law.weight)
+    if (simulation->friction.single)
+        law.friction = &simulation->friction;
+    else if (law.weight)
         particles_update_motion(particles, ahead); // before a sort, which does not move the forces
-    if (neighbours_are_stale(neighbours, particles)) {
-        TRY(watch_flight(simulation));
-        TRY(neighbours_sort_and_build(neighbours, particles));
-        simulation->list_builds++;
-    } else {
-        particles_update_fractions(particles);
-    }
+    TRY(refresh_list(simulation));
+    if (law.friction)
+        TRY(friction_reserve(law.friction, neighbours));
     begin = count_ticks(simulation, SIMULATION_LIST, begin);
-    pair_forces(&simulation->law, particles, neighbours, simulation->step, simulation->wants,
+    pair_forces(&law, particles, neighbours, simulation->step, simulation->wants,
                 &simulation->sums);
     count_ticks(simulation, SIMULATION_FORCES, begin);
+    return STATUS_OK;
+}
+
+enum status simulation_compute_potential(struct simulation *simulation) {
+    struct pair_law law = simulation->law;
+    law.weight = NULL;
+    TRY(refresh_list(simulation));
+    pair_forces(&law, &simulation->particles, &simulation->neighbours, simulation->step,
+                PAIR_FORCES_AND_SUMS, &simulation->sums);
     return STATUS_OK;
 }
 
@@ -184,6 +232,7 @@ enum status simulation_run(struct simulation *simulation, uint64_t steps) {
         const uint64_t other =
             simulation->ticks[SIMULATION_LIST] + simulation->ticks[SIMULATION_FORCES];
         simulation->step++;
+        simulation->temperature = NAN;
         TRY(simulation->setup.integrator->step(simulation));
         TRY(watch(simulation));
         count_ticks(simulation, SIMULATION_MOTION, begin);
@@ -196,7 +245,7 @@ enum status simulation_run(struct simulation *simulation, uint64_t steps) {
 double simulation_pressure(const struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
     const double temperature =
-        simulation->law.weight ? simulation->setup.temperature : particles_temperature(particles);
+        simulation->law.weight ? simulation->setup.temperature : simulation_temperature(simulation);
     return particles_density(particles) * temperature +
            simulation->sums.virial / (particles->box.dimensions * box_volume(&particles->box));
 }
@@ -219,5 +268,9 @@ size_t simulation_spans(struct simulation *simulation, struct memory_span *spans
 }
 
 enum status simulation_restore(struct simulation *simulation) {
-    return neighbours_rebuild(&simulation->neighbours, &simulation->particles);
+    TRY(neighbours_rebuild(&simulation->neighbours, &simulation->particles));
+    // Pairs that the next step begins with are not saved.
+    if (simulation->setup.integrator == &shardlow)
+        return simulation_compute_forces(simulation, 0);
+    return STATUS_OK;
 }

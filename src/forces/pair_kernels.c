@@ -25,9 +25,12 @@ static pair_kernels *choose_set(bool is_double) {
 }
 
 static pair_kernel choose(const struct pair_law *law, int dimensions, enum pair_wants wants) {
-    const int conservative = law->potential != NULL, dissipative = law->weight != NULL;
+    const int conservative = law->potential != NULL;
+    const enum pair_friction friction = law->weight == NULL ? PAIR_NO_FRICTION
+                                        : law->friction     ? PAIR_KEEPS_FRICTION
+                                                            : PAIR_ADDS_FRICTION;
     pair_kernels *kernels = choose_set(law->precision == PAIR_DOUBLE);
-    return (*kernels)[dimensions - 2][conservative][dissipative][wants];
+    return (*kernels)[dimensions - 2][conservative][friction][wants];
 }
 
 static void clear_forces(void *context, size_t begin, size_t end) {

@@ -8,11 +8,19 @@
     const struct pair_law *law, struct particles *particles, const struct neighbours *neighbours,  \
         int part, uint64_t step, struct pair_sums *sums
 
+/// What becomes of friction and noise.
+enum pair_friction {
+    PAIR_NO_FRICTION,
+    PAIR_ADDS_FRICTION,  ///< to the forces
+    PAIR_KEEPS_FRICTION, ///< for the integrator: struct friction
+    PAIR_FRICTIONS
+};
+
 typedef void (*pair_kernel)(PAIR_KERNEL_ARGUMENTS);
 
 /// Adds the forces of the pairs of one part of the list to kernel_force, and their sums to `sums`.
-/// [dimensions − 2][potential][weight][sums]
-typedef const pair_kernel pair_kernels[2][2][2][2];
+/// [dimensions − 2][potential][friction][sums]
+typedef const pair_kernel pair_kernels[2][2][PAIR_FRICTIONS][2];
 
 extern pair_kernels pair_portable, pair_avx2, pair_avx512;
 extern pair_kernels pair_portable_double, pair_avx2_double, pair_avx512_double;

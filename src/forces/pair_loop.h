@@ -45,7 +45,8 @@ struct pair_columns {
     REAL force_over_r[PAIR_BATCH];
     REAL r_dot_v[PAIR_BATCH];
     int32_t low_id[PAIR_BATCH], high_id[PAIR_BATCH], noise[PAIR_BATCH];
-    REAL force[PAIR_BATCH][4];
+    REAL damping[PAIR_BATCH], kick[PAIR_BATCH];
+    REAL vector[PAIR_BATCH][4];
 };
 
 /// What stays the same from pair to pair.
@@ -58,6 +59,7 @@ struct pair_scene {
     struct pair_box box;
     REAL cutoff2, near_cutoff2; ///< squared: of the law, of its dissipative part
     bool has_few;               ///< particles have few pairs each
+    struct friction_pair *kept; ///< the place of the next
 };
 
 /// Append the entries of a vector whose bits are set to the first `n`; returns their new number.
@@ -115,7 +117,7 @@ INLINE void pair_place(struct pair_places *places, int k, const struct table *ta
 
 INLINE void pair_distances(struct pair_columns *columns, const struct pair_batch *batch, int count,
                            const struct pair_law *law, const int dim, const bool conservative,
-                           const bool dissipative) {
+                           const enum pair_friction friction) {
     for (int k = 0; k < count; k += LANES) {
         const lanes_real dx = lanes_load(batch->dx + k), dy = lanes_load(batch->dy + k);
         lanes_real r2 = dx * dx + dy * dy;
@@ -130,7 +132,7 @@ INLINE void pair_distances(struct pair_columns *columns, const struct pair_batch
         lanes_store(columns->inverse_r + k, 1 / r);
         if (conservative)
             pair_place(&columns->potential, k, law->potential, r);
-        if (dissipative)
+        if (friction != PAIR_NO_FRICTION)
             pair_place(&columns->weight, k, law->weight, r);
     }
 }
@@ -202,14 +204,14 @@ INLINE void pair_dissipative(struct pair_columns *columns, int count, const stru
     }
 }
 
-/// F = F/r (r_i − r_j), in records.
+/// Multiples of r_i − r_j, in records: of F/r forces, of 1/r directions.
 INLINE void pair_vectors(struct pair_columns *columns, const struct pair_batch *batch, int count,
-                         const int dim) {
+                         const REAL *multiple, const int dim) {
     for (int k = 0; k < count; k += LANES) {
-        const lanes_real force_over_r = lanes_load(columns->force_over_r + k);
-        lanes_store_records(columns->force + k, force_over_r * lanes_load(batch->dx + k),
-                            force_over_r * lanes_load(batch->dy + k),
-                            dim == 3 ? force_over_r * lanes_load(batch->dz + k) : lanes_all(0));
+        const lanes_real scale = lanes_load(multiple + k);
+        lanes_store_records(columns->vector + k, scale * lanes_load(batch->dx + k),
+                            scale * lanes_load(batch->dy + k),
+                            dim == 3 ? scale * lanes_load(batch->dz + k) : lanes_all(0));
     }
 }
 
@@ -223,12 +225,12 @@ INLINE void pair_scatter(const struct pair_columns *columns, struct pair_batch *
         // Two sums, because each addition waits for the one before.
         lanes_double4 sum[2] = {{0}, {0}};
         for (;;) {
-            const lanes_double4 even = lanes_load_double4(columns->force[k]);
+            const lanes_double4 even = lanes_load_double4(columns->vector[k]);
             force[batch->j[k]] -= even;
             sum[0] += even;
             if (batch->i[++k] != i)
                 break;
-            const lanes_double4 odd = lanes_load_double4(columns->force[k]);
+            const lanes_double4 odd = lanes_load_double4(columns->vector[k]);
             force[batch->j[k]] -= odd;
             sum[1] += odd;
             if (batch->i[++k] != i)
@@ -252,7 +254,7 @@ INLINE void pair_scatter_few(const struct pair_columns *columns, struct pair_bat
     const int32_t after = batch->i[count];
     batch->i[count] = -1;
     for (int k = 0; k < count; k++) {
-        const lanes_double4 here = lanes_load_double4(columns->force[k]);
+        const lanes_double4 here = lanes_load_double4(columns->vector[k]);
         force[batch->j[k]] -= here;
         sum += here;
         sums[owners] = sum;
@@ -267,6 +269,49 @@ INLINE void pair_scatter_few(const struct pair_columns *columns, struct pair_bat
     }
 }
 
+/// The ordered ids that key the noise.
+INLINE void pair_ids(struct pair_columns *columns, const struct pair_batch *batch, int count,
+                     const uint32_t *id) {
+    for (int k = 0; k < count; k++) {
+        const int32_t id_i = (int32_t)id[batch->i[k]], id_j = (int32_t)id[batch->j[k]];
+        columns->low_id[k] = id_i < id_j ? id_i : id_j;
+        columns->high_id[k] = id_i < id_j ? id_j : id_i;
+    }
+}
+
+/// Damping and kick.
+INLINE void pair_factors(struct pair_columns *columns, int count, const struct friction *friction) {
+    const REAL unit = (REAL)(sqrt(12) * 0x1p-32); // as in pair_dissipative
+    for (int k = 0; k < count; k += LANES) {
+        const struct lanes_record c =
+            lanes_load_records(friction->PAIR_ROWS, columns->weight.interval + k);
+        const lanes_real f = lanes_load(columns->weight.fraction + k);
+        const lanes_real zeta = unit * lanes_to_real(lanes_load_int(columns->noise + k));
+        lanes_store(columns->damping + k, c.word[0] + f * c.word[1]);
+        lanes_store(columns->kick + k, (c.word[2] + f * c.word[3]) * zeta);
+    }
+}
+
+/// Keep the pairs; returns the place of the next. A full batch is shuffled: a sweep over the pairs
+/// of one particle after the other would wait for each velocity, but pairs that share no particle
+/// overlap.
+INLINE struct friction_pair *pair_keep(const struct pair_columns *columns,
+                                       const struct pair_batch *batch, int count,
+                                       struct friction_pair *to) {
+    enum { STRIDE = 37 }; // odd, and more than most particles have pairs
+    for (int n = 0; n < count; n++) {
+        const int k = count == PAIR_BATCH ? n * STRIDE % PAIR_BATCH : n;
+        *to++ = (struct friction_pair){
+            .direction = {(float)columns->vector[k][0], (float)columns->vector[k][1],
+                          (float)columns->vector[k][2]},
+            .damping = (float)columns->damping[k],
+            .kick = (float)columns->kick[k],
+            .i = batch->i[k],
+            .j = batch->j[k]};
+    }
+    return to;
+}
+
 INLINE void pair_count(const struct pair_columns *columns, int count,
                        const struct pair_histogram *histogram, uint32_t *counts) {
     const REAL low = (REAL)histogram->low, inverse_width = (REAL)(1 / histogram->width);
@@ -278,36 +323,45 @@ INLINE void pair_count(const struct pair_columns *columns, int count,
 }
 
 /// The forces of the first `count` pairs of a batch.
-INLINE void pair_evaluate(struct pair_batch *batch, int count, const struct pair_scene *scene,
-                          const int dim, const bool conservative, const bool dissipative,
+INLINE void pair_evaluate(struct pair_batch *batch, int count, struct pair_scene *scene,
+                          const int dim, const bool conservative, const enum pair_friction friction,
                           const bool wants_sums) {
     const struct pair_law *law = scene->law;
     struct pair_columns columns;
-    pair_distances(&columns, batch, count, law, dim, conservative, dissipative);
+    pair_distances(&columns, batch, count, law, dim, conservative, friction);
     if (scene->counts)
         pair_count(&columns, count, law->histogram, scene->counts);
     if (conservative)
         pair_conservative(&columns, count, law->potential, scene->sums, wants_sums);
-    if (dissipative) {
+    if (friction == PAIR_ADDS_FRICTION) {
         pair_velocities(&columns, batch, count, scene->particles->PAIR_MOTIONS, dim);
         pair_noise(&columns, count, law->seed, scene->step);
         pair_dissipative(&columns, count, law, conservative);
     }
-    pair_vectors(&columns, batch, count, dim);
-    lanes_double4 *force = (lanes_double4 *)scene->particles->kernel_force;
-    if (scene->has_few)
-        pair_scatter_few(&columns, batch, count, force);
-    else
-        pair_scatter(&columns, batch, count, force);
+    if (conservative || friction == PAIR_ADDS_FRICTION) {
+        pair_vectors(&columns, batch, count, columns.force_over_r, dim);
+        lanes_double4 *force = (lanes_double4 *)scene->particles->kernel_force;
+        if (scene->has_few)
+            pair_scatter_few(&columns, batch, count, force);
+        else
+            pair_scatter(&columns, batch, count, force);
+    }
+    if (friction == PAIR_KEEPS_FRICTION) {
+        pair_ids(&columns, batch, count, scene->particles->id);
+        pair_noise(&columns, count, law->seed, scene->step);
+        pair_factors(&columns, count, law->friction);
+        pair_vectors(&columns, batch, count, columns.inverse_r, dim);
+        scene->kept = pair_keep(&columns, batch, count, scene->kept);
+    }
 }
 
 /// Evaluate a full batch, and move what is beyond to the front.
-INLINE void pair_evaluate_full(struct pair_batch *batch, const struct pair_scene *scene,
-                               const int dim, const bool conservative, const bool dissipative,
+INLINE void pair_evaluate_full(struct pair_batch *batch, struct pair_scene *scene,
+                               const int dim, const bool conservative, const enum pair_friction friction,
                                const bool wants_sums) {
     if (batch->count < PAIR_BATCH)
         return;
-    pair_evaluate(batch, PAIR_BATCH, scene, dim, conservative, dissipative, wants_sums);
+    pair_evaluate(batch, PAIR_BATCH, scene, dim, conservative, friction, wants_sums);
     batch->count -= PAIR_BATCH;
     for (int k = 0; k < PAIR_PIECE; k += LANES) { // always as many: predictable
         lanes_store_int(batch->i + k, lanes_load_int(batch->i + PAIR_BATCH + k));
@@ -320,8 +374,8 @@ INLINE void pair_evaluate_full(struct pair_batch *batch, const struct pair_scene
 }
 
 /// Evaluate what is left. The last vector is filled up with pairs beyond the cutoff, without force.
-INLINE void pair_evaluate_rest(struct pair_batch *batch, const struct pair_scene *scene,
-                               const int dim, const bool conservative, const bool dissipative,
+INLINE void pair_evaluate_rest(struct pair_batch *batch, struct pair_scene *scene,
+                               const int dim, const bool conservative, const enum pair_friction friction,
                                const bool wants_sums) {
     const REAL beyond = 2 * (REAL)sqrt(scene->cutoff2);
     for (int k = batch->count; k < batch->count + RNG_LANES; k++) {
@@ -329,17 +383,17 @@ INLINE void pair_evaluate_rest(struct pair_batch *batch, const struct pair_scene
         batch->dx[k] = beyond;
         batch->dy[k] = batch->dz[k] = 0;
     }
-    pair_evaluate(batch, batch->count, scene, dim, conservative, dissipative, wants_sums);
+    pair_evaluate(batch, batch->count, scene, dim, conservative, friction, wants_sums);
 }
 
 INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
                       const struct neighbours *neighbours, int part_number, uint64_t step,
                       struct pair_sums *sums, const int dim, const bool conservative,
-                      const bool dissipative, const bool wants_sums) {
+                      const enum pair_friction friction, const bool wants_sums) {
     const struct neighbours_part *part = &neighbours->part[part_number];
     const struct pair_histogram *histogram = law->histogram;
     const double cutoff = pair_cutoff(law);
-    const double near_cutoff = dissipative ? law->weight->cutoff : cutoff;
+    const double near_cutoff = friction != PAIR_NO_FRICTION ? law->weight->cutoff : cutoff;
     struct pair_scene scene = {.law = law,
                                .particles = particles,
                                .sums = sums,
@@ -351,46 +405,63 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
         scene.counts = histogram->counts + (size_t)part_number * (histogram->bins + 1);
     scene.has_few =
         sizeof(REAL) == 4 && part->end - part->begin < PAIR_FEW * (part->last - part->first);
+    if (friction == PAIR_KEEPS_FRICTION)
+        scene.kept = law->friction->pair + law->friction->begin[part_number];
     // Near pairs feel the whole law, far ones the potential alone.
-    const bool has_far = conservative && dissipative && near_cutoff < cutoff;
+    const bool has_far = conservative && friction != PAIR_NO_FRICTION && near_cutoff < cutoff;
     struct pair_batch near, far;
     near.count = far.count = 0;
     for (size_t k = part->begin; k < part->end; k += PAIR_PIECE) {
         const int count = part->end - k < PAIR_PIECE ? (int)(part->end - k) : PAIR_PIECE;
         pair_collect(&near, &far, &scene, neighbours->list + k,
                      neighbours->owner + k / NEIGHBOURS_ROW, count, dim, has_far);
-        pair_evaluate_full(&near, &scene, dim, conservative, dissipative, wants_sums);
+        pair_evaluate_full(&near, &scene, dim, conservative, friction, wants_sums);
         if (has_far)
-            pair_evaluate_full(&far, &scene, dim, conservative, false, wants_sums);
+            pair_evaluate_full(&far, &scene, dim, conservative, PAIR_NO_FRICTION, wants_sums);
     }
-    pair_evaluate_rest(&near, &scene, dim, conservative, dissipative, wants_sums);
+    pair_evaluate_rest(&near, &scene, dim, conservative, friction, wants_sums);
     if (has_far)
-        pair_evaluate_rest(&far, &scene, dim, conservative, false, wants_sums);
+        pair_evaluate_rest(&far, &scene, dim, conservative, PAIR_NO_FRICTION, wants_sums);
+    if (friction == PAIR_KEEPS_FRICTION)
+        law->friction->end[part_number] = (size_t)(scene.kept - law->friction->pair);
 }
 
-#define PAIR_INSTANCE(name, dim, conservative, dissipative, wants_sums)                            \
+#define PAIR_INSTANCE(name, dim, conservative, friction, wants_sums)                               \
     static void name(PAIR_KERNEL_ARGUMENTS) {                                                      \
-        pair_loop(law, particles, neighbours, part, step, sums, dim, conservative, dissipative,    \
+        pair_loop(law, particles, neighbours, part, step, sums, dim, conservative, friction,       \
                   wants_sums);                                                                     \
     }
+
+/// All instances of a friction.
+#define PAIR_FRICTION_INSTANCES(set, friction)                                                     \
+    PAIR_INSTANCE(set##_2d, 2, false, friction, false)                                             \
+    PAIR_INSTANCE(set##_2d_s, 2, false, friction, true)                                            \
+    PAIR_INSTANCE(set##_2d_c, 2, true, friction, false)                                            \
+    PAIR_INSTANCE(set##_2d_cs, 2, true, friction, true)                                            \
+    PAIR_INSTANCE(set##_3d, 3, false, friction, false)                                             \
+    PAIR_INSTANCE(set##_3d_s, 3, false, friction, true)                                            \
+    PAIR_INSTANCE(set##_3d_c, 3, true, friction, false)                                            \
+    PAIR_INSTANCE(set##_3d_cs, 3, true, friction, true)
 
 /// All instances for one instruction set and precision, by name, and the table from which
 /// pair_kernels.c chooses.
 #define PAIR_INSTANCES(set)                                                                        \
-    PAIR_INSTANCE(set##_2d_d, 2, false, true, false)                                               \
-    PAIR_INSTANCE(set##_2d_ds, 2, false, true, true)                                               \
-    PAIR_INSTANCE(set##_2d_c, 2, true, false, false)                                               \
-    PAIR_INSTANCE(set##_2d_cs, 2, true, false, true)                                               \
-    PAIR_INSTANCE(set##_2d_cd, 2, true, true, false)                                               \
-    PAIR_INSTANCE(set##_2d_cds, 2, true, true, true)                                               \
-    PAIR_INSTANCE(set##_3d_d, 3, false, true, false)                                               \
-    PAIR_INSTANCE(set##_3d_ds, 3, false, true, true)                                               \
-    PAIR_INSTANCE(set##_3d_c, 3, true, false, false)                                               \
-    PAIR_INSTANCE(set##_3d_cs, 3, true, false, true)                                               \
-    PAIR_INSTANCE(set##_3d_cd, 3, true, true, false)                                               \
-    PAIR_INSTANCE(set##_3d_cds, 3, true, true, true)                                               \
-    const pair_kernel set[2][2][2][2] = {                                                          \
-        {{{NULL, NULL}, {set##_2d_d, set##_2d_ds}},                                                \
-         {{set##_2d_c, set##_2d_cs}, {set##_2d_cd, set##_2d_cds}}},                                \
-        {{{NULL, NULL}, {set##_3d_d, set##_3d_ds}},                                                \
-         {{set##_3d_c, set##_3d_cs}, {set##_3d_cd, set##_3d_cds}}}};
+    PAIR_INSTANCE(set##_2d_c, 2, true, PAIR_NO_FRICTION, false)                                    \
+    PAIR_INSTANCE(set##_2d_cs, 2, true, PAIR_NO_FRICTION, true)                                    \
+    PAIR_INSTANCE(set##_3d_c, 3, true, PAIR_NO_FRICTION, false)                                    \
+    PAIR_INSTANCE(set##_3d_cs, 3, true, PAIR_NO_FRICTION, true)                                    \
+    PAIR_FRICTION_INSTANCES(set##_added, PAIR_ADDS_FRICTION)                                       \
+    PAIR_FRICTION_INSTANCES(set##_kept, PAIR_KEEPS_FRICTION)                                       \
+    const pair_kernel set[2][2][PAIR_FRICTIONS][2] = {                                             \
+        {{{NULL, NULL},                                                                            \
+          {set##_added_2d, set##_added_2d_s},                                                      \
+          {set##_kept_2d, set##_kept_2d_s}},                                                       \
+         {{set##_2d_c, set##_2d_cs},                                                               \
+          {set##_added_2d_c, set##_added_2d_cs},                                                   \
+          {set##_kept_2d_c, set##_kept_2d_cs}}},                                                   \
+        {{{NULL, NULL},                                                                            \
+          {set##_added_3d, set##_added_3d_s},                                                      \
+          {set##_kept_3d, set##_kept_3d_s}},                                                       \
+         {{set##_3d_c, set##_3d_cs},                                                               \
+          {set##_added_3d_c, set##_added_3d_cs},                                                   \
+          {set##_kept_3d_c, set##_kept_3d_cs}}}};

@@ -33,11 +33,14 @@ enum status measure_equilibrate(struct simulation *simulation, const struct meas
     // Pieces short enough to tell of progress; their temperatures over the last tenth are averaged.
     enum { PIECES = 100, LAST = 10 };
     double sum = 0;
-    simulation->wants = PAIR_FORCES;
     for (int64_t piece = 1; piece <= PIECES; piece++) {
-        TRY(run_until(simulation, plan->equilibration * piece / PIECES));
+        const int64_t end = plan->equilibration * piece / PIECES;
+        simulation->wants = PAIR_FORCES;
+        TRY(run_until(simulation, end - 1));
+        simulation->wants = piece > PIECES - LAST ? PAIR_FORCES_AND_SUMS : PAIR_FORCES;
+        TRY(run_until(simulation, end));
         if (piece > PIECES - LAST)
-            sum += particles_temperature(&simulation->particles);
+            sum += simulation_temperature(simulation);
         tell(listener, simulation, plan);
     }
     *temperature = sum / LAST;
@@ -47,12 +50,15 @@ enum status measure_equilibrate(struct simulation *simulation, const struct meas
 /// The last step before a sample, in which the force pass counts and sums what the sample needs.
 static enum status run_sampled_step(struct simulation *simulation, int64_t due,
                                     struct measure_targets targets) {
+    const bool midway = simulation->setup.integrator->forces_midway;
     simulation->wants = targets.thermodynamics ? PAIR_FORCES_AND_SUMS : PAIR_FORCES;
-    simulation->law.histogram = targets.rdf ? rdf_histogram(targets.rdf) : NULL;
+    simulation->law.histogram = targets.rdf && !midway ? rdf_histogram(targets.rdf) : NULL;
     const enum status status = run_until(simulation, due);
     const bool counted = simulation->law.histogram != NULL;
     simulation->law.histogram = NULL;
     TRY(status);
+    if (midway)
+        TRY(simulation_compute_potential(simulation));
     if (counted)
         rdf_sample_counted(targets.rdf);
     else if (targets.rdf)

@@ -25,7 +25,7 @@ enum status thermodynamics_sample(struct thermodynamics *thermodynamics,
     double *here = thermodynamics->values + thermodynamics->samples;
     const size_t stride = thermodynamics->planned;
     const double count = (double)simulation->particles.count;
-    here[THERMODYNAMICS_TEMPERATURE * stride] = particles_temperature(&simulation->particles);
+    here[THERMODYNAMICS_TEMPERATURE * stride] = simulation_temperature(simulation);
     here[THERMODYNAMICS_POTENTIAL_ENERGY * stride] = simulation->sums.energy / count;
     here[THERMODYNAMICS_PRESSURE * stride] = simulation_pressure(simulation);
     if (simulation->law.potential)

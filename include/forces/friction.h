@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Friction and noise apart from the other forces, for integrators that split them off.
+///
+/// The force pass keeps the pairs within the cutoff of ω instead of adding their friction. What
+/// becomes of the velocities is the integrator's: with u = e·(v_i − v_j) along the unit vector e of
+/// a pair, they make
+///   v_i += (kick − damping·u) e,   v_j −= the same,
+/// with a damping and a standard deviation of the kick that depend on ω, and so on r, alone. ω² is
+/// the friction, so that u obeys du = −2 ω² u dt + 2 sqrt(2 k_B T) ω dW, with variance 2 k_B T.
+#pragma once
+
+#include "curves/table.h"
+#include "system/neighbours.h"
+
+struct friction_pair {
+    float direction[4]; ///< e, from j to i; the last is 0
+    float damping, kick;
+    int32_t i, j;
+};
+
+/// What a method makes of ω at a time step.
+struct friction_factors {
+    double damping;
+    double amplitude; ///< standard deviation of the kick [λ/τ]
+};
+typedef struct friction_factors friction_method(double omega, double time_step, double temperature);
+
+enum { FRICTION_WORK = 4 };
+
+struct friction {
+    /// Shape [TABLE_INTERVALS + 1], over the intervals of the table of ω: damping at the start of an
+    /// interval, its change over it, and the same of the amplitude.
+    double (*precise)[4];
+    float (*single)[4]; ///< the same rounded
+    struct friction_pair *pair;
+    size_t capacity;
+    size_t begin[NEIGHBOURS_MOST_PARTS], end[NEIGHBOURS_MOST_PARTS]; ///< pairs of each part
+    int parts;
+    double (*work[FRICTION_WORK])[4]; ///< of friction_solve; shape [count, 4] each
+};
+
+/// Tabulate a method for a weight. Fails: NO_MEMORY.
+enum status friction_init(struct friction *friction, const struct table *weight, double time_step,
+                          double temperature, friction_method *method) MUST_USE;
+void friction_clear(struct friction *friction);
+
+/// Make room for all pairs of a list, and forget those kept. Fails: NO_MEMORY.
+enum status friction_reserve(struct friction *friction,
+                             const struct neighbours *neighbours) MUST_USE;
+
+/// Make room for what is done with all pairs at once, of `count` particles. Fails: NO_MEMORY.
+enum status friction_reserve_work(struct friction *friction, size_t count) MUST_USE;
+
+/// Change the velocities pair after pair, in an order that depends on the list alone: the same bits
+/// for any number of threads.
+void friction_sweep(const struct friction *friction, struct particles *particles);
+
+/// to_i = Σ_j (kick − damping·u) e for all pairs at once, u from the velocities `from`.
+/// @param[in]  from   shape [count, 4], the last of each 0
+/// @param[out] to     shape [count, 4]
+/// @param[in]  kicks  whether to include them
+void friction_apply(const struct friction *friction, const struct particles *particles,
+                    const double (*from)[4], double (*to)[4], bool kicks);
+
+/// The same added to the forces of the particles, with velocities scale · source[d].
+/// @param[in] source  shape [count] for each dimension
+/// Fails: NO_MEMORY.
+enum status friction_add_to_forces(struct friction *friction, struct particles *particles,
+                                   double *const source[3], double scale, bool kicks) MUST_USE;
+
+/// Solve (1 + G) v' = (1 − G) v + kicks, G v = Σ damping·u e, by conjugate gradients, to a
+/// residual of `tolerance` times the change that friction and noise make; v' replaces the
+/// velocities. The same bits for any number of threads. Fails: NO_MEMORY.
+enum status friction_solve(struct friction *friction, struct particles *particles,
+                           double tolerance) MUST_USE;

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dynamics/simulation.h"
+
+/// Exact for one pair: u decays by exp(−2 ω² Δt), and keeps its variance 2 k_B T.
+static struct friction_factors exact(double omega, double time_step, double temperature) {
+    const double exponent = -2 * omega * omega * time_step;
+    return (struct friction_factors){-0.5 * expm1(exponent),
+                                     0.5 * sqrt(-2 * temperature * expm1(2 * exponent))};
+}
+
+/// The implicit midpoint rule (1 + G) v' = (1 − G) v + kicks with G v = ½ Δt Σ ω² u e.
+static struct friction_factors midpoint(double omega, double time_step, double temperature) {
+    return (struct friction_factors){0.5 * time_step * omega * omega,
+                                     sqrt(2 * temperature * time_step) * omega};
+}
+
+/// Drift, kick, friction, kick, drift: forces and friction from the positions in the middle. The
+/// kinetic temperature is unbiased right after the friction, which conserves the Maxwell
+/// distribution; at the end of the step it is too large by a term of order Δt².
+static enum status step(struct simulation *simulation) {
+    simulation_drift_half(simulation);
+    TRY(simulation_compute_forces(simulation, 0));
+    simulation_kick(simulation);
+    if (simulation->friction.single && simulation->setup.integrator == &aboba)
+        friction_sweep(&simulation->friction, &simulation->particles);
+    else if (simulation->friction.single)
+        TRY(friction_solve(&simulation->friction, &simulation->particles,
+                           simulation->setup.integrator_parameters.tolerance));
+    simulation_take_temperature(simulation);
+    simulation_kick(simulation);
+    simulation_drift_half(simulation);
+    return STATUS_OK;
+}
+
+static const struct field no_fields[] = {FIELD_END};
+
+const struct integrator aboba = {
+    .name = "aboba",
+    .summary = "drift, kick, exact friction pair by pair, kick, drift; X. Shang, Comput. Phys. "
+               "Commun. 262, 107834 (2021)",
+    .fields = no_fields,
+    .dissipative = true,
+    .friction = exact,
+    .forces_midway = true,
+    .step = step,
+};
+
+static const struct field implicit_fields[] = {
+    {"tolerance", FIELD_NUMBER, offsetof(struct integrator_parameters, tolerance), .initial = 0.01,
+     .minimum = 1e-12, .maximum = 0.5, .unit = "",
+     .help = "of the implicit friction, relative to what it changes"},
+    FIELD_END,
+};
+
+const struct integrator aboba_implicit = {
+    .name = "aboba-implicit",
+    .summary = "the same with friction of all pairs at once by the implicit midpoint rule",
+    .fields = implicit_fields,
+    .dissipative = true,
+    .friction = midpoint,
+    .forces_midway = true,
+    .step = step,
+};

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dynamics/simulation.h"
+
+/// Friction and noise as forces.
+static struct friction_factors factors(double omega, double time_step, double temperature) {
+    return (struct friction_factors){omega * omega, sqrt(2 * temperature / time_step) * omega};
+}
+
+/// Velocity Verlet whose friction is computed once more from the velocities at the end of the step.
+static enum status step(struct simulation *simulation) {
+    struct particles *particles = &simulation->particles;
+    struct friction *friction = &simulation->friction;
+    simulation_kick_and_drift(simulation);
+    TRY(simulation_compute_forces(simulation, 0));
+    if (friction->single)
+        TRY(friction_add_to_forces(friction, particles, particles->velocity, 1, true));
+    simulation_kick(simulation);
+    // Friction is linear in the velocities: what the kick has changed of them changes it.
+    const double half_step = 0.5 * simulation->setup.time_step;
+    if (friction->single)
+        TRY(friction_add_to_forces(friction, particles, particles->force, half_step, false));
+    return STATUS_OK;
+}
+
+static const struct field fields[] = {FIELD_END};
+
+const struct integrator dpd_vv = {
+    .name = "dpd-vv",
+    .summary = "DPD-VV, friction from the new velocities; G. Besold et al., Phys. Rev. E 62, R7611 "
+               "(2000)",
+    .fields = fields,
+    .dissipative = true,
+    .friction = factors,
+    .step = step,
+};

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dynamics/simulation.h"
+
+#include <gsl/gsl_cdf.h>
+
+/// Pairs collide with the heat bath with the probability that makes u decay, on average, as the
+/// friction ω² does: exp(−2 ω² Δt). The kick is the bare number ζ until draw_collisions.
+static struct friction_factors factors(double omega, double time_step, double temperature) {
+    (void)temperature;
+    return (struct friction_factors){-expm1(-2 * omega * omega * time_step), omega > 0 ? 1 : 0};
+}
+
+/// Decide who collides: a uniform number below the probability p says so, and divided by p it is a
+/// uniform number again, which becomes the normal one of the new u.
+static void draw_collisions(struct friction *friction, double temperature) {
+    for (int part = 0; part < friction->parts; part++)
+        for (size_t k = friction->begin[part]; k < friction->end[part]; k++) {
+            struct friction_pair *pair = &friction->pair[k];
+            const double probability = pair->damping, uniform = pair->kick / sqrt(12) + 0.5;
+            const bool collides = 0 < uniform && uniform < probability;
+            pair->damping = collides ? 0.5F : 0;
+            pair->kick = collides ? (float)(0.5 * sqrt(2 * temperature) *
+                                            gsl_cdf_ugaussian_Pinv(uniform / probability))
+                                  : 0;
+        }
+}
+
+static enum status step(struct simulation *simulation) {
+    simulation_kick_and_drift(simulation);
+    TRY(simulation_compute_forces(simulation, 0));
+    simulation_kick(simulation);
+    if (simulation->friction.single) {
+        draw_collisions(&simulation->friction, simulation->setup.temperature);
+        friction_sweep(&simulation->friction, &simulation->particles);
+    }
+    return STATUS_OK;
+}
+
+static const struct field fields[] = {FIELD_END};
+
+const struct integrator lowe_andersen = {
+    .name = "lowe-andersen",
+    .summary = "velocity Verlet, then collisions of pairs with a heat bath; C. P. Lowe, Europhys. "
+               "Lett. 47, 145 (1999)",
+    .fields = fields,
+    .dissipative = true,
+    .friction = factors,
+    .step = step,
+};

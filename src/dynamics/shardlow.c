@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dynamics/simulation.h"
+
+/// Half a step explicit, half implicit, pair by pair: with a = ω² Δt,
+///   u' = ((1 − a) u + 2 sqrt(2 k_B T a) ζ) / (1 + a).
+static struct friction_factors factors(double omega, double time_step, double temperature) {
+    const double a = omega * omega * time_step;
+    return (struct friction_factors){a / (1 + a), sqrt(2 * temperature * a) / (1 + a)};
+}
+
+/// S1: friction for a whole step, then velocity Verlet. The pairs are those of the forces at the
+/// end of the last step.
+static enum status step(struct simulation *simulation) {
+    if (simulation->friction.single)
+        friction_sweep(&simulation->friction, &simulation->particles);
+    simulation_kick_and_drift(simulation);
+    TRY(simulation_compute_forces(simulation, 0));
+    simulation_kick(simulation);
+    return STATUS_OK;
+}
+
+static const struct field fields[] = {FIELD_END};
+
+const struct integrator shardlow = {
+    .name = "shardlow",
+    .summary = "S1 splitting; T. Shardlow, SIAM J. Sci. Comput. 24, 1267 (2003)",
+    .fields = fields,
+    .dissipative = true,
+    .friction = factors,
+    .step = step,
+};

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "forces/friction.h"
+
+#include "base/lanes.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/simd.h"
+
+enum status friction_init(struct friction *friction, const struct table *weight, double time_step,
+                          double temperature, friction_method *method) {
+    enum status status = STATUS_OK;
+    *friction = (struct friction){0};
+    NEW_ARRAY(friction->precise, TABLE_INTERVALS + 1);
+    NEW_ARRAY(friction->single, TABLE_INTERVALS + 1);
+    for (int k = 0; k < TABLE_INTERVALS; k++) {
+        const double *omega = weight->coefficient + 2 * k;
+        const struct friction_factors low = method(omega[0], time_step, temperature),
+                                      high = method(omega[0] + omega[1], time_step, temperature);
+        const double row[4] = {low.damping, high.damping - low.damping, low.amplitude,
+                               high.amplitude - low.amplitude};
+        for (int n = 0; n < 4; n++) {
+            friction->precise[k][n] = row[n];
+            friction->single[k][n] = (float)row[n];
+        }
+    }
+done:
+    return status;
+}
+
+enum status friction_reserve_work(struct friction *friction, size_t count) {
+    enum status status = STATUS_OK;
+    for (int n = 0; n < FRICTION_WORK; n++)
+        if (friction->work[n] == NULL)
+            NEW_ARRAY(friction->work[n], count);
+done:
+    return status;
+}
+
+void friction_clear(struct friction *friction) {
+    memory_free(friction->precise);
+    memory_free(friction->single);
+    memory_free(friction->pair);
+    for (int n = 0; n < FRICTION_WORK; n++)
+        memory_free(friction->work[n]);
+    *friction = (struct friction){0};
+}
+
+enum status friction_reserve(struct friction *friction, const struct neighbours *neighbours) {
+    friction->parts = neighbours->parts;
+    for (int p = 0; p < neighbours->parts; p++)
+        friction->begin[p] = friction->end[p] = neighbours->part[p].begin;
+    if (neighbours->list_capacity <= friction->capacity)
+        return STATUS_OK;
+    memory_free(friction->pair);
+    friction->capacity = 0;
+    // Most of the room is never touched, and so takes no memory.
+    friction->pair = memory_uncleared(neighbours->list_capacity, sizeof *friction->pair);
+    if (friction->pair == NULL)
+        return STATUS_NO_MEMORY;
+    friction->capacity = neighbours->list_capacity;
+    return STATUS_OK;
+}
+
+/// The loops below share out the parts of the list: even ones, which never meet, then odd ones.
+#define FOR_ALL_PARTS(friction, threads, call)                                                     \
+    for (int first = 0; first < 2; first++) {                                                      \
+        _Pragma("omp parallel for schedule(dynamic) num_threads(threads) if (threads > 1)")        \
+        for (int p = first; p < (friction)->parts; p += 2)                                         \
+            call((friction)->pair + (friction)->begin[p],                                          \
+                 (friction)->end[p] - (friction)->begin[p]);                                       \
+    }
+
+static inline lanes_double4 direction_of(const struct friction_pair *pair) {
+    return lanes_load_double4(pair->direction);
+}
+
+static inline double sum_of(lanes_double4 a) {
+    return (a[0] + a[1]) + a[2];
+}
+
+static void load_velocities(void *context, size_t begin, size_t end) {
+    struct particles *particles = context;
+    for (size_t k = begin; k < end; k++)
+        for (int d = 0; d < 4; d++)
+            particles->kernel_force[k][d] = d < 3 ? particles->velocity[d][k] : 0;
+}
+
+static void store_velocities(void *context, size_t begin, size_t end) {
+    struct particles *particles = context;
+    for (int d = 0; d < particles->box.dimensions; d++)
+        for (size_t k = begin; k < end; k++)
+            particles->velocity[d][k] = particles->kernel_force[k][d];
+}
+
+SIMD_CLONES static void sweep_pairs(const struct friction_pair *pair, size_t count,
+                                    lanes_double4 *v) {
+    for (size_t k = 0; k < count; k++) {
+        const lanes_double4 e = direction_of(&pair[k]);
+        lanes_double4 *const v_i = &v[pair[k].i], *const v_j = &v[pair[k].j];
+        const double u = sum_of(e * (*v_i - *v_j));
+        const lanes_double4 change = (pair[k].kick - pair[k].damping * u) * e;
+        *v_i += change;
+        *v_j -= change;
+    }
+}
+
+void friction_sweep(const struct friction *friction, struct particles *particles) {
+    lanes_double4 *v = (lanes_double4 *)particles->kernel_force;
+    const int threads = particles->threads;
+    parallel_for(particles->count, threads, load_velocities, particles);
+#define SWEEP(pair, count) sweep_pairs(pair, count, v)
+    FOR_ALL_PARTS(friction, threads, SWEEP)
+#undef SWEEP
+    parallel_for(particles->count, threads, store_velocities, particles);
+}
+
+SIMD_CLONES static void apply_pairs(const struct friction_pair *pair, size_t count,
+                                    const lanes_double4 *from, lanes_double4 *to, double kicks) {
+    for (size_t k = 0; k < count; k++) {
+        const lanes_double4 e = direction_of(&pair[k]);
+        const double u = sum_of(e * (from[pair[k].i] - from[pair[k].j]));
+        const lanes_double4 change = (kicks * pair[k].kick - pair[k].damping * u) * e;
+        to[pair[k].i] += change;
+        to[pair[k].j] -= change;
+    }
+}
+
+void friction_apply(const struct friction *friction, const struct particles *particles,
+                    const double (*from)[4], double (*to)[4], bool kicks) {
+    const int threads = particles->threads;
+    memset(to, 0, particles->count * sizeof *to);
+#define APPLY(pair, count)                                                                         \
+    apply_pairs(pair, count, (const lanes_double4 *)from, (lanes_double4 *)to, kicks)
+    FOR_ALL_PARTS(friction, threads, APPLY)
+#undef APPLY
+}
+
+struct addition {
+    struct particles *particles;
+    double *const *source;
+    double scale;
+    double (*from)[4], (*to)[4];
+};
+
+static void scale_source(void *context, size_t begin, size_t end) {
+    const struct addition *a = context;
+    for (size_t k = begin; k < end; k++)
+        for (int d = 0; d < 3; d++)
+            a->from[k][d] = a->scale * a->source[d][k];
+}
+
+static void add_to_forces(void *context, size_t begin, size_t end) {
+    const struct addition *a = context;
+    for (int d = 0; d < a->particles->box.dimensions; d++)
+        for (size_t k = begin; k < end; k++)
+            a->particles->force[d][k] += a->to[k][d];
+}
+
+enum status friction_add_to_forces(struct friction *friction, struct particles *particles,
+                                   double *const source[3], double scale, bool kicks) {
+    TRY(friction_reserve_work(friction, particles->count));
+    struct addition addition = {particles, source, scale, friction->work[0], friction->work[1]};
+    parallel_for(particles->count, particles->threads, scale_source, &addition);
+    friction_apply(friction, particles, (const double(*)[4])addition.from, addition.to, kicks);
+    parallel_for(particles->count, particles->threads, add_to_forces, &addition);
+    return STATUS_OK;
+}
