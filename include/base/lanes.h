@@ -251,9 +251,10 @@ LANES_INLINE struct lanes_record lanes_load_records(const void *records, const i
                             lanes_row(records, index + 2), lanes_row(records, index + 3));
 }
 
-/// Store LANES records (x, y, z, 0), one after the other.
-LANES_INLINE void lanes_store_records(REAL (*to)[4], lanes_real x, lanes_real y, lanes_real z) {
-    const struct lanes_record row = lanes_transposed(x, y, z, lanes_all(0));
+/// Store LANES records (a, b, c, d), one after the other.
+LANES_INLINE void lanes_store_records(REAL (*to)[4], lanes_real a, lanes_real b, lanes_real c,
+                                      lanes_real d) {
+    const struct lanes_record row = lanes_transposed(a, b, c, d);
     for (int k = 0; k < 4; k++)
         lanes_store_row(to + k, row.word[k]);
 }

@@ -13,7 +13,6 @@
 #include "system/neighbours.h"
 
 struct friction_pair {
-    float direction[4]; ///< e, from j to i; the last is 0
     float damping, kick;
     int32_t i, j;
 };
@@ -28,10 +27,11 @@ typedef struct friction_factors friction_method(double omega, double time_step, 
 enum { FRICTION_WORK = 4 };
 
 struct friction {
-    /// Shape [TABLE_INTERVALS + 1], over the intervals of the table of ω: damping at the start of an
-    /// interval, its change over it, and the same of the amplitude.
+    /// Shape [TABLE_INTERVALS + 1], over the intervals of the table of ω: damping at the start of
+    /// an interval, its change over it, and the same of the amplitude.
     double (*precise)[4];
-    float (*single)[4]; ///< the same rounded
+    float (*single)[4];    ///< the same rounded
+    float (*direction)[4]; ///< e of each pair, from j to i; the last is 0
     struct friction_pair *pair;
     size_t capacity;
     size_t begin[NEIGHBOURS_MOST_PARTS], end[NEIGHBOURS_MOST_PARTS]; ///< pairs of each part

@@ -16,7 +16,7 @@ enum { PARTICLES_PADDING = 16 };
 /// What the pair kernels read of a particle, in records of four words: one load a particle.
 struct particle_place {
     int32_t fraction[3]; ///< box_fraction
-    int32_t unused;
+    uint32_t id;
 };
 struct particle_motion {
     float velocity[3]; ///< [λ/τ]
@@ -26,7 +26,7 @@ struct particle_motion {
 /// The same for the kernels in double precision.
 struct particle_precise_place {
     double position[3]; ///< [λ]
-    double unused;
+    double id;
 };
 struct particle_precise_motion {
     double velocity[3]; ///< [λ/τ]
@@ -69,6 +69,9 @@ void particles_wrap(struct particles *particles);
 
 /// Refresh `fraction`, `kernel_place` and `precise_place` from `position`.
 void particles_update_fractions(struct particles *particles);
+
+/// Write the ids into `kernel_place` and `precise_place`, after the order has changed.
+void particles_label_places(struct particles *particles);
 
 /// Refresh `kernel_motion` and `precise_motion`, with velocities predicted by a time `ahead` [τ]:
 /// v + ahead · force.

@@ -39,6 +39,7 @@ done:
 void friction_clear(struct friction *friction) {
     memory_free(friction->precise);
     memory_free(friction->single);
+    memory_free(friction->direction);
     memory_free(friction->pair);
     for (int n = 0; n < FRICTION_WORK; n++)
         memory_free(friction->work[n]);
@@ -51,11 +52,13 @@ enum status friction_reserve(struct friction *friction, const struct neighbours 
         friction->begin[p] = friction->end[p] = neighbours->part[p].begin;
     if (neighbours->list_capacity <= friction->capacity)
         return STATUS_OK;
+    memory_free(friction->direction);
     memory_free(friction->pair);
     friction->capacity = 0;
     // Most of the room is never touched, and so takes no memory.
+    friction->direction = memory_uncleared(neighbours->list_capacity, sizeof *friction->direction);
     friction->pair = memory_uncleared(neighbours->list_capacity, sizeof *friction->pair);
-    if (friction->pair == NULL)
+    if (friction->direction == NULL || friction->pair == NULL)
         return STATUS_NO_MEMORY;
     friction->capacity = neighbours->list_capacity;
     return STATUS_OK;
@@ -64,15 +67,12 @@ enum status friction_reserve(struct friction *friction, const struct neighbours 
 /// The loops below share out the parts of the list: even ones, which never meet, then odd ones.
 #define FOR_ALL_PARTS(friction, threads, call)                                                     \
     for (int first = 0; first < 2; first++) {                                                      \
-        _Pragma("omp parallel for schedule(dynamic) num_threads(threads) if (threads > 1)")        \
-        for (int p = first; p < (friction)->parts; p += 2)                                         \
-            call((friction)->pair + (friction)->begin[p],                                          \
+        _Pragma("omp parallel for schedule(dynamic) num_threads(threads) if (threads > 1)") for (  \
+            int p = first; p < (friction)->parts; p += 2)                                          \
+            call((const float(*)[4])(friction)->direction + (friction)->begin[p],                  \
+                 (friction)->pair + (friction)->begin[p],                                          \
                  (friction)->end[p] - (friction)->begin[p]);                                       \
     }
-
-static inline lanes_double4 direction_of(const struct friction_pair *pair) {
-    return lanes_load_double4(pair->direction);
-}
 
 static inline double sum_of(lanes_double4 a) {
     return (a[0] + a[1]) + a[2];
@@ -92,32 +92,46 @@ static void store_velocities(void *context, size_t begin, size_t end) {
             particles->velocity[d][k] = particles->kernel_force[k][d];
 }
 
-SIMD_CLONES static void sweep_pairs(const struct friction_pair *pair, size_t count,
-                                    lanes_double4 *v) {
-    for (size_t k = 0; k < count; k++) {
-        const lanes_double4 e = direction_of(&pair[k]);
-        lanes_double4 *const v_i = &v[pair[k].i], *const v_j = &v[pair[k].j];
-        const double u = sum_of(e * (*v_i - *v_j));
-        const lanes_double4 change = (pair[k].kick - pair[k].damping * u) * e;
-        *v_i += change;
-        *v_j -= change;
-    }
+static inline void change_pair(const float direction[4], const struct friction_pair *pair,
+                               lanes_double4 *v) {
+    const lanes_double4 e = lanes_load_double4(direction);
+    const double u = sum_of(e * (v[pair->i] - v[pair->j]));
+    const lanes_double4 change = (pair->kick - pair->damping * u) * e;
+    v[pair->i] += change;
+    v[pair->j] -= change;
+}
+
+/// Pairs come sorted by particle, where each waits for the velocity that the last one changed. So
+/// they are taken in strides, odd and longer than most particles have pairs: neighbours in time
+/// share no particle, and a processor overlaps them.
+SIMD_CLONES static void sweep_pairs(const float (*direction)[4], const struct friction_pair *pair,
+                                    size_t count, lanes_double4 *v) {
+    enum { BLOCK = 256, STRIDE = 37 };
+    const size_t whole = count / BLOCK * BLOCK;
+    for (size_t block = 0; block < whole; block += BLOCK)
+        for (size_t n = 0; n < BLOCK; n++) {
+            const size_t k = block + n * STRIDE % BLOCK;
+            change_pair(direction[k], &pair[k], v);
+        }
+    for (size_t k = whole; k < count; k++)
+        change_pair(direction[k], &pair[k], v);
 }
 
 void friction_sweep(const struct friction *friction, struct particles *particles) {
     lanes_double4 *v = (lanes_double4 *)particles->kernel_force;
     const int threads = particles->threads;
     parallel_for(particles->count, threads, load_velocities, particles);
-#define SWEEP(pair, count) sweep_pairs(pair, count, v)
+#define SWEEP(direction, pair, count) sweep_pairs(direction, pair, count, v)
     FOR_ALL_PARTS(friction, threads, SWEEP)
 #undef SWEEP
     parallel_for(particles->count, threads, store_velocities, particles);
 }
 
-SIMD_CLONES static void apply_pairs(const struct friction_pair *pair, size_t count,
-                                    const lanes_double4 *from, lanes_double4 *to, double kicks) {
+SIMD_CLONES static void apply_pairs(const float (*direction)[4], const struct friction_pair *pair,
+                                    size_t count, const lanes_double4 *from, lanes_double4 *to,
+                                    double kicks) {
     for (size_t k = 0; k < count; k++) {
-        const lanes_double4 e = direction_of(&pair[k]);
+        const lanes_double4 e = lanes_load_double4(direction[k]);
         const double u = sum_of(e * (from[pair[k].i] - from[pair[k].j]));
         const lanes_double4 change = (kicks * pair[k].kick - pair[k].damping * u) * e;
         to[pair[k].i] += change;
@@ -129,8 +143,8 @@ void friction_apply(const struct friction *friction, const struct particles *par
                     const double (*from)[4], double (*to)[4], bool kicks) {
     const int threads = particles->threads;
     memset(to, 0, particles->count * sizeof *to);
-#define APPLY(pair, count)                                                                         \
-    apply_pairs(pair, count, (const lanes_double4 *)from, (lanes_double4 *)to, kicks)
+#define APPLY(direction, pair, count)                                                              \
+    apply_pairs(direction, pair, count, (const lanes_double4 *)from, (lanes_double4 *)to, kicks)
     FOR_ALL_PARTS(friction, threads, APPLY)
 #undef APPLY
 }

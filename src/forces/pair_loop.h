@@ -29,6 +29,7 @@ enum {
 struct pair_batch {
     int count;
     int32_t i[PAIR_ROOM], j[PAIR_ROOM];
+    int32_t id_i[PAIR_ROOM], id_j[PAIR_ROOM]; ///< where friction is kept
     REAL dx[PAIR_ROOM], dy[PAIR_ROOM], dz[PAIR_ROOM];
 };
 
@@ -45,8 +46,7 @@ struct pair_columns {
     REAL force_over_r[PAIR_BATCH];
     REAL r_dot_v[PAIR_BATCH];
     int32_t low_id[PAIR_BATCH], high_id[PAIR_BATCH], noise[PAIR_BATCH];
-    REAL damping[PAIR_BATCH], kick[PAIR_BATCH];
-    REAL vector[PAIR_BATCH][4];
+    REAL force[PAIR_BATCH][4];
 };
 
 /// What stays the same from pair to pair.
@@ -59,15 +59,26 @@ struct pair_scene {
     struct pair_box box;
     REAL cutoff2, near_cutoff2; ///< squared: of the law, of its dissipative part
     bool has_few;               ///< particles have few pairs each
-    struct friction_pair *kept; ///< the place of the next
+    size_t *kept;               ///< where the next pair is kept
+};
+
+/// Pairs of a vector.
+struct pair_vector {
+    lanes_int i, j, id_i, id_j;
+    lanes_real dr[3];
 };
 
 /// Append the entries of a vector whose bits are set to the first `n`; returns their new number.
-INLINE int pair_append(struct pair_batch *batch, int n, unsigned mask, lanes_int i, lanes_int j,
-                       const lanes_real dr[3], const int dim) {
+INLINE int pair_append(struct pair_batch *batch, int n, unsigned mask,
+                       const struct pair_vector *pairs, const int dim, const bool has_ids) {
     const lanes_int order = lanes_set_bits(mask);
-    lanes_store_int(batch->i + n, lanes_permute_int(i, order));
-    lanes_store_int(batch->j + n, lanes_permute_int(j, order));
+    const lanes_real *dr = pairs->dr;
+    lanes_store_int(batch->i + n, lanes_permute_int(pairs->i, order));
+    lanes_store_int(batch->j + n, lanes_permute_int(pairs->j, order));
+    if (has_ids) {
+        lanes_store_int(batch->id_i + n, lanes_permute_int(pairs->id_i, order));
+        lanes_store_int(batch->id_j + n, lanes_permute_int(pairs->id_j, order));
+    }
     lanes_store(batch->dx + n, lanes_permute(dr[0], order));
     lanes_store(batch->dy + n, lanes_permute(dr[1], order));
     if (dim == 3)
@@ -78,29 +89,34 @@ INLINE int pair_append(struct pair_batch *batch, int n, unsigned mask, lanes_int
 /// Collect those of `count` entries of the list that are in range.
 INLINE void pair_collect(struct pair_batch *near, struct pair_batch *far,
                          const struct pair_scene *scene, const int32_t *list, const int32_t *owner,
-                         int count, const int dim, const bool has_far) {
+                         int count, const int dim, const bool has_far, const bool has_ids) {
     const struct PAIR_PLACE *place = scene->particles->PAIR_PLACES;
     int near_count = near->count, far_count = far->count;
     for (int k = 0; k < count; k += LANES) {
         const int32_t *rows = owner + k / NEIGHBOURS_ROW;
         const struct lanes_record j = lanes_load_records(place, list + k);
-        lanes_real dr[3], r2 = lanes_all(0);
+        struct pair_vector pairs = {.i = lanes_eights(rows[0], rows[1]),
+                                    .j = lanes_load_int(list + k)};
+        lanes_real r2 = lanes_all(0);
         for (int d = 0; d < dim; d++) {
-            dr[d] = pair_separation(&scene->box, &place[rows[0]], &place[rows[1]], &j, d);
-            r2 += dr[d] * dr[d];
+            pairs.dr[d] = pair_separation(&scene->box, &place[rows[0]], &place[rows[1]], &j, d);
+            r2 += pairs.dr[d] * pairs.dr[d];
+        }
+        if (has_ids) {
+            pairs.id_i =
+                lanes_eights(pair_owner_id(&place[rows[0]]), pair_owner_id(&place[rows[1]]));
+            pairs.id_j = pair_id(&j);
         }
         // Rows are filled up with their owner, whose distance from itself is 0.
         const unsigned in_range =
             lanes_below(lanes_all(0), r2) & lanes_below(r2, lanes_all(scene->cutoff2));
-        const lanes_int index_i = lanes_eights(rows[0], rows[1]);
-        const lanes_int index_j = lanes_load_int(list + k);
         if (!has_far) {
-            near_count = pair_append(near, near_count, in_range, index_i, index_j, dr, dim);
+            near_count = pair_append(near, near_count, in_range, &pairs, dim, has_ids);
             continue;
         }
         const unsigned is_near = in_range & lanes_below(r2, lanes_all(scene->near_cutoff2));
-        near_count = pair_append(near, near_count, is_near, index_i, index_j, dr, dim);
-        far_count = pair_append(far, far_count, in_range & ~is_near, index_i, index_j, dr, dim);
+        near_count = pair_append(near, near_count, is_near, &pairs, dim, has_ids);
+        far_count = pair_append(far, far_count, in_range & ~is_near, &pairs, dim, false);
     }
     near->count = near_count;
     far->count = far_count;
@@ -204,14 +220,15 @@ INLINE void pair_dissipative(struct pair_columns *columns, int count, const stru
     }
 }
 
-/// Multiples of r_i − r_j, in records: of F/r forces, of 1/r directions.
+/// F = F/r (r_i − r_j), in records.
 INLINE void pair_vectors(struct pair_columns *columns, const struct pair_batch *batch, int count,
-                         const REAL *multiple, const int dim) {
+                         const int dim) {
     for (int k = 0; k < count; k += LANES) {
-        const lanes_real scale = lanes_load(multiple + k);
-        lanes_store_records(columns->vector + k, scale * lanes_load(batch->dx + k),
+        const lanes_real scale = lanes_load(columns->force_over_r + k);
+        lanes_store_records(columns->force + k, scale * lanes_load(batch->dx + k),
                             scale * lanes_load(batch->dy + k),
-                            dim == 3 ? scale * lanes_load(batch->dz + k) : lanes_all(0));
+                            dim == 3 ? scale * lanes_load(batch->dz + k) : lanes_all(0),
+                            lanes_all(0));
     }
 }
 
@@ -225,12 +242,12 @@ INLINE void pair_scatter(const struct pair_columns *columns, struct pair_batch *
         // Two sums, because each addition waits for the one before.
         lanes_double4 sum[2] = {{0}, {0}};
         for (;;) {
-            const lanes_double4 even = lanes_load_double4(columns->vector[k]);
+            const lanes_double4 even = lanes_load_double4(columns->force[k]);
             force[batch->j[k]] -= even;
             sum[0] += even;
             if (batch->i[++k] != i)
                 break;
-            const lanes_double4 odd = lanes_load_double4(columns->vector[k]);
+            const lanes_double4 odd = lanes_load_double4(columns->force[k]);
             force[batch->j[k]] -= odd;
             sum[1] += odd;
             if (batch->i[++k] != i)
@@ -254,7 +271,7 @@ INLINE void pair_scatter_few(const struct pair_columns *columns, struct pair_bat
     const int32_t after = batch->i[count];
     batch->i[count] = -1;
     for (int k = 0; k < count; k++) {
-        const lanes_double4 here = lanes_load_double4(columns->vector[k]);
+        const lanes_double4 here = lanes_load_double4(columns->force[k]);
         force[batch->j[k]] -= here;
         sum += here;
         sums[owners] = sum;
@@ -270,46 +287,33 @@ INLINE void pair_scatter_few(const struct pair_columns *columns, struct pair_bat
 }
 
 /// The ordered ids that key the noise.
-INLINE void pair_ids(struct pair_columns *columns, const struct pair_batch *batch, int count,
-                     const uint32_t *id) {
-    for (int k = 0; k < count; k++) {
-        const int32_t id_i = (int32_t)id[batch->i[k]], id_j = (int32_t)id[batch->j[k]];
-        columns->low_id[k] = id_i < id_j ? id_i : id_j;
-        columns->high_id[k] = id_i < id_j ? id_j : id_i;
+INLINE void pair_ids(struct pair_columns *columns, const struct pair_batch *batch, int count) {
+    for (int k = 0; k < count; k += LANES) {
+        const lanes_int id_i = lanes_load_int(batch->id_i + k);
+        const lanes_int id_j = lanes_load_int(batch->id_j + k);
+        lanes_store_int(columns->low_id + k, lanes_least_int(id_i, id_j));
+        lanes_store_int(columns->high_id + k, lanes_most_int(id_i, id_j));
     }
 }
 
-/// Damping and kick.
-INLINE void pair_factors(struct pair_columns *columns, int count, const struct friction *friction) {
+/// Keep the pairs for the integrator, in whole vectors: the list has room for more.
+INLINE void pair_keep(const struct pair_columns *columns, const struct pair_batch *batch, int count,
+                      struct friction *friction, size_t place, const int dim) {
     const REAL unit = (REAL)(sqrt(12) * 0x1p-32); // as in pair_dissipative
     for (int k = 0; k < count; k += LANES) {
+        const lanes_real inverse_r = lanes_load(columns->inverse_r + k);
         const struct lanes_record c =
             lanes_load_records(friction->PAIR_ROWS, columns->weight.interval + k);
         const lanes_real f = lanes_load(columns->weight.fraction + k);
         const lanes_real zeta = unit * lanes_to_real(lanes_load_int(columns->noise + k));
-        lanes_store(columns->damping + k, c.word[0] + f * c.word[1]);
-        lanes_store(columns->kick + k, (c.word[2] + f * c.word[3]) * zeta);
+        pair_store_directions(friction->direction + place + k,
+                              inverse_r * lanes_load(batch->dx + k),
+                              inverse_r * lanes_load(batch->dy + k),
+                              dim == 3 ? inverse_r * lanes_load(batch->dz + k) : lanes_all(0));
+        pair_store_frictions(friction->pair + place + k, c.word[0] + f * c.word[1],
+                             (c.word[2] + f * c.word[3]) * zeta, lanes_load_int(batch->i + k),
+                             lanes_load_int(batch->j + k));
     }
-}
-
-/// Keep the pairs; returns the place of the next. A full batch is shuffled: a sweep over the pairs
-/// of one particle after the other would wait for each velocity, but pairs that share no particle
-/// overlap.
-INLINE struct friction_pair *pair_keep(const struct pair_columns *columns,
-                                       const struct pair_batch *batch, int count,
-                                       struct friction_pair *to) {
-    enum { STRIDE = 37 }; // odd, and more than most particles have pairs
-    for (int n = 0; n < count; n++) {
-        const int k = count == PAIR_BATCH ? n * STRIDE % PAIR_BATCH : n;
-        *to++ = (struct friction_pair){
-            .direction = {(float)columns->vector[k][0], (float)columns->vector[k][1],
-                          (float)columns->vector[k][2]},
-            .damping = (float)columns->damping[k],
-            .kick = (float)columns->kick[k],
-            .i = batch->i[k],
-            .j = batch->j[k]};
-    }
-    return to;
 }
 
 INLINE void pair_count(const struct pair_columns *columns, int count,
@@ -323,7 +327,7 @@ INLINE void pair_count(const struct pair_columns *columns, int count,
 }
 
 /// The forces of the first `count` pairs of a batch.
-INLINE void pair_evaluate(struct pair_batch *batch, int count, struct pair_scene *scene,
+INLINE void pair_evaluate(struct pair_batch *batch, int count, const struct pair_scene *scene,
                           const int dim, const bool conservative, const enum pair_friction friction,
                           const bool wants_sums) {
     const struct pair_law *law = scene->law;
@@ -339,7 +343,7 @@ INLINE void pair_evaluate(struct pair_batch *batch, int count, struct pair_scene
         pair_dissipative(&columns, count, law, conservative);
     }
     if (conservative || friction == PAIR_ADDS_FRICTION) {
-        pair_vectors(&columns, batch, count, columns.force_over_r, dim);
+        pair_vectors(&columns, batch, count, dim);
         lanes_double4 *force = (lanes_double4 *)scene->particles->kernel_force;
         if (scene->has_few)
             pair_scatter_few(&columns, batch, count, force);
@@ -347,18 +351,17 @@ INLINE void pair_evaluate(struct pair_batch *batch, int count, struct pair_scene
             pair_scatter(&columns, batch, count, force);
     }
     if (friction == PAIR_KEEPS_FRICTION) {
-        pair_ids(&columns, batch, count, scene->particles->id);
+        pair_ids(&columns, batch, count);
         pair_noise(&columns, count, law->seed, scene->step);
-        pair_factors(&columns, count, law->friction);
-        pair_vectors(&columns, batch, count, columns.inverse_r, dim);
-        scene->kept = pair_keep(&columns, batch, count, scene->kept);
+        pair_keep(&columns, batch, count, law->friction, *scene->kept, dim);
+        *scene->kept += (size_t)count;
     }
 }
 
 /// Evaluate a full batch, and move what is beyond to the front.
-INLINE void pair_evaluate_full(struct pair_batch *batch, struct pair_scene *scene,
-                               const int dim, const bool conservative, const enum pair_friction friction,
-                               const bool wants_sums) {
+INLINE void pair_evaluate_full(struct pair_batch *batch, const struct pair_scene *scene,
+                               const int dim, const bool conservative,
+                               const enum pair_friction friction, const bool wants_sums) {
     if (batch->count < PAIR_BATCH)
         return;
     pair_evaluate(batch, PAIR_BATCH, scene, dim, conservative, friction, wants_sums);
@@ -366,6 +369,10 @@ INLINE void pair_evaluate_full(struct pair_batch *batch, struct pair_scene *scen
     for (int k = 0; k < PAIR_PIECE; k += LANES) { // always as many: predictable
         lanes_store_int(batch->i + k, lanes_load_int(batch->i + PAIR_BATCH + k));
         lanes_store_int(batch->j + k, lanes_load_int(batch->j + PAIR_BATCH + k));
+        if (friction == PAIR_KEEPS_FRICTION) {
+            lanes_store_int(batch->id_i + k, lanes_load_int(batch->id_i + PAIR_BATCH + k));
+            lanes_store_int(batch->id_j + k, lanes_load_int(batch->id_j + PAIR_BATCH + k));
+        }
         lanes_store(batch->dx + k, lanes_load(batch->dx + PAIR_BATCH + k));
         lanes_store(batch->dy + k, lanes_load(batch->dy + PAIR_BATCH + k));
         if (dim == 3)
@@ -374,12 +381,12 @@ INLINE void pair_evaluate_full(struct pair_batch *batch, struct pair_scene *scen
 }
 
 /// Evaluate what is left. The last vector is filled up with pairs beyond the cutoff, without force.
-INLINE void pair_evaluate_rest(struct pair_batch *batch, struct pair_scene *scene,
-                               const int dim, const bool conservative, const enum pair_friction friction,
-                               const bool wants_sums) {
+INLINE void pair_evaluate_rest(struct pair_batch *batch, const struct pair_scene *scene,
+                               const int dim, const bool conservative,
+                               const enum pair_friction friction, const bool wants_sums) {
     const REAL beyond = 2 * (REAL)sqrt(scene->cutoff2);
     for (int k = batch->count; k < batch->count + RNG_LANES; k++) {
-        batch->i[k] = batch->j[k] = 0;
+        batch->i[k] = batch->j[k] = batch->id_i[k] = batch->id_j[k] = 0;
         batch->dx[k] = beyond;
         batch->dy[k] = batch->dz[k] = 0;
     }
@@ -406,7 +413,7 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
     scene.has_few =
         sizeof(REAL) == 4 && part->end - part->begin < PAIR_FEW * (part->last - part->first);
     if (friction == PAIR_KEEPS_FRICTION)
-        scene.kept = law->friction->pair + law->friction->begin[part_number];
+        scene.kept = &law->friction->end[part_number];
     // Near pairs feel the whole law, far ones the potential alone.
     const bool has_far = conservative && friction != PAIR_NO_FRICTION && near_cutoff < cutoff;
     struct pair_batch near, far;
@@ -414,7 +421,8 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
     for (size_t k = part->begin; k < part->end; k += PAIR_PIECE) {
         const int count = part->end - k < PAIR_PIECE ? (int)(part->end - k) : PAIR_PIECE;
         pair_collect(&near, &far, &scene, neighbours->list + k,
-                     neighbours->owner + k / NEIGHBOURS_ROW, count, dim, has_far);
+                     neighbours->owner + k / NEIGHBOURS_ROW, count, dim, has_far,
+                     friction == PAIR_KEEPS_FRICTION);
         pair_evaluate_full(&near, &scene, dim, conservative, friction, wants_sums);
         if (has_far)
             pair_evaluate_full(&far, &scene, dim, conservative, PAIR_NO_FRICTION, wants_sums);
@@ -422,8 +430,6 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
     pair_evaluate_rest(&near, &scene, dim, conservative, friction, wants_sums);
     if (has_far)
         pair_evaluate_rest(&far, &scene, dim, conservative, PAIR_NO_FRICTION, wants_sums);
-    if (friction == PAIR_KEEPS_FRICTION)
-        law->friction->end[part_number] = (size_t)(scene.kept - law->friction->pair);
 }
 
 #define PAIR_INSTANCE(name, dim, conservative, friction, wants_sums)                               \
@@ -453,15 +459,11 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
     PAIR_FRICTION_INSTANCES(set##_added, PAIR_ADDS_FRICTION)                                       \
     PAIR_FRICTION_INSTANCES(set##_kept, PAIR_KEEPS_FRICTION)                                       \
     const pair_kernel set[2][2][PAIR_FRICTIONS][2] = {                                             \
-        {{{NULL, NULL},                                                                            \
-          {set##_added_2d, set##_added_2d_s},                                                      \
-          {set##_kept_2d, set##_kept_2d_s}},                                                       \
+        {{{NULL, NULL}, {set##_added_2d, set##_added_2d_s}, {set##_kept_2d, set##_kept_2d_s}},     \
          {{set##_2d_c, set##_2d_cs},                                                               \
           {set##_added_2d_c, set##_added_2d_cs},                                                   \
           {set##_kept_2d_c, set##_kept_2d_cs}}},                                                   \
-        {{{NULL, NULL},                                                                            \
-          {set##_added_3d, set##_added_3d_s},                                                      \
-          {set##_kept_3d, set##_kept_3d_s}},                                                       \
+        {{{NULL, NULL}, {set##_added_3d, set##_added_3d_s}, {set##_kept_3d, set##_kept_3d_s}},     \
          {{set##_3d_c, set##_3d_cs},                                                               \
           {set##_added_3d_c, set##_added_3d_cs},                                                   \
           {set##_kept_3d_c, set##_kept_3d_cs}}}};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/lanes.h"
+#include "forces/friction.h"
 #include "system/particles.h"
 
 #define INLINE static inline __attribute__((always_inline))
@@ -39,8 +40,27 @@ INLINE lanes_real pair_separation(const struct pair_box *box,
     return x - lanes_nearest(x * box->inverse_length[d]) * box->length[d];
 }
 
-INLINE lanes_int pair_id(const struct lanes_record *motion) {
-    return lanes_to_int(motion->word[3]);
+INLINE lanes_int pair_id(const struct lanes_record *particle) {
+    return lanes_to_int(particle->word[3]);
+}
+
+INLINE int32_t pair_owner_id(const struct particle_precise_place *owner) {
+    return (int32_t)owner->id;
+}
+
+INLINE void pair_store_directions(float (*to)[4], lanes_real x, lanes_real y, lanes_real z) {
+    for (int n = 0; n < LANES; n++) {
+        to[n][0] = (float)x[n];
+        to[n][1] = (float)y[n];
+        to[n][2] = (float)z[n];
+        to[n][3] = 0;
+    }
+}
+
+INLINE void pair_store_frictions(struct friction_pair *to, lanes_real damping, lanes_real kick,
+                                 lanes_int i, lanes_int j) {
+    for (int n = 0; n < LANES; n++)
+        to[n] = (struct friction_pair){(float)damping[n], (float)kick[n], i[n], j[n]};
 }
 
 #else
@@ -71,8 +91,21 @@ INLINE lanes_real pair_separation(const struct pair_box *box, const struct parti
     return box->scale[d] * lanes_to_real((lanes_int)(x - (lanes_uint)j->word[d]));
 }
 
-INLINE lanes_int pair_id(const struct lanes_record *motion) {
-    return (lanes_int)motion->word[3];
+INLINE lanes_int pair_id(const struct lanes_record *particle) {
+    return (lanes_int)particle->word[3];
+}
+
+INLINE int32_t pair_owner_id(const struct particle_place *owner) {
+    return (int32_t)owner->id;
+}
+
+INLINE void pair_store_directions(float (*to)[4], lanes_real x, lanes_real y, lanes_real z) {
+    lanes_store_records(to, x, y, z, lanes_all(0));
+}
+
+INLINE void pair_store_frictions(struct friction_pair *to, lanes_real damping, lanes_real kick,
+                                 lanes_int i, lanes_int j) {
+    lanes_store_records((float(*)[4])to, damping, kick, (lanes_real)i, (lanes_real)j);
 }
 
 #endif

@@ -123,6 +123,7 @@ enum status neighbours_sort_and_build(struct neighbours *neighbours, struct part
     particles_update_fractions(particles);
     neighbours_sort(neighbours, particles);
     particles_permute(particles, neighbours->order);
+    particles_label_places(particles);
     particles_update_fractions(particles);
     for (int d = 0; d < particles->box.dimensions; d++)
         memcpy(neighbours->built[d], particles->position[d],
@@ -141,6 +142,7 @@ static void exchange_positions(struct neighbours *neighbours, struct particles *
 }
 
 enum status neighbours_rebuild(struct neighbours *neighbours, struct particles *particles) {
+    particles_label_places(particles);
     exchange_positions(neighbours, particles);
     neighbours_sort(neighbours, particles);
     const enum status status = neighbours_build(neighbours, particles);

@@ -115,6 +115,19 @@ void particles_update_fractions(struct particles *particles) {
         parallel_for(particles->count, particles->threads, update_precise_places, particles);
 }
 
+static void label_places(void *context, size_t begin, size_t end) {
+    const struct particles *particles = context;
+    for (size_t k = begin; k < end; k++)
+        particles->kernel_place[k].id = particles->id[k];
+    if (particles->precise_place)
+        for (size_t k = begin; k < end; k++)
+            particles->precise_place[k].id = particles->id[k];
+}
+
+void particles_label_places(struct particles *particles) {
+    parallel_for(particles->count, particles->threads, label_places, particles);
+}
+
 struct prediction {
     struct particles *particles;
     double ahead;
