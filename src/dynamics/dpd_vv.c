@@ -3,7 +3,8 @@
 
 /// Friction and noise as forces.
 static struct friction_factors factors(double omega, double time_step, double temperature) {
-    return (struct friction_factors){omega * omega, sqrt(2 * temperature / time_step) * omega};
+    const double amplitude = sqrt(2 * temperature / time_step) * omega;
+    return (struct friction_factors){omega * omega, amplitude};
 }
 
 /// Velocity Verlet whose friction is computed once more from the velocities at the end of the step.
