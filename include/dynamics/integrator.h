@@ -17,6 +17,8 @@ struct integrator {
     bool dissipative;           ///< understands ω(r)
     /// What it makes of ω, if it splits friction and noise off the forces; NULL: they are forces.
     friction_method *friction;
+    /// A step begins with the friction of the pairs that the last one kept.
+    bool friction_first;
     /// Forces are computed in the middle of the step: those at its end take a pass of their own.
     bool forces_midway;
     /// Advance by one step, with one call of simulation_compute_forces.

@@ -14,22 +14,40 @@ static struct friction_factors midpoint(double omega, double time_step, double t
                                      sqrt(2 * temperature * time_step) * omega};
 }
 
+/// What friction does to the velocities.
+typedef enum status friction_change(struct simulation *simulation);
+
+static enum status sweep(struct simulation *simulation) {
+    friction_sweep(&simulation->friction, &simulation->particles);
+    return STATUS_OK;
+}
+
+static enum status solve(struct simulation *simulation) {
+    return friction_solve(&simulation->friction, &simulation->particles,
+                          simulation->setup.integrator_parameters.tolerance);
+}
+
 /// Drift, kick, friction, kick, drift: forces and friction from the positions in the middle. The
-/// kinetic temperature is unbiased right after the friction, which conserves the Maxwell
-/// distribution; at the end of the step it is too large by a term of order Δt².
-static enum status step(struct simulation *simulation) {
+/// kinetic temperature is taken right after the friction, which conserves the Maxwell distribution;
+/// at the end of the step it is larger by a term of order Δt².
+static enum status step_with(struct simulation *simulation, friction_change *change) {
     simulation_drift_half(simulation);
     TRY(simulation_compute_forces(simulation, 0));
     simulation_kick(simulation);
-    if (simulation->friction.single && simulation->setup.integrator == &aboba)
-        friction_sweep(&simulation->friction, &simulation->particles);
-    else if (simulation->friction.single)
-        TRY(friction_solve(&simulation->friction, &simulation->particles,
-                           simulation->setup.integrator_parameters.tolerance));
+    if (simulation->setup.weight)
+        TRY(change(simulation));
     simulation_take_temperature(simulation);
     simulation_kick(simulation);
     simulation_drift_half(simulation);
     return STATUS_OK;
+}
+
+static enum status step_exact(struct simulation *simulation) {
+    return step_with(simulation, sweep);
+}
+
+static enum status step_implicit(struct simulation *simulation) {
+    return step_with(simulation, solve);
 }
 
 static const struct field no_fields[] = {FIELD_END};
@@ -42,7 +60,7 @@ const struct integrator aboba = {
     .dissipative = true,
     .friction = exact,
     .forces_midway = true,
-    .step = step,
+    .step = step_exact,
 };
 
 static const struct field implicit_fields[] = {
@@ -59,5 +77,5 @@ const struct integrator aboba_implicit = {
     .dissipative = true,
     .friction = midpoint,
     .forces_midway = true,
-    .step = step,
+    .step = step_implicit,
 };

@@ -13,12 +13,12 @@ static enum status step(struct simulation *simulation) {
     struct friction *friction = &simulation->friction;
     simulation_kick_and_drift(simulation);
     TRY(simulation_compute_forces(simulation, 0));
-    if (friction->single)
+    if (simulation->setup.weight)
         TRY(friction_add_to_forces(friction, particles, particles->velocity, 1, true));
     simulation_kick(simulation);
     // Friction is linear in the velocities: what the kick has changed of them changes it.
     const double half_step = 0.5 * simulation->setup.time_step;
-    if (friction->single)
+    if (simulation->setup.weight)
         TRY(friction_add_to_forces(friction, particles, particles->force, half_step, false));
     return STATUS_OK;
 }

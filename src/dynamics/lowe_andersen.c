@@ -29,7 +29,7 @@ static enum status step(struct simulation *simulation) {
     simulation_kick_and_drift(simulation);
     TRY(simulation_compute_forces(simulation, 0));
     simulation_kick(simulation);
-    if (simulation->friction.single) {
+    if (simulation->setup.weight) {
         draw_collisions(&simulation->friction, simulation->setup.temperature);
         friction_sweep(&simulation->friction, &simulation->particles);
     }

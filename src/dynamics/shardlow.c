@@ -11,7 +11,7 @@ static struct friction_factors factors(double omega, double time_step, double te
 /// S1: friction for a whole step, then velocity Verlet. The pairs are those of the forces at the
 /// end of the last step.
 static enum status step(struct simulation *simulation) {
-    if (simulation->friction.single)
+    if (simulation->setup.weight)
         friction_sweep(&simulation->friction, &simulation->particles);
     simulation_kick_and_drift(simulation);
     TRY(simulation_compute_forces(simulation, 0));
@@ -27,5 +27,6 @@ const struct integrator shardlow = {
     .fields = fields,
     .dissipative = true,
     .friction = factors,
+    .friction_first = true,
     .step = step,
 };

@@ -269,8 +269,8 @@ size_t simulation_spans(struct simulation *simulation, struct memory_span *spans
 
 enum status simulation_restore(struct simulation *simulation) {
     TRY(neighbours_rebuild(&simulation->neighbours, &simulation->particles));
-    // Pairs that the next step begins with are not saved.
-    if (simulation->setup.integrator == &shardlow)
+    // Kept pairs are not saved; another pass at the same step keeps the same.
+    if (simulation->setup.integrator->friction_first)
         return simulation_compute_forces(simulation, 0);
     return STATUS_OK;
 }
