@@ -102,11 +102,12 @@ static inline void change_pair(const float direction[4], const struct friction_p
 }
 
 /// Pairs come sorted by particle, where each waits for the velocity that the last one changed. So
-/// they are taken in strides, odd and longer than most particles have pairs: neighbours in time
-/// share no particle, and a processor overlaps them.
+/// they are taken in strides of the golden section of a block: neighbours in time share no
+/// particle, and a processor overlaps them. Measured on Zen 5 for the thesis's scene, 35 pairs a
+/// particle: blocks of 256, 1024 and 2048 make 1058, 1104 and 1070 steps/s.
 SIMD_CLONES static void sweep_pairs(const float (*direction)[4], const struct friction_pair *pair,
                                     size_t count, lanes_double4 *v) {
-    enum { BLOCK = 256, STRIDE = 37 };
+    enum { BLOCK = 1024, STRIDE = 633 };
     const size_t whole = count / BLOCK * BLOCK;
     for (size_t block = 0; block < whole; block += BLOCK)
         for (size_t n = 0; n < BLOCK; n++) {
