@@ -30,7 +30,8 @@ enum status thermodynamics_sample(struct thermodynamics *thermodynamics,
 const double *thermodynamics_series(const struct thermodynamics *thermodynamics,
                                     enum thermodynamics_quantity quantity);
 
-/// Means over all replicas with standard errors from 20 blocks of each series.
+/// Means over all replicas with standard errors that see the correlation of each series, by
+/// statistics_correlated_error.
 struct thermodynamics_summary {
     double temperature, temperature_error;
     double temperature_configurational, temperature_configurational_error; ///< NaN without Φ

@@ -7,7 +7,8 @@
 
 #include <math.h>
 
-enum { BLOCKS = 20 };
+/// Longer series are averaged in blocks first, so that their autocovariances stay cheap.
+enum { MOST_BLOCKS = 4096 };
 
 enum status thermodynamics_init(struct thermodynamics *thermodynamics, size_t planned) {
     *thermodynamics = (struct thermodynamics){.planned = planned};
@@ -52,39 +53,51 @@ static double block_mean(const struct thermodynamics *replica,
     return sum / (double)(end - begin);
 }
 
-/// Mean and standard error of numerator/denominator over the blocks of all replicas.
-static void blocked_ratio(const struct thermodynamics *replicas, size_t count,
-                          enum thermodynamics_quantity numerator, int denominator, double *mean,
-                          double *error) {
-    struct running_mean blocks = {0}, above = {0}, below = {0};
-    for (size_t r = 0; r < count; r++) {
-        const size_t samples = replicas[r].samples;
-        const size_t parts = samples < BLOCKS ? samples : BLOCKS;
-        for (size_t b = 0; b < parts; b++) {
-            const size_t begin = samples * b / parts, end = samples * (b + 1) / parts;
+/// Mean of a quantity over all samples of all replicas; 1 without a quantity.
+static double mean_of(const struct thermodynamics *replicas, size_t count, int quantity) {
+    struct running_mean mean = {0};
+    for (size_t r = 0; quantity >= 0 && r < count; r++)
+        for (size_t k = 0; k < replicas[r].samples; k++)
+            statistics_add(&mean, thermodynamics_series(&replicas[r],
+                                                        (enum thermodynamics_quantity)quantity)[k]);
+    return quantity < 0 ? 1 : mean.mean;
+}
+
+/// Mean and standard error of numerator/denominator. To first order in the scatter the error is
+/// that of the mean of (numerator − ratio · denominator) / ⟨denominator⟩; of replicas of different
+/// lengths the shortest counts.
+static void ratio(const struct thermodynamics *replicas, size_t count,
+                  enum thermodynamics_quantity numerator, int denominator, double *mean,
+                  double *error) {
+    double deviations[MOST_BLOCKS];
+    const double below = mean_of(replicas, count, denominator);
+    *mean = mean_of(replicas, count, numerator) / below;
+    size_t shortest = replicas[0].samples;
+    for (size_t r = 1; r < count; r++)
+        shortest = replicas[r].samples < shortest ? replicas[r].samples : shortest;
+    const size_t each = (shortest * count + MOST_BLOCKS - 1) / MOST_BLOCKS;
+    const size_t blocks = each ? shortest / each : 0;
+    for (size_t r = 0; r < count; r++)
+        for (size_t b = 0; b < blocks; b++) {
+            const size_t begin = b * each, end = begin + each;
             const double top = block_mean(&replicas[r], numerator, begin, end);
             const double bottom =
                 denominator < 0 ? 1
                                 : block_mean(&replicas[r],
                                              (enum thermodynamics_quantity)denominator, begin, end);
-            statistics_add(&above, top);
-            statistics_add(&below, bottom);
-            statistics_add(&blocks, top / bottom);
+            deviations[r * blocks + b] = (top - *mean * bottom) / below;
         }
-    }
-    *mean = above.mean / below.mean;
-    *error = statistics_standard_error(&blocks);
+    *error = statistics_correlated_error(deviations, blocks, count);
 }
 
 struct thermodynamics_summary thermodynamics_result(const struct thermodynamics *replicas,
                                                     size_t count) {
     struct thermodynamics_summary s;
-    blocked_ratio(replicas, count, THERMODYNAMICS_TEMPERATURE, -1, &s.temperature,
-                  &s.temperature_error);
-    blocked_ratio(replicas, count, THERMODYNAMICS_POTENTIAL_ENERGY, -1, &s.potential_energy,
-                  &s.potential_energy_error);
-    blocked_ratio(replicas, count, THERMODYNAMICS_PRESSURE, -1, &s.pressure, &s.pressure_error);
-    blocked_ratio(replicas, count, THERMODYNAMICS_FORCE_SQUARES, THERMODYNAMICS_LAPLACIAN,
-                  &s.temperature_configurational, &s.temperature_configurational_error);
+    ratio(replicas, count, THERMODYNAMICS_TEMPERATURE, -1, &s.temperature, &s.temperature_error);
+    ratio(replicas, count, THERMODYNAMICS_POTENTIAL_ENERGY, -1, &s.potential_energy,
+          &s.potential_energy_error);
+    ratio(replicas, count, THERMODYNAMICS_PRESSURE, -1, &s.pressure, &s.pressure_error);
+    ratio(replicas, count, THERMODYNAMICS_FORCE_SQUARES, THERMODYNAMICS_LAPLACIAN,
+          &s.temperature_configurational, &s.temperature_configurational_error);
     return s;
 }
