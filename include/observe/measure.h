@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/fields.h"
+#include "observe/motion.h"
 #include "observe/rdf.h"
 #include "observe/thermodynamics.h"
 
@@ -22,6 +23,7 @@ uint64_t measure_steps(const struct measure_plan *plan);
 struct measure_targets {
     struct rdf *rdf;
     struct thermodynamics *thermodynamics;
+    struct motion *motion; ///< begun at the end of the equilibration; has an interval of its own
 };
 
 /// Told after each sample; `done` of `total` steps. NULL for none.

@@ -47,13 +47,20 @@ enum status measure_equilibrate(struct simulation *simulation, const struct meas
     return STATUS_OK;
 }
 
+/// Run until `step`, and sample the motion on the way whenever it is due.
+static enum status run_moving(struct simulation *simulation, int64_t step, struct motion *motion) {
+    for (; motion && motion_due(motion) <= step; motion_sample(motion, simulation))
+        TRY(run_until(simulation, motion_due(motion)));
+    return run_until(simulation, step);
+}
+
 /// The last step before a sample, in which the force pass counts and sums what the sample needs.
 static enum status run_sampled_step(struct simulation *simulation, int64_t due,
                                     struct measure_targets targets) {
     const bool midway = simulation->setup.integrator->forces_midway;
     simulation->wants = targets.thermodynamics ? PAIR_FORCES_AND_SUMS : PAIR_FORCES;
     simulation->law.histogram = targets.rdf && !midway ? rdf_histogram(targets.rdf) : NULL;
-    const enum status status = run_until(simulation, due);
+    const enum status status = run_moving(simulation, due, targets.motion);
     const bool counted = simulation->law.histogram != NULL;
     simulation->law.histogram = NULL;
     TRY(status);
@@ -73,7 +80,7 @@ enum status measure_sample(struct simulation *simulation, const struct measure_p
     for (int64_t sample = begun / plan->every; sample < plan->samples; sample++) {
         const int64_t due = plan->equilibration + (sample + 1) * plan->every;
         simulation->wants = PAIR_FORCES;
-        TRY(run_until(simulation, due - 1));
+        TRY(run_moving(simulation, due - 1, targets.motion));
         TRY(run_sampled_step(simulation, due, targets));
         if (targets.thermodynamics)
             TRY(thermodynamics_sample(targets.thermodynamics, simulation));

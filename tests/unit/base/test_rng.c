@@ -67,7 +67,7 @@ static void test_rng_philox_lane_equals_word_0_when_counters_vary(void **state) 
     for (uint32_t n = 0; n < 20000; n++) {
         const struct rng_block random = rng_philox(3, RNG_SELECTION, n, 0, 0);
         const uint64_t seed = (uint64_t)random.word[0] << 32 | random.word[1];
-        const enum rng_stream stream = (enum rng_stream)(n % (RNG_VERIFICATION + 1));
+        const enum rng_stream stream = (enum rng_stream)(n % (RNG_MEAN_VELOCITY + 1));
         const uint32_t a = n, b = random.word[2], c = random.word[3];
         const uint32_t lane = rng_philox_lane((uint32_t)seed, (uint32_t)(seed >> 32), a, b, c,
                                               rng_stream_word(stream, 0));
@@ -162,7 +162,7 @@ static void test_rng_seeds_do_not_replay_each_other_when_steps_are_shifted(void 
 
 static void test_rng_streams_differ_when_seed_and_counters_are_the_same(void **state) {
     (void)state;
-    for (int a = RNG_PAIR_NOISE; a <= RNG_VERIFICATION; a++)
+    for (int a = RNG_PAIR_NOISE; a <= RNG_MEAN_VELOCITY; a++)
         for (int b = RNG_PAIR_NOISE; b < a; b++) {
             const struct rng_block first = rng_philox(7, (enum rng_stream)a, 1, 2, 3);
             const struct rng_block second = rng_philox(7, (enum rng_stream)b, 1, 2, 3);

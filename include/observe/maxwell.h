@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Are the velocities those of Maxwell at the set temperature?
+#pragma once
+
+#include "system/particles.h"
+
+/// Bins of equal probability under Maxwell's distribution: their edges are where the distribution
+/// functions are compared, which understates the statistic by 2^-16 at most.
+enum { MAXWELL_BINS = 1 << 16 };
+
+struct maxwell {
+    uint64_t *counts; ///< shape [MAXWELL_BINS]: velocity components of all configurations
+};
+
+enum status maxwell_init(struct maxwell *maxwell) MUST_USE;
+void maxwell_clear(struct maxwell *maxwell);
+
+/// Add all velocity components of a configuration.
+///
+/// The total momentum of a simulation is 0, so that its components are not independent: their mean
+/// is known, which narrows the statistic by a finite factor however many particles there are (the
+/// case of H. W. Lilliefors, J. Am. Stat. Assoc. 62, 399 (1967)), and p-values would crowd at 1.
+/// The mean velocity is therefore replaced by one drawn from N(0, T/N): what was canonical with
+/// momentum 0 is then exactly dN independent numbers N(0, T).
+/// @param[in] temperature  that was set [k_B T_0]
+/// @param[in] seed, step   of the drawn mean: the same for any order of particles or threads
+void maxwell_sample(struct maxwell *maxwell, const struct particles *particles, double temperature,
+                    uint64_t seed, uint64_t step);
+
+struct maxwell_summary {
+    double numbers;     ///< velocity components in all
+    double statistic;   ///< Kolmogorov and Smirnov's D = sup |F_n − F|; NaN without numbers
+    double probability; ///< of a larger D by chance, if all numbers are independent
+};
+
+/// The p-value is honest if the configurations are so far apart that velocities have forgotten
+/// each other: correlated ones make it too small. Without a thermostat the total energy is
+/// remembered for ever.
+/// Tested: test_maxwell.
+struct maxwell_summary maxwell_result(const struct maxwell *maxwell);
+
+/// Probability that D exceeds `statistic` for n independent numbers of a known distribution:
+///   Q(λ) = 2 Σ_k (−1)^(k−1) exp(−2 k² λ²),  λ = (√n + 0.12 + 0.11/√n) D,
+/// M. A. Stephens, J. R. Stat. Soc. B 32, 115 (1970); good to 0.001 from n = 5 on.
+double maxwell_probability(double statistic, double n);

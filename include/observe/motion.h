@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file How far particles go, and how long they remember their velocity: mean-square displacement,
+/// velocity autocorrelation function, diffusion coefficient.
+///
+///   MSD(t) = ⟨|r_i(s + t) − r_i(s)|²⟩,   VACF(t) = ⟨v_i(s + t) · v_i(s)⟩,
+///   D = slope of the MSD / (2d) (Einstein),   D = (1/d) ∫ VACF dt (Green and Kubo),
+///
+/// over all particles i and many overlapping time origins s: D. Frenkel and B. Smit, Understanding
+/// Molecular Simulation (2nd ed., 2002), sections 4.4 and 5.3; M. P. Allen and D. J. Tildesley,
+/// Computer Simulation of Liquids (2nd ed., 2017), section 8.5. Positions are unwrapped, and
+/// positions and velocities are those relative to the centre of mass.
+#pragma once
+
+#include "base/fields.h"
+#include "dynamics/simulation.h"
+#include "observe/maxwell.h"
+
+struct motion_plan {
+    int64_t every;        ///< steps between samples
+    int64_t lags;         ///< length of the window [samples]
+    int64_t origin_every; ///< samples between time origins
+    double fit_from;      ///< where the line on the MSD begins, as a part of the window
+};
+
+extern const struct field motion_plan_fields[];
+
+/// Cost of a sample: particles × lags / origin_every.
+struct motion {
+    struct motion_plan plan;
+    int dimensions;
+    size_t count; ///< of particles
+    double time_step;
+    int64_t begin; ///< step of the first sample
+    size_t blocks; ///< of time origins, for the errors
+    size_t each;   ///< time origins in a block
+    size_t slots;  ///< time origins whose windows are open at the same time
+    size_t samples;
+    double *now;      ///< shape [2, dimensions, count]: positions, velocities by particle id
+    double *origins;  ///< shape [slots, 2, dimensions, count]
+    double *squares;  ///< shape [blocks, lags + 1]: Σ over origins of the mean |Δr|²  [λ²]
+    double *products; ///< shape [blocks, lags + 1]: the same of v · v                 [λ²/τ²]
+    struct maxwell maxwell; ///< of configurations a whole window apart
+};
+
+/// Prepare to sample a simulation from step `begin` on, for `steps` steps. Only windows that end
+/// within them are begun.
+/// Fails: BAD_INPUT if there is no whole window; NO_MEMORY.
+enum status motion_init(struct motion *motion, const struct motion_plan *plan,
+                        const struct simulation *simulation, int64_t begin, int64_t steps) MUST_USE;
+void motion_clear(struct motion *motion);
+
+/// The step of the next sample, or INT64_MAX after the last.
+int64_t motion_due(const struct motion *motion);
+
+/// Add the present positions and velocities: those of step motion_due.
+void motion_sample(struct motion *motion, const struct simulation *simulation);
+
+/// What goes with a checkpoint.
+enum { MOTION_SPANS = 5 };
+size_t motion_spans(struct motion *motion, struct memory_span *spans);
+
+/// Arrays of lags + 1 numbers, from time 0 on in steps of plan.every · time_step.
+struct motion_curves {
+    double *msd, *msd_error;   ///< [λ²]
+    double *vacf, *vacf_error; ///< [λ²/τ²]; d k_B T at time 0
+};
+
+struct motion_summary {
+    double msd, msd_error;               ///< D of the MSD: least squares, unweighted      [λ²/τ]
+    double green_kubo, green_kubo_error; ///< D of the VACF: trapezoids to the window's end [λ²/τ]
+    double fit_begin, fit_end;           ///< the window of the least squares               [τ]
+    struct maxwell_summary maxwell;      ///< NaN without friction: no thermostat
+};
+
+/// Results of all windows that are complete; `curves` may be NULL.
+///
+/// Errors are those of the means over up to 64 consecutive blocks of time origins, by
+/// statistics_correlated_error, since windows of neighbouring blocks overlap. Blocks are of time
+/// and not of particles: particles drag their neighbours along, c(r) ∼ R_h/r of a displacement is
+/// shared, and groups of particles that look independent would give an error that is too small,
+/// by more in a larger box. The price: a run should be twenty windows long or more; from a shorter
+/// one the errors, too, are rough (as said there). What is not in the errors: D of the MSD is a
+/// mean of D(t) over the fitted times, that of the VACF is D(t) at the window's end; whether D(t)
+/// has come to its plateau by then is for the eye.
+/// Tested: test_motion, test_motion_brute_force, test_diffusion, test_errors.
+struct motion_summary motion_result(const struct motion *motion,
+                                    const struct motion_curves *curves);

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "observe/motion.h"
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/simd.h"
+#include "base/statistics.h"
+
+#include <math.h>
+#include <string.h>
+
+#define MEMBER(name) .offset = offsetof(struct motion_plan, name)
+const struct field motion_plan_fields[] = {
+    {"every", FIELD_INTEGER, MEMBER(every), .initial = 5, .minimum = 1, .maximum = 1e9,
+     .unit = "steps", .help = "between samples; the velocities should change little meanwhile"},
+    {"lags", FIELD_INTEGER, MEMBER(lags), .initial = 100, .minimum = 2, .maximum = 1e5,
+     .unit = "samples", .help = "length of the window; a run should be twenty windows or more"},
+    {"origin_every", FIELD_INTEGER, MEMBER(origin_every), .initial = 10, .minimum = 1,
+     .maximum = 1e5, .unit = "samples",
+     .help = "between time origins: fewer of them cost less and say little less"},
+    {"fit_from", FIELD_NUMBER, MEMBER(fit_from), .initial = 0.5, .minimum = 0, .maximum = 0.99,
+     .unit = "", .help = "part of the window at which the line on the MSD begins"},
+    FIELD_END,
+};
+
+enum { MOST_BLOCKS = 64 };
+
+/// Origins whose windows have ended by the sample number `last`.
+static size_t complete_origins(const struct motion_plan *plan, size_t last) {
+    const size_t lags = (size_t)plan->lags;
+    return last < lags ? 0 : (last - lags) / (size_t)plan->origin_every + 1;
+}
+
+enum status motion_init(struct motion *motion, const struct motion_plan *plan,
+                        const struct simulation *simulation, int64_t begin, int64_t steps) {
+    enum status status = STATUS_OK;
+    *motion = (struct motion){.plan = *plan,
+                              .dimensions = simulation->setup.box.dimensions,
+                              .count = simulation->particles.count,
+                              .time_step = simulation->setup.time_step,
+                              .begin = begin,
+                              .slots = (size_t)(plan->lags / plan->origin_every + 1)};
+    const size_t origins = complete_origins(plan, (size_t)(steps / plan->every));
+    if (origins == 0)
+        return status_fail(STATUS_BAD_INPUT,
+                           "motion: %lld lags of %lld steps are longer than the %lld steps of the "
+                           "measurement",
+                           (long long)plan->lags, (long long)plan->every, (long long)steps);
+    // Blocks of the same size: the mean over them is the mean over their origins.
+    motion->each = (origins + MOST_BLOCKS - 1) / MOST_BLOCKS;
+    motion->blocks = origins / motion->each;
+    const size_t state = 2 * (size_t)motion->dimensions, curve = (size_t)plan->lags + 1;
+    NEW_ARRAY(motion->now, state * motion->count);
+    NEW_ARRAY(motion->origins, motion->slots * state * motion->count);
+    NEW_ARRAY(motion->squares, motion->blocks * curve);
+    NEW_ARRAY(motion->products, motion->blocks * curve);
+    CHECK(maxwell_init(&motion->maxwell));
+done:
+    if (status != STATUS_OK)
+        motion_clear(motion);
+    return status;
+}
+
+void motion_clear(struct motion *motion) {
+    memory_free(motion->now);
+    memory_free(motion->origins);
+    memory_free(motion->squares);
+    memory_free(motion->products);
+    maxwell_clear(&motion->maxwell);
+    *motion = (struct motion){0};
+}
+
+int64_t motion_due(const struct motion *motion) {
+    const struct motion_plan *plan = &motion->plan;
+    const int64_t last_origin = (int64_t)(motion->blocks * motion->each) - 1;
+    const int64_t last = last_origin * plan->origin_every + plan->lags;
+    const int64_t sample = (int64_t)motion->samples;
+    return sample > last ? INT64_MAX : motion->begin + sample * plan->every;
+}
+
+// Sampling ----------------------------------------------------------------------------------------
+
+static void subtract_mean(double *values, size_t count) {
+    double sum = 0;
+    for (size_t k = 0; k < count; k++)
+        sum += values[k];
+    const double mean = sum / (double)count;
+    for (size_t k = 0; k < count; k++)
+        values[k] -= mean;
+}
+
+/// Unwrapped positions and velocities, by id, relative to those of the centre of mass.
+static void gather(struct motion *motion, const struct particles *particles) {
+    const size_t count = motion->count;
+    for (int d = 0; d < motion->dimensions; d++) {
+        double *x = motion->now + (size_t)d * count;
+        double *v = motion->now + (size_t)(motion->dimensions + d) * count;
+        for (size_t k = 0; k < count; k++) {
+            const size_t id = particles->id[k];
+            x[id] = particles->position[d][k] + particles->image[d][k] * particles->box.length[d];
+            v[id] = particles->velocity[d][k];
+        }
+        subtract_mean(x, count);
+        subtract_mean(v, count);
+    }
+}
+
+/// Two states of the particles, shape [dimensions, count] each.
+struct states {
+    const double *now, *then;
+    int dimensions;
+    size_t count;
+};
+
+enum { LANES = 8 };
+
+static double sum_lanes(const double sum[LANES]) {
+    return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
+}
+
+SIMD_CLONES static double sum_squares(const void *context, size_t begin, size_t end) {
+    const struct states *states = context;
+    double sum[LANES] = {0};
+    for (int d = 0; d < states->dimensions; d++) {
+        const double *a = states->now + (size_t)d * states->count + begin;
+        const double *b = states->then + (size_t)d * states->count + begin;
+        const size_t count = end - begin;
+        for (size_t k = 0; k + LANES <= count; k += LANES)
+            for (int lane = 0; lane < LANES; lane++)
+                sum[lane] += (a[k + lane] - b[k + lane]) * (a[k + lane] - b[k + lane]);
+        for (size_t k = count / LANES * LANES; k < count; k++)
+            sum[0] += (a[k] - b[k]) * (a[k] - b[k]);
+    }
+    return sum_lanes(sum);
+}
+
+SIMD_CLONES static double sum_products(const void *context, size_t begin, size_t end) {
+    const struct states *states = context;
+    double sum[LANES] = {0};
+    for (int d = 0; d < states->dimensions; d++) {
+        const double *a = states->now + (size_t)d * states->count + begin;
+        const double *b = states->then + (size_t)d * states->count + begin;
+        const size_t count = end - begin;
+        for (size_t k = 0; k + LANES <= count; k += LANES)
+            for (int lane = 0; lane < LANES; lane++)
+                sum[lane] += a[k + lane] * b[k + lane];
+        for (size_t k = count / LANES * LANES; k < count; k++)
+            sum[0] += a[k] * b[k];
+    }
+    return sum_lanes(sum);
+}
+
+static void correlate(struct motion *motion, size_t origin, int threads) {
+    const size_t lag = motion->samples - origin * (size_t)motion->plan.origin_every;
+    const size_t half = (size_t)motion->dimensions * motion->count;
+    const double *then = motion->origins + origin % motion->slots * 2 * half;
+    const struct states positions = {motion->now, then, motion->dimensions, motion->count};
+    const struct states velocities = {motion->now + half, then + half, motion->dimensions,
+                                      motion->count};
+    const size_t place = origin / motion->each * ((size_t)motion->plan.lags + 1) + lag;
+    const double count = (double)motion->count;
+    motion->squares[place] += parallel_sum(motion->count, threads, sum_squares, &positions) / count;
+    motion->products[place] +=
+        parallel_sum(motion->count, threads, sum_products, &velocities) / count;
+}
+
+void motion_sample(struct motion *motion, const struct simulation *simulation) {
+    const struct simulation_setup *setup = &simulation->setup;
+    const struct particles *particles = &simulation->particles;
+    const size_t every = (size_t)motion->plan.origin_every, lags = (size_t)motion->plan.lags;
+    const size_t sample = motion->samples, all = motion->blocks * motion->each;
+    gather(motion, particles);
+    const size_t state = 2 * (size_t)motion->dimensions * motion->count;
+    if (sample % every == 0 && sample / every < all)
+        memcpy(motion->origins + sample / every % motion->slots * state, motion->now,
+               state * sizeof *motion->now);
+    const size_t first = sample > lags ? (sample - lags + every - 1) / every : 0;
+    for (size_t origin = first; origin < all && origin * every <= sample; origin++)
+        correlate(motion, origin, particles->threads);
+    if (setup->weight && sample % lags == 0)
+        maxwell_sample(&motion->maxwell, particles, setup->temperature, setup->seed,
+                       simulation->step);
+    motion->samples++;
+}
+
+size_t motion_spans(struct motion *motion, struct memory_span *spans) {
+    const size_t state = 2 * (size_t)motion->dimensions * motion->count * sizeof(double);
+    const size_t curves = motion->blocks * ((size_t)motion->plan.lags + 1) * sizeof(double);
+    size_t n = 0;
+    spans[n++] = (struct memory_span){&motion->samples, sizeof motion->samples};
+    spans[n++] = (struct memory_span){motion->origins, motion->slots * state};
+    spans[n++] = (struct memory_span){motion->squares, curves};
+    spans[n++] = (struct memory_span){motion->products, curves};
+    spans[n++] =
+        (struct memory_span){motion->maxwell.counts, MAXWELL_BINS * sizeof *motion->maxwell.counts};
+    return n;
+}
+
+// Results -----------------------------------------------------------------------------------------
+
+// What is read of a curve is linear in it: its mean over blocks is that of the mean curve.
+
+static double read_lag(const struct motion *motion, const double *curve, size_t lag) {
+    (void)motion;
+    return curve[lag];
+}
+
+static size_t fit_first(const struct motion_plan *plan) {
+    const int64_t first = (int64_t)ceil(plan->fit_from * (double)plan->lags);
+    return (size_t)(first < plan->lags ? first : plan->lags - 1); // a line has two points
+}
+
+static double lag_time(const struct motion *motion, size_t lag) {
+    return (double)lag * (double)motion->plan.every * motion->time_step;
+}
+
+/// Slope of the line a + b t of least squares, over 2d.
+static double read_slope(const struct motion *motion, const double *curve, size_t unused) {
+    (void)unused;
+    const size_t first = fit_first(&motion->plan), last = (size_t)motion->plan.lags;
+    const double middle = 0.5 * (lag_time(motion, first) + lag_time(motion, last));
+    double above = 0, below = 0;
+    for (size_t lag = first; lag <= last; lag++) {
+        const double t = lag_time(motion, lag) - middle;
+        above += t * curve[lag];
+        below += t * t;
+    }
+    return above / below / (2 * motion->dimensions);
+}
+
+/// Trapezoids over the whole window, over d.
+static double read_integral(const struct motion *motion, const double *curve, size_t unused) {
+    (void)unused;
+    const size_t last = (size_t)motion->plan.lags;
+    double sum = 0.5 * (curve[0] + curve[last]);
+    for (size_t lag = 1; lag < last; lag++)
+        sum += curve[lag];
+    return sum * lag_time(motion, 1) / motion->dimensions;
+}
+
+static size_t complete_blocks(const struct motion *motion) {
+    const size_t taken = motion->samples;
+    const size_t blocks = taken ? complete_origins(&motion->plan, taken - 1) / motion->each : 0;
+    return blocks < motion->blocks ? blocks : motion->blocks;
+}
+
+static void average(const struct motion *motion, const double *sums,
+                    double (*read)(const struct motion *motion, const double *curve, size_t lag),
+                    size_t lag, double *mean, double *error) {
+    double values[MOST_BLOCKS];
+    struct running_mean all = {0};
+    const size_t blocks = complete_blocks(motion), curve = (size_t)motion->plan.lags + 1;
+    for (size_t b = 0; b < blocks; b++) {
+        values[b] = read(motion, sums + b * curve, lag) / (double)motion->each;
+        statistics_add(&all, values[b]);
+    }
+    *mean = blocks > 0 ? all.mean : NAN;
+    *error = statistics_correlated_error(values, blocks, 1);
+}
+
+struct motion_summary motion_result(const struct motion *motion,
+                                    const struct motion_curves *curves) {
+    struct motion_summary s = {0};
+    const size_t lags = (size_t)motion->plan.lags;
+    for (size_t lag = 0; curves && lag <= lags; lag++) {
+        average(motion, motion->squares, read_lag, lag, &curves->msd[lag], &curves->msd_error[lag]);
+        average(motion, motion->products, read_lag, lag, &curves->vacf[lag],
+                &curves->vacf_error[lag]);
+    }
+    average(motion, motion->squares, read_slope, 0, &s.msd, &s.msd_error);
+    average(motion, motion->products, read_integral, 0, &s.green_kubo, &s.green_kubo_error);
+    s.fit_begin = lag_time(motion, fit_first(&motion->plan));
+    s.fit_end = lag_time(motion, lags);
+    s.maxwell = maxwell_result(&motion->maxwell);
+    return s;
+}

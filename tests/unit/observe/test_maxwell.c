@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/rng.h"
+#include "observe/maxwell.h"
+#include "shared/is_close.h"
+#include "shared/testing.h"
+
+#include <math.h>
+
+enum { PARTICLES = 200, TRIALS = 1000 };
+
+static const struct box cube = {3, {5, 5, 5}};
+
+/// The table of critical values: N. Smirnov, Ann. Math. Stat. 19, 279 (1948).
+static void test_maxwell_probability_is_that_of_tables(void **state) {
+    (void)state;
+    const double n = 1e12, root = 1e6;
+    assert_close(maxwell_probability(0.828 / root, n), 0.4994, 0.0002);
+    assert_close(maxwell_probability(1.224 / root, n), 0.1000, 0.0002);
+    assert_close(maxwell_probability(1.358 / root, n), 0.0500, 0.0001);
+    assert_close(maxwell_probability(1.628 / root, n), 0.0100, 0.0001);
+    assert_close(maxwell_probability(0, n), 1, 0);
+    assert_close(maxwell_probability(0.1 / root, n), 1, 1e-12);
+    // Both series, where they meet.
+    assert_close(maxwell_probability(0.999999 / root, n), maxwell_probability(1.000001 / root, n),
+                 1e-5);
+    // Ten numbers: the exact critical value at 5 % is 0.409.
+    assert_close(maxwell_probability(0.409, 10), 0.05, 0.002);
+}
+
+static double test_velocities(double drawn_at, double tested_at, uint64_t seed) {
+    struct particles particles;
+    struct maxwell maxwell;
+    assert_ok(particles_init(&particles, &cube, PARTICLES));
+    assert_ok(maxwell_init(&maxwell));
+    for (uint64_t step = 0; step < 3; step++) {
+        particles_draw_velocities(&particles, drawn_at,
+                                  rng_child_seed(seed, RNG_INITIAL, 1, (uint32_t)step));
+        maxwell_sample(&maxwell, &particles, tested_at, seed, step);
+    }
+    const struct maxwell_summary s = maxwell_result(&maxwell);
+    assert_identical(s.numbers, 3.0 * 3 * PARTICLES);
+    maxwell_clear(&maxwell);
+    particles_clear(&particles);
+    return s.probability;
+}
+
+/// The velocities have momentum 0, as those of a simulation: without the drawn mean the shares are
+/// 0.149, 0 and 0. Their standard errors for 1000 trials are 0.016, 0.007 and 0.003; five of each
+/// are a false alarm in 2 of 10^6 seeds.
+static void test_maxwell_p_values_are_uniform_when_velocities_are_of_maxwell(void **state) {
+    (void)state;
+    double half = 0, twentieth = 0, hundredth = 0;
+    for (uint64_t trial = 0; trial < TRIALS; trial++) {
+        const double p = test_velocities(2, 2, 100 + trial);
+        half += p < 0.5;
+        twentieth += p < 0.05;
+        hundredth += p < 0.01;
+    }
+    print_message("p below 0.5, 0.05, 0.01: %.1f, %.1f, %.1f %%\n", 100 * half / TRIALS,
+                  100 * twentieth / TRIALS, 100 * hundredth / TRIALS);
+    assert_close(half / TRIALS, 0.5, 0.08);
+    assert_close(twentieth / TRIALS, 0.05, 0.035);
+    assert_close(hundredth / TRIALS, 0.01, 0.016);
+    assert_true(hundredth > 0);
+}
+
+static void test_maxwell_p_value_is_small_when_the_temperature_is_another(void **state) {
+    (void)state;
+    assert_true(test_velocities(3, 2, 1) < 1e-4);
+    assert_true(test_velocities(1.2, 2, 1) < 1e-4);
+}
+
+static void test_maxwell_has_no_p_value_when_nothing_was_sampled(void **state) {
+    (void)state;
+    struct maxwell maxwell;
+    assert_ok(maxwell_init(&maxwell));
+    const struct maxwell_summary s = maxwell_result(&maxwell);
+    assert_identical(s.numbers, 0.0);
+    assert_true(isnan(s.statistic) && isnan(s.probability));
+    maxwell_clear(&maxwell);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_maxwell_probability_is_that_of_tables),
+        cmocka_unit_test(test_maxwell_p_values_are_uniform_when_velocities_are_of_maxwell),
+        cmocka_unit_test(test_maxwell_p_value_is_small_when_the_temperature_is_another),
+        cmocka_unit_test(test_maxwell_has_no_p_value_when_nothing_was_sampled),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
