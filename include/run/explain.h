@@ -2,17 +2,18 @@
 /// @file What a scene will pay for: every stage of a step, on or off and why.
 #pragma once
 
-#include "dynamics/simulation.h"
+#include "observe/motion.h"
 
 #include <stdio.h>
 
 /// What is measured of a simulation.
 struct explain_measured {
-    bool has_potential; ///< of its own or to be fitted
-    double cutoff;      ///< of the forces [λ]
-    double rdf_range;   ///< 0: no g(r) [λ]
-    bool sums;          ///< energy, pressure, temperatures
-    int64_t every;      ///< steps between samples
+    bool has_potential;               ///< of its own or to be fitted
+    double cutoff;                    ///< of the forces [λ]
+    double rdf_range;                 ///< 0: no g(r) [λ]
+    bool sums;                        ///< energy, pressure, temperatures
+    int64_t every;                    ///< steps between samples
+    const struct motion_plan *motion; ///< NULL: no diffusion
 };
 
 /// Print the stages of a step with the share of the time that each is expected to take, from costs

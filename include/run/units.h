@@ -19,9 +19,10 @@ struct units {
 extern const struct field units_fields[];
 
 bool units_known(const struct units *units);
-double units_energy_kj_per_mol(const struct units *units); ///< k_B T_0 [kJ/mol]
-double units_time_ps(const struct units *units);           ///< λ sqrt(μ / k_B T_0) [ps]
-double units_pressure_bar(const struct units *units);      ///< k_B T_0 / λ³ [bar]
+double units_energy_kj_per_mol(const struct units *units);   ///< k_B T_0 [kJ/mol]
+double units_time_ps(const struct units *units);             ///< λ sqrt(μ / k_B T_0) [ps]
+double units_pressure_bar(const struct units *units);        ///< k_B T_0 / λ³ [bar]
+double units_diffusion_cm2_per_s(const struct units *units); ///< λ²/τ [cm²/s]
 
 /// Add an object "physical" with the units and the given results in them; nothing if not known.
 /// @param[in] energy    of a particle [k_B T_0]

@@ -28,6 +28,7 @@ static const struct figure figures[] = {
     {"error", {"history.tsv", "timing.tsv"}, NULL},
     {"generations", {"history.tsv"}, "diversity"},
     {"simulation", {"thermodynamics.tsv"}, NULL},
+    {"motion", {"motion.tsv"}, NULL},
 };
 
 static const struct figure comparison = {"compare", {"compare.tsv"}, NULL};

@@ -10,6 +10,7 @@
 #include "run/heading.h"
 #include "run/progress.h"
 #include "run/scene.h"
+#include "run/simulate_motion.h"
 
 #include <math.h>
 
@@ -42,6 +43,7 @@ struct run {
     struct simulation simulation;
     struct rdf rdf;
     struct thermodynamics thermodynamics;
+    struct simulate_motion motion;
 };
 
 /// Threads meet a dozen times in a step: with fewer particles than this each, and a busy machine,
@@ -67,6 +69,7 @@ static enum status read_file(struct run *run, const char *file, const struct run
     json_fields(&rdf, simulate_rdf_fields, &run->rdf_parameters);
     if (rdf.item)
         json_finish(&rdf);
+    simulate_motion_read(&run->motion, &root);
     json_finish(&root);
     TRY(json_close(document));
     TRY(status);
@@ -90,6 +93,7 @@ static enum status write_used(struct run *run, bool resume) {
     json_begin(writer, "rdf");
     json_put_fields(writer, simulate_rdf_fields, &run->rdf_parameters);
     json_end(writer);
+    simulate_motion_write_used(&run->motion, writer);
     run_folder_file(&run->folder, resume ? "used.json.resumed" : "used.json", path);
     const enum status status = json_write(writer, path);
     json_writer_free(writer);
@@ -101,7 +105,7 @@ static enum status write_used(struct run *run, bool resume) {
     return STATUS_OK;
 }
 
-enum { MAX_SPANS = SIMULATION_SPANS + 6 };
+enum { MAX_SPANS = SIMULATION_SPANS + 6 + MOTION_SPANS };
 
 static size_t run_spans(struct run *run, struct memory_span *spans) {
     size_t n = simulation_spans(&run->simulation, spans);
@@ -112,7 +116,7 @@ static size_t run_spans(struct run *run, struct memory_span *spans) {
     spans[n++] = (struct memory_span){&run->thermodynamics.samples, sizeof rdf->samples};
     spans[n++] = (struct memory_span){run->thermodynamics.values,
                                       THERMODYNAMICS_QUANTITIES * run->thermodynamics.planned * 8};
-    return n;
+    return n + simulate_motion_spans(&run->motion, spans + n);
 }
 
 static enum status save(struct run *run) {
@@ -220,6 +224,7 @@ static enum status write_summary(const struct run *run, double seconds) {
     json_put_number(writer, "pressure_error", s.pressure_error);
     json_put_number(writer, "seed", (double)run->heading.seed);
     json_put_text(writer, "version", MESOFIT_VERSION);
+    simulate_motion_write_summary(&run->motion, &run->scene.units, writer);
     units_put(&run->scene.units, writer, s.potential_energy, s.pressure);
     run_folder_file(&run->folder, "summary.json", path);
     const enum status status = json_write(writer, path);
@@ -244,21 +249,28 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
     if (status != STATUS_OK)
         return status_prefix(status, "%s", file);
     TRY(thermodynamics_init(&run->thermodynamics, (size_t)run->plan.samples));
+    status = simulate_motion_begin(&run->motion, &run->simulation, &run->plan);
+    if (status != STATUS_OK)
+        return status_prefix(status, "%s", file);
     return options->resume ? load(run) : STATUS_OK;
 }
 
 static enum status carry_out(struct run *run) {
     const struct measure_listener listener = {tell, run};
+    const struct measure_targets targets = {&run->rdf, &run->thermodynamics,
+                                            simulate_motion_target(&run->motion)};
     double temperature;
     TRY(measure_equilibrate(&run->simulation, &run->plan, &temperature, &listener));
-    return measure_sample(&run->simulation, &run->plan,
-                          (struct measure_targets){&run->rdf, &run->thermodynamics}, &listener);
+    return measure_sample(&run->simulation, &run->plan, targets, &listener);
 }
 
 static enum status write_results(struct run *run) {
     const double seconds = progress_seconds(&run->progress);
     TRY(write_rdf(run));
     TRY(write_thermodynamics(run));
+    char path[OUTPUT_PATH_SIZE];
+    run_folder_file(&run->folder, "motion.tsv", path);
+    TRY(simulate_motion_write_table(&run->motion, path));
     TRY(write_summary(run, seconds));
     run_folder_draw(&run->folder);
     progress_say(&run->progress, "%llu steps in %.3g s; results in %s",
@@ -285,6 +297,7 @@ done:
         simulation_clear(&run->simulation);
         rdf_clear(&run->rdf);
         thermodynamics_clear(&run->thermodynamics);
+        simulate_motion_clear(&run->motion);
         scene_clear(&run->scene);
     }
     memory_free(run);
@@ -304,7 +317,8 @@ enum status simulate_explain(const char *file, const struct run_options *options
         .cutoff = cutoff,
         .rdf_range = run->rdf_parameters.range > 0 ? run->rdf_parameters.range : cutoff,
         .sums = true,
-        .every = run->plan.every};
+        .every = run->plan.every,
+        .motion = run->motion.on ? &run->motion.plan : NULL};
     explain_scene(stdout, setup, &measured);
 done:
     if (run)

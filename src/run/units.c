@@ -32,17 +32,20 @@ double units_pressure_bar(const struct units *units) {
     return UNITS_BOLTZMANN * units->temperature / pow(units->length * 1e-9, 3) * 1e-5;
 }
 
+double units_diffusion_cm2_per_s(const struct units *units) {
+    const double centimetres = units->length * 1e-7;
+    return centimetres * centimetres / (units_time_ps(units) * 1e-12);
+}
+
 void units_put(const struct units *units, struct json_writer *writer, double energy,
                double pressure) {
     if (!units_known(units))
         return;
-    const double centimetres = units->length * 1e-7;
     json_begin(writer, "physical");
     json_put_number(writer, "length_unit_nm", units->length);
     json_put_number(writer, "time_unit_ps", units_time_ps(units));
     json_put_number(writer, "energy_unit_kJ_per_mol", units_energy_kj_per_mol(units));
-    json_put_number(writer, "diffusion_unit_cm2_per_s",
-                    centimetres * centimetres / (units_time_ps(units) * 1e-12));
+    json_put_number(writer, "diffusion_unit_cm2_per_s", units_diffusion_cm2_per_s(units));
     json_put_number(writer, "potential_energy_kJ_per_mol", energy * units_energy_kj_per_mol(units));
     json_put_number(writer, "pressure_bar", pressure * units_pressure_bar(units));
     json_end(writer);

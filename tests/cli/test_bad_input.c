@@ -95,6 +95,15 @@ static const struct fault scene_faults[] = {
     FAULT("short table of a potential", "{\"law\": \"soft-repulsion\", \"a\": 25}",
           "{\"law\": \"table\", \"file\": \"table.tsv\", \"cutoff\": 2}", "conservative.file",
           "table.tsv", "before the cutoff 2"),
+    FAULT("unknown key of motion", "\"measure\"", "\"motion\": {\"lag\": 3}, \"measure\"",
+          "motion.lag", "did you mean \"lags\"?"),
+    FAULT("no lags", "\"measure\"", "\"motion\": {\"lags\": 1}, \"measure\"",
+          "motion.lags: 1 is out of range"),
+    FAULT("a number for motion", "\"measure\"", "\"motion\": 3, \"measure\"",
+          "motion: expected an object"),
+    FAULT("a window longer than the run", "\"measure\"",
+          "\"motion\": {\"every\": 1, \"lags\": 5}, \"measure\"", "input.json: motion",
+          "5 lags of 1 steps", "4 steps"),
     FAULT("a method in a scene", "\"measure\"", "\"method\": {}, \"measure\"", "method: unknown"),
 
 };

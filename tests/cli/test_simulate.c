@@ -32,6 +32,10 @@ static const char conservative[] =
 
 static const char *const tables[] = {"rdf.tsv", "thermodynamics.tsv", NULL};
 
+/// Diffusion in windows of 24 steps, whose samples do not fall in with the others.
+#define MOTION "\"motion\": {\"every\": 3, \"lags\": 8, \"origin_every\": 2}, "
+static const char *const moving_tables[] = {"rdf.tsv", "thermodynamics.tsv", "motion.tsv", NULL};
+
 static void write_scene(struct temporary_folder *folder, const char *text, const char *from,
                         const char *to) {
     small_inputs_write(folder, "scene.json", text, from, to);
@@ -69,6 +73,54 @@ static void test_simulate_leaves_all_files_of_a_run(void **state) {
     results_assert_number("out/summary.json", "engine_steps", 300);
     results_assert_number("out/summary.json", "seed", 5);
     assert_false(temporary_folder_exists("out/checkpoint.bin"));
+}
+
+static void test_simulate_measures_diffusion_when_asked(void **state) {
+    static struct run_program_result result;
+    write_scene(*state, groot_warren, NULL, NULL);
+    simulate(&result, "without");
+    assert_false(temporary_folder_exists("without/motion.tsv"));
+    write_scene(*state, groot_warren, "\"units\"", MOTION "\"units\"");
+    simulate(&result, "with");
+    results_assert_same("without", "with", tables);
+    results_assert_table("with/motion.tsv", 5, 9);
+    static const char *const numbers[] = {"motion.diffusion_msd",
+                                          "motion.diffusion_msd_error",
+                                          "motion.diffusion_green_kubo",
+                                          "motion.diffusion_green_kubo_error",
+                                          "motion.diffusion_msd_error_cm2_per_s",
+                                          "motion.diffusion_green_kubo_cm2_per_s",
+                                          "motion.velocities_kolmogorov_smirnov",
+                                          "motion.velocities_p_value",
+                                          NULL};
+    results_assert_numbers("with/summary.json", numbers);
+    results_assert_number("with/summary.json", "motion.fit_begin", 0.48);
+    results_assert_number("with/summary.json", "motion.fit_end", 0.96);
+    results_assert_number("with/summary.json", "motion.velocities_tested", 9 * 900);
+    results_assert_number(
+        "with/summary.json", "motion.diffusion_msd_cm2_per_s",
+        results_number("with/summary.json", "motion.diffusion_msd") *
+            results_number("with/summary.json", "physical.diffusion_unit_cm2_per_s"));
+    RUN_PROGRAM(&result, "simulate", "with/used.json", "-o", "again");
+    run_program_assert_code(&result, 0);
+    results_assert_same("with", "again", moving_tables);
+    results_assert_same("with", "again", (const char *const[]){"used.json", NULL});
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--explain");
+    assert_contains(result.out, "5 time origins, one step in 3");
+    RUN_PROGRAM(&result, "describe", "motion");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "origin_every");
+}
+
+static void test_simulate_draws_diffusion_when_gnuplot_is_there(void **state) {
+    static struct run_program_result result;
+    small_inputs_need_gnuplot();
+    write_scene(*state, groot_warren, "\"units\"", MOTION "\"units\"");
+    simulate(&result, "out");
+    assert_true(temporary_folder_exists("out/figures/motion.svg"));
+    assert_true(temporary_folder_exists("out/figures/motion.png"));
+    if (strstr(result.err, "warning"))
+        fail_msg("%s", result.err);
 }
 
 static void test_simulate_draws_its_figure_when_gnuplot_is_there(void **state) {
@@ -134,12 +186,12 @@ static void test_explain_tells_what_is_on_and_off(void **state) {
 static void test_threads_do_not_change_the_bits(void **state) {
     static struct run_program_result result;
     write_scene(*state, groot_warren, "4.64, 4.64, 4.64], \"particles\": {\"count\": 300}",
-                "6.94, 6.94, 6.94], \"particles\": {\"count\": 1000}");
+                "6.94, 6.94, 6.94], " MOTION "\"particles\": {\"count\": 1000}");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "one", "--threads", "1");
     run_program_assert_code(&result, 0);
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "two", "--threads", "2");
     run_program_assert_code(&result, 0);
-    results_assert_same("one", "two", tables);
+    results_assert_same("one", "two", moving_tables);
 }
 
 /// Interrupted again and again at different places, the run ends with the bits of one in peace.
@@ -159,6 +211,13 @@ static void test_interrupted_dpd_goes_on_with_the_same_bits(void **state) {
     check_interruption(*state, groot_warren,
                        "\"measure\": {\"equilibration\": 100, \"samples\": 20, \"every\": 10}",
                        LONG_MEASURE);
+}
+
+static void test_interrupted_diffusion_goes_on_with_the_same_bits(void **state) {
+    check_interruption(*state, groot_warren,
+                       "\"measure\": {\"equilibration\": 100, \"samples\": 20, \"every\": 10}",
+                       MOTION LONG_MEASURE);
+    results_assert_same("whole", "pieces", moving_tables);
 }
 
 static void test_interrupted_dpd_in_the_plane_goes_on_with_the_same_bits(void **state) {
@@ -266,11 +325,14 @@ int main(void) {
         TEST(test_quiet_run_says_nothing),
         TEST(test_progress_in_a_pipe_is_a_few_plain_lines),
         TEST_WITHOUT_FIGURES(test_simulate_leaves_all_files_of_a_run),
+        TEST(test_simulate_draws_diffusion_when_gnuplot_is_there),
+        TEST_WITHOUT_FIGURES(test_simulate_measures_diffusion_when_asked),
         TEST_WITHOUT_FIGURES(test_used_settings_run_again_give_the_same_bits),
         TEST_WITHOUT_FIGURES(test_the_seed_of_the_command_line_counts),
         TEST_WITHOUT_FIGURES(test_explain_tells_what_is_on_and_off),
         TEST_WITHOUT_FIGURES(test_threads_do_not_change_the_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_dpd_goes_on_with_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_interrupted_diffusion_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_dpd_in_the_plane_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_nve_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_run_says_so_and_refuses_other_settings),

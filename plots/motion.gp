@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# How far particles go, and how long they remember their velocity.
+# Reads motion.tsv: time, msd, msd_error, vacf, vacf_error. The first row is that of time 0.
+
+load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
+
+stats "motion.tsv" using 1 name "T" nooutput
+stats "motion.tsv" using (positive(1)) name "E" nooutput
+stats "motion.tsv" using 2 name "M" nooutput
+stats "motion.tsv" using (positive(2)) name "L" nooutput
+stats "motion.tsv" using ($4 - $5) name "V" nooutput
+stats "motion.tsv" using 4 name "W" nooutput
+first = W_max > 0 ? W_max : 1
+
+do for [kind in kinds] {
+    eval open(kind, "motion", 720, 560)
+    set multiplot
+    set lmargin at screen 0.145
+    set rmargin at screen 0.97
+
+    set tmargin at screen 0.96
+    set bmargin at screen 0.58
+    set format x "%h"
+    set format y "%h"
+    set key off
+    eval log_range("x", E_min, T_max)
+    eval log_range("y", L_min, M_max)
+    eval name_axis("MSD / {/:Italic λ}^2", 0.024)
+    plot "motion.tsv" using ($1 > 0 ? $1 : NaN):($2 - $3):($2 + $3) with filledcurves @band \
+            linecolor rgb blue, \
+        "" using ($1 > 0 ? $1 : NaN):2 with lines linewidth 2.2 linecolor rgb blue
+
+    set tmargin at screen 0.50
+    set bmargin at screen 0.125
+    unset logscale
+    set xrange [0:T_max]
+    set xtics autofreq
+    set yrange [low(-0.05, V_min / first):1.05]
+    set ytics 0.2
+    set xlabel "{/:Italic t} / {/:Italic τ}"
+    eval name_axis("VACF({/:Italic t}) / VACF(0)", 0.024)
+    plot 0 linewidth 0.8 linecolor rgb ink, \
+        "motion.tsv" using 1:(($4 - $5) / first):(($4 + $5) / first) with filledcurves @band \
+            linecolor rgb vermillion, \
+        "" using 1:($4 / first) with lines linewidth 2.2 linecolor rgb vermillion
+    unset xlabel
+    unset multiplot
+    eval close
+}

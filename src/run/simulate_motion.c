@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/simulate_motion.h"
+
+#include "base/memory.h"
+#include "io/data_table.h"
+
+void simulate_motion_read(struct simulate_motion *motion, struct json_object *root) {
+    struct json_object object = json_child(root, "motion", false);
+    motion->on = object.item != NULL;
+    json_fields(&object, motion_plan_fields, &motion->plan);
+    if (motion->on)
+        json_finish(&object);
+}
+
+void simulate_motion_write_used(const struct simulate_motion *motion, struct json_writer *writer) {
+    if (!motion->on)
+        return;
+    json_begin(writer, "motion");
+    json_put_fields(writer, motion_plan_fields, &motion->plan);
+    json_end(writer);
+}
+
+enum status simulate_motion_begin(struct simulate_motion *motion,
+                                  const struct simulation *simulation,
+                                  const struct measure_plan *measure) {
+    if (!motion->on)
+        return STATUS_OK;
+    return motion_init(&motion->motion, &motion->plan, simulation, measure->equilibration,
+                       measure->samples * measure->every);
+}
+
+void simulate_motion_clear(struct simulate_motion *motion) {
+    motion_clear(&motion->motion);
+}
+
+struct motion *simulate_motion_target(struct simulate_motion *motion) {
+    return motion->on ? &motion->motion : NULL;
+}
+
+size_t simulate_motion_spans(struct simulate_motion *motion, struct memory_span *spans) {
+    return motion->on ? motion_spans(&motion->motion, spans) : 0;
+}
+
+enum status simulate_motion_write_table(const struct simulate_motion *motion, const char *file) {
+    enum status status = STATUS_OK;
+    const size_t rows = (size_t)motion->plan.lags + 1;
+    double *time = NULL, *values = NULL;
+    if (!motion->on)
+        return STATUS_OK;
+    NEW_ARRAY(time, rows);
+    NEW_ARRAY(values, 4 * rows);
+    const struct motion_curves curves = {values, values + rows, values + 2 * rows,
+                                         values + 3 * rows};
+    motion_result(&motion->motion, &curves);
+    for (size_t k = 0; k < rows; k++)
+        time[k] = (double)k * (double)motion->plan.every * motion->motion.time_step;
+    const struct data_column columns[] = {
+        {"time[tau]", time, NULL},
+        {"msd[lambda^2]", curves.msd, "%.8g"},
+        {"msd_error[lambda^2]", curves.msd_error, "%.3g"},
+        {"vacf[lambda^2/tau^2]", curves.vacf, "%.8g"},
+        {"vacf_error[lambda^2/tau^2]", curves.vacf_error, "%.3g"}};
+    CHECK(data_table_write(file, NULL, columns, 5, rows));
+done:
+    memory_free(time);
+    memory_free(values);
+    return status;
+}
+
+void simulate_motion_write_summary(const struct simulate_motion *motion, const struct units *units,
+                                   struct json_writer *writer) {
+    if (!motion->on)
+        return;
+    const struct motion_summary s = motion_result(&motion->motion, NULL);
+    json_begin(writer, "motion");
+    json_put_number(writer, "diffusion_msd", s.msd);
+    json_put_number(writer, "diffusion_msd_error", s.msd_error);
+    json_put_number(writer, "diffusion_green_kubo", s.green_kubo);
+    json_put_number(writer, "diffusion_green_kubo_error", s.green_kubo_error);
+    if (units_known(units)) {
+        const double unit = units_diffusion_cm2_per_s(units);
+        json_put_number(writer, "diffusion_msd_cm2_per_s", s.msd * unit);
+        json_put_number(writer, "diffusion_msd_error_cm2_per_s", s.msd_error * unit);
+        json_put_number(writer, "diffusion_green_kubo_cm2_per_s", s.green_kubo * unit);
+        json_put_number(writer, "diffusion_green_kubo_error_cm2_per_s", s.green_kubo_error * unit);
+    }
+    json_put_number(writer, "fit_begin", s.fit_begin);
+    json_put_number(writer, "fit_end", s.fit_end);
+    if (s.maxwell.numbers > 0) {
+        json_put_number(writer, "velocities_tested", s.maxwell.numbers);
+        json_put_number(writer, "velocities_kolmogorov_smirnov", s.maxwell.statistic);
+        json_put_number(writer, "velocities_p_value", s.maxwell.probability);
+    }
+    json_end(writer);
+}
