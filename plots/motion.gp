@@ -26,9 +26,9 @@ do for [kind in kinds] {
     eval log_range("x", E_min, T_max)
     eval log_range("y", L_min, M_max)
     eval name_axis("MSD / {/:Italic λ}^2", 0.024)
-    plot "motion.tsv" using ($1 > 0 ? $1 : NaN):($2 - $3):($2 + $3) with filledcurves @band \
+    plot "motion.tsv" every ::1 using 1:($2 - $3):($2 + $3) with filledcurves @band \
             linecolor rgb blue, \
-        "" using ($1 > 0 ? $1 : NaN):2 with lines linewidth 2.2 linecolor rgb blue
+        "" every ::1 using 1:2 with lines linewidth 2.2 linecolor rgb blue
 
     set tmargin at screen 0.50
     set bmargin at screen 0.125
