@@ -4,7 +4,7 @@
 
 #include "base/fields.h"
 #include "observe/motion.h"
-#include "observe/rdf.h"
+#include "observe/rdf_force.h"
 #include "observe/thermodynamics.h"
 
 /// When to sample. All in steps, so that nothing is rounded.
@@ -22,6 +22,7 @@ uint64_t measure_steps(const struct measure_plan *plan);
 /// What to measure; NULL members are not computed.
 struct measure_targets {
     struct rdf *rdf;
+    struct rdf_force *rdf_force;
     struct thermodynamics *thermodynamics;
     struct motion *motion; ///< begun at the end of the equilibration; has an interval of its own
 };

@@ -82,6 +82,9 @@ enum status measure_sample(struct simulation *simulation, const struct measure_p
         simulation->wants = PAIR_FORCES;
         TRY(run_moving(simulation, due - 1, targets.motion));
         TRY(run_sampled_step(simulation, due, targets));
+        if (targets.rdf_force)
+            TRY(rdf_force_sample(targets.rdf_force, &simulation->particles,
+                                 &simulation->neighbours));
         if (targets.thermodynamics)
             TRY(thermodynamics_sample(targets.thermodynamics, simulation));
         tell(listener, simulation, plan);
