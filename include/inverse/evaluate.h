@@ -5,6 +5,14 @@
 #include "inverse/inverse.h"
 #include "observe/measure.h"
 
+/// How a potential is measured for its fitness.
+struct evaluate_parameters {
+    struct measure_plan plan;
+    double temperature_tolerance; ///< largest |T/T_set − 1| at the end of the equilibration
+    int estimator; ///< enum rdf_force_estimator; without a barrier (rdf_force_applies) the
+                   ///< histogram
+};
+
 /// Result of one short simulation.
 struct evaluate_result {
     double error;          ///< rms of g − g*
@@ -13,12 +21,11 @@ struct evaluate_result {
 };
 
 /// One simulation of the problem's scene with `potential`.
-/// @param[in] temperature_tolerance  largest |T/T_set − 1| at the end of the equilibration
 /// Fails: UNSTABLE if it blows up, leaves its temperature or collapses into a drop (which would
 /// also be slow); INTERRUPTED; NO_MEMORY; BAD_INPUT as simulation_init.
 enum status evaluate_potential(const struct inverse_problem *problem, const struct table *potential,
-                               const struct measure_plan *plan, double temperature_tolerance,
-                               uint64_t seed, struct evaluate_result *result) MUST_USE;
+                               const struct evaluate_parameters *parameters, uint64_t seed,
+                               struct evaluate_result *result) MUST_USE;
 
 /// Verification of a result by independent replicas of a longer simulation.
 struct evaluate_verification_parameters {

@@ -39,13 +39,16 @@ static double expected_noise(const double *error, const double *target_error, si
 }
 
 static enum status score(const struct inverse_problem *problem, const struct rdf *rdf,
-                         struct evaluate_result *result) {
+                         const struct rdf_force *rdf_force, struct evaluate_result *result) {
     enum status status = STATUS_OK;
     const size_t bins = problem->bins.count;
     double *g = NULL, *error = NULL;
     NEW_ARRAY(g, bins);
     NEW_ARRAY(error, bins);
-    rdf_result(rdf, 1, g, error);
+    if (rdf_force)
+        CHECK(rdf_force_result(rdf_force, 1, RDF_FORCE_COUNTED, g, error));
+    else
+        rdf_result(rdf, 1, g, error);
     result->error = rdf_rmse(g, problem->target, bins);
     result->noise = expected_noise(error, problem->target_error, bins);
 done:
@@ -55,25 +58,36 @@ done:
 }
 
 enum status evaluate_potential(const struct inverse_problem *problem, const struct table *potential,
-                               const struct measure_plan *plan, double temperature_tolerance,
-                               uint64_t seed, struct evaluate_result *result) {
+                               const struct evaluate_parameters *parameters, uint64_t seed,
+                               struct evaluate_result *result) {
     enum status status = STATUS_OK;
+    const struct measure_plan *plan = &parameters->plan;
     struct simulation simulation = {0};
     struct rdf rdf = {0};
+    struct rdf_force rdf_force = {0};
     struct simulation_setup setup = problem->scene;
     setup.potential = potential;
     setup.seed = seed;
     *result = (struct evaluate_result){0};
-    CHECK(rdf_init(&rdf, &problem->bins, &setup.box, (size_t)setup.placement.count,
-                   potential->cutoff, (size_t)plan->samples));
+    const bool uses_force =
+        parameters->estimator == RDF_FORCE_USED && rdf_force_applies(potential, setup.temperature);
+    const struct measure_targets targets = {.rdf = uses_force ? NULL : &rdf,
+                                            .rdf_force = uses_force ? &rdf_force : NULL};
+    const size_t count = (size_t)setup.placement.count, samples = (size_t)plan->samples;
+    if (uses_force)
+        CHECK(rdf_force_init(&rdf_force, &problem->bins, &setup.box, count, potential,
+                             setup.temperature, potential->cutoff, samples));
+    else
+        CHECK(rdf_init(&rdf, &problem->bins, &setup.box, count, potential->cutoff, samples));
     CHECK(simulation_init(&simulation, &setup, NULL));
-    CHECK(equilibrate(&simulation, plan, temperature_tolerance));
-    CHECK(measure_sample(&simulation, plan, (struct measure_targets){.rdf = &rdf}, NULL));
-    CHECK(score(problem, &rdf, result));
+    CHECK(equilibrate(&simulation, plan, parameters->temperature_tolerance));
+    CHECK(measure_sample(&simulation, plan, targets, NULL));
+    CHECK(score(problem, targets.rdf, targets.rdf_force, result));
 done:
     result->engine_steps = simulation.step;
     simulation_clear(&simulation);
     rdf_clear(&rdf);
+    rdf_force_clear(&rdf_force);
     return status;
 }
 

@@ -21,8 +21,7 @@
 
 struct parameters {
     struct genetic_parameters genetic;
-    struct measure_plan plan; ///< of one individual
-    double temperature_tolerance;
+    struct evaluate_parameters evaluate; ///< of one individual
     int64_t remeasurements;
 };
 
@@ -42,15 +41,18 @@ struct state {
 
 #define MEMBER(name) .offset = offsetof(struct parameters, name)
 static const struct field own_fields[] = {
-    {"equilibration", FIELD_INTEGER, MEMBER(plan.equilibration), .initial = 350, .minimum = 10,
-     .maximum = 1e9, .unit = "steps", .help = "of an individual's simulation"},
-    {"samples", FIELD_INTEGER, MEMBER(plan.samples), .initial = 45, .minimum = 1, .maximum = 1e8,
-     .unit = "", .help = "of its g(r)"},
-    {"every", FIELD_INTEGER, MEMBER(plan.every), .initial = 50, .minimum = 1, .maximum = 1e9,
-     .unit = "steps", .help = "between samples"},
-    {"temperature_tolerance", FIELD_NUMBER, MEMBER(temperature_tolerance), .initial = 0.1,
+    {"equilibration", FIELD_INTEGER, MEMBER(evaluate.plan.equilibration), .initial = 350,
+     .minimum = 10, .maximum = 1e9, .unit = "steps", .help = "of an individual's simulation"},
+    {"samples", FIELD_INTEGER, MEMBER(evaluate.plan.samples), .initial = 45, .minimum = 1,
+     .maximum = 1e8, .unit = "", .help = "of its g(r)"},
+    {"every", FIELD_INTEGER, MEMBER(evaluate.plan.every), .initial = 50, .minimum = 1,
+     .maximum = 1e9, .unit = "steps", .help = "between samples"},
+    {"temperature_tolerance", FIELD_NUMBER, MEMBER(evaluate.temperature_tolerance), .initial = 0.1,
      .minimum = FIELD_ABOVE_ZERO, .maximum = 1, .unit = "",
      .help = "relative deviation at the end of equilibration with which an individual fails"},
+    {"estimator", FIELD_CHOICE, MEMBER(evaluate.estimator), .choices = rdf_force_estimators,
+     .initial = RDF_FORCE_NOT_USED, .unit = "",
+     .help = "of g(r): force is worth twice the samples, but a large time step puts it off"},
     {"remeasurements", FIELD_INTEGER, MEMBER(remeasurements), .initial = 2, .minimum = 1,
      .maximum = 1000, .unit = "", .help = "fresh measurements before the elite is replaced"},
     FIELD_END,
@@ -66,7 +68,7 @@ static uint32_t most_iterations(const void *parameters) {
 }
 
 static int64_t sampled_every(const void *parameters) {
-    return ((const struct parameters *)parameters)->plan.every;
+    return ((const struct parameters *)parameters)->evaluate.plan.every;
 }
 
 static int64_t population(const struct state *state) {
@@ -128,8 +130,7 @@ static enum status measure(const struct state *state, const double *genes, uint3
     NEW_ARRAY(phi, state->grid.points);
     CHECK(decode(state, genes, phi));
     CHECK(potential_grid_table(&state->grid, phi, &table));
-    status = evaluate_potential(state->problem, &table, &state->parameters.plan,
-                                state->parameters.temperature_tolerance, seed, result);
+    status = evaluate_potential(state->problem, &table, &state->parameters.evaluate, seed, result);
     if (status == STATUS_UNSTABLE) {
         result->error = GENETIC_FAILED;
         status = STATUS_OK;

@@ -20,6 +20,7 @@ static const double checkpoint_interval = 60;
 struct rdf_parameters {
     double range;
     int64_t bins;
+    int estimator; ///< enum rdf_force_estimator
 };
 
 #define MEMBER(name) .offset = offsetof(struct rdf_parameters, name)
@@ -28,6 +29,9 @@ const struct field simulate_rdf_fields[] = {
      .unit = "lambda", .help = "of g(r); 0 means the cutoff of the forces"},
     {"bins", FIELD_INTEGER, MEMBER(bins), .initial = 100, .minimum = 1, .maximum = 100000,
      .unit = "", .help = "of g(r)"},
+    {"estimator", FIELD_CHOICE, MEMBER(estimator), .choices = rdf_force_estimators,
+     .initial = RDF_FORCE_NOT_USED, .unit = "",
+     .help = "of g(r): force is worth twice the samples, but a large time step puts it off"},
     FIELD_END,
 };
 
@@ -42,6 +46,7 @@ struct run {
     double last_checkpoint;
     struct simulation simulation;
     struct rdf rdf;
+    struct rdf_force rdf_force; ///< if it is used
     struct thermodynamics thermodynamics;
     struct simulate_motion motion;
 };
@@ -105,7 +110,11 @@ static enum status write_used(struct run *run, bool resume) {
     return STATUS_OK;
 }
 
-enum { MAX_SPANS = SIMULATION_SPANS + 6 + MOTION_SPANS };
+static bool uses_force(const struct run *run) {
+    return run->rdf_parameters.estimator == RDF_FORCE_USED;
+}
+
+enum { MAX_SPANS = SIMULATION_SPANS + 6 + RDF_FORCE_SPANS + MOTION_SPANS };
 
 static size_t run_spans(struct run *run, struct memory_span *spans) {
     size_t n = simulation_spans(&run->simulation, spans);
@@ -116,6 +125,8 @@ static size_t run_spans(struct run *run, struct memory_span *spans) {
     spans[n++] = (struct memory_span){&run->thermodynamics.samples, sizeof rdf->samples};
     spans[n++] = (struct memory_span){run->thermodynamics.values,
                                       THERMODYNAMICS_QUANTITIES * run->thermodynamics.planned * 8};
+    if (uses_force(run))
+        n += rdf_force_spans(&run->rdf_force, spans + n);
     return n + simulate_motion_spans(&run->motion, spans + n);
 }
 
@@ -152,21 +163,31 @@ static enum status write_rdf(const struct run *run) {
     enum status status = STATUS_OK;
     const struct rdf_bins *bins = &run->rdf.bins;
     char path[OUTPUT_PATH_SIZE];
-    double *r = NULL, *g = NULL, *error = NULL;
+    double *r = NULL, *g = NULL, *error = NULL, *counted = NULL, *counted_error = NULL;
     NEW_ARRAY(r, bins->count);
     NEW_ARRAY(g, bins->count);
     NEW_ARRAY(error, bins->count);
+    NEW_ARRAY(counted, bins->count);
+    NEW_ARRAY(counted_error, bins->count);
     for (size_t k = 0; k < bins->count; k++)
         r[k] = rdf_bins_centre(bins, k);
-    rdf_result(&run->rdf, 1, g, error);
+    rdf_result(&run->rdf, 1, counted, counted_error);
+    if (uses_force(run))
+        CHECK(rdf_force_result(&run->rdf_force, 1, RDF_FORCE_COUNTED, g, error));
     const struct data_column columns[] = {
-        {"r[lambda]", r, NULL}, {"g[1]", g, "%.8g"}, {"g_error[1]", error, "%.3g"}};
+        {"r[lambda]", r, NULL},
+        {"g[1]", uses_force(run) ? g : counted, "%.8g"},
+        {"g_error[1]", uses_force(run) ? error : counted_error, "%.3g"},
+        {"g_histogram[1]", counted, "%.8g"},
+        {"g_histogram_error[1]", counted_error, "%.3g"}};
     run_folder_file(&run->folder, "rdf.tsv", path);
-    CHECK(data_table_write(path, NULL, columns, 3, bins->count));
+    CHECK(data_table_write(path, NULL, columns, uses_force(run) ? 5 : 3, bins->count));
 done:
     memory_free(r);
     memory_free(g);
     memory_free(error);
+    memory_free(counted);
+    memory_free(counted_error);
     return status;
 }
 
@@ -232,6 +253,17 @@ static enum status write_summary(const struct run *run, double seconds) {
     return status;
 }
 
+static enum status prepare_force(struct run *run, const struct rdf_bins *bins) {
+    const struct simulation_setup *setup = &run->scene.setup;
+    if (!rdf_force_applies(setup->potential, setup->temperature))
+        return status_fail(STATUS_BAD_INPUT,
+                           "rdf: \"estimator\": \"force\" wants a potential that keeps particles "
+                           "apart, of 10 k_B T at least where r is 0");
+    return rdf_force_init(&run->rdf_force, bins, &setup->box, run->simulation.particles.count,
+                          setup->potential, setup->temperature, pair_cutoff(&run->simulation.law),
+                          (size_t)run->plan.samples);
+}
+
 static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
     TRY(read_file(run, file, options));
     TRY(run_folder_open(&run->folder, file, options));
@@ -246,6 +278,8 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
                                   .count = (size_t)run->rdf_parameters.bins};
     status = rdf_init(&run->rdf, &bins, &setup->box, run->simulation.particles.count, cutoff,
                       (size_t)run->plan.samples);
+    if (status == STATUS_OK && uses_force(run))
+        status = prepare_force(run, &bins);
     if (status != STATUS_OK)
         return status_prefix(status, "%s", file);
     TRY(thermodynamics_init(&run->thermodynamics, (size_t)run->plan.samples));
@@ -257,8 +291,10 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
 
 static enum status carry_out(struct run *run) {
     const struct measure_listener listener = {tell, run};
-    const struct measure_targets targets = {&run->rdf, &run->thermodynamics,
-                                            simulate_motion_target(&run->motion)};
+    const struct measure_targets targets = {.rdf = &run->rdf,
+                                            .rdf_force = uses_force(run) ? &run->rdf_force : NULL,
+                                            .thermodynamics = &run->thermodynamics,
+                                            .motion = simulate_motion_target(&run->motion)};
     double temperature;
     TRY(measure_equilibrate(&run->simulation, &run->plan, &temperature, &listener));
     return measure_sample(&run->simulation, &run->plan, targets, &listener);
@@ -296,6 +332,7 @@ done:
     if (run) {
         simulation_clear(&run->simulation);
         rdf_clear(&run->rdf);
+        rdf_force_clear(&run->rdf_force);
         thermodynamics_clear(&run->thermodynamics);
         simulate_motion_clear(&run->motion);
         scene_clear(&run->scene);

@@ -91,6 +91,9 @@ static const struct fault common_faults[] = {
 static const struct fault scene_faults[] = {
     FAULT("small box for the RDF", "\"measure\"", "\"rdf\": {\"range\": 1.6}, \"measure\"",
           "input.json", "box", "RDF", "1.6"),
+    FAULT("a soft potential for the RDF from forces", "{\"law\": \"soft-repulsion\", \"a\": 25}",
+          "{\"law\": \"soft-repulsion\", \"a\": 19}, \"rdf\": {\"estimator\": \"force\"}",
+          "input.json", "rdf", "force", "10 k_B T"),
     FAULT("no samples", "\"samples\": 4", "\"samples\": 0", "measure.samples: 0 is out of range"),
     FAULT("short table of a potential", "{\"law\": \"soft-repulsion\", \"a\": 25}",
           "{\"law\": \"table\", \"file\": \"table.tsv\", \"cutoff\": 2}", "conservative.file",

@@ -31,10 +31,11 @@ static const char fit[] =
     "\"iterations\": 4, \"precision\": 1e-4"
 
 /// An odd population.
-#define GENETIC(tolerance)                                                                         \
+#define GENETIC_BELOW(maximum, tolerance)                                                          \
     "\"name\": \"genetic\", \"population\": 7, \"genes\": 5, \"generations\": 3, "                 \
-    "\"gene_maximum\": 8, \"equilibration\": 60, \"samples\": 10, \"every\": 5, "                  \
+    "\"gene_maximum\": " maximum ", \"equilibration\": 60, \"samples\": 10, \"every\": 5, "        \
     "\"temperature_tolerance\": " tolerance
+#define GENETIC(tolerance) GENETIC_BELOW("8", tolerance)
 
 static const char *const tables[] = {"history.tsv",           "rdf.tsv",   "potential.tsv",
                                      "potential_history.tsv", "omega.tsv", NULL};
@@ -95,6 +96,15 @@ static void test_imc_gives_the_same_bits_from_its_used_settings(void **state) {
 static void test_genetic_gives_the_same_bits_from_its_used_settings(void **state) {
     write_fit(*state, GENETIC("0.3"));
     check_used(CONVERGED);
+}
+
+static void test_genetic_with_forces_gives_the_same_bits_from_its_used_settings(void **state) {
+    // Steep enough that the forces are used.
+    write_fit(*state, GENETIC_BELOW("30", "0.5") ", \"estimator\": \"force\"");
+    check_used(CONVERGED);
+    small_inputs_write(*state, "run.json", fit, METHOD, GENETIC_BELOW("30", "0.5"));
+    run_fit("other", "2", CONVERGED);
+    results_assert_differ("a/one", "other", "history.tsv");
 }
 
 /// Interrupted again and again at different places, the fit ends with the bits of one in peace.
@@ -229,6 +239,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_genetic_gives_the_same_bits_for_any_threads),
         TEST_WITHOUT_FIGURES(test_imc_gives_the_same_bits_from_its_used_settings),
         TEST_WITHOUT_FIGURES(test_genetic_gives_the_same_bits_from_its_used_settings),
+        TEST_WITHOUT_FIGURES(test_genetic_with_forces_gives_the_same_bits_from_its_used_settings),
         TEST_WITHOUT_FIGURES(test_interrupted_imc_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_genetic_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_fit_says_so_and_refuses_other_settings),

@@ -224,6 +224,25 @@ static void test_interrupted_dpd_in_the_plane_goes_on_with_the_same_bits(void **
     check_interruption(*state, flat, NULL, NULL);
 }
 
+#define FORCE_RDF "\"rdf\": {\"estimator\": \"force\", \"range\": 2}, "
+
+static void test_interrupted_force_rdf_goes_on_with_the_same_bits(void **state) {
+    check_interruption(*state, groot_warren,
+                       "\"measure\": {\"equilibration\": 100, \"samples\": 20, \"every\": 10}",
+                       FORCE_RDF LONG_MEASURE);
+}
+
+/// The forces of the steps are their own again after a sample, so thermodynamics.tsv stays.
+static void test_force_rdf_leaves_the_steps_alone(void **state) {
+    static struct run_program_result result;
+    write_scene(*state, groot_warren, NULL, NULL);
+    simulate(&result, "one");
+    write_scene(*state, groot_warren, "\"measure\"", FORCE_RDF "\"measure\"");
+    simulate(&result, "two");
+    results_assert_table("two/rdf.tsv", 5, 100);
+    results_assert_same("one", "two", (const char *const[]){"thermodynamics.tsv", NULL});
+}
+
 static void test_interrupted_nve_goes_on_with_the_same_bits(void **state) {
     check_interruption(*state, conservative, NULL, NULL);
 }
@@ -334,6 +353,8 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_interrupted_dpd_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_diffusion_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_dpd_in_the_plane_goes_on_with_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_interrupted_force_rdf_goes_on_with_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_force_rdf_leaves_the_steps_alone),
         TEST_WITHOUT_FIGURES(test_interrupted_nve_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_run_says_so_and_refuses_other_settings),
         TEST_WITHOUT_FIGURES(test_a_new_run_removes_the_results_of_the_one_before),

@@ -190,7 +190,8 @@ static void test_evaluate_potential_is_a_score_when_the_potential_is_wild(void *
     (void)state;
     enum { BINS = 10 };
     static const double target[BINS] = {0, 0, 0.5, 1, 1, 1, 1, 1, 1, 1}, none[BINS] = {0};
-    const struct measure_plan plan = {.equilibration = 200, .samples = 10, .every = 5};
+    const struct evaluate_parameters parameters = {
+        .plan = {.equilibration = 200, .samples = 10, .every = 5}, .temperature_tolerance = 0.05};
     for (size_t k = 0; k < WILD; k++) {
         struct fluid fluid;
         struct table table;
@@ -202,7 +203,7 @@ static void test_evaluate_potential_is_a_score_when_the_potential_is_wild(void *
                                                 .target_error = none,
                                                 .scene = fluid.setup,
                                                 .threads = 1};
-        assert_int_equal(evaluate_potential(&problem, &table, &plan, 0.05, 8, &result),
+        assert_int_equal(evaluate_potential(&problem, &table, &parameters, 8, &result),
                          STATUS_UNSTABLE);
         assert_in_range(result.engine_steps, 1, FEW_STEPS);
         table_clear(&table);
@@ -217,7 +218,8 @@ static void test_evaluate_potential_is_a_score_when_particles_collapse(void **st
     // All particles fall into one drop, which heats them: no limit of the temperature is to see it.
     struct formula_gaussian_parameters well = {.epsilon = -1, .sigma = 0.5, .cutoff = 1};
     const struct curve curve = {&formula_gaussian, &well};
-    const struct measure_plan plan = {.equilibration = 2000, .samples = 10, .every = 5};
+    const struct evaluate_parameters parameters = {
+        .plan = {.equilibration = 2000, .samples = 10, .every = 5}, .temperature_tolerance = 1e6};
     struct fluid fluid;
     struct table table;
     struct evaluate_result result;
@@ -229,7 +231,8 @@ static void test_evaluate_potential_is_a_score_when_particles_collapse(void **st
                                             .target_error = none,
                                             .scene = fluid.setup,
                                             .threads = 1};
-    assert_int_equal(evaluate_potential(&problem, &table, &plan, 1e6, 8, &result), STATUS_UNSTABLE);
+    assert_int_equal(evaluate_potential(&problem, &table, &parameters, 8, &result),
+                     STATUS_UNSTABLE);
     assert_contains(status_message(), "collapsed");
     table_clear(&table);
     fluid_clear(&fluid);
