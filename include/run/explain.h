@@ -11,6 +11,7 @@ struct explain_measured {
     bool has_potential;               ///< of its own or to be fitted
     double cutoff;                    ///< of the forces [λ]
     double rdf_range;                 ///< 0: no g(r) [λ]
+    bool rdf_force;                   ///< g(r) from forces as well
     bool sums;                        ///< energy, pressure, temperatures
     int64_t every;                    ///< steps between samples
     const struct motion_plan *motion; ///< NULL: no diffusion

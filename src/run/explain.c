@@ -10,8 +10,8 @@
 /// step, of an entry of the list, of a pair in range; of a particle and sample of the motion, and
 /// of each time origin of that.
 static const struct {
-    double move, sort, build, go_through, pair, conservative, dissipative, count, sum, curvature,
-        gather, correlate;
+    double move, sort, build, go_through, pair, conservative, dissipative, count, flux, sum,
+        curvature, gather, correlate;
 } cost = {.move = 8,
           .sort = 28,
           .build = 0.9,
@@ -20,6 +20,7 @@ static const struct {
           .conservative = 0.3,
           .dissipative = 1.3,
           .count = 1.0,
+          .flux = 5,
           .sum = 0.2,
           .curvature = 8,
           .gather = 4,
@@ -102,6 +103,9 @@ static void add_samples(struct plan *plan, const struct simulation_setup *setup,
         add(plan, "g(r)", true, (cost.sort + (cost.build + cost.count) * farther) / every,
             "to %.3g, beyond the forces: a list of its own, one step in %.0f", measured->rdf_range,
             every);
+    if (measured->rdf_force)
+        add(plan, "g(r) from forces", true, cost.flux * fmax(pairs, farther) / every,
+            "one step in %.0f: the forces without friction and noise, then all pairs", every);
     if (measured->sums) {
         add(plan, "energy, virial, temperature", true, (cost.sum * pairs + 2) / every,
             "one step in %.0f", every);

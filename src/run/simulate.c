@@ -353,6 +353,7 @@ enum status simulate_explain(const char *file, const struct run_options *options
         .has_potential = setup->potential != NULL,
         .cutoff = cutoff,
         .rdf_range = run->rdf_parameters.range > 0 ? run->rdf_parameters.range : cutoff,
+        .rdf_force = uses_force(run),
         .sums = true,
         .every = run->plan.every,
         .motion = run->motion.on ? &run->motion.plan : NULL};

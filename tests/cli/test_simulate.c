@@ -24,6 +24,8 @@ static const char flat[] =
     "\"conservative\": {\"law\": \"gaussian\", \"epsilon\": 2, \"cutoff\": 2.5},\n"
     "\"dissipative\": {\"law\": \"power\", \"sigma\": 3}, " LONG_MEASURE "}\n";
 
+#define FORCE_RDF "\"rdf\": {\"estimator\": \"force\", \"range\": 2}, "
+
 /// NVE, with a range of g(r) beyond the cutoff.
 static const char conservative[] =
     "{\"seed\": 5, \"box\": [7.3, 7.1, 7.2], \"particles\": {\"count\": 300},\n"
@@ -166,11 +168,16 @@ static void test_explain_tells_what_is_on_and_off(void **state) {
     assert_contains(result.out, "300 particles: about ");
     assert_contains(result.out, "friction and noise                 on ");
     assert_contains(result.out, "counted in the force pass of one step in 10");
+    write_scene(*state, groot_warren, "\"measure\"", FORCE_RDF "\"measure\"");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "g(r) from forces                   on ");
     write_scene(*state, conservative, NULL, NULL);
     RUN_PROGRAM(&result, "simulate", "scene.json", "--explain");
     run_program_assert_code(&result, 0);
     assert_contains(result.out, "friction and noise                 off         no weight");
     assert_contains(result.out, "to 3.5, beyond the forces: a list of its own");
+    assert_null(strstr(result.out, "g(r) from forces"));
     assert_false(temporary_folder_exists("out"));
     write_scene(*state,
                 "{\"box\": [5, 5, 5], \"particles\": {\"count\": 100},\n"
@@ -223,8 +230,6 @@ static void test_interrupted_diffusion_goes_on_with_the_same_bits(void **state) 
 static void test_interrupted_dpd_in_the_plane_goes_on_with_the_same_bits(void **state) {
     check_interruption(*state, flat, NULL, NULL);
 }
-
-#define FORCE_RDF "\"rdf\": {\"estimator\": \"force\", \"range\": 2}, "
 
 static void test_interrupted_force_rdf_goes_on_with_the_same_bits(void **state) {
     check_interruption(*state, groot_warren,
