@@ -64,13 +64,35 @@ void reference_forces(const struct pair_law *law, struct particles *particles, u
         *sums = total;
 }
 
-enum status reference_configurational(const struct table *potential,
+/// Thickness of the shell inside the cutoff in which pairs are counted, relative to the cutoff.
+static const double shell = 0.01;
+
+/// What a pair in the shell says of the density of pairs at the cutoff, where Φ = 0: those nearer
+/// have less room, and are rarer or more frequent by exp(−Φ/k_B T).
+static double density_at_cutoff(const struct table *potential, double r, double temperature,
+                                int dimensions) {
+    double phi;
+    table_evaluate(potential, r, &phi, NULL, NULL);
+    return pow(potential->cutoff / r, dimensions - 1) * exp(phi / temperature) /
+           (shell * potential->cutoff);
+}
+
+/// Σ∇²U of a force that ends abruptly: the slope jumps to 0 at the cutoff, which is a Dirac peak of
+/// Φ'' seen by the pairs that are just there.
+static double edge_laplacian(const struct table *potential, double density) {
+    double slope;
+    table_evaluate(potential, potential->cutoff * (1 - 1e-9), NULL, &slope, NULL);
+    return -2 * slope * density;
+}
+
+enum status reference_configurational(const struct table *potential, double temperature,
                                       const struct particles *particles,
                                       const struct neighbours *neighbours, double *squares,
                                       double *laplacian) {
     enum status status = STATUS_OK;
     const int dimensions = particles->box.dimensions;
     double *force = NULL;
+    double density = 0;
     *squares = *laplacian = 0;
     NEW_ARRAY(force, 3 * particles->count);
     for (size_t i = 0; i < particles->count; i++)
@@ -83,12 +105,15 @@ enum status reference_configurational(const struct table *potential,
             if (r >= potential->cutoff)
                 continue;
             table_evaluate(potential, r, NULL, &slope, &curvature);
+            if (r > (1 - shell) * potential->cutoff)
+                density += density_at_cutoff(potential, r, temperature, dimensions);
             *laplacian += 2 * (curvature + (dimensions - 1) * slope / r);
             for (int d = 0; d < dimensions; d++) {
                 force[3 * i + (size_t)d] -= slope * r_ij[d] / r;
                 force[3 * j + (size_t)d] += slope * r_ij[d] / r;
             }
         }
+    *laplacian += edge_laplacian(potential, density);
     for (size_t k = 0; k < 3 * particles->count; k++)
         *squares += force[k] * force[k];
 done:
