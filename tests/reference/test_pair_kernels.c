@@ -10,6 +10,7 @@
 #include "curves/sampled.h"
 #include "forces/reference_forces.h"
 #include "shared/is_close.h"
+#include "shared/pair_scales.h"
 #include "shared/testing.h"
 #include "shared/variants.h"
 #include "system/placement.h"
@@ -145,64 +146,6 @@ static double *copy_forces(const struct particles *particles) {
     return copy;
 }
 
-static double separation(const struct particles *particles, size_t i, size_t j) {
-    double square = 0;
-    for (int d = 0; d < particles->box.dimensions; d++) {
-        const double dx = box_nearest(particles->position[d][i] - particles->position[d][j],
-                                      particles->box.length[d]);
-        square += dx * dx;
-    }
-    return sqrt(square);
-}
-
-/// What errors are relative to: Σ (|F| + r |dF/dr|) on each particle, Σ |Φ| and Σ |r Φ'|.
-struct scales {
-    double *force, energy, virial;
-};
-
-/// |F| + r |dF/dr| of the potential.
-static double conservative_scale(const struct table *potential, double r) {
-    double slope, curvature;
-    table_evaluate(potential, r, NULL, &slope, &curvature);
-    return fabs(slope) + r * fabs(curvature);
-}
-
-/// The same for friction at a relative velocity of 4 and noise at its largest. Where ω jumps, the
-/// slope is that of one interval of the table; a rounding may fall on either side of its ends.
-static double dissipative_scale(const struct pair_law *law, double r) {
-    double omega = 0, slope = 0;
-    for (int side = -1; side <= 1; side++) {
-        double value, steepness;
-        table_evaluate(law->weight, fmin(r * (1 + 1e-6 * side), law->weight->cutoff), &value,
-                       &steepness, NULL);
-        omega = fmax(omega, fabs(value));
-        slope = fmax(slope, fabs(steepness));
-    }
-    const double noise = sqrt(2 * law->temperature / law->time_step) * sqrt(3);
-    return noise * (omega + r * slope) + 4 * omega * (omega + 2 * r * slope);
-}
-
-static struct scales find_scales(const struct pair_law *law, const struct particles *particles) {
-    struct scales scales = {.force = memory_zeroed(particles->count, sizeof(double))};
-    assert_non_null(scales.force);
-    for (size_t i = 0; i < particles->count; i++)
-        for (size_t j = i + 1; j < particles->count; j++) {
-            const double r = separation(particles, i, j);
-            double force = 0, phi, slope;
-            if (law->potential && r < law->potential->cutoff) {
-                table_evaluate(law->potential, r, &phi, &slope, NULL);
-                scales.energy += fabs(phi);
-                scales.virial += fabs(r * slope);
-                force += conservative_scale(law->potential, r);
-            }
-            if (law->weight && r < law->weight->cutoff)
-                force += dissipative_scale(law, r);
-            scales.force[i] += force;
-            scales.force[j] += force;
-        }
-    return scales;
-}
-
 static void check_forces(const struct particles *particles, const double *expected,
                          const double *scale, double tolerance, const char *label) {
     for (int d = 0; d < particles->box.dimensions; d++)
@@ -229,7 +172,7 @@ static void check_momentum(const struct particles *particles, const char *label)
 }
 
 static void check_sums(const struct pair_sums *sums, const struct pair_sums *expected,
-                       const struct scales *scales, double tolerance) {
+                       const struct pair_scales *scales, double tolerance) {
     assert_close(sums->energy, expected->energy, tolerance * scales->energy);
     assert_close(sums->virial, expected->virial, tolerance * scales->virial);
 }
@@ -244,7 +187,7 @@ static void check_law(const struct system *system, const struct pair_law *of_any
     make_system(&particles, &neighbours, system, &law);
     reference_forces(&law, &particles, step, &expected);
     double *reference = copy_forces(&particles);
-    const struct scales scales = find_scales(&law, &particles);
+    struct pair_scales scales = pair_scales_find(&law, &particles);
     for (int v = 0; v < variant_count; v++) {
         const struct tolerances allowed = tolerances[variants[v].precision];
         variants_select(&variants[v]);
@@ -263,7 +206,7 @@ static void check_law(const struct system *system, const struct pair_law *of_any
         memory_free(without_sums);
     }
     memory_free(reference);
-    memory_free(scales.force);
+    pair_scales_clear(&scales);
     particles_clear(&particles);
     neighbours_clear(&neighbours);
 }
