@@ -227,6 +227,16 @@ static void test_interrupted_diffusion_goes_on_with_the_same_bits(void **state) 
     results_assert_same("whole", "pieces", moving_tables);
 }
 
+/// Shardlow's step begins with pairs that no checkpoint holds; ABOBA's samples need a force pass of
+/// their own.
+static void
+test_interrupted_dpd_goes_on_with_the_same_bits_when_friction_is_split_off(void **state) {
+    check_interruption(*state, flat, "\"seed\": 5",
+                       "\"seed\": 5, \"dynamics\": {\"integrator\": \"shardlow\"}");
+    check_interruption(*state, flat, "\"seed\": 5",
+                       "\"seed\": 5, \"dynamics\": {\"integrator\": \"aboba\"}");
+}
+
 static void test_interrupted_dpd_in_the_plane_goes_on_with_the_same_bits(void **state) {
     check_interruption(*state, flat, NULL, NULL);
 }
@@ -357,6 +367,8 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_threads_do_not_change_the_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_dpd_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_diffusion_goes_on_with_the_same_bits),
+        TEST_WITHOUT_FIGURES(
+            test_interrupted_dpd_goes_on_with_the_same_bits_when_friction_is_split_off),
         TEST_WITHOUT_FIGURES(test_interrupted_dpd_in_the_plane_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_force_rdf_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_force_rdf_leaves_the_steps_alone),

@@ -47,16 +47,20 @@ static void run(const struct simulation_setup *setup, int threads, struct outcom
     simulation_clear(&simulation);
 }
 
-static void check(struct fluid *fluid) {
+static void check_setup(const struct simulation_setup *setup) {
     static struct outcome alone, shared;
+    run(setup, 1, &alone);
+    assert_true(alone.list_builds > 0);
+    for (int threads = 2; threads <= 4; threads++) {
+        run(setup, threads, &shared);
+        assert_memory_equal(&shared, &alone, sizeof alone);
+    }
+}
+
+static void check(struct fluid *fluid) {
     for (int precision = PAIR_MIXED; precision <= PAIR_DOUBLE; precision++) {
         fluid->setup.precision = precision;
-        run(&fluid->setup, 1, &alone);
-        assert_true(alone.list_builds > 0);
-        for (int threads = 2; threads <= 4; threads++) {
-            run(&fluid->setup, threads, &shared);
-            assert_memory_equal(&shared, &alone, sizeof alone);
-        }
+        check_setup(&fluid->setup);
     }
     fluid_clear(fluid);
 }
@@ -85,11 +89,25 @@ static void test_threads_give_the_same_bits_when_the_scene_is_flat(void **state)
     check(&fluid);
 }
 
+static void test_threads_give_the_same_bits_when_friction_is_split_off(void **state) {
+    (void)state;
+    struct fluid fluid;
+    fluid_groot_warren(&fluid, 1000, 0.04);
+    fluid.setup.integrator_parameters.tolerance = 0.01;
+    for (size_t k = 0; integrator_list[k]; k++)
+        if (integrator_list[k]->friction) {
+            fluid.setup.integrator = integrator_list[k];
+            check_setup(&fluid.setup);
+        }
+    fluid_clear(&fluid);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_threads_give_the_same_bits_when_there_is_friction_and_noise),
         cmocka_unit_test(test_threads_give_the_same_bits_when_energy_is_conserved),
         cmocka_unit_test(test_threads_give_the_same_bits_when_the_scene_is_flat),
+        cmocka_unit_test(test_threads_give_the_same_bits_when_friction_is_split_off),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A simulation that was saved in the middle, loaded into a new one and continued has the bits of
+// one that went on in peace, whatever its integrator and while it is sampled.
+#include "base/memory.h"
+#include "observe/measure.h"
+#include "shared/fluids.h"
+#include "shared/testing.h"
+
+enum { BINS = 20, SAMPLES = 6, EVERY = 5, EQUILIBRATION = 4 };
+
+static const struct measure_plan plan = {
+    .equilibration = EQUILIBRATION, .samples = SAMPLES, .every = EVERY};
+
+/// A simulation with all that is measured of it.
+struct run {
+    struct simulation simulation;
+    struct rdf rdf;
+    struct thermodynamics thermodynamics;
+};
+
+static void begin(struct run *run, const struct simulation_setup *setup) {
+    const struct rdf_bins bins = {0, 1.0 / BINS, BINS};
+    assert_ok(simulation_init(&run->simulation, setup, NULL));
+    assert_ok(rdf_init(&run->rdf, &bins, &setup->box, (size_t)setup->placement.count, 1, SAMPLES));
+    assert_ok(thermodynamics_init(&run->thermodynamics, SAMPLES));
+}
+
+static void clear(struct run *run) {
+    simulation_clear(&run->simulation);
+    rdf_clear(&run->rdf);
+    thermodynamics_clear(&run->thermodynamics);
+}
+
+static void sample(struct run *run, int64_t samples) {
+    struct measure_plan part = plan;
+    part.samples = samples;
+    const struct measure_targets targets = {&run->rdf, &run->thermodynamics};
+    assert_ok(measure_sample(&run->simulation, &part, targets, NULL));
+}
+
+/// All samples that are complete after `steps` steps, and the steps.
+static void run_for(struct run *run, uint64_t steps) {
+    if (steps >= EQUILIBRATION) {
+        assert_ok(simulation_run(&run->simulation, EQUILIBRATION));
+        sample(run, ((int64_t)steps - EQUILIBRATION) / EVERY);
+    }
+    run->simulation.wants = PAIR_FORCES;
+    assert_ok(simulation_run(&run->simulation, steps - run->simulation.step));
+}
+
+static void run_to_the_end(struct run *run) {
+    if (run->simulation.step < EQUILIBRATION)
+        assert_ok(simulation_run(&run->simulation, EQUILIBRATION - run->simulation.step));
+    sample(run, SAMPLES);
+}
+
+/// Exchange the simulation for a new one with the same state.
+static void restart(struct run *run) {
+    struct memory_span from[SIMULATION_SPANS], to[SIMULATION_SPANS];
+    struct simulation again;
+    assert_ok(simulation_init(&again, &run->simulation.setup, NULL));
+    const size_t spans = simulation_spans(&run->simulation, from);
+    assert_int_equal(simulation_spans(&again, to), spans);
+    for (size_t n = 0; n < spans; n++) {
+        assert_int_equal(from[n].bytes, to[n].bytes);
+        memcpy(to[n].memory, from[n].memory, from[n].bytes);
+    }
+    simulation_clear(&run->simulation);
+    run->simulation = again;
+    assert_ok(simulation_restore(&run->simulation));
+    assert_int_equal(run->simulation.list_builds, *(uint64_t *)to[spans - 1].memory);
+}
+
+static void assert_same(const struct run *a, const struct run *b) {
+    const struct particles *p = &a->simulation.particles, *q = &b->simulation.particles;
+    const size_t size = p->count * sizeof(double);
+    assert_int_equal(a->simulation.step, b->simulation.step);
+    assert_int_equal(a->simulation.list_builds, b->simulation.list_builds);
+    assert_memory_equal(p->id, q->id, p->count * sizeof *p->id);
+    for (int d = 0; d < p->box.dimensions; d++) {
+        assert_memory_equal(p->position[d], q->position[d], size);
+        assert_memory_equal(p->velocity[d], q->velocity[d], size);
+        assert_memory_equal(p->force[d], q->force[d], size);
+        assert_memory_equal(p->image[d], q->image[d], p->count * sizeof *p->image[d]);
+    }
+    assert_int_equal(a->rdf.samples, b->rdf.samples);
+    assert_memory_equal(a->rdf.histogram, b->rdf.histogram,
+                        a->rdf.blocks * BINS * sizeof *a->rdf.histogram);
+    assert_memory_equal(a->thermodynamics.values, b->thermodynamics.values,
+                        THERMODYNAMICS_QUANTITIES * SAMPLES * sizeof(double));
+}
+
+/// Every step of the run is one at which it is saved.
+static void check(const struct simulation_setup *setup) {
+    static struct run whole, pieces;
+    begin(&whole, setup);
+    run_for(&whole, EQUILIBRATION);
+    run_to_the_end(&whole);
+    assert_true(whole.simulation.list_builds > 1);
+    for (uint64_t steps = 0; steps <= measure_steps(&plan); steps += 3) {
+        begin(&pieces, setup);
+        run_for(&pieces, steps);
+        restart(&pieces);
+        run_to_the_end(&pieces);
+        assert_same(&whole, &pieces);
+        clear(&pieces);
+    }
+    clear(&whole);
+}
+
+/// With a skin so short that lists are built every few steps, at a sample's positions, too.
+static void check_integrators(struct fluid *fluid) {
+    fluid->setup.skin = 0.15;
+    fluid->setup.integrator_parameters.tolerance = 0.01;
+    for (size_t k = 0; integrator_list[k]; k++) {
+        fluid->setup.integrator = integrator_list[k];
+        fluid->setup.weight = integrator_list[k]->dissipative ? &fluid->weight : NULL;
+        for (int precision = PAIR_MIXED; precision <= PAIR_DOUBLE; precision++) {
+            fluid->setup.precision = precision;
+            check(&fluid->setup);
+        }
+        fluid->setup.weight = NULL;
+        check(&fluid->setup);
+    }
+    fluid_clear(fluid);
+}
+
+static void test_restart_goes_on_with_the_same_bits_when_sampled(void **state) {
+    (void)state;
+    struct fluid fluid;
+    fluid_groot_warren(&fluid, 300, 0.04);
+    check_integrators(&fluid);
+}
+
+static void test_restart_goes_on_with_the_same_bits_when_the_scene_is_flat(void **state) {
+    (void)state;
+    struct fluid fluid;
+    fluid_soft_discs(&fluid, 200, 0.04);
+    check_integrators(&fluid);
+}
+
+static void test_restart_goes_on_with_the_same_bits_when_there_is_no_potential(void **state) {
+    (void)state;
+    struct fluid fluid;
+    fluid_ideal_gas(&fluid, 3, 375, 0.04);
+    fluid.setup.potential = NULL;
+    check_integrators(&fluid);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_restart_goes_on_with_the_same_bits_when_sampled),
+        cmocka_unit_test(test_restart_goes_on_with_the_same_bits_when_the_scene_is_flat),
+        cmocka_unit_test(test_restart_goes_on_with_the_same_bits_when_there_is_no_potential),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
