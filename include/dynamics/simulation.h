@@ -43,7 +43,7 @@ struct simulation {
     uint64_t step;
     enum pair_wants wants; ///< set before a step whose sums will be read
     struct pair_sums sums; ///< of the last step, if it was asked for them
-    double temperature; ///< kinetic, where the integrator's is unbiased; NaN: at the end of a step
+    double temperature;    ///< kinetic, where the integrator's is best; NaN: at the end of a step
     uint64_t list_builds;
     uint64_t ticks[SIMULATION_PHASES]; ///< clock_ticks spent so far
 };
@@ -88,7 +88,7 @@ enum status simulation_compute_forces(struct simulation *simulation, double ahea
 enum status simulation_compute_potential(struct simulation *simulation) MUST_USE;
 
 /// Kinetic temperature of the last step [k_B T_0], taken where in the step the integrator keeps it
-/// unbiased, if the step was asked for its sums, and at the end of the step otherwise.
+/// best, if the step was asked for its sums, and at the end of the step otherwise.
 double simulation_temperature(const struct simulation *simulation);
 
 /// What the choice of a skin depends on.

@@ -70,6 +70,7 @@ enum status friction_add_to_forces(struct friction *friction, struct particles *
 
 /// Solve (1 + G) v' = (1 − G) v + kicks, G v = Σ damping·u e, by conjugate gradients, to a
 /// residual of `tolerance` times the change that friction and noise make; v' replaces the
-/// velocities. The same bits for any number of threads. Fails: NO_MEMORY.
+/// velocities. The same bits for any number of threads. Fails: NO_MEMORY; UNSTABLE if 1000
+/// iterations are too few for so large a friction, and the velocities stay.
 enum status friction_solve(struct friction *friction, struct particles *particles,
                            double tolerance) MUST_USE;

@@ -28,8 +28,9 @@ static enum status solve(struct simulation *simulation) {
 }
 
 /// Drift, kick, friction, kick, drift: forces and friction from the positions in the middle. The
-/// kinetic temperature is taken right after the friction, which conserves the Maxwell distribution;
-/// at the end of the step it is larger by a term of order Δt².
+/// kinetic temperature is best right after the friction, which draws towards the Maxwell
+/// distribution: there the standard fluid at Δt = 0.04 is 0.8 % too hot, at the end of the step
+/// 2.4 %, and at 0.08 4.9 and 12.5 %.
 static enum status step_with(struct simulation *simulation, friction_change *change) {
     simulation_drift_half(simulation);
     TRY(simulation_compute_forces(simulation, 0));

@@ -90,6 +90,11 @@ enum status friction_solve(struct friction *friction, struct particles *particle
         s.along = squares / before;
         parallel_for(count, threads, turn, &s);
     }
+    if (squares > enough)
+        return status_fail(STATUS_UNSTABLE,
+                           "the implicit friction is not solved after %d iterations; lower "
+                           "\"time_step\" or raise \"tolerance\"",
+                           MOST_ITERATIONS);
     parallel_for(count, threads, finish, &s);
     return STATUS_OK;
 }

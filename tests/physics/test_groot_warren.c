@@ -2,6 +2,7 @@
 //
 // The standard fluid of dissipative particle dynamics against published and independent values;
 // tests/reference_data/README.md says where they come from.
+#include "curves/formula.h"
 #include "io/data_table.h"
 #include "observe/measure.h"
 #include "shared/fluids.h"
@@ -146,11 +147,123 @@ static void test_standard_fluid_heats_as_known_when_the_variant_changes(void **s
     variants_select(&variants[0]);
 }
 
+/// Published excess of the temperatures [%], to the digits given: kinetic at the end of the step.
+struct heating {
+    const struct integrator *integrator;
+    double lambda, time_step;
+    double kinetic, configurational;
+    double kinetic_digit, configurational_digit; ///< half the last digit
+};
+
+static const struct heating heatings[] = {
+    {&dpd_verlet, 0.5, 0.02, 1.0, 1.4, 0.05, 0.05}, {&dpd_verlet, 0.65, 0.02, 0.2, 0.8, 0.05, 0.05},
+    {&shardlow, 0, 0.02, 0, 1.2, 0.05, 0.05},       {&aboba, 0, 0.02, 0.7, -0.05, 0.05, 0.005},
+    {&dpd_verlet, 0.5, 0.04, 2.8, 5.5, 0.05, 0.05}, {&dpd_verlet, 0.65, 0.04, 0.2, 3.4, 0.05, 0.05},
+    {&shardlow, 0, 0.04, 0.8, 4.9, 0.05, 0.05},     {&aboba, 0, 0.04, 2.4, -0.9, 0.05, 0.05},
+    {&dpd_verlet, 0.5, 0.06, 6.1, 14, 0.05, 0.5},   {&dpd_verlet, 0.65, 0.06, 0.9, 9.1, 0.05, 0.05},
+    {&shardlow, 0, 0.06, 2.3, 12, 0.05, 0.5},       {&aboba, 0, 0.06, 6.3, -1.5, 0.05, 0.05},
+    {&dpd_verlet, 0.5, 0.08, 13, 32, 0.5, 0.5},     {&dpd_verlet, 0.65, 0.08, 4.6, 22, 0.05, 0.5},
+    {&shardlow, 0, 0.08, 5.2, 25, 0.05, 0.5},       {&aboba, 0, 0.08, 13, -2.5, 0.5, 0.05},
+};
+
+/// Of the published excess: 0.1 %.
+static const double heating_error = 0.001;
+
+/// Mean kinetic temperature at the ends of steps, beside what is measured of them.
+struct ends {
+    double sum;
+    size_t count;
+};
+
+static void add_end(void *context, const struct simulation *simulation, uint64_t done,
+                    uint64_t total) {
+    (void)done, (void)total;
+    struct ends *ends = context;
+    ends->sum += particles_temperature(&simulation->particles);
+    ends->count++;
+}
+
+/// The statistical error of the temperature at the end of a step is that in the middle.
+static void check_heating(const struct heating *heating) {
+    const struct measure_plan plan = {.equilibration = 500, .samples = 300, .every = 10};
+    struct fluid fluid;
+    struct simulation simulation;
+    struct thermodynamics thermodynamics;
+    struct ends ends = {0};
+    double temperature;
+    fluid_groot_warren(&fluid, PARTICLES, heating->time_step);
+    fluid.setup.integrator = heating->integrator;
+    fluid.setup.integrator_parameters.lambda = heating->lambda;
+    assert_ok(simulation_init(&simulation, &fluid.setup, NULL));
+    assert_ok(thermodynamics_init(&thermodynamics, (size_t)plan.samples));
+    assert_ok(measure_equilibrate(&simulation, &plan, &temperature, NULL));
+    const struct measure_targets targets = {.thermodynamics = &thermodynamics};
+    const struct measure_listener listener = {add_end, &ends};
+    assert_ok(measure_sample(&simulation, &plan, targets, &listener));
+    const struct thermodynamics_summary s = thermodynamics_result(&thermodynamics, 1);
+    const double kinetic = ends.sum / (double)ends.count;
+    print_message("%s, lambda %g, time step %g: kinetic %.4f(%.4f), configurational %.4f(%.4f)\n",
+                  heating->integrator->name, heating->lambda, heating->time_step, kinetic,
+                  s.temperature_error, s.temperature_configurational,
+                  s.temperature_configurational_error);
+    assert_close(kinetic, 1 + heating->kinetic / 100,
+                 heating->kinetic_digit / 100 + 3 * hypot(s.temperature_error, heating_error));
+    assert_close(s.temperature_configurational, 1 + heating->configurational / 100,
+                 heating->configurational_digit / 100 +
+                     3 * hypot(s.temperature_configurational_error, heating_error));
+    thermodynamics_clear(&thermodynamics);
+    simulation_clear(&simulation);
+    fluid_clear(&fluid);
+}
+
+/// 32 comparisons within three combined errors, which are known to 16 % each: one set of seeds in
+/// five gives a false alarm, and these are fixed. Runs of 30,000 steps at Δt = 0.04 gave 0.87(3)
+/// and 5.04(4) % for Shardlow, 2.59(4) and −0.55(5) % for ABOBA: the published −0.9 % is not quite
+/// ours.
+static void test_standard_fluid_heats_as_published_when_the_integrator_changes(void **state) {
+    (void)state;
+    for (size_t k = 0; k < sizeof heatings / sizeof *heatings; k++)
+        check_heating(&heatings[k]);
+}
+
+/// Published pressures of 100 particles: density, a, temperature, pressure and its error. The last
+/// three have a in proportion to the temperature; errors that are not given are half a last digit.
+static const double pressures[][5] = {
+    {3, 25, 1, 23.637, 0.002}, {4, 18.75, 1, 32.622, 0.003},  {2, 37.5, 1, 14.320, 0.002},
+    {5, 15, 1, 41.539, 0.004}, {3, 12.5, 0.5, 11.814, 0.002}, {3, 37.5, 1.5, 35.449, 0.003},
+    {3, 50, 2, 47.257, 0.004},
+};
+
+static void test_pressure_is_the_published_one_when_density_and_temperature_change(void **state) {
+    (void)state;
+    for (size_t k = 0; k < sizeof pressures / sizeof *pressures; k++) {
+        const double *row = pressures[k];
+        struct formula_soft_repulsion_parameters parameters = {row[1], 1};
+        const struct curve curve = {&formula_soft_repulsion, &parameters};
+        struct table potential;
+        struct fluid fluid;
+        fluid_groot_warren(&fluid, 100, 0.02);
+        assert_ok(table_init_potential(&potential, &curve));
+        for (int d = 0; d < 3; d++)
+            fluid.setup.box.length[d] = cbrt(100 / row[0]);
+        fluid.setup.potential = &potential;
+        fluid.setup.temperature = row[2];
+        fluid.setup.integrator = &aboba;
+        print_message("density %g, a %g, temperature %g: ", row[0], row[1], row[2]);
+        const struct thermodynamics_summary s = simulate(&fluid.setup, 500, 4000, NULL);
+        assert_close(s.pressure, row[3], deviations * hypot(s.pressure_error, row[4]));
+        table_clear(&potential);
+        fluid_clear(&fluid);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_standard_fluid_has_the_published_state_when_the_time_step_is_small),
         cmocka_unit_test(test_standard_fluid_heats_as_known_when_the_time_step_is_large),
         cmocka_unit_test(test_standard_fluid_heats_as_known_when_the_variant_changes),
+        cmocka_unit_test(test_standard_fluid_heats_as_published_when_the_integrator_changes),
+        cmocka_unit_test(test_pressure_is_the_published_one_when_density_and_temperature_change),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

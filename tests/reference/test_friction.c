@@ -380,6 +380,19 @@ static void test_solution_is_within_its_tolerance_when_friction_is_implicit(void
     check_solution(1e4, 1e-2, 1e-9);
 }
 
+static void test_solution_is_refused_when_iterations_are_too_few_for_its_tolerance(void **state) {
+    (void)state;
+    struct kept kept = {.law = make_law(&soft, &weight, 1e9)};
+    make_kept(&kept, &(struct box){3, {5.1, 4.6, 6.3}}, 443, 0);
+    init_friction(&kept, &aboba_implicit);
+    keep(&kept, 3);
+    const double before = kept.particles.velocity[0][0];
+    assert_fails(friction_solve(&kept.friction, &kept.particles, 1e-200), STATUS_UNSTABLE,
+                 "time_step");
+    assert_identical(kept.particles.velocity[0][0], before);
+    clear_kept(&kept);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_kept_pairs_add_up_to_friction_and_noise_when_they_are_forces),
@@ -388,6 +401,7 @@ int main(void) {
         cmocka_unit_test(test_factors_keep_the_temperature_when_the_time_step_is_anything),
         cmocka_unit_test(test_sweep_conserves_momentum_when_particles_are_many),
         cmocka_unit_test(test_solution_is_within_its_tolerance_when_friction_is_implicit),
+        cmocka_unit_test(test_solution_is_refused_when_iterations_are_too_few_for_its_tolerance),
     };
     return cmocka_run_group_tests(tests, make_tables, clear_tables);
 }
