@@ -54,7 +54,8 @@ struct simulation_start {
     const double *velocity[3]; ///< velocity[0] NULL: draw them
 };
 
-/// Place the particles, draw their velocities and compute the first forces.
+/// Place the particles, draw their velocities and compute the first forces. Particles placed at
+/// random are parted where they overlap (relax_overlaps).
 /// @param[in] start  for PLACEMENT_FILE, else NULL
 /// Fails: BAD_INPUT (box below twice the cutoff, no room), NO_MEMORY, UNSTABLE.
 enum status simulation_init(struct simulation *simulation, const struct simulation_setup *setup,

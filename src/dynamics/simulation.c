@@ -5,6 +5,7 @@
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "base/simd.h"
+#include "dynamics/relax.h"
 
 static enum status place(struct simulation *simulation, const struct simulation_start *start) {
     const struct simulation_setup *setup = &simulation->setup;
@@ -70,6 +71,8 @@ enum status simulation_init(struct simulation *simulation, const struct simulati
                             setup->temperature, setup->integrator->friction));
     CHECK(place(simulation, start));
     CHECK(neighbours_sort_and_build(&simulation->neighbours, &simulation->particles));
+    if (setup->placement.kind == PLACEMENT_RANDOM && setup->potential)
+        CHECK(relax_overlaps(simulation));
     CHECK(simulation_compute_forces(simulation, 0));
 done:
     if (status != STATUS_OK)

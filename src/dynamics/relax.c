@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dynamics/relax.h"
+
+#include <math.h>
+
+enum { MOST_STEPS = 500 };
+
+/// Forces that change a velocity by so many thermal ones in a time step are an overlap; liquids of
+/// any potential here stay below 3.
+static const double overlap = 10;
+
+/// Largest shift in the first step, in mean spacings; it goes down to 0 over all steps.
+static const double first_shift = 0.05;
+
+static void shift(struct particles *particles, double enough, double cap) {
+    const int dimensions = particles->box.dimensions;
+    for (size_t k = 0; k < particles->count; k++) {
+        double square = 0;
+        for (int d = 0; d < dimensions; d++)
+            square += particles->force[d][k] * particles->force[d][k];
+        const double scale = cap / fmax(sqrt(square), enough);
+        for (int d = 0; d < dimensions; d++)
+            particles->position[d][k] += scale * particles->force[d][k];
+    }
+}
+
+enum status relax_overlaps(struct simulation *simulation) {
+    struct particles *particles = &simulation->particles;
+    const double enough = sqrt(simulation->setup.temperature) / simulation->setup.time_step;
+    const double spacing = pow(particles_density(particles), -1.0 / particles->box.dimensions);
+    TRY(simulation_compute_potential(simulation));
+    if (!(particles_largest_force(particles) > overlap * enough))
+        return STATUS_OK;
+    for (int step = 0; step < MOST_STEPS; step++) {
+        shift(particles, enough, first_shift * spacing * (1 - (double)step / MOST_STEPS));
+        TRY(simulation_compute_potential(simulation));
+        if (!(particles_largest_force(particles) > enough)) // NaN ends it, too
+            break;
+    }
+    return STATUS_OK;
+}
