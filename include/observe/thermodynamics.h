@@ -33,6 +33,7 @@ const double *thermodynamics_series(const struct thermodynamics *thermodynamics,
 /// Means over all replicas with standard errors that see the correlation of each series, by
 /// statistics_correlated_error.
 struct thermodynamics_summary {
+    size_t blocks; ///< behind the errors, of all replicas
     double temperature, temperature_error;
     double temperature_configurational, temperature_configurational_error; ///< NaN without Φ
     double potential_energy, potential_energy_error;
@@ -40,3 +41,14 @@ struct thermodynamics_summary {
 };
 struct thermodynamics_summary thermodynamics_result(const struct thermodynamics *replicas,
                                                     size_t count);
+
+/// Whether the temperatures of a summary agree with the set one of a simulation: kinetic and
+/// configurational within 10 % and four standard errors, where there are five blocks to know them
+/// by. Without friction nothing is set, and the configurational one is held to the kinetic one.
+///
+/// A time step that is too large, or friction that is, may leave the kinetic temperature right and
+/// the structure wrong: velocity Verlet (λ = ½) of the standard fluid with γ = 200 and Δt = 0.01
+/// has 1.03 and 0.75. Fails: UNSTABLE with the temperatures in the message. Tested:
+/// test_thermodynamics.
+enum status thermodynamics_judge(const struct thermodynamics_summary *summary,
+                                 const struct simulation_setup *setup) MUST_USE;

@@ -239,6 +239,8 @@ static enum status verify_and_write(struct run *run) {
                  verification.thermodynamics.temperature,
                  verification.thermodynamics.temperature_configurational,
                  verification.thermodynamics.pressure, run->folder.path);
+    if (thermodynamics_judge(&verification.thermodynamics, &run->fit.problem.scene) != STATUS_OK)
+        progress_say(&run->progress, "mesofit: warning: %s", status_message());
     status = result.status;
     if (status == STATUS_UNCONVERGED)
         tell_unconverged(run);

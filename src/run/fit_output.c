@@ -126,6 +126,8 @@ struct fit_truth fit_output_truth(const struct fit_file *fit, const struct poten
 static void put_verification(struct json_writer *writer, const struct fit_file *fit,
                              const struct evaluate_verification *v) {
     const struct thermodynamics_summary *t = &v->thermodynamics;
+    if (thermodynamics_judge(t, &fit->problem.scene) != STATUS_OK)
+        json_put_text(writer, "warning", status_message());
     json_put_number(writer, "rdf_rmse", v->rmse);
     json_put_number(writer, "rdf_rmse_error", v->rmse_error);
     json_put_number(writer, "rdf_noise", v->noise);

@@ -227,6 +227,8 @@ static enum status write_summary(const struct run *run, double seconds) {
     struct json_writer *writer = json_writer_create();
     char path[OUTPUT_PATH_SIZE];
     json_put_text(writer, "status", status_name(STATUS_OK));
+    if (thermodynamics_judge(&s, &run->simulation.setup) != STATUS_OK)
+        json_put_text(writer, "warning", status_message());
     json_put_text(writer, "method", "simulate");
     json_put_number(writer, "seconds", seconds);
     json_put_number(writer, "engine_steps", (double)run->simulation.step);
@@ -309,6 +311,9 @@ static enum status write_results(struct run *run) {
     TRY(simulate_motion_write_table(&run->motion, path));
     TRY(write_summary(run, seconds));
     run_folder_draw(&run->folder);
+    const struct thermodynamics_summary s = thermodynamics_result(&run->thermodynamics, 1);
+    if (thermodynamics_judge(&s, &run->simulation.setup) != STATUS_OK)
+        progress_say(&run->progress, "mesofit: warning: %s", status_message());
     progress_say(&run->progress, "%llu steps in %.3g s; results in %s",
                  (unsigned long long)run->simulation.step, seconds, run->folder.path);
     return STATUS_OK;

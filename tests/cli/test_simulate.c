@@ -307,6 +307,24 @@ static void test_unstable_scene_ends_with_step_and_force(void **state) {
     assert_false(temporary_folder_exists("out/summary.json"));
 }
 
+/// Friction too large for the time step: the velocities look right, the structure is wrong.
+static void test_simulate_warns_when_only_the_kinetic_temperature_is_right(void **state) {
+    static struct run_program_result result;
+    write_scene(*state, groot_warren, NULL, NULL);
+    simulate(&result, "good");
+    assert_null(strstr(result.err, "warning: the temperature"));
+    write_scene(*state,
+                "{\"box\": [4.64, 4.64, 4.64], \"particles\": {\"count\": 300},\n"
+                "\"time_step\": 0.01, \"conservative\": {\"law\": \"soft-repulsion\"},\n"
+                "\"dissipative\": {\"law\": \"power\", \"sigma\": 14.142}, " LONG_MEASURE "}\n",
+                NULL, NULL);
+    simulate(&result, "out");
+    assert_contains(result.err, "mesofit: warning: the temperature is 1.0");
+    char *summary = temporary_folder_read("out/summary.json");
+    assert_contains(summary, "by the positions, not 1: lower");
+    free(summary);
+}
+
 static void test_quiet_run_says_nothing(void **state) {
     static struct run_program_result result;
     small_inputs_need_gnuplot();
@@ -376,6 +394,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_interrupted_run_says_so_and_refuses_other_settings),
         TEST_WITHOUT_FIGURES(test_a_new_run_removes_the_results_of_the_one_before),
         TEST_WITHOUT_FIGURES(test_unstable_scene_ends_with_step_and_force),
+        TEST_WITHOUT_FIGURES(test_simulate_warns_when_only_the_kinetic_temperature_is_right),
         TEST_WITHOUT_FIGURES(test_one_sample_is_enough),
         TEST_WITHOUT_FIGURES(test_ideal_gas_has_no_configurational_temperature),
     };

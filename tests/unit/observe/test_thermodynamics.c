@@ -169,6 +169,39 @@ static void test_thermodynamics_errors_grow_when_samples_are_correlated(void **s
     assert_close_relative(sqrt(squares.mean), 1.15 * 0.1 / sqrt(SAMPLES / 10), 0.04);
 }
 
+static void test_judge_tells_when_a_temperature_is_off(void **state) {
+    (void)state;
+    struct fluid fluid;
+    fluid_groot_warren(&fluid, 100, 0.01);
+    struct thermodynamics_summary s = {.blocks = 20,
+                                       .temperature = 1.027,
+                                       .temperature_error = 0.002,
+                                       .temperature_configurational = 0.75,
+                                       .temperature_configurational_error = 0.01};
+    assert_fails(thermodynamics_judge(&s, &fluid.setup), STATUS_UNSTABLE, "0.75 by the positions");
+    s.temperature_configurational_error = 0.04; // it may be 0.9
+    assert_ok(thermodynamics_judge(&s, &fluid.setup));
+    s.temperature_configurational = 1.05;
+    s.temperature = 1.12;
+    assert_fails(thermodynamics_judge(&s, &fluid.setup), STATUS_UNSTABLE, "1.12 by the velocities");
+    s.temperature_configurational = NAN;
+    s.temperature = 1.02;
+    assert_ok(thermodynamics_judge(&s, &fluid.setup));
+    s.temperature = NAN;
+    assert_fails(thermodynamics_judge(&s, &fluid.setup), STATUS_UNSTABLE, "time_step");
+    // Without friction the two are held to each other.
+    fluid.setup.weight = NULL;
+    s.temperature = 1.4;
+    s.temperature_configurational = 1.45;
+    s.temperature_configurational_error = 0.01;
+    assert_ok(thermodynamics_judge(&s, &fluid.setup));
+    s.temperature_configurational = 1.1;
+    assert_fails(thermodynamics_judge(&s, &fluid.setup), STATUS_UNSTABLE, "1.1 by the positions");
+    s.blocks = 4;
+    assert_ok(thermodynamics_judge(&s, &fluid.setup));
+    fluid_clear(&fluid);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_thermodynamics_sample_is_exact_when_there_are_two_particles),
@@ -179,6 +212,7 @@ int main(void) {
         cmocka_unit_test(test_thermodynamics_series_are_kept_when_there_is_room_for_more),
         cmocka_unit_test(test_thermodynamics_errors_cover_the_truth_when_samples_are_independent),
         cmocka_unit_test(test_thermodynamics_errors_grow_when_samples_are_correlated),
+        cmocka_unit_test(test_judge_tells_when_a_temperature_is_off),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
