@@ -4,6 +4,7 @@
 # make test           builds and passes all tests: check, then check-physics
 # make check          unit, reference and command-line tests (about a minute)
 # make check-physics  laws and exact limits (minutes)
+# make check-stress   time steps, friction, tables, sizes and lengths beyond the ordinary (minutes)
 # make asan           the whole test suite under address and undefined-behaviour sanitizers
 # make lint           formatting, static analysis, layers, names, licence lines
 # make bench          speed of the engine on this machine, to tests/bench/results
@@ -32,7 +33,7 @@ OBJECTS  = $(SOURCES:%.c=$(BUILD)/%.o)
 LIBRARY  = $(BUILD)/libmesofit.a
 PROGRAM  = $(BUILD)/mesofit
 
-.PHONY: all check check-physics asan lint bench clean
+.PHONY: all check check-physics check-stress asan lint bench clean
 all: $(PROGRAM) mesofit
 
 mesofit: $(PROGRAM)
@@ -57,12 +58,13 @@ UNIT      = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/unit/*/test_*.c))
 REFERENCE = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/reference/test_*.c))
 CLI       = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/cli/test_*.c))
 PHYSICS   = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/physics/test_*.c))
+STRESS    = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/stress/test_*.c))
 SHARED    = $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/shared/*.c))
 TESTS     = $(UNIT) $(REFERENCE) $(CLI) $(PHYSICS)
-.SECONDARY: $(TESTS:=.o) $(SHARED)
+.SECONDARY: $(TESTS:=.o) $(STRESS:=.o) $(SHARED)
 
-$(TESTS): CFLAGS += -Itests
-$(TESTS): %: %.o $(SHARED) $(LIBRARY)
+$(TESTS) $(STRESS): CFLAGS += -Itests
+$(TESTS) $(STRESS): %: %.o $(SHARED) $(LIBRARY)
 	@echo "ld $@"
 	$(AT)$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LDLIBS)
 
@@ -78,6 +80,9 @@ check: all $(UNIT) $(REFERENCE) $(CLI)
 
 check-physics: all $(PHYSICS)
 	MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(PHYSICS)
+
+check-stress: all $(STRESS)
+	MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(STRESS)
 
 asan:
 	$(MAKE) BUILD=build/asan SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=all" \
@@ -96,4 +101,4 @@ bench: $(PROGRAM)
 clean:
 	rm -rf build mesofit
 
--include $(OBJECTS:.o=.d) $(TESTS:=.d) $(SHARED:.o=.d)
+-include $(OBJECTS:.o=.d) $(TESTS:=.d) $(STRESS:=.d) $(SHARED:.o=.d)
