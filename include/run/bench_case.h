@@ -6,6 +6,7 @@
 /// velocities, since a lattice cools as it melts.
 #pragma once
 
+#include "run/run_folder.h"
 #include "run/scene.h"
 
 enum {
@@ -17,6 +18,12 @@ struct bench_scene {
     char name[BENCH_NAME_SIZE];
     struct scene scene;
 };
+
+/// Read a scene; what its file says of measurements is ignored. Clear scene->scene in any case.
+/// @param[in] options  the seed counts, if there is one
+/// Fails: BAD_INPUT, IO, NO_MEMORY.
+enum status bench_scene_read(struct bench_scene *scene, const char *file,
+                             const struct run_options *options) MUST_USE;
 
 /// How to run it.
 struct bench_how {

@@ -8,7 +8,6 @@
 #include "run/bench_lammps.h"
 #include "run/bench_output.h"
 #include "run/bench_skips.h"
-#include "run/heading.h"
 #include "run/program.h"
 #include "run/progress.h"
 
@@ -91,40 +90,12 @@ static enum status choose_cases(struct run *run) {
 
 // Scenes ------------------------------------------------------------------------------------------
 
-/// "a/b/thesis.json" is the scene "thesis".
-static void name_scene(struct bench_scene *scene, const char *file) {
-    static const char ending[] = ".json";
-    const char *slash = strrchr(file, '/');
-    snprintf(scene->name, sizeof scene->name, "%.*s", BENCH_NAME_SIZE - 1,
-             slash ? slash + 1 : file);
-    const size_t length = strlen(scene->name), cut = sizeof ending - 1;
-    if (length > cut && strcmp(scene->name + length - cut, ending) == 0)
-        scene->name[length - cut] = '\0';
-}
-
-static enum status read_scene(struct run *run, struct bench_scene *scene, const char *file) {
-    struct json_document *document;
-    struct heading heading;
-    TRY(json_open(&document, file));
-    struct json_object root = json_root(document);
-    json_fields(&root, heading_fields, &heading);
-    const enum status status = scene_read(&scene->scene, &root, SCENE_HAS_POTENTIAL);
-    json_has(&root, "measure");
-    json_has(&root, "rdf");
-    json_finish(&root);
-    TRY(json_close(document));
-    TRY(status);
-    scene->scene.setup.seed = run->common->has_seed ? run->common->seed : heading.seed;
-    name_scene(scene, file);
-    return STATUS_OK;
-}
-
 static enum status read_shipped(struct run *run) {
     char folder[PATH_SIZE], file[PATH_SIZE + 64];
     TRY(program_find_folder(folder, sizeof folder, scenes_folder, "thesis.json"));
     for (size_t k = 0; k < SHIPPED; k++) {
         snprintf(file, sizeof file, "%s/%s.json", folder, shipped[k]);
-        TRY(read_scene(run, &run->scenes[k], file));
+        TRY(bench_scene_read(&run->scenes[k], file, run->common));
     }
     return STATUS_OK;
 }
@@ -136,7 +107,7 @@ static enum status read_scenes(struct run *run, const char *const *files, size_t
     if (count == 0)
         CHECK(read_shipped(run));
     for (size_t k = 0; k < count; k++)
-        CHECK(read_scene(run, &run->scenes[k], files[k]));
+        CHECK(bench_scene_read(&run->scenes[k], files[k], run->common));
     NEW_ARRAY(run->results, run->scene_count * run->how_count);
 done:
     return status;

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/bench_case.h"
+#include "run/heading.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/// "a/b/thesis.json" is the scene "thesis".
+static void name_scene(struct bench_scene *scene, const char *file) {
+    static const char ending[] = ".json";
+    const char *slash = strrchr(file, '/');
+    snprintf(scene->name, sizeof scene->name, "%.*s", BENCH_NAME_SIZE - 1,
+             slash ? slash + 1 : file);
+    const size_t length = strlen(scene->name), cut = sizeof ending - 1;
+    if (length > cut && strcmp(scene->name + length - cut, ending) == 0)
+        scene->name[length - cut] = '\0';
+}
+
+enum status bench_scene_read(struct bench_scene *scene, const char *file,
+                             const struct run_options *options) {
+    struct json_document *document;
+    struct heading heading;
+    TRY(json_open(&document, file));
+    struct json_object root = json_root(document);
+    json_fields(&root, heading_fields, &heading);
+    const enum status status = scene_read(&scene->scene, &root, SCENE_HAS_POTENTIAL);
+    json_has(&root, "measure");
+    json_has(&root, "rdf");
+    json_finish(&root);
+    TRY(json_close(document));
+    TRY(status);
+    scene->scene.setup.seed = options->has_seed ? options->seed : heading.seed;
+    name_scene(scene, file);
+    return STATUS_OK;
+}
