@@ -6,7 +6,7 @@
 
 #include <stddef.h>
 
-enum { COMMAND_MAX_FILES = 64, COMMAND_MAX_OPTIONS = 8 };
+enum { COMMAND_MAX_FILES = 64, COMMAND_MAX_OPTIONS = 12 };
 
 /// An option of one subcommand. It may take the place of a common one.
 struct command_option {

@@ -15,3 +15,7 @@ enum status figures_draw(const char *folder) MUST_USE;
 
 /// Draw figures/compare.svg and .png from the tables that compare_folders wrote to `folder`.
 enum status figures_draw_comparison(const char *folder) MUST_USE;
+
+/// Draw the work-precision diagram of a table of `mesofit bench accuracy`, folder/NAME.tsv, to
+/// folder/figures/NAME.svg and .png. Tested: test_bench_accuracy.
+enum status figures_draw_accuracy(const char *table);

@@ -12,6 +12,7 @@
 struct run_options {
     const char *folder; ///< -o, or NULL: `out` beside the input file
     int threads;
+    bool has_threads; ///< they were asked for
     bool has_seed;
     uint64_t seed; ///< --seed, instead of the input file's
     bool quiet, resume;

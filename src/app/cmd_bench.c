@@ -2,10 +2,12 @@
 #include "app/command.h"
 #include "base/nearest.h"
 #include "run/bench.h"
+#include "run/bench_accuracy.h"
 
+#include <omp.h>
 #include <string.h>
 
-enum { JSON, AGAINST_LAMMPS, SKIPS, ISA, PRECISION, OUTPUT };
+enum { JSON, AGAINST_LAMMPS, SKIPS, ISA, PRECISION, OUTPUT, WANTED, TIME, TIME_STEPS, OPTIONS };
 
 static const struct command_option options[] = {
     [JSON] = {"--json", NULL, "print a JSON list instead of tables"},
@@ -14,17 +16,25 @@ static const struct command_option options[] = {
     [ISA] = {"--isa", "NAME", "portable, avx2 or avx512 alone"},
     [PRECISION] = {"--precision", "NAME", "mixed or double alone"},
     [OUTPUT] = {"-o", "FILE.tsv", "write the results to a table, too"},
+    [WANTED] = {"--error", "E", "accuracy: largest |dg| that is wanted (0.005)"},
+    [TIME] = {"--time", "T", "accuracy: tau that each point is run for"},
+    [TIME_STEPS] = {"--time-steps", "A,B,..", "accuracy: time steps [tau]"},
     {NULL, NULL, NULL},
 };
 
-static enum status run(const struct command_line *line) {
-    static const char *const subjects[] = {"engine"};
-    char hint[128];
-    if (strcmp(line->files[0], subjects[0]) != 0) {
-        nearest_hint(line->files[0], subjects, 1, hint, sizeof hint);
-        return status_fail(STATUS_BAD_INPUT, "bench: \"%s\" is not known; %s", line->files[0],
-                           hint);
-    }
+/// Refuse what belongs to the other subject.
+static enum status check_options(const struct command_line *line, const char *subject,
+                                 const int *foreign) {
+    for (; *foreign < OPTIONS; foreign++)
+        if (line->own[*foreign])
+            return status_fail(STATUS_BAD_INPUT, "bench %s takes no %s", subject,
+                               options[*foreign].name);
+    return STATUS_OK;
+}
+
+static enum status run_engine(const struct command_line *line) {
+    static const int foreign[] = {WANTED, TIME, TIME_STEPS, OPTIONS};
+    TRY(check_options(line, "engine", foreign));
     const struct bench_options chosen = {
         .isa = line->own[ISA],
         .precision = line->own[PRECISION],
@@ -36,10 +46,39 @@ static enum status run(const struct command_line *line) {
     return bench_engine(line->files + 1, line->file_count - 1, &line->options, &chosen);
 }
 
+static enum status run_accuracy(const struct command_line *line) {
+    static const int foreign[] = {AGAINST_LAMMPS, SKIPS, ISA, PRECISION, OPTIONS};
+    TRY(check_options(line, "accuracy", foreign));
+    if (line->file_count != 2)
+        return status_fail(STATUS_BAD_INPUT, "usage: mesofit bench accuracy SCENE.json");
+    const struct bench_accuracy_options chosen = {
+        .output = line->own[OUTPUT],
+        .error = line->own[WANTED],
+        .time = line->own[TIME],
+        .time_steps = line->own[TIME_STEPS],
+        .json = line->own[JSON] != NULL,
+    };
+    struct run_options common = line->options;
+    if (!common.has_threads)
+        common.threads = omp_get_max_threads();
+    return bench_accuracy(line->files[1], &common, &chosen);
+}
+
+static enum status run(const struct command_line *line) {
+    static const char *const subjects[] = {"engine", "accuracy"};
+    char hint[128];
+    if (strcmp(line->files[0], subjects[0]) == 0)
+        return run_engine(line);
+    if (strcmp(line->files[0], subjects[1]) == 0)
+        return run_accuracy(line);
+    nearest_hint(line->files[0], subjects, 2, hint, sizeof hint);
+    return status_fail(STATUS_BAD_INPUT, "bench: \"%s\" is not known; %s", line->files[0], hint);
+}
+
 const struct command cmd_bench = {
     .name = "bench",
-    .usage = "engine [SCENE.json...]",
-    .summary = "time the engine, by default on the scenes that come with it",
+    .usage = "engine|accuracy [SCENE...]",
+    .summary = "time the engine; what each integrator and time step costs and spoils",
     .least_files = 1,
     .most_files = COMMAND_MAX_FILES,
     .options = options,

@@ -34,7 +34,8 @@ static void print_help(void) {
                commands[k]->summary);
     printf("\noptions:\n"
            "  -o DIR        folder for the results (default: \"out\" beside the input file)\n"
-           "  --threads N   threads (default: all processors; bench: 1); results do not depend on "
+           "  --threads N   threads (default: all processors; bench engine: 1); results do not "
+           "depend on "
            "it\n"
            "  --seed N      seed, instead of the file's\n"
            "  --resume      go on with an interrupted run in its folder\n"
@@ -122,6 +123,7 @@ static enum status parse_option(const struct command *command, const char *word,
     } else if (strcmp(word, "--threads") == 0) {
         TRY(parse_number(word, value, 1, 1024, &number));
         options->threads = (int)number;
+        options->has_threads = true;
     } else if (strcmp(word, "--seed") == 0) {
         TRY(parse_number(word, value, 0, (uint64_t)FIELD_LARGEST_INTEGER - 1, &options->seed));
         options->has_seed = true;

@@ -126,3 +126,22 @@ enum status figures_draw_comparison(const char *folder) {
     TRY(find_plots(plots));
     return draw(folder, plots, comparison.name);
 }
+
+enum status figures_draw_accuracy(const char *table) {
+    static const char ending[] = ".tsv";
+    char plots[PATH_SIZE], folder[OUTPUT_PATH_SIZE - 256], name[256];
+    const char *slash = strrchr(table, '/');
+    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - table) : 1, slash ? table : ".");
+    snprintf(name, sizeof name, "%s", slash ? slash + 1 : table);
+    const size_t length = strlen(name), cut = sizeof ending - 1;
+    if (length > cut && strcmp(name + length - cut, ending) == 0)
+        name[length - cut] = '\0';
+    TRY(find_plots(plots));
+    if (setenv("MESOFIT_TABLE", slash ? slash + 1 : table, 1) != 0 ||
+        setenv("MESOFIT_FIGURE", name, 1) != 0)
+        return status_fail(STATUS_NO_MEMORY, "out of memory");
+    const enum status status = draw(folder, plots, "accuracy");
+    if (status != STATUS_OK)
+        remove_figure(folder, name);
+    return status;
+}

@@ -53,7 +53,7 @@ static const struct {
     const char *words[6];
     const char *says[3];
 } bad_lines[] = {
-    {{"bench"}, {"usage: mesofit bench engine [SCENE.json...]"}},
+    {{"bench"}, {"usage: mesofit bench engine|accuracy [SCENE...]"}},
     {{"bench", "motor"}, {"bench: \"motor\" is not known", "engine"}},
     {{"bench", "engine", "no/such.json"}, {"no/such.json: No such file"}},
     {{"bench", "engine", "bad.json"}, {"bad.json: box: missing"}},
