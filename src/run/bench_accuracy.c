@@ -92,7 +92,7 @@ static enum status choose(struct run *run) {
 /// Count steps, from any thread.
 static void tell(void *context, uint64_t steps) {
     struct run *run = context;
-#pragma omp critical(bench_accuracy)
+#pragma omp critical
     {
         run->steps_done += steps;
         progress_tell(&run->progress, run->steps_done, run->steps_total, "steps", run->scene.name);
@@ -164,14 +164,14 @@ static struct bench_point *task(struct run *run, size_t k) {
 static enum status run_point(struct run *run, struct bench_point *point) {
     const size_t method = (size_t)(point->method - run->methods);
     double unstable_from;
-#pragma omp critical(bench_accuracy)
+#pragma omp critical
     unstable_from = run->unstable_from[method];
     point->status = STATUS_UNSTABLE;
     if (point->time_step > unstable_from)
         return STATUS_OK;
     const enum status status = bench_point_run(&run->points_common, point);
     if (status == STATUS_OK && point->status == STATUS_UNSTABLE)
-#pragma omp critical(bench_accuracy)
+#pragma omp critical
         run->unstable_from[method] = fmin(run->unstable_from[method], point->time_step);
     return status;
 }
@@ -183,14 +183,14 @@ static enum status run_points(struct run *run) {
 #pragma omp parallel for schedule(dynamic, 1) num_threads(run->common->threads)
     for (size_t k = 0; k < tasks; k++) {
         enum status now;
-#pragma omp critical(bench_accuracy)
+#pragma omp critical
         now = status;
         if (now != STATUS_OK)
             continue;
         const enum status here = run_point(run, task(run, k));
         if (here == STATUS_OK)
             continue;
-#pragma omp critical(bench_accuracy)
+#pragma omp critical
         {
             status = here;
             snprintf(reason, sizeof reason, "%s", status_message());
