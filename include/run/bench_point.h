@@ -55,6 +55,7 @@ struct bench_point {
     const struct bench_method *method;
     double time_step, time;  ///< Δt, length of the run after equilibration [τ]
     uint64_t seed, steps;    ///< of the noise; of the run
+    uint64_t told;           ///< steps that bench_common.tell was told of
     enum status status;      ///< OK or UNSTABLE
     struct bench_number cpu; ///< seconds of one processor per τ, without what is measured
     struct bench_number quantity[BENCH_QUANTITIES];

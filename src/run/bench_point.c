@@ -119,6 +119,11 @@ static struct bench_number median(double *blocks) {
                                  1.25 * statistics_standard_error(&running)};
 }
 
+static void tell(const struct bench_common *common, struct bench_point *point, int64_t steps) {
+    point->told += (uint64_t)steps;
+    common->tell(common->context, (uint64_t)steps);
+}
+
 /// Run between samples by itself, timed; measure_sample then does the one step that is left.
 static enum status sample(const struct bench_common *common, struct bench_point *point,
                           struct simulation *simulation, const struct measure_plan *plan,
@@ -133,7 +138,7 @@ static enum status sample(const struct bench_common *common, struct bench_point 
         seconds[block] += processor_seconds() - begin;
         times[block] += (double)(plan->every - 1) * point->time_step;
         TRY(measure_sample(simulation, &next, targets, NULL));
-        common->tell(common->context, (uint64_t)plan->every);
+        tell(common, point, plan->every);
     }
     for (int b = 0; b < BLOCKS; b++)
         seconds[b] /= times[b];
@@ -242,7 +247,7 @@ enum status bench_point_run(const struct bench_common *common, struct bench_poin
                    pair_cutoff(&simulation.law), (size_t)plan.samples));
     CHECK(thermodynamics_init(&thermodynamics, (size_t)plan.samples));
     CHECK(measure_equilibrate(&simulation, &plan, &temperature, NULL));
-    common->tell(common->context, (uint64_t)plan.equilibration);
+    tell(common, point, plan.equilibration);
     CHECK(
         sample(common, point, &simulation, &plan, (struct measure_targets){&rdf, &thermodynamics}));
     CHECK(find_results(common, &rdf, &thermodynamics, point));
