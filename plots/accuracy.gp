@@ -39,11 +39,11 @@ do for [kind in kinds] {
     eval log_range("x", 1e3 * C_min, 1e3 * C_max)
     set xlabel "processor time / ms per {/:Italic τ}"
 
-    set lmargin at screen 0.085
+    set lmargin at screen 0.095
     set rmargin at screen 0.485
     eval log_axis("y", bottom, 1.4 * top)
-    eval name_axis("largest {/:Italic Δg}", 0.018)
-    set key on at screen 0.085, screen 1 - 8.0 / height left top vertical maxrows rows Left reverse \
+    eval name_axis("largest {/:Italic Δg}", 0.012)
+    set key on at screen 0.095, screen 1 - 8.0 / height left top vertical maxrows rows Left reverse \
         width -3.5
     plot wanted linewidth 1.2 dashtype 2 linecolor rgb ink, \
         for [i = 1:count] table index (i - 1) \

@@ -9,7 +9,8 @@ struct bench_accuracy_options {
     const char *error;      ///< |Δg| that is wanted, or NULL: 0.005
     const char *time;       ///< of a point [τ], or NULL: by the scene
     const char *time_steps; ///< "0.01,0.02", growing [τ], or NULL: from a quarter of the scene's on
-    bool json;              ///< instead of tables for people
+    const char *integrators; ///< "aboba,shardlow", or NULL: all that suit
+    bool json;               ///< instead of tables for people
 };
 
 /// Run the scene with every integrator that suits it, at time steps that grow until one is

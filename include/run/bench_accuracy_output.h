@@ -9,14 +9,14 @@
 struct bench_diagram {
     const char *scene;
     size_t particles;
-    double wanted;                   ///< |Δg|
-    double time, reference_time;     ///< of a point, of the reference [τ]
-    double partner;                  ///< time step that the reference is extrapolated with; 0: not
-    const struct bench_row *row;     ///< one method after the other, time steps growing
-    size_t rows;                     //
-    struct bench_row reference;      ///< at its own time step: changes are 0
-    const struct bench_reach *reach; ///< of each method
-    const char *const *method;       ///< their names
+    double wanted;                            ///< |Δg|
+    double time, reference_time;              ///< of a point, of the reference [τ]
+    struct bench_extrapolation extrapolation; ///< of the reference
+    const struct bench_row *row;              ///< one method after the other, time steps growing
+    size_t rows;                              //
+    struct bench_row reference;               ///< at its own time step: changes are 0
+    const struct bench_reach *reach;          ///< of each method
+    const char *const *method;                ///< their names
     size_t methods;
     bool has_weight;
 };

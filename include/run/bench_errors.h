@@ -30,9 +30,15 @@ struct bench_row {
 /// point of the same method at ρ h, for errors of order h²:
 ///   y_0 = y_h − (y_ρh − y_h)/(ρ² − 1).
 /// Of the points, that with ρ nearest to 4 is taken; where there is none between 2.5 and 6,
-/// nothing changes. Returns ρ h, or 0. Tested: test_bench_errors.
-double bench_extrapolate(struct bench_point *reference, const struct bench_point *points,
-                         size_t count, size_t bins);
+/// nothing changes. Friction with ω² Δt of order 1 makes errors of lower order: then what is left
+/// of the reference's error is up to four times as much as was moved. Tested: test_bench_errors.
+struct bench_extrapolation {
+    double partner; ///< ρ h, or 0 [τ]
+    double moved;   ///< largest change of g
+};
+struct bench_extrapolation bench_extrapolate(struct bench_point *reference,
+                                             const struct bench_point *points, size_t count,
+                                             size_t bins);
 
 /// Errors of a point. @param[in] wanted  standard error for BENCH_CPU_TO_ERROR
 /// Tested: test_bench_errors.

@@ -7,7 +7,19 @@
 #include <omp.h>
 #include <string.h>
 
-enum { JSON, AGAINST_LAMMPS, SKIPS, ISA, PRECISION, OUTPUT, WANTED, TIME, TIME_STEPS, OPTIONS };
+enum {
+    JSON,
+    AGAINST_LAMMPS,
+    SKIPS,
+    ISA,
+    PRECISION,
+    OUTPUT,
+    WANTED,
+    TIME,
+    TIME_STEPS,
+    INTEGRATORS,
+    OPTIONS
+};
 
 static const struct command_option options[] = {
     [JSON] = {"--json", NULL, "print a JSON list instead of tables"},
@@ -19,6 +31,7 @@ static const struct command_option options[] = {
     [WANTED] = {"--error", "E", "accuracy: largest |dg| that is wanted (0.005)"},
     [TIME] = {"--time", "T", "accuracy: tau that each point is run for"},
     [TIME_STEPS] = {"--time-steps", "A,B,..", "accuracy: time steps [tau]"},
+    [INTEGRATORS] = {"--integrators", "A,..", "accuracy: no others than these"},
     {NULL, NULL, NULL},
 };
 
@@ -33,7 +46,7 @@ static enum status check_options(const struct command_line *line, const char *su
 }
 
 static enum status run_engine(const struct command_line *line) {
-    static const int foreign[] = {WANTED, TIME, TIME_STEPS, OPTIONS};
+    static const int foreign[] = {WANTED, TIME, TIME_STEPS, INTEGRATORS, OPTIONS};
     TRY(check_options(line, "engine", foreign));
     const struct bench_options chosen = {
         .isa = line->own[ISA],
@@ -56,6 +69,7 @@ static enum status run_accuracy(const struct command_line *line) {
         .error = line->own[WANTED],
         .time = line->own[TIME],
         .time_steps = line->own[TIME_STEPS],
+        .integrators = line->own[INTEGRATORS],
         .json = line->own[JSON] != NULL,
     };
     struct run_options common = line->options;

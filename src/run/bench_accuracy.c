@@ -2,6 +2,7 @@
 #include "run/bench_accuracy.h"
 
 #include "base/memory.h"
+#include "base/nearest.h"
 #include "run/bench_accuracy_output.h"
 #include "run/bench_case.h"
 #include "run/figures.h"
@@ -30,8 +31,8 @@ struct run {
     const struct bench_accuracy_options *options;
     struct progress progress;
     struct bench_scene scene;
-    struct bench_method methods[BENCH_MOST_METHODS];
-    size_t method_count;
+    struct bench_method suitable[BENCH_MOST_METHODS], methods[BENCH_MOST_METHODS];
+    size_t suitable_count, method_count;
     double time_steps[MOST_STEPS], unstable_from[BENCH_MOST_METHODS];
     size_t step_count;
     double time, wanted;
@@ -70,9 +71,52 @@ static enum status parse_time_steps(struct run *run, const char *text) {
                        MOST_STEPS);
 }
 
+/// True if a list such as "aboba,shardlow" names a method, or its integrator.
+static bool is_listed(const char *list, const struct bench_method *method) {
+    const char *const names[] = {method->name, method->integrator->name};
+    for (const char *at = list; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL)
+        for (size_t k = 0; k < 2; k++)
+            if (strcspn(at, ",") == strlen(names[k]) &&
+                strncmp(at, names[k], strlen(names[k])) == 0)
+                return true;
+    return false;
+}
+
+/// Refuse a list with a name that is none of a suitable integrator.
+static enum status check_names(const struct run *run, const char *list) {
+    const char *names[BENCH_MOST_METHODS];
+    char hint[256], word[64];
+    for (size_t k = 0; k < run->suitable_count; k++)
+        names[k] = run->suitable[k].name;
+    for (const char *at = list; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL) {
+        bool is_known = false;
+        snprintf(word, sizeof word, "%.*s", (int)strcspn(at, ","), at);
+        for (size_t k = 0; k < run->suitable_count; k++)
+            is_known |= is_listed(word, &run->suitable[k]);
+        if (is_known)
+            continue;
+        nearest_hint(word, names, run->suitable_count, hint, sizeof hint);
+        return status_fail(STATUS_BAD_INPUT, "--integrators: \"%s\" does not suit the scene; %s",
+                           word, hint);
+    }
+    return STATUS_OK;
+}
+
+static enum status choose_methods(struct run *run) {
+    const char *list = run->options->integrators;
+    run->suitable_count = bench_methods(&run->scene.scene.setup, run->suitable);
+    if (list)
+        TRY(check_names(run, list));
+    for (size_t k = 0; k < run->suitable_count; k++)
+        if (list == NULL || is_listed(list, &run->suitable[k]))
+            run->methods[run->method_count++] = run->suitable[k];
+    return STATUS_OK;
+}
+
 static enum status choose(struct run *run) {
     const struct bench_accuracy_options *options = run->options;
     const struct simulation_setup *setup = &run->scene.scene.setup;
+    TRY(choose_methods(run));
     run->wanted = default_error;
     run->time =
         default_steps * setup->time_step * default_particles / (double)setup->placement.count;
@@ -104,7 +148,7 @@ static enum status prepare(struct run *run) {
     enum status status = STATUS_OK;
     const struct scene *scene = &run->scene.scene;
     const size_t particles = (size_t)scene->setup.placement.count;
-    const struct bench_method *method = bench_reference_method(run->methods, run->method_count);
+    const struct bench_method *method = bench_reference_method(run->suitable, run->suitable_count);
     const struct simulation_start *start =
         scene->setup.placement.kind == PLACEMENT_FILE ? &scene->start : NULL;
     NEW_ARRAY(run->start_values, 6 * particles);
@@ -123,7 +167,6 @@ static enum status plan(struct run *run) {
     enum status status = STATUS_OK;
     const struct simulation_setup *setup = &run->scene.scene.setup;
     const struct pair_law law = {.potential = setup->potential, .weight = setup->weight};
-    run->method_count = bench_methods(setup, run->methods);
     const size_t points = run->method_count * run->step_count;
     NEW_ARRAY(run->points, points);
     NEW_ARRAY(run->rows, points);
@@ -134,7 +177,7 @@ static enum status plan(struct run *run) {
         .tell = tell,
         .context = run};
     run->reference =
-        (struct bench_point){.method = bench_reference_method(run->methods, run->method_count),
+        (struct bench_point){.method = bench_reference_method(run->suitable, run->suitable_count),
                              .time_step = reference_step * run->time_steps[0],
                              .time = reference_length * run->time,
                              .seed = setup->seed};
@@ -164,6 +207,8 @@ static struct bench_point *task(struct run *run, size_t k) {
 /// undone is no longer to be waited for.
 static enum status run_point(struct run *run, struct bench_point *point) {
     enum status status = STATUS_OK;
+    if (point == &run->reference)
+        return bench_point_run(&run->points_common, point);
     const size_t method = (size_t)(point->method - run->methods);
     const uint64_t planned = bench_point_steps(&run->points_common, point);
     double unstable_from;
@@ -239,7 +284,7 @@ static enum status write_table(struct run *run, const struct bench_diagram *diag
 static enum status report(struct run *run) {
     const char *names[BENCH_MOST_METHODS];
     const size_t bins = run->points_common.bins.count;
-    const double partner =
+    const struct bench_extrapolation to_zero =
         bench_extrapolate(&run->reference, run->points, run->method_count * run->step_count, bins);
     for (size_t m = 0; m < run->method_count; m++) {
         names[m] = run->methods[m].name;
@@ -251,7 +296,7 @@ static enum status report(struct run *run) {
         .wanted = run->wanted,
         .time = run->time,
         .reference_time = run->reference.time,
-        .partner = partner,
+        .extrapolation = to_zero,
         .row = run->rows,
         .rows = run->row_count,
         .reference = bench_row_of(&run->reference, &run->reference, bins, run->wanted),

@@ -106,8 +106,9 @@ static void print_reference(FILE *stream, const struct bench_diagram *diagram) {
     fprintf(stream, "%s: %zu particles, %.4g tau a point\nreference: %s at %.4g tau",
             diagram->scene, diagram->particles, diagram->time, diagram->reference.method,
             value[BENCH_TIME_STEP]);
-    if (diagram->partner > 0)
-        fprintf(stream, " (with %.4g tau, extrapolated to 0)", diagram->partner);
+    if (diagram->extrapolation.partner > 0)
+        fprintf(stream, " (with %.4g tau, extrapolated to 0, which moves g by up to %.2g)",
+                diagram->extrapolation.partner, diagram->extrapolation.moved);
     fprintf(stream, ", %.4g tau:\n ", diagram->reference_time);
     for (int q = 0; q < BENCH_DRIFT; q++) {
         char cell[CELL_SIZE];
@@ -240,8 +241,8 @@ void bench_accuracy_tsv(FILE *stream, const struct bench_diagram *diagram) {
     fprintf(stream, "# %s: %zu particles, %.6g tau a point; reference: ", diagram->scene,
             diagram->particles, diagram->time);
     put_line(stream, &diagram->reference);
-    fprintf(stream, "# extrapolated with a time step of %.6g\n# wanted %.6g\n", diagram->partner,
-            diagram->wanted);
+    fprintf(stream, "# extrapolated with a time step of %.6g\n# wanted %.6g\n",
+            diagram->extrapolation.partner, diagram->wanted);
     for (size_t m = 0; m < diagram->methods; m++)
         if (diagram->reach[m].method)
             fprintf(stream, "# reach %s %.6g %.6g tau %.6g %.6g s/tau\n", diagram->method[m],

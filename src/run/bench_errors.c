@@ -2,6 +2,7 @@
 #include "run/bench_errors.h"
 
 #include <math.h>
+#include <string.h>
 
 // The reference -----------------------------------------------------------------------------------
 
@@ -17,8 +18,8 @@ static const struct bench_point *find_partner(const struct bench_point *referenc
     for (size_t k = 0; k < count; k++) {
         const struct bench_point *point = &points[k];
         const double ratio = point->time_step / reference->time_step;
-        if (point->method != reference->method || point->status != STATUS_OK || ratio < 2.5 ||
-            ratio > 6)
+        if (strcmp(point->method->name, reference->method->name) != 0 ||
+            point->status != STATUS_OK || ratio < 2.5 || ratio > 6)
             continue;
         if (best == NULL ||
             fabs(log(ratio / 4)) < fabs(log(best->time_step / reference->time_step / 4)))
@@ -27,18 +28,23 @@ static const struct bench_point *find_partner(const struct bench_point *referenc
     return best;
 }
 
-double bench_extrapolate(struct bench_point *reference, const struct bench_point *points,
-                         size_t count, size_t bins) {
+struct bench_extrapolation bench_extrapolate(struct bench_point *reference,
+                                             const struct bench_point *points, size_t count,
+                                             size_t bins) {
     const struct bench_point *partner = find_partner(reference, points, count);
     if (partner == NULL)
-        return 0;
+        return (struct bench_extrapolation){0, 0};
     const double ratio = partner->time_step / reference->time_step;
     const double weight = 1 / (ratio * ratio - 1);
-    for (size_t k = 0; k < bins; k++)
-        reference->g[k] = extrapolated(reference->g[k], partner->g[k], weight);
+    double moved = 0;
+    for (size_t k = 0; k < bins; k++) {
+        const struct bench_number before = reference->g[k];
+        reference->g[k] = extrapolated(before, partner->g[k], weight);
+        moved = fmax(moved, fabs(reference->g[k].value - before.value));
+    }
     for (int q = 0; q < BENCH_DRIFT; q++)
         reference->quantity[q] = extrapolated(reference->quantity[q], partner->quantity[q], weight);
-    return partner->time_step;
+    return (struct bench_extrapolation){partner->time_step, moved};
 }
 
 // Errors ------------------------------------------------------------------------------------------

@@ -54,7 +54,7 @@ static void test_results_do_not_depend_on_threads(void **state) {
     run_program_assert_code(&result, 0);
     assert_string_equal(result.err, "");
     assert_contains(result.out, "small: 81 particles, 4 tau a point\nreference: aboba at 0.01 tau "
-                                "(with 0.04 tau, extrapolated to 0)");
+                                "(with 0.04 tau, extrapolated to 0, ");
     assert_contains(result.out, "lowe-andersen");
     char *one = read_results("one.tsv"), *three = read_results("three.tsv");
     assert_string_equal(one, three);
@@ -79,7 +79,8 @@ static void test_json_has_reference_points_and_recommendation(void **state) {
     static struct run_program_result result;
     small_inputs_write(*state, "small.json", small_inputs_scene, NULL, NULL);
     RUN_PROGRAM(&result, "bench", "accuracy", "small.json", "--time", "2", "--json", "--error", "9",
-                "--time-steps", "0.02");
+                "--time-steps", "0.02", "--integrators", "shardlow,dpd-verlet(0.65)");
+    assert_null(strstr(result.out, "dpd-verlet(0.5)"));
     run_program_assert_code(&result, 0);
     assert_string_equal(result.err, "");
     assert_contains(result.out, "\"role\":\t\"reference\"");
@@ -143,6 +144,8 @@ static const struct {
     {{"bench", "accuracy", "small.json", "--time", "long"}, {"--time takes a number above 0"}},
     {{"bench", "accuracy", "small.json", "--time-steps", "0.02,0.01"}, {"--time-steps takes grow"}},
     {{"bench", "accuracy", "small.json", "--time-steps", "0.02,"}, {"--time-steps takes growing"}},
+    {{"bench", "accuracy", "small.json", "--integrators", "aboba,abobo"},
+     {"--integrators: \"abobo\" does not suit the scene", "\"aboba\"?"}},
     {{"bench", "accuracy", "small.json", "-o", "no/such/file.tsv"}, {"cannot write no/such/file"}},
     {{"bench", "accuracy", "small.json", "--skips"}, {"bench accuracy takes no --skips"}},
     {{"bench", "engine", "small.json", "--time", "2"}, {"bench engine takes no --time"}},
