@@ -30,8 +30,8 @@ static const struct command_option options[] = {
     [OUTPUT] = {"-o", "FILE.tsv", "write the results to a table, too"},
     [WANTED] = {"--error", "E", "accuracy: largest |dg| that is wanted (0.005)"},
     [TIME] = {"--time", "T", "accuracy: tau that each point is run for"},
-    [TIME_STEPS] = {"--time-steps", "A,B,..", "accuracy: time steps [tau]"},
-    [INTEGRATORS] = {"--integrators", "A,..", "accuracy: no others than these"},
+    [TIME_STEPS] = {"--time-steps", "A,..", "accuracy: time steps [tau]"},
+    [INTEGRATORS] = {"--integrators", "A,..", "accuracy: these alone"},
     {NULL, NULL, NULL},
 };
 
