@@ -137,7 +137,8 @@ static void print_reaches(FILE *stream, const struct bench_diagram *diagram) {
         print_cell(stream, 12, reach->time_step, reach->time_step_error, 1);
         fprintf(stream, " tau");
         print_cell(stream, 9, reach->cpu, reach->cpu_error, 1e3);
-        fprintf(stream, " ms/tau%s\n", reach->is_bounded ? "" : "  (the largest that is stable)");
+        fprintf(stream, " ms/tau%s\n",
+                reach->is_bounded ? "" : "  (the largest that was run and is stable)");
     }
 }
 
