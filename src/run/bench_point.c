@@ -248,8 +248,8 @@ enum status bench_point_run(const struct bench_common *common, struct bench_poin
     CHECK(thermodynamics_init(&thermodynamics, (size_t)plan.samples));
     CHECK(measure_equilibrate(&simulation, &plan, &temperature, NULL));
     tell(common, point, plan.equilibration);
-    CHECK(
-        sample(common, point, &simulation, &plan, (struct measure_targets){&rdf, &thermodynamics}));
+    CHECK(sample(common, point, &simulation, &plan,
+                 (struct measure_targets){.rdf = &rdf, .thermodynamics = &thermodynamics}));
     CHECK(find_results(common, &rdf, &thermodynamics, point));
 done:
     point->status = status;
