@@ -35,7 +35,8 @@ static void clear(struct run *run) {
 static void sample(struct run *run, int64_t samples) {
     struct measure_plan part = plan;
     part.samples = samples;
-    const struct measure_targets targets = {&run->rdf, &run->thermodynamics};
+    const struct measure_targets targets = {.rdf = &run->rdf,
+                                            .thermodynamics = &run->thermodynamics};
     assert_ok(measure_sample(&run->simulation, &part, targets, NULL));
 }
 
