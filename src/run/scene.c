@@ -140,7 +140,7 @@ static void read_dynamics(struct scene *scene, struct json_object *object) {
         names[k] = integrator_list[k]->name;
     struct json_object dynamics = json_child(object, "dynamics", false);
     const bool dissipative = scene->weight.family != NULL;
-    const char *name = dissipative ? dpd_verlet.name : velocity_verlet.name;
+    const char *name = dissipative ? aboba.name : velocity_verlet.name;
     if (dynamics.item)
         name = json_choice(&dynamics, "integrator", names, name);
     const struct integrator *integrator = NULL;
@@ -155,7 +155,7 @@ static void read_dynamics(struct scene *scene, struct json_object *object) {
         json_finish(&dynamics);
     if (dissipative && !integrator->dissipative)
         json_fault(object, "dynamics",
-                   "%s knows no friction; use \"dpd-verlet\" with \"dissipative\"",
+                   "%s knows no friction; use \"aboba\" with \"dissipative\"",
                    integrator->name);
 }
 

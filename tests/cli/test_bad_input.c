@@ -75,7 +75,7 @@ static const struct fault common_faults[] = {
     FAULT("unknown law", "\"power\"", "\"powr\"", "dissipative.law", "did you mean \"power\"?"),
     FAULT("friction without an integrator for it", STEP,
           STEP ", \"dynamics\": {\"integrator\": \"velocity-verlet\"}",
-          "dynamics: velocity-verlet knows no friction", "\"dpd-verlet\""),
+          "dynamics: velocity-verlet knows no friction", "\"aboba\""),
     WITH_TABLE("negative omega", DISSIPATIVE, TABLE_WEIGHT, "0 1\n0.5 -0.5\n1 0\n1.1 0\n",
                "dissipative", "omega is negative at r = "),
     FAULT("short table", DISSIPATIVE,

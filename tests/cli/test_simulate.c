@@ -315,7 +315,8 @@ static void test_simulate_warns_when_only_the_kinetic_temperature_is_right(void 
     assert_null(strstr(result.err, "warning: the temperature"));
     write_scene(*state,
                 "{\"box\": [4.64, 4.64, 4.64], \"particles\": {\"count\": 300},\n"
-                "\"time_step\": 0.01, \"conservative\": {\"law\": \"soft-repulsion\"},\n"
+                "\"time_step\": 0.01, \"dynamics\": {\"integrator\": \"dpd-verlet\"},\n"
+                "\"conservative\": {\"law\": \"soft-repulsion\"},\n"
                 "\"dissipative\": {\"law\": \"power\", \"sigma\": 14.142}, " LONG_MEASURE "}\n",
                 NULL, NULL);
     simulate(&result, "out");
