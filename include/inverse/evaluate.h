@@ -30,6 +30,7 @@ enum status evaluate_potential(const struct inverse_problem *problem, const stru
 /// Verification of a result by independent replicas of a longer simulation.
 struct evaluate_verification_parameters {
     int64_t replicas;
+    double time_step; ///< 0: that of the scene [τ]
     struct measure_plan plan;
 };
 

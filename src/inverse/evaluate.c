@@ -95,6 +95,11 @@ done:
 const struct field evaluate_verification_fields[] = {
     {"replicas", FIELD_INTEGER, MEMBER(replicas), .initial = 4, .minimum = 1, .maximum = 1024,
      .unit = "", .help = "independent simulations"},
+    {"time_step", FIELD_NUMBER, MEMBER(time_step), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
+     .unit = "tau",
+     .help =
+         "of the verification, which should be finer than a fit's: a fit makes up for the error "
+         "of its own; 0: that of the scene"},
     {"equilibration", FIELD_INTEGER, MEMBER(plan.equilibration), .initial = 1000, .minimum = 0,
      .maximum = 1e12, .unit = "steps", .help = "before the first sample"},
     {"samples", FIELD_INTEGER, MEMBER(plan.samples), .initial = 50, .minimum = 1, .maximum = 1e8,
@@ -112,11 +117,14 @@ struct replica {
 };
 
 static enum status run_replica(const struct inverse_problem *problem, const struct table *potential,
-                               const struct measure_plan *plan, uint32_t number,
-                               struct replica *replica) {
+                               const struct evaluate_verification_parameters *parameters,
+                               uint32_t number, struct replica *replica) {
+    const struct measure_plan *plan = &parameters->plan;
     struct simulation_setup setup = problem->scene;
     double temperature;
     setup.potential = potential;
+    if (parameters->time_step > 0)
+        setup.time_step = parameters->time_step;
     setup.seed = rng_child_seed(problem->seed, RNG_VERIFICATION, number, 0);
     TRY(rdf_init(&replica->rdf, &problem->bins, &setup.box, (size_t)setup.placement.count,
                  potential->cutoff, (size_t)plan->samples));
@@ -165,7 +173,7 @@ enum status evaluate_verify(const struct inverse_problem *problem, const struct 
 #pragma omp parallel for schedule(dynamic) num_threads(problem->threads)
     for (size_t k = 0; k < count; k++) {
         const enum status here =
-            run_replica(problem, potential, &parameters->plan, (uint32_t)k, &replicas[k]);
+            run_replica(problem, potential, parameters, (uint32_t)k, &replicas[k]);
 #pragma omp critical
         {
             if (here != STATUS_OK) {
