@@ -154,8 +154,7 @@ static void read_dynamics(struct scene *scene, struct json_object *object) {
     if (dynamics.item)
         json_finish(&dynamics);
     if (dissipative && !integrator->dissipative)
-        json_fault(object, "dynamics",
-                   "%s knows no friction; use \"aboba\" with \"dissipative\"",
+        json_fault(object, "dynamics", "%s knows no friction; use \"aboba\" with \"dissipative\"",
                    integrator->name);
 }
 
