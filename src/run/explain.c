@@ -10,7 +10,7 @@
 /// step, of an entry of the list, of a pair in range; of a particle and sample of the motion, and
 /// of each time origin of that.
 static const struct {
-    double move, sort, build, go_through, pair, conservative, dissipative, count, flux, sum,
+    double move, sort, build, go_through, pair, conservative, dissipative, kept, count, flux, sum,
         curvature, gather, correlate;
 } cost = {.move = 8,
           .sort = 28,
@@ -19,6 +19,7 @@ static const struct {
           .pair = 0.9,
           .conservative = 0.3,
           .dissipative = 1.3,
+          .kept = 3.0,
           .count = 1.0,
           .flux = 5,
           .sum = 0.2,
@@ -81,9 +82,12 @@ static void add_forces(struct plan *plan, const struct simulation_setup *setup,
         add(plan, "conservative force", false, 0, "no potential");
     const bool dissipative = setup->weight != NULL;
     const double reach = dissipative ? setup->weight->cutoff : 0;
-    if (dissipative)
-        add(plan, "friction and noise", true,
-            cost.dissipative * pairs_within(setup, fmin(reach, cutoff)),
+    const double near_pairs = pairs_within(setup, fmin(reach, cutoff));
+    if (dissipative && setup->integrator->friction)
+        add(plan, "friction and noise", true, cost.kept * near_pairs,
+            "a weight with cutoff %.3g; its pairs are kept for %s", reach, setup->integrator->name);
+    else if (dissipative)
+        add(plan, "friction and noise", true, cost.dissipative * near_pairs,
             "a weight with cutoff %.3g; farther pairs skip it", reach);
     else
         add(plan, "friction and noise", false, 0,
@@ -97,8 +101,8 @@ static void add_samples(struct plan *plan, const struct simulation_setup *setup,
     if (measured->rdf_range <= 0)
         add(plan, "g(r)", false, 0, "not asked for");
     else if (measured->rdf_range <= measured->cutoff * (1 + 1e-9))
-        add(plan, "g(r)", true, cost.count * pairs / every,
-            "counted in the force pass of one step in %.0f", every);
+        add(plan, "g(r)", true, cost.count * pairs / every, "counted in %s of one step in %.0f",
+            setup->integrator->forces_midway ? "a pass at the end" : "the force pass", every);
     else
         add(plan, "g(r)", true, (cost.sort + (cost.build + cost.count) * farther) / every,
             "to %.3g, beyond the forces: a list of its own, one step in %.0f", measured->rdf_range,
