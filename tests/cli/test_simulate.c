@@ -167,6 +167,12 @@ static void test_explain_tells_what_is_on_and_off(void **state) {
     run_program_assert_code(&result, 0);
     assert_contains(result.out, "300 particles: about ");
     assert_contains(result.out, "friction and noise                 on ");
+    assert_contains(result.out, "its pairs are kept for aboba");
+    assert_contains(result.out, "counted in a pass at the end of one step in 10");
+    write_scene(*state, groot_warren, "\"measure\"",
+                "\"dynamics\": {\"integrator\": \"dpd-verlet\"}, \"measure\"");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--explain");
+    run_program_assert_code(&result, 0);
     assert_contains(result.out, "counted in the force pass of one step in 10");
     write_scene(*state, groot_warren, "\"measure\"", FORCE_RDF "\"measure\"");
     RUN_PROGRAM(&result, "simulate", "scene.json", "--explain");
