@@ -54,19 +54,30 @@ static enum status run_moving(struct simulation *simulation, int64_t step, struc
     return run_until(simulation, step);
 }
 
-/// The last step before a sample, in which the force pass counts and sums what the sample needs.
+/// Whether the potential alone reaches as far as all forces, so that its pass sees every pair that
+/// a histogram wants.
+static bool potential_reaches(const struct pair_law *law) {
+    return law->potential && law->potential->cutoff >= pair_cutoff(law);
+}
+
+/// The last step before a sample. The force pass counts and sums what the sample needs; if that
+/// belongs to the middle of the step, a pass of the potential at its end does.
 static enum status run_sampled_step(struct simulation *simulation, int64_t due,
                                     struct measure_targets targets) {
+    struct pair_law *law = &simulation->law;
     const bool midway = simulation->setup.integrator->forces_midway;
+    const bool counts = targets.rdf && (!midway || potential_reaches(law));
+    const struct pair_histogram *histogram = counts ? rdf_histogram(targets.rdf) : NULL;
     simulation->wants = targets.thermodynamics ? PAIR_FORCES_AND_SUMS : PAIR_FORCES;
-    simulation->law.histogram = targets.rdf && !midway ? rdf_histogram(targets.rdf) : NULL;
-    const enum status status = run_moving(simulation, due, targets.motion);
-    const bool counted = simulation->law.histogram != NULL;
-    simulation->law.histogram = NULL;
+    law->histogram = midway ? NULL : histogram;
+    enum status status = run_moving(simulation, due, targets.motion);
+    if (midway && status == STATUS_OK) {
+        law->histogram = histogram;
+        status = simulation_compute_potential(simulation);
+    }
+    law->histogram = NULL;
     TRY(status);
-    if (midway)
-        TRY(simulation_compute_potential(simulation));
-    if (counted)
+    if (histogram)
         rdf_sample_counted(targets.rdf);
     else if (targets.rdf)
         TRY(rdf_sample(targets.rdf, &simulation->particles, &simulation->neighbours));

@@ -3,6 +3,7 @@
 // The pairs that rdf_sample counts from the simulation's list, and from a list of its own beyond
 // it, are exactly those of a double loop over all particles in double precision.
 #include "dynamics/metropolis.h"
+#include "observe/measure.h"
 #include "observe/rdf.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
@@ -153,12 +154,40 @@ static void test_rdf_counts_every_pair_twice_when_the_list_is_full(void **state)
     fluid_clear(&fluid);
 }
 
+/// Forces of ABOBA belong to the middle of the step.
+static void test_rdf_counts_the_end_of_the_step_when_forces_are_midway(void **state) {
+    (void)state;
+    enum { BINS = 40 };
+    const struct measure_plan plan = {.equilibration = 50, .samples = 1, .every = 5};
+    const struct rdf_bins bins = {0, 1.0 / BINS, BINS};
+    struct fluid fluid;
+    struct simulation simulation;
+    struct rdf measured, end;
+    double temperature, differences = 0;
+    fluid_groot_warren(&fluid, 1000, 0.05);
+    fluid.setup.integrator = &aboba;
+    assert_ok(simulation_init(&simulation, &fluid.setup, NULL));
+    assert_ok(rdf_init(&measured, &bins, &fluid.setup.box, 1000, 1, 1));
+    assert_ok(rdf_init(&end, &bins, &fluid.setup.box, 1000, 1, 1));
+    assert_ok(measure_equilibrate(&simulation, &plan, &temperature, NULL));
+    assert_ok(measure_sample(&simulation, &plan, (struct measure_targets){.rdf = &measured}, NULL));
+    assert_ok(rdf_sample(&end, &simulation.particles, &simulation.neighbours));
+    for (int k = 0; k < BINS; k++)
+        differences += fabs(measured.histogram[k] - end.histogram[k]);
+    assert_true(differences <= 4); // two pairs on an edge
+    rdf_clear(&measured);
+    rdf_clear(&end);
+    simulation_clear(&simulation);
+    fluid_clear(&fluid);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rdf_counts_every_pair_once_when_the_box_is_a_cube),
         cmocka_unit_test(test_rdf_counts_every_pair_once_when_the_box_is_long),
         cmocka_unit_test(test_rdf_counts_every_pair_once_when_the_scene_is_flat),
         cmocka_unit_test(test_rdf_counts_every_pair_twice_when_the_list_is_full),
+        cmocka_unit_test(test_rdf_counts_the_end_of_the_step_when_forces_are_midway),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
