@@ -2,19 +2,17 @@
 //
 // Friction and noise that a force pass keeps: against what it would have added, and what the
 // integrators make of them against their formulas.
-#include "dynamics/integrator.h"
 #include "forces/friction.h"
-#include "forces/pair.h"
 
 #include "base/memory.h"
 #include "base/rng.h"
 #include "curves/formula.h"
 #include "forces/reference_forces.h"
 #include "shared/is_close.h"
+#include "shared/kept_pairs.h"
 #include "shared/pair_scales.h"
 #include "shared/testing.h"
 #include "shared/variants.h"
-#include "system/placement.h"
 
 /// Pairs are kept in single precision, whatever that of the forces: as test_pair_kernels.
 static const double single_tolerance = 1e-6;
@@ -22,9 +20,6 @@ static const double single_tolerance = 1e-6;
 /// Straight pieces between the factors at the ends of an interval h of ω's table: h²/8 times their
 /// second derivative, which is some 10 here; and a few roundings of 6e-8.
 static const double factor_tolerance = 3e-6;
-
-/// What the order of double-precision additions can change, relative to the largest partial sum.
-static const double rounding = 1e-13;
 
 /// Standard errors that a mean may be off: one false alarm in 15,000, with fixed seeds.
 static const double deviations = 4;
@@ -59,88 +54,13 @@ static int clear_tables(void **state) {
     return 0;
 }
 
-/// Particles whose last force pass has kept its pairs.
-struct kept {
-    struct pair_law law;
-    struct particles particles;
-    struct neighbours neighbours;
-    struct friction friction;
-};
-
-/// Uniform random particles, of which no two are very close, sorted and listed. One `law` for all.
-static void make_kept(struct kept *kept, const struct box *box, size_t count, double separation) {
-    assert_ok(particles_init(&kept->particles, box, count));
-    assert_ok(particles_keep_precise(&kept->particles));
-    kept->particles.threads = 1;
-    assert_ok(placement_random(&kept->particles, separation, 5));
-    particles_draw_velocities(&kept->particles, kept->law.temperature, 6);
-    assert_ok(neighbours_init(&kept->neighbours, NEIGHBOURS_HALF, box, count,
-                              pair_cutoff(&kept->law), 0.2));
-    assert_ok(neighbours_sort_and_build(&kept->neighbours, &kept->particles));
-}
-
-static struct pair_law make_law(const struct table *potential, const struct table *omega,
-                                double time_step) {
-    return (struct pair_law){.potential = potential,
-                             .weight = omega,
-                             .temperature = 1.3,
-                             .time_step = time_step,
-                             .seed = 0x123456789ABCDEF};
-}
-
-static void init_friction(struct kept *kept, const struct integrator *integrator) {
-    assert_ok(friction_init(&kept->friction, kept->law.weight, kept->law.time_step,
-                            kept->law.temperature, integrator->friction));
-}
-
-/// The force pass of a step.
-static void keep(struct kept *kept, uint64_t step) {
-    struct pair_law law = kept->law;
-    law.friction = &kept->friction;
-    assert_ok(friction_reserve(&kept->friction, &kept->neighbours));
-    pair_forces(&law, &kept->particles, &kept->neighbours, step, PAIR_FORCES, NULL);
-}
-
-static size_t kept_pairs(const struct friction *friction) {
-    size_t pairs = 0;
-    for (int p = 0; p < friction->parts; p++)
-        pairs += friction->end[p] - friction->begin[p];
-    return pairs;
-}
-
-static void clear_kept(struct kept *kept) {
-    particles_clear(&kept->particles);
-    neighbours_clear(&kept->neighbours);
-    friction_clear(&kept->friction);
-    *kept = (struct kept){0};
-}
-
-/// Σ v along each axis, and Σ |v| that its rounding is relative to.
-static void find_momentum(const struct particles *particles, double sum[3], double *size) {
-    *size = 0;
-    for (int d = 0; d < 3; d++) {
-        sum[d] = 0;
-        for (size_t k = 0; k < particles->count; k++) {
-            sum[d] += particles->velocity[d][k];
-            *size += fabs(particles->velocity[d][k]);
-        }
-    }
-}
-
-static void assert_same_momentum(const struct particles *particles, const double before[3]) {
-    double after[3], size;
-    find_momentum(particles, after, &size);
-    for (int d = 0; d < 3; d++)
-        assert_close(after[d], before[d], rounding * size);
-}
-
 /// With DPD-VV's factors, the kept pairs add up to the friction and noise of all pairs. Not so in
 /// an interval where ω jumps: ω² is straight there if kept, and ω if added.
 static void check_sums(const struct box *box, size_t count, const struct table *potential,
                        const struct table *omega) {
-    struct kept kept = {.law = make_law(potential, omega, 0.02)};
+    struct kept_pairs kept = {.law = kept_pairs_law(potential, omega, 0.02)};
     const uint64_t step = 0x100000007;
-    make_kept(&kept, box, count, 0.02);
+    kept_pairs_init(&kept, box, count, 0.02);
     struct particles *particles = &kept.particles;
     reference_forces(&kept.law, particles, step, NULL);
     double *expected[3] = {NULL};
@@ -150,12 +70,12 @@ static void check_sums(const struct box *box, size_t count, const struct table *
         memcpy(expected[d], particles->force[d], count * sizeof *expected[d]);
     }
     struct pair_scales scales = pair_scales_find(&kept.law, particles);
-    init_friction(&kept, &dpd_vv);
+    kept_pairs_use(&kept, &dpd_vv);
     for (int v = 0; v < variant_count; v++) {
         variants_select(&variants[v]);
         kept.law.precision = variants[v].precision;
-        keep(&kept, step);
-        assert_int_equal(kept_pairs(&kept.friction), scales.near);
+        kept_pairs_keep(&kept, step);
+        assert_int_equal(kept_pairs_count(&kept.friction), scales.near);
         assert_ok(friction_add_to_forces(&kept.friction, particles, particles->velocity, 1, true));
         for (int d = 0; d < box->dimensions; d++)
             for (size_t k = 0; k < count; k++)
@@ -168,7 +88,7 @@ static void check_sums(const struct box *box, size_t count, const struct table *
     for (int d = 0; d < box->dimensions; d++)
         memory_free(expected[d]);
     pair_scales_clear(&scales);
-    clear_kept(&kept);
+    kept_pairs_clear(&kept);
 }
 
 static void test_kept_pairs_add_up_to_friction_and_noise_when_they_are_forces(void **state) {
@@ -186,15 +106,15 @@ static void test_kept_pairs_add_up_to_friction_and_noise_when_they_are_forces(vo
 }
 
 /// A pair at (r, 0, 0), apart for the number that its noise has at a step.
-static void make_pair(struct kept *kept, double r) {
-    make_kept(kept, &(struct box){3, {4, 4, 4}}, 2, 0);
+static void make_pair(struct kept_pairs *kept, double r) {
+    kept_pairs_init(kept, &(struct box){3, {4, 4, 4}}, 2, 0);
     for (int k = 0; k < 2; k++)
         for (int d = 0; d < 3; d++)
             kept->particles.position[d][k] = d == 0 ? 1 + r * k : 1;
     assert_ok(neighbours_sort_and_build(&kept->neighbours, &kept->particles));
 }
 
-static double noise(const struct kept *kept, uint64_t step) {
+static double noise(const struct kept_pairs *kept, uint64_t step) {
     const uint32_t seed = (uint32_t)kept->law.seed, high = (uint32_t)(kept->law.seed >> 32);
     const uint32_t word = rng_philox_lane(seed, high, (uint32_t)step, 0, 1,
                                           rng_stream_word(RNG_PAIR_NOISE, (uint32_t)(step >> 32)));
@@ -226,10 +146,10 @@ static struct law_of_u shardlow_law(double omega, double time_step, double tempe
 
 static void check_pair(const struct integrator *integrator,
                        struct law_of_u law_of(double, double, double), double r, double time_step) {
-    struct kept kept = {.law = make_law(NULL, &weight, time_step)};
+    struct kept_pairs kept = {.law = kept_pairs_law(NULL, &weight, time_step)};
     double before[3], size;
     make_pair(&kept, r);
-    init_friction(&kept, integrator);
+    kept_pairs_use(&kept, integrator);
     struct particles *particles = &kept.particles;
     const struct law_of_u law = law_of(sqrt(4.5) * (1 - r), time_step, kept.law.temperature);
     for (int v = 0; v < variant_count; v++) {
@@ -238,15 +158,15 @@ static void check_pair(const struct integrator *integrator,
         const uint64_t step = 7 + (uint64_t)v;
         particles_draw_velocities(particles, 1, step);
         const double u = relative(particles), across = particles->velocity[1][0];
-        find_momentum(particles, before, &size);
-        keep(&kept, step);
+        kept_pairs_momentum(particles, before, &size);
+        kept_pairs_keep(&kept, step);
         friction_sweep(&kept.friction, particles);
         assert_close(relative(particles), law.decay * u + law.kick * noise(&kept, step),
                      factor_tolerance * (fabs(u) + 2));
         assert_identical(particles->velocity[1][0], across);
-        assert_same_momentum(particles, before);
+        kept_pairs_assert_momentum(particles, before);
     }
-    clear_kept(&kept);
+    kept_pairs_clear(&kept);
 }
 
 static void test_sweep_follows_the_formula_when_there_are_two_particles(void **state) {
@@ -264,9 +184,9 @@ static void test_sweep_follows_the_formula_when_there_are_two_particles(void **s
 static void test_exact_friction_has_its_mean_and_variance_when_drawn_often(void **state) {
     (void)state;
     enum { DRAWS = 20000 };
-    struct kept kept = {.law = make_law(NULL, &weight, 0.1)};
+    struct kept_pairs kept = {.law = kept_pairs_law(NULL, &weight, 0.1)};
     make_pair(&kept, 0.4);
-    init_friction(&kept, &aboba);
+    kept_pairs_use(&kept, &aboba);
     struct particles *particles = &kept.particles;
     const struct law_of_u law = exact_law(sqrt(4.5) * 0.6, 0.1, kept.law.temperature);
     const double variance = law.kick * law.kick;
@@ -275,7 +195,7 @@ static void test_exact_friction_has_its_mean_and_variance_when_drawn_often(void 
         const int far = particles->position[0][1] > particles->position[0][0];
         particles->velocity[0][far] = 0.9;
         particles->velocity[0][!far] = -0.6;
-        keep(&kept, step);
+        kept_pairs_keep(&kept, step);
         friction_sweep(&kept.friction, particles);
         const double change = relative(particles) - 1.5 * law.decay;
         sum += change;
@@ -283,7 +203,7 @@ static void test_exact_friction_has_its_mean_and_variance_when_drawn_often(void 
     }
     assert_close(sum / DRAWS, 0, deviations * sqrt(variance / DRAWS));
     assert_close(squares / DRAWS, variance, deviations * variance * sqrt(0.8 / DRAWS));
-    clear_kept(&kept);
+    kept_pairs_clear(&kept);
 }
 
 /// u' = (1 − 2 damping) u + 2 kick ζ keeps the variance 2 k_B T if amplitude² = 2 k_B T damping
@@ -311,86 +231,17 @@ static void test_factors_keep_the_temperature_when_the_time_step_is_anything(voi
 
 static void test_sweep_conserves_momentum_when_particles_are_many(void **state) {
     (void)state;
-    struct kept kept = {.law = make_law(&soft, &weight, 0.1)};
+    struct kept_pairs kept = {.law = kept_pairs_law(&soft, &weight, 0.1)};
     double before[3], size;
-    make_kept(&kept, &(struct box){3, {5.1, 4.6, 6.3}}, 443, 0);
-    init_friction(&kept, &aboba);
-    find_momentum(&kept.particles, before, &size);
+    kept_pairs_init(&kept, &(struct box){3, {5.1, 4.6, 6.3}}, 443, 0);
+    kept_pairs_use(&kept, &aboba);
+    kept_pairs_momentum(&kept.particles, before, &size);
     for (uint64_t step = 1; step <= 100; step++) {
-        keep(&kept, step);
+        kept_pairs_keep(&kept, step);
         friction_sweep(&kept.friction, &kept.particles);
-        assert_same_momentum(&kept.particles, before);
+        kept_pairs_assert_momentum(&kept.particles, before);
     }
-    clear_kept(&kept);
-}
-
-/// Residual of (1 + G) v' = (1 − G) v + kicks, over the change kicks − 2 G v.
-static double find_residual(const struct kept *kept, double (*before)[4]) {
-    const struct particles *particles = &kept->particles;
-    const size_t count = particles->count;
-    double(*now)[4] = memory_zeroed(count, sizeof *now);
-    double(*twice)[4] = memory_zeroed(count, sizeof *twice);
-    double(*change)[4] = memory_zeroed(count, sizeof *change);
-    double(*moved)[4] = memory_zeroed(count, sizeof *moved);
-    double residual = 0, size = 0;
-    for (size_t k = 0; k < count; k++)
-        for (int d = 0; d < 3; d++) {
-            now[k][d] = particles->velocity[d][k] - before[k][d];
-            twice[k][d] = 2 * before[k][d];
-        }
-    // (1 + G)(v' − v) = kicks − 2 G v; friction_apply is −G, with the kicks or without.
-    friction_apply(&kept->friction, particles, (const double(*)[4])twice, change, true);
-    friction_apply(&kept->friction, particles, (const double(*)[4])now, moved, false);
-    for (size_t k = 0; k < count; k++)
-        for (int d = 0; d < 3; d++) {
-            const double r = now[k][d] - moved[k][d] - change[k][d];
-            residual += r * r;
-            size += change[k][d] * change[k][d];
-        }
-    memory_free(now);
-    memory_free(twice);
-    memory_free(change);
-    memory_free(moved);
-    return sqrt(residual / size);
-}
-
-static void check_solution(double time_step, double tolerance, double more) {
-    struct kept kept = {.law = make_law(&soft, &weight, time_step)};
-    double momentum[3], size, before[443][4] = {{0}};
-    make_kept(&kept, &(struct box){3, {5.1, 4.6, 6.3}}, 443, 0);
-    init_friction(&kept, &aboba_implicit);
-    keep(&kept, 3);
-    for (size_t k = 0; k < 443; k++)
-        for (int d = 0; d < 3; d++)
-            before[k][d] = kept.particles.velocity[d][k];
-    find_momentum(&kept.particles, momentum, &size);
-    assert_ok(friction_solve(&kept.friction, &kept.particles, tolerance));
-    assert_true(find_residual(&kept, before) <= tolerance + more);
-    assert_same_momentum(&kept.particles, momentum);
-    clear_kept(&kept);
-}
-
-/// The residual that conjugate gradients carry along drifts from the true one by roundings.
-static void test_solution_is_within_its_tolerance_when_friction_is_implicit(void **state) {
-    (void)state;
-    check_solution(0.01, 1e-2, 1e-12);
-    check_solution(0.01, 1e-10, 1e-12);
-    check_solution(1, 1e-2, 1e-12);
-    check_solution(1, 1e-10, 1e-12);
-    check_solution(1e4, 1e-2, 1e-9);
-}
-
-static void test_solution_is_refused_when_iterations_are_too_few_for_its_tolerance(void **state) {
-    (void)state;
-    struct kept kept = {.law = make_law(&soft, &weight, 1e9)};
-    make_kept(&kept, &(struct box){3, {5.1, 4.6, 6.3}}, 443, 0);
-    init_friction(&kept, &aboba_implicit);
-    keep(&kept, 3);
-    const double before = kept.particles.velocity[0][0];
-    assert_fails(friction_solve(&kept.friction, &kept.particles, 1e-200), STATUS_UNSTABLE,
-                 "time_step");
-    assert_identical(kept.particles.velocity[0][0], before);
-    clear_kept(&kept);
+    kept_pairs_clear(&kept);
 }
 
 int main(void) {
@@ -400,8 +251,6 @@ int main(void) {
         cmocka_unit_test(test_exact_friction_has_its_mean_and_variance_when_drawn_often),
         cmocka_unit_test(test_factors_keep_the_temperature_when_the_time_step_is_anything),
         cmocka_unit_test(test_sweep_conserves_momentum_when_particles_are_many),
-        cmocka_unit_test(test_solution_is_within_its_tolerance_when_friction_is_implicit),
-        cmocka_unit_test(test_solution_is_refused_when_iterations_are_too_few_for_its_tolerance),
     };
     return cmocka_run_group_tests(tests, make_tables, clear_tables);
 }
