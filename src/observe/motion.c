@@ -118,8 +118,13 @@ static double sum_lanes(const double sum[LANES]) {
     return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
 }
 
-SIMD_CLONES static double sum_squares(const void *context, size_t begin, size_t end) {
-    const struct states *states = context;
+/// What is summed over components: (a − b)² or a b. `squared` is constant where this is inlined.
+static inline __attribute__((always_inline)) double term(double a, double b, bool squared) {
+    return squared ? (a - b) * (a - b) : a * b;
+}
+
+static inline __attribute__((always_inline)) double
+sum_terms(const struct states *states, size_t begin, size_t end, bool squared) {
     double sum[LANES] = {0};
     for (int d = 0; d < states->dimensions; d++) {
         const double *a = states->now + (size_t)d * states->count + begin;
@@ -127,27 +132,19 @@ SIMD_CLONES static double sum_squares(const void *context, size_t begin, size_t 
         const size_t count = end - begin;
         for (size_t k = 0; k + LANES <= count; k += LANES)
             for (int lane = 0; lane < LANES; lane++)
-                sum[lane] += (a[k + lane] - b[k + lane]) * (a[k + lane] - b[k + lane]);
+                sum[lane] += term(a[k + lane], b[k + lane], squared);
         for (size_t k = count / LANES * LANES; k < count; k++)
-            sum[0] += (a[k] - b[k]) * (a[k] - b[k]);
+            sum[0] += term(a[k], b[k], squared);
     }
     return sum_lanes(sum);
 }
 
+SIMD_CLONES static double sum_squares(const void *context, size_t begin, size_t end) {
+    return sum_terms(context, begin, end, true);
+}
+
 SIMD_CLONES static double sum_products(const void *context, size_t begin, size_t end) {
-    const struct states *states = context;
-    double sum[LANES] = {0};
-    for (int d = 0; d < states->dimensions; d++) {
-        const double *a = states->now + (size_t)d * states->count + begin;
-        const double *b = states->then + (size_t)d * states->count + begin;
-        const size_t count = end - begin;
-        for (size_t k = 0; k + LANES <= count; k += LANES)
-            for (int lane = 0; lane < LANES; lane++)
-                sum[lane] += a[k + lane] * b[k + lane];
-        for (size_t k = count / LANES * LANES; k < count; k++)
-            sum[0] += a[k] * b[k];
-    }
-    return sum_lanes(sum);
+    return sum_terms(context, begin, end, false);
 }
 
 static void correlate(struct motion *motion, size_t origin, int threads) {
