@@ -53,6 +53,12 @@ struct inverse_listener {
 
 enum { INVERSE_MAX_SPANS = 512 };
 
+/// What a method measures of an evaluation.
+struct inverse_sampling {
+    int64_t every;  ///< steps between samples; 0: no dynamics are simulated
+    bool rdf_force; ///< g(r) from forces, where the potential allows
+};
+
 struct inverse_method {
     const char *name;
     const char *summary;               ///< with citation, one line
@@ -60,8 +66,7 @@ struct inverse_method {
     size_t parameters_size;
     size_t state_size;
     uint32_t (*most_iterations)(const void *parameters);
-    /// Steps between the samples of an evaluation; 0 if the method does not simulate dynamics.
-    int64_t (*sampled_every)(const void *parameters);
+    struct inverse_sampling (*sampling)(const void *parameters);
     bool keeps_parts;
     const char *const *columns; ///< names of `extra`, NULL-terminated
     enum status (*create)(void *state, const struct inverse_problem *problem,

@@ -12,6 +12,7 @@ struct explain_measured {
     double cutoff;                    ///< of the forces [λ]
     double rdf_range;                 ///< 0: no g(r) [λ]
     bool rdf_force;                   ///< g(r) from forces as well
+    bool rdf_force_alone;             ///< … and not counted, if the potential has a barrier
     bool sums;                        ///< energy, pressure, temperatures
     int64_t every;                    ///< steps between samples
     const struct motion_plan *motion; ///< NULL: no diffusion

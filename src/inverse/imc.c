@@ -92,9 +92,9 @@ static const struct field fields[] = {
 static const char *const columns[] = {"damping[1]", "regularisation[1]", "own_noise[1]",
                                       "misfit[1]", NULL};
 
-static int64_t sampled_every(const void *parameters) {
+static struct inverse_sampling sampling(const void *parameters) {
     (void)parameters;
-    return 0;
+    return (struct inverse_sampling){0};
 }
 
 static uint32_t most_iterations(const void *parameters) {
@@ -406,7 +406,7 @@ const struct inverse_method imc = {
     .parameters_size = sizeof(struct parameters),
     .state_size = sizeof(struct state),
     .most_iterations = most_iterations,
-    .sampled_every = sampled_every,
+    .sampling = sampling,
     .columns = columns,
     .create = create,
     .destroy = destroy,

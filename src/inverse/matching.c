@@ -67,8 +67,9 @@ static uint32_t most_iterations(const void *parameters) {
     return (uint32_t)((const struct parameters *)parameters)->genetic.generations;
 }
 
-static int64_t sampled_every(const void *parameters) {
-    return ((const struct parameters *)parameters)->evaluate.plan.every;
+static struct inverse_sampling sampling(const void *parameters) {
+    const struct evaluate_parameters *evaluate = &((const struct parameters *)parameters)->evaluate;
+    return (struct inverse_sampling){evaluate->plan.every, evaluate->estimator == RDF_FORCE_USED};
 }
 
 static int64_t population(const struct state *state) {
@@ -298,7 +299,7 @@ const struct inverse_method matching = {
     .parameters_size = sizeof(struct parameters),
     .state_size = sizeof(struct state),
     .most_iterations = most_iterations,
-    .sampled_every = sampled_every,
+    .sampling = sampling,
     .keeps_parts = true,
     .columns = columns,
     .create = create,

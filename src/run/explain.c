@@ -100,6 +100,8 @@ static void add_samples(struct plan *plan, const struct simulation_setup *setup,
     const double farther = pairs_within(setup, measured->rdf_range);
     if (measured->rdf_range <= 0)
         add(plan, "g(r)", false, 0, "not asked for");
+    else if (measured->rdf_force_alone)
+        add(plan, "g(r)", false, 0, "from forces; counted if a potential keeps no pair apart");
     else if (measured->rdf_range <= measured->cutoff * (1 + 1e-9))
         add(plan, "g(r)", true, cost.count * pairs / every, "counted in %s of one step in %.0f",
             setup->integrator->forces_midway ? "a pass at the end" : "the force pass", every);

@@ -294,15 +294,22 @@ enum status fit_explain(const char *file, const struct run_options *options) {
     const enum status status = fit_file_read(&fit, file, options);
     if (status == STATUS_OK) {
         const double cutoff = rdf_bins_range(&fit.target.bins);
+        struct simulation_setup finer = fit.scene.setup;
+        if (fit.verification.time_step > 0)
+            finer.time_step = fit.verification.time_step;
         const struct explain_measured verified = {.has_potential = true,
                                                   .cutoff = cutoff,
                                                   .rdf_range = cutoff,
                                                   .sums = true,
                                                   .every = fit.verification.plan.every};
-        const int64_t every = fit.method->sampled_every(fit.method_parameters);
-        if (every > 0) {
-            const struct explain_measured evaluated = {
-                .has_potential = true, .cutoff = cutoff, .rdf_range = cutoff, .every = every};
+        const struct inverse_sampling sampling = fit.method->sampling(fit.method_parameters);
+        if (sampling.every > 0) {
+            const struct explain_measured evaluated = {.has_potential = true,
+                                                       .cutoff = cutoff,
+                                                       .rdf_range = cutoff,
+                                                       .rdf_force = sampling.rdf_force,
+                                                       .rdf_force_alone = sampling.rdf_force,
+                                                       .every = sampling.every};
             printf("An evaluation of the method \"%s\", one a thread:\n", fit.method->name);
             explain_scene(stdout, &fit.scene.setup, &evaluated);
         } else {
@@ -310,7 +317,7 @@ enum status fit_explain(const char *file, const struct run_options *options) {
                    fit.method->name);
         }
         printf("A replica of the verification, one a thread:\n");
-        explain_scene(stdout, &fit.scene.setup, &verified);
+        explain_scene(stdout, &finer, &verified);
     }
     fit_file_clear(&fit);
     return status;

@@ -125,6 +125,28 @@ static void test_interrupted_imc_goes_on_with_the_same_bits(void **state) {
     check_interruption(UNCONVERGED);
 }
 
+static void test_explain_tells_how_an_evaluation_measures_the_rdf(void **state) {
+    static struct run_program_result result;
+    write_fit(*state, GENETIC("0.5"));
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "An evaluation of the method \"genetic\", one a thread:");
+    assert_null(strstr(result.out, "g(r) from forces"));
+    write_fit(*state, GENETIC("0.5") ", \"estimator\": \"force\"");
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "g(r)                               off         from forces");
+    assert_contains(result.out, "g(r) from forces                   on ");
+    const char *verification = strstr(result.out, "A replica of the verification");
+    assert_non_null(verification);
+    assert_contains(verification, "counted in a pass at the end of one step in 5");
+    assert_null(strstr(verification, "g(r) from forces"));
+    write_fit(*state, IMC);
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "The method \"imc\" samples by Monte Carlo");
+}
+
 static void test_interrupted_genetic_goes_on_with_the_same_bits(void **state) {
     write_fit(*state, GENETIC("0.3"));
     check_interruption(CONVERGED);
@@ -240,6 +262,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_imc_gives_the_same_bits_from_its_used_settings),
         TEST_WITHOUT_FIGURES(test_genetic_gives_the_same_bits_from_its_used_settings),
         TEST_WITHOUT_FIGURES(test_genetic_with_forces_gives_the_same_bits_from_its_used_settings),
+        TEST_WITHOUT_FIGURES(test_explain_tells_how_an_evaluation_measures_the_rdf),
         TEST_WITHOUT_FIGURES(test_interrupted_imc_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_genetic_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_fit_says_so_and_refuses_other_settings),
