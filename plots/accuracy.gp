@@ -3,8 +3,8 @@
 # keeps its colour in both panels; its points are its time steps, growing from right to left.
 # Reads the table that MESOFIT_TABLE names, a block an integrator: integrator, time_step, cpu,
 # cpu_error, cpu_to_error, g_largest, its error, g_noise, g_rms, its error, temperature_change, its
-# error, configurational_change (13), its error, …, temperature_configurational (25); its comments
-# say what error was wanted. Draws figures/MESOFIT_FIGURE.svg and .png.
+# error, configurational_change (13), its error, …, and temperature_configurational, which is found
+# by its name; its comments say what error was wanted. Draws figures/MESOFIT_FIGURE.svg and .png.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
@@ -18,7 +18,9 @@ count = words(names)
 stats table using 3 name "C" nooutput
 stats table using 6 name "G" nooutput
 stats table using 8 name "N" nooutput
-percent(n) = 100 * column(n) / (column(25) - column(13))
+configurational = int(system("awk -F '\t' '/^# integrator/ { for (k = 1; k <= NF; k++) \
+    if ($k ~ /^temperature_configurational\\[/) print k; exit }' < \"$MESOFIT_TABLE\""))
+percent(n) = 100 * column(n) / (column(configurational) - column(13))
 bottom = low(G_min, N_min) / 1.6
 top = low(G_max, 0.3)
 # A bar that reaches 0 goes off the axis.

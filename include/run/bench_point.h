@@ -46,6 +46,7 @@ enum bench_quantity {
     BENCH_CONFIGURATIONAL, ///< temperature [k_B T_0]
     BENCH_ENERGY,          ///< potential, of a particle [k_B T_0]
     BENCH_PRESSURE,        ///< [k_B T_0/λ^d]
+    BENCH_DIFFUSION,       ///< coefficient, of the MSD; NaN if a run is too short [λ²/τ]
     BENCH_TOTAL,           ///< energy of a particle [k_B T_0]
     BENCH_DRIFT,           ///< of the total energy of a particle [k_B T_0/τ]
     BENCH_QUANTITIES

@@ -28,12 +28,14 @@ static const struct column columns[BENCH_COLUMNS] = {
     QUANTITY("configurational_change", "T_0"),
     QUANTITY("energy_change", "k_B.T_0"),
     QUANTITY("pressure_change", "k_B.T_0/lambda^d"),
+    QUANTITY("diffusion_change", "lambda^2/tau"),
     QUANTITY("total_energy_change", "k_B.T_0"),
     QUANTITY("drift_change", "k_B.T_0/tau"),
     [BENCH_VALUES] = QUANTITY("temperature", "T_0"),
     QUANTITY("temperature_configurational", "T_0"),
     QUANTITY("potential_energy", "k_B.T_0"),
     QUANTITY("pressure", "k_B.T_0/lambda^d"),
+    QUANTITY("diffusion", "lambda^2/tau"),
     QUANTITY("total_energy", "k_B.T_0"),
     QUANTITY("drift", "k_B.T_0/tau"),
 };
@@ -91,6 +93,7 @@ static void print_row(FILE *stream, const struct bench_diagram *diagram,
     print_change(stream, row, BENCH_CONFIGURATIONAL, 100 / there[2 * BENCH_CONFIGURATIONAL]);
     print_change(stream, row, BENCH_PRESSURE, 1);
     print_change(stream, row, BENCH_ENERGY, 1);
+    print_change(stream, row, BENCH_DIFFUSION, 100 / there[2 * BENCH_DIFFUSION]);
     if (!diagram->has_weight) {
         print_change(stream, row, BENCH_TOTAL, 1);
         print_cell(stream, 13, value[BENCH_VALUES + 2 * BENCH_DRIFT],
@@ -100,8 +103,9 @@ static void print_row(FILE *stream, const struct bench_diagram *diagram,
 }
 
 static void print_reference(FILE *stream, const struct bench_diagram *diagram) {
-    static const char *const names[] = {"kinetic temperature", "configurational", "energy",
-                                        "pressure", "total energy"};
+    static const char *const names[] = {
+        "kinetic temperature",   "configurational", "energy", "pressure",
+        "diffusion coefficient", "total energy"};
     const double *value = diagram->reference.value;
     fprintf(stream, "%s: %zu particles, %.4g tau a point\nreference: %s at %.4g tau",
             diagram->scene, diagram->particles, diagram->time, diagram->reference.method,
@@ -112,7 +116,7 @@ static void print_reference(FILE *stream, const struct bench_diagram *diagram) {
     fprintf(stream, ", %.4g tau:\n ", diagram->reference_time);
     for (int q = 0; q < BENCH_DRIFT; q++) {
         char cell[CELL_SIZE];
-        if (q == BENCH_TOTAL && diagram->has_weight)
+        if ((q == BENCH_TOTAL && diagram->has_weight) || !isfinite(value[BENCH_VALUES + 2 * q]))
             continue;
         bench_number_text(cell, sizeof cell, value[BENCH_VALUES + 2 * q],
                           value[BENCH_VALUES + 2 * q + 1]);
@@ -176,11 +180,12 @@ static void print_recommendation(FILE *stream, const struct bench_diagram *diagr
 
 void bench_accuracy_table(FILE *stream, const struct bench_diagram *diagram) {
     print_reference(stream, diagram);
-    fprintf(stream, "%-16s  %7s  %9s  %7s  %11s  %11s  %13s  %13s  %13s  %13s", "integrator",
-            "step", "cpu", "to err.", "|dg|", "rms dg", "dT kinetic", "dT config.", "dP", "dU");
+    fprintf(stream, "%-16s  %7s  %9s  %7s  %11s  %11s  %13s  %13s  %13s  %13s  %13s", "integrator",
+            "step", "cpu", "to err.", "|dg|", "rms dg", "dT kinetic", "dT config.", "dP", "dU",
+            "dD");
     fprintf(stream, diagram->has_weight ? "\n" : "  %13s  %13s\n", "dE", "drift of E");
-    fprintf(stream, "%-16s  %7s  %9s  %7s  %11s  %11s  %13s  %13s  %13s  %13s", "", "tau", "ms/tau",
-            "s", "largest", "", "%", "%", "kT/lambda^d", "kT");
+    fprintf(stream, "%-16s  %7s  %9s  %7s  %11s  %11s  %13s  %13s  %13s  %13s  %13s", "", "tau",
+            "ms/tau", "s", "largest", "", "%", "%", "kT/lambda^d", "kT", "%");
     fprintf(stream, diagram->has_weight ? "\n" : "  %13s  %13s\n", "kT", "kT/tau");
     for (size_t k = 0; k < diagram->rows; k++)
         print_row(stream, diagram, &diagram->row[k]);

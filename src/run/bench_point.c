@@ -17,6 +17,12 @@ enum {
 static const double lambdas[] = {0.5, 0.65}; // of dpd-verlet; Groot and Warren's optimum
 static const double equilibration_share = 0.05;
 
+/// Window of the diffusion coefficient, in times in which a particle flies the mean distance: in
+/// the standard fluid 4 τ, where its D(t) has come to its plateau. It is measured in runs of
+/// LEAST_WINDOWS or more.
+static const double window_length = 6;
+enum { LEAST_WINDOWS = 4, ORIGINS = 6 };
+
 // What to run -------------------------------------------------------------------------------------
 
 static void add_method(struct bench_method *methods, size_t *count,
@@ -83,19 +89,33 @@ static double processor_seconds(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/// Samples a fifth of the time apart in which a particle flies the mean distance: pairs have then
-/// left their bins.
+/// Time in which a particle flies the mean distance [τ].
+static double flight(const struct simulation_setup *setup) {
+    return mean_distance(&setup->box, (size_t)setup->placement.count) / sqrt(setup->temperature);
+}
+
+/// Samples a fifth of a flight apart: pairs have then left their bins.
 static struct measure_plan plan_of(const struct bench_common *common,
                                    const struct bench_point *point) {
     const struct simulation_setup *setup = common->setup;
-    const double interval =
-        0.2 * mean_distance(&setup->box, (size_t)setup->placement.count) / sqrt(setup->temperature);
     struct measure_plan plan;
-    plan.every = (int64_t)fmax(SHORTEST_STRETCH, rint(interval / point->time_step));
+    plan.every = (int64_t)fmax(SHORTEST_STRETCH, rint(0.2 * flight(setup) / point->time_step));
     plan.samples =
         (int64_t)fmax(BLOCKS, rint(point->time / ((double)plan.every * point->time_step)));
     plan.equilibration = (int64_t)rint(equilibration_share * point->time / point->time_step);
     return plan;
+}
+
+/// The motion is sampled with everything else: the MSD is read far beyond the time between samples.
+static struct motion_plan motion_plan_of(const struct bench_common *common,
+                                         const struct bench_point *point,
+                                         const struct measure_plan *plan) {
+    const double between = (double)plan->every * point->time_step;
+    const int64_t lags = (int64_t)fmax(4, rint(window_length * flight(common->setup) / between));
+    return (struct motion_plan){.every = plan->every,
+                                .lags = lags,
+                                .origin_every = (int64_t)fmax(1, (double)(lags / ORIGINS)),
+                                .fit_from = 0.5};
 }
 
 uint64_t bench_point_steps(const struct bench_common *common, const struct bench_point *point) {
@@ -129,6 +149,8 @@ static enum status sample(const struct bench_common *common, struct bench_point 
                           struct simulation *simulation, const struct measure_plan *plan,
                           struct measure_targets targets) {
     double seconds[BLOCKS] = {0}, times[BLOCKS] = {0};
+    if (targets.motion)
+        motion_sample(targets.motion, simulation);
     for (int64_t k = 0; k < plan->samples; k++) {
         const struct measure_plan next = {plan->equilibration, k + 1, plan->every};
         const int64_t block = k * BLOCKS / plan->samples;
@@ -192,12 +214,12 @@ static void join_bins(const struct bench_bins *bins, const struct rdf *rdf, cons
         joined[k - bins->core + 1] = (struct bench_number){g[k], error[k]};
 }
 
-static enum status find_results(const struct bench_common *common, const struct rdf *rdf,
-                                const struct thermodynamics *thermodynamics,
+static enum status find_results(const struct bench_common *common, struct measure_targets targets,
                                 struct bench_point *point) {
     enum status status = STATUS_OK;
     const struct bench_bins *bins = &common->bins;
-    const struct thermodynamics_summary s = thermodynamics_result(thermodynamics, 1);
+    const struct rdf *rdf = targets.rdf;
+    const struct thermodynamics_summary s = thermodynamics_result(targets.thermodynamics, 1);
     double *g = NULL, *error = NULL;
     NEW_ARRAY(g, bins->fine.count);
     NEW_ARRAY(error, bins->fine.count);
@@ -209,7 +231,12 @@ static enum status find_results(const struct bench_common *common, const struct 
         (struct bench_number){s.temperature_configurational, s.temperature_configurational_error};
     quantity[BENCH_ENERGY] = (struct bench_number){s.potential_energy, s.potential_energy_error};
     quantity[BENCH_PRESSURE] = (struct bench_number){s.pressure, s.pressure_error};
-    find_total(thermodynamics, &rdf->box, (double)rdf->particle_count, point);
+    quantity[BENCH_DIFFUSION] = (struct bench_number){NAN, NAN};
+    if (targets.motion) {
+        const struct motion_summary motion = motion_result(targets.motion, NULL);
+        quantity[BENCH_DIFFUSION] = (struct bench_number){motion.msd, motion.msd_error};
+    }
+    find_total(targets.thermodynamics, &rdf->box, (double)rdf->particle_count, point);
 done:
     memory_free(g);
     memory_free(error);
@@ -234,9 +261,14 @@ enum status bench_point_run(const struct bench_common *common, struct bench_poin
     struct simulation simulation = {0};
     struct rdf rdf = {0};
     struct thermodynamics thermodynamics = {0};
+    struct motion motion = {0};
     struct simulation_setup setup =
         setup_of(common->setup, common->start, point->method, point->time_step);
     const struct measure_plan plan = plan_of(common, point);
+    const struct motion_plan motion_plan = motion_plan_of(common, point, &plan);
+    const bool moves = plan.samples >= LEAST_WINDOWS * motion_plan.lags;
+    const struct measure_targets targets = {
+        .rdf = &rdf, .thermodynamics = &thermodynamics, .motion = moves ? &motion : NULL};
     double temperature;
     setup.seed = point->seed;
     point->steps = (uint64_t)(plan.samples * plan.every);
@@ -248,14 +280,17 @@ enum status bench_point_run(const struct bench_common *common, struct bench_poin
     CHECK(thermodynamics_init(&thermodynamics, (size_t)plan.samples));
     CHECK(measure_equilibrate(&simulation, &plan, &temperature, NULL));
     tell(common, point, plan.equilibration);
-    CHECK(sample(common, point, &simulation, &plan,
-                 (struct measure_targets){.rdf = &rdf, .thermodynamics = &thermodynamics}));
-    CHECK(find_results(common, &rdf, &thermodynamics, point));
+    if (moves)
+        CHECK(motion_init(&motion, &motion_plan, &simulation, plan.equilibration,
+                          plan.samples * plan.every));
+    CHECK(sample(common, point, &simulation, &plan, targets));
+    CHECK(find_results(common, targets, point));
 done:
     point->status = status;
     simulation_clear(&simulation);
     rdf_clear(&rdf);
     thermodynamics_clear(&thermodynamics);
+    motion_clear(&motion);
     return status == STATUS_UNSTABLE ? STATUS_OK : status;
 }
 

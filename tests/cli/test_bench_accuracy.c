@@ -88,6 +88,12 @@ static void test_json_has_reference_points_and_recommendation(void **state) {
     assert_contains(result.out, "\"integrator\":\t\"dpd-verlet(0.65)\"");
     assert_contains(result.out, "\"temperature_configurational\":\t");
     assert_contains(result.out, "\"role\":\t\"recommendation\"");
+    assert_null(strstr(result.out, "\"diffusion"));
+    RUN_PROGRAM(&result, "bench", "accuracy", "small.json", "--time", "20", "--json",
+                "--time-steps", "0.04", "--integrators", "aboba");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "\"diffusion\":\t");
+    assert_contains(result.out, "\"diffusion_change_error\":\t");
 }
 
 static void test_ladder_ends_where_a_step_is_unstable(void **state) {

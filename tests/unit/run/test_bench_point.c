@@ -64,7 +64,8 @@ static void count_steps(void *context, uint64_t steps) {
     *(uint64_t *)context += steps;
 }
 
-static void run(struct bench_point *point, double time_step, const struct simulation_setup *setup) {
+static void run(struct bench_point *point, double time_step, double time,
+                const struct simulation_setup *setup) {
     static struct bench_method methods[BENCH_MOST_METHODS];
     uint64_t steps = 0;
     const size_t count = bench_methods(setup, methods);
@@ -74,7 +75,7 @@ static void run(struct bench_point *point, double time_step, const struct simula
                                         .context = &steps};
     *point = (struct bench_point){.method = bench_reference_method(methods, count),
                                   .time_step = time_step,
-                                  .time = 20,
+                                  .time = time,
                                   .seed = 5};
     const uint64_t planned = bench_point_steps(&common, point);
     assert_ok(bench_point_run(&common, point));
@@ -87,17 +88,33 @@ static void test_point_has_the_same_bits_twice_and_sensible_numbers(void **state
     struct fluid fluid;
     struct bench_point first, second;
     fluid_groot_warren(&fluid, 81, 0.02);
-    run(&first, 0.02, &fluid.setup);
-    run(&second, 0.02, &fluid.setup);
+    run(&first, 0.02, 20, &fluid.setup);
+    run(&second, 0.02, 20, &fluid.setup);
     assert_int_equal(first.status, STATUS_OK);
     assert_true(first.cpu.value > 0);
     // False alarm: none in a million, with standard errors of 0.01 and 0.1.
     assert_close(first.quantity[BENCH_TEMPERATURE].value, 1, 0.1);
     assert_close(first.quantity[BENCH_PRESSURE].value, 23.7, 1);
+    // 0.290(3) with many particles, less in a small box, with a standard error of 0.03.
+    assert_close(first.quantity[BENCH_DIFFUSION].value, 0.25, 0.15);
+    assert_in_range((int)(1e4 * first.quantity[BENCH_DIFFUSION].error), 20, 1000);
     assert_memory_equal(first.quantity, second.quantity, sizeof first.quantity);
     assert_memory_equal(first.g, second.g, 12 * sizeof *first.g);
     memory_free(first.g);
     memory_free(second.g);
+    fluid_clear(&fluid);
+}
+
+static void test_short_point_has_no_diffusion_coefficient(void **state) {
+    (void)state;
+    struct fluid fluid;
+    struct bench_point point;
+    fluid_groot_warren(&fluid, 81, 0.02);
+    run(&point, 0.02, 5, &fluid.setup);
+    assert_int_equal(point.status, STATUS_OK);
+    assert_true(isfinite(point.quantity[BENCH_PRESSURE].value));
+    assert_true(isnan(point.quantity[BENCH_DIFFUSION].value));
+    memory_free(point.g);
     fluid_clear(&fluid);
 }
 
@@ -106,7 +123,7 @@ static void test_unstable_point_is_a_result(void **state) {
     struct fluid fluid;
     struct bench_point point;
     fluid_groot_warren(&fluid, 81, 0.02);
-    run(&point, 1, &fluid.setup);
+    run(&point, 1, 20, &fluid.setup);
     assert_int_equal(point.status, STATUS_UNSTABLE);
     memory_free(point.g);
     fluid_clear(&fluid);
@@ -119,6 +136,7 @@ int main(void) {
         cmocka_unit_test(test_parameters_of_the_scene_are_kept_and_others_are_the_usual),
         cmocka_unit_test(test_bins_reach_the_cutoff_and_join_the_core),
         cmocka_unit_test(test_point_has_the_same_bits_twice_and_sensible_numbers),
+        cmocka_unit_test(test_short_point_has_no_diffusion_coefficient),
         cmocka_unit_test(test_unstable_point_is_a_result),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
