@@ -2,9 +2,9 @@
 //
 // A simulation that was saved in the middle, loaded into a new one and continued has the bits of
 // one that went on in peace, whatever its integrator and while it is sampled.
-#include "base/memory.h"
 #include "observe/measure.h"
 #include "shared/fluids.h"
+#include "shared/restart.h"
 #include "shared/testing.h"
 
 enum { BINS = 20, SAMPLES = 6, EVERY = 5, EQUILIBRATION = 4 };
@@ -56,35 +56,8 @@ static void run_to_the_end(struct run *run) {
     sample(run, SAMPLES);
 }
 
-/// Exchange the simulation for a new one with the same state.
-static void restart(struct run *run) {
-    struct memory_span from[SIMULATION_SPANS], to[SIMULATION_SPANS];
-    struct simulation again;
-    assert_ok(simulation_init(&again, &run->simulation.setup, NULL));
-    const size_t spans = simulation_spans(&run->simulation, from);
-    assert_int_equal(simulation_spans(&again, to), spans);
-    for (size_t n = 0; n < spans; n++) {
-        assert_int_equal(from[n].bytes, to[n].bytes);
-        memcpy(to[n].memory, from[n].memory, from[n].bytes);
-    }
-    simulation_clear(&run->simulation);
-    run->simulation = again;
-    assert_ok(simulation_restore(&run->simulation));
-    assert_int_equal(run->simulation.list_builds, *(uint64_t *)to[spans - 1].memory);
-}
-
 static void assert_same(const struct run *a, const struct run *b) {
-    const struct particles *p = &a->simulation.particles, *q = &b->simulation.particles;
-    const size_t size = p->count * sizeof(double);
-    assert_int_equal(a->simulation.step, b->simulation.step);
-    assert_int_equal(a->simulation.list_builds, b->simulation.list_builds);
-    assert_memory_equal(p->id, q->id, p->count * sizeof *p->id);
-    for (int d = 0; d < p->box.dimensions; d++) {
-        assert_memory_equal(p->position[d], q->position[d], size);
-        assert_memory_equal(p->velocity[d], q->velocity[d], size);
-        assert_memory_equal(p->force[d], q->force[d], size);
-        assert_memory_equal(p->image[d], q->image[d], p->count * sizeof *p->image[d]);
-    }
+    restart_assert_same(&a->simulation, &b->simulation);
     assert_int_equal(a->rdf.samples, b->rdf.samples);
     assert_memory_equal(a->rdf.histogram, b->rdf.histogram,
                         a->rdf.blocks * BINS * sizeof *a->rdf.histogram);
@@ -102,7 +75,7 @@ static void check(const struct simulation_setup *setup) {
     for (uint64_t steps = 0; steps <= measure_steps(&plan); steps += 3) {
         begin(&pieces, setup);
         run_for(&pieces, steps);
-        restart(&pieces);
+        restart_simulation(&pieces.simulation);
         run_to_the_end(&pieces);
         assert_same(&whole, &pieces);
         clear(&pieces);
