@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "curves/shape.h"
+
+#include "base/memory.h"
+#include "curves/bezier.h"
+#include "curves/bspline.h"
+
+#include <gsl/gsl_multifit.h>
+
+#include <math.h>
+#include <string.h>
+
+static const struct shape bezier = {
+    .name = "bezier",
+    .summary = "Bezier curve whose control points are the genes; A. G. Baydin (2008)",
+    .values = bezier_values,
+};
+
+static const struct shape bspline = {
+    .name = "bspline",
+    .summary = "clamped uniform cubic B-spline, each gene acts near its place; C. de Boor (1978)",
+    .values = bspline_values,
+};
+
+const struct shape *const shapes[] = {&bezier, &bspline, NULL};
+
+const struct shape *shape_find(const char *name) {
+    for (const struct shape *const *known = shapes; *known; known++)
+        if (strcmp((*known)->name, name) == 0)
+            return *known;
+    return NULL;
+}
+
+enum status shape_basis(const struct shape *shape, size_t genes, const double *t, size_t points,
+                        double *basis) {
+    enum status status = STATUS_OK;
+    double *unit = NULL, *column = NULL;
+    NEW_ARRAY(unit, genes);
+    NEW_ARRAY(column, points);
+    for (size_t k = 0; k < genes; k++) {
+        unit[k] = 1;
+        CHECK(shape->values(unit, genes, t, column, points));
+        unit[k] = 0;
+        for (size_t p = 0; p < points; p++)
+            basis[p * genes + k] = column[p];
+    }
+done:
+    memory_free(unit);
+    memory_free(column);
+    return status;
+}
+
+/// Relative to the largest singular value: rounding of a basis is 1e-16 of it, and what a curve
+/// changes by the ridge is the square of this.
+static const double ridge = 1e-7;
+
+/// What is solved: GSL wants at least as many rows as columns, so rows of zeros may follow.
+struct rows {
+    gsl_matrix *basis;  ///< sqrt(w) B, shape [rows, count]
+    gsl_vector *values; ///< sqrt(w) y, shape [rows]
+    gsl_vector *genes;  ///< shape [count]
+    gsl_multifit_linear_workspace *work;
+};
+
+static void rows_clear(struct rows *rows) {
+    gsl_matrix_free(rows->basis);
+    gsl_vector_free(rows->values);
+    gsl_vector_free(rows->genes);
+    gsl_multifit_linear_free(rows->work);
+}
+
+static enum status rows_init(struct rows *rows, size_t points, size_t count) {
+    const size_t total = points > count ? points : count;
+    *rows = (struct rows){gsl_matrix_calloc(total, count), gsl_vector_calloc(total),
+                          gsl_vector_calloc(count), gsl_multifit_linear_alloc(total, count)};
+    if (rows->basis && rows->values && rows->genes && rows->work)
+        return STATUS_OK;
+    return status_fail(STATUS_NO_MEMORY, "out of memory for a fit of %zu genes", count);
+}
+
+/// Rows scaled by the roots of their weights.
+static enum status rows_fill(struct rows *rows, const double *basis, const double *values,
+                             const double *weights, size_t points) {
+    const size_t count = rows->genes->size;
+    for (size_t p = 0; p < points; p++) {
+        const double root = weights ? sqrt(weights[p]) : 1;
+        if (!isfinite(root * values[p]))
+            return status_fail(STATUS_BAD_INPUT, "point %zu of a curve is %g, its weight %g", p,
+                               values[p], weights ? weights[p] : 1);
+        gsl_vector_set(rows->values, p, root * values[p]);
+        for (size_t k = 0; k < count; k++)
+            gsl_matrix_set(rows->basis, p, k, root * basis[p * count + k]);
+    }
+    return STATUS_OK;
+}
+
+static enum status rows_solve(struct rows *rows) {
+    double residual, size;
+    if (gsl_multifit_linear_svd(rows->basis, rows->work) != 0)
+        return status_fail(STATUS_BAD_INPUT, "a curve cannot be decomposed");
+    const double largest = gsl_vector_get(rows->work->S, 0);
+    if (!(largest > 0))
+        return status_fail(STATUS_BAD_INPUT, "no point of the curve has any weight");
+    if (gsl_multifit_linear_solve(ridge * largest, rows->basis, rows->values, rows->genes,
+                                  &residual, &size, rows->work) != 0)
+        return status_fail(STATUS_BAD_INPUT, "a curve cannot be fitted");
+    return STATUS_OK;
+}
+
+enum status shape_fit(const struct shape *shape, const double *t, const double *values,
+                      const double *weights, size_t points, double *genes, size_t count) {
+    enum status status = STATUS_OK;
+    struct rows rows = {0};
+    double *basis = NULL;
+    if (points < 1)
+        return status_fail(STATUS_BAD_INPUT, "a curve without points has no genes");
+    NEW_ARRAY(basis, points * count);
+    CHECK(shape_basis(shape, count, t, points, basis));
+    CHECK(rows_init(&rows, points, count));
+    CHECK(rows_fill(&rows, basis, values, weights, points));
+    CHECK(rows_solve(&rows));
+    for (size_t k = 0; k < count; k++)
+        genes[k] = gsl_vector_get(rows.genes, k);
+done:
+    rows_clear(&rows);
+    memory_free(basis);
+    return status;
+}
