@@ -15,7 +15,7 @@ struct shape {
     /// @param[in]  t, values  shape [points]
     /// Fails: NO_MEMORY.
     enum status (*values)(const double *genes, size_t count, const double *t, double *values,
-                          size_t points) MUST_USE;
+                          size_t points);
 };
 
 /// All shapes, NULL-terminated: "bezier" (curves/bezier.h) and "bspline" (curves/bspline.h).

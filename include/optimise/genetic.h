@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file Genetic algorithm over real genes; knows nothing of what they mean.
 ///
-/// Ask and tell: read `population`, measure each individual, hand the errors to
-/// genetic_next_generation. The elite is kept apart from the population with the mean of all its
-/// measurements, and a challenger replaces it only by fresh measurements (genetic_offer), so that
-/// no individual survives by one lucky draw of a noisy error.
+/// Read `population`, measure each individual, hand the errors to genetic_next_generation;
+/// `genetic_optimiser` (genetic_optimiser.c) does it by ask and tell. The elite is kept apart from
+/// the population with the mean of all its measurements, and a challenger replaces it only by fresh
+/// measurements (genetic_offer), so that no individual survives by one lucky draw of a noisy error.
 ///
 /// Operators: A. G. Baydin (thesis, 2008), as its text describes them; D. E. Goldberg, Genetic
 /// Algorithms in Search, Optimization and Machine Learning (1989).
@@ -12,39 +12,50 @@
 
 #include "base/fields.h"
 #include "base/status.h"
+#include "optimise/optimiser.h"
 
 #include <stdint.h>
 
-/// Error of an individual that could not be measured (its simulation blew up): worse than any.
-#define GENETIC_FAILED 1e9
+#define GENETIC_FAILED OPTIMISER_FAILED
+
+enum genetic_crossover_kind { GENETIC_ONE_POINT, GENETIC_TWO_POINT, GENETIC_BLEND };
+enum genetic_mutation_kind { GENETIC_SCALE, GENETIC_CORRELATED };
 
 struct genetic_parameters {
     int64_t population;                ///< individuals
     int64_t genes;                     ///< genes of each
-    double gene_minimum, gene_maximum; ///< range of the first generation [gene]
-    double crossover;                  ///< probability of one-point crossover of two parents
-    double mutation;                   ///< probability that a child is mutated
-    double mutated_genes;              ///< probability for each of its genes then
-    double additive;                   ///< share of mutations that add instead of scaling
-    int64_t tournament_size;           ///< individuals drawn for a tournament
-    double tournament_probability;     ///< with which the best of those left wins
+    double gene_minimum, gene_maximum; ///< range that no gene leaves [gene]
+    double crossover;                  ///< probability of crossover of two parents
+    int crossover_kind;
+    double mutation; ///< probability that a child is mutated
+    int mutation_kind;
+    double mutated_genes;          ///< probability for each of its genes then
+    double additive;               ///< share of mutations that add instead of scaling
+    int64_t tournament_size;       ///< individuals drawn for a tournament
+    double tournament_probability; ///< with which the best of those left wins
+    int64_t remeasurements;        ///< of a challenger before it replaces the elite
     int64_t generations;
 };
 
+/// All but genes and their range, which belong to the problem.
 extern const struct field genetic_fields[];
 
 struct genetic {
     struct genetic_parameters parameters;
     uint64_t seed;
     uint32_t generation; ///< of `population`, from 0
-    double *population;  ///< shape [population, genes]; individual 0 is the elite once there is one
-    double *offspring;   ///< shape [population, genes]: scratch
-    double *elite;       ///< shape [genes]
-    double elite_error;  ///< mean of its measurements; GENETIC_FAILED if there is no elite yet
+    int64_t rows; ///< individuals of `population`: more than its number when a challenger follows
+    /// shape [rows, genes], room for population + remeasurements; individual 0 is the elite once
+    /// there is one
+    double *population;
+    double *offspring;     ///< shape [population, genes]: scratch
+    double *elite;         ///< shape [genes]
+    double elite_error;    ///< mean of its measurements; GENETIC_FAILED if there is no elite yet
     double elite_measured; ///< how many they were
 };
 
 /// First generation: genes uniform in their range.
+/// Fails: NO_MEMORY.
 enum status genetic_init(struct genetic *genetic, const struct genetic_parameters *parameters,
                          uint64_t seed) MUST_USE;
 void genetic_clear(struct genetic *genetic);
@@ -59,8 +70,9 @@ void genetic_remeasure_elite(struct genetic *genetic, double error);
 /// elite's. Returns whether it did.
 bool genetic_offer(struct genetic *genetic, const double *genes, double error, double measured);
 
-/// Replace the population by its offspring; individual 0 becomes the elite.
-/// @param[in] errors  shape [population]
+/// Replace the population by the offspring of all rows; individual 0 becomes the elite. Genes that
+/// left their range are reflected into it.
+/// @param[in] errors  shape [rows]
 void genetic_next_generation(struct genetic *genetic, const double *errors);
 
 /// Mean over genes of the standard deviation over individuals, as a fraction of the first
@@ -81,15 +93,41 @@ enum { GENETIC_LARGEST_TOURNAMENT = 64 };
 int64_t genetic_tournament(const double *errors, int64_t population, int64_t size,
                            double probability, struct rng_sequence *random);
 
+/// Cross two individuals in place, in the way that `crossover_kind` names.
+void genetic_recombine(double *a, double *b, const struct genetic_parameters *parameters,
+                       struct rng_sequence *random);
+
 /// Exchange the genes beyond one random point of two individuals, in place.
 void genetic_crossover(double *a, double *b, int64_t genes, struct rng_sequence *random);
 
-/// A child mutates with probability `mutation`, then each gene with `mutated_genes`: it is scaled
-/// by 2^u, u uniform in (−1, 1), which has no drift; or, in a share `additive` of cases, a normal
-/// number of a tenth of the range is added, since a scale alone never crosses zero.
+/// Exchange the genes between two random points, in place.
+void genetic_crossover_two_points(double *a, double *b, int64_t genes, struct rng_sequence *random);
+
+/// Blend two curves along their genes without a step:
+///   a_k ← w_k a_k + (1 − w_k) b_k,  b_k the other way round,  w_k = 1/(1 + exp((k − c)/s)),
+/// c uniform along the genes and s uniform up to an eighth of their number. One-point crossover is
+/// the limit of s → 0; its step between neighbouring genes is a kink that curves pay for, or that
+/// a Bezier curve smooths away. a_k + b_k stays.
+void genetic_blend(double *a, double *b, int64_t genes, struct rng_sequence *random);
+
+/// A child mutates with probability `mutation`, in the way that `mutation_kind` names.
+void genetic_mutate(double *genes, const struct genetic_parameters *parameters,
+                    struct rng_sequence *random);
+
+/// Each gene, with probability `mutated_genes`, is scaled by 2^u, u uniform in (−1, 1), which has
+/// no drift; or, in a share `additive` of cases, a normal number of a tenth of the range is added,
+/// since a scale alone never crosses zero.
 ///
 /// The thesis's rate of 0.1, taken for every gene of every child, moves 10 of 100 genes each time:
 /// the individuals then never come closer to each other (measured: diversity grows over 15
 /// generations).
-void genetic_mutate(double *genes, const struct genetic_parameters *parameters,
-                    struct rng_sequence *random);
+void genetic_mutate_scale(double *genes, const struct genetic_parameters *parameters,
+                          struct rng_sequence *random);
+
+/// A smooth bump is added: range · 0.1 z · 2^(−6u) · exp(−((k − c)/s)²/2), z normal, u uniform in
+/// (0, 1), c uniform along the genes, s half of `mutated_genes` of their number, at least a half.
+/// Neighbours move together, as those of a smooth curve must. Steps over six octaves, as in
+/// H. Mühlenbein and D. Schlierkamp-Voosen, Evol. Comput. 1, 25 (1993), explore at first and refine
+/// in the end.
+void genetic_mutate_correlated(double *genes, const struct genetic_parameters *parameters,
+                               struct rng_sequence *random);

@@ -22,7 +22,6 @@
 struct parameters {
     struct genetic_parameters genetic;
     struct evaluate_parameters evaluate; ///< of one individual
-    int64_t remeasurements;
 };
 
 struct state {
@@ -41,6 +40,12 @@ struct state {
 
 #define MEMBER(name) .offset = offsetof(struct parameters, name)
 static const struct field own_fields[] = {
+    {"genes", FIELD_INTEGER, MEMBER(genetic.genes), .initial = 100, .minimum = 1, .maximum = 1000,
+     .unit = "", .help = "control points of the Bezier curve"},
+    {"gene_minimum", FIELD_NUMBER, MEMBER(genetic.gene_minimum), .initial = 0, .minimum = -DBL_MAX,
+     .maximum = DBL_MAX, .unit = "k_B T_0", .help = "least gene"},
+    {"gene_maximum", FIELD_NUMBER, MEMBER(genetic.gene_maximum), .initial = 6.5,
+     .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = "k_B T_0", .help = "largest gene"},
     {"equilibration", FIELD_INTEGER, MEMBER(evaluate.plan.equilibration), .initial = 350,
      .minimum = 10, .maximum = 1e9, .unit = "steps", .help = "of an individual's simulation"},
     {"samples", FIELD_INTEGER, MEMBER(evaluate.plan.samples), .initial = 45, .minimum = 1,
@@ -53,8 +58,6 @@ static const struct field own_fields[] = {
     {"estimator", FIELD_CHOICE, MEMBER(evaluate.estimator), .choices = rdf_force_estimators,
      .initial = RDF_FORCE_NOT_USED, .unit = "",
      .help = "of g(r): force is worth twice the samples, but a large time step puts it off"},
-    {"remeasurements", FIELD_INTEGER, MEMBER(remeasurements), .initial = 2, .minimum = 1,
-     .maximum = 1000, .unit = "", .help = "fresh measurements before the elite is replaced"},
     FIELD_END,
 };
 
@@ -209,7 +212,7 @@ enum { MAX_REMEASUREMENTS = 1000 };
 static enum status remeasure(struct state *state, int64_t challenger, double *error,
                              double *noise) {
     const double *genes = genetic_individual(&state->genetic, challenger);
-    const int64_t count = state->parameters.remeasurements;
+    const int64_t count = state->parameters.genetic.remeasurements;
     struct evaluate_result results[MAX_REMEASUREMENTS];
     enum status status = STATUS_OK;
 #pragma omp parallel for schedule(dynamic) num_threads(state->problem->threads)
@@ -260,7 +263,7 @@ static enum status iterate(void *memory, struct inverse_step *step,
     if (genetic->elite_measured > 0)
         genetic_remeasure_elite(genetic, state->errors[0]);
     if (genetic_offer(genetic, genetic_individual(genetic, challenger), error,
-                      (double)state->parameters.remeasurements))
+                      (double)state->parameters.genetic.remeasurements))
         state->progress.noise = noise;
     TRY(decode(state, genetic->elite_measured > 0 ? genetic->elite : genetic->population,
                state->phi));

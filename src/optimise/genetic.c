@@ -8,30 +8,37 @@
 #include <math.h>
 #include <string.h>
 
+static const char *const crossovers[] = {"one-point", "two-point", "blend", NULL};
+static const char *const mutations[] = {"scale", "correlated", NULL};
+
 #define MEMBER(name) .offset = offsetof(struct genetic_parameters, name)
 #define PROBABILITY .minimum = 0, .maximum = 1, .unit = ""
 const struct field genetic_fields[] = {
     {"population", FIELD_INTEGER, MEMBER(population), .initial = 250, .minimum = 2, .maximum = 1e6,
      .unit = "", .help = "individuals of a generation"},
-    {"genes", FIELD_INTEGER, MEMBER(genes), .initial = 100, .minimum = 1, .maximum = 1000,
-     .unit = "", .help = "control points of the Bezier curve"},
-    {"gene_minimum", FIELD_NUMBER, MEMBER(gene_minimum), .initial = 0, .minimum = -DBL_MAX,
-     .maximum = DBL_MAX, .unit = "k_B T_0", .help = "least gene of the first generation"},
-    {"gene_maximum", FIELD_NUMBER, MEMBER(gene_maximum), .initial = 6.5, .minimum = -DBL_MAX,
-     .maximum = DBL_MAX, .unit = "k_B T_0", .help = "largest gene of the first generation"},
     {"crossover", FIELD_NUMBER, MEMBER(crossover), .initial = 0.91, PROBABILITY,
-     .help = "probability of one-point crossover of two parents"},
+     .help = "probability of crossover of two parents"},
+    {"crossover_kind", FIELD_CHOICE, MEMBER(crossover_kind), .choices = crossovers,
+     .initial = GENETIC_ONE_POINT, .unit = "",
+     .help = "blend mixes two curves smoothly along their genes"},
     {"mutation", FIELD_NUMBER, MEMBER(mutation), .initial = 0.1, PROBABILITY,
      .help = "probability that a child is mutated"},
+    {"mutation_kind", FIELD_CHOICE, MEMBER(mutation_kind), .choices = mutations,
+     .initial = GENETIC_SCALE, .unit = "",
+     .help = "correlated adds a smooth bump over neighbouring genes"},
     {"mutated_genes", FIELD_NUMBER, MEMBER(mutated_genes), .initial = 0.1, PROBABILITY,
-     .help = "probability of each gene of a mutated child to change, by a factor in (1/2, 2)"},
+     .help =
+         "probability of each gene of a mutated child to be scaled by 1/2 to 2; width of a bump"},
     {"additive", FIELD_NUMBER, MEMBER(additive), .initial = 0.1, PROBABILITY,
-     .help = "share of mutations that add a normal number of a tenth of the range instead"},
+     .help =
+         "share of scaled genes to which a normal number of a tenth of the range is added instead"},
     {"tournament_size", FIELD_INTEGER, MEMBER(tournament_size), .initial = 8, .minimum = 1,
      .maximum = GENETIC_LARGEST_TOURNAMENT, .unit = "",
      .help = "individuals drawn for a tournament"},
     {"tournament_probability", FIELD_NUMBER, MEMBER(tournament_probability), .initial = 0.75,
      PROBABILITY, .help = "with which the best wins; else the second best, and so on"},
+    {"remeasurements", FIELD_INTEGER, MEMBER(remeasurements), .initial = 2, .minimum = 1,
+     .maximum = 1000, .unit = "", .help = "fresh measurements before the elite is replaced"},
     {"generations", FIELD_INTEGER, MEMBER(generations), .initial = 21, .minimum = 1, .maximum = 1e6,
      .unit = "", .help = "after which the fit ends"},
     FIELD_END,
@@ -44,9 +51,12 @@ static size_t total_genes(const struct genetic *genetic) {
 enum status genetic_init(struct genetic *genetic, const struct genetic_parameters *parameters,
                          uint64_t seed) {
     enum status status = STATUS_OK;
-    *genetic =
-        (struct genetic){.parameters = *parameters, .seed = seed, .elite_error = GENETIC_FAILED};
-    NEW_ARRAY(genetic->population, total_genes(genetic));
+    *genetic = (struct genetic){.parameters = *parameters,
+                                .seed = seed,
+                                .rows = parameters->population,
+                                .elite_error = GENETIC_FAILED};
+    NEW_ARRAY(genetic->population,
+              (size_t)((parameters->population + parameters->remeasurements) * parameters->genes));
     // Children come in pairs: one place more for the last of an odd population.
     NEW_ARRAY(genetic->offspring, total_genes(genetic) + (size_t)parameters->genes);
     NEW_ARRAY(genetic->elite, (size_t)parameters->genes);
@@ -90,9 +100,18 @@ bool genetic_offer(struct genetic *genetic, const double *genes, double error, d
 static void copy_winner(const struct genetic *genetic, const double *errors, double *child,
                         struct rng_sequence *random) {
     const struct genetic_parameters *p = &genetic->parameters;
-    const int64_t winner = genetic_tournament(errors, p->population, p->tournament_size,
+    const int64_t winner = genetic_tournament(errors, genetic->rows, p->tournament_size,
                                               p->tournament_probability, random);
     memcpy(child, genetic_individual(genetic, winner), (size_t)p->genes * sizeof *child);
+}
+
+/// The gene itself, or its mirror image if it left its range.
+static double within_range(double gene, const struct genetic_parameters *p) {
+    if (gene >= p->gene_minimum && gene <= p->gene_maximum)
+        return gene;
+    const double range = p->gene_maximum - p->gene_minimum;
+    const double mirrored = optimiser_reflect((gene - p->gene_minimum) / range);
+    return fmin(fmax(p->gene_minimum + range * mirrored, p->gene_minimum), p->gene_maximum);
 }
 
 void genetic_next_generation(struct genetic *genetic, const double *errors) {
@@ -105,11 +124,13 @@ void genetic_next_generation(struct genetic *genetic, const double *errors) {
         copy_winner(genetic, errors, first, &random);
         copy_winner(genetic, errors, second, &random);
         if (rng_sequence_uniform(&random) < p->crossover)
-            genetic_crossover(first, second, p->genes, &random);
+            genetic_recombine(first, second, p, &random);
         genetic_mutate(first, p, &random);
         genetic_mutate(second, p, &random);
     }
-    memcpy(genetic->population, genetic->offspring, total_genes(genetic) * sizeof(double));
+    for (size_t k = 0; k < total_genes(genetic); k++)
+        genetic->population[k] = within_range(genetic->offspring[k], p);
+    genetic->rows = p->population;
     if (genetic->elite_measured > 0)
         memcpy(genetic->population, genetic->elite, (size_t)p->genes * sizeof(double));
 }

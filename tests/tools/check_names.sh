@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# check_names.sh LIBRARY: every external function and object of x_y.o is called x_y, or x_ys if it lists them, or begins with x_,
-# the first word of its file: files of one module, such as genetic.c and genetic_operators.c, share it.
+# check_names.sh LIBRARY: every external function and object of x_y.o is called x_y, or x_ys if it is
+# the list of them, or begins with x_, the first word of its file: files of one module, such as
+# genetic.c and genetic_operators.c, share it.
 set -u
 
 symbols=$(nm --defined-only --extern-only --format=posix "$1") || exit 1

@@ -170,6 +170,23 @@ static void test_genetic_next_generation_fills_any_population(void **state) {
     }
 }
 
+static void test_genetic_genes_stay_in_their_range(void **state) {
+    struct genetic_parameters parameters = usual;
+    struct genetic genetic;
+    (void)state;
+    parameters.gene_minimum = 3;
+    parameters.gene_maximum = 4; // half or twice of which is outside
+    parameters.mutated_genes = 1;
+    double errors[100] = {0};
+    assert_ok(genetic_init(&genetic, &parameters, 3));
+    for (int generation = 0; generation < 5; generation++) {
+        genetic_next_generation(&genetic, errors);
+        for (int k = 0; k < 100 * GENES; k++)
+            assert_true(genetic.population[k] >= 3 && genetic.population[k] <= 4);
+    }
+    genetic_clear(&genetic);
+}
+
 static void test_genetic_has_no_elite_when_all_have_failed(void **state) {
     enum { POPULATION = 5 };
     struct genetic_parameters parameters = usual;
@@ -228,6 +245,7 @@ int main(void) {
         cmocka_unit_test(test_genetic_knows_the_error_of_its_elite_when_there_is_noise),
         cmocka_unit_test(test_genetic_gives_the_same_bits_for_a_seed),
         cmocka_unit_test(test_genetic_next_generation_fills_any_population),
+        cmocka_unit_test(test_genetic_genes_stay_in_their_range),
         cmocka_unit_test(test_genetic_has_no_elite_when_all_have_failed),
         cmocka_unit_test(test_genetic_remeasure_elite_is_the_mean_of_all_measurements),
         cmocka_unit_test(test_genetic_init_spreads_the_genes_over_their_range),

@@ -114,6 +114,75 @@ static void test_genetic_crossover_leaves_single_genes_alone(void **state) {
     assert_close(b, 2, 0);
 }
 
+static void test_genetic_crossover_two_points_exchanges_a_stretch(void **state) {
+    enum { GENES = 5 };
+    int stretches[GENES][GENES + 1] = {0};
+    double chi_squared = 0;
+    struct rng_sequence random = begin(6);
+    (void)state;
+    for (int trial = 0; trial < DRAWS; trial++) {
+        double a[GENES] = {0}, b[GENES] = {1, 1, 1, 1, 1};
+        int first = 0, end = GENES;
+        genetic_crossover_two_points(a, b, GENES, &random);
+        while (first < GENES && a[first] == 0)
+            first++;
+        while (end > 0 && a[end - 1] == 0)
+            end--;
+        for (int k = 0; k < GENES; k++) {
+            assert_close(a[k], k >= first && k < end, 0);
+            assert_close(b[k], 1 - a[k], 0);
+        }
+        assert_true(first < end && end < GENES);
+        stretches[first][end]++;
+    }
+    for (int first = 0; first < GENES; first++)
+        for (int end = first + 1; end < GENES; end++)
+            chi_squared += pow(stretches[first][end] - DRAWS / 10.0, 2) / (DRAWS / 10.0);
+    assert_true(chi_squared < 44.8); // 9 degrees of freedom
+}
+
+/// Both children keep the sum; each lies between its parents, and nearer to one of them at each end
+/// of a curve when the blend is narrow.
+static void test_genetic_blend_mixes_smoothly(void **state) {
+    enum { GENES = 64 };
+    struct rng_sequence random = begin(7);
+    double steepest = 0;
+    (void)state;
+    for (int trial = 0; trial < 2000; trial++) {
+        double a[GENES], b[GENES];
+        for (int k = 0; k < GENES; k++) {
+            a[k] = 1;
+            b[k] = 0;
+        }
+        genetic_blend(a, b, GENES, &random);
+        for (int k = 0; k < GENES; k++) {
+            assert_close(a[k] + b[k], 1, 1e-15);
+            assert_true(a[k] >= 0 && a[k] <= 1);
+            assert_true(k == 0 || a[k] <= a[k - 1]);
+        }
+        steepest += fabs(a[GENES / 2] - a[GENES / 2 - 1]) / 2000;
+    }
+    assert_true(steepest < 0.03); // one-point crossover: 1/63 of the trials a step of 1
+}
+
+static void test_genetic_recombine_does_what_its_kind_says(void **state) {
+    (void)state;
+    for (int kind = GENETIC_ONE_POINT; kind <= GENETIC_BLEND; kind++) {
+        const struct genetic_parameters p = {.genes = 3, .crossover_kind = kind};
+        double a[3] = {1, 2, 3}, b[3] = {4, 5, 6}, c[3] = {1, 2, 3}, d[3] = {4, 5, 6};
+        struct rng_sequence first = begin(8), second = begin(8);
+        genetic_recombine(a, b, &p, &first);
+        if (kind == GENETIC_ONE_POINT)
+            genetic_crossover(c, d, 3, &second);
+        else if (kind == GENETIC_TWO_POINT)
+            genetic_crossover_two_points(c, d, 3, &second);
+        else
+            genetic_blend(c, d, 3, &second);
+        assert_memory_equal(a, c, sizeof a);
+        assert_memory_equal(b, d, sizeof b);
+    }
+}
+
 // Mutation ----------------------------------------------------------------------------------------
 
 static const struct genetic_parameters scaling = {.genes = DRAWS,
@@ -214,15 +283,44 @@ static void test_genetic_mutate_spares_the_children_that_are_not_drawn(void **st
     assert_close(mutated, 0.3 * CHILDREN, 5 * sqrt(CHILDREN * 0.3 * 0.7));
 }
 
+/// The bump's largest gene has about the height 0.1 z 2^(−6u) of the range: its mean square is
+/// 0.01 (1 − 2^−12)/(12 ln 2). Far from the middle of a bump genes stay.
+static void test_genetic_mutate_correlated_adds_a_smooth_bump(void **state) {
+    enum { GENES = 50, TRIALS = 20000 };
+    const struct genetic_parameters parameters = {
+        .genes = GENES, .gene_minimum = -5, .gene_maximum = 5, .mutated_genes = 0.1};
+    struct rng_sequence random = begin(12);
+    double mean = 0, squares = 0;
+    (void)state;
+    for (int trial = 0; trial < TRIALS; trial++) {
+        double genes[GENES] = {0}, largest = 0;
+        genetic_mutate_correlated(genes, &parameters, &random);
+        for (int k = 0; k < GENES; k++)
+            if (fabs(genes[k]) > fabs(largest))
+                largest = genes[k];
+        for (int k = 1; k < GENES; k++) // the steepest slope of the bump of width 2.5
+            assert_true(fabs(genes[k] - genes[k - 1]) <= fabs(largest) * 0.3);
+        mean += largest / TRIALS;
+        squares += largest * largest / TRIALS;
+    }
+    // Between genes 1 % of the height is missed, 2 % of its square.
+    assert_close(squares, 0.98 * 1 / (12 * log(2)), 0.01);
+    assert_close(mean, 0, 5 * sqrt(squares / TRIALS));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_genetic_tournament_wins_with_the_probabilities_of_its_rule),
         cmocka_unit_test(test_genetic_crossover_exchanges_all_genes_beyond_one_point),
         cmocka_unit_test(test_genetic_crossover_leaves_single_genes_alone),
+        cmocka_unit_test(test_genetic_crossover_two_points_exchanges_a_stretch),
+        cmocka_unit_test(test_genetic_blend_mixes_smoothly),
+        cmocka_unit_test(test_genetic_recombine_does_what_its_kind_says),
         cmocka_unit_test(test_genetic_mutate_scales_without_drift),
         cmocka_unit_test(test_genetic_mutate_crosses_zero_when_it_adds),
         cmocka_unit_test(test_genetic_mutate_keeps_to_its_probabilities),
         cmocka_unit_test(test_genetic_mutate_spares_the_children_that_are_not_drawn),
+        cmocka_unit_test(test_genetic_mutate_correlated_adds_a_smooth_bump),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

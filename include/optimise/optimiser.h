@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file One interface of all optimisers: ask for candidates, measure them, tell their errors.
+///
+/// An optimiser minimises an error over genes in a box and knows nothing of what they mean. Who
+/// drives it owns the loop, so candidates of a round are measured in any order and by any number of
+/// threads. Errors may be noisy: the same genes may stand in several rows of a round, and each row
+/// wants a measurement of its own.
+#pragma once
+
+#include "base/fields.h"
+#include "base/memory.h"
+#include "base/status.h"
+
+#include <math.h>
+
+/// Error of a candidate that could not be measured (its simulation blew up): worse than any.
+/// Infinities, NaN and whatever is above count as it.
+#define OPTIMISER_FAILED 1e9
+
+/// Where to look.
+struct optimiser_space {
+    size_t genes;            ///< at least 1
+    double minimum, maximum; ///< of every gene: no candidate is ever beyond
+    const double *start;     ///< shape [genes]: where to begin, or NULL for the optimiser's choice
+    uint64_t seed;
+};
+
+/// Candidates to be measured.
+struct optimiser_round {
+    const double *genes; ///< shape [count, genes]; the optimiser's own, valid until tell
+    size_t count;        ///< 0: finished
+};
+
+enum { OPTIMISER_MAX_SPANS = 32 };
+
+struct optimiser {
+    const char *name;                  ///< in run files
+    const char *summary;               ///< one line, with citation
+    const struct field *const *tables; ///< of the parameter struct, NULL-terminated
+    size_t parameters_size;
+    size_t state_size;
+    /// Upper bound of rounds.
+    uint32_t (*most_rounds)(const void *parameters, size_t genes);
+    /// Begin in zeroed memory of `state_size`; nothing of `space` or `parameters` is kept.
+    /// Fails: BAD_INPUT for an empty box, NO_MEMORY; `destroy` need not follow then, but may.
+    enum status (*create)(void *state, const struct optimiser_space *space, const void *parameters);
+    void (*destroy)(void *state);
+    /// Asking again before telling gives the same.
+    enum status (*ask)(void *state, struct optimiser_round *round);
+    /// @param[in] errors     shape [count]: measured error of each candidate
+    /// @param[in] variances  shape [count]: of that error as a mean; 0 if it is exact
+    enum status (*tell)(void *state, const double *errors, const double *variances);
+    /// The genes that it believes best now, shape [genes]; false, and nothing written, before
+    /// anything has been measured.
+    bool (*favourite)(const void *state, double *genes);
+    /// Diversity of the candidates: a standard deviation as a fraction of the range.
+    double (*spread)(const void *state);
+    /// Error beyond which a candidate hardly changes what happens next, by the round told last;
+    /// HUGE_VAL if that is not known. The same before and after `ask`.
+    double (*hopeless)(const void *state);
+    /// The state of a checkpoint, between tell and tell: what is written there and read into a new
+    /// state of the same space and parameters goes on with the same bits. Returns their number, at
+    /// most OPTIMISER_MAX_SPANS.
+    size_t (*spans)(void *state, struct memory_span *spans);
+};
+
+/// All optimisers, NULL-terminated.
+extern const struct optimiser *const optimisers[];
+
+/// The one of that name, or NULL.
+const struct optimiser *optimiser_find(const char *name);
+
+/// @name For those who write one
+
+extern const struct optimiser genetic_optimiser;
+
+/// Fails with BAD_INPUT unless there are genes and a box of finite, positive size, and the start,
+/// if there is one, is finite.
+enum status optimiser_check_space(const struct optimiser_space *space) MUST_USE;
+
+/// An error as it was told, or OPTIMISER_FAILED if it is not finite or beyond that.
+static inline double optimiser_error(double told) {
+    return told < OPTIMISER_FAILED && told > -HUGE_VAL ? told : OPTIMISER_FAILED;
+}
+
+/// `x` folded into [0, 1] by mirrors at both ends, so that what is beyond is as far inside.
+/// Fails: never; what is not finite becomes 0.
+double optimiser_reflect(double x);
+
+/// Gene at a fraction of the range, never beyond its ends by rounding.
+static inline double optimiser_gene(const struct optimiser_space *space, double fraction) {
+    const double gene = space->minimum + fraction * (space->maximum - space->minimum);
+    return fmin(fmax(gene, space->minimum), space->maximum);
+}
+
+/// Where `space->start` is as a fraction of the range, the middle if there is none.
+double optimiser_start(const struct optimiser_space *space, size_t gene);

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The genetic algorithm by ask and tell. A round is a generation: the elite is individual 0 and is
+// measured again each time. The best of the others, if it measured below the elite's mean, is the
+// challenger: its genes follow the next generation in as many rows as it needs fresh measurements,
+// and only their mean is offered for the elite's place. These rows take part in the selection, so
+// that a challenger has children while it waits. A last round measures the last challenger alone.
+#include "optimise/genetic.h"
+#include "optimise/optimiser.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct state {
+    struct genetic genetic;
+    double hopeless;
+    double *errors;     ///< shape [population + remeasurements]: scratch
+    double *challenger; ///< shape [genes]: scratch
+};
+
+static uint32_t most_rounds(const void *parameters, size_t genes) {
+    (void)genes;
+    return (uint32_t)((const struct genetic_parameters *)parameters)->generations + 1;
+}
+
+static void destroy(void *memory) {
+    struct state *state = memory;
+    genetic_clear(&state->genetic);
+    memory_free(state->errors);
+    memory_free(state->challenger);
+    *state = (struct state){0};
+}
+
+static enum status create(void *memory, const struct optimiser_space *space,
+                          const void *parameters) {
+    enum status status = STATUS_OK;
+    struct state *state = memory;
+    struct genetic_parameters p = *(const struct genetic_parameters *)parameters;
+    CHECK(optimiser_check_space(space));
+    p.genes = (int64_t)space->genes;
+    p.gene_minimum = space->minimum;
+    p.gene_maximum = space->maximum;
+    state->hopeless = HUGE_VAL;
+    NEW_ARRAY(state->errors, (size_t)(p.population + p.remeasurements));
+    NEW_ARRAY(state->challenger, space->genes);
+    CHECK(genetic_init(&state->genetic, &p, space->seed));
+    for (size_t k = 0; space->start && k < space->genes; k++)
+        state->genetic.population[k] = optimiser_gene(space, optimiser_start(space, k));
+done:
+    return status;
+}
+
+/// Whether all generations are measured, and perhaps a last challenger is left.
+static bool is_over(const struct genetic *genetic) {
+    return genetic->generation >= (uint32_t)genetic->parameters.generations;
+}
+
+/// Rows of the population that this round leaves out.
+static int64_t first_row(const struct genetic *genetic) {
+    return is_over(genetic) ? genetic->parameters.population : 0;
+}
+
+static bool has_challenger(const struct genetic *genetic) {
+    return genetic->rows > genetic->parameters.population;
+}
+
+static const double *last_challenger(const struct genetic *genetic) {
+    return genetic_individual(genetic, genetic->parameters.population);
+}
+
+static enum status ask(void *memory, struct optimiser_round *round) {
+    const struct genetic *genetic = &((struct state *)memory)->genetic;
+    const int64_t first = first_row(genetic);
+    *round = (struct optimiser_round){genetic_individual(genetic, first),
+                                      (size_t)(genetic->rows - first)};
+    return STATUS_OK;
+}
+
+/// Offer the challenger the place of the elite for the mean of its fresh measurements.
+static void judge_challenger(struct genetic *genetic, const double *fresh) {
+    const int64_t count = genetic->parameters.remeasurements;
+    double mean = 0;
+    for (int64_t k = 0; k < count; k++)
+        mean += fresh[k] / (double)count;
+    genetic_offer(genetic, last_challenger(genetic), mean, (double)count);
+}
+
+static bool is_elite(const struct genetic *genetic, int64_t row) {
+    return genetic->elite_measured > 0 &&
+           memcmp(genetic_individual(genetic, row), genetic->elite,
+                  (size_t)genetic->parameters.genes * sizeof(double)) == 0;
+}
+
+/// Index of the best individual below the elite's error, −1 if there is none. Twins of the elite
+/// are left out: they would win by a lucky draw of the same genes.
+static int64_t find_challenger(const struct genetic *genetic, const double *errors) {
+    int64_t best = -1;
+    double least = genetic->elite_error;
+    for (int64_t k = 0; k < genetic->parameters.population; k++) {
+        if (errors[k] >= least || is_elite(genetic, k))
+            continue;
+        best = k;
+        least = errors[k];
+    }
+    return best;
+}
+
+/// Rows of a challenger behind the next generation.
+static void add_challenger(struct state *state) {
+    struct genetic *genetic = &state->genetic;
+    const int64_t population = genetic->parameters.population;
+    const size_t genes = (size_t)genetic->parameters.genes;
+    genetic->rows = population + genetic->parameters.remeasurements;
+    for (int64_t k = population; k < genetic->rows; k++)
+        memcpy(genetic->population + (size_t)k * genes, state->challenger, genes * sizeof(double));
+}
+
+static int compare_numbers(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/// Median of the population; sorts `errors`. Of the winners of the usual tournaments (eight, 0.75)
+/// one in 43 is beyond it.
+static double median(double *errors, int64_t count) {
+    qsort(errors, (size_t)count, sizeof *errors, compare_numbers);
+    return errors[count / 2];
+}
+
+static void tell_generation(struct state *state) {
+    struct genetic *genetic = &state->genetic;
+    const int64_t population = genetic->parameters.population;
+    if (genetic->elite_measured > 0)
+        genetic_remeasure_elite(genetic, state->errors[0]);
+    if (has_challenger(genetic))
+        judge_challenger(genetic, state->errors + population);
+    const int64_t challenger = find_challenger(genetic, state->errors);
+    if (challenger >= 0)
+        memcpy(state->challenger, genetic_individual(genetic, challenger),
+               (size_t)genetic->parameters.genes * sizeof(double));
+    genetic_next_generation(genetic, state->errors);
+    if (challenger >= 0)
+        add_challenger(state);
+    state->hopeless = median(state->errors, population);
+}
+
+static enum status tell(void *memory, const double *errors, const double *variances) {
+    struct state *state = memory;
+    struct genetic *genetic = &state->genetic;
+    const int64_t count = genetic->rows - first_row(genetic);
+    (void)variances; // the selection needs ranks alone, and the elite is measured again anyway
+    for (int64_t k = 0; k < count; k++)
+        state->errors[k] = optimiser_error(errors[k]);
+    if (!is_over(genetic)) {
+        tell_generation(state);
+    } else if (has_challenger(genetic)) {
+        judge_challenger(genetic, state->errors);
+        genetic->rows = genetic->parameters.population;
+    }
+    return STATUS_OK;
+}
+
+static bool favourite(const void *memory, double *genes) {
+    const struct genetic *genetic = &((const struct state *)memory)->genetic;
+    const bool has_elite = genetic->elite_measured > 0;
+    if (!has_elite && !has_challenger(genetic))
+        return false;
+    memcpy(genes, has_elite ? genetic->elite : last_challenger(genetic),
+           (size_t)genetic->parameters.genes * sizeof *genes);
+    return true;
+}
+
+static double spread(const void *memory) {
+    return genetic_diversity(&((const struct state *)memory)->genetic);
+}
+
+static double hopeless(const void *memory) {
+    return ((const struct state *)memory)->hopeless;
+}
+
+static size_t spans(void *memory, struct memory_span *span) {
+    struct state *state = memory;
+    struct genetic *genetic = &state->genetic;
+    const struct genetic_parameters *p = &genetic->parameters;
+    const size_t row = (size_t)p->genes * sizeof(double);
+    size_t n = 0;
+    span[n++] = (struct memory_span){&state->hopeless, sizeof state->hopeless};
+    span[n++] = (struct memory_span){&genetic->generation, sizeof genetic->generation};
+    span[n++] = (struct memory_span){&genetic->rows, sizeof genetic->rows};
+    span[n++] = (struct memory_span){genetic->population,
+                                     (size_t)(p->population + p->remeasurements) * row};
+    span[n++] = (struct memory_span){genetic->elite, row};
+    span[n++] = (struct memory_span){&genetic->elite_error, sizeof genetic->elite_error};
+    span[n++] = (struct memory_span){&genetic->elite_measured, sizeof genetic->elite_measured};
+    return n;
+}
+
+const struct optimiser genetic_optimiser = {
+    .name = "genetic",
+    .summary = "genetic algorithm, its elite measured again and again; A. G. Baydin (2008)",
+    .tables = (const struct field *const[]){genetic_fields, NULL},
+    .parameters_size = sizeof(struct genetic_parameters),
+    .state_size = sizeof(struct state),
+    .most_rounds = most_rounds,
+    .create = create,
+    .destroy = destroy,
+    .ask = ask,
+    .tell = tell,
+    .favourite = favourite,
+    .spread = spread,
+    .hopeless = hopeless,
+    .spans = spans,
+};

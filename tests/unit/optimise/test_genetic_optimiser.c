@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The elite by ask and tell: rows of a round, and who may replace it. What it shares with the other
+// optimisers is in test_optimisers.
+#include "optimise/genetic.h"
+#include "shared/is_close.h"
+#include "shared/testing.h"
+
+#include <math.h>
+
+enum { POPULATION = 6, GENES = 3, REMEASUREMENTS = 2, ROWS = POPULATION + REMEASUREMENTS };
+
+struct run {
+    void *state;
+    struct optimiser_round round;
+    struct genetic_parameters parameters;
+};
+
+static void ask(struct run *run) {
+    assert_ok(genetic_optimiser.ask(run->state, &run->round));
+}
+
+static void tell(struct run *run, const double *errors) {
+    static const double exact[ROWS] = {0};
+    assert_ok(genetic_optimiser.tell(run->state, errors, exact));
+    ask(run);
+}
+
+static struct run begin(int64_t generations) {
+    struct run run = {.state = memory_zeroed(1, genetic_optimiser.state_size)};
+    const struct optimiser_space space = {.genes = GENES, .maximum = 1, .seed = 3};
+    assert_non_null(run.state);
+    fields_set_defaults(genetic_fields, &run.parameters);
+    run.parameters.population = POPULATION;
+    run.parameters.generations = generations;
+    run.parameters.mutation = run.parameters.mutated_genes = 1; // so nobody is a twin by chance
+    assert_int_equal(run.parameters.remeasurements, REMEASUREMENTS);
+    assert_ok(genetic_optimiser.create(run.state, &space, &run.parameters));
+    ask(&run);
+    return run;
+}
+
+static void end(struct run *run) {
+    genetic_optimiser.destroy(run->state);
+    memory_free(run->state);
+}
+
+static void assert_genes(const double *a, const double *b) {
+    assert_memory_equal(a, b, GENES * sizeof(double));
+}
+
+static const double *row(const struct run *run, size_t number) {
+    return run->round.genes + number * GENES;
+}
+
+static void copy_row(const struct run *run, size_t number, double genes[GENES]) {
+    memcpy(genes, row(run, number), GENES * sizeof(double));
+}
+
+static void test_challenger_becomes_elite_by_fresh_measurements_alone(void **state) {
+    double challenger[GENES], better[GENES], favourite[GENES];
+    struct run run = begin(10);
+    (void)state;
+    assert_int_equal(run.round.count, POPULATION);
+    assert_false(genetic_optimiser.favourite(run.state, favourite));
+    copy_row(&run, 4, challenger);
+    tell(&run, (double[]){5, 4, 3, 2, 1, 6});
+    assert_int_equal(run.round.count, ROWS);
+    assert_genes(row(&run, POPULATION), challenger);
+    assert_genes(row(&run, POPULATION + 1), challenger);
+    assert_true(genetic_optimiser.favourite(run.state, favourite));
+    assert_genes(favourite, challenger);
+
+    // Measured again, it is 2 on average. Nobody of this generation is below.
+    tell(&run, (double[]){5, 4, 3, 2, 2.5, 6, 1.5, 2.5});
+    assert_int_equal(run.round.count, POPULATION);
+    assert_genes(row(&run, 0), challenger);
+
+    // A lucky one that is no better when measured again.
+    tell(&run, (double[]){2, 9, 9, 0.1, 9, 9});
+    assert_int_equal(run.round.count, ROWS);
+    tell(&run, (double[]){2, 9, 9, 9, 9, 9, 3, 2});
+    assert_int_equal(run.round.count, POPULATION);
+    assert_genes(row(&run, 0), challenger);
+
+    // One that is.
+    copy_row(&run, 2, better);
+    tell(&run, (double[]){2, 9, 0.1, 9, 9, 9});
+    tell(&run, (double[]){2, 9, 9, 9, 9, 9, 1.5, 1});
+    assert_genes(row(&run, 0), better);
+    assert_true(genetic_optimiser.favourite(run.state, favourite));
+    assert_genes(favourite, better);
+    end(&run);
+}
+
+static void test_elite_falls_when_it_turns_out_to_be_bad(void **state) {
+    double better[GENES];
+    struct run run = begin(10);
+    (void)state;
+    tell(&run, (double[]){5, 4, 3, 2, 1, 6});
+    tell(&run, (double[]){9, 9, 9, 9, 9, 9, 1, 1});
+    copy_row(&run, 5, better);
+    tell(&run, (double[]){10, 9, 9, 9, 9, 3.9}); // a mean of 4 now
+    assert_int_equal(run.round.count, ROWS);
+    assert_genes(row(&run, POPULATION), better);
+    end(&run);
+}
+
+static void test_last_round_measures_the_last_challenger_alone(void **state) {
+    double challenger[GENES], favourite[GENES];
+    struct run run = begin(2);
+    (void)state;
+    tell(&run, (double[]){5, 4, 3, 2, 1, 6});
+    copy_row(&run, 1, challenger);
+    tell(&run, (double[]){9, 0.5, 9, 9, 9, 9, 1, 1});
+    assert_int_equal(run.round.count, REMEASUREMENTS);
+    assert_genes(row(&run, 0), challenger);
+    tell(&run, (double[]){0.5, 0.7});
+    assert_int_equal(run.round.count, 0);
+    assert_true(genetic_optimiser.favourite(run.state, favourite));
+    assert_genes(favourite, challenger);
+    assert_int_equal(genetic_optimiser.most_rounds(&run.parameters, GENES), 3);
+    end(&run);
+}
+
+static void test_twins_of_the_elite_are_no_challengers(void **state) {
+    struct run run = begin(10);
+    (void)state;
+    tell(&run, (double[]){5, 4, 3, 2, 1, 6});
+    tell(&run, (double[]){9, 9, 9, 9, 9, 9, 1, 1});
+    double *twin = (double *)run.round.genes + 3 * GENES;
+    memcpy(twin, row(&run, 0), GENES * sizeof(double));
+    tell(&run, (double[]){1, 9, 9, 0.1, 9, 9});
+    assert_int_equal(run.round.count, POPULATION);
+    end(&run);
+}
+
+static void test_hopeless_is_the_median_of_the_last_generation(void **state) {
+    struct run run = begin(10);
+    (void)state;
+    tell(&run, (double[]){5, 4, 3, 2, 1, NAN});
+    assert_close(genetic_optimiser.hopeless(run.state), 4, 0);
+    end(&run);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_challenger_becomes_elite_by_fresh_measurements_alone),
+        cmocka_unit_test(test_elite_falls_when_it_turns_out_to_be_bad),
+        cmocka_unit_test(test_last_round_measures_the_last_challenger_alone),
+        cmocka_unit_test(test_twins_of_the_elite_are_no_challengers),
+        cmocka_unit_test(test_hopeless_is_the_median_of_the_last_generation),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
