@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// CMA-ES by ask and tell. Inside, genes are fractions of their range.
+//
+// Bounds: the distribution knows none; a candidate beyond one is measured at its mirror image
+// inside (optimiser_reflect). To the strategy the error is an even, periodic function, so there is
+// no penalty to scale, which noise and failed candidates would spoil, and an optimum at a bound is
+// in the middle of its neighbourhood.
+//
+// Noise: as UH-CMA-ES (N. Hansen et al., IEEE Trans. Evol. Comput. 13, 180 (2009)) it acts when
+// ranks are noise; but that shows from the told variances, and needs no candidate twice. The share
+// of the variance among a round's errors that the noise of their measurement explains is smoothed
+// over rounds; above a half of it the population grows, below a quarter it shrinks back: its mean
+// then sees what no single candidate shows.
+//
+// Restarts with twice the population: A. Auger and N. Hansen, CEC 2005, 1769 ("IPOP").
+#include "optimise/cmaes.h"
+
+#include "base/rng.h"
+#include "base/statistics.h"
+#include "optimise/optimiser.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct parameters {
+    int64_t population;
+    double step;
+    int64_t rounds, restarts;
+    double tolerance;
+};
+
+#define MEMBER(name) .offset = offsetof(struct parameters, name)
+static const struct field fields[] = {
+    {"population", FIELD_INTEGER, MEMBER(population), .initial = 0, .minimum = 0, .maximum = 1e5,
+     .unit = "", .help = "candidates of a round, at least 4; 0 for 4 + 3 ln(genes)"},
+    {"step", FIELD_NUMBER, MEMBER(step), .initial = 0.3, .minimum = FIELD_ABOVE_ZERO, .maximum = 1,
+     .unit = "", .help = "first standard deviation, as a fraction of the range"},
+    {"rounds", FIELD_INTEGER, MEMBER(rounds), .initial = 500, .minimum = 1, .maximum = 1e6,
+     .unit = "", .help = "after which it ends, over all restarts"},
+    {"restarts", FIELD_INTEGER, MEMBER(restarts), .initial = 0, .minimum = 0, .maximum = 6,
+     .unit = "", .help = "from new places with twice the population, once errors stand still"},
+    {"tolerance", FIELD_NUMBER, MEMBER(tolerance), .initial = 1e-12, .minimum = 0,
+     .maximum = DBL_MAX, .unit = "error", .help = "within which errors stand still"},
+    FIELD_END,
+};
+
+/// Usual population times this is the most that noise makes of it.
+enum { MOST_GROWTH = 16 };
+
+/// Constants of the reaction to noise. On a sphere of 10 genes with noise of 0.01, 10,000
+/// measurements lead to 0.0055 without a reaction, to 0.0007 with these, and to 0.009 with a longer
+/// step instead, as UH-CMA-ES has it when it cannot measure for longer.
+static const double noise_memory = 0.8, noise_grows = 0.5, noise_shrinks = 0.25, growth = 1.1;
+
+struct state {
+    struct parameters parameters;
+    struct optimiser_space space;
+    struct cmaes_distribution distribution;
+    struct cmaes_strategy strategy;
+    size_t most;      ///< room for candidates
+    double *steps;    ///< of the candidates, shape [most, genes]
+    double *genes;    ///< the candidates, shape [most, genes]
+    double *errors;   ///< shape [most]: scratch
+    double *record;   ///< genes of `record_error`, shape [genes]
+    double *history;  ///< least errors of the last rounds, a ring, shape [most_history]
+    uint64_t sampled; ///< the round whose candidates these are, counted from 1; 0: none yet
+    struct progress {
+        uint64_t rounds;        ///< told
+        uint64_t descents;      ///< ended
+        uint64_t history_count; ///< of this descent
+        double population;      ///< of this descent, not yet rounded
+        double noise;           ///< smoothed share of noise among errors
+        double record_error;    ///< of the best candidate, or, with noise, of the best descent
+        double median;          ///< of the last round
+        double hopeless;
+        int64_t noisy, over, known;
+    } progress;
+};
+
+static size_t usual_population(const struct parameters *p, size_t genes) {
+    return p->population > 0 ? (size_t)p->population : 4 + (size_t)(3 * log((double)genes));
+}
+
+/// Rounds within which errors must stand still: 10 + 30 n/λ (tutorial, B.3).
+static size_t history_rounds(const struct state *state, size_t population) {
+    return 10 + (size_t)ceil(30 * (double)state->space.genes / (double)population);
+}
+
+static size_t most_history(const struct state *state) {
+    return history_rounds(state, usual_population(&state->parameters, state->space.genes));
+}
+
+static uint32_t most_rounds(const void *parameters, size_t genes) {
+    (void)genes;
+    return (uint32_t)((const struct parameters *)parameters)->rounds;
+}
+
+static void destroy(void *memory) {
+    struct state *state = memory;
+    cmaes_clear(&state->distribution);
+    memory_free(state->strategy.weights);
+    memory_free(state->steps);
+    memory_free(state->genes);
+    memory_free(state->errors);
+    memory_free(state->record);
+    memory_free(state->history);
+    *state = (struct state){0};
+}
+
+static size_t descent_population(const struct state *state) {
+    return usual_population(&state->parameters, state->space.genes) << state->progress.descents;
+}
+
+/// Numbers of the strategy, which no checkpoint keeps since they follow from the population.
+static void follow_population(struct state *state) {
+    if (state->strategy.population == (size_t)state->progress.population)
+        return;
+    state->strategy.population = (size_t)state->progress.population;
+    cmaes_strategy_set(&state->strategy, state->space.genes);
+}
+
+/// Begin a descent; the mean is to be set.
+static void begin_descent(struct state *state) {
+    struct progress *p = &state->progress;
+    p->population = (double)descent_population(state);
+    p->history_count = 0;
+    p->noise = 0;
+    cmaes_begin(&state->distribution, state->parameters.step);
+}
+
+/// This round's candidates: a function of the distribution, the seed and the round, so no
+/// checkpoint keeps them.
+static void sample(struct state *state) {
+    const size_t n = state->space.genes;
+    if (state->sampled == state->progress.rounds + 1)
+        return;
+    state->sampled = state->progress.rounds + 1;
+    follow_population(state);
+    for (size_t row = 0; row < state->strategy.population; row++) {
+        double *step = state->steps + row * n;
+        cmaes_sample(&state->distribution, state->space.seed, (uint32_t)state->progress.rounds,
+                     (uint32_t)row, step);
+        for (size_t k = 0; k < n; k++) {
+            const double x =
+                state->distribution.mean[k] + state->distribution.moments.sigma * step[k];
+            state->genes[row * n + k] = optimiser_gene(&state->space, optimiser_reflect(x));
+        }
+    }
+}
+
+static enum status create(void *memory, const struct optimiser_space *space,
+                          const void *parameters) {
+    enum status status = STATUS_OK;
+    struct state *state = memory;
+    state->parameters = *(const struct parameters *)parameters;
+    CHECK(optimiser_check_space(space));
+    if (state->parameters.population > 0 && state->parameters.population < 4)
+        CHECK(status_fail(STATUS_BAD_INPUT, "cma-es: a population of %d is below 4",
+                          (int)state->parameters.population));
+    state->space = *space;
+    state->space.start = NULL;
+    state->most = MOST_GROWTH * (usual_population(&state->parameters, space->genes)
+                                 << state->parameters.restarts);
+    NEW_ARRAY(state->strategy.weights, state->most);
+    NEW_ARRAY(state->steps, state->most * space->genes);
+    NEW_ARRAY(state->genes, state->most * space->genes);
+    NEW_ARRAY(state->errors, state->most);
+    NEW_ARRAY(state->record, space->genes);
+    NEW_ARRAY(state->history, most_history(state));
+    CHECK(cmaes_init(&state->distribution, space->genes));
+    state->progress.record_error = state->progress.hopeless = HUGE_VAL;
+    begin_descent(state);
+    for (size_t k = 0; k < space->genes; k++)
+        state->distribution.mean[k] = optimiser_start(space, k);
+done:
+    return status;
+}
+
+static enum status ask(void *memory, struct optimiser_round *round) {
+    struct state *state = memory;
+    const bool over = state->progress.over != 0;
+    sample(state);
+    *round = (struct optimiser_round){state->genes, over ? 0 : state->strategy.population};
+    return STATUS_OK;
+}
+
+// Tell --------------------------------------------------------------------------------------------
+
+static int compare_numbers(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/// Share of the variance among errors that is the variance of each: 1 if ranks are noise alone.
+static void watch_noise(struct state *state, const double *variances) {
+    struct running_mean errors = {0}, noise = {0};
+    for (size_t k = 0; k < state->strategy.population; k++) {
+        if (state->errors[k] >= OPTIMISER_FAILED)
+            continue;
+        statistics_add(&errors, state->errors[k]);
+        statistics_add(&noise, variances[k] > 0 && variances[k] < HUGE_VAL ? variances[k] : 0);
+    }
+    if (errors.count < 2)
+        return;
+    const double among = errors.squares / (double)(errors.count - 1);
+    const double share = among > 0 ? fmin(1, noise.mean / among) : noise.mean > 0;
+    state->progress.noise = noise_memory * state->progress.noise + (1 - noise_memory) * share;
+    state->progress.noisy = state->progress.noisy || noise.mean > 0;
+}
+
+static void react_to_noise(struct state *state) {
+    struct progress *p = &state->progress;
+    const double usual = (double)descent_population(state);
+    if (p->noise > noise_grows)
+        p->population = fmin(p->population * growth, MOST_GROWTH * usual);
+    else if (p->noise < noise_shrinks)
+        p->population = fmax(p->population / growth, usual);
+}
+
+/// Keep the best candidate.
+static void keep_best(struct state *state) {
+    const size_t n = state->space.genes;
+    for (size_t k = 0; k < state->strategy.population; k++) {
+        if (state->errors[k] >= fmin(state->progress.record_error, OPTIMISER_FAILED))
+            continue;
+        state->progress.record_error = state->errors[k];
+        memcpy(state->record, state->genes + k * n, n * sizeof(double));
+    }
+}
+
+static void mean_genes(const struct state *state, double *genes) {
+    for (size_t k = 0; k < state->space.genes; k++)
+        genes[k] = optimiser_gene(&state->space, optimiser_reflect(state->distribution.mean[k]));
+}
+
+/// Least, median and hopeless error of the round; sorts the errors.
+static void survey(struct state *state) {
+    struct progress *p = &state->progress;
+    const struct cmaes_strategy *s = &state->strategy;
+    qsort(state->errors, s->population, sizeof(double), compare_numbers);
+    p->median = state->errors[s->population / 2];
+    p->hopeless = state->errors[s->parents - 1];
+    state->history[p->history_count++ % most_history(state)] = state->errors[0];
+}
+
+/// Whether errors of this round, sorted, and the least of the last ones are all the same.
+static bool stands_still(const struct state *state) {
+    const struct progress *p = &state->progress;
+    const size_t rounds = history_rounds(state, state->strategy.population);
+    if (p->history_count < rounds)
+        return false;
+    double least = state->errors[0], most = state->errors[state->strategy.population - 1];
+    for (size_t k = 1; k <= rounds; k++) {
+        const double error = state->history[(p->history_count - k) % most_history(state)];
+        least = fmin(least, error);
+        most = fmax(most, error);
+    }
+    return most - least <= state->parameters.tolerance;
+}
+
+/// Largest standard deviation of a gene.
+static double widest(const struct state *state) {
+    double most = 0;
+    for (size_t k = 0; k < state->space.genes; k++)
+        most = fmax(most, cmaes_deviation(&state->distribution, k));
+    return most;
+}
+
+/// No gene spreads beyond its whole range: mirrors would only hide it.
+static void limit_step(struct state *state) {
+    const double most = widest(state);
+    if (most > 1)
+        state->distribution.moments.sigma /= most;
+}
+
+/// Whether the distribution has become too narrow or too oblong for double precision.
+static bool is_degenerate(const struct state *state) {
+    return widest(state) < 1e-12 || cmaes_axis_ratio(&state->distribution) > 1e7;
+}
+
+/// With noise the record is the mean of the descent whose last errors were lowest.
+static void keep_descent(struct state *state) {
+    struct progress *p = &state->progress;
+    if (!p->noisy || (p->descents > 0 && p->median >= p->record_error))
+        return;
+    p->record_error = p->median;
+    mean_genes(state, state->record);
+}
+
+/// A new descent from anywhere.
+static void restart(struct state *state) {
+    struct rng_sequence random =
+        rng_sequence_begin(state->space.seed, RNG_INITIAL, (uint32_t)++state->progress.descents, 0);
+    begin_descent(state);
+    for (size_t k = 0; k < state->space.genes; k++)
+        state->distribution.mean[k] = rng_sequence_uniform(&random);
+}
+
+/// What follows a round, whose errors are sorted.
+static void go_on(struct state *state) {
+    struct progress *p = &state->progress;
+    const bool ended = stands_still(state) || is_degenerate(state);
+    if (ended)
+        keep_descent(state);
+    p->over = ++p->rounds >= (uint64_t)state->parameters.rounds ||
+              (ended && p->descents >= (uint64_t)state->parameters.restarts);
+    if (p->over)
+        return;
+    if (ended)
+        restart(state);
+    else
+        react_to_noise(state);
+}
+
+static enum status tell(void *memory, const double *errors, const double *variances) {
+    struct state *state = memory;
+    sample(state);
+    const size_t population = state->strategy.population;
+    double least = OPTIMISER_FAILED;
+    for (size_t k = 0; k < population; k++) {
+        state->errors[k] = optimiser_error(errors[k]);
+        least = fmin(least, state->errors[k]);
+    }
+    if (least < OPTIMISER_FAILED) { // a round in which all failed says nothing
+        TRY(cmaes_update(&state->distribution, &state->strategy, state->steps, state->errors));
+        limit_step(state);
+        state->progress.known = true;
+    }
+    watch_noise(state, variances);
+    if (!state->progress.noisy)
+        keep_best(state);
+    survey(state);
+    go_on(state);
+    return STATUS_OK;
+}
+
+// What it knows -----------------------------------------------------------------------------------
+
+static bool favourite(const void *memory, double *genes) {
+    const struct state *state = memory;
+    const struct progress *p = &state->progress;
+    if (!p->known)
+        return false;
+    const bool former = p->descents > 0 && p->record_error <= p->median;
+    if (p->noisy && !former)
+        mean_genes(state, genes);
+    else
+        memcpy(genes, state->record, state->space.genes * sizeof *genes);
+    return true;
+}
+
+static double spread(const void *memory) {
+    const struct state *state = memory;
+    double sum = 0;
+    for (size_t k = 0; k < state->space.genes; k++)
+        sum += cmaes_deviation(&state->distribution, k);
+    return sum / (double)state->space.genes;
+}
+
+static double hopeless(const void *memory) {
+    return ((const struct state *)memory)->progress.hopeless;
+}
+
+static size_t spans(void *memory, struct memory_span *span) {
+    struct state *state = memory;
+    struct cmaes_distribution *d = &state->distribution;
+    const size_t n = d->genes, row = n * sizeof(double);
+    size_t count = 0;
+    state->sampled = 0; // another round may be read into the spans
+    span[count++] = (struct memory_span){&state->progress, sizeof state->progress};
+    span[count++] = (struct memory_span){&d->moments, sizeof d->moments};
+    span[count++] = (struct memory_span){state->history, most_history(state) * sizeof(double)};
+    span[count++] = (struct memory_span){state->record, row};
+    span[count++] = (struct memory_span){d->mean, row};
+    span[count++] = (struct memory_span){d->path_sigma, row};
+    span[count++] = (struct memory_span){d->path, row};
+    span[count++] = (struct memory_span){d->covariance, n * row};
+    span[count++] = (struct memory_span){d->axes, n * row};
+    span[count++] = (struct memory_span){d->lengths, row};
+    return count;
+}
+
+const struct optimiser cmaes_optimiser = {
+    .name = "cma-es",
+    .summary = "evolution strategy with covariance matrix adaptation; N. Hansen, "
+               "arXiv:1604.00772 (2016)",
+    .tables = (const struct field *const[]){fields, NULL},
+    .parameters_size = sizeof(struct parameters),
+    .state_size = sizeof(struct state),
+    .most_rounds = most_rounds,
+    .create = create,
+    .destroy = destroy,
+    .ask = ask,
+    .tell = tell,
+    .favourite = favourite,
+    .spread = spread,
+    .hopeless = hopeless,
+    .spans = spans,
+};

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shared/landscapes.h"
+
+#include "base/rng.h"
+#include "shared/testing.h"
+
+#include <math.h>
+
+static double square(double x) {
+    return x * x;
+}
+
+static double sphere(const double *genes, size_t count) {
+    double sum = 0;
+    for (size_t k = 0; k < count; k++)
+        sum += square(genes[k] - 0.3);
+    return sum;
+}
+
+static double rosenbrock(const double *genes, size_t count) {
+    double sum = 0;
+    for (size_t k = 0; k + 1 < count; k++)
+        sum += 100 * square(genes[k + 1] - square(genes[k])) + square(1 - genes[k]);
+    return sum;
+}
+
+static double rastrigin(const double *genes, size_t count) {
+    double sum = 0;
+    for (size_t k = 0; k < count; k++)
+        sum += 10 + square(genes[k] - 1) - 10 * cos(2 * M_PI * (genes[k] - 1));
+    return sum;
+}
+
+static double edge(const double *genes, size_t count) {
+    double sum = 0;
+    for (size_t k = 0; k < count; k++)
+        sum += genes[k];
+    return sum;
+}
+
+const struct landscape landscape_sphere = {"sphere", sphere, 0, 1, 0.3};
+const struct landscape landscape_rosenbrock = {"rosenbrock", rosenbrock, -2, 2, 1};
+const struct landscape landscape_rastrigin = {"rastrigin", rastrigin, -5, 5, 1};
+const struct landscape landscape_edge = {"edge", edge, 0, 1, 0};
+
+void *landscape_parameters(const struct optimiser *optimiser) {
+    void *parameters = memory_zeroed(1, optimiser->parameters_size);
+    assert_non_null(parameters);
+    for (size_t k = 0; optimiser->tables[k]; k++)
+        fields_set_defaults(optimiser->tables[k], parameters);
+    return parameters;
+}
+
+void landscape_set(const struct optimiser *optimiser, void *parameters, const char *name,
+                   double value) {
+    for (size_t k = 0; optimiser->tables[k]; k++)
+        for (const struct field *field = optimiser->tables[k]; field->name; field++) {
+            if (strcmp(field->name, name) != 0)
+                continue;
+            struct field alone[2] = {*field, FIELD_END};
+            alone[0].initial = value;
+            fields_set_defaults(alone, parameters);
+            return;
+        }
+    fail_msg("%s has no field %s", optimiser->name, name);
+}
+
+struct landscape_run landscape_begin(const struct optimiser *optimiser, void *parameters,
+                                     const struct landscape_drive *drive) {
+    const struct optimiser_space space = {drive->genes, drive->landscape->minimum,
+                                          drive->landscape->maximum, drive->start, drive->seed};
+    struct landscape_run run = {optimiser, parameters, memory_zeroed(1, optimiser->state_size)};
+    assert_non_null(run.state);
+    assert_ok(optimiser->create(run.state, &space, parameters));
+    return run;
+}
+
+void landscape_end(struct landscape_run *run) {
+    run->optimiser->destroy(run->state);
+    memory_free(run->state);
+    run->state = NULL;
+}
+
+/// An error as it is measured, measurement number `number`.
+static double measure(const struct landscape_drive *drive, double exact, uint64_t number) {
+    static const double failures[] = {OPTIMISER_FAILED, NAN, HUGE_VAL, -HUGE_VAL, 1e300};
+    const struct rng_block block = rng_philox(drive->seed, RNG_EVALUATION, (uint32_t)number, 0, 0);
+    double normal[4];
+    rng_normal4(rng_philox(drive->seed, RNG_EVALUATION, (uint32_t)number, 1, 0), normal);
+    if (rng_uniform(block.word[0], block.word[1]) < drive->failing)
+        return failures[number % 5];
+    return exact + drive->noise * normal[0];
+}
+
+static void check_round(const struct landscape_drive *drive, const struct optimiser_round *round) {
+    for (size_t k = 0; k < round->count * drive->genes; k++)
+        assert_true(round->genes[k] >= drive->landscape->minimum &&
+                    round->genes[k] <= drive->landscape->maximum);
+}
+
+/// Ask twice: the same candidates. Frees nothing; the copy is compared here.
+static struct optimiser_round ask_twice(struct landscape_run *run, size_t genes) {
+    struct optimiser_round first, second;
+    assert_ok(run->optimiser->ask(run->state, &first));
+    const size_t bytes = first.count * genes * sizeof(double);
+    double *copy = memory_zeroed(bytes + 1, 1);
+    assert_non_null(copy);
+    memcpy(copy, first.genes, bytes);
+    assert_ok(run->optimiser->ask(run->state, &second));
+    assert_int_equal(first.count, second.count);
+    assert_memory_equal(copy, second.genes, bytes);
+    memory_free(copy);
+    return second;
+}
+
+static void look_at_favourite(const struct landscape_run *run, const struct landscape_drive *drive,
+                              struct landscape_result *result) {
+    double *genes = memory_zeroed(drive->genes, sizeof *genes);
+    assert_non_null(genes);
+    if (run->optimiser->favourite(run->state, genes)) {
+        check_round(drive, &(struct optimiser_round){genes, 1});
+        result->favourite = drive->landscape->error(genes, drive->genes);
+    }
+    memory_free(genes);
+}
+
+bool landscape_step(struct landscape_run *run, const struct landscape_drive *drive,
+                    struct landscape_result *result) {
+    const struct optimiser_round round = ask_twice(run, drive->genes);
+    result->finished = round.count == 0;
+    if (result->finished)
+        return false;
+    check_round(drive, &round);
+    double *errors = memory_zeroed(2 * round.count, sizeof *errors);
+    assert_non_null(errors);
+    for (size_t k = 0; k < round.count; k++) {
+        const double exact = drive->landscape->error(round.genes + k * drive->genes, drive->genes);
+        result->least = fmin(result->least, exact);
+        errors[k] = measure(drive, exact, result->evaluations++);
+        errors[round.count + k] = drive->noise * drive->noise;
+    }
+    assert_ok(run->optimiser->tell(run->state, errors, errors + round.count));
+    memory_free(errors);
+    result->rounds++;
+    look_at_favourite(run, drive, result);
+    return true;
+}
+
+struct landscape_result landscape_minimise(const struct optimiser *optimiser, void *parameters,
+                                           const struct landscape_drive *drive) {
+    struct landscape_result result = {.least = HUGE_VAL, .favourite = HUGE_VAL};
+    struct landscape_run run = landscape_begin(optimiser, parameters, drive);
+    while ((drive->evaluations == 0 || result.evaluations < drive->evaluations) &&
+           result.least > drive->target && landscape_step(&run, drive, &result))
+        continue;
+    assert_true(result.rounds <= optimiser->most_rounds(parameters, drive->genes));
+    landscape_end(&run);
+    return result;
+}
