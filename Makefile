@@ -15,7 +15,7 @@ MAKEFLAGS += --no-print-directory
 
 BUILD   ?= build
 AT       = $(if $(VERBOSE),,@)
-PACKAGES = gsl libcjson
+PACKAGES = gsl libcjson nlopt
 # No psabi: all functions of vectors are inlined, so how one would be passed does not matter.
 WARN     = -Wall -Wextra -Wshadow -Wpointer-arith -Wstrict-prototypes -Wmissing-prototypes \
            -Wvla -Wundef -Wno-psabi $(if $(WERROR),-Werror)

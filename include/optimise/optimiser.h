@@ -72,7 +72,7 @@ const struct optimiser *optimiser_find(const char *name);
 
 /// @name For those who write one
 
-extern const struct optimiser genetic_optimiser, cmaes_optimiser;
+extern const struct optimiser genetic_optimiser, cmaes_optimiser, nlopt_optimiser;
 
 /// Fails with BAD_INPUT unless there are genes and a box of finite, positive size, and the start,
 /// if there is one, is finite.

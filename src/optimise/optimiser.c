@@ -3,7 +3,8 @@
 
 #include <string.h>
 
-const struct optimiser *const optimisers[] = {&genetic_optimiser, &cmaes_optimiser, NULL};
+const struct optimiser *const optimisers[] = {&genetic_optimiser, &cmaes_optimiser,
+                                              &nlopt_optimiser, NULL};
 
 const struct optimiser *optimiser_find(const char *name) {
     for (const struct optimiser *const *known = optimisers; *known; known++)

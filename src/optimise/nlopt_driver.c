@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Algorithms of NLopt (S. G. Johnson, The NLopt nonlinear-optimization package) by ask and tell.
+// NLopt owns its loop, so it runs in a coroutine, and its own random numbers are of that thread. A
+// checkpoint keeps the errors that were told: a new state runs the algorithm again on them, in
+// milliseconds, and arrives at the same candidate. Rounds are of one candidate. Inside, genes are
+// fractions of their range.
+#include "optimise/coroutine.h"
+#include "optimise/optimiser.h"
+
+#include <nlopt.h>
+
+#include <string.h>
+
+enum { MOST_EVALUATIONS = 1000000 };
+
+/// Parallel to the names of the field.
+static const struct algorithm {
+    nlopt_algorithm number;
+    bool local;  ///< ends once its steps are small
+    bool models; ///< interpolates errors
+} algorithms[] = {
+    {NLOPT_GN_ESCH, false, false},  {NLOPT_GN_CRS2_LM, false, false},
+    {NLOPT_GN_ISRES, false, false}, {NLOPT_GN_DIRECT_L_RAND, false, false},
+    {NLOPT_LN_SBPLX, true, false},  {NLOPT_LN_BOBYQA, true, true},
+    {NLOPT_LN_COBYLA, true, true},
+};
+
+static const char *const names[] = {"GN_ESCH",  "GN_CRS2_LM", "GN_ISRES",  "GN_DIRECT_L_RAND",
+                                    "LN_SBPLX", "LN_BOBYQA",  "LN_COBYLA", NULL};
+
+struct parameters {
+    int algorithm;
+    int64_t evaluations;
+    double step, tolerance;
+};
+
+#define MEMBER(name) .offset = offsetof(struct parameters, name)
+static const struct field fields[] = {
+    {"algorithm", FIELD_CHOICE, MEMBER(algorithm), .choices = names, .initial = 4, .unit = "",
+     .help = "of NLopt: GN_ searches everywhere, LN_ around the start"},
+    {"evaluations", FIELD_INTEGER, MEMBER(evaluations), .initial = 1000, .minimum = 1,
+     .maximum = MOST_EVALUATIONS, .unit = "", .help = "after which it ends"},
+    {"step", FIELD_NUMBER, MEMBER(step), .initial = 0.2, .minimum = FIELD_ABOVE_ZERO,
+     .maximum = 0.5, .unit = "", .help = "first step of LN_, as a fraction of the range"},
+    {"tolerance", FIELD_NUMBER, MEMBER(tolerance), .initial = 1e-6, .minimum = 0, .maximum = 1,
+     .unit = "", .help = "change of all genes below which LN_ ends, as a fraction of the range"},
+    FIELD_END,
+};
+
+/// Candidates that spread looks at.
+enum { RECENT = 16 };
+
+struct state {
+    struct parameters parameters;
+    struct optimiser_space space;
+    double *start;  ///< shape [genes], fractions
+    double *told;   ///< errors, shape [evaluations]
+    double *genes;  ///< the candidate, shape [genes]
+    double *best;   ///< shape [genes]
+    double *recent; ///< the last candidates, a ring, shape [RECENT, genes]
+    struct progress {
+        uint64_t told;
+        double best_error; ///< OPTIMISER_FAILED: none
+    } progress;
+    struct coroutine *loop; ///< the algorithm, or NULL
+    uint64_t played;        ///< told errors that it knows
+};
+
+// Inside the coroutine ----------------------------------------------------------------------------
+
+/// What NLopt's function sees.
+struct call {
+    struct coroutine *self;
+    nlopt_opt optimiser;
+    bool models;
+    double least, most; ///< of the errors that could be measured
+};
+
+/// A failed candidate tells a model that it is as far above the worst as that is above the best:
+/// 1e9 would bend the whole model.
+static double seen_error(struct call *call, double error) {
+    if (error < OPTIMISER_FAILED) {
+        call->least = fmin(call->least, error);
+        call->most = fmax(call->most, error);
+        return error;
+    }
+    const bool measured = call->most >= call->least;
+    return call->models && measured ? 2 * call->most - call->least : OPTIMISER_FAILED;
+}
+
+static double measure(unsigned genes, const double *x, double *gradient, void *context) {
+    struct call *call = context;
+    double error = OPTIMISER_FAILED;
+    (void)genes;
+    (void)gradient;
+    if (!coroutine_measure(call->self, x, &error))
+        nlopt_force_stop(call->optimiser);
+    return seen_error(call, error);
+}
+
+/// An algorithm as the parameters want it; NULL if there is no memory.
+static nlopt_opt prepare(const struct state *state, struct call *call) {
+    const struct algorithm *algorithm = &algorithms[state->parameters.algorithm];
+    nlopt_opt o = nlopt_create(algorithm->number, (unsigned)state->space.genes);
+    if (o == NULL)
+        return NULL;
+    call->optimiser = o;
+    call->models = algorithm->models;
+    if (nlopt_set_lower_bounds1(o, 0) < 0 || nlopt_set_upper_bounds1(o, 1) < 0 ||
+        nlopt_set_initial_step1(o, state->parameters.step) < 0 ||
+        nlopt_set_xtol_abs1(o, algorithm->local ? state->parameters.tolerance : 0) < 0 ||
+        nlopt_set_maxeval(o, (int)state->parameters.evaluations) < 0 ||
+        nlopt_set_min_objective(o, measure, call) < 0) {
+        nlopt_destroy(o);
+        return NULL;
+    }
+    return o;
+}
+
+/// The algorithm from its beginning to its end. How it ends does not matter: rounding that stops a
+/// model stops the search, and the best candidate stands.
+static void body(struct coroutine *self, void *context) {
+    const struct state *state = context;
+    struct call call = {.self = self, .least = HUGE_VAL, .most = -HUGE_VAL};
+    nlopt_opt optimiser = prepare(state, &call);
+    double *x = memory_zeroed(state->space.genes, sizeof *x), least;
+    if (optimiser && x) {
+        memcpy(x, state->start, state->space.genes * sizeof *x);
+        nlopt_srand((unsigned long)state->space.seed);
+        (void)nlopt_optimize(optimiser, x, &least);
+    }
+    memory_free(x);
+    nlopt_destroy(optimiser);
+}
+
+// Outside -----------------------------------------------------------------------------------------
+
+static uint32_t most_rounds(const void *parameters, size_t genes) {
+    (void)genes;
+    return (uint32_t)((const struct parameters *)parameters)->evaluations;
+}
+
+static void destroy(void *memory) {
+    struct state *state = memory;
+    coroutine_end(state->loop);
+    memory_free(state->start);
+    memory_free(state->told);
+    memory_free(state->genes);
+    memory_free(state->best);
+    memory_free(state->recent);
+    *state = (struct state){0};
+}
+
+static enum status create(void *memory, const struct optimiser_space *space,
+                          const void *parameters) {
+    enum status status = STATUS_OK;
+    struct state *state = memory;
+    state->parameters = *(const struct parameters *)parameters;
+    CHECK(optimiser_check_space(space));
+    state->space = *space;
+    state->space.start = NULL;
+    state->progress.best_error = OPTIMISER_FAILED;
+    NEW_ARRAY(state->start, space->genes);
+    NEW_ARRAY(state->told, (size_t)state->parameters.evaluations);
+    NEW_ARRAY(state->genes, space->genes);
+    NEW_ARRAY(state->best, space->genes);
+    NEW_ARRAY(state->recent, RECENT * space->genes);
+    for (size_t k = 0; k < space->genes; k++)
+        state->start[k] = optimiser_start(space, k);
+done:
+    return status;
+}
+
+/// The algorithm's next candidate as fractions, NULL if it has finished. Begins the algorithm, and
+/// tells it again what it was told before, if it does not stand where the state does.
+static enum status catch_up(struct state *state, const double **question) {
+    if (state->played > state->progress.told) {
+        coroutine_end(state->loop);
+        state->loop = NULL;
+    }
+    if (state->loop == NULL) {
+        state->played = 0;
+        state->loop = coroutine_begin(body, state);
+        if (state->loop == NULL)
+            return STATUS_NO_MEMORY;
+    }
+    for (*question = coroutine_question(state->loop); *question != NULL;
+         *question = coroutine_question(state->loop)) {
+        if (state->played == state->progress.told)
+            break;
+        coroutine_answer(state->loop, state->told[state->played++]);
+    }
+    if (*question == NULL && state->played == 0)
+        return status_fail(STATUS_BAD_INPUT, "nlopt: %s cannot begin with %zu genes",
+                           names[state->parameters.algorithm], state->space.genes);
+    return STATUS_OK;
+}
+
+static enum status ask(void *memory, struct optimiser_round *round) {
+    struct state *state = memory;
+    const double *question = NULL;
+    *round = (struct optimiser_round){state->genes, 0};
+    if (state->progress.told >= (uint64_t)state->parameters.evaluations)
+        return STATUS_OK;
+    TRY(catch_up(state, &question));
+    for (size_t k = 0; question && k < state->space.genes; k++)
+        state->genes[k] = optimiser_gene(&state->space, question[k]);
+    round->count = question != NULL;
+    return STATUS_OK;
+}
+
+static enum status tell(void *memory, const double *errors, const double *variances) {
+    struct state *state = memory;
+    struct optimiser_round round;
+    const size_t row = state->space.genes * sizeof(double);
+    (void)variances; // NLopt's algorithms know no noise
+    TRY(ask(state, &round));
+    if (round.count == 0)
+        return STATUS_OK;
+    const double error = optimiser_error(errors[0]);
+    if (error < state->progress.best_error) {
+        state->progress.best_error = error;
+        memcpy(state->best, state->genes, row);
+    }
+    memcpy(state->recent + (state->progress.told % RECENT) * state->space.genes, state->genes, row);
+    state->told[state->progress.told++] = error;
+    return STATUS_OK;
+}
+
+static bool favourite(const void *memory, double *genes) {
+    const struct state *state = memory;
+    if (state->progress.best_error >= OPTIMISER_FAILED)
+        return false;
+    memcpy(genes, state->best, state->space.genes * sizeof *genes);
+    return true;
+}
+
+/// Standard deviation of a gene over the last candidates, a mean over genes.
+static double spread(const void *memory) {
+    const struct state *state = memory;
+    const size_t n = state->space.genes;
+    const size_t known = state->progress.told < RECENT ? state->progress.told : RECENT;
+    double sum = 0;
+    for (size_t gene = 0; gene < n && known > 0; gene++) {
+        double mean = 0, squares = 0;
+        for (size_t k = 0; k < known; k++)
+            mean += state->recent[k * n + gene] / (double)known;
+        for (size_t k = 0; k < known; k++) {
+            const double away = state->recent[k * n + gene] - mean;
+            squares += away * away;
+        }
+        sum += sqrt(squares / (double)known);
+    }
+    return sum / (double)n / (state->space.maximum - state->space.minimum);
+}
+
+/// Each error decides where these algorithms go next.
+static double hopeless(const void *memory) {
+    (void)memory;
+    return HUGE_VAL;
+}
+
+static size_t spans(void *memory, struct memory_span *span) {
+    struct state *state = memory;
+    const size_t row = state->space.genes * sizeof(double);
+    size_t n = 0;
+    span[n++] = (struct memory_span){&state->progress, sizeof state->progress};
+    span[n++] =
+        (struct memory_span){state->told, (size_t)state->parameters.evaluations * sizeof(double)};
+    span[n++] = (struct memory_span){state->best, row};
+    span[n++] = (struct memory_span){state->recent, RECENT * row};
+    return n;
+}
+
+const struct optimiser nlopt_optimiser = {
+    .name = "nlopt",
+    .summary = "an algorithm of NLopt; S. G. Johnson, github.com/stevengj/nlopt",
+    .tables = (const struct field *const[]){fields, NULL},
+    .parameters_size = sizeof(struct parameters),
+    .state_size = sizeof(struct state),
+    .most_rounds = most_rounds,
+    .create = create,
+    .destroy = destroy,
+    .ask = ask,
+    .tell = tell,
+    .favourite = favourite,
+    .spread = spread,
+    .hopeless = hopeless,
+    .spans = spans,
+};
