@@ -42,7 +42,7 @@ struct optimiser {
     /// Upper bound of rounds.
     uint32_t (*most_rounds)(const void *parameters, size_t genes);
     /// Begin in zeroed memory of `state_size`; nothing of `space` or `parameters` is kept.
-    /// Fails: BAD_INPUT for an empty box, NO_MEMORY; `destroy` need not follow then, but may.
+    /// Fails: BAD_INPUT for an empty box, NO_MEMORY; `destroy` must follow all the same.
     enum status (*create)(void *state, const struct optimiser_space *space, const void *parameters);
     void (*destroy)(void *state);
     /// Asking again before telling gives the same.

@@ -5,6 +5,7 @@
 // checkpoint keeps the errors that were told: a new state runs the algorithm again on them, in
 // milliseconds, and arrives at the same candidate. Rounds are of one candidate. Inside, genes are
 // fractions of their range.
+#include "base/rng.h"
 #include "optimise/coroutine.h"
 #include "optimise/optimiser.h"
 
@@ -29,6 +30,8 @@ static const struct algorithm {
 static const char *const names[] = {"GN_ESCH",  "GN_CRS2_LM", "GN_ISRES",  "GN_DIRECT_L_RAND",
                                     "LN_SBPLX", "LN_BOBYQA",  "LN_COBYLA", NULL};
 
+enum { SBPLX = 4 }; ///< index of the default
+
 struct parameters {
     int algorithm;
     int64_t evaluations;
@@ -37,7 +40,7 @@ struct parameters {
 
 #define MEMBER(name) .offset = offsetof(struct parameters, name)
 static const struct field fields[] = {
-    {"algorithm", FIELD_CHOICE, MEMBER(algorithm), .choices = names, .initial = 4, .unit = "",
+    {"algorithm", FIELD_CHOICE, MEMBER(algorithm), .choices = names, .initial = SBPLX, .unit = "",
      .help = "of NLopt: GN_ searches everywhere, LN_ around the start"},
     {"evaluations", FIELD_INTEGER, MEMBER(evaluations), .initial = 1000, .minimum = 1,
      .maximum = MOST_EVALUATIONS, .unit = "", .help = "after which it ends"},
@@ -124,10 +127,11 @@ static void body(struct coroutine *self, void *context) {
     const struct state *state = context;
     struct call call = {.self = self, .least = HUGE_VAL, .most = -HUGE_VAL};
     nlopt_opt optimiser = prepare(state, &call);
+    const struct rng_block seed = rng_philox(state->space.seed, RNG_INITIAL, 0, 0, 0);
     double *x = memory_zeroed(state->space.genes, sizeof *x), least;
     if (optimiser && x) {
         memcpy(x, state->start, state->space.genes * sizeof *x);
-        nlopt_srand((unsigned long)state->space.seed);
+        nlopt_srand(seed.word[0]); // it takes 32 bits: all 64 are mixed into them
         (void)nlopt_optimize(optimiser, x, &least);
     }
     memory_free(x);
@@ -172,19 +176,13 @@ done:
     return status;
 }
 
-/// The algorithm's next candidate as fractions, NULL if it has finished. Begins the algorithm, and
-/// tells it again what it was told before, if it does not stand where the state does.
+/// The algorithm's next candidate as fractions, NULL if it has finished. Begins the algorithm if it
+/// has not begun, and tells it what it has not been told: the last error, or, after a restart, all.
 static enum status catch_up(struct state *state, const double **question) {
-    if (state->played > state->progress.told) {
-        coroutine_end(state->loop);
-        state->loop = NULL;
-    }
-    if (state->loop == NULL) {
-        state->played = 0;
+    if (state->loop == NULL)
         state->loop = coroutine_begin(body, state);
-        if (state->loop == NULL)
-            return STATUS_NO_MEMORY;
-    }
+    if (state->loop == NULL)
+        return STATUS_NO_MEMORY;
     for (*question = coroutine_question(state->loop); *question != NULL;
          *question = coroutine_question(state->loop)) {
         if (state->played == state->progress.told)

@@ -135,7 +135,7 @@ bool landscape_step(struct landscape_run *run, const struct landscape_drive *dri
     assert_non_null(errors);
     for (size_t k = 0; k < round.count; k++) {
         const double exact = drive->landscape->error(round.genes + k * drive->genes, drive->genes);
-        result->least = fmin(result->least, exact);
+        result->least = fmin(result->least, exact); // fmin leaves NaN out
         errors[k] = measure(drive, exact, result->evaluations++);
         errors[round.count + k] = drive->noise * drive->noise;
     }

@@ -93,6 +93,17 @@ static void test_cmaes_sees_below_the_noise_of_a_measurement(void **state) {
     assert_true(noisy_sphere(0.01, 10000) < 0.0012);
 }
 
+/// A sphere whose half beyond a cliff near the minimum cannot be measured.
+static double cliff(const double *genes, size_t count) {
+    return genes[0] + genes[1] > 0.62 ? NAN : landscape_sphere.error(genes, count);
+}
+
+static void test_cmaes_finds_a_minimum_beside_a_cliff(void **state) {
+    static const struct landscape landscape = {"cliff", cliff, 0, 1, 0.3};
+    (void)state;
+    assert_true(evaluations(&landscape, 0.3, 0) < 2500);
+}
+
 static size_t population_after(int rounds, double noise) {
     const struct landscape_drive drive = {
         .landscape = &landscape_sphere, .genes = GENES, .seed = 2, .noise = noise};
@@ -203,6 +214,7 @@ int main(void) {
         cmocka_unit_test(test_cmaes_is_as_fast_as_others_on_rosenbrock),
         cmocka_unit_test(test_cmaes_finds_the_deepest_minimum_by_restarts),
         cmocka_unit_test(test_cmaes_sees_below_the_noise_of_a_measurement),
+        cmocka_unit_test(test_cmaes_finds_a_minimum_beside_a_cliff),
         cmocka_unit_test(test_cmaes_population_grows_only_when_there_is_noise),
         cmocka_unit_test(test_cmaes_refuses_a_population_below_4),
         cmocka_unit_test(test_cmaes_strategy_has_the_numbers_of_the_tutorial),
