@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/fields.h"
+#include "observe/etd.h"
 #include "observe/motion.h"
 #include "observe/rdf_force.h"
 #include "observe/thermodynamics.h"
@@ -25,6 +26,7 @@ struct measure_targets {
     struct rdf_force *rdf_force;
     struct thermodynamics *thermodynamics;
     struct motion *motion; ///< begun at the end of the equilibration; has an interval of its own
+    struct etd *etd;       ///< the same
 };
 
 /// Told after each sample; `done` of `total` steps. NULL for none.

@@ -47,11 +47,21 @@ enum status measure_equilibrate(struct simulation *simulation, const struct meas
     return STATUS_OK;
 }
 
-/// Run until `step`, and sample the motion on the way whenever it is due.
-static enum status run_moving(struct simulation *simulation, int64_t step, struct motion *motion) {
-    for (; motion && motion_due(motion) <= step; motion_sample(motion, simulation))
-        TRY(run_until(simulation, motion_due(motion)));
-    return run_until(simulation, step);
+/// Run until `step`, and sample what has an interval of its own whenever it is due.
+static enum status run_moving(struct simulation *simulation, int64_t step,
+                              const struct measure_targets *targets) {
+    for (;;) {
+        const int64_t motion = targets->motion ? motion_due(targets->motion) : INT64_MAX;
+        const int64_t etd = targets->etd ? etd_due(targets->etd) : INT64_MAX;
+        const int64_t due = motion < etd ? motion : etd;
+        TRY(run_until(simulation, due < step ? due : step));
+        if (due > step)
+            return STATUS_OK;
+        if (motion == due)
+            motion_sample(targets->motion, simulation);
+        if (etd == due)
+            TRY(etd_sample(targets->etd, simulation));
+    }
 }
 
 /// Whether the potential alone reaches as far as all forces, so that its pass sees every pair that
@@ -70,7 +80,7 @@ static enum status run_sampled_step(struct simulation *simulation, int64_t due,
     const struct pair_histogram *histogram = counts ? rdf_histogram(targets.rdf) : NULL;
     simulation->wants = targets.thermodynamics ? PAIR_FORCES_AND_SUMS : PAIR_FORCES;
     law->histogram = midway ? NULL : histogram;
-    enum status status = run_moving(simulation, due, targets.motion);
+    enum status status = run_moving(simulation, due, &targets);
     if (midway && status == STATUS_OK) {
         law->histogram = histogram;
         status = simulation_compute_potential(simulation);
@@ -91,7 +101,7 @@ enum status measure_sample(struct simulation *simulation, const struct measure_p
     for (int64_t sample = begun / plan->every; sample < plan->samples; sample++) {
         const int64_t due = plan->equilibration + (sample + 1) * plan->every;
         simulation->wants = PAIR_FORCES;
-        TRY(run_moving(simulation, due - 1, targets.motion));
+        TRY(run_moving(simulation, due - 1, &targets));
         TRY(run_sampled_step(simulation, due, targets));
         if (targets.rdf_force)
             TRY(rdf_force_sample(targets.rdf_force, &simulation->particles,

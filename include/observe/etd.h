@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file How long pairs stay together: the escape time distribution.
+///
+///   E(t, r_0) = of the pairs that at a time origin are r_0 apart, r_minimum ≤ r_0 < r_maximum, the
+///   fraction that at no sampled time up to t after it has been at r ≥ r_maximum.
+///
+/// Absorbing: a pair that was out and came back counts as out. E(0, r_0) = 1, and E falls with t.
+/// It is the survival probability of the pair, as the residence times of R. W. Impey, P. A. Madden
+/// and I. R. McDonald, J. Phys. Chem. 87, 5071 (1983) without their tolerance of short absences,
+/// and resolved by r_0. The sampling interval is part of the definition: what happens between two
+/// samples goes unseen, so compare E of the same interval only (for SPC water, E of samples 0.02 ps
+/// apart lies 0.001 to 0.005 above that of 0.002 ps). Images: the nearest.
+#pragma once
+
+#include "base/fields.h"
+#include "base/memory.h"
+#include "dynamics/simulation.h"
+
+/// Equal bins of r_0 from r_minimum to r_maximum [λ]; `times` counts t = 0.
+struct etd_grid {
+    double r_minimum, r_maximum;
+    int64_t bins, times;
+};
+
+struct etd_plan {
+    int64_t every;        ///< steps between times
+    int64_t origin_every; ///< times between origins
+};
+
+extern const struct field etd_grid_fields[];
+extern const struct field etd_plan_fields[];
+
+/// Blocks of consecutive origins, for the errors; of fewer origins, each is a block.
+enum { ETD_BLOCKS = 10 };
+
+/// A pair is followed from the first origin that finds it within r_maximum until it escapes, by one
+/// record for all origins: one distance for each pair and sample, however many windows overlap.
+/// Everything is counted in integers.
+struct etd {
+    struct etd_grid grid;
+    struct etd_plan plan;
+    int64_t begin;          ///< step of the first sample
+    size_t origins, blocks; ///< origins whose windows fit into the run
+    size_t slots;           ///< windows that are open at the same time
+    struct {
+        uint64_t samples, followed;
+    } state;     ///< samples so far, records (those of escaped pairs until the next origin)
+    size_t room; ///< for records
+    uint32_t *first, *second; ///< shape [room]: ids, the lower first; equal: the pair has escaped
+    uint16_t *bin;            ///< shape [room, slots]: of r_0 at each open origin, or none
+    uint64_t *began;          ///< shape [slots]: samples before the origin
+    uint32_t *open;   ///< shape [slots, times, bins]: pairs at time 0, then those escaped at a time
+    uint64_t *counts; ///< shape [blocks, times, bins]: the same of all complete windows
+    int32_t *place[3];  ///< shape [particles]: box_fraction by id
+    int32_t *listed[3]; ///< shape [particles]: the same in the order of the list that is searched
+    double *squares;    ///< shape [particles]: room for squared distances [λ²]
+    uint32_t *bucket, *next; ///< shapes [buckets], [room]: records by the hash of their pair
+    size_t buckets;
+    struct particles own_particles; ///< for when the simulation's list is too short
+    struct neighbours own_list;
+};
+
+/// Cells of a matrix of times and bins.
+static inline size_t etd_cells(const struct etd *etd) {
+    return (size_t)(etd->grid.times * etd->grid.bins);
+}
+
+/// Prepare to sample a simulation from step `begin` on, for `steps` steps; only windows that end
+/// within them are begun.
+/// Fails: BAD_INPUT if there is no whole window, r_maximum is not above r_minimum, or the box is
+/// below 2 r_maximum; NO_MEMORY.
+enum status etd_init(struct etd *etd, const struct etd_grid *grid, const struct etd_plan *plan,
+                     const struct simulation *simulation, int64_t begin, int64_t steps) MUST_USE;
+void etd_clear(struct etd *etd);
+
+/// The step of the next sample, or INT64_MAX after the last.
+int64_t etd_due(const struct etd *etd);
+
+/// Add the present positions: those of step etd_due. The simulation is left alone.
+///
+/// Linear in the pairs within r_maximum, and at an origin in those of the list, which serves as it
+/// is if none of its particles has gone too far. The same counts for any number of threads, list,
+/// or order of particles: distances are in double precision of 32-bit fractions of the box (2e-9
+/// λ). Fails: NO_MEMORY. Tested: test_etd, test_etd_brute_force.
+enum status etd_sample(struct etd *etd, const struct simulation *simulation) MUST_USE;
+
+/// E and its standard error from the complete windows of independent replicas with the same grid.
+///
+/// E = 1 − escaped/begun, sums over all origins. Errors: jackknife that leaves out one block of
+/// consecutive origins, of all replicas' blocks, so that it knows of the correlation between pairs
+/// and between windows that overlap (blocks should be longer than a window);
+///   error² = (B − 1)/B Σ_b (E_(b) − mean E_(b))²
+/// over the B blocks with a pair in the bin (B. Efron and C. Stein, Ann. Stat. 9, 586 (1981)).
+/// Fewer than 3 tell nothing: then sqrt(E (1 − E)/n), as if the n pairs were independent.
+/// @param[in]  replicas         shape [count]
+/// @param[out] survival, error  shape [times, bins]; NaN where no pair began; error may be NULL
+/// @param[out] pairs            shape [bins]: begun, sum over origins; may be NULL
+/// Fails: NO_MEMORY. Tested: test_etd, test_etd_brute_force.
+enum status etd_result(const struct etd *const *replicas, size_t count, double *survival,
+                       double *error, uint64_t *pairs) MUST_USE;
+
+/// What goes with a checkpoint. The first span is `state`: read it before the others and call
+/// etd_make_room, since their lengths depend on it.
+enum { ETD_SPANS = 7 };
+size_t etd_spans(struct etd *etd, struct memory_span *spans);
+
+/// Room for state.followed records. Fails: NO_MEMORY.
+enum status etd_make_room(struct etd *etd) MUST_USE;

@@ -1,0 +1,390 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "observe/etd.h"
+
+#include "base/simd.h"
+
+#include <math.h>
+#include <string.h>
+
+#define GRID(name) .offset = offsetof(struct etd_grid, name)
+const struct field etd_grid_fields[] = {
+    {"r_minimum", FIELD_NUMBER, GRID(r_minimum), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
+     .unit = "lambda", .help = "where the bins of the first separation r_0 begin"},
+    {"r_maximum", FIELD_NUMBER, GRID(r_maximum), .required = true, .minimum = FIELD_ABOVE_ZERO,
+     .maximum = DBL_MAX, .unit = "lambda", .help = "where they end, and where a pair has escaped"},
+    {"bins", FIELD_INTEGER, GRID(bins), .initial = 100, .minimum = 1, .maximum = 10000, .unit = "",
+     .help = "of r_0"},
+    {"times", FIELD_INTEGER, GRID(times), .initial = 101, .minimum = 2, .maximum = 100000,
+     .unit = "", .help = "number of times, t = 0 among them"},
+    FIELD_END,
+};
+
+#define PLAN(name) .offset = offsetof(struct etd_plan, name)
+const struct field etd_plan_fields[] = {
+    {"every", FIELD_INTEGER, PLAN(every), .initial = 1, .minimum = 1, .maximum = 1e9,
+     .unit = "steps", .help = "between times; escapes in between go unseen"},
+    {"origin_every", FIELD_INTEGER, PLAN(origin_every), .initial = 10, .minimum = 1, .maximum = 1e6,
+     .unit = "times", .help = "between time origins"},
+    FIELD_END,
+};
+
+/// In place of a bin: the pair was too near at the origin, or not there.
+static const uint16_t no_bin = UINT16_MAX;
+
+/// Pairs whose distances are computed together.
+enum { BATCH = 512 };
+
+/// In place of a record.
+static const uint32_t no_record = UINT32_MAX;
+
+static enum status check(const struct etd_grid *grid, const struct box *box) {
+    if (!(grid->r_maximum > grid->r_minimum))
+        return status_fail(STATUS_BAD_INPUT, "etd: r_maximum %g is not above r_minimum %g",
+                           grid->r_maximum, grid->r_minimum);
+    if (box_shortest(box) < 2 * grid->r_maximum)
+        return status_fail(STATUS_BAD_INPUT,
+                           "etd: the box is too small: its shortest edge %g is below twice "
+                           "r_maximum, %g",
+                           box_shortest(box), grid->r_maximum);
+    return STATUS_OK;
+}
+
+static enum status count_origins(struct etd *etd, int64_t steps) {
+    const int64_t window = etd->grid.times - 1, samples = steps / etd->plan.every;
+    if (samples < window)
+        return status_fail(STATUS_BAD_INPUT,
+                           "etd: %lld times of %lld steps are longer than the %lld steps of the "
+                           "measurement",
+                           (long long)window, (long long)etd->plan.every, (long long)steps);
+    etd->origins = (size_t)((samples - window) / etd->plan.origin_every + 1);
+    etd->blocks = etd->origins < ETD_BLOCKS ? etd->origins : ETD_BLOCKS;
+    // A window is closed before the next is opened.
+    etd->slots = (size_t)((window + etd->plan.origin_every - 1) / etd->plan.origin_every);
+    return STATUS_OK;
+}
+
+enum status etd_init(struct etd *etd, const struct etd_grid *grid, const struct etd_plan *plan,
+                     const struct simulation *simulation, int64_t begin, int64_t steps) {
+    enum status status = STATUS_OK;
+    const struct box *box = &simulation->setup.box;
+    const size_t count = simulation->particles.count;
+    *etd = (struct etd){.grid = *grid, .plan = *plan, .begin = begin};
+    CHECK(check(grid, box));
+    CHECK(count_origins(etd, steps));
+    NEW_ARRAY(etd->began, etd->slots);
+    NEW_ARRAY(etd->open, etd->slots * etd_cells(etd));
+    NEW_ARRAY(etd->counts, etd->blocks * etd_cells(etd));
+    for (int d = 0; d < 3; d++) {
+        NEW_ARRAY(etd->place[d], count);
+        NEW_ARRAY(etd->listed[d], count);
+    }
+    NEW_ARRAY(etd->squares, count + BATCH);
+    CHECK(etd_make_room(etd));
+    CHECK(particles_init(&etd->own_particles, box, count));
+    CHECK(neighbours_init(&etd->own_list, NEIGHBOURS_HALF, box, count, grid->r_maximum, 0));
+done:
+    if (status != STATUS_OK)
+        etd_clear(etd);
+    return status;
+}
+
+static void clear_records(struct etd *etd) {
+    memory_free(etd->first);
+    memory_free(etd->second);
+    memory_free(etd->bin);
+    memory_free(etd->bucket);
+    memory_free(etd->next);
+}
+
+void etd_clear(struct etd *etd) {
+    clear_records(etd);
+    memory_free(etd->began);
+    memory_free(etd->open);
+    memory_free(etd->counts);
+    for (int d = 0; d < 3; d++) {
+        memory_free(etd->place[d]);
+        memory_free(etd->listed[d]);
+    }
+    memory_free(etd->squares);
+    particles_clear(&etd->own_particles);
+    neighbours_clear(&etd->own_list);
+    *etd = (struct etd){0};
+}
+
+int64_t etd_due(const struct etd *etd) {
+    const int64_t last = (int64_t)(etd->origins - 1) * etd->plan.origin_every + etd->grid.times - 1;
+    const int64_t sample = (int64_t)etd->state.samples;
+    return sample > last ? INT64_MAX : etd->begin + sample * etd->plan.every;
+}
+
+// Records -----------------------------------------------------------------------------------------
+
+static uint32_t *find_bucket(const struct etd *etd, uint32_t low, uint32_t high) {
+    // Multiplicative hashing (D. E. Knuth, The Art of Computer Programming, vol. 3, section 6.4).
+    const uint64_t hash = ((uint64_t)low << 32 | high) * 0x9e3779b97f4a7c15u;
+    return &etd->bucket[(hash >> 32) & (etd->buckets - 1)];
+}
+
+static void link_record(struct etd *etd, size_t record) {
+    uint32_t *bucket = find_bucket(etd, etd->first[record], etd->second[record]);
+    etd->next[record] = *bucket;
+    *bucket = (uint32_t)record;
+}
+
+/// Drop the records of escaped pairs, and make the buckets anew.
+static void compact(struct etd *etd) {
+    size_t kept = 0;
+    memset(etd->bucket, 0xff, etd->buckets * sizeof *etd->bucket);
+    for (size_t p = 0; p < etd->state.followed; p++) {
+        if (etd->first[p] == etd->second[p])
+            continue;
+        etd->first[kept] = etd->first[p];
+        etd->second[kept] = etd->second[p];
+        memmove(etd->bin + kept * etd->slots, etd->bin + p * etd->slots,
+                etd->slots * sizeof *etd->bin);
+        link_record(etd, kept++);
+    }
+    etd->state.followed = kept;
+}
+
+/// Move to arrays of twice the room, with two buckets a record.
+static enum status grow(struct etd *etd) {
+    enum status status = STATUS_OK;
+    struct etd larger = *etd;
+    larger.room = etd->room ? 2 * etd->room : 1024;
+    larger.buckets = 2 * larger.room;
+    larger.first = larger.second = larger.bucket = larger.next = NULL;
+    larger.bin = NULL;
+    NEW_ARRAY(larger.first, larger.room);
+    NEW_ARRAY(larger.second, larger.room);
+    NEW_ARRAY(larger.bin, larger.room * larger.slots);
+    NEW_ARRAY(larger.bucket, larger.buckets);
+    NEW_ARRAY(larger.next, larger.room);
+    if (etd->room > 0) {
+        memcpy(larger.first, etd->first, etd->room * sizeof *etd->first);
+        memcpy(larger.second, etd->second, etd->room * sizeof *etd->second);
+        memcpy(larger.bin, etd->bin, etd->room * etd->slots * sizeof *etd->bin);
+        clear_records(etd);
+    }
+    *etd = larger;
+done:
+    if (status != STATUS_OK)
+        clear_records(&larger);
+    return status;
+}
+
+enum status etd_make_room(struct etd *etd) {
+    while (etd->room == 0 || etd->state.followed > etd->room)
+        TRY(grow(etd));
+    return STATUS_OK;
+}
+
+/// The record of a pair that is within r_maximum at an origin, a new one if there is none.
+static enum status find_record(struct etd *etd, uint32_t low, uint32_t high, size_t *record) {
+    for (uint32_t p = *find_bucket(etd, low, high); p != no_record; p = etd->next[p])
+        if (etd->first[p] == low && etd->second[p] == high) {
+            *record = p;
+            return STATUS_OK;
+        }
+    if (etd->state.followed == etd->room) {
+        TRY(grow(etd));
+        compact(etd);
+    }
+    *record = etd->state.followed++;
+    etd->first[*record] = low;
+    etd->second[*record] = high;
+    memset(etd->bin + *record * etd->slots, 0xff, etd->slots * sizeof *etd->bin);
+    link_record(etd, *record);
+    return STATUS_OK;
+}
+
+// Sampling ----------------------------------------------------------------------------------------
+
+/// Squared distances [λ²] from places.
+struct metric {
+    const int32_t *place[3];
+    double scale[3]; ///< edges in units of 2⁻³²; 0 for an axis that is not there
+    double limit;    ///< of what has escaped [λ²]
+};
+
+static struct metric make_metric(int32_t *const place[3], const struct etd *etd) {
+    const struct box *box = &etd->own_particles.box;
+    struct metric metric = {.limit = etd->grid.r_maximum * etd->grid.r_maximum};
+    for (int d = 0; d < 3; d++) {
+        metric.place[d] = place[d];
+        metric.scale[d] = d < box->dimensions ? box->length[d] * 0x1p-32 : 0;
+    }
+    return metric;
+}
+
+static inline double square_distance(const struct metric *metric, size_t a, size_t b) {
+    double square = 0;
+    for (int d = 0; d < 3; d++) {
+        const double x =
+            metric->scale[d] * box_fraction_difference(metric->place[d][a], metric->place[d][b]);
+        square += x * x;
+    }
+    return square;
+}
+
+SIMD_CLONES static void measure_pairs(const struct metric *metric, const uint32_t *first,
+                                      const uint32_t *second, size_t count,
+                                      double *restrict squares) {
+    const struct metric m = *metric;
+    for (size_t k = 0; k < count; k++)
+        squares[k] = square_distance(&m, first[k], second[k]);
+}
+
+SIMD_CLONES static void measure_row(const struct metric *metric, size_t i, const int32_t *row,
+                                    size_t count, double *restrict squares) {
+    const struct metric m = *metric;
+    for (size_t k = 0; k < count; k++)
+        squares[k] = square_distance(&m, i, (size_t)row[k]);
+}
+
+/// Positions by id. Not those that the simulation keeps for its kernels: these may be of the middle
+/// of the step.
+static void gather(struct etd *etd, const struct particles *particles) {
+    for (int d = 0; d < particles->box.dimensions; d++) {
+        const double inverse = 1 / particles->box.length[d];
+        for (size_t k = 0; k < particles->count; k++)
+            etd->place[d][particles->id[k]] = box_fraction(particles->position[d][k], inverse);
+    }
+}
+
+/// Count an escape for every window that the pair is in, and end its record.
+static void escape(struct etd *etd, size_t record) {
+    uint16_t *bin = etd->bin + record * etd->slots;
+    for (size_t slot = 0; slot < etd->slots; slot++) {
+        const uint64_t time = etd->state.samples - etd->began[slot];
+        if (bin[slot] != no_bin && time < (uint64_t)etd->grid.times)
+            etd->open[slot * etd_cells(etd) + time * (size_t)etd->grid.bins + bin[slot]]++;
+    }
+    // A particle is at no distance from itself: what has escaped stays, until the next origin.
+    etd->second[record] = etd->first[record];
+}
+
+static void find_escapes(struct etd *etd) {
+    const struct metric metric = make_metric(etd->place, etd);
+    for (size_t begin = 0; begin < etd->state.followed; begin += BATCH) {
+        const size_t left = etd->state.followed - begin, count = left < BATCH ? left : BATCH;
+        measure_pairs(&metric, etd->first + begin, etd->second + begin, count, etd->squares);
+        for (size_t k = 0; k < count; k++)
+            if (etd->squares[k] >= metric.limit)
+                escape(etd, begin + k);
+    }
+}
+
+/// Add the window that ends with this sample, if one does.
+static void close_window(struct etd *etd) {
+    const uint64_t window = (uint64_t)etd->grid.times - 1, every = (uint64_t)etd->plan.origin_every;
+    const uint64_t sample = etd->state.samples;
+    if (sample < window || (sample - window) % every != 0)
+        return;
+    const size_t origin = (sample - window) / every;
+    const uint32_t *open = etd->open + origin % etd->slots * etd_cells(etd);
+    uint64_t *counts = etd->counts + origin * etd->blocks / etd->origins * etd_cells(etd);
+    for (size_t cell = 0; cell < etd_cells(etd); cell++)
+        counts[cell] += open[cell];
+}
+
+/// A pair that is within r_maximum at the origin of the window in `slot`.
+static enum status begin_pair(struct etd *etd, size_t slot, uint32_t a, uint32_t b, double square) {
+    size_t record;
+    TRY(find_record(etd, a < b ? a : b, a < b ? b : a, &record));
+    const double r = sqrt(square), low = etd->grid.r_minimum, high = etd->grid.r_maximum;
+    if (r < low)
+        return STATUS_OK;
+    const int64_t place = (int64_t)((r - low) / (high - low) * (double)etd->grid.bins);
+    const int64_t most = etd->grid.bins - 1; // the quotient may be rounded up
+    const uint16_t bin = (uint16_t)(place < most ? place : most);
+    etd->bin[record * etd->slots + slot] = bin;
+    etd->open[slot * etd_cells(etd) + bin]++;
+    return STATUS_OK;
+}
+
+static enum status search_list(struct etd *etd, size_t slot, const struct neighbours *neighbours,
+                               const uint32_t *id) {
+    const struct metric metric = make_metric(etd->listed, etd);
+    for (int d = 0; d < etd->own_particles.box.dimensions; d++)
+        for (size_t k = 0; k < neighbours->count; k++)
+            etd->listed[d][k] = etd->place[d][id[k]];
+    for (size_t i = 0; i < neighbours->count; i++) {
+        const int32_t *row = neighbours->list + neighbours->start[i];
+        const size_t count = neighbours->stop[i] - neighbours->start[i];
+        measure_row(&metric, i, row, count, etd->squares);
+        for (size_t k = 0; k < count; k++)
+            if (etd->squares[k] < metric.limit && (size_t)row[k] != i)
+                TRY(begin_pair(etd, slot, id[i], id[row[k]], etd->squares[k]));
+    }
+    return STATUS_OK;
+}
+
+/// Whether every pair within `range` is on the list: none can be that was farther apart than the
+/// list's range when it was built.
+static bool covers(const struct neighbours *neighbours, const struct particles *particles,
+                   double range) {
+    double most = 0;
+    for (size_t k = 0; k < particles->count; k++) {
+        double square = 0;
+        for (int d = 0; d < particles->box.dimensions; d++) {
+            const double moved = particles->position[d][k] - neighbours->built[d][k];
+            square += moved * moved;
+        }
+        most = square > most ? square : most;
+    }
+    return range + 2 * sqrt(most) <= neighbours->range;
+}
+
+static enum status search_own_list(struct etd *etd, size_t slot,
+                                   const struct particles *particles) {
+    struct particles *own = &etd->own_particles;
+    // `order` of the search is free until it is used: from ids to the simulation's order.
+    uint32_t *order = etd->own_list.order;
+    for (size_t k = 0; k < particles->count; k++)
+        order[particles->id[k]] = (uint32_t)k;
+    for (int d = 0; d < particles->box.dimensions; d++)
+        for (size_t k = 0; k < own->count; k++)
+            own->position[d][k] = particles->position[d][order[own->id[k]]];
+    TRY(neighbours_sort_and_build(&etd->own_list, own));
+    return search_list(etd, slot, &etd->own_list, own->id);
+}
+
+static enum status open_window(struct etd *etd, const struct simulation *simulation) {
+    const uint64_t every = (uint64_t)etd->plan.origin_every, sample = etd->state.samples;
+    if (sample % every != 0 || sample / every >= etd->origins)
+        return STATUS_OK;
+    const size_t slot = sample / every % etd->slots;
+    etd->began[slot] = sample;
+    memset(etd->open + slot * etd_cells(etd), 0, etd_cells(etd) * sizeof *etd->open);
+    for (size_t p = 0; p < etd->state.followed; p++)
+        etd->bin[p * etd->slots + slot] = no_bin;
+    compact(etd);
+    const struct particles *particles = &simulation->particles;
+    if (covers(&simulation->neighbours, particles, etd->grid.r_maximum))
+        return search_list(etd, slot, &simulation->neighbours, particles->id);
+    return search_own_list(etd, slot, particles);
+}
+
+enum status etd_sample(struct etd *etd, const struct simulation *simulation) {
+    gather(etd, &simulation->particles);
+    find_escapes(etd);
+    close_window(etd);
+    TRY(open_window(etd, simulation));
+    etd->state.samples++;
+    return STATUS_OK;
+}
+
+size_t etd_spans(struct etd *etd, struct memory_span *spans) {
+    const size_t records = etd->state.followed, slots = etd->slots;
+    size_t n = 0;
+    spans[n++] = (struct memory_span){&etd->state, sizeof etd->state};
+    spans[n++] = (struct memory_span){etd->first, records * sizeof *etd->first};
+    spans[n++] = (struct memory_span){etd->second, records * sizeof *etd->second};
+    spans[n++] = (struct memory_span){etd->bin, records * slots * sizeof *etd->bin};
+    spans[n++] = (struct memory_span){etd->began, slots * sizeof *etd->began};
+    spans[n++] = (struct memory_span){etd->open, slots * etd_cells(etd) * sizeof *etd->open};
+    spans[n++] =
+        (struct memory_span){etd->counts, etd->blocks * etd_cells(etd) * sizeof *etd->counts};
+    return n;
+}
