@@ -19,6 +19,11 @@ enum status checkpoint_save(const char *file, uint64_t digest, const struct memo
 enum status checkpoint_load(const char *file, uint64_t digest, const struct memory_span *spans,
                             size_t count) MUST_USE;
 
+/// Load one span alone: number `number`, from 0, of a state whose other lengths depend on it.
+/// Fails: as checkpoint_load; IO.
+enum status checkpoint_load_span(const char *file, uint64_t digest, size_t number,
+                                 const struct memory_span *span) MUST_USE;
+
 /// Digest of a file's bytes (FNV-1a, 64 bits).
 enum status checkpoint_digest(const char *file, uint64_t *digest) MUST_USE;
 

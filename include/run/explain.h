@@ -2,6 +2,7 @@
 /// @file What a scene will pay for: every stage of a step, on or off and why.
 #pragma once
 
+#include "observe/etd.h"
 #include "observe/motion.h"
 
 #include <stdio.h>
@@ -16,6 +17,8 @@ struct explain_measured {
     bool sums;                        ///< energy, pressure, temperatures
     int64_t every;                    ///< steps between samples
     const struct motion_plan *motion; ///< NULL: no diffusion
+    const struct etd_grid *etd_grid;  ///< NULL: no escape times
+    const struct etd_plan *etd_plan;
 };
 
 /// Print the stages of a step with the share of the time that each is expected to take, from costs

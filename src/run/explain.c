@@ -8,10 +8,10 @@
 
 /// Nanoseconds, measured on Zen 5 with AVX-512 in mixed precision, one thread: of a particle and
 /// step, of an entry of the list, of a pair in range; of a particle and sample of the motion, and
-/// of each time origin of that.
+/// of each time origin of that; of a pair and sample of the escape times, and of one at an origin.
 static const struct {
     double move, sort, build, go_through, pair, conservative, dissipative, kept, count, flux, sum,
-        curvature, gather, correlate;
+        curvature, gather, correlate, follow, begin;
 } cost = {.move = 8,
           .sort = 28,
           .build = 0.9,
@@ -25,9 +25,11 @@ static const struct {
           .sum = 0.2,
           .curvature = 8,
           .gather = 4,
-          .correlate = 1.3};
+          .correlate = 1.3,
+          .follow = 2,
+          .begin = 25};
 
-enum { MOST_STAGES = 12 };
+enum { MOST_STAGES = 14 };
 
 struct stage {
     const char *name;
@@ -134,6 +136,23 @@ static void add_motion(struct plan *plan, const struct motion_plan *motion) {
         "%.0f time origins, one step in %.0f", origins, every);
 }
 
+static void add_etd(struct plan *plan, const struct simulation_setup *setup,
+                    const struct explain_measured *measured) {
+    const struct etd_grid *grid = measured->etd_grid;
+    if (grid == NULL) {
+        add(plan, "escape times", false, 0, "not asked for");
+        return;
+    }
+    const double every = (double)measured->etd_plan->every;
+    const double origin_every = (double)measured->etd_plan->origin_every;
+    const double pairs = pairs_within(setup, grid->r_maximum);
+    const double listed = pairs_within(setup, fmax(grid->r_maximum, measured->cutoff));
+    const double origin = (cost.begin * pairs + cost.go_through * listed) / origin_every;
+    add(plan, "escape times", true, (cost.gather + cost.follow * pairs + origin) / every,
+        "%.0f pairs a particle within %g, one step in %.0f; an origin in %.0f", pairs,
+        grid->r_maximum, every, origin_every * every);
+}
+
 void explain_scene(FILE *out, const struct simulation_setup *setup,
                    const struct explain_measured *measured) {
     struct plan plan = {0};
@@ -143,6 +162,7 @@ void explain_scene(FILE *out, const struct simulation_setup *setup,
     add_forces(&plan, setup, measured);
     add_samples(&plan, setup, measured);
     add_motion(&plan, measured->motion);
+    add_etd(&plan, setup, measured);
     double total = 0;
     for (int k = 0; k < plan.count; k++)
         total += plan.stage[k].nanoseconds;

@@ -18,7 +18,7 @@ enum {
 
 struct figure {
     const char *name;      ///< of the script and of the figure
-    const char *tables[3]; ///< that the script cannot do without; NULL-terminated
+    const char *tables[4]; ///< that the script cannot do without; NULL-terminated
     const char *column;    ///< that the first table must have, or NULL
 };
 
@@ -29,6 +29,7 @@ static const struct figure figures[] = {
     {"generations", {"history.tsv"}, "diversity"},
     {"simulation", {"thermodynamics.tsv"}, NULL},
     {"motion", {"motion.tsv"}, NULL},
+    {"etd", {"etd.tsv", "etd_error.tsv", "etd_bins.tsv"}, NULL},
 };
 
 static const struct figure comparison = {"compare", {"compare.tsv"}, NULL};

@@ -10,6 +10,7 @@
 #include "run/heading.h"
 #include "run/progress.h"
 #include "run/scene.h"
+#include "run/simulate_etd.h"
 #include "run/simulate_motion.h"
 
 #include <math.h>
@@ -49,6 +50,7 @@ struct run {
     struct rdf_force rdf_force; ///< if it is used
     struct thermodynamics thermodynamics;
     struct simulate_motion motion;
+    struct simulate_etd etd;
 };
 
 /// Threads meet a dozen times in a step: with fewer particles than this each, and a busy machine,
@@ -75,6 +77,7 @@ static enum status read_file(struct run *run, const char *file, const struct run
     if (rdf.item)
         json_finish(&rdf);
     simulate_motion_read(&run->motion, &root);
+    simulate_etd_read(&run->etd, &root);
     json_finish(&root);
     TRY(json_close(document));
     TRY(status);
@@ -99,6 +102,7 @@ static enum status write_used(struct run *run, bool resume) {
     json_put_fields(writer, simulate_rdf_fields, &run->rdf_parameters);
     json_end(writer);
     simulate_motion_write_used(&run->motion, writer);
+    simulate_etd_write_used(&run->etd, writer);
     run_folder_file(&run->folder, resume ? "used.json.resumed" : "used.json", path);
     const enum status status = json_write(writer, path);
     json_writer_free(writer);
@@ -114,7 +118,7 @@ static bool uses_force(const struct run *run) {
     return run->rdf_parameters.estimator == RDF_FORCE_USED;
 }
 
-enum { MAX_SPANS = SIMULATION_SPANS + 6 + RDF_FORCE_SPANS + MOTION_SPANS };
+enum { MAX_SPANS = SIMULATION_SPANS + 6 + RDF_FORCE_SPANS + MOTION_SPANS + ETD_SPANS };
 
 static size_t run_spans(struct run *run, struct memory_span *spans) {
     size_t n = simulation_spans(&run->simulation, spans);
@@ -127,7 +131,8 @@ static size_t run_spans(struct run *run, struct memory_span *spans) {
                                       THERMODYNAMICS_QUANTITIES * run->thermodynamics.planned * 8};
     if (uses_force(run))
         n += rdf_force_spans(&run->rdf_force, spans + n);
-    return n + simulate_motion_spans(&run->motion, spans + n);
+    n += simulate_motion_spans(&run->motion, spans + n);
+    return n + simulate_etd_spans(&run->etd, spans + n);
 }
 
 static enum status save(struct run *run) {
@@ -142,7 +147,14 @@ static enum status load(struct run *run) {
     struct memory_span spans[MAX_SPANS];
     char path[OUTPUT_PATH_SIZE];
     run_folder_file(&run->folder, "checkpoint.bin", path);
-    TRY(checkpoint_load(path, run->digest, spans, run_spans(run, spans)));
+    size_t count = run_spans(run, spans);
+    if (run->etd.on) { // which has as many pairs as there were
+        const size_t first = count - ETD_SPANS;
+        TRY(checkpoint_load_span(path, run->digest, first, &spans[first]));
+        TRY(etd_make_room(&run->etd.etd));
+        count = run_spans(run, spans);
+    }
+    TRY(checkpoint_load(path, run->digest, spans, count));
     run->progress.done_before = run->simulation.step;
     return simulation_restore(&run->simulation);
 }
@@ -248,6 +260,7 @@ static enum status write_summary(const struct run *run, double seconds) {
     json_put_number(writer, "seed", (double)run->heading.seed);
     json_put_text(writer, "version", MESOFIT_VERSION);
     simulate_motion_write_summary(&run->motion, &run->scene.units, writer);
+    simulate_etd_write_summary(&run->etd, writer);
     units_put(&run->scene.units, writer, s.potential_energy, s.pressure);
     run_folder_file(&run->folder, "summary.json", path);
     const enum status status = json_write(writer, path);
@@ -286,6 +299,8 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
         return status_prefix(status, "%s", file);
     TRY(thermodynamics_init(&run->thermodynamics, (size_t)run->plan.samples));
     status = simulate_motion_begin(&run->motion, &run->simulation, &run->plan);
+    if (status == STATUS_OK)
+        status = simulate_etd_begin(&run->etd, &run->simulation, &run->plan);
     if (status != STATUS_OK)
         return status_prefix(status, "%s", file);
     return options->resume ? load(run) : STATUS_OK;
@@ -296,7 +311,8 @@ static enum status carry_out(struct run *run) {
     const struct measure_targets targets = {.rdf = &run->rdf,
                                             .rdf_force = uses_force(run) ? &run->rdf_force : NULL,
                                             .thermodynamics = &run->thermodynamics,
-                                            .motion = simulate_motion_target(&run->motion)};
+                                            .motion = simulate_motion_target(&run->motion),
+                                            .etd = simulate_etd_target(&run->etd)};
     double temperature;
     TRY(measure_equilibrate(&run->simulation, &run->plan, &temperature, &listener));
     return measure_sample(&run->simulation, &run->plan, targets, &listener);
@@ -309,6 +325,7 @@ static enum status write_results(struct run *run) {
     char path[OUTPUT_PATH_SIZE];
     run_folder_file(&run->folder, "motion.tsv", path);
     TRY(simulate_motion_write_table(&run->motion, path));
+    TRY(simulate_etd_write_tables(&run->etd, run->folder.path));
     TRY(write_summary(run, seconds));
     run_folder_draw(&run->folder);
     const struct thermodynamics_summary s = thermodynamics_result(&run->thermodynamics, 1);
@@ -340,6 +357,7 @@ done:
         rdf_force_clear(&run->rdf_force);
         thermodynamics_clear(&run->thermodynamics);
         simulate_motion_clear(&run->motion);
+        simulate_etd_clear(&run->etd);
         scene_clear(&run->scene);
     }
     memory_free(run);
@@ -361,7 +379,9 @@ enum status simulate_explain(const char *file, const struct run_options *options
         .rdf_force = uses_force(run),
         .sums = true,
         .every = run->plan.every,
-        .motion = run->motion.on ? &run->motion.plan : NULL};
+        .motion = run->motion.on ? &run->motion.plan : NULL,
+        .etd_grid = run->etd.on ? &run->etd.grid : NULL,
+        .etd_plan = &run->etd.plan};
     explain_scene(stdout, setup, &measured);
 done:
     if (run)

@@ -97,6 +97,26 @@ static void test_checkpoint_load_refuses_when_the_file_is_cut_short(void **state
     assert_refused(file, DIGEST, SPANS, "not a checkpoint of this version");
 }
 
+static void test_checkpoint_load_span_finds_one_alone(void **state) {
+    const char *file = save(state);
+    struct pieces pieces = before;
+    struct memory_span spans[SPANS];
+    list(&pieces, spans);
+    assert_ok(checkpoint_load(file, DIGEST, spans, SPANS));
+    for (size_t k = 0; k < SPANS; k++) {
+        memset(spans[k].memory, 1, spans[k].bytes);
+        assert_ok(checkpoint_load_span(file, DIGEST, k, &spans[k]));
+        assert_true(is_same(&pieces, &saved));
+    }
+    spans[1].bytes++;
+    assert_fails(checkpoint_load_span(file, DIGEST, 1, &spans[1]), STATUS_BAD_INPUT,
+                 "another shape");
+    assert_fails(checkpoint_load_span(file, DIGEST, SPANS, &spans[0]), STATUS_BAD_INPUT,
+                 "another shape");
+    assert_fails(checkpoint_load_span(file, DIGEST + 1, 0, &spans[0]), STATUS_BAD_INPUT,
+                 "settings have changed");
+}
+
 static void test_checkpoint_load_names_the_file_when_it_is_missing(void **state) {
     const char *file = temporary_folder_file(*state, "checkpoint.bin");
     assert_fails(checkpoint_load(file, DIGEST, NULL, 0), STATUS_IO,
@@ -124,6 +144,7 @@ static void test_checkpoint_digest_is_fnv_1a(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        TEST(test_checkpoint_load_span_finds_one_alone),
         TEST(test_checkpoint_load_gives_the_bits_that_were_saved),
         TEST(test_checkpoint_load_refuses_when_the_settings_are_others),
         TEST(test_checkpoint_load_refuses_when_the_shape_is_another),
