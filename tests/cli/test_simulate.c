@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // `mesofit simulate` from outside: its files, the same bits again, interruption, instability.
+#include "run/target_etd.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
@@ -147,6 +148,35 @@ static void test_simulate_measures_escape_times_when_asked(void **state) {
     run_program_assert_code(&result, 0);
     assert_contains(result.out, "r_maximum");
     assert_contains(result.out, "origin_every");
+}
+
+/// What one run has measured can be the target of another.
+static void test_simulated_escape_times_can_be_a_target(void **state) {
+    static struct run_program_result result;
+    static const char text[] =
+        "{\"target_etd\": {\"file\": \"out/etd.tsv\", \"error_file\": \"out/etd_error.tsv\", "
+        "\"r_minimum\": 0, \"r_maximum\": 0.9}}";
+    struct json_document *document;
+    struct target_etd target;
+    int64_t every;
+    write_scene(*state, groot_warren, "\"measure\"",
+                "\"etd\": {\"r_maximum\": 0.9, \"bins\": 90, \"times\": 7, \"every\": 3}, "
+                "\"measure\"");
+    simulate(&result, "out");
+    const char *file = temporary_folder_write(*state, "target.json", text, sizeof text - 1);
+    assert_ok(json_open(&document, file));
+    struct json_object root = json_root(document);
+    assert_ok(target_etd_read(&target, &root));
+    assert_ok(json_close(document));
+    assert_int_equal(target.grid.times, 7);
+    assert_int_equal(target.grid.bins, 90);
+    // No pair is nearer than 0.01 λ; most bins are known.
+    assert_in_range(target.left_out, 7, 7 * 30);
+    assert_int_equal(target.left_out % 7, 0);
+    assert_true(target.survival[7 * 90 - 1] < 0.6 && target.error[7 * 90 - 1] > 0);
+    assert_ok(target_etd_steps(&target, 0.04, &every));
+    assert_int_equal(every, 3);
+    target_etd_clear(&target);
 }
 
 static void test_simulate_refuses_escape_times_that_it_cannot_measure(void **state) {
@@ -463,6 +493,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_simulate_measures_diffusion_when_asked),
         TEST(test_simulate_draws_escape_times_when_gnuplot_is_there),
         TEST_WITHOUT_FIGURES(test_simulate_measures_escape_times_when_asked),
+        TEST_WITHOUT_FIGURES(test_simulated_escape_times_can_be_a_target),
         TEST_WITHOUT_FIGURES(test_simulate_refuses_escape_times_that_it_cannot_measure),
         TEST_WITHOUT_FIGURES(test_used_settings_run_again_give_the_same_bits),
         TEST_WITHOUT_FIGURES(test_the_seed_of_the_command_line_counts),

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file A measured escape time distribution to be matched.
+#pragma once
+
+#include "io/json.h"
+#include "observe/etd.h"
+
+/// "target_etd" of a run file.
+struct target_etd_parameters {
+    char file[FIELD_TEXT_SIZE], error_file[FIELD_TEXT_SIZE]; ///< the latter "": no errors given
+    int64_t time_column, first_column;                       ///< from 1
+    double r_minimum, r_maximum;                             ///< [λ]
+};
+
+extern const struct field target_etd_fields[];
+
+struct target_etd {
+    struct target_etd_parameters parameters;
+    struct etd_grid grid;
+    double interval;          ///< between times [τ]
+    double *survival, *error; ///< shape [times, bins]; NaN: not known; error 0 without errors
+    size_t left_out;          ///< cells that are not known
+};
+
+/// Read {"file": …} at "target_etd": a time in each row, from 0 on and equally spaced, and from
+/// first_column on E of one bin in each column, equal bins from r_minimum to r_maximum. The table
+/// of standard errors has the same shape. Cells where either is nan are not known. What `mesofit
+/// simulate` writes, etd.tsv and etd_error.tsv, needs no columns.
+///
+/// Faults (shape, times, values that are no survival probability, …) go to the document and leave
+/// the target empty. Fails: NO_MEMORY. Tested: test_target_etd, test_simulate.
+enum status target_etd_read(struct target_etd *target, struct json_object *parent) MUST_USE;
+void target_etd_clear(struct target_etd *target);
+
+/// Steps of length `time_step` [τ] between the target's times, for etd_plan.every: escapes between
+/// samples go unseen, so that a simulation must look as often as the measurement did.
+/// Fails: BAD_INPUT, with the nearest time steps that would do, if the interval is not a whole
+/// number of steps to 0.1 %. Tested: test_target_etd.
+enum status target_etd_steps(const struct target_etd *target, double time_step,
+                             int64_t *every) MUST_USE;
