@@ -4,6 +4,7 @@
 
 #include "base/fields.h"
 #include "observe/etd.h"
+#include "observe/force_covariance.h"
 #include "observe/motion.h"
 #include "observe/rdf_force.h"
 #include "observe/thermodynamics.h"
@@ -25,6 +26,7 @@ struct measure_targets {
     struct rdf *rdf;
     struct rdf_force *rdf_force;
     struct thermodynamics *thermodynamics;
+    struct force_covariance *force_covariance;
     struct motion *motion; ///< begun at the end of the equilibration; has an interval of its own
     struct etd *etd;       ///< the same
 };

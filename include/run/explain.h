@@ -9,12 +9,13 @@
 
 /// What is measured of a simulation.
 struct explain_measured {
-    bool has_potential;               ///< of its own or to be fitted
-    double cutoff;                    ///< of the forces [λ]
-    double rdf_range;                 ///< 0: no g(r) [λ]
-    bool rdf_force;                   ///< g(r) from forces as well
-    bool rdf_force_alone;             ///< … and not counted, if the potential has a barrier
-    bool sums;                        ///< energy, pressure, temperatures
+    bool has_potential;   ///< of its own or to be fitted
+    double cutoff;        ///< of the forces [λ]
+    double rdf_range;     ///< 0: no g(r) [λ]
+    bool rdf_force;       ///< g(r) from forces as well
+    bool rdf_force_alone; ///< … and not counted, if the potential has a barrier
+    bool sums;            ///< energy, pressure, temperatures
+    bool force_covariance;
     int64_t every;                    ///< steps between samples
     const struct motion_plan *motion; ///< NULL: no diffusion
     const struct etd_grid *etd_grid;  ///< NULL: no escape times

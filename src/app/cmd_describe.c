@@ -31,6 +31,11 @@ static const struct topic fixed_topics[] = {
      "etd",
      "\"etd\" of a scene file: escape times of pairs; measured if it is there",
      {etd_grid_fields, etd_plan_fields}},
+    {"files",
+     "force_covariance",
+     "\"force_covariance\" of a scene file: friction as the forces show it; measured if it is "
+     "there",
+     {force_covariance_fields}},
     {"files", "units", "\"units\" of a scene: physical units for the results", {units_fields}},
     {"files", "target", "\"target\" of a run file", {target_fields}},
     {"files", "core", "\"core\" of a run file: where the target is 0", {fit_core_fields}},

@@ -103,6 +103,8 @@ enum status measure_sample(struct simulation *simulation, const struct measure_p
         simulation->wants = PAIR_FORCES;
         TRY(run_moving(simulation, due - 1, &targets));
         TRY(run_sampled_step(simulation, due, targets));
+        if (targets.force_covariance) // while the forces are still those of the step
+            force_covariance_sample(targets.force_covariance, simulation);
         if (targets.rdf_force)
             TRY(rdf_force_sample(targets.rdf_force, &simulation->particles,
                                  &simulation->neighbours));

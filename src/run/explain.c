@@ -8,10 +8,11 @@
 
 /// Nanoseconds, measured on Zen 5 with AVX-512 in mixed precision, one thread: of a particle and
 /// step, of an entry of the list, of a pair in range; of a particle and sample of the motion, and
-/// of each time origin of that; of a pair and sample of the escape times, and of one at an origin.
+/// of each time origin of that; of a pair and sample of the escape times, and of one at an origin;
+/// of a pair and sample of the force covariance.
 static const struct {
     double move, sort, build, go_through, pair, conservative, dissipative, kept, count, flux, sum,
-        curvature, gather, correlate, follow, begin;
+        curvature, gather, correlate, follow, begin, covary;
 } cost = {.move = 8,
           .sort = 28,
           .build = 0.9,
@@ -27,7 +28,8 @@ static const struct {
           .gather = 4,
           .correlate = 1.3,
           .follow = 2,
-          .begin = 25};
+          .begin = 25,
+          .covary = 3};
 
 enum { MOST_STAGES = 14 };
 
@@ -114,6 +116,8 @@ static void add_samples(struct plan *plan, const struct simulation_setup *setup,
     if (measured->rdf_force)
         add(plan, "g(r) from forces", true, cost.flux * fmax(pairs, farther) / every,
             "one step in %.0f: the forces without friction and noise, then all pairs", every);
+    if (measured->force_covariance)
+        add(plan, "force covariance", true, cost.covary * pairs / every, "one step in %.0f", every);
     if (measured->sums) {
         add(plan, "energy, virial, temperature", true, (cost.sum * pairs + 2) / every,
             "one step in %.0f", every);

@@ -8,19 +8,9 @@
 #include <unistd.h>
 
 static const char *const results[] = {
-    "summary.json",
-    "history.tsv",
-    "timing.tsv",
-    "potential.tsv",
-    "potential_history.tsv",
-    "rdf.tsv",
-    "thermodynamics.tsv",
-    "motion.tsv",
-    "etd.tsv",
-    "etd_error.tsv",
-    "etd_bins.tsv",
-    "omega.tsv",
-    "checkpoint.bin",
+    "summary.json", "history.tsv",          "timing.tsv", "potential.tsv",  "potential_history.tsv",
+    "rdf.tsv",      "thermodynamics.tsv",   "motion.tsv", "etd.tsv",        "etd_error.tsv",
+    "etd_bins.tsv", "force_covariance.tsv", "omega.tsv",  "checkpoint.bin",
 };
 
 static enum status remove_results(const struct run_folder *folder) {

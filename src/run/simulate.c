@@ -11,6 +11,7 @@
 #include "run/progress.h"
 #include "run/scene.h"
 #include "run/simulate_etd.h"
+#include "run/simulate_force_covariance.h"
 #include "run/simulate_motion.h"
 
 #include <math.h>
@@ -50,6 +51,7 @@ struct run {
     struct rdf_force rdf_force; ///< if it is used
     struct thermodynamics thermodynamics;
     struct simulate_motion motion;
+    struct simulate_force_covariance force_covariance;
     struct simulate_etd etd;
 };
 
@@ -78,6 +80,7 @@ static enum status read_file(struct run *run, const char *file, const struct run
         json_finish(&rdf);
     simulate_motion_read(&run->motion, &root);
     simulate_etd_read(&run->etd, &root);
+    simulate_force_covariance_read(&run->force_covariance, &root);
     json_finish(&root);
     TRY(json_close(document));
     TRY(status);
@@ -103,6 +106,7 @@ static enum status write_used(struct run *run, bool resume) {
     json_end(writer);
     simulate_motion_write_used(&run->motion, writer);
     simulate_etd_write_used(&run->etd, writer);
+    simulate_force_covariance_write_used(&run->force_covariance, writer);
     run_folder_file(&run->folder, resume ? "used.json.resumed" : "used.json", path);
     const enum status status = json_write(writer, path);
     json_writer_free(writer);
@@ -118,7 +122,10 @@ static bool uses_force(const struct run *run) {
     return run->rdf_parameters.estimator == RDF_FORCE_USED;
 }
 
-enum { MAX_SPANS = SIMULATION_SPANS + 6 + RDF_FORCE_SPANS + MOTION_SPANS + ETD_SPANS };
+enum {
+    MAX_SPANS =
+        SIMULATION_SPANS + 6 + RDF_FORCE_SPANS + MOTION_SPANS + FORCE_COVARIANCE_SPANS + ETD_SPANS
+};
 
 static size_t run_spans(struct run *run, struct memory_span *spans) {
     size_t n = simulation_spans(&run->simulation, spans);
@@ -132,6 +139,7 @@ static size_t run_spans(struct run *run, struct memory_span *spans) {
     if (uses_force(run))
         n += rdf_force_spans(&run->rdf_force, spans + n);
     n += simulate_motion_spans(&run->motion, spans + n);
+    n += simulate_force_covariance_spans(&run->force_covariance, spans + n);
     return n + simulate_etd_spans(&run->etd, spans + n);
 }
 
@@ -301,6 +309,9 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
     status = simulate_motion_begin(&run->motion, &run->simulation, &run->plan);
     if (status == STATUS_OK)
         status = simulate_etd_begin(&run->etd, &run->simulation, &run->plan);
+    if (status == STATUS_OK)
+        status =
+            simulate_force_covariance_begin(&run->force_covariance, &run->simulation, &run->plan);
     if (status != STATUS_OK)
         return status_prefix(status, "%s", file);
     return options->resume ? load(run) : STATUS_OK;
@@ -308,11 +319,13 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
 
 static enum status carry_out(struct run *run) {
     const struct measure_listener listener = {tell, run};
-    const struct measure_targets targets = {.rdf = &run->rdf,
-                                            .rdf_force = uses_force(run) ? &run->rdf_force : NULL,
-                                            .thermodynamics = &run->thermodynamics,
-                                            .motion = simulate_motion_target(&run->motion),
-                                            .etd = simulate_etd_target(&run->etd)};
+    const struct measure_targets targets = {
+        .rdf = &run->rdf,
+        .rdf_force = uses_force(run) ? &run->rdf_force : NULL,
+        .thermodynamics = &run->thermodynamics,
+        .force_covariance = simulate_force_covariance_target(&run->force_covariance),
+        .motion = simulate_motion_target(&run->motion),
+        .etd = simulate_etd_target(&run->etd)};
     double temperature;
     TRY(measure_equilibrate(&run->simulation, &run->plan, &temperature, &listener));
     return measure_sample(&run->simulation, &run->plan, targets, &listener);
@@ -326,6 +339,8 @@ static enum status write_results(struct run *run) {
     run_folder_file(&run->folder, "motion.tsv", path);
     TRY(simulate_motion_write_table(&run->motion, path));
     TRY(simulate_etd_write_tables(&run->etd, run->folder.path));
+    run_folder_file(&run->folder, "force_covariance.tsv", path);
+    TRY(simulate_force_covariance_write_table(&run->force_covariance, path));
     TRY(write_summary(run, seconds));
     run_folder_draw(&run->folder);
     const struct thermodynamics_summary s = thermodynamics_result(&run->thermodynamics, 1);
@@ -358,6 +373,7 @@ done:
         thermodynamics_clear(&run->thermodynamics);
         simulate_motion_clear(&run->motion);
         simulate_etd_clear(&run->etd);
+        simulate_force_covariance_clear(&run->force_covariance);
         scene_clear(&run->scene);
     }
     memory_free(run);
@@ -379,6 +395,7 @@ enum status simulate_explain(const char *file, const struct run_options *options
         .rdf_force = uses_force(run),
         .sums = true,
         .every = run->plan.every,
+        .force_covariance = run->force_covariance.on,
         .motion = run->motion.on ? &run->motion.plan : NULL,
         .etd_grid = run->etd.on ? &run->etd.grid : NULL,
         .etd_plan = &run->etd.plan};

@@ -150,6 +150,38 @@ static void test_simulate_measures_escape_times_when_asked(void **state) {
     assert_contains(result.out, "origin_every");
 }
 
+static void test_simulate_measures_the_force_covariance_when_asked(void **state) {
+    static struct run_program_result result;
+    static const char *const covariance[] = {"force_covariance.tsv", NULL};
+    write_scene(*state, groot_warren, "\"measure\"",
+                "\"force_covariance\": {}, \"dynamics\": {\"integrator\": \"dpd-verlet\"}, "
+                "\"measure\"");
+    simulate(&result, "with");
+    results_assert_table("with/force_covariance.tsv", 3, 50);
+    write_scene(*state, groot_warren, "\"measure\"",
+                "\"dynamics\": {\"integrator\": \"dpd-verlet\"}, \"measure\"");
+    simulate(&result, "without");
+    assert_false(temporary_folder_exists("without/force_covariance.tsv"));
+    results_assert_same("without", "with", tables);
+    RUN_PROGRAM(&result, "simulate", "with/used.json", "-o", "again");
+    run_program_assert_code(&result, 0);
+    results_assert_same("with", "again", covariance);
+    RUN_PROGRAM(&result, "simulate", "with/used.json", "--explain");
+    assert_contains(result.out, "force covariance                   on ");
+    RUN_PROGRAM(&result, "describe", "force_covariance");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "range");
+}
+
+static void test_simulate_refuses_a_force_covariance_without_friction_forces(void **state) {
+    static struct run_program_result result;
+    write_scene(*state, groot_warren, "\"measure\"", "\"force_covariance\": {}, \"measure\"");
+    RUN_PROGRAM(&result, "simulate", "scene.json");
+    run_program_assert_refused(
+        &result, ".", "friction split off", 1,
+        (const char *[]){"scene.json", "\"aboba\" splits friction", "dpd-verlet", NULL});
+}
+
 /// What one run has measured can be the target of another.
 static void test_simulated_escape_times_can_be_a_target(void **state) {
     static struct run_program_result result;
@@ -338,6 +370,15 @@ static void test_interrupted_escape_times_go_on_with_the_same_bits(void **state)
     results_assert_same("whole", "pieces", etd_tables);
 }
 
+static void test_interrupted_force_covariance_goes_on_with_the_same_bits(void **state) {
+    check_interruption(*state, groot_warren,
+                       "\"measure\": {\"equilibration\": 100, \"samples\": 20, \"every\": 10}",
+                       "\"force_covariance\": {\"bins\": 9}, " ETD
+                       "\"dynamics\": {\"integrator\": \"dpd-verlet\"}, " LONG_MEASURE);
+    results_assert_same("whole", "pieces", (const char *const[]){"force_covariance.tsv", NULL});
+    results_assert_same("whole", "pieces", etd_tables);
+}
+
 /// Shardlow's step begins with pairs that no checkpoint holds; ABOBA's samples need a force pass of
 /// their own.
 static void
@@ -493,6 +534,9 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_simulate_measures_diffusion_when_asked),
         TEST(test_simulate_draws_escape_times_when_gnuplot_is_there),
         TEST_WITHOUT_FIGURES(test_simulate_measures_escape_times_when_asked),
+        TEST_WITHOUT_FIGURES(test_simulate_measures_the_force_covariance_when_asked),
+        TEST_WITHOUT_FIGURES(test_simulate_refuses_a_force_covariance_without_friction_forces),
+        TEST_WITHOUT_FIGURES(test_interrupted_force_covariance_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_simulated_escape_times_can_be_a_target),
         TEST_WITHOUT_FIGURES(test_simulate_refuses_escape_times_that_it_cannot_measure),
         TEST_WITHOUT_FIGURES(test_used_settings_run_again_give_the_same_bits),
