@@ -28,7 +28,7 @@ struct target_etd {
 /// simulate` writes, etd.tsv and etd_error.tsv, needs no columns.
 ///
 /// Faults (shape, times, values that are no survival probability, …) go to the document and leave
-/// the target empty. Fails: NO_MEMORY. Tested: test_target_etd, test_simulate.
+/// the target empty. Fails: NO_MEMORY. Tested: test_target_etd, test_simulate_pairs.
 enum status target_etd_read(struct target_etd *target, struct json_object *parent) MUST_USE;
 void target_etd_clear(struct target_etd *target);
 

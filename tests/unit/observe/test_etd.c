@@ -133,6 +133,26 @@ static void test_etd_result_pools_replicas_and_their_blocks(void **state) {
     etd_clear(&etd[1]);
 }
 
+/// Four blocks of two replicas, one of them without pairs, against the formula written out.
+static void test_etd_result_leaves_out_one_block_at_a_time(void **state) {
+    (void)state;
+    uint64_t counts[2][4] = {{10, 1, 20, 4}, {30, 12, 0, 0}}; // begun, escaped; the same
+    const struct etd_grid small = {.r_minimum = 0, .r_maximum = 1, .bins = 1, .times = 2};
+    const struct etd etd[2] = {{.grid = small, .blocks = 2, .counts = counts[0]},
+                               {.grid = small, .blocks = 2, .counts = counts[1]}};
+    const double without[3] = {1 - 16.0 / 50, 1 - 13.0 / 40, 1 - 5.0 / 30};
+    const double mean = (without[0] + without[1] + without[2]) / 3;
+    double survival[2], error[2], squares = 0;
+    uint64_t pairs;
+    assert_ok(
+        etd_result((const struct etd *const[]){&etd[0], &etd[1]}, 2, survival, error, &pairs));
+    for (int k = 0; k < 3; k++)
+        squares += (without[k] - mean) * (without[k] - mean);
+    assert_int_equal(pairs, 60);
+    assert_close(survival[1], 1 - 17.0 / 60, 1e-15);
+    assert_close(error[1], sqrt(squares * 2 / 3), 1e-15);
+}
+
 static void test_etd_result_is_not_known_without_pairs(void **state) {
     (void)state;
     // A perfect lattice with a spacing of 1.25 on which nothing moves.
@@ -232,6 +252,7 @@ int main(void) {
         cmocka_unit_test(test_etd_is_exact_when_particles_fly_freely),
         cmocka_unit_test(test_etd_begins_with_1_and_falls),
         cmocka_unit_test(test_etd_result_pools_replicas_and_their_blocks),
+        cmocka_unit_test(test_etd_result_leaves_out_one_block_at_a_time),
         cmocka_unit_test(test_etd_result_is_not_known_without_pairs),
         cmocka_unit_test(test_etd_errors_are_what_they_say),
         cmocka_unit_test(test_etd_init_refuses_what_cannot_be_measured),
