@@ -27,8 +27,8 @@ static const struct {
           .curvature = 8,
           .gather = 4,
           .correlate = 1.3,
-          .follow = 2,
-          .begin = 25,
+          .follow = 2.4,
+          .begin = 30,
           .covary = 3};
 
 enum { MOST_STAGES = 14 };
