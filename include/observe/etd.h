@@ -53,7 +53,7 @@ struct etd {
     uint64_t *counts; ///< shape [blocks, times, bins]: the same of all complete windows
     int32_t *place[3];  ///< shape [particles]: box_fraction by id
     int32_t *listed[3]; ///< shape [particles]: the same in the order of the list that is searched
-    double *squares;    ///< shape [particles]: room for squared distances [λ²]
+    double *squares;    ///< room for the squared distances [λ²] of a batch or a row of the list
     uint32_t *bucket, *next; ///< shapes [buckets], [room]: records by the hash of their pair
     size_t buckets;
     struct particles own_particles; ///< for when the simulation's list is too short
