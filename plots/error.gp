@@ -29,7 +29,7 @@ do for [kind in kinds] {
     set xrange [0:end_of(N_max)]
     set xtics step_of(N_max / 3)
     set xlabel "simulations"
-    eval name_axis("rmse of {/:Italic g}", 0.02)
+    eval name_axis(error_label, 0.02)
     plot "history.tsv" using 2:5 with lines title "statistical noise" \
             linewidth 1.4 dashtype 2 linecolor rgb faint, \
         "" using 2:4 with linespoints title "error" \

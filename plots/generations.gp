@@ -24,7 +24,7 @@ do for [kind in kinds] {
     set format x ""
     set format y "%h"
     eval log_range("y", L_min, E_max)
-    eval name_axis("rmse of {/:Italic g}", 0.024)
+    eval name_axis(error_label, 0.024)
     set key on at screen 0.97, screen 0.985 right top vertical maxrows 1
     plot "history.tsv" using 1:5 with lines title "noise" \
             linewidth 1.4 dashtype 2 linecolor rgb faint, \

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The potential that was found, on the potentials of the iterations before it, light to dark.
-# Reads potential.tsv: r, phi, force, phi_error (nan where not known), …
+# Reads potential.tsv: r, phi, force, phi_error (nan where not known), perhaps truth, …
 # and, if it is there, potential_history.tsv: r, then one column an iteration.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
@@ -33,8 +33,14 @@ do for [k = columns:2:-every] {
 }
 bottom = bottom - 0.06 * (top - bottom)
 
-with_error = int(system("awk '!/^#/ && $4 ~ /[1-9]/ { found = 1 } END { print found + 0 }' \
-    potential.tsv"))
+truth = column_of("potential.tsv", "truth")
+lower = truth ? 0.065 : 0
+# An empty loop would keep its place in the legend; so would nan.
+show_band = !has_numbers("potential.tsv", 4) ? "" : "'potential.tsv' " . \
+    "using 1:(band_low(2, 4)):(band_high(2, 4)) " . \
+    "with filledcurves @band linecolor rgb blue title '95 % band', "
+show_truth = !truth ? "" : ", 'potential.tsv' using 1:(column(truth)) " . \
+    "with lines title 'truth' @true_line"
 
 do for [kind in kinds] {
     eval open(kind, "potential", 720, 480)
@@ -50,16 +56,15 @@ do for [kind in kinds] {
     if (columns > 1) {
         set palette defined (0 "#d9e0e6", 1 "#41749c")
         set cbrange [first:last]
-        set colorbox horizontal user origin graph 0.765, graph 0.74 size graph 0.2, graph 0.02 \
+        set colorbox horizontal user origin graph 0.765, graph 0.74 - lower size graph 0.2, graph 0.02 \
             noborder
         set cbtics (first, last) scale 0 offset 0, 0.5
-        set label 2 "iteration" at graph 0.865, graph 0.785 center
+        set label 2 "iteration" at graph 0.865, graph 0.785 - lower center
     }
     plot for [k = 2 + (columns - 2) % every:columns:every] "potential_history.tsv" \
             using 1:k:(iteration_of(k)) with lines linewidth 0.9 linecolor palette, \
         0 linewidth 0.8 linecolor rgb ink, \
-        for [i = 1:with_error] "potential.tsv" using 1:($2 - $4):($2 + $4) \
-            with filledcurves @band linecolor rgb blue title "± 1 standard error", \
-        "potential.tsv" using 1:2 with lines title "result" linewidth 2.6 linecolor rgb blue
+        @show_band "potential.tsv" using 1:2 with lines title "result" \
+            linewidth 2.6 linecolor rgb blue @show_truth
     eval close
 }

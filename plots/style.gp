@@ -28,6 +28,7 @@ orange     = "#e69f00"
 sky        = "#56b4e9"
 colour_of(i) = word("#0072b2 #d55e00 #009e73 #aa4499 #e69f00 #56b4e9 #882255 #7a7a1f", i % 8 + 1)
 band = "fillstyle transparent solid 0.22"
+true_line = "linewidth 1.8 dashtype 2 linecolor rgb ink"
 
 set format "%h"
 set border 3 linewidth 0.8 linecolor rgb ink
@@ -39,6 +40,9 @@ set style fill solid noborder
 r_label   = "{/:Italic r} / {/:Italic λ}"
 g_label   = "{/:Italic g}({/:Italic r})"
 phi_label = "{/:Italic Φ}({/:Italic r}) / {/:Italic k}_B{/:Italic T}"
+omega_label = "{/:Italic ω}({/:Italic r}) / ({/:Italic μ}/{/:Italic τ})^{1/2}"
+t_label   = "{/:Italic t} / {/:Italic τ}"
+E_label   = "{/:Italic E}({/:Italic t}, {/:Italic r}_0)"
 
 # Command that names the vertical axis of a panel, x from the figure's edge: the names of all
 # panels stand in one line.
@@ -52,8 +56,26 @@ high(a, b) = a > b ? a : b
 known(n) = valid(n) ? column(n) : 0
 positive(n) = known(n) > 0 ? column(n) : 1e300
 
+# Ends of the 95 % band of column n with the standard errors of column m; nan where not known.
+band_low(n, m)  = column(n) - 1.96 * column(m)
+band_high(n, m) = column(n) + 1.96 * column(m)
+
 # 1 if a file is there. Names in commands are fixed and relative, so no quoting is needed.
 has(file) = int(system("test -r " . file . " && echo 1 || echo 0"))
+
+# Number of the first column of that name, 0 if there is none; 1 if a column has a number but 0.
+column_of(file, name) = !has(file) ? 0 : int(system(sprintf("awk -F '\t' '/^#/ { sub(/^# */, \"\"); \
+    for (k = 1; k <= NF; k++) { sub(/\\[.*/, \"\", $k); if ($k == \"%s\" && !found) found = k } } \
+    END { print found + 0 }' %s", name, file)))
+has_numbers(file, column) = int(system(sprintf("awk -F '\t' '!/^#/ && $%d ~ /[1-9]/ { found = 1 } \
+    END { print found + 0 }' %s", column, file)))
+
+# What the column "error" of a fit is, from the targets that used.json says are fitted.
+fitted = !has("used.json") ? "" : system("awk '/\"(rdf|etd|vacf|msd|diffusion|pressure)\":/ { \
+    split($0, part, /\"/); kind = part[2] } /\"fitted\":.*\"yes\"/ { printf \" %s\", kind }' used.json")
+error_label = words(fitted) > 1 ? "weighted error" : "rmse of " . ( \
+    fitted eq " etd" ? "{/:Italic E}" : fitted eq " vacf" ? "VACF" : fitted eq " msd" ? "MSD" : \
+    fitted eq " diffusion" ? "{/:Italic D}" : fitted eq " pressure" ? "{/:Italic p}" : "{/:Italic g}")
 
 # The largest of 1, 2 or 5 times a power of ten that is not above x: a distance of tics.
 power(x) = 10**floor(log10(x))

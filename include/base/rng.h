@@ -11,15 +11,16 @@
 
 /// What a number is for. Two uses never share a stream.
 enum rng_stream {
-    RNG_PAIR_NOISE,   ///< counters: step, smaller id, larger id
-    RNG_VELOCITIES,   ///< counters: particle id
-    RNG_PLACEMENT,    ///< counters: particle id, trial
-    RNG_METROPOLIS,   ///< counters: move
-    RNG_INITIAL,      ///< first population of an optimiser
-    RNG_SELECTION,    ///< optimiser: generation, individual
-    RNG_EVALUATION,   ///< seeds of simulations inside a fit
-    RNG_VERIFICATION, ///< seeds of the verification simulations
-    RNG_MEAN_VELOCITY ///< of a test of velocities; counters: step
+    RNG_PAIR_NOISE,    ///< counters: step, smaller id, larger id
+    RNG_VELOCITIES,    ///< counters: particle id
+    RNG_PLACEMENT,     ///< counters: particle id, trial
+    RNG_METROPOLIS,    ///< counters: move
+    RNG_INITIAL,       ///< first population of an optimiser
+    RNG_SELECTION,     ///< optimiser: generation, individual
+    RNG_EVALUATION,    ///< seeds of simulations inside a fit: round, candidate
+    RNG_VERIFICATION,  ///< seeds of the verification simulations
+    RNG_MEAN_VELOCITY, ///< of a test of velocities; counters: step
+    RNG_REMEASUREMENT  ///< seeds of fresh measurements in a fit: candidate, number
 };
 
 struct rng_block {

@@ -1,53 +1,46 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Measure the g(r) of a potential by simulation: for fitness, and for verification.
+/// @file Measure curves by simulation: for fitness, and for verification.
 #pragma once
 
-#include "inverse/inverse.h"
-#include "observe/measure.h"
+#include "inverse/observation.h"
 
-/// How a potential is measured for its fitness.
+/// How a candidate is measured for its fitness.
 struct evaluate_parameters {
     struct measure_plan plan;
     double temperature_tolerance; ///< largest |T/T_set − 1| at the end of the equilibration
-    int estimator; ///< enum rdf_force_estimator; without a barrier (rdf_force_applies) the
-                   ///< histogram
+    int estimator;    ///< of g(r), enum rdf_force_estimator; without a barrier (rdf_force_applies)
+                      ///< the histogram
+    double patience;  ///< standard errors by which a running error must be beyond `hopeless` before
+                      ///< a simulation is stopped; 0: never
+    double precision; ///< relative standard error of the error that is enough to stop; 0: never
+};
+
+/// One candidate.
+struct evaluate_candidate {
+    const struct table *potential, *weight;
+    const double *const *position; ///< as in observation_setup
+    double hopeless;               ///< error with which the candidate cannot win
+    int threads;                   ///< of its simulation
+    uint64_t seed;
 };
 
 /// Result of one short simulation.
 struct evaluate_result {
-    double error;          ///< rms of g − g*
-    double noise;          ///< rms expected from the statistical errors of both
+    struct goal_distance distance[GOALS];
+    double error;          ///< goals_error
+    double noise;          ///< expected from the statistical errors of both
+    double variance;       ///< of the error
+    bool stopped;          ///< before its time
     uint64_t engine_steps; ///< also when it failed
 };
 
-/// One simulation of the problem's scene with `potential`.
+/// One simulation of the problem's scene.
+/// @param[out] features  of what was measured, shape [goals_features], or NULL
+/// @param[out] position  where the particles were at the end, shape [dimensions][count] by particle
+///                       number, or NULL
 /// Fails: UNSTABLE if it blows up, leaves its temperature or collapses into a drop (which would
-/// also be slow); INTERRUPTED; NO_MEMORY; BAD_INPUT as simulation_init.
-enum status evaluate_potential(const struct inverse_problem *problem, const struct table *potential,
-                               const struct evaluate_parameters *parameters, uint64_t seed,
-                               struct evaluate_result *result) MUST_USE;
-
-/// Verification of a result by independent replicas of a longer simulation.
-struct evaluate_verification_parameters {
-    int64_t replicas;
-    double time_step; ///< 0: that of the scene [τ]
-    struct measure_plan plan;
-};
-
-extern const struct field evaluate_verification_fields[];
-
-struct evaluate_verification {
-    size_t bins;
-    double *g, *g_error; ///< shape [bins]
-    double rmse, rmse_error, noise;
-    struct thermodynamics_summary thermodynamics;
-    uint64_t engine_steps;
-};
-
-/// Simulate the problem's scene with `potential` and new seeds; replicas in parallel.
-/// Fails: as simulation_run.
-enum status evaluate_verify(const struct inverse_problem *problem, const struct table *potential,
-                            const struct evaluate_verification_parameters *parameters,
-                            const struct inverse_listener *listener,
-                            struct evaluate_verification *verification) MUST_USE;
-void evaluate_verification_clear(struct evaluate_verification *verification);
+/// also be slow); INTERRUPTED; NO_MEMORY; BAD_INPUT as observation_init.
+enum status evaluate(const struct inverse_problem *problem,
+                     const struct evaluate_candidate *candidate,
+                     const struct evaluate_parameters *parameters, double *features,
+                     double *const *position, struct evaluate_result *result) MUST_USE;

@@ -7,16 +7,38 @@
 
 #include "base/fields.h"
 #include "base/memory.h"
+#include "curves/curve.h"
 #include "dynamics/simulation.h"
-#include "observe/rdf.h"
+#include "inverse/goals.h"
+
+enum unknown_kind { UNKNOWN_POTENTIAL, UNKNOWN_WEIGHT, UNKNOWNS };
+
+/// Names in run files, shape [UNKNOWNS].
+extern const char *const inverse_unknown_names[UNKNOWNS];
+
+/// How an optimiser writes an unknown as a curve of some genes.
+struct unknown_parameters {
+    int shape;                   ///< index into `shapes`
+    int64_t genes;               ///< of the curve
+    double minimum, maximum;     ///< of a gene [k_B T_0] or [sqrt(mass/time)]
+    double inner_cutoff, cutoff; ///< of a weight [λ]
+};
+
+extern const struct field inverse_potential_fields[], inverse_weight_fields[];
+
+/// A function of the distance, to be found or known. Borrowed.
+struct unknown {
+    bool wanted;
+    struct unknown_parameters parameters;
+    const struct curve *start; ///< to begin with, or NULL
+};
 
 /// What is to be fitted. Borrowed by the methods.
 struct inverse_problem {
-    struct rdf_bins bins;
-    const double *target;          ///< g*, shape [bins.count]
-    const double *target_error;    ///< standard errors, shape [bins.count]
-    struct simulation_setup scene; ///< all but the potential
-    const struct curve *start;     ///< potential to begin with, or NULL for −k_B T ln g*
+    struct goals goals;    ///< to be fitted
+    struct goals compared; ///< by the verification: those and others
+    struct unknown unknown[UNKNOWNS];
+    struct simulation_setup scene; ///< all but the unknowns
     double core_threshold;         ///< bins below the first with g* above this are the hard core
     double core_stiffness;         ///< of the core (core_fill) [k_B T_0/λ²]
     uint64_t seed;
@@ -26,13 +48,13 @@ struct inverse_problem {
 /// State of a fit after an iteration. Arrays belong to the method.
 struct inverse_step {
     uint32_t iteration;    ///< from 0
-    uint64_t evaluations;  ///< measurements of g so far
+    uint64_t evaluations;  ///< simulations so far
     uint64_t engine_steps; ///< time steps or Monte Carlo sweeps so far, over all replicas
-    double error;      ///< rms of g − g* of the best potential so far, as the method measured it
-    double noise;      ///< rms that the statistical errors alone would give
-    double extra[4];   ///< columns of the method's own
-    const double *phi; ///< on the potential grid; best so far [k_B T_0]
-    const double *phi_error; ///< standard error, or NULL where the method has none
+    double error;          ///< goals_error of the best curves so far, as the method measured it
+    double noise;          ///< what the statistical errors alone would give
+    double extra[4];       ///< columns of the method's own
+    const double *curve[UNKNOWNS];       ///< on the unknown's points, best so far; NULL: not fitted
+    const double *curve_error[UNKNOWNS]; ///< standard errors; NULL where the method has none
     bool finished;
     bool converged;
 };
@@ -53,6 +75,8 @@ struct inverse_listener {
 
 enum { INVERSE_MAX_SPANS = 512 };
 
+struct optimiser;
+
 /// What a method measures of an evaluation.
 struct inverse_sampling {
     int64_t every;  ///< steps between samples; 0: no dynamics are simulated
@@ -65,12 +89,15 @@ struct inverse_method {
     const struct field *const *tables; ///< of the parameter struct, NULL-terminated
     size_t parameters_size;
     size_t state_size;
-    uint32_t (*most_iterations)(const void *parameters);
+    uint32_t (*most_iterations)(const struct inverse_method *method,
+                                const struct inverse_problem *problem, const void *parameters);
     struct inverse_sampling (*sampling)(const void *parameters);
     bool keeps_parts;
-    const char *const *columns; ///< names of `extra`, NULL-terminated
-    enum status (*create)(void *state, const struct inverse_problem *problem,
-                          const void *parameters);
+    const char *const *columns;        ///< names of `extra`, NULL-terminated
+    bool fits[UNKNOWNS];               ///< what it can find
+    const struct optimiser *optimiser; ///< that matching drives, or NULL
+    enum status (*create)(void *state, const struct inverse_method *method,
+                          const struct inverse_problem *problem, const void *parameters);
     void (*destroy)(void *state);
     /// One iteration. After INTERRUPTED the state is fit for a checkpoint if `keeps_parts`, else
     /// only that from before the iteration is.
@@ -84,4 +111,5 @@ struct inverse_method {
 extern const struct inverse_method *const inverse_methods[];
 
 extern const struct inverse_method imc;
-extern const struct inverse_method matching;
+extern const struct inverse_method gauss_newton;
+extern const struct inverse_method matching_genetic, matching_cmaes, matching_nlopt;

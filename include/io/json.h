@@ -44,7 +44,8 @@ bool json_has(struct json_object *object, const char *key);
 
 /// Read the members described by `fields` into `parameters`, defaults where absent.
 /// FIELD_FILE values are joined to the folder of the document's file unless absolute. An absent
-/// object gives the defaults and no faults: that it is missing was json_child's to say.
+/// object gives the defaults and no faults: that it is missing was json_child's to say. null, as
+/// json_put_number writes what is not known, is allowed for numbers whose default is NAN.
 void json_fields(struct json_object *object, const struct field *fields, void *parameters);
 
 /// Read a required text such as the name of a law: NULL (and a fault) if absent or not a text.

@@ -95,3 +95,6 @@ static inline double optimiser_gene(const struct optimiser_space *space, double 
 
 /// Where `space->start` is as a fraction of the range, the middle if there is none.
 double optimiser_start(const struct optimiser_space *space, size_t gene);
+
+/// @name Parameters, for those who drive one by its name
+extern const struct field genetic_fields[], cmaes_fields[], nlopt_fields[];

@@ -11,10 +11,13 @@
 /// `out` (made if missing)
 ///   compare.tsv            one row a fit; comment lines give each index its name
 ///   rdf_compare.tsv        r, target, target_error, result, result_error
-///   potential_compare.tsv  r, phi
-///   error_compare.tsv      iteration, evaluations, seconds, error, noise
+///   potential_compare.tsv  r, phi, phi_error, truth
+///   omega_compare.tsv      r, omega, omega_error, truth
+///   error_compare.tsv      iteration, evaluations, engine_steps, seconds, error, noise
 ///   figures/compare.svg and .png
-/// The last three tables hold one block a fit, two empty lines apart (gnuplot's `index`).
+/// The tables but the first hold one block a fit, two empty lines apart (gnuplot's `index`), with
+/// one row of nan for a fit that has no such table; one that no fit has is not written.
+/// Potentials and weights are those that were fitted.
 /// A fit is called after the last part of its path that is not "out", with as many parts before
 /// it as are needed to tell the fits apart; the same folder again gets a number.
 /// Fails: BAD_INPUT or IO with one line that names the file. A figure that fails is a warning on

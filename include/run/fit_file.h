@@ -2,11 +2,11 @@
 /// @file A run file of `mesofit fit`: target, scene, method.
 #pragma once
 
-#include "inverse/evaluate.h"
+#include "inverse/verify.h"
 #include "run/heading.h"
 #include "run/run_folder.h"
 #include "run/scene.h"
-#include "run/target.h"
+#include "run/targets.h"
 
 /// Numbers of the object "core".
 struct fit_core {
@@ -15,17 +15,24 @@ struct fit_core {
 
 extern const struct field fit_core_fields[];
 
+/// What "unknowns" says of one of them.
+struct fit_unknown {
+    bool wanted;
+    struct unknown_parameters parameters;
+    struct curve start; ///< family NULL: as decoder_start says
+    struct curve truth; ///< the true curve where it is known, else family NULL
+};
+
 /// Owns everything that the problem borrows.
 struct fit_file {
     struct heading heading;
-    struct target target;
+    struct targets targets;
     struct scene scene;
-    struct curve start; ///< family NULL: begin with −k_B T ln g*
-    struct curve truth; ///< the true potential where it is known, else family NULL
+    struct fit_unknown unknown[UNKNOWNS];
     struct fit_core core;
     const struct inverse_method *method;
     void *method_parameters;
-    struct evaluate_verification_parameters verification;
+    struct verify_parameters verification;
     struct inverse_problem problem;
 };
 

@@ -2,29 +2,30 @@
 /// @file What a fit writes besides its history.
 #pragma once
 
-#include "inverse/potential_grid.h"
+#include "inverse/decoder.h"
 #include "run/fit_file.h"
 
 /// The result of a fit so far.
 struct fit_result {
     enum status status; ///< OK: converged; UNCONVERGED; INTERRUPTED
     uint64_t iterations, evaluations, engine_steps;
-    double seconds;                                   ///< of the fit, without its verification
-    const double *phi, *phi_error;                    ///< shape [grid.points]; an error may be NaN
-    const struct evaluate_verification *verification; ///< NULL if there was none
+    double seconds;                          ///< of the fit, without its verification
+    const double *curve[UNKNOWNS];           ///< on the unknown's points; NULL: not fitted
+    const double *curve_error[UNKNOWNS];     ///< may hold NaN: not known
+    const struct verification *verification; ///< NULL if there was none
 };
 
-/// potential.tsv and omega.tsv.
-enum status fit_output_potential(const struct fit_file *fit, const struct potential_grid *grid,
-                                 const struct fit_result *result,
-                                 const struct run_folder *folder) MUST_USE;
+/// potential.tsv and omega.tsv: what was fitted, and what the scene says of the other.
+enum status fit_output_curves(const struct fit_file *fit, const struct decoder *decoder,
+                              const struct fit_result *result,
+                              const struct run_folder *folder) MUST_USE;
 
-/// rdf.tsv from the verification.
-enum status fit_output_rdf(const struct fit_file *fit, const struct fit_result *result,
-                           const struct run_folder *folder) MUST_USE;
+/// From the verification: rdf.tsv, etd.tsv and motion.tsv, as far as there are targets.
+enum status fit_output_observables(const struct fit_file *fit, const struct fit_result *result,
+                                   const struct run_folder *folder) MUST_USE;
 
 /// summary.json.
-enum status fit_output_summary(const struct fit_file *fit, const struct potential_grid *grid,
+enum status fit_output_summary(const struct fit_file *fit, const struct decoder *decoder,
                                const struct fit_result *result,
                                const struct run_folder *folder) MUST_USE;
 
@@ -34,5 +35,5 @@ struct fit_truth {
     double ramp;             ///< A of the ramp A(1 − r/r_c) that explains most of it [k_B T_0]
     double rms_without_ramp; ///< of what is left
 };
-struct fit_truth fit_output_truth(const struct fit_file *fit, const struct potential_grid *grid,
+struct fit_truth fit_output_truth(const struct fit_file *fit, const struct decoder *decoder,
                                   const double *phi);

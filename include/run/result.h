@@ -12,13 +12,25 @@ struct result_summary {
     char status[FIELD_TEXT_SIZE], method[FIELD_TEXT_SIZE], version[FIELD_TEXT_SIZE];
     double seconds, threads, iterations, evaluations, engine_steps;
     double rdf_rmse, rdf_rmse_error, rdf_noise;
-    double temperature, temperature_configurational, pressure;
+    double etd_rmse, etd_rmse_error, etd_noise;
+    double vacf_rmse, vacf_rmse_error, vacf_noise;
+    double msd_rmse, msd_rmse_error, msd_noise;
+    double diffusion_rmse, diffusion_rmse_error, diffusion_noise;
+    double pressure_rmse, pressure_rmse_error, pressure_noise;
+    double diffusion, diffusion_error, diffusion_cm2_per_s, diffusion_error_cm2_per_s;
+    double truth_rms, truth_ramp, truth_rms_without_ramp; ///< of a potential
+    double truth_error;                                   ///< of a weight
+    double temperature, temperature_error;
+    double temperature_configurational, temperature_configurational_error;
+    double potential_energy, potential_energy_error;
+    double pressure, pressure_error;
     double seed;
 };
 
 extern const struct field result_summary_fields[];
 
-/// The first columns of a table. Unlike a measurement, a result may hold nan: not known.
+/// Some columns of a table; no rows if there is no such table. Unlike a measurement, a result may
+/// hold nan: not known.
 struct result_table {
     size_t rows, columns;
     double *values; ///< shape [rows, columns], row-major
@@ -27,12 +39,13 @@ struct result_table {
 struct result {
     struct result_summary summary;
     struct result_table rdf;       ///< r, target, target_error, result, result_error
-    struct result_table potential; ///< r, phi
-    struct result_table history;   ///< iteration, evaluations, engine_steps, error, noise
-    struct result_table timing;    ///< iteration, seconds
+    struct result_table potential; ///< r, phi, phi_error, truth; only if it was fitted
+    struct result_table omega;     ///< r, omega, omega_error, truth; only if it was fitted
+    struct result_table course;    ///< iteration, evaluations, engine_steps, seconds, error, noise
 };
 
-/// Read summary.json, rdf.tsv, potential.tsv, history.tsv and timing.tsv of a fit's folder.
+/// Read summary.json, history.tsv and timing.tsv of a fit's folder, and as far as they are there
+/// rdf.tsv, potential.tsv and omega.tsv.
 /// BAD_INPUT or IO with one line that names the file; *result is then empty.
 /// Tested: test_compare.
 enum status result_read(struct result *result, const char *folder) MUST_USE;

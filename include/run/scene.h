@@ -8,9 +8,11 @@
 #include "io/json_write.h"
 #include "run/units.h"
 
-enum scene_potential {
-    SCENE_HAS_POTENTIAL,  ///< "conservative" is part of the scene
-    SCENE_FITS_POTENTIAL, ///< the potential is what a fit looks for
+/// What a fit looks for, and the scene therefore does not say.
+enum scene_unknown {
+    SCENE_FITS_NOTHING = 0,
+    SCENE_FITS_POTENTIAL = 1, ///< no "conservative"
+    SCENE_FITS_WEIGHT = 2,    ///< no "dissipative"; there will be friction
 };
 
 /// Owns its curves, tables and arrays; `setup` borrows them.
@@ -26,10 +28,9 @@ struct scene {
 /// Fields of the scene itself, for `mesofit describe`.
 extern const struct field scene_fields[];
 
-/// Read the objects of a scene from `object`. Faults go to its document; *scene may then be
-/// incomplete but is safe to clear. Fails: NO_MEMORY.
-enum status scene_read(struct scene *scene, struct json_object *object,
-                       enum scene_potential potential) MUST_USE;
+/// Read the objects of a scene from `object`, but for what `unknown`, a sum of scene_unknown, says.
+/// Faults go to its document; *scene may then be incomplete but is safe to clear. Fails: NO_MEMORY.
+enum status scene_read(struct scene *scene, struct json_object *object, int unknown) MUST_USE;
 void scene_clear(struct scene *scene);
 
 /// Write everything that scene_read reads, defaults filled in.

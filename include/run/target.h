@@ -5,7 +5,7 @@
 #include "io/json.h"
 #include "observe/rdf.h"
 
-/// "target" of a run file.
+/// "rdf" among the targets of a run file.
 struct target_parameters {
     char file[FIELD_TEXT_SIZE];
     int64_t r_column, g_column, error_column; ///< from 1; error_column 0: no errors given
@@ -20,9 +20,9 @@ struct target {
     double *g, *error; ///< shape [bins.count]
 };
 
-/// Read {"file": …} at "target". Faults (gaps, negative values, …) go to the document and leave
+/// Read the members of {"file": …}. Faults (gaps, negative values, …) go to the document and leave
 /// the target empty. Fails: NO_MEMORY.
-enum status target_read(struct target *target, struct json_object *parent) MUST_USE;
+enum status target_read(struct target *target, struct json_object *object) MUST_USE;
 /// Convert g and its errors to a system of `count` particles (rdf_finite_size_factor).
 void target_convert(struct target *target, size_t count);
 

@@ -5,7 +5,7 @@
 #include "io/json.h"
 #include "observe/etd.h"
 
-/// "target_etd" of a run file.
+/// "etd" among the targets of a run file.
 struct target_etd_parameters {
     char file[FIELD_TEXT_SIZE], error_file[FIELD_TEXT_SIZE]; ///< the latter "": no errors given
     int64_t time_column, first_column;                       ///< from 1
@@ -22,14 +22,14 @@ struct target_etd {
     size_t left_out;          ///< cells that are not known
 };
 
-/// Read {"file": …} at "target_etd": a time in each row, from 0 on and equally spaced, and from
+/// Read the members of {"file": …}: a time in each row, from 0 on and equally spaced, and from
 /// first_column on E of one bin in each column, equal bins from r_minimum to r_maximum. The table
 /// of standard errors has the same shape. Cells where either is nan are not known. What `mesofit
 /// simulate` writes, etd.tsv and etd_error.tsv, needs no columns.
 ///
 /// Faults (shape, times, values that are no survival probability, …) go to the document and leave
 /// the target empty. Fails: NO_MEMORY. Tested: test_target_etd, test_simulate_pairs.
-enum status target_etd_read(struct target_etd *target, struct json_object *parent) MUST_USE;
+enum status target_etd_read(struct target_etd *target, struct json_object *object) MUST_USE;
 void target_etd_clear(struct target_etd *target);
 
 /// Steps of length `time_step` [τ] between the target's times, for etd_plan.every: escapes between

@@ -97,12 +97,14 @@ static struct inverse_sampling sampling(const void *parameters) {
     return (struct inverse_sampling){0};
 }
 
-static uint32_t most_iterations(const void *parameters) {
+static uint32_t most_iterations(const struct inverse_method *method,
+                                const struct inverse_problem *problem, const void *parameters) {
+    (void)method, (void)problem;
     return (uint32_t)((const struct parameters *)parameters)->iterations;
 }
 
 static size_t bin_count(const struct state *state) {
-    return state->problem->bins.count;
+    return state->problem->goals.bins.count;
 }
 
 static void destroy(void *memory) {
@@ -147,8 +149,9 @@ done:
     return status;
 }
 
-static enum status create(void *memory, const struct inverse_problem *problem,
-                          const void *parameters) {
+static enum status create(void *memory, const struct inverse_method *method,
+                          const struct inverse_problem *problem, const void *parameters) {
+    (void)method;
     struct state *state = memory;
     state->parameters = *(const struct parameters *)parameters;
     state->problem = problem;
@@ -163,8 +166,9 @@ static enum status create(void *memory, const struct inverse_problem *problem,
     TRY(allocate(state));
     const double finite_size = rdf_finite_size_factor(scene_count, count);
     for (size_t a = 0; a < bin_count(state); a++) {
-        state->ideal[a] = rdf_ideal_pairs(&problem->bins, a, &state->box, count);
-        state->target_counts[a] = state->ideal[a] * problem->target[a] * finite_size;
+        state->ideal[a] = rdf_ideal_pairs(&problem->goals.bins, a, &state->box, count);
+        state->target_counts[a] =
+            state->ideal[a] * problem->goals.goal[GOAL_RDF].value[a] * finite_size;
     }
     potential_grid_start(&state->grid, problem, state->phi);
     TRY(potential_grid_table(&state->grid, state->phi, &state->table));
@@ -191,7 +195,7 @@ static enum status sample_replica(const struct state *state, struct replica *rep
         for (int64_t sample = begin; sample < end; sample++) {
             TRY(metropolis_run(&replica->sampler, (uint32_t)p->every));
             memset(replica->histogram, 0, bins * sizeof *replica->histogram);
-            rdf_count_pairs(&state->problem->bins, &replica->sampler.particles,
+            rdf_count_pairs(&state->problem->goals.bins, &replica->sampler.particles,
                             &replica->sampler.neighbours, replica->histogram);
             // The sampler's list has each pair from both sides.
             for (size_t a = 0; a < bins; a++)
@@ -264,7 +268,7 @@ static void assess(struct state *state, double *rmse, double *noise, double *own
     const double independent = state->counts.count / inefficiency(state);
     double sum = 0, own = 0, both = 0;
     for (size_t a = 0; a < bins; a++) {
-        const double target_error = state->ideal[a] * state->problem->target_error[a];
+        const double target_error = state->ideal[a] * state->problem->goals.goal[GOAL_RDF].error[a];
         // An empty bin still has the uncertainty of one pair.
         const double sampled =
             fmax(comoments_covariance(&state->counts, a, a), 1 / state->counts.count) / independent;
@@ -297,7 +301,7 @@ static enum status find_step(struct state *state, double *strength, double *misf
                                       .excess = state->excess + core,
                                       .variance = state->variance + core,
                                       .temperature = state->problem->scene.temperature,
-                                      .spacing = state->problem->bins.width};
+                                      .spacing = state->problem->goals.bins.width};
     CHECK(imc_solve(&system, state->parameters.strength, state->step + core, state->error + core,
                     &solution));
     *strength = solution.strength;
@@ -312,7 +316,7 @@ static void take_step(struct state *state) {
     const struct potential_grid *grid = &state->grid;
     double largest = 0;
     for (size_t a = grid->core; a < grid->core + grid->known; a++)
-        if (state->problem->target[a] > 0.1)
+        if (state->problem->goals.goal[GOAL_RDF].value[a] > 0.1)
             largest = fmax(largest, fabs(state->best_step[a]));
     const double share = fmin(state->progress.damping, largest_change / fmax(largest, 1e-300));
     for (size_t a = grid->core; a < grid->core + grid->known; a++)
@@ -366,8 +370,8 @@ static enum status iterate(void *memory, struct inverse_step *step,
         .error = progress->best_rmse,
         .noise = progress->best_noise,
         .extra = {progress->damping, progress->strength, own_noise, misfit},
-        .phi = state->best,
-        .phi_error = state->best_error,
+        .curve = {state->best},
+        .curve_error = {state->best_error},
         .converged = agrees && precise,
         .finished = (agrees && precise) || progress->iteration + 1 >= p->iterations,
     };
@@ -405,6 +409,7 @@ const struct inverse_method imc = {
     .tables = (const struct field *const[]){fields, NULL},
     .parameters_size = sizeof(struct parameters),
     .state_size = sizeof(struct state),
+    .fits = {[UNKNOWN_POTENTIAL] = true},
     .most_iterations = most_iterations,
     .sampling = sampling,
     .columns = columns,

@@ -10,9 +10,10 @@
 enum status potential_grid_init(struct potential_grid *grid,
                                 const struct inverse_problem *problem) {
     enum status status = STATUS_OK;
-    const struct rdf_bins *bins = &problem->bins;
+    const struct rdf_bins *bins = &problem->goals.bins;
     *grid = (struct potential_grid){.stiffness = problem->core_stiffness};
-    while (grid->core < bins->count && problem->target[grid->core] <= problem->core_threshold)
+    while (grid->core < bins->count &&
+           problem->goals.goal[GOAL_RDF].value[grid->core] <= problem->core_threshold)
         grid->core++;
     if (grid->core + 3 > bins->count)
         return status_fail(STATUS_BAD_INPUT, "the target is nowhere above %g",
@@ -50,11 +51,11 @@ enum status potential_grid_table(const struct potential_grid *grid, const double
 
 void potential_grid_start(const struct potential_grid *grid, const struct inverse_problem *problem,
                           double *phi) {
+    const struct curve *start = problem->unknown[UNKNOWN_POTENTIAL].start;
     for (size_t k = grid->core; k + 1 < grid->points; k++) {
         // A bin without pairs beyond the core is as high as one with the threshold's few.
-        const double g = fmax(problem->target[k], problem->core_threshold);
-        phi[k] = problem->start ? curve_value(problem->start, grid->r[k])
-                                : -problem->scene.temperature * log(g);
+        const double g = fmax(problem->goals.goal[GOAL_RDF].value[k], problem->core_threshold);
+        phi[k] = start ? curve_value(start, grid->r[k]) : -problem->scene.temperature * log(g);
     }
     potential_grid_complete(grid, phi);
 }

@@ -344,6 +344,9 @@ void json_fields(struct json_object *object, const struct field *fields, void *p
     fields_set_defaults(fields, parameters);
     for (const struct field *field = fields; field->name; field++) {
         const cJSON *item = ask(object, field->name);
+        // A number that is not known is written as null.
+        if (cJSON_IsNull(item) && field->type == FIELD_NUMBER && isnan(field->initial))
+            continue;
         if (item)
             read_field(object, field, item, (char *)parameters + field->offset);
         else if (field->required && object->item)

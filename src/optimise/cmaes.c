@@ -31,7 +31,7 @@ struct parameters {
 };
 
 #define MEMBER(name) .offset = offsetof(struct parameters, name)
-static const struct field fields[] = {
+const struct field cmaes_fields[] = {
     {"population", FIELD_INTEGER, MEMBER(population), .initial = 0, .minimum = 0, .maximum = 1e5,
      .unit = "", .help = "candidates of a round, at least 4; 0 for 4 + 3 ln(genes)"},
     {"step", FIELD_NUMBER, MEMBER(step), .initial = 0.3, .minimum = FIELD_ABOVE_ZERO, .maximum = 1,
@@ -385,7 +385,7 @@ const struct optimiser cmaes_optimiser = {
     .name = "cma-es",
     .summary = "evolution strategy with covariance matrix adaptation; N. Hansen, "
                "arXiv:1604.00772 (2016)",
-    .tables = (const struct field *const[]){fields, NULL},
+    .tables = (const struct field *const[]){cmaes_fields, NULL},
     .parameters_size = sizeof(struct parameters),
     .state_size = sizeof(struct state),
     .most_rounds = most_rounds,

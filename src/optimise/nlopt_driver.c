@@ -39,7 +39,7 @@ struct parameters {
 };
 
 #define MEMBER(name) .offset = offsetof(struct parameters, name)
-static const struct field fields[] = {
+const struct field nlopt_fields[] = {
     {"algorithm", FIELD_CHOICE, MEMBER(algorithm), .choices = names, .initial = SBPLX, .unit = "",
      .help = "of NLopt: GN_ searches everywhere, LN_ around the start"},
     {"evaluations", FIELD_INTEGER, MEMBER(evaluations), .initial = 1000, .minimum = 1,
@@ -274,7 +274,7 @@ static size_t spans(void *memory, struct memory_span *span) {
 const struct optimiser nlopt_optimiser = {
     .name = "nlopt",
     .summary = "an algorithm of NLopt; S. G. Johnson, github.com/stevengj/nlopt",
-    .tables = (const struct field *const[]){fields, NULL},
+    .tables = (const struct field *const[]){nlopt_fields, NULL},
     .parameters_size = sizeof(struct parameters),
     .state_size = sizeof(struct state),
     .most_rounds = most_rounds,

@@ -23,7 +23,7 @@ enum status bench_scene_read(struct bench_scene *scene, const char *file,
     TRY(json_open(&document, file));
     struct json_object root = json_root(document);
     json_fields(&root, heading_fields, &heading);
-    const enum status status = scene_read(&scene->scene, &root, SCENE_HAS_POTENTIAL);
+    const enum status status = scene_read(&scene->scene, &root, SCENE_FITS_NOTHING);
     json_has(&root, "measure");
     json_has(&root, "rdf");
     json_finish(&root);

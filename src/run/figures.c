@@ -25,6 +25,9 @@ struct figure {
 static const struct figure figures[] = {
     {"rdf", {"rdf.tsv"}, "target"},
     {"potential", {"potential.tsv"}, NULL},
+    {"omega", {"omega.tsv"}, "omega_error"},
+    {"etd_cells", {"etd_cells.tsv"}, "target"},
+    {"vacf", {"vacf.tsv"}, "target"},
     {"error", {"history.tsv", "timing.tsv"}, NULL},
     {"generations", {"history.tsv"}, "diversity"},
     {"simulation", {"thermodynamics.tsv"}, NULL},

@@ -18,14 +18,14 @@ struct run {
     struct run_folder folder;
     struct progress progress;
     struct fit_file fit;
-    struct potential_grid grid;
+    struct decoder decoder;
     void *state;
     bool created;
     struct history history;
     uint64_t digest; ///< of used.json
     double last_checkpoint;
-    double seconds_before;   ///< of a run before a restart
-    double *phi, *phi_error; ///< shape [grid.points]
+    double seconds_before;                           ///< of a run before a restart
+    double *curve[UNKNOWNS], *curve_error[UNKNOWNS]; ///< shape [decoder_points]
     struct standing {
         bool finished, converged;
         uint64_t iterations, evaluations, engine_steps;
@@ -37,15 +37,19 @@ static double seconds(const struct run *run) {
     return run->seconds_before + progress_seconds(&run->progress);
 }
 
-enum { MAX_SPANS = INVERSE_MAX_SPANS + HISTORY_SPANS + 3 };
+enum { MAX_SPANS = INVERSE_MAX_SPANS + HISTORY_SPANS + 1 + 2 * UNKNOWNS };
 
 static size_t run_spans(struct run *run, struct memory_span *spans) {
-    const size_t bytes = run->grid.points * sizeof(double);
     size_t n = run->fit.method->spans(run->state, spans);
     n += history_spans(&run->history, spans + n);
     spans[n++] = (struct memory_span){&run->standing, sizeof run->standing};
-    spans[n++] = (struct memory_span){run->phi, bytes};
-    spans[n++] = (struct memory_span){run->phi_error, bytes};
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        const size_t bytes = decoder_points(&run->decoder, kind) * sizeof(double);
+        if (bytes == 0)
+            continue;
+        spans[n++] = (struct memory_span){run->curve[kind], bytes};
+        spans[n++] = (struct memory_span){run->curve_error[kind], bytes};
+    }
     return n;
 }
 
@@ -75,9 +79,7 @@ static enum status write_used(struct run *run, bool resume) {
     run_folder_file(&run->folder, resume ? "used.json.resumed" : "used.json", path);
     TRY(fit_file_write(fit, path));
     TRY(checkpoint_digest(path, &run->digest));
-    const size_t bytes = fit->target.bins.count * sizeof(double);
-    checkpoint_digest_add(&run->digest, fit->target.g, bytes);
-    checkpoint_digest_add(&run->digest, fit->target.error, bytes);
+    targets_digest(&fit->targets, &run->digest);
     scene_digest(&fit->scene, &run->digest);
     if (resume)
         remove(path);
@@ -87,14 +89,21 @@ static enum status write_used(struct run *run, bool resume) {
 static enum status create(struct run *run) {
     enum status status = STATUS_OK;
     const struct fit_file *fit = &run->fit;
-    CHECK(potential_grid_init(&run->grid, &fit->problem));
-    NEW_ARRAY(run->phi, run->grid.points);
-    NEW_ARRAY(run->phi_error, run->grid.points);
-    CHECK(history_init(&run->history, fit->method, run->grid.points,
-                       fit->method->most_iterations(fit->method_parameters)));
+    size_t points[UNKNOWNS];
+    CHECK(decoder_init(&run->decoder, &fit->problem));
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        points[kind] = decoder_points(&run->decoder, kind);
+        if (points[kind] == 0)
+            continue;
+        NEW_ARRAY(run->curve[kind], points[kind]);
+        NEW_ARRAY(run->curve_error[kind], points[kind]);
+    }
+    CHECK(history_init(
+        &run->history, fit->method, points,
+        fit->method->most_iterations(fit->method, &fit->problem, fit->method_parameters)));
     CHECK((run->state = memory_zeroed(1, fit->method->state_size)) ? STATUS_OK : STATUS_NO_MEMORY);
     run->created = true;
-    CHECK(fit->method->create(run->state, &fit->problem, fit->method_parameters));
+    CHECK(fit->method->create(run->state, fit->method, &fit->problem, fit->method_parameters));
 done:
     return status;
 }
@@ -137,23 +146,34 @@ static void tell_verification(void *context, const struct inverse_progress *p) {
 /// What the tables and the summary say at this point.
 static struct fit_result result_so_far(const struct run *run, enum status status) {
     const struct standing *s = &run->standing;
-    return (struct fit_result){.status = status,
-                               .iterations = s->iterations,
-                               .evaluations = s->evaluations,
-                               .engine_steps = s->engine_steps,
-                               .seconds = s->seconds,
-                               .phi = run->phi,
-                               .phi_error = run->phi_error};
+    struct fit_result result = {.status = status,
+                                .iterations = s->iterations,
+                                .evaluations = s->evaluations,
+                                .engine_steps = s->engine_steps,
+                                .seconds = s->seconds};
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        result.curve[kind] = run->curve[kind];
+        result.curve_error[kind] = run->curve_error[kind];
+    }
+    return result;
+}
+
+/// The curves of an iteration. What is set, not fitted, has no error: core and cutoff.
+static void keep_curves(struct run *run, const struct inverse_step *step) {
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        const size_t points = decoder_points(&run->decoder, kind);
+        const size_t core = kind == UNKNOWN_POTENTIAL ? run->decoder.potential.core : 0;
+        for (size_t k = 0; k < points; k++) {
+            const bool known = step->curve_error[kind] && k >= core && k + 1 < points;
+            run->curve[kind][k] = step->curve[kind][k];
+            run->curve_error[kind][k] = known ? step->curve_error[kind][k] : NAN;
+        }
+    }
 }
 
 /// Remember an iteration and put it on disk.
 static enum status record(struct run *run, const struct inverse_step *step) {
-    const size_t points = run->grid.points;
-    memcpy(run->phi, step->phi, points * sizeof *run->phi);
-    for (size_t k = 0; k < points; k++) {
-        const bool known = step->phi_error && k >= run->grid.core && k + 1 < points;
-        run->phi_error[k] = known ? step->phi_error[k] : NAN;
-    }
+    keep_curves(run, step);
     run->standing = (struct standing){.finished = step->finished,
                                       .converged = step->converged,
                                       .iterations = step->iteration + 1,
@@ -162,9 +182,11 @@ static enum status record(struct run *run, const struct inverse_step *step) {
                                       .error = step->error,
                                       .seconds = seconds(run)};
     history_add(&run->history, step, run->standing.seconds);
-    TRY(history_write(&run->history, run->fit.method, run->grid.r, &run->folder));
+    const double *const r[UNKNOWNS] = {decoder_r(&run->decoder, UNKNOWN_POTENTIAL),
+                                       decoder_r(&run->decoder, UNKNOWN_WEIGHT)};
+    TRY(history_write(&run->history, run->fit.method, r, &run->folder));
     const struct fit_result result = result_so_far(run, STATUS_UNCONVERGED);
-    TRY(fit_output_potential(&run->fit, &run->grid, &result, &run->folder));
+    TRY(fit_output_curves(&run->fit, &run->decoder, &result, &run->folder));
     progress_say(&run->progress, "iteration %u  error %.4f  noise %.4f  %.1f s", step->iteration,
                  step->error, step->noise, run->standing.seconds);
     return save(run);
@@ -205,48 +227,63 @@ static enum status write_unstable(struct run *run) {
                                                 : " (not one simulation of the fit succeeded)");
     char reason[512];
     snprintf(reason, sizeof reason, "%s", status_message());
-    TRY(fit_output_summary(&run->fit, &run->grid, &result, &run->folder));
+    TRY(fit_output_summary(&run->fit, &run->decoder, &result, &run->folder));
     run_folder_draw(&run->folder);
     return status_fail(STATUS_UNSTABLE, "%s", reason);
 }
 
+static void say_verified(struct run *run, const struct verification *v) {
+    struct progress *to = &run->progress;
+    progress_say(to, "%s after %llu iterations, %.1f s",
+                 run->standing.converged ? "converged" : "not converged",
+                 (unsigned long long)run->standing.iterations, run->standing.seconds);
+    for (int kind = 0; kind < GOALS; kind++)
+        if (run->fit.targets.given[kind])
+            progress_say(to, "verified: rms of %s - target = %.4f(%.0f), statistics alone %.4f",
+                         goals_names[kind], v->distance[kind].rms,
+                         ceil(v->distance_error[kind] * 1e4), v->distance[kind].noise);
+    if (goals_ask(&run->fit.problem.compared, GOAL_DIFFUSION))
+        progress_say(to, "D = %.4f(%.0f)", *v->observed.value[GOAL_DIFFUSION],
+                     ceil(*v->observed.error[GOAL_DIFFUSION] * 1e4));
+    progress_say(to, "T = %.4f, configurational %.4f, pressure %.3f\nresults in %s",
+                 v->thermodynamics.temperature, v->thermodynamics.temperature_configurational,
+                 v->thermodynamics.pressure, run->folder.path);
+}
+
 /// The independent verification of the result, and everything that rests on it.
 static enum status verify_and_write(struct run *run) {
-    struct table table = {0};
-    struct evaluate_verification verification = {0};
+    struct decoder_laws laws = {
+        .table = {run->fit.problem.scene.potential, run->fit.problem.scene.weight}};
+    struct verification verification = {0};
     struct progress progress = progress_begin(run->progress.quiet);
     const struct inverse_listener listener = {tell_verification, &progress};
     enum status status = STATUS_OK;
-    CHECK(potential_grid_table(&run->grid, run->phi, &table));
-    status = evaluate_verify(&run->fit.problem, &table, &run->fit.verification, &listener,
-                             &verification);
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        if (run->curve[kind] == NULL)
+            continue;
+        CHECK(decoder_table(&run->decoder, kind, run->curve[kind], &laws.own[kind]));
+        laws.table[kind] = &laws.own[kind];
+    }
+    status = verify(&run->fit.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_WEIGHT],
+                    &run->fit.verification, &listener, &verification);
     if (status == STATUS_UNSTABLE)
         status = write_unstable(run);
     CHECK(status);
     struct fit_result result =
         result_so_far(run, run->standing.converged ? STATUS_OK : STATUS_UNCONVERGED);
     result.verification = &verification;
-    CHECK(fit_output_rdf(&run->fit, &result, &run->folder));
-    CHECK(fit_output_summary(&run->fit, &run->grid, &result, &run->folder));
+    CHECK(fit_output_observables(&run->fit, &result, &run->folder));
+    CHECK(fit_output_summary(&run->fit, &run->decoder, &result, &run->folder));
     run_folder_draw(&run->folder);
-    progress_say(&run->progress,
-                 "%s after %llu iterations, %.1f s\nverified: rms of g - g* = %.4f(%.0f), "
-                 "statistics alone %.4f\nT = %.4f, configurational %.4f, pressure %.3f\nresults in "
-                 "%s",
-                 run->standing.converged ? "converged" : "not converged",
-                 (unsigned long long)run->standing.iterations, run->standing.seconds,
-                 verification.rmse, ceil(verification.rmse_error * 1e4), verification.noise,
-                 verification.thermodynamics.temperature,
-                 verification.thermodynamics.temperature_configurational,
-                 verification.thermodynamics.pressure, run->folder.path);
-    if (thermodynamics_judge(&verification.thermodynamics, &run->fit.problem.scene) != STATUS_OK)
-        progress_say(&run->progress, "mesofit: warning: %s", status_message());
+    say_verified(run, &verification);
+    if (verification.warning[0])
+        progress_say(&run->progress, "mesofit: warning: %s", verification.warning);
     status = result.status;
     if (status == STATUS_UNCONVERGED)
         tell_unconverged(run);
 done:
-    table_clear(&table);
-    evaluate_verification_clear(&verification);
+    decoder_laws_clear(&laws);
+    verify_clear(&verification);
     return status;
 }
 
@@ -254,7 +291,7 @@ done:
 static enum status write_interrupted(struct run *run) {
     const struct fit_result result = result_so_far(run, STATUS_INTERRUPTED);
     if (run->standing.iterations > 0) {
-        TRY(fit_output_summary(&run->fit, &run->grid, &result, &run->folder));
+        TRY(fit_output_summary(&run->fit, &run->decoder, &result, &run->folder));
         run_folder_draw(&run->folder);
     }
     return status_fail(STATUS_INTERRUPTED,
@@ -280,9 +317,11 @@ done:
             run->fit.method->destroy(run->state);
         memory_free(run->state);
         history_clear(&run->history);
-        potential_grid_clear(&run->grid);
-        memory_free(run->phi);
-        memory_free(run->phi_error);
+        decoder_clear(&run->decoder);
+        for (int kind = 0; kind < UNKNOWNS; kind++) {
+            memory_free(run->curve[kind]);
+            memory_free(run->curve_error[kind]);
+        }
         fit_file_clear(&run->fit);
     }
     memory_free(run);
@@ -293,7 +332,7 @@ enum status fit_explain(const char *file, const struct run_options *options) {
     struct fit_file fit;
     const enum status status = fit_file_read(&fit, file, options);
     if (status == STATUS_OK) {
-        const double cutoff = rdf_bins_range(&fit.target.bins);
+        const double cutoff = rdf_bins_range(&fit.targets.rdf.bins);
         struct simulation_setup finer = fit.scene.setup;
         if (fit.verification.time_step > 0)
             finer.time_step = fit.verification.time_step;

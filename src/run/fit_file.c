@@ -2,6 +2,7 @@
 #include "run/fit_file.h"
 
 #include "base/memory.h"
+#include "inverse/decoder.h"
 
 #define MEMBER(name) .offset = offsetof(struct fit_core, name)
 const struct field fit_core_fields[] = {
@@ -36,23 +37,65 @@ static enum status read_method(struct fit_file *fit, struct json_object *root) {
     return STATUS_OK;
 }
 
+static const struct field *unknown_fields(enum unknown_kind kind) {
+    return kind == UNKNOWN_POTENTIAL ? inverse_potential_fields : inverse_weight_fields;
+}
+
+static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind kind,
+                                struct json_object *object) {
+    const struct curve_family *const *laws =
+        kind == UNKNOWN_POTENTIAL ? curve_potentials : curve_weights;
+    json_fields(object, unknown_fields(kind), &unknown->parameters);
+    const struct unknown_parameters *p = &unknown->parameters;
+    if (object->item == NULL)
+        return STATUS_OK;
+    if (p->maximum <= p->minimum)
+        json_fault(object, "maximum", "%g is not above the minimum %g", p->maximum, p->minimum);
+    if (kind == UNKNOWN_WEIGHT && p->cutoff <= p->inner_cutoff)
+        json_fault(object, "cutoff", "%g is not above the inner cutoff %g", p->cutoff,
+                   p->inner_cutoff);
+    TRY(scene_read_curve(&unknown->start, object, "start", laws));
+    TRY(scene_read_curve(&unknown->truth, object, "truth", laws));
+    json_finish(object);
+    return STATUS_OK;
+}
+
+/// "unknowns": {"potential": {…}, "weight": {…}}; a file without it looks for the potential.
+static enum status read_unknowns(struct fit_file *fit, struct json_object *root) {
+    struct json_object object = json_child(root, "unknowns", false);
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        struct json_object child = json_child(&object, inverse_unknown_names[kind], false);
+        fit->unknown[kind].wanted = child.item != NULL;
+        TRY(read_unknown(&fit->unknown[kind], kind, &child));
+    }
+    if (object.item) {
+        json_finish(&object);
+        if (!fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->unknown[UNKNOWN_WEIGHT].wanted)
+            json_fault(root, "unknowns", "needs \"potential\", \"weight\" or both");
+    } else {
+        fit->unknown[UNKNOWN_POTENTIAL].wanted = true;
+    }
+    return STATUS_OK;
+}
+
 static enum status read_root(struct fit_file *fit, struct json_object *root) {
     json_fields(root, heading_fields, &fit->heading);
-    TRY(target_read(&fit->target, root));
+    TRY(targets_read(&fit->targets, root));
+    TRY(read_unknowns(fit, root));
     struct json_object scene = json_child(root, "scene", true);
     if (scene.item) {
-        TRY(scene_read(&fit->scene, &scene, SCENE_FITS_POTENTIAL));
+        const int unknown = (fit->unknown[UNKNOWN_POTENTIAL].wanted ? SCENE_FITS_POTENTIAL : 0) |
+                            (fit->unknown[UNKNOWN_WEIGHT].wanted ? SCENE_FITS_WEIGHT : 0);
+        TRY(scene_read(&fit->scene, &scene, unknown));
         json_finish(&scene);
     }
     TRY(read_method(fit, root));
-    TRY(scene_read_curve(&fit->start, root, "start", curve_potentials));
-    TRY(scene_read_curve(&fit->truth, root, "truth", curve_potentials));
     struct json_object core = json_child(root, "core", false);
     json_fields(&core, fit_core_fields, &fit->core);
     if (core.item)
         json_finish(&core);
     struct json_object verification = json_child(root, "verification", false);
-    json_fields(&verification, evaluate_verification_fields, &fit->verification);
+    json_fields(&verification, verify_fields, &fit->verification);
     if (verification.item)
         json_finish(&verification);
     json_finish(root);
@@ -61,30 +104,96 @@ static enum status read_root(struct fit_file *fit, struct json_object *root) {
 
 /// Begin one simulation, so that a box too small for the forces or particles without room are found
 /// now and not by the verification after the fit.
-static enum status try_scene(const struct fit_file *fit, const char *file) {
-    struct simulation simulation;
-    const enum status status = simulation_init(&simulation, &fit->scene.setup, NULL);
-    if (status != STATUS_OK)
-        return status_prefix(status, "%s: scene", file);
+static enum status try_scene(const struct inverse_problem *problem) {
+    enum status status = STATUS_OK;
+    struct decoder decoder = {0};
+    struct decoder_laws laws = {0};
+    struct simulation simulation = {0};
+    struct simulation_setup setup = problem->scene;
+    double *genes = NULL;
+    CHECK(decoder_init(&decoder, problem));
+    NEW_ARRAY(genes, decoder.genes);
+    CHECK(decoder_start(&decoder, genes));
+    CHECK(decoder_laws(&decoder, genes, &laws));
+    setup.weight = laws.table[UNKNOWN_WEIGHT];
+    CHECK(simulation_init(&simulation, &setup, NULL));
+done:
     simulation_clear(&simulation);
+    decoder_laws_clear(&laws);
+    decoder_clear(&decoder);
+    memory_free(genes);
+    return status;
+}
+
+static enum status check_range(const struct fit_file *fit, const char *file, const char *target,
+                               double range) {
+    const struct box *box = &fit->scene.setup.box;
+    if (box_shortest(box) >= 2 * range)
+        return STATUS_OK;
+    return status_fail(STATUS_BAD_INPUT,
+                       "%s: scene.box: the shortest edge %g is below twice the range of the "
+                       "target \"%s\", %g",
+                       file, box_shortest(box), target, range);
+}
+
+static enum status check_unknowns(const struct fit_file *fit, const char *file) {
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        if (fit->unknown[kind].wanted && !fit->method->fits[kind])
+            return status_fail(STATUS_BAD_INPUT, "%s: method.name: \"%s\" does not find a %s", file,
+                               fit->method->name, inverse_unknown_names[kind]);
+    if (fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->targets.given[GOAL_RDF])
+        return status_fail(STATUS_BAD_INPUT, "%s: target.rdf is required to find a potential",
+                           file);
     return STATUS_OK;
+}
+
+static enum status check_steps(const struct fit_file *fit, const char *file) {
+    enum status status = targets_check_steps(&fit->targets, fit->scene.setup.time_step);
+    if (status != STATUS_OK)
+        return status_prefix(status, "%s: scene.time_step", file);
+    if (fit->verification.time_step > 0)
+        status = targets_check_steps(&fit->targets, fit->verification.time_step);
+    return status == STATUS_OK ? STATUS_OK
+                               : status_prefix(status, "%s: verification.time_step", file);
 }
 
 /// What only the parts together can get wrong.
 static enum status check(const struct fit_file *fit, const char *file) {
-    const struct box *box = &fit->scene.setup.box;
-    const double range = rdf_bins_range(&fit->target.bins);
-    if (box_shortest(box) < 2 * range)
-        return status_fail(STATUS_BAD_INPUT,
-                           "%s: scene.box: the shortest edge %g is below twice the range of the "
-                           "target, %g",
-                           file, box_shortest(box), range);
+    const struct targets *targets = &fit->targets;
+    TRY(check_unknowns(fit, file));
+    if (targets->given[GOAL_RDF])
+        TRY(check_range(fit, file, "rdf", rdf_bins_range(&targets->rdf.bins)));
+    if (targets->given[GOAL_ETD])
+        TRY(check_range(fit, file, "etd", targets->etd.grid.r_maximum));
+    if (goals_count(&fit->problem.goals) == 0)
+        return status_fail(STATUS_BAD_INPUT, "%s: target: nothing is to be fitted", file);
+    TRY(check_steps(fit, file));
     if (fit->scene.setup.placement.kind == PLACEMENT_FILE)
         return status_fail(STATUS_BAD_INPUT,
                            "%s: scene.particles.placement: a fit places its particles on a lattice "
                            "or at random",
                            file);
-    return try_scene(fit, file);
+    const enum status status = try_scene(&fit->problem);
+    return status == STATUS_OK ? STATUS_OK : status_prefix(status, "%s: scene", file);
+}
+
+static void state_problem(struct fit_file *fit, const struct run_options *options) {
+    struct inverse_problem *problem = &fit->problem;
+    *problem = (struct inverse_problem){
+        .scene = fit->scene.setup,
+        .core_threshold = fit->core.threshold,
+        .core_stiffness = fit->core.stiffness,
+        .seed = fit->heading.seed,
+        .threads = options->threads,
+    };
+    targets_goals(&fit->targets, (size_t)fit->scene.setup.placement.count,
+                  fit->unknown[UNKNOWN_WEIGHT].wanted, &problem->goals, &problem->compared);
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        problem->unknown[kind] = (struct unknown){
+            .wanted = fit->unknown[kind].wanted,
+            .parameters = fit->unknown[kind].parameters,
+            .start = fit->unknown[kind].start.family ? &fit->unknown[kind].start : NULL,
+        };
 }
 
 enum status fit_file_read(struct fit_file *fit, const char *file,
@@ -96,39 +205,43 @@ enum status fit_file_read(struct fit_file *fit, const char *file,
     const enum status status = read_root(fit, &root);
     TRY(json_close(document));
     TRY(status);
-    TRY(check(fit, file));
     if (options->has_seed)
         fit->heading.seed = options->seed;
-    target_convert(&fit->target, (size_t)fit->scene.setup.placement.count);
-    fit->problem = (struct inverse_problem){
-        .bins = fit->target.bins,
-        .target = fit->target.g,
-        .target_error = fit->target.error,
-        .scene = fit->scene.setup,
-        .start = fit->start.family ? &fit->start : NULL,
-        .core_threshold = fit->core.threshold,
-        .core_stiffness = fit->core.stiffness,
-        .seed = fit->heading.seed,
-        .threads = options->threads,
-    };
-    return STATUS_OK;
+    state_problem(fit, options);
+    return check(fit, file);
 }
 
 void fit_file_clear(struct fit_file *fit) {
-    target_clear(&fit->target);
+    targets_clear(&fit->targets);
     scene_clear(&fit->scene);
-    curve_clear(&fit->start);
-    curve_clear(&fit->truth);
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        curve_clear(&fit->unknown[kind].start);
+        curve_clear(&fit->unknown[kind].truth);
+    }
     memory_free(fit->method_parameters);
     *fit = (struct fit_file){0};
+}
+
+static void write_unknowns(const struct fit_file *fit, struct json_writer *writer) {
+    json_begin(writer, "unknowns");
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        const struct fit_unknown *unknown = &fit->unknown[kind];
+        if (!unknown->wanted)
+            continue;
+        json_begin(writer, inverse_unknown_names[kind]);
+        json_put_fields(writer, unknown_fields(kind), &unknown->parameters);
+        scene_write_curve(&unknown->start, writer, "start");
+        scene_write_curve(&unknown->truth, writer, "truth");
+        json_end(writer);
+    }
+    json_end(writer);
 }
 
 enum status fit_file_write(const struct fit_file *fit, const char *path) {
     struct json_writer *writer = json_writer_create();
     json_put_fields(writer, heading_fields, &fit->heading);
-    json_begin(writer, "target");
-    json_put_fields(writer, target_fields, &fit->target.parameters);
-    json_end(writer);
+    targets_write(&fit->targets, writer);
+    write_unknowns(fit, writer);
     json_begin(writer, "scene");
     scene_write(&fit->scene, writer);
     json_end(writer);
@@ -137,13 +250,11 @@ enum status fit_file_write(const struct fit_file *fit, const char *path) {
     for (size_t k = 0; fit->method->tables[k]; k++)
         json_put_fields(writer, fit->method->tables[k], fit->method_parameters);
     json_end(writer);
-    scene_write_curve(&fit->start, writer, "start");
-    scene_write_curve(&fit->truth, writer, "truth");
     json_begin(writer, "core");
     json_put_fields(writer, fit_core_fields, &fit->core);
     json_end(writer);
     json_begin(writer, "verification");
-    json_put_fields(writer, evaluate_verification_fields, &fit->verification);
+    json_put_fields(writer, verify_fields, &fit->verification);
     json_end(writer);
     const enum status status = json_write(writer, path);
     json_writer_free(writer);

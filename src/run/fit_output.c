@@ -18,45 +18,65 @@ static double *scaled(const double *values, size_t count, double factor) {
     return copy;
 }
 
-static enum status write_potential(const struct fit_file *fit, const struct potential_grid *grid,
+/// The true curve at `r`, where the run file names one; the caller frees it.
+static double *truth_at(const struct fit_file *fit, enum unknown_kind kind, const double *r,
+                        size_t points) {
+    const struct curve *truth = &fit->unknown[kind].truth;
+    double *values = memory_zeroed(points, sizeof *values);
+    for (size_t k = 0; values && truth->family && k < points; k++)
+        values[k] = curve_value(truth, r[k]);
+    return values;
+}
+
+static enum status write_potential(const struct fit_file *fit, const struct decoder *decoder,
                                    const struct fit_result *result,
                                    const struct run_folder *folder) {
     enum status status = STATUS_OK;
     const struct units *units = &fit->scene.units;
-    const size_t points = grid->points;
+    const double *r = decoder->potential.r, *phi = result->curve[UNKNOWN_POTENTIAL];
+    const size_t points = decoder->potential.points;
+    const bool truth_known = fit->unknown[UNKNOWN_POTENTIAL].truth.family != NULL;
     struct table table = {0};
-    double *force = NULL, *nanometres = NULL, *energy = NULL;
+    double *force = NULL, *truth = NULL, *nanometres = NULL, *energy = NULL;
+    size_t count = 0;
     char path[OUTPUT_PATH_SIZE];
-    CHECK(potential_grid_table(grid, result->phi, &table));
+    CHECK(potential_grid_table(&decoder->potential, phi, &table));
     NEW_ARRAY(force, points);
     for (size_t k = 0; k < points; k++) {
-        table_evaluate(&table, grid->r[k], NULL, &force[k], NULL);
+        table_evaluate(&table, r[k], NULL, &force[k], NULL);
         force[k] = -force[k];
     }
-    nanometres = scaled(grid->r, points, units->length);
-    energy = scaled(result->phi, points, units_known(units) ? units_energy_kj_per_mol(units) : 0);
-    CHECK(nanometres && energy ? STATUS_OK : STATUS_NO_MEMORY);
-    const struct data_column columns[] = {{"r[lambda]", grid->r, "%.17g"},
-                                          {"phi[k_B.T_0]", result->phi, "%.17g"},
-                                          {"force[k_B.T_0/lambda]", force, NULL},
-                                          {"phi_error[k_B.T_0]", result->phi_error, "%.3g"},
-                                          {"r[nm]", nanometres, NULL},
-                                          {"phi[kJ/mol]", energy, NULL}};
+    nanometres = scaled(r, points, units->length);
+    energy = scaled(phi, points, units_known(units) ? units_energy_kj_per_mol(units) : 0);
+    truth = truth_at(fit, UNKNOWN_POTENTIAL, r, points);
+    CHECK(nanometres && energy && truth ? STATUS_OK : STATUS_NO_MEMORY);
+    struct data_column columns[7] = {
+        {"r[lambda]", r, "%.17g"},
+        {"phi[k_B.T_0]", phi, "%.17g"},
+        {"force[k_B.T_0/lambda]", force, NULL},
+        {"phi_error[k_B.T_0]", result->curve_error[UNKNOWN_POTENTIAL], "%.3g"}};
+    count = 4;
+    if (truth_known)
+        columns[count++] = (struct data_column){"truth[k_B.T_0]", truth, "%.8g"};
+    if (units_known(units)) {
+        columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
+        columns[count++] = (struct data_column){"phi[kJ/mol]", energy, NULL};
+    }
     run_folder_file(folder, "potential.tsv", path);
-    CHECK(data_table_write(path, NULL, columns, units_known(units) ? 6 : 4, points));
+    CHECK(data_table_write(path, NULL, columns, count, points));
 done:
     table_clear(&table);
     memory_free(force);
+    memory_free(truth);
     memory_free(nanometres);
     memory_free(energy);
     return status;
 }
 
-static enum status write_omega(const struct fit_file *fit, const struct run_folder *folder) {
+/// The weight that the scene says.
+static enum status write_known_omega(const struct fit_file *fit, const struct run_folder *folder) {
     double r[OMEGA_POINTS + 1], omega[OMEGA_POINTS + 1];
     char path[OUTPUT_PATH_SIZE];
-    if (fit->scene.weight.family == NULL)
-        return STATUS_OK;
     const double cutoff = curve_cutoff(&fit->scene.weight);
     for (int k = 0; k <= OMEGA_POINTS; k++) {
         r[k] = cutoff * k / OMEGA_POINTS;
@@ -68,16 +88,39 @@ static enum status write_omega(const struct fit_file *fit, const struct run_fold
     return data_table_write(path, NULL, columns, 2, OMEGA_POINTS + 1);
 }
 
-enum status fit_output_potential(const struct fit_file *fit, const struct potential_grid *grid,
-                                 const struct fit_result *result, const struct run_folder *folder) {
-    TRY(write_potential(fit, grid, result, folder));
-    return write_omega(fit, folder);
+static enum status write_fitted_omega(const struct fit_file *fit, const struct decoder *decoder,
+                                      const struct fit_result *result,
+                                      const struct run_folder *folder) {
+    const bool truth_known = fit->unknown[UNKNOWN_WEIGHT].truth.family != NULL;
+    double *truth = truth_at(fit, UNKNOWN_WEIGHT, decoder->weight.r, WEIGHT_POINTS);
+    if (truth == NULL)
+        return STATUS_NO_MEMORY;
+    char path[OUTPUT_PATH_SIZE];
+    const struct data_column columns[] = {
+        {"r[lambda]", decoder->weight.r, "%.17g"},
+        {"omega[sqrt(mu/tau)]", result->curve[UNKNOWN_WEIGHT], "%.17g"},
+        {"omega_error[sqrt(mu/tau)]", result->curve_error[UNKNOWN_WEIGHT], "%.3g"},
+        {"truth[sqrt(mu/tau)]", truth, "%.8g"}};
+    run_folder_file(folder, "omega.tsv", path);
+    const enum status status =
+        data_table_write(path, NULL, columns, truth_known ? 4 : 3, WEIGHT_POINTS);
+    memory_free(truth);
+    return status;
 }
 
-enum status fit_output_rdf(const struct fit_file *fit, const struct fit_result *result,
-                           const struct run_folder *folder) {
+enum status fit_output_curves(const struct fit_file *fit, const struct decoder *decoder,
+                              const struct fit_result *result, const struct run_folder *folder) {
+    if (result->curve[UNKNOWN_POTENTIAL])
+        TRY(write_potential(fit, decoder, result, folder));
+    if (result->curve[UNKNOWN_WEIGHT])
+        return write_fitted_omega(fit, decoder, result, folder);
+    return fit->scene.weight.family ? write_known_omega(fit, folder) : STATUS_OK;
+}
+
+static enum status write_rdf(const struct fit_file *fit, const struct observed *observed,
+                             const struct run_folder *folder) {
     enum status status = STATUS_OK;
-    const struct rdf_bins *bins = &fit->target.bins;
+    const struct rdf_bins *bins = &fit->targets.rdf.bins;
     const struct units *units = &fit->scene.units;
     double *r = NULL, *nanometres = NULL;
     char path[OUTPUT_PATH_SIZE];
@@ -86,13 +129,12 @@ enum status fit_output_rdf(const struct fit_file *fit, const struct fit_result *
         r[k] = rdf_bins_centre(bins, k);
     nanometres = scaled(r, bins->count, units->length);
     CHECK(nanometres ? STATUS_OK : STATUS_NO_MEMORY);
-    const struct data_column columns[] = {
-        {"r[lambda]", r, NULL},
-        {"target[1]", fit->target.g, "%.8g"},
-        {"target_error[1]", fit->target.error, "%.3g"},
-        {"result[1]", result->verification->g, "%.8g"},
-        {"result_error[1]", result->verification->g_error, "%.3g"},
-        {"r[nm]", nanometres, NULL}};
+    const struct data_column columns[] = {{"r[lambda]", r, NULL},
+                                          {"target[1]", fit->targets.rdf.g, "%.8g"},
+                                          {"target_error[1]", fit->targets.rdf.error, "%.3g"},
+                                          {"result[1]", observed->value[GOAL_RDF], "%.8g"},
+                                          {"result_error[1]", observed->error[GOAL_RDF], "%.3g"},
+                                          {"r[nm]", nanometres, NULL}};
     run_folder_file(folder, "rdf.tsv", path);
     CHECK(data_table_write(path, NULL, columns, units_known(units) ? 6 : 5, bins->count));
 done:
@@ -101,14 +143,82 @@ done:
     return status;
 }
 
-struct fit_truth fit_output_truth(const struct fit_file *fit, const struct potential_grid *grid,
+/// One row a cell: time, r_0, target, result; what is not known is nan.
+static enum status write_etd(const struct fit_file *fit, const struct observed *observed,
+                             const struct run_folder *folder) {
+    enum status status = STATUS_OK;
+    const struct target_etd *target = &fit->targets.etd;
+    const size_t bins = (size_t)target->grid.bins, cells = (size_t)target->grid.times * bins;
+    const double width = (target->grid.r_maximum - target->grid.r_minimum) / (double)bins;
+    double *time = NULL, *r = NULL;
+    char path[OUTPUT_PATH_SIZE];
+    NEW_ARRAY(time, cells);
+    NEW_ARRAY(r, cells);
+    for (size_t k = 0; k < cells; k++) {
+        time[k] = (double)(k / bins) * target->interval;
+        r[k] = target->grid.r_minimum + ((double)(k % bins) + 0.5) * width;
+    }
+    const struct data_column columns[] = {{"time[tau]", time, "%.6f"},
+                                          {"r0[lambda]", r, "%.6f"},
+                                          {"target[1]", target->survival, "%.6f"},
+                                          {"target_error[1]", target->error, "%.3g"},
+                                          {"result[1]", observed->value[GOAL_ETD], "%.6f"},
+                                          {"result_error[1]", observed->error[GOAL_ETD], "%.3g"}};
+    run_folder_file(folder, "etd_cells.tsv", path);
+    CHECK(data_table_write(path, NULL, columns, 6, cells));
+done:
+    memory_free(time);
+    memory_free(r);
+    return status;
+}
+
+/// VACF or MSD beside its target.
+static enum status write_motion(const struct target_curve *target, const struct observed *observed,
+                                enum goal_kind kind, const struct run_folder *folder) {
+    enum status status = STATUS_OK;
+    double *time = NULL;
+    char path[OUTPUT_PATH_SIZE], name[64];
+    NEW_ARRAY(time, target->times);
+    for (size_t k = 0; k < target->times; k++)
+        time[k] = (double)k * target->interval;
+    const struct data_column columns[] = {{"time[tau]", time, NULL},
+                                          {"target", target->value, "%.8g"},
+                                          {"target_error", target->error, "%.3g"},
+                                          {"result", observed->value[kind], "%.8g"},
+                                          {"result_error", observed->error[kind], "%.3g"}};
+    snprintf(name, sizeof name, "%s.tsv", goals_names[kind]);
+    run_folder_file(folder, name, path);
+    CHECK(data_table_write(path, NULL, columns, 5, target->times));
+done:
+    memory_free(time);
+    return status;
+}
+
+enum status fit_output_observables(const struct fit_file *fit, const struct fit_result *result,
+                                   const struct run_folder *folder) {
+    const struct targets *targets = &fit->targets;
+    const struct observed *observed = &result->verification->observed;
+    if (targets->given[GOAL_RDF])
+        TRY(write_rdf(fit, observed, folder));
+    if (targets->given[GOAL_ETD])
+        TRY(write_etd(fit, observed, folder));
+    if (targets->given[GOAL_VACF])
+        TRY(write_motion(&targets->vacf, observed, GOAL_VACF, folder));
+    if (targets->given[GOAL_MSD])
+        TRY(write_motion(&targets->msd, observed, GOAL_MSD, folder));
+    return STATUS_OK;
+}
+
+struct fit_truth fit_output_truth(const struct fit_file *fit, const struct decoder *decoder,
                                   const double *phi) {
+    const struct potential_grid *grid = &decoder->potential;
     const double cutoff = grid->r[grid->points - 1];
     double count = 0, squares = 0, with_ramp = 0, ramp_squares = 0;
     for (size_t k = grid->core; k + 1 < grid->points; k++) {
-        if (fit->target.g[k] <= 0.1)
+        if (fit->targets.rdf.g[k] <= 0.1)
             continue;
-        const double difference = phi[k] - curve_value(&fit->truth, grid->r[k]);
+        const double difference =
+            phi[k] - curve_value(&fit->unknown[UNKNOWN_POTENTIAL].truth, grid->r[k]);
         const double ramp = 1 - grid->r[k] / cutoff;
         count += 1;
         squares += difference * difference;
@@ -123,14 +233,75 @@ struct fit_truth fit_output_truth(const struct fit_file *fit, const struct poten
     };
 }
 
+/// rms of ω − ω_true over the points that the data can see, relative to the largest ω_true.
+static double weight_truth(const struct fit_file *fit, const struct decoder *decoder,
+                           const double *omega) {
+    double squares = 0, largest = 0, count = 0;
+    for (size_t k = 0; k + 1 < WEIGHT_POINTS; k++) {
+        const double r = decoder->weight.r[k];
+        const double truth = curve_value(&fit->unknown[UNKNOWN_WEIGHT].truth, r);
+        largest = fmax(largest, truth);
+        // Closer pairs than the target follows do not exist.
+        if (fit->targets.given[GOAL_ETD] && r < fit->targets.etd.grid.r_minimum)
+            continue;
+        squares += (omega[k] - truth) * (omega[k] - truth);
+        count += 1;
+    }
+    return sqrt(squares / count) / largest;
+}
+
+/// "etd_rmse", "etd_rmse_error", "etd_noise", and so on for every target.
+static void put_distances(struct json_writer *writer, const struct fit_file *fit,
+                          const struct verification *v) {
+    char key[64];
+    for (int kind = 0; kind < GOALS; kind++) {
+        if (!fit->targets.given[kind])
+            continue;
+        snprintf(key, sizeof key, "%s_rmse", goals_names[kind]);
+        json_put_number(writer, key, v->distance[kind].rms);
+        snprintf(key, sizeof key, "%s_rmse_error", goals_names[kind]);
+        json_put_number(writer, key, v->distance_error[kind]);
+        snprintf(key, sizeof key, "%s_noise", goals_names[kind]);
+        json_put_number(writer, key, v->distance[kind].noise);
+    }
+}
+
+static void put_diffusion(struct json_writer *writer, const struct fit_file *fit,
+                          const struct verification *v) {
+    const struct units *units = &fit->scene.units;
+    if (!goals_ask(&fit->problem.compared, GOAL_DIFFUSION))
+        return;
+    const double value = *v->observed.value[GOAL_DIFFUSION];
+    const double error = *v->observed.error[GOAL_DIFFUSION];
+    json_put_number(writer, "diffusion", value);
+    json_put_number(writer, "diffusion_error", error);
+    if (units_known(units)) {
+        const double unit = units_diffusion_cm2_per_s(units);
+        json_put_number(writer, "diffusion_cm2_per_s", value * unit);
+        json_put_number(writer, "diffusion_error_cm2_per_s", error * unit);
+    }
+}
+
+static void put_truth(struct json_writer *writer, const struct fit_file *fit,
+                      const struct decoder *decoder, const struct fit_result *result) {
+    const double *phi = result->curve[UNKNOWN_POTENTIAL], *omega = result->curve[UNKNOWN_WEIGHT];
+    if (phi && fit->unknown[UNKNOWN_POTENTIAL].truth.family) {
+        const struct fit_truth truth = fit_output_truth(fit, decoder, phi);
+        json_put_number(writer, "truth_rms", truth.rms);
+        json_put_number(writer, "truth_ramp", truth.ramp);
+        json_put_number(writer, "truth_rms_without_ramp", truth.rms_without_ramp);
+    }
+    if (omega && fit->unknown[UNKNOWN_WEIGHT].truth.family)
+        json_put_number(writer, "truth_error", weight_truth(fit, decoder, omega));
+}
+
 static void put_verification(struct json_writer *writer, const struct fit_file *fit,
-                             const struct evaluate_verification *v) {
+                             const struct verification *v) {
     const struct thermodynamics_summary *t = &v->thermodynamics;
-    if (thermodynamics_judge(t, &fit->problem.scene) != STATUS_OK)
-        json_put_text(writer, "warning", status_message());
-    json_put_number(writer, "rdf_rmse", v->rmse);
-    json_put_number(writer, "rdf_rmse_error", v->rmse_error);
-    json_put_number(writer, "rdf_noise", v->noise);
+    if (v->warning[0])
+        json_put_text(writer, "warning", v->warning);
+    put_distances(writer, fit, v);
+    put_diffusion(writer, fit, v);
     json_put_number(writer, "temperature", t->temperature);
     json_put_number(writer, "temperature_error", t->temperature_error);
     json_put_number(writer, "temperature_configurational", t->temperature_configurational);
@@ -144,7 +315,7 @@ static void put_verification(struct json_writer *writer, const struct fit_file *
     units_put(&fit->scene.units, writer, t->potential_energy, t->pressure);
 }
 
-enum status fit_output_summary(const struct fit_file *fit, const struct potential_grid *grid,
+enum status fit_output_summary(const struct fit_file *fit, const struct decoder *decoder,
                                const struct fit_result *result, const struct run_folder *folder) {
     struct json_writer *writer = json_writer_create();
     char path[OUTPUT_PATH_SIZE];
@@ -158,12 +329,7 @@ enum status fit_output_summary(const struct fit_file *fit, const struct potentia
     json_put_number(writer, "engine_steps", (double)result->engine_steps);
     if (result->verification)
         put_verification(writer, fit, result->verification);
-    if (fit->truth.family) {
-        const struct fit_truth truth = fit_output_truth(fit, grid, result->phi);
-        json_put_number(writer, "truth_rms", truth.rms);
-        json_put_number(writer, "truth_ramp", truth.ramp);
-        json_put_number(writer, "truth_rms_without_ramp", truth.rms_without_ramp);
-    }
+    put_truth(writer, fit, decoder, result);
     json_put_number(writer, "seed", (double)fit->heading.seed);
     json_put_text(writer, "version", MESOFIT_VERSION);
     run_folder_file(folder, "summary.json", path);

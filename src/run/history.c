@@ -9,14 +9,18 @@
 enum { COMMON = 5, MOST_COLUMNS = COMMON + 4 };
 
 enum status history_init(struct history *history, const struct inverse_method *method,
-                         size_t points, size_t capacity) {
+                         const size_t points[UNKNOWNS], size_t capacity) {
     enum status status = STATUS_OK;
-    *history = (struct history){.capacity = capacity, .points = points};
+    *history = (struct history){.capacity = capacity};
     while (method->columns[history->extra])
         history->extra++;
     NEW_ARRAY(history->rows, capacity * (COMMON + history->extra));
     NEW_ARRAY(history->seconds, capacity);
-    NEW_ARRAY(history->phi, capacity * points);
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        history->points[kind] = points[kind];
+        if (points[kind] > 0)
+            NEW_ARRAY(history->curve[kind], capacity * points[kind]);
+    }
 done:
     return status;
 }
@@ -24,7 +28,8 @@ done:
 void history_clear(struct history *history) {
     memory_free(history->rows);
     memory_free(history->seconds);
-    memory_free(history->phi);
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        memory_free(history->curve[kind]);
     *history = (struct history){0};
 }
 
@@ -38,7 +43,10 @@ void history_add(struct history *history, const struct inverse_step *step, doubl
     row[4] = step->noise;
     memcpy(row + COMMON, step->extra, history->extra * sizeof *row);
     history->seconds[k] = seconds;
-    memcpy(history->phi + k * history->points, step->phi, history->points * sizeof *step->phi);
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        if (history->points[kind] > 0)
+            memcpy(history->curve[kind] + k * history->points[kind], step->curve[kind],
+                   history->points[kind] * sizeof(double));
 }
 
 /// Write a row-major table of `rows` by `columns` numbers, transposed into columns.
@@ -93,23 +101,24 @@ done:
 }
 
 /// One column an iteration, named by its number.
-static enum status write_potentials(const struct history *history, const double *r,
-                                    const struct run_folder *folder) {
+static enum status write_curves(const struct history *history, enum unknown_kind kind,
+                                const double *r, const struct run_folder *folder) {
     enum { NAME_SIZE = 24 };
     enum status status = STATUS_OK;
     struct data_column *columns = NULL;
     char *names = NULL;
-    char path[OUTPUT_PATH_SIZE];
+    char path[OUTPUT_PATH_SIZE], name[64];
     NEW_ARRAY(columns, history->iterations + 1);
     NEW_ARRAY(names, history->iterations * NAME_SIZE);
     columns[0] = (struct data_column){"r[lambda]", r, NULL};
     for (size_t k = 0; k < history->iterations; k++) {
         snprintf(names + k * NAME_SIZE, NAME_SIZE, "%zu", k);
-        columns[k + 1] =
-            (struct data_column){names + k * NAME_SIZE, history->phi + k * history->points, "%.6g"};
+        columns[k + 1] = (struct data_column){
+            names + k * NAME_SIZE, history->curve[kind] + k * history->points[kind], "%.6g"};
     }
-    run_folder_file(folder, "potential_history.tsv", path);
-    CHECK(data_table_write(path, NULL, columns, history->iterations + 1, history->points));
+    snprintf(name, sizeof name, "%s_history.tsv", inverse_unknown_names[kind]);
+    run_folder_file(folder, name, path);
+    CHECK(data_table_write(path, NULL, columns, history->iterations + 1, history->points[kind]));
 done:
     memory_free(columns);
     memory_free(names);
@@ -117,10 +126,13 @@ done:
 }
 
 enum status history_write(const struct history *history, const struct inverse_method *method,
-                          const double *r, const struct run_folder *folder) {
+                          const double *const r[UNKNOWNS], const struct run_folder *folder) {
     TRY(write_history(history, method, folder));
     TRY(write_timing(history, folder));
-    return write_potentials(history, r, folder);
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        if (history->points[kind] > 0)
+            TRY(write_curves(history, kind, r[kind], folder));
+    return STATUS_OK;
 }
 
 size_t history_spans(struct history *history, struct memory_span *spans) {
@@ -129,6 +141,9 @@ size_t history_spans(struct history *history, struct memory_span *spans) {
     spans[count++] = (struct memory_span){&history->iterations, sizeof history->iterations};
     spans[count++] = (struct memory_span){history->rows, n * columns * sizeof(double)};
     spans[count++] = (struct memory_span){history->seconds, n * sizeof(double)};
-    spans[count++] = (struct memory_span){history->phi, n * history->points * sizeof(double)};
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        if (history->points[kind] > 0)
+            spans[count++] = (struct memory_span){history->curve[kind],
+                                                  n * history->points[kind] * sizeof(double)};
     return count;
 }

@@ -2,6 +2,7 @@
 #include "run/result.h"
 
 #include "base/memory.h"
+#include "inverse/goals.h"
 #include "io/json.h"
 #include "io/output.h"
 #include "io/text_file.h"
@@ -25,6 +26,11 @@ enum { PATH_SIZE = OUTPUT_PATH_SIZE + 64 };
         .initial = NAN, .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = its_unit                  \
     }
 
+#define DISTANCE(kind, its_unit)                                                                   \
+    NUMBER(kind##_rmse, its_unit), NUMBER(kind##_rmse_error, its_unit),                            \
+        NUMBER(kind##_noise, its_unit)
+#define MEAN(member, its_unit) NUMBER(member, its_unit), NUMBER(member##_error, its_unit)
+
 const struct field result_summary_fields[] = {
     TEXT(status),
     TEXT(method),
@@ -34,12 +40,23 @@ const struct field result_summary_fields[] = {
     NUMBER(iterations, "1"),
     NUMBER(evaluations, "1"),
     NUMBER(engine_steps, "1"),
-    NUMBER(rdf_rmse, "1"),
-    NUMBER(rdf_rmse_error, "1"),
-    NUMBER(rdf_noise, "1"),
-    NUMBER(temperature, "T_0"),
-    NUMBER(temperature_configurational, "T_0"),
-    NUMBER(pressure, "k_BT_0/lambda^3"),
+    DISTANCE(rdf, "1"),
+    DISTANCE(etd, "1"),
+    DISTANCE(vacf, "lambda^2/tau^2"),
+    DISTANCE(msd, "lambda^2"),
+    DISTANCE(diffusion, "lambda^2/tau"),
+    DISTANCE(pressure, "k_BT_0/lambda^3"),
+    MEAN(diffusion, "lambda^2/tau"),
+    NUMBER(diffusion_cm2_per_s, "cm^2/s"),
+    NUMBER(diffusion_error_cm2_per_s, "cm^2/s"),
+    NUMBER(truth_rms, "k_BT_0"),
+    NUMBER(truth_ramp, "k_BT_0"),
+    NUMBER(truth_rms_without_ramp, "k_BT_0"),
+    NUMBER(truth_error, "1"),
+    MEAN(temperature, "T_0"),
+    MEAN(temperature_configurational, "T_0"),
+    MEAN(potential_energy, "k_BT_0"),
+    MEAN(pressure, "k_BT_0/lambda^3"),
     NUMBER(seed, "1"),
     FIELD_END,
 };
@@ -57,14 +74,25 @@ static enum status check_folder(const char *folder, const char *summary) {
     return STATUS_OK;
 }
 
+/// True if the result was compared with any target.
+static bool has_distance(struct json_object *root) {
+    char key[64];
+    bool found = false;
+    for (int kind = 0; kind < GOALS; kind++) {
+        snprintf(key, sizeof key, "%s_rmse", goals_names[kind]);
+        found = json_has(root, key) || found;
+    }
+    return found;
+}
+
 /// Keys that are not in the table are left alone: a later version may write more.
 static enum status read_summary(struct result_summary *summary, const char *file) {
     struct json_document *document;
     TRY(json_open(&document, file));
     struct json_object root = json_root(document);
     json_fields(&root, result_summary_fields, summary);
-    if (root.item && !json_has(&root, "rdf_rmse"))
-        json_fault(&root, NULL, "not the result of a fit: there is no rdf_rmse");
+    if (root.item && !has_distance(&root))
+        json_fault(&root, NULL, "not the result of a fit: there is no rdf_rmse or other rmse");
     return json_close(document);
 }
 
@@ -84,22 +112,53 @@ static bool is_data(const char *line) {
     return *word != '\0' && *word != '#';
 }
 
-static enum status read_row(double *row, size_t columns, const char *line, const char *file,
-                            size_t number) {
-    for (size_t k = 0; k < columns; k++) {
+/// A column of a table that is to be read.
+struct wish {
+    const char *name; ///< in the header, without its unit; NULL: go by the place
+    size_t place;     ///< from 1, if the header has no such name; 0: then it is nan
+};
+
+/// Places of the columns whose names the header has.
+static void find_places(struct wish *wishes, size_t count, const char *header) {
+    size_t place = 0;
+    for (const char *word = header + 1 + strspn(header + 1, " "); *word;) {
+        const size_t length = strcspn(word, "[\t\r");
+        place++;
+        for (size_t k = 0; k < count; k++)
+            if (wishes[k].name && strlen(wishes[k].name) == length &&
+                strncmp(wishes[k].name, word, length) == 0) {
+                wishes[k].place = place;
+                wishes[k].name = NULL; // the first one counts
+            }
+        word += strcspn(word, "\t");
+        word += *word == '\t';
+    }
+}
+
+static enum status read_row(double *row, const struct wish *wishes, size_t count, const char *line,
+                            const char *file, size_t number) {
+    size_t last = 0;
+    for (size_t k = 0; k < count; k++) {
+        row[k] = NAN;
+        last = wishes[k].place > last ? wishes[k].place : last;
+    }
+    for (size_t place = 1; place <= last; place++) {
         char *end;
-        row[k] = strtod(line, &end);
+        const double value = strtod(line, &end);
         if (end == line || strchr(" \t\r", *end) == NULL)
             return status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu is not a number", file, number,
-                               k + 1);
+                               place);
+        for (size_t k = 0; k < count; k++)
+            if (wishes[k].place == place)
+                row[k] = value;
         line = end;
     }
     return STATUS_OK;
 }
 
-/// Read the first `columns` columns; more are left alone.
+/// Read the columns that `wishes` says, which learns from the header; others are left alone.
 static enum status read_table(struct result_table *table, const char *folder, const char *name,
-                              size_t columns) {
+                              struct wish *wishes, size_t count) {
     enum status status = STATUS_OK;
     char file[PATH_SIZE], *text = NULL, *line;
     size_t length = 0, most_rows = 1, number = 0;
@@ -107,17 +166,76 @@ static enum status read_table(struct result_table *table, const char *folder, co
     CHECK(text_file_read(file, &text, &length));
     for (size_t k = 0; k < length; k++)
         most_rows += text[k] == '\n';
-    table->columns = columns;
-    NEW_ARRAY(table->values, most_rows * columns);
+    table->columns = count;
+    NEW_ARRAY(table->values, most_rows * count);
     for (char *rest = text; (line = take_line(&rest));) {
         number++;
         if (is_data(line))
-            CHECK(read_row(table->values + columns * table->rows++, columns, line, file, number));
+            CHECK(
+                read_row(table->values + count * table->rows++, wishes, count, line, file, number));
+        else if (line[0] == '#')
+            find_places(wishes, count, line);
     }
     if (table->rows == 0)
         status = status_fail(STATUS_BAD_INPUT, "%s: there is no row of numbers", file);
 done:
     memory_free(text);
+    return status;
+}
+
+static bool is_there(const char *folder, const char *name) {
+    char file[PATH_SIZE];
+    snprintf(file, sizeof file, "%s/%s", folder, name);
+    return access(file, F_OK) == 0;
+}
+
+static enum status read_rdf(struct result_table *table, const char *folder) {
+    struct wish wishes[] = {{NULL, 1}, {NULL, 2}, {NULL, 3}, {NULL, 4}, {NULL, 5}};
+    return is_there(folder, "rdf.tsv") ? read_table(table, folder, "rdf.tsv", wishes, 5)
+                                       : STATUS_OK;
+}
+
+static enum status read_potential(struct result_table *table, const char *folder) {
+    struct wish wishes[] = {{NULL, 1}, {NULL, 2}, {"phi_error", 0}, {"truth", 0}};
+    return is_there(folder, "potential.tsv") ? read_table(table, folder, "potential.tsv", wishes, 4)
+                                             : STATUS_OK;
+}
+
+/// A weight without a column of errors was not fitted.
+static enum status read_omega(struct result_table *table, const char *folder) {
+    struct wish wishes[] = {{NULL, 1}, {NULL, 2}, {"omega_error", 0}, {"truth", 0}};
+    if (!is_there(folder, "omega.tsv"))
+        return STATUS_OK;
+    TRY(read_table(table, folder, "omega.tsv", wishes, 4));
+    if (wishes[2].place == 0) {
+        memory_free(table->values);
+        *table = (struct result_table){0};
+    }
+    return STATUS_OK;
+}
+
+static double seconds_at(const struct result_table *timing, double iteration) {
+    for (size_t row = 0; row < timing->rows; row++)
+        if (timing->values[2 * row] == iteration)
+            return timing->values[2 * row + 1];
+    return NAN;
+}
+
+/// history.tsv with the seconds of timing.tsv.
+static enum status read_course(struct result_table *table, const char *folder) {
+    enum { SECONDS = 3 };
+    enum status status = STATUS_OK;
+    struct result_table timing = {0};
+    struct wish wishes[] = {{NULL, 1}, {NULL, 2}, {NULL, 3}, {NULL, 0}, {NULL, 4}, {NULL, 5}};
+    struct wish times[] = {{NULL, 1}, {NULL, 2}};
+    CHECK(read_table(table, folder, "history.tsv", wishes, 6));
+    CHECK(read_table(&timing, folder, "timing.tsv", times, 2));
+    for (size_t row = 0; row < table->rows; row++) {
+        double *values = table->values + row * table->columns;
+        values[SECONDS] = seconds_at(&timing, values[0]);
+    }
+done:
+    memory_free(timing.values);
     return status;
 }
 
@@ -128,10 +246,10 @@ enum status result_read(struct result *result, const char *folder) {
     *result = (struct result){0};
     CHECK(check_folder(folder, summary));
     CHECK(read_summary(&result->summary, summary));
-    CHECK(read_table(&result->rdf, folder, "rdf.tsv", 5));
-    CHECK(read_table(&result->potential, folder, "potential.tsv", 2));
-    CHECK(read_table(&result->history, folder, "history.tsv", 5));
-    CHECK(read_table(&result->timing, folder, "timing.tsv", 2));
+    CHECK(read_rdf(&result->rdf, folder));
+    CHECK(read_potential(&result->potential, folder));
+    CHECK(read_omega(&result->omega, folder));
+    CHECK(read_course(&result->course, folder));
 done:
     if (status != STATUS_OK)
         result_clear(result);
@@ -141,7 +259,7 @@ done:
 void result_clear(struct result *result) {
     memory_free(result->rdf.values);
     memory_free(result->potential.values);
-    memory_free(result->history.values);
-    memory_free(result->timing.values);
+    memory_free(result->omega.values);
+    memory_free(result->course.values);
     *result = (struct result){0};
 }

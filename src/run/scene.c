@@ -133,13 +133,13 @@ static void read_top(struct scene *scene, struct json_object *object) {
     setup->threads = 1;
 }
 
-static void read_dynamics(struct scene *scene, struct json_object *object) {
+static void read_dynamics(struct scene *scene, struct json_object *object, int unknown) {
     enum { MOST = 16 };
     const char *names[MOST] = {NULL};
     for (size_t k = 0; integrator_list[k] && k + 1 < MOST; k++)
         names[k] = integrator_list[k]->name;
     struct json_object dynamics = json_child(object, "dynamics", false);
-    const bool dissipative = scene->weight.family != NULL;
+    const bool dissipative = scene->weight.family != NULL || (unknown & SCENE_FITS_WEIGHT);
     const char *name = dissipative ? aboba.name : velocity_verlet.name;
     if (dynamics.item)
         name = json_choice(&dynamics, "integrator", names, name);
@@ -206,18 +206,18 @@ static enum status read_particles(struct scene *scene, struct json_object *objec
     return read_positions(scene, &particles);
 }
 
-enum status scene_read(struct scene *scene, struct json_object *object,
-                       enum scene_potential potential) {
+enum status scene_read(struct scene *scene, struct json_object *object, int unknown) {
     *scene = (struct scene){0};
     read_top(scene, object);
     TRY(read_particles(scene, object));
-    if (potential == SCENE_HAS_POTENTIAL) {
+    if (!(unknown & SCENE_FITS_POTENTIAL)) {
         TRY(scene_read_curve(&scene->potential, object, "conservative", curve_potentials));
         if (scene->potential.family)
             TRY(table_init_potential(&scene->potential_table, &scene->potential));
     }
-    TRY(read_weight(scene, object));
-    read_dynamics(scene, object);
+    if (!(unknown & SCENE_FITS_WEIGHT))
+        TRY(read_weight(scene, object));
+    read_dynamics(scene, object, unknown);
     struct json_object units = json_child(object, "units", false);
     json_fields(&units, units_fields, &scene->units);
     if (units.item)
@@ -260,7 +260,8 @@ void scene_write(const struct scene *scene, struct json_writer *writer) {
     json_end(writer);
     if (scene->potential.family)
         scene_write_curve(&scene->potential, writer, "conservative");
-    scene_write_curve(&scene->weight, writer, "dissipative");
+    if (scene->weight.family)
+        scene_write_curve(&scene->weight, writer, "dissipative");
     json_begin(writer, "dynamics");
     json_put_text(writer, "integrator", setup->integrator->name);
     json_put_fields(writer, setup->integrator->fields, &setup->integrator_parameters);

@@ -69,7 +69,7 @@ static enum status read_file(struct run *run, const char *file, const struct run
     TRY(json_open(&document, file));
     struct json_object root = json_root(document);
     json_fields(&root, heading_fields, &run->heading);
-    const enum status status = scene_read(&run->scene, &root, SCENE_HAS_POTENTIAL);
+    const enum status status = scene_read(&run->scene, &root, SCENE_FITS_NOTHING);
     struct json_object measure = json_child(&root, "measure", false);
     json_fields(&measure, measure_plan_fields, &run->plan);
     if (measure.item)

@@ -98,15 +98,12 @@ static enum status load(struct target *target, struct data_table *table) {
     return take_values(target, table);
 }
 
-enum status target_read(struct target *target, struct json_object *parent) {
+enum status target_read(struct target *target, struct json_object *object) {
     *target = (struct target){0};
-    struct json_object object = json_child(parent, "target", true);
-    const size_t faults = json_fault_count(object.document);
-    json_fields(&object, target_fields, &target->parameters);
-    if (object.item == NULL)
-        return STATUS_OK;
-    json_finish(&object);
-    if (json_fault_count(object.document) > faults)
+    const size_t faults = json_fault_count(object->document);
+    json_fields(object, target_fields, &target->parameters);
+    json_finish(object);
+    if (json_fault_count(object->document) > faults)
         return STATUS_OK;
     struct data_table table = {0};
     const enum status status = load(target, &table);
@@ -114,7 +111,7 @@ enum status target_read(struct target *target, struct json_object *parent) {
     if (status == STATUS_NO_MEMORY)
         return status;
     if (status != STATUS_OK)
-        json_fault(&object, "file", "%s", status_message());
+        json_fault(object, "file", "%s", status_message());
     return STATUS_OK;
 }
 

@@ -153,15 +153,12 @@ static enum status load(struct target_etd *target, struct data_table *table,
     return take_values(target, table, errors);
 }
 
-enum status target_etd_read(struct target_etd *target, struct json_object *parent) {
+enum status target_etd_read(struct target_etd *target, struct json_object *object) {
     *target = (struct target_etd){0};
-    struct json_object object = json_child(parent, "target_etd", true);
-    const size_t faults = json_fault_count(object.document);
-    json_fields(&object, target_etd_fields, &target->parameters);
-    if (object.item == NULL)
-        return STATUS_OK;
-    json_finish(&object);
-    if (json_fault_count(object.document) > faults)
+    const size_t faults = json_fault_count(object->document);
+    json_fields(object, target_etd_fields, &target->parameters);
+    json_finish(object);
+    if (json_fault_count(object->document) > faults)
         return STATUS_OK;
     struct data_table table = {0}, errors = {0};
     const enum status status = load(target, &table, &errors);
@@ -172,7 +169,7 @@ enum status target_etd_read(struct target_etd *target, struct json_object *paren
     target_etd_clear(target);
     if (status == STATUS_NO_MEMORY)
         return status;
-    json_fault(&object, NULL, "%s", status_message());
+    json_fault(object, NULL, "%s", status_message());
     return STATUS_OK;
 }
 

@@ -114,8 +114,8 @@ static const struct fault scene_faults[] = {
 #define ROWS(middle) "0.1 0.3 0.1\n0.3 0.6 0.1\n0.5 0.8 0.1\n" middle "1.1 1 0.1\n1.3 1 0.1\n"
 
 static const struct fault run_faults[] = {
-    FAULT("no target", "target.tsv", "no.tsv", "target.file", "no.tsv: No such file"),
-    TARGET("a gap", ROWS("0.7 1 0.1\n"), "target.file", "target.tsv:5", "gap"),
+    FAULT("no target", "target.tsv", "no.tsv", "target.rdf.file", "no.tsv: No such file"),
+    TARGET("a gap", ROWS("0.7 1 0.1\n"), "target.rdf.file", "target.tsv:5", "gap"),
     TARGET("unsorted", ROWS("0.9 1 0.1\n0.7 1 0.1\n"), "target.tsv:5", "column 1"),
     TARGET("negative r", "-0.1 0 0\n0.1 0.3 0\n0.3 0.6 0\n0.5 1 0\n", "target.tsv:1",
            "-0.1 is below 0"),
@@ -162,7 +162,7 @@ static void test_fit_refuses_with_a_line_for_each_fault(void **state) {
 
 static void test_fit_tells_of_all_faults_at_once(void **state) {
     static const char bad[] =
-        "{\"seed\": -1, \"target\": {\"file\": \"target.tsv\"},\n"
+        "{\"seed\": -1, \"target\": {\"rdf\": {\"file\": \"target.tsv\"}},\n"
         "\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81},\n"
         "\"time_step\": 0}, \"method\": {\"name\": \"imc\", \"replicas\": 1}}";
     const char *const words[] = {"input.json: seed: ", "input.json: scene.time_step: ",

@@ -20,7 +20,8 @@ static const char soft_fluid[] =
 
 #define METHOD "METHOD"
 static const char fit[] =
-    "{\"seed\": 3, \"target\": {\"file\": \"target/rdf.tsv\"},\n"
+    "{\"seed\": 3, \"target\": {\"rdf\": {\"file\": \"target/rdf.tsv\"}},\n"
+    "\"unknowns\": {\"potential\": {\"genes\": 5, \"maximum\": 30}},\n"
     "\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, \"time_step\": 0.02,\n"
     "\"dissipative\": {\"law\": \"power\", \"sigma\": 3}},\n"
     "\"method\": {" METHOD "}, \"core\": {\"threshold\": 0.05, \"stiffness\": 50},\n"
@@ -31,11 +32,10 @@ static const char fit[] =
     "\"iterations\": 4, \"precision\": 1e-4"
 
 /// An odd population.
-#define GENETIC_BELOW(maximum, tolerance)                                                          \
-    "\"name\": \"genetic\", \"population\": 7, \"genes\": 5, \"generations\": 3, "                 \
-    "\"gene_maximum\": " maximum ", \"equilibration\": 60, \"samples\": 10, \"every\": 5, "        \
+#define GENETIC(tolerance)                                                                         \
+    "\"name\": \"genetic\", \"population\": 7, \"generations\": 3, "                               \
+    "\"equilibration\": 60, \"samples\": 10, \"every\": 5, "                                       \
     "\"temperature_tolerance\": " tolerance
-#define GENETIC(tolerance) GENETIC_BELOW("8", tolerance)
 
 static const char *const tables[] = {"history.tsv",           "rdf.tsv",   "potential.tsv",
                                      "potential_history.tsv", "omega.tsv", NULL};
@@ -99,10 +99,9 @@ static void test_genetic_gives_the_same_bits_from_its_used_settings(void **state
 }
 
 static void test_genetic_with_forces_gives_the_same_bits_from_its_used_settings(void **state) {
-    // Steep enough that the forces are used.
-    write_fit(*state, GENETIC_BELOW("30", "0.5") ", \"estimator\": \"force\"");
+    write_fit(*state, GENETIC("0.5") ", \"estimator\": \"force\"");
     check_used(CONVERGED);
-    small_inputs_write(*state, "run.json", fit, METHOD, GENETIC_BELOW("30", "0.5"));
+    small_inputs_write(*state, "run.json", fit, METHOD, GENETIC("0.5"));
     run_fit("other", "2", CONVERGED);
     results_assert_differ("a/one", "other", "history.tsv");
 }
@@ -192,6 +191,21 @@ static void test_summary_has_what_other_programs_read(void **state) {
     results_assert_table("out/omega.tsv", 2, 0);
 }
 
+static void test_true_potential_stands_beside_the_result(void **state) {
+    write_fit(*state, IMC);
+    char *text = temporary_folder_read("run.json");
+    small_inputs_write(*state, "run.json", text, "\"genes\": 5",
+                       "\"truth\": {\"law\": \"soft-repulsion\", \"a\": 25}");
+    free(text);
+    run_fit("out", "2", UNCONVERGED);
+    results_assert_table("out/potential.tsv", 5, 21);
+    text = temporary_folder_read("out/potential.tsv");
+    assert_contains(text, "\tphi_error[k_B.T_0]\ttruth[k_B.T_0]\n");
+    assert_contains(text, "\t11.882812\n0.07"); // 25 (1 - 0.025)^2/2
+    free(text);
+    results_assert_numbers("out/summary.json", (const char *const[]){"truth_rms", NULL});
+}
+
 /// A tolerance that no simulation keeps to, and a time step at which the verification fails too.
 static void test_genetic_without_a_survivor_ends_and_says_so(void **state) {
     static struct run_program_result result;
@@ -267,6 +281,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_interrupted_genetic_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_fit_says_so_and_refuses_other_settings),
         TEST_WITHOUT_FIGURES(test_summary_has_what_other_programs_read),
+        TEST_WITHOUT_FIGURES(test_true_potential_stands_beside_the_result),
         TEST_WITHOUT_FIGURES(test_genetic_without_a_survivor_ends_and_says_so),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

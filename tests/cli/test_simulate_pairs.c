@@ -85,7 +85,7 @@ static void test_simulate_measures_escape_times_when_asked(void **state) {
 static void test_simulated_escape_times_can_be_a_target(void **state) {
     static struct run_program_result result;
     static const char text[] =
-        "{\"target_etd\": {\"file\": \"out/etd.tsv\", \"error_file\": \"out/etd_error.tsv\", "
+        "{\"etd\": {\"file\": \"out/etd.tsv\", \"error_file\": \"out/etd_error.tsv\", "
         "\"r_minimum\": 0, \"r_maximum\": 0.9}}";
     struct json_document *document;
     struct target_etd target;
@@ -96,7 +96,8 @@ static void test_simulated_escape_times_can_be_a_target(void **state) {
     const char *file = temporary_folder_write(*state, "target.json", text, sizeof text - 1);
     assert_ok(json_open(&document, file));
     struct json_object root = json_root(document);
-    assert_ok(target_etd_read(&target, &root));
+    struct json_object object = json_child(&root, "etd", true);
+    assert_ok(target_etd_read(&target, &object));
     assert_ok(json_close(document));
     assert_int_equal(target.grid.times, 7);
     assert_int_equal(target.grid.bins, 90);

@@ -52,11 +52,11 @@ static void compare_with_truth(const struct inverse_problem *problem, const doub
                                double *ramp, double *rms) {
     double above = 0, below = 0, sum = 0, count = 0;
     for (int pass = 0; pass < 2; pass++) {
-        for (size_t k = 0; k < problem->bins.count; k++) {
-            if (problem->target[k] < well_known)
+        for (size_t k = 0; k < problem->goals.bins.count; k++) {
+            if (problem->goals.goal[GOAL_RDF].value[k] < well_known)
                 continue;
-            const double r = rdf_bins_centre(&problem->bins, k);
-            const double shape = 1 - r / rdf_bins_range(&problem->bins);
+            const double r = rdf_bins_centre(&problem->goals.bins, k);
+            const double shape = 1 - r / rdf_bins_range(&problem->goals.bins);
             double truth;
             table_evaluate(problem->scene.potential, r, &truth, NULL, NULL);
             if (pass == 0) {
@@ -98,13 +98,13 @@ static void invert(const struct inverse_problem *problem, double *phi, struct in
     set_parameter(parameters, "samples", 250);
     set_parameter(parameters, "equilibration", 100);
     set_parameter(parameters, "iterations", 10);
-    assert_ok(imc.create(state, problem, parameters));
+    assert_ok(imc.create(state, &imc, problem, parameters));
     do {
         assert_ok(imc.iterate(state, step, &listener));
         print_message("iteration %u: rms of g %.5f, noise %.5f, misfit %.2f\n", step->iteration,
                       step->error, step->noise, step->extra[3]);
     } while (!step->finished);
-    memcpy(phi, step->phi, (problem->bins.count + 1) * sizeof *phi);
+    memcpy(phi, step->curve[UNKNOWN_POTENTIAL], (problem->goals.bins.count + 1) * sizeof *phi);
     imc.destroy(state);
     free(state);
     free(parameters);
@@ -114,14 +114,14 @@ static void assert_truth_is_found(const struct fluid *fluid, const struct rdf_bi
     double g[MOST_BINS], error[MOST_BINS], start[MOST_BINS], phi[MOST_BINS + 1], ramp, rms;
     struct inverse_step step;
     measure_target(fluid, bins, g, error);
-    const struct inverse_problem problem = {.bins = *bins,
-                                            .target = g,
-                                            .target_error = error,
-                                            .scene = fluid->setup,
-                                            .core_threshold = 1e-3,
-                                            .core_stiffness = 2000,
-                                            .seed = 5,
-                                            .threads = 2};
+    const struct inverse_problem problem = {
+        .goals = {.bins = *bins, .goal[GOAL_RDF] = {bins->count, g, error, 0}},
+        .unknown[UNKNOWN_POTENTIAL] = {.wanted = true},
+        .scene = fluid->setup,
+        .core_threshold = 1e-3,
+        .core_stiffness = 2000,
+        .seed = 5,
+        .threads = 2};
     for (size_t k = 0; k < bins->count; k++)
         start[k] = -fluid->setup.temperature * log(fmax(g[k], 1e-3));
     compare_with_truth(&problem, start, &ramp, &rms);

@@ -186,7 +186,18 @@ static void test_metropolis_ends_when_the_table_is_wild(void **state) {
     }
 }
 
-static void test_evaluate_potential_is_a_score_when_the_potential_is_wild(void **state) {
+static enum status measure(const struct inverse_problem *problem, const struct table *potential,
+                           const struct evaluate_parameters *parameters,
+                           struct evaluate_result *result) {
+    const struct evaluate_candidate candidate = {.potential = potential,
+                                                 .weight = problem->scene.weight,
+                                                 .hopeless = HUGE_VAL,
+                                                 .threads = 1,
+                                                 .seed = 8};
+    return evaluate(problem, &candidate, parameters, NULL, NULL, result);
+}
+
+static void test_evaluate_is_a_score_when_the_potential_is_wild(void **state) {
     (void)state;
     enum { BINS = 10 };
     static const double target[BINS] = {0, 0, 0.5, 1, 1, 1, 1, 1, 1, 1}, none[BINS] = {0};
@@ -198,20 +209,18 @@ static void test_evaluate_potential_is_a_score_when_the_potential_is_wild(void *
         struct evaluate_result result;
         fluid_groot_warren(&fluid, 400, 0.01);
         make_wild_table(wild[k], &table);
-        const struct inverse_problem problem = {.bins = {0, 0.1, BINS},
-                                                .target = target,
-                                                .target_error = none,
-                                                .scene = fluid.setup,
-                                                .threads = 1};
-        assert_int_equal(evaluate_potential(&problem, &table, &parameters, 8, &result),
-                         STATUS_UNSTABLE);
+        const struct inverse_problem problem = {
+            .goals = {.bins = {0, 0.1, BINS}, .goal[GOAL_RDF] = {BINS, target, none, 0}},
+            .scene = fluid.setup,
+            .threads = 1};
+        assert_int_equal(measure(&problem, &table, &parameters, &result), STATUS_UNSTABLE);
         assert_in_range(result.engine_steps, 1, FEW_STEPS);
         table_clear(&table);
         fluid_clear(&fluid);
     }
 }
 
-static void test_evaluate_potential_is_a_score_when_particles_collapse(void **state) {
+static void test_evaluate_is_a_score_when_particles_collapse(void **state) {
     (void)state;
     enum { BINS = 10 };
     static const double target[BINS] = {0, 0, 0.5, 1, 1, 1, 1, 1, 1, 1}, none[BINS] = {0};
@@ -226,13 +235,11 @@ static void test_evaluate_potential_is_a_score_when_particles_collapse(void **st
     fluid_groot_warren(&fluid, 400, 0.01);
     fluid.setup.temperature_limit = 1e6;
     assert_ok(table_init_potential(&table, &curve));
-    const struct inverse_problem problem = {.bins = {0, 0.1, BINS},
-                                            .target = target,
-                                            .target_error = none,
-                                            .scene = fluid.setup,
-                                            .threads = 1};
-    assert_int_equal(evaluate_potential(&problem, &table, &parameters, 8, &result),
-                     STATUS_UNSTABLE);
+    const struct inverse_problem problem = {
+        .goals = {.bins = {0, 0.1, BINS}, .goal[GOAL_RDF] = {BINS, target, none, 0}},
+        .scene = fluid.setup,
+        .threads = 1};
+    assert_int_equal(measure(&problem, &table, &parameters, &result), STATUS_UNSTABLE);
     assert_contains(status_message(), "collapsed");
     table_clear(&table);
     fluid_clear(&fluid);
@@ -246,8 +253,8 @@ int main(void) {
         cmocka_unit_test(test_simulation_goes_on_when_two_particles_share_a_spot),
         cmocka_unit_test(test_simulation_is_unstable_when_the_table_is_wild),
         cmocka_unit_test(test_metropolis_ends_when_the_table_is_wild),
-        cmocka_unit_test(test_evaluate_potential_is_a_score_when_the_potential_is_wild),
-        cmocka_unit_test(test_evaluate_potential_is_a_score_when_particles_collapse),
+        cmocka_unit_test(test_evaluate_is_a_score_when_the_potential_is_wild),
+        cmocka_unit_test(test_evaluate_is_a_score_when_particles_collapse),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -47,7 +47,7 @@ const char small_inputs_scene[] =
 const char small_inputs_run[] =
     "{\n"
     "  \"seed\": 1,\n"
-    "  \"target\": {\"file\": \"target.tsv\"},\n"
+    "  \"target\": {\"rdf\": {\"file\": \"target.tsv\"}},\n"
     "  \"scene\": {\n"
     "    \"box\": [3, 3, 3],\n"
     "    \"particles\": {\"count\": 81},\n"

@@ -20,11 +20,11 @@ static void make_target(double *target) {
 }
 
 static struct inverse_problem make_problem(const double *target) {
-    return (struct inverse_problem){.bins = {0, 0.1, BINS},
-                                    .target = target,
-                                    .scene = {.temperature = 1.3},
-                                    .core_threshold = 1e-3,
-                                    .core_stiffness = 2000};
+    return (struct inverse_problem){
+        .goals = {.bins = {0, 0.1, BINS}, .goal[GOAL_RDF] = {.count = BINS, .value = target}},
+        .scene = {.temperature = 1.3},
+        .core_threshold = 1e-3,
+        .core_stiffness = 2000};
 }
 
 static void test_potential_grid_has_three_parts_when_the_target_has_a_core(void **state) {
@@ -91,7 +91,7 @@ static void test_potential_grid_starts_from_the_curve_when_there_is_one(void **s
     struct potential_grid grid;
     make_target(target);
     struct inverse_problem problem = make_problem(target);
-    problem.start = &curve;
+    problem.unknown[UNKNOWN_POTENTIAL].start = &curve;
     assert_ok(potential_grid_init(&grid, &problem));
     potential_grid_start(&grid, &problem, phi);
     for (int k = CORE; k < BINS; k++)

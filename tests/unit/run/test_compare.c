@@ -6,6 +6,7 @@
 
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -27,6 +28,13 @@ static const char good_summary[] =
     " \"temperature\": 1.001, \"temperature_configurational\": 1.02, \"pressure\": 3.25,"
     " \"seed\": 7, \"a_later_key\": {\"x\": [1]}}";
 
+/// Of a fit of omega alone by its escape times; what is not known is null.
+static const char weight_summary[] =
+    "{\"status\": \"converged\", \"method\": \"cma-es\", \"version\": \"0.1\","
+    " \"etd_rmse\": 0.056, \"etd_rmse_error\": null, \"etd_noise\": 0.0027,"
+    " \"diffusion\": 0.0263, \"diffusion_error\": 0.0002, \"diffusion_cm2_per_s\": 4.5e-5,"
+    " \"truth_error\": 0.42, \"diffusion_rmse\": null}";
+
 static void write_file(const char *folder, const char *name, const char *text) {
     char path[PATH];
     snprintf(path, sizeof path, "%s/%s/%s", root, folder, name);
@@ -43,7 +51,7 @@ static void make_fit(const char *folder, const char *summary, double phi) {
     assert_int_equal(output_make_folder(path), STATUS_OK);
     snprintf(potential, sizeof potential,
              "# r[lambda]\tphi[k_BT_0]\tforce[k_BT_0/lambda]\tphi_error[k_BT_0]\n"
-             "0.5\t1000\t9\tnan\n1\t%g\t-1\tnan\n1.5\t0\t0\tnan\n",
+             "0.5\t1000\t9\tnan\n1\t%g\t-1\t0.1\n1.5\t0\t0\tnan\n",
              phi);
     write_file(folder, "summary.json", summary);
     write_file(folder, "potential.tsv", potential);
@@ -57,13 +65,28 @@ static void make_fit(const char *folder, const char *summary, double phi) {
     write_file(folder, "timing.tsv", "# iteration[1]\tseconds[s]\n0\t1.5\n2\t3\n");
 }
 
+/// A fit of omega, without g(r) and potential. `columns`: those of omega.tsv after omega.
+static void make_weight_fit(const char *folder, const char *names, const char *columns) {
+    char path[PATH], omega[512];
+    snprintf(path, sizeof path, "%s/%s", root, folder);
+    assert_int_equal(output_make_folder(path), STATUS_OK);
+    snprintf(omega, sizeof omega, "# r[lambda]\tomega[sqrt(mu/tau)]%s\n0\t2%s\n0.5\t1%s\n1\t0%s\n",
+             names, columns, columns, columns);
+    write_file(folder, "omega.tsv", omega);
+    write_file(folder, "summary.json", weight_summary);
+    write_file(
+        folder, "history.tsv",
+        "# iteration\tevaluations\tengine_steps\terror[1]\tnoise[1]\n0\t1\t100\t0.5\t0.003\n");
+    write_file(folder, "timing.tsv", "# iteration\tseconds[s]\n0\t1.5\n");
+}
+
 /// Text of a file, to be freed.
 static char *read_text(const char *path) {
     FILE *stream = fopen(path, "r");
     assert_non_null(stream);
-    char *text = calloc(1, 65536);
+    char *text = calloc(1, 1 << 20);
     assert_non_null(text);
-    assert_true(fread(text, 1, 65535, stream) > 0);
+    assert_true(fread(text, 1, (1 << 20) - 1, stream) > 0);
     fclose(stream);
     return text;
 }
@@ -123,15 +146,84 @@ static void test_blocks_hold_each_fit_once(void **state) {
     (void)state;
     assert_int_equal(compare("a/out", "b/out", true), STATUS_OK);
     char *text = compare_text("potential_compare.tsv");
-    assert_string_equal(text, "# 0\ta\n# r[lambda]\tphi[k_BT_0]\n0.5\t1000\n1\t-0.25\n1.5\t0\n\n\n"
-                              "# 1\tb\n# r[lambda]\tphi[k_BT_0]\n0.5\t1000\n1\t-0.5\n1.5\t0\n");
+    const char *header = "# r[lambda]\tphi[k_B.T_0]\tphi_error[k_B.T_0]\ttruth[k_B.T_0]\n";
+    char expected[512];
+    snprintf(expected, sizeof expected,
+             "# 0\ta\n%s0.5\t1000\tnan\tnan\n1\t-0.25\t0.1\tnan\n1.5\t0\tnan\tnan\n\n\n"
+             "# 1\tb\n%s0.5\t1000\tnan\tnan\n1\t-0.5\t0.1\tnan\n1.5\t0\tnan\tnan\n",
+             header, header);
+    assert_string_equal(text, expected);
     free(text);
     text = compare_text("rdf_compare.tsv");
     assert_contains(text, "\n1\t1.5\t0.01\t1.48\t0.02\n");
     free(text);
     text = compare_text("error_compare.tsv");
-    assert_contains(text, "\n1\t2\tnan\t0.1\t0.003\n2\t3\t3\t0.02\tnan\n");
+    assert_contains(text, "\n1\t2\t200\tnan\t0.1\t0.003\n2\t3\t300\t3\t0.02\tnan\n");
     free(text);
+}
+
+static bool has_table(const char *name) {
+    char path[PATH];
+    snprintf(path, sizeof path, "%s/cmp/%s", root, name);
+    return access(path, F_OK) == 0;
+}
+
+static void test_fits_without_a_table_keep_their_block(void **state) {
+    (void)state;
+    assert_int_equal(compare("weight/out", "a/out", true), STATUS_OK);
+    char *text = compare_text("rdf_compare.tsv");
+    assert_contains(text, "result_error[1]\nnan\tnan\tnan\tnan\tnan\n\n\n# 1\ta\n");
+    free(text);
+    text = compare_text("omega_compare.tsv");
+    assert_string_equal(
+        text, "# 0\tweight\n# r[lambda]\tomega[sqrt(mu/tau)]\tomega_error[sqrt(mu/tau)]\t"
+              "truth[sqrt(mu/tau)]\n0\t2\t0.1\t1.5\n0.5\t1\t0.1\t1.5\n1\t0\t0.1\t1.5\n\n\n"
+              "# 1\ta\n# r[lambda]\tomega[sqrt(mu/tau)]\tomega_error[sqrt(mu/tau)]\t"
+              "truth[sqrt(mu/tau)]\nnan\tnan\tnan\tnan\n");
+    free(text);
+    text = compare_text("compare.tsv");
+    assert_contains(text, "\tetd_rmse[1]\tetd_noise[1]\tdiffusion[lambda^2/tau]\t");
+    assert_contains(text, "\ttruth_error[1]\ttemperature[T_0]\t");
+    free(text);
+}
+
+static void test_tables_that_no_fit_has_are_not_written(void **state) {
+    (void)state;
+    assert_int_equal(compare("weight/out", "a/out", true), STATUS_OK);
+    assert_true(has_table("omega_compare.tsv"));
+    assert_int_equal(compare("a/out", "set/out", true), STATUS_OK);
+    assert_false(has_table("omega_compare.tsv")); // that of the scene, not fitted
+    assert_true(has_table("potential_compare.tsv"));
+    assert_int_equal(compare("weight/out", NULL, true), STATUS_OK);
+    assert_false(has_table("rdf_compare.tsv"));
+    assert_false(has_table("potential_compare.tsv"));
+    assert_true(has_table("error_compare.tsv"));
+}
+
+static void test_figure_has_the_panels_that_there_are_data_for(void **state) {
+    (void)state;
+    if (system("gnuplot --version >/dev/null 2>&1") != 0)
+        skip();
+    const struct {
+        const char *first, *second;
+        bool g, phi, omega;
+    } cases[] = {
+        {"a/out", "b/out", true, true, false},
+        {"weight/out", "a/out", true, true, true},
+        {"weight/out", "set/out", false, false, true},
+        {"set/out", "set/out", false, false, false},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        assert_int_equal(compare(cases[k].first, cases[k].second, true), STATUS_OK);
+        char *text = compare_text("figures/compare.svg");
+        assert_int_equal(strstr(text, ">target<") != NULL, cases[k].g);
+        assert_int_equal(strstr(text, ">Φ<") != NULL, cases[k].phi);
+        assert_int_equal(strstr(text, ">ω<") != NULL, cases[k].omega);
+        assert_int_equal(strstr(text, ">truth<") != NULL, cases[k].omega);
+        assert_contains(text, "simulations");
+        assert_contains(text, "time / s");
+        free(text);
+    }
 }
 
 static void test_figure_is_drawn(void **state) {
@@ -193,14 +285,25 @@ static void test_printed_table_is_rounded_and_aligned(void **state) {
     free(text);
 }
 
+static void test_printed_table_has_the_columns_of_any_fit(void **state) {
+    (void)state;
+    char *text = printed_by("weight/out", "little", false);
+    assert_string_equal(
+        text, "name    method  status     rmse(g)  rmse(E)  noise(E)          D  truth(omega)\n"
+              "weight  cma-es  converged        -    0.056    0.0027  0.0263(2)          0.42\n"
+              "little  -       -              0.5        -         -          -             -\n"
+              "the end\n");
+    free(text);
+}
+
 static void test_error_in_brackets_has_sensible_digits(void **state) {
     (void)state;
     const char *const cases[][2] = {
-        {"\"rdf_rmse\": 0.01234, \"rdf_rmse_error\": 0.00013", " 0.01234(13) "},
-        {"\"rdf_rmse\": 0.01234, \"rdf_rmse_error\": 0.00096", " 0.012(1) "},
-        {"\"rdf_rmse\": 0.01234, \"rdf_rmse_error\": 0.002", " 0.012(2) "},
-        {"\"rdf_rmse\": 123.4, \"rdf_rmse_error\": 25", " 123(25) "},
-        {"\"rdf_rmse\": 0.01234, \"rdf_rmse_error\": 0", " 0.01234 "},
+        {"\"rdf_rmse\": 0.01234, \"rdf_rmse_error\": 0.00013", " 0.01234(13)\n"},
+        {"\"rdf_rmse\": 0.01234, \"rdf_rmse_error\": 0.00096", " 0.012(1)\n"},
+        {"\"rdf_rmse\": 0.01234, \"rdf_rmse_error\": 0.002", " 0.012(2)\n"},
+        {"\"rdf_rmse\": 123.4, \"rdf_rmse_error\": 25", " 123(25)\n"},
+        {"\"rdf_rmse\": 0.01234, \"rdf_rmse_error\": 0", " 0.01234\n"},
     };
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         char summary[256];
@@ -235,7 +338,7 @@ static void test_faults_name_the_file(void **state) {
 
     make_fit("bad", "{\"status\": \"ok\", \"seconds\": 3}", 0);
     assert_refused("bad", STATUS_BAD_INPUT,
-                   "/summary.json: not the result of a fit: there is no rdf_rmse");
+                   "/summary.json: not the result of a fit: there is no rdf_rmse or other rmse");
     make_fit("bad", "{\"rdf_rmse\": \"small\"}", 0);
     assert_refused("bad", STATUS_BAD_INPUT,
                    "/summary.json: rdf_rmse: expected a number, found the text \"small\"");
@@ -275,6 +378,8 @@ static int make_all(void **state) {
     make_fit("x/same/out", good_summary, -0.5);
     make_fit("y/same/out", good_summary, -0.5);
     make_fit("it's a \"run\"/out", good_summary, -0.5);
+    make_weight_fit("weight/out", "\tomega_error[sqrt(mu/tau)]\ttruth[sqrt(mu/tau)]", "\t0.1\t1.5");
+    make_weight_fit("set/out", "", "");
     make_fit("little", "{\"rdf_rmse\": 0.5}", -0.5);
     return 0;
 }
@@ -291,9 +396,13 @@ int main(void) {
         cmocka_unit_test(test_numbers_are_those_of_the_summary),
         cmocka_unit_test(test_missing_numbers_are_nan),
         cmocka_unit_test(test_blocks_hold_each_fit_once),
+        cmocka_unit_test(test_fits_without_a_table_keep_their_block),
+        cmocka_unit_test(test_tables_that_no_fit_has_are_not_written),
+        cmocka_unit_test(test_figure_has_the_panels_that_there_are_data_for),
         cmocka_unit_test(test_figure_is_drawn),
         cmocka_unit_test(test_names_tell_fits_apart),
         cmocka_unit_test(test_printed_table_is_rounded_and_aligned),
+        cmocka_unit_test(test_printed_table_has_the_columns_of_any_fit),
         cmocka_unit_test(test_error_in_brackets_has_sensible_digits),
         cmocka_unit_test(test_quiet_prints_nothing),
         cmocka_unit_test(test_faults_name_the_file),

@@ -107,6 +107,104 @@ static void test_draws_simulation_and_no_fit(void **state) {
     assert_false(is_drawn(folder, "rdf"));
 }
 
+/// Two times, three bins; no result at time 0, nothing known of the last bin.
+static const char fit_cells[] =
+    "# time[tau]\tr0[lambda]\ttarget[1]\ttarget_error[1]\tresult[1]\tresult_error[1]\n"
+    "0\t0.6\t1\t0\tnan\t0\n0\t0.7\t1\t0\tnan\t0\n0\t0.8\t1\t0\tnan\tnan\n"
+    "0.1\t0.6\t0.9\t0.01\t0.8\t0.01\n0.1\t0.7\t0.7\t0.01\t0.75\t0.01\n"
+    "0.1\t0.8\t0.4\t0.01\tnan\tnan\n0.2\t0.6\t0.8\t0.01\t0.7\t0.01\n"
+    "0.2\t0.7\t0.6\t0.01\t0.65\t0.01\n0.2\t0.8\t0.3\t0.01\tnan\tnan\n";
+
+static void assert_draws(const char *folder) {
+    if (figures_draw(folder) != STATUS_OK)
+        fail_msg("%s", status_message());
+}
+
+/// True if the figure has that word: a legend, say.
+static bool says(const char *folder, const char *name, const char *word) {
+    char path[PATH + 64], line[4096];
+    bool found = false;
+    snprintf(path, sizeof path, "%s/figures/%s.svg", folder, name);
+    FILE *stream = fopen(path, "r");
+    assert_non_null(stream);
+    while (!found && fgets(line, sizeof line, stream))
+        found = strstr(line, word) != NULL;
+    fclose(stream);
+    return found;
+}
+
+static void test_draws_dynamics_of_a_fit(void **state) {
+    (void)state;
+    skip_without_gnuplot();
+    char folder[PATH];
+    make_folder(folder, "dynamics");
+    write_table(folder, "etd_cells.tsv", fit_cells);
+    write_table(folder, "vacf.tsv",
+                "# time[tau]\ttarget\ttarget_error\tresult\tresult_error\n"
+                "0\t3\t0.01\t3.1\tnan\n0.1\t1\t0.01\t1.2\tnan\n0.2\t-0.1\t0.01\t0\tnan\n");
+    assert_draws(folder);
+    assert_true(is_drawn(folder, "etd_cells"));
+    assert_true(says(folder, "etd_cells", "0.700"));
+    assert_false(says(folder, "etd_cells", "0.800"));
+    assert_true(is_drawn(folder, "vacf"));
+    assert_false(is_drawn(folder, "etd"));
+}
+
+static void test_draws_etd_of_no_known_result(void **state) {
+    (void)state;
+    skip_without_gnuplot();
+    char folder[PATH];
+    make_folder(folder, "nothing known");
+    write_table(folder, "etd_cells.tsv",
+                "# time[tau]\tr0[lambda]\ttarget[1]\ttarget_error[1]\tresult[1]\tresult_error[1]\n"
+                "0\t0.6\t1\t0\tnan\tnan\n0.1\t0.6\t1\t0\tnan\tnan\n");
+    assert_draws(folder);
+    assert_true(is_drawn(folder, "etd_cells"));
+}
+
+static void test_draws_bands_and_truth_where_they_are_known(void **state) {
+    (void)state;
+    skip_without_gnuplot();
+    char folder[PATH];
+    make_folder(folder, "weight");
+    write_table(folder, "omega.tsv", "# r[lambda]\tomega[sqrt(mu/tau)]\n0\t2\n1\t0\n");
+    assert_draws(folder);
+    assert_false(is_drawn(folder, "omega"));
+    write_table(
+        folder, "omega.tsv",
+        "# r[lambda]\tomega[sqrt(mu/tau)]\tomega_error[sqrt(mu/tau)]\n0\t2\tnan\n1\t0\tnan\n");
+    assert_draws(folder);
+    assert_true(is_drawn(folder, "omega"));
+    assert_false(says(folder, "omega", "95 % band"));
+    assert_false(says(folder, "omega", "truth"));
+    write_table(folder, "omega.tsv",
+                "# r[lambda]\tomega[sqrt(mu/tau)]\tomega_error[sqrt(mu/tau)]\ttruth[sqrt(mu/tau)]\n"
+                "0\t2\t0.5\t1.9\n0.5\t1\t0.1\t0.9\n1\t0\tnan\t0\n");
+    write_table(folder, "potential.tsv",
+                "# r[lambda]\tphi[k_B.T_0]\tforce[k_B.T_0/lambda]\tphi_error[k_B.T_0]\t"
+                "truth[k_B.T_0]\tr[nm]\n"
+                "0.5\t1000\t0\tnan\t900\t0.2\n1\t-0.5\t0\t0.1\t-0.4\t0.4\n"
+                "1.5\t0\t0\tnan\t0\t0.6\n");
+    assert_draws(folder);
+    assert_true(says(folder, "omega", "95 % band") && says(folder, "omega", "truth"));
+    assert_true(says(folder, "potential", "95 % band") && says(folder, "potential", "truth"));
+}
+
+static void test_error_is_named_after_what_was_fitted(void **state) {
+    (void)state;
+    skip_without_gnuplot();
+    char folder[PATH];
+    make_folder(folder, "names");
+    write_table(folder, "history.tsv", imc_history);
+    write_table(folder, "timing.tsv", timing);
+    write_table(folder, "used.json",
+                "{\n\t\"target\":\t{\n\t\t\"rdf\":\t{\n\t\t\t\"fitted\":\t\"no\"\n\t\t},\n"
+                "\t\t\"etd\":\t{\n\t\t\t\"fitted\":\t\"yes\"\n\t\t},\n"
+                "\t\t\"vacf\":\t{\n\t\t\t\"fitted\":\t\"yes\"\n\t\t}\n\t}\n}\n");
+    assert_draws(folder);
+    assert_true(says(folder, "error", "weighted error"));
+}
+
 static void test_draws_nothing_without_tables(void **state) {
     (void)state;
     char folder[PATH], figures[PATH + 64];
@@ -173,6 +271,10 @@ int main(void) {
         cmocka_unit_test(test_draws_what_the_tables_allow),
         cmocka_unit_test(test_draws_no_generations_without_diversity),
         cmocka_unit_test(test_draws_simulation_and_no_fit),
+        cmocka_unit_test(test_draws_dynamics_of_a_fit),
+        cmocka_unit_test(test_draws_etd_of_no_known_result),
+        cmocka_unit_test(test_draws_bands_and_truth_where_they_are_known),
+        cmocka_unit_test(test_error_is_named_after_what_was_fitted),
         cmocka_unit_test(test_draws_nothing_without_tables),
         cmocka_unit_test(test_broken_tables_spoil_their_figures_only),
         cmocka_unit_test(test_missing_gnuplot_is_one_clear_line),

@@ -12,11 +12,11 @@ static enum status read(void **state, const char *table, const char *members,
     char text[512];
     struct json_document *document;
     temporary_folder_write(*state, "g.tsv", table, strlen(table));
-    const int length =
-        snprintf(text, sizeof text, "{\"target\": {\"file\": \"g.tsv\"%s}}", members);
+    const int length = snprintf(text, sizeof text, "{\"rdf\": {\"file\": \"g.tsv\"%s}}", members);
     assert_ok(json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
     struct json_object root = json_root(document);
-    assert_ok(target_read(target, &root));
+    struct json_object object = json_child(&root, "rdf", true);
+    assert_ok(target_read(target, &object));
     json_finish(&root);
     return json_close(document);
 }
@@ -24,7 +24,7 @@ static enum status read(void **state, const char *table, const char *members,
 static void assert_refused(void **state, const char *table, const char *members, const char *part) {
     struct target target;
     assert_fails(read(state, table, members, &target), STATUS_BAD_INPUT, part);
-    assert_contains(status_message(), "a.json: target");
+    assert_contains(status_message(), "a.json: rdf");
     target_clear(&target);
 }
 
@@ -67,7 +67,7 @@ static void test_target_read_takes_the_columns_it_is_told(void **state) {
     assert_close(target.error[3], 0, 0);
     target_clear(&target);
     assert_refused(state, table, ", \"g_column\": 5", "g.tsv:1: 4 columns, at least 5");
-    assert_refused(state, table, ", \"r_column\": 0", "target.r_column: 0 is out of range");
+    assert_refused(state, table, ", \"r_column\": 0", "rdf.r_column: 0 is out of range");
 }
 
 /// The line behind the gap is named, wherever it is and although it shifts the mean step.

@@ -17,11 +17,12 @@ static const char good_errors[] = "# t s s\n0 0 0\n0.1 0.01 0.02\n0.2 0.03 0\n";
 static enum status read_members(void **state, const char *members, struct target_etd *target) {
     char text[2048];
     struct json_document *document;
-    const int length = snprintf(text, sizeof text, "{\"target_etd\": {%s}}", members);
+    const int length = snprintf(text, sizeof text, "{\"etd\": {%s}}", members);
     assert_in_range(length, 1, sizeof text - 1);
     assert_ok(json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
     struct json_object root = json_root(document);
-    assert_ok(target_etd_read(target, &root));
+    struct json_object object = json_child(&root, "etd", true);
+    assert_ok(target_etd_read(target, &object));
     json_finish(&root);
     return json_close(document);
 }
@@ -41,7 +42,7 @@ static void assert_refused(void **state, const char *table, const char *errors, 
                            const char *part) {
     struct target_etd target;
     assert_fails(read_tables(state, table, errors, members, &target), STATUS_BAD_INPUT, part);
-    assert_contains(status_message(), "a.json: target_etd");
+    assert_contains(status_message(), "a.json: etd");
     assert_null(target.survival);
     target_etd_clear(&target);
 }

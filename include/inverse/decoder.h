@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Genes → curves: the unknowns of a problem, side by side in one vector of genes.
+///
+/// Genes are fractions of the range that the run file gives to an unknown, so that one optimiser
+/// can move a potential and a weight together.
+#pragma once
+
+#include "inverse/inverse.h"
+#include "inverse/potential_grid.h"
+#include "inverse/weight_grid.h"
+
+struct decoder {
+    const struct inverse_problem *problem;
+    struct potential_grid potential; ///< if it is unknown
+    struct weight_grid weight;       ///< if it is unknown
+    size_t genes;                    ///< of all unknowns
+    size_t first[UNKNOWNS];          ///< gene of each
+    double *basis[UNKNOWNS];         ///< shape [points, genes of it]: curve = basis · x
+};
+
+/// Fails: NO_MEMORY; BAD_INPUT as potential_grid_init.
+enum status decoder_init(struct decoder *decoder, const struct inverse_problem *problem) MUST_USE;
+void decoder_clear(struct decoder *decoder);
+
+/// Points of an unknown's curve; 0 if it is known. And where they are [λ].
+size_t decoder_points(const struct decoder *decoder, enum unknown_kind kind);
+const double *decoder_r(const struct decoder *decoder, enum unknown_kind kind);
+
+/// Curve of some genes, shape [points]. A weight that would be negative is 0.
+void decoder_curve(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
+                   double *curve);
+
+/// Standard errors of a curve, shape [points], from the covariance of the genes, shape [genes,
+/// genes] of all unknowns; NaN if that is NULL, and in the core, which is set.
+void decoder_band(const struct decoder *decoder, enum unknown_kind kind, const double *covariance,
+                  double *error);
+
+/// Table for the kernels from a curve. Fails: NO_MEMORY.
+enum status decoder_table(const struct decoder *decoder, enum unknown_kind kind,
+                          const double *curve, struct table *table) MUST_USE;
+
+/// Tables of all unknowns from genes, and those of the scene for what is known. What was made must
+/// be cleared with laws_clear, even after a failure.
+struct decoder_laws {
+    struct table own[UNKNOWNS]; ///< zero for what is known
+    const struct table *table[UNKNOWNS];
+};
+enum status decoder_laws(const struct decoder *decoder, const double *genes,
+                         struct decoder_laws *laws) MUST_USE;
+void decoder_laws_clear(struct decoder_laws *laws);
+
+/// Genes nearest to the curves that the fit begins with: those of the run file, or the potential of
+/// mean force and a weight that falls linearly from the middle of its range.
+/// Fails: NO_MEMORY.
+enum status decoder_start(const struct decoder *decoder, double *genes) MUST_USE;

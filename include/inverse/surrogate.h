@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What the simulations of a fit have shown, as a linear model: where the goals would be met,
+/// and what they leave open.
+///
+/// Every candidate that was measured is a row of genes x and features y (goals_take_features). Near
+/// a centre x_c the features are taken to be linear,
+///   y = y_c + J (x − x_c) + noise,
+/// fitted to the nearest rows by least squares, so that the whole g(r) or E(t, r_0) of each
+/// simulation is used where an optimiser sees one number. The genes that meet the target t best,
+///   minimise  Σ_j w_j (y_cj + J_j δ − t_j)² + λ|δ|²,   w_j = 1/(σ_j² + τ_j²),
+/// with σ_j the scatter of the rows about the model, τ_j the target's standard error and λ as large
+/// as the step must be small, are the
+/// a damped Gauss-Newton step: J. Nocedal and S. J. Wright, Numerical Optimization (2nd ed., 2006),
+/// section 10.3.
+#pragma once
+
+#include "base/memory.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct surrogate {
+    size_t genes, features, capacity;
+    const double *target, *target_error; ///< shape [features]; borrowed
+    struct surrogate_rows {
+        uint64_t added; ///< rows ever; the last `capacity` are kept
+    } rows;
+    double *x; ///< shape [capacity, genes]
+    double *y; ///< shape [capacity, features]
+};
+
+enum status surrogate_init(struct surrogate *surrogate, size_t genes, size_t features,
+                           size_t capacity, const double *target,
+                           const double *target_error) MUST_USE;
+void surrogate_clear(struct surrogate *surrogate);
+
+/// Remember a measurement.
+void surrogate_add(struct surrogate *surrogate, const double *genes, const double *features);
+
+/// Rows that a model of so many genes needs at least.
+size_t surrogate_least_rows(size_t genes);
+
+/// What the model says at a centre.
+struct surrogate_model {
+    size_t genes;
+    double *best; ///< shape [genes]: where the target is met best, within [0, 1]
+    double
+        *covariance; ///< shape [genes, genes]: of `best`, by the noise of target, model and slopes
+};
+
+/// Fit the model to the rows nearest to `centre`; `known` is false, and nothing else set, while
+/// there are too few of them for their genes.
+/// @param[in] centre  shape [genes]
+/// @param[in] reach   largest rms of the step over the genes
+/// Fails: NO_MEMORY. Tested: test_surrogate.
+enum status surrogate_fit(const struct surrogate *surrogate, const double *centre, double reach,
+                          struct surrogate_model *model, bool *known) MUST_USE;
+void surrogate_model_clear(struct surrogate_model *model);
+
+enum { SURROGATE_SPANS = 3 };
+size_t surrogate_spans(struct surrogate *surrogate, struct memory_span *spans);

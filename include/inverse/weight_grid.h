@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The points at which a fitted weight ω(r) is known: equally spaced from the inner cutoff,
+/// below which ω is 0, to the cutoff, where it ends at 0.
+#pragma once
+
+#include "curves/table.h"
+
+#include <stddef.h>
+
+enum { WEIGHT_POINTS = 201 };
+
+struct weight_grid {
+    double inner_cutoff, cutoff; ///< [λ]
+    double r[WEIGHT_POINTS];     ///< [λ]
+};
+
+void weight_grid_init(struct weight_grid *grid, double inner_cutoff, double cutoff);
+
+/// Straight pieces between the points; 0 below the first.
+/// @param[in] omega  shape [WEIGHT_POINTS], ≥ 0 [sqrt(mass/time)]
+double weight_grid_value(const struct weight_grid *grid, const double *omega, double r);
+
+/// Table for the kernels. Fails: NO_MEMORY.
+enum status weight_grid_table(const struct weight_grid *grid, const double *omega,
+                              struct table *table) MUST_USE;

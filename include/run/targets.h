@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file "target" of a run file: the measured observables that a fit is to reproduce.
+#pragma once
+
+#include "inverse/goals.h"
+#include "io/json_write.h"
+#include "run/target.h"
+#include "run/target_etd.h"
+
+/// A measured function of time: VACF or MSD.
+struct target_curve {
+    struct target_curve_parameters {
+        char file[FIELD_TEXT_SIZE];
+        int64_t time_column, value_column,
+            error_column; ///< from 1; error_column 0: no errors given
+    } parameters;
+    size_t times;          ///< 0: not given
+    double interval;       ///< [τ]
+    double *value, *error; ///< shape [times]
+};
+
+/// A measured number: D or the pressure.
+struct target_number {
+    double value, error;
+};
+
+extern const struct field targets_curve_fields[], targets_number_fields[], targets_goal_fields[];
+
+struct targets {
+    bool given[GOALS];
+    struct target rdf;
+    struct target_etd etd;
+    struct target_curve vacf, msd;
+    struct target_number diffusion, pressure;
+    struct target_goal {
+        double weight; ///< 0: by the errors
+        int fitted;    ///< 0: only compared with the result
+    } goal[GOALS];
+};
+
+/// Read the object "target". Faults go to the document. Fails: NO_MEMORY.
+enum status targets_read(struct targets *targets, struct json_object *root) MUST_USE;
+void targets_clear(struct targets *targets);
+void targets_write(const struct targets *targets, struct json_writer *writer);
+
+/// Add what was read from files to the digest of a checkpoint.
+void targets_digest(const struct targets *targets, uint64_t *digest);
+
+/// The goals of a scene with `count` particles: those to be fitted, and all. With `moves`, D is
+/// among those to be compared even if no value is given, so that a result knows its own.
+void targets_goals(struct targets *targets, size_t count, bool moves, struct goals *fitted,
+                   struct goals *compared);
+
+/// BAD_INPUT with the time steps that would do if an interval is not a whole number of steps.
+enum status targets_check_steps(const struct targets *targets, double time_step) MUST_USE;

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The dissipative weight that was found with its 95 % band, and the true one if it is known.
+# Reads omega.tsv: r, omega, omega_error (nan where not known), and perhaps truth.
+
+load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
+
+truth = column_of("omega.tsv", "truth")
+stats "omega.tsv" using 1 name "R" nooutput
+stats "omega.tsv" using 2 name "W" nooutput
+if (truth) {
+    stats "omega.tsv" using truth name "T" nooutput
+    W_max = high(W_max, T_max)
+}
+# Where the data say nothing the band is wide: it may leave the figure.
+stats "omega.tsv" using ($2 + low(1.96 * known(3), 0.3 * W_max)) name "B" nooutput
+top = high(W_max, B_max)
+# An empty loop would keep its place in the legend; so would nan.
+show_band = !has_numbers("omega.tsv", 3) ? "" : "'omega.tsv' " . \
+    "using 1:(band_low(2, 3)):(band_high(2, 3)) " . \
+    "with filledcurves @band linecolor rgb vermillion title '95 % band', "
+show_truth = !truth ? "" : ", 'omega.tsv' using 1:(column(truth)) " . \
+    "with lines title 'truth' @true_line"
+
+do for [kind in kinds] {
+    eval open(kind, "omega", 720, 480)
+    set lmargin at screen 0.13
+    set rmargin at screen 0.97
+    set tmargin at screen 0.91
+    set bmargin at screen 0.14
+    set xrange [0:R_max]
+    set yrange [0:top > 0 ? 1.08 * top : 1]
+    set xlabel r_label
+    eval name_axis(omega_label, 0.024)
+    set key at screen 0.97, screen 0.985 right top vertical maxrows 1
+    plot @show_band "omega.tsv" using 1:2 with lines title "result" \
+            linewidth 2.6 linecolor rgb vermillion @show_truth
+    eval close
+}

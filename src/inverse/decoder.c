@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "inverse/decoder.h"
+
+#include "curves/shape.h"
+
+#include <math.h>
+#include <string.h>
+
+static const struct unknown *unknown_of(const struct decoder *decoder, enum unknown_kind kind) {
+    return &decoder->problem->unknown[kind];
+}
+
+static size_t genes_of(const struct decoder *decoder, enum unknown_kind kind) {
+    const struct unknown *unknown = unknown_of(decoder, kind);
+    return unknown->wanted ? (size_t)unknown->parameters.genes : 0;
+}
+
+/// Points below this one do not follow the genes: the core of a potential.
+static size_t first_point(const struct decoder *decoder, enum unknown_kind kind) {
+    return kind == UNKNOWN_POTENTIAL ? decoder->potential.core : 0;
+}
+
+size_t decoder_points(const struct decoder *decoder, enum unknown_kind kind) {
+    if (!unknown_of(decoder, kind)->wanted)
+        return 0;
+    return kind == UNKNOWN_POTENTIAL ? decoder->potential.points : WEIGHT_POINTS;
+}
+
+const double *decoder_r(const struct decoder *decoder, enum unknown_kind kind) {
+    return kind == UNKNOWN_POTENTIAL ? decoder->potential.r : decoder->weight.r;
+}
+
+/// Where the points lie between the first that follows the genes (0) and the cutoff (1).
+static void find_places(const struct decoder *decoder, enum unknown_kind kind, double *place) {
+    const double *r = decoder_r(decoder, kind);
+    const size_t first = first_point(decoder, kind), points = decoder_points(decoder, kind);
+    for (size_t k = first; k < points; k++)
+        place[k - first] = (r[k] - r[first]) / (r[points - 1] - r[first]);
+}
+
+static enum status make_basis(struct decoder *decoder, enum unknown_kind kind) {
+    enum status status = STATUS_OK;
+    const size_t genes = genes_of(decoder, kind);
+    const size_t points = decoder_points(decoder, kind) - first_point(decoder, kind);
+    double *place = NULL;
+    NEW_ARRAY(place, points);
+    NEW_ARRAY(decoder->basis[kind], points * genes);
+    find_places(decoder, kind, place);
+    CHECK(shape_basis(shapes[unknown_of(decoder, kind)->parameters.shape], genes, place, points,
+                      decoder->basis[kind]));
+done:
+    memory_free(place);
+    return status;
+}
+
+enum status decoder_init(struct decoder *decoder, const struct inverse_problem *problem) {
+    *decoder = (struct decoder){.problem = problem};
+    if (problem->unknown[UNKNOWN_POTENTIAL].wanted)
+        TRY(potential_grid_init(&decoder->potential, problem));
+    const struct unknown_parameters *weight = &problem->unknown[UNKNOWN_WEIGHT].parameters;
+    weight_grid_init(&decoder->weight, weight->inner_cutoff, weight->cutoff);
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        decoder->first[kind] = decoder->genes;
+        decoder->genes += genes_of(decoder, kind);
+        if (problem->unknown[kind].wanted)
+            TRY(make_basis(decoder, kind));
+    }
+    return STATUS_OK;
+}
+
+void decoder_clear(struct decoder *decoder) {
+    potential_grid_clear(&decoder->potential);
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        memory_free(decoder->basis[kind]);
+    *decoder = (struct decoder){0};
+}
+
+void decoder_curve(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
+                   double *curve) {
+    const struct unknown_parameters *p = &unknown_of(decoder, kind)->parameters;
+    const size_t count = genes_of(decoder, kind), first = first_point(decoder, kind);
+    const size_t points = decoder_points(decoder, kind);
+    const double *x = genes + decoder->first[kind];
+    for (size_t k = first; k < points; k++) {
+        const double *row = decoder->basis[kind] + (k - first) * count;
+        double sum = 0;
+        for (size_t n = 0; n < count; n++)
+            sum += row[n] * (p->minimum + x[n] * (p->maximum - p->minimum));
+        curve[k] = kind == UNKNOWN_WEIGHT ? fmax(0, sum) : sum;
+    }
+    if (kind == UNKNOWN_POTENTIAL)
+        potential_grid_complete(&decoder->potential, curve);
+}
+
+void decoder_band(const struct decoder *decoder, enum unknown_kind kind, const double *covariance,
+                  double *error) {
+    const struct unknown_parameters *p = &unknown_of(decoder, kind)->parameters;
+    const size_t count = genes_of(decoder, kind), first = first_point(decoder, kind);
+    for (size_t k = 0; k < decoder_points(decoder, kind); k++) {
+        error[k] = NAN;
+        if (covariance == NULL || k < first)
+            continue;
+        const double *row = decoder->basis[kind] + (k - first) * count;
+        double sum = 0;
+        for (size_t a = 0; a < count; a++)
+            for (size_t b = 0; b < count; b++)
+                sum += row[a] * row[b] *
+                       covariance[(decoder->first[kind] + a) * decoder->genes +
+                                  decoder->first[kind] + b];
+        error[k] = sqrt(fmax(0, sum)) * (p->maximum - p->minimum);
+    }
+}
+
+enum status decoder_table(const struct decoder *decoder, enum unknown_kind kind,
+                          const double *curve, struct table *table) {
+    return kind == UNKNOWN_POTENTIAL ? potential_grid_table(&decoder->potential, curve, table)
+                                     : weight_grid_table(&decoder->weight, curve, table);
+}
+
+enum status decoder_laws(const struct decoder *decoder, const double *genes,
+                         struct decoder_laws *laws) {
+    enum status status = STATUS_OK;
+    const struct simulation_setup *scene = &decoder->problem->scene;
+    double *curve = NULL;
+    *laws = (struct decoder_laws){.table = {scene->potential, scene->weight}};
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        if (!unknown_of(decoder, kind)->wanted)
+            continue;
+        memory_free(curve);
+        NEW_ARRAY(curve, decoder_points(decoder, kind));
+        decoder_curve(decoder, kind, genes, curve);
+        CHECK(decoder_table(decoder, kind, curve, &laws->own[kind]));
+        laws->table[kind] = &laws->own[kind];
+    }
+done:
+    memory_free(curve);
+    return status;
+}
+
+void decoder_laws_clear(struct decoder_laws *laws) {
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        table_clear(&laws->own[kind]);
+}
+
+/// The curve that a fit begins with, on the points of the unknown.
+static void start_curve(const struct decoder *decoder, enum unknown_kind kind, double *curve) {
+    const struct unknown *unknown = unknown_of(decoder, kind);
+    if (kind == UNKNOWN_POTENTIAL) {
+        potential_grid_start(&decoder->potential, decoder->problem, curve);
+        return;
+    }
+    const struct weight_grid *grid = &decoder->weight;
+    const double middle = 0.5 * (unknown->parameters.minimum + unknown->parameters.maximum);
+    for (int k = 0; k < WEIGHT_POINTS; k++)
+        curve[k] = unknown->start ? curve_value(unknown->start, grid->r[k])
+                                  : middle * (1 - grid->r[k] / grid->cutoff);
+}
+
+static enum status start_of(const struct decoder *decoder, enum unknown_kind kind, double *genes) {
+    enum status status = STATUS_OK;
+    const struct unknown_parameters *p = &unknown_of(decoder, kind)->parameters;
+    const size_t count = genes_of(decoder, kind), first = first_point(decoder, kind);
+    const size_t points = decoder_points(decoder, kind);
+    double *curve = NULL, *place = NULL;
+    NEW_ARRAY(curve, points);
+    NEW_ARRAY(place, points);
+    start_curve(decoder, kind, curve);
+    find_places(decoder, kind, place);
+    // Genes that the curve leaves open stay in the middle of their range.
+    const double middle = 0.5 * (p->minimum + p->maximum), range = p->maximum - p->minimum;
+    for (size_t k = first; k < points; k++)
+        for (size_t n = 0; n < count; n++)
+            curve[k] -= middle * decoder->basis[kind][(k - first) * count + n];
+    CHECK(shape_fit(shapes[p->shape], place, curve + first, NULL, points - first, genes, count));
+    for (size_t k = 0; k < count; k++)
+        genes[k] = fmin(1, fmax(0, 0.5 + genes[k] / range));
+done:
+    memory_free(curve);
+    memory_free(place);
+    return status;
+}
+
+enum status decoder_start(const struct decoder *decoder, double *genes) {
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        if (unknown_of(decoder, kind)->wanted)
+            TRY(start_of(decoder, kind, genes + decoder->first[kind]));
+    return STATUS_OK;
+}

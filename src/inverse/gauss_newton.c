@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Gauss-Newton steps on what simulations show: around the best curves so far, candidates are spread
+// over a region; a linear model of their observables (inverse/surrogate.h) says where in it the
+// targets would be met best; and by what that place measures, the region is moved, widened or
+// narrowed (a trust region: J. Nocedal and S. J. Wright, Numerical Optimization (2nd ed., 2006),
+// algorithm 4.1). Optimisers see one number of a simulation, this sees all of g(r) and E(t, r_0).
+#include "inverse/inverse.h"
+
+#include "base/memory.h"
+#include "base/rng.h"
+#include "inverse/candidates.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+/// The region's radius is multiplied by these after a step that helped and one that did harm, and
+/// never gets wider than the last [gene].
+static const double widen = 1.4, narrow = 0.7, widest = 0.3;
+
+/// Candidates are spread by this part of the radius, so that the model is asked for little beyond.
+static const double spread_part = 0.7;
+
+struct own {
+    int64_t iterations, spread, checks;
+    double reach, tolerance;
+};
+
+struct state {
+    struct own own;
+    const struct inverse_problem *problem;
+    struct decoder decoder;
+    struct candidates candidates;
+    double *round;    ///< shape [candidates, genes]: spread about the best
+    double *proposal; ///< shape [genes]
+    double *best;     ///< shape [genes]: the centre of the region
+    double *curve[UNKNOWNS], *curve_error[UNKNOWNS];
+    struct progress {
+        uint32_t iteration;
+        bool known;                    ///< whether the best has been measured
+        double reach;                  ///< radius of the region [gene]
+        double error, variance, noise; ///< of the best
+    } progress;
+};
+
+#define OWN(name) .offset = offsetof(struct own, name)
+static const struct field own_fields[] = {
+    {"iterations", FIELD_INTEGER, OWN(iterations), .initial = 20, .minimum = 1, .maximum = 10000,
+     .unit = "", .help = "at most"},
+    {"spread", FIELD_INTEGER, OWN(spread), .initial = 0, .minimum = 0, .maximum = CANDIDATES_MOST,
+     .unit = "", .help = "candidates about the best in an iteration; 0: 1.5 for each gene"},
+    {"reach", FIELD_NUMBER, OWN(reach), .initial = 0.15, .minimum = FIELD_ABOVE_ZERO, .maximum = 1,
+     .unit = "", .help = "radius of the region at first, as a part of a gene's range"},
+    {"checks", FIELD_INTEGER, OWN(checks), .initial = 4, .minimum = 1, .maximum = CANDIDATES_MOST,
+     .unit = "", .help = "measurements of what the model thinks best"},
+    {"tolerance", FIELD_NUMBER, OWN(tolerance), .initial = 0.1, .minimum = FIELD_ABOVE_ZERO,
+     .maximum = 1, .unit = "", .help = "of the first radius; with a smaller region the fit ends"},
+    FIELD_END,
+};
+
+static_assert(sizeof(struct own) <= sizeof((struct candidates_settings){0}.method), "no room");
+
+static const char *const columns[] = {"best[1]", "mean[1]", "reach[1]", "failures", NULL};
+
+static uint32_t most_iterations(const struct inverse_method *method,
+                                const struct inverse_problem *problem, const void *parameters) {
+    (void)method, (void)problem;
+    return (uint32_t)((const struct own *)parameters)->iterations;
+}
+
+/// Candidates of an iteration, an even number; the first must be enough for a model.
+static size_t round_size(const struct state *state) {
+    const size_t genes = state->decoder.genes;
+    const size_t wanted = state->own.spread > 0 ? (size_t)state->own.spread : (3 * genes + 1) / 2;
+    // Some may fail.
+    const size_t least = state->progress.iteration == 0 ? 11 * surrogate_least_rows(genes) / 10 : 4;
+    return ((wanted > least ? wanted : least) + 1) / 2 * 2;
+}
+
+static size_t most_candidates(const struct state *state) {
+    const size_t genes = state->decoder.genes, least = 11 * surrogate_least_rows(genes) / 10;
+    const size_t wanted = state->own.spread > 0 ? (size_t)state->own.spread : 2 * genes;
+    return (wanted > least ? wanted : least) + 2;
+}
+
+static void destroy(void *memory) {
+    struct state *state = memory;
+    candidates_clear(&state->candidates);
+    decoder_clear(&state->decoder);
+    memory_free(state->round);
+    memory_free(state->proposal);
+    memory_free(state->best);
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        memory_free(state->curve[kind]);
+        memory_free(state->curve_error[kind]);
+    }
+}
+
+static enum status create(void *memory, const struct inverse_method *method,
+                          const struct inverse_problem *problem, const void *parameters) {
+    enum status status = STATUS_OK;
+    struct state *state = memory;
+    const struct candidates_settings *settings = parameters;
+    memcpy(&state->own, &settings->method, sizeof state->own);
+    state->problem = problem;
+    state->progress = (struct progress){.reach = state->own.reach, .error = NAN, .noise = NAN};
+    CHECK(decoder_init(&state->decoder, problem));
+    NEW_ARRAY(state->round, most_candidates(state) * state->decoder.genes);
+    NEW_ARRAY(state->proposal, state->decoder.genes);
+    NEW_ARRAY(state->best, state->decoder.genes);
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        if (!problem->unknown[kind].wanted)
+            continue;
+        NEW_ARRAY(state->curve[kind], decoder_points(&state->decoder, kind));
+        NEW_ARRAY(state->curve_error[kind], decoder_points(&state->decoder, kind));
+    }
+    CHECK(decoder_start(&state->decoder, state->best));
+    CHECK(candidates_init(&state->candidates, &state->decoder, &settings->candidates));
+    state->candidates.iterations = most_iterations(method, problem, parameters);
+done:
+    return status;
+}
+
+/// Pairs on opposite sides of the best, normally distributed.
+static void spread(struct state *state, size_t count) {
+    const size_t genes = state->decoder.genes;
+    for (size_t pair = 0; pair < count / 2; pair++)
+        for (size_t n = 0; n < genes; n++) {
+            double normal[4];
+            rng_normal4(rng_philox(state->problem->seed, RNG_SELECTION, state->progress.iteration,
+                                   (uint32_t)pair, (uint32_t)n),
+                        normal);
+            const double step = spread_part * state->progress.reach * normal[0];
+            double *one = state->round + 2 * pair * genes + n;
+            one[0] = fmin(1, fmax(0, state->best[n] + step));
+            one[genes] = fmin(1, fmax(0, state->best[n] - step));
+        }
+}
+
+/// Take a measured place for the best.
+static void move(struct state *state, const double *genes, double error, double noise,
+                 double variance) {
+    struct progress *progress = &state->progress;
+    memcpy(state->best, genes, state->decoder.genes * sizeof *genes);
+    progress->known = error < OPTIMISER_FAILED;
+    progress->error = progress->known ? error : NAN;
+    progress->noise = noise;
+    progress->variance = variance;
+}
+
+/// Compare the proposal's measurement with the best's: go there unless it is worse by more than
+/// chance, and trust the model in a wider or narrower region.
+static void judge(struct state *state, double error, double noise, double variance) {
+    struct progress *progress = &state->progress;
+    const double chance = sqrt(variance + progress->variance);
+    if (!progress->known || error < progress->error + chance) {
+        if (progress->known && error < progress->error - chance)
+            progress->reach = fmin(widest, widen * progress->reach);
+        move(state, state->proposal, error, noise, variance);
+    } else {
+        progress->reach *= narrow;
+    }
+}
+
+static void find_bands(struct state *state, const struct surrogate_model *model) {
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        if (state->problem->unknown[kind].wanted)
+            decoder_band(&state->decoder, kind, model ? model->covariance : NULL,
+                         state->curve_error[kind]);
+}
+
+/// Measure what the model says, if enough simulations succeeded to have one.
+static enum status propose(struct state *state) {
+    enum status status = STATUS_OK;
+    struct surrogate_model model = {0};
+    bool known;
+    double error, noise, variance;
+    CHECK(surrogate_fit(&state->candidates.surrogate, state->best, state->progress.reach, &model,
+                        &known));
+    if (known) {
+        memcpy(state->proposal, model.best, state->decoder.genes * sizeof *model.best);
+        CHECK(candidates_remeasure(&state->candidates, state->proposal, (size_t)state->own.checks,
+                                   &error, &noise, &variance));
+        judge(state, error, noise, variance);
+    }
+    find_bands(state, known ? &model : NULL);
+done:
+    surrogate_model_clear(&model);
+    return status;
+}
+
+static void describe(struct state *state, struct inverse_step *step) {
+    const struct candidates_survey *survey = &state->candidates.survey;
+    const struct progress *progress = &state->progress;
+    const bool narrowed = progress->reach < state->own.tolerance * state->own.reach;
+    const bool last = progress->iteration + 1 >= (uint32_t)state->own.iterations;
+    *step = (struct inverse_step){
+        .iteration = progress->iteration,
+        .evaluations = state->candidates.totals.evaluations,
+        .engine_steps = state->candidates.totals.steps,
+        .error = progress->error,
+        .noise = progress->noise,
+        .extra = {survey->best, survey->alive.count > 0 ? survey->alive.mean : NAN, progress->reach,
+                  (double)survey->failures},
+        .finished = last || narrowed,
+        .converged = progress->known && (last || narrowed),
+    };
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        if (!state->problem->unknown[kind].wanted)
+            continue;
+        decoder_curve(&state->decoder, kind, state->best, state->curve[kind]);
+        step->curve[kind] = state->curve[kind];
+        step->curve_error[kind] = state->curve_error[kind];
+    }
+}
+
+static enum status iterate(void *memory, struct inverse_step *step,
+                           const struct inverse_listener *listener) {
+    struct state *state = memory;
+    struct candidates *candidates = &state->candidates;
+    const struct optimiser_round round = {state->round, round_size(state)};
+    candidates->iteration = state->progress.iteration;
+    if (candidates->survey.evaluations == 0) {
+        spread(state, round.count);
+        TRY(candidates_measure(candidates, &round, HUGE_VAL, listener));
+    }
+    TRY(propose(state));
+    describe(state, step);
+    candidates_next_round(candidates);
+    candidates_forget_survey(candidates);
+    state->progress.iteration++;
+    return STATUS_OK;
+}
+
+static size_t spans(void *memory, struct memory_span *span) {
+    struct state *state = memory;
+    size_t n = 0;
+    span[n++] = (struct memory_span){&state->progress, sizeof state->progress};
+    span[n++] = (struct memory_span){state->best, state->decoder.genes * sizeof(double)};
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        if (state->curve_error[kind])
+            span[n++] = (struct memory_span){
+                state->curve_error[kind], decoder_points(&state->decoder, kind) * sizeof(double)};
+    return n + candidates_spans(&state->candidates, span + n);
+}
+
+const struct inverse_method gauss_newton = {
+    .name = "gauss-newton",
+    .summary = "linear models of all observables in a trust region; J. Nocedal and S. J. Wright "
+               "(2006)",
+    .tables = (const struct field *const[]){own_fields, candidates_fields, NULL},
+    .parameters_size = sizeof(struct candidates_settings),
+    .state_size = sizeof(struct state),
+    .fits = {true, true},
+    .most_iterations = most_iterations,
+    .sampling = candidates_sampling,
+    .keeps_parts = true,
+    .columns = columns,
+    .create = create,
+    .destroy = destroy,
+    .iterate = iterate,
+    .spans = spans,
+};

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "inverse/observation.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+
+static bool asks_for_motion(const struct goals *goals) {
+    return goals_ask(goals, GOAL_VACF) || goals_ask(goals, GOAL_MSD) ||
+           goals_ask(goals, GOAL_DIFFUSION);
+}
+
+/// Steps in an interval, which run/fit_file has found to be whole.
+static int64_t steps_of(double interval, double time_step) {
+    return llround(interval / time_step);
+}
+
+static enum status begin_rdf(struct observation *observation, const struct simulation_setup *scene,
+                             const struct observation_setup *setup) {
+    const struct goals *goals = observation->goals;
+    const size_t count = (size_t)scene->placement.count, samples = (size_t)setup->plan.samples;
+    const double cutoff = scene->potential ? scene->potential->cutoff : 0;
+    if (!goals_ask(goals, GOAL_RDF))
+        return STATUS_OK;
+    if (setup->force_estimator && scene->potential &&
+        rdf_force_applies(scene->potential, scene->temperature)) {
+        observation->targets.rdf_force = &observation->rdf_force;
+        return rdf_force_init(&observation->rdf_force, &goals->bins, &scene->box, count,
+                              scene->potential, scene->temperature, cutoff, samples);
+    }
+    observation->targets.rdf = &observation->rdf;
+    return rdf_init(&observation->rdf, &goals->bins, &scene->box, count, cutoff, samples);
+}
+
+static enum status begin_dynamics(struct observation *observation,
+                                  const struct observation_setup *setup) {
+    const struct goals *goals = observation->goals;
+    const struct simulation *simulation = &observation->simulation;
+    const double time_step = simulation->setup.time_step;
+    const int64_t begin = setup->plan.equilibration;
+    const int64_t steps = setup->plan.samples * setup->plan.every;
+    if (goals_ask(goals, GOAL_ETD)) {
+        const struct etd_plan plan = {.every = steps_of(goals->etd_interval, time_step),
+                                      .origin_every =
+                                          steps_of(goals->etd_origins, goals->etd_interval)};
+        TRY(etd_init(&observation->etd, &goals->etd, &plan, simulation, begin, steps));
+        observation->targets.etd = &observation->etd;
+    }
+    if (asks_for_motion(goals)) {
+        const struct motion_plan plan = {.every = steps_of(goals->motion_interval, time_step),
+                                         .lags = (int64_t)goals->motion_lags,
+                                         .origin_every = 5,
+                                         .fit_from = 0.5};
+        TRY(motion_init(&observation->motion, &plan, simulation, begin, steps));
+        observation->targets.motion = &observation->motion;
+    }
+    return STATUS_OK;
+}
+
+enum status observation_init(struct observation *observation, const struct inverse_problem *problem,
+                             const struct observation_setup *setup) {
+    *observation = (struct observation){.goals = setup->goals};
+    struct simulation_setup scene = problem->scene;
+    struct simulation_start start = {0};
+    scene.potential = setup->potential;
+    scene.weight = setup->weight;
+    scene.seed = setup->seed;
+    scene.threads = setup->threads;
+    if (setup->time_step > 0)
+        scene.time_step = setup->time_step;
+    for (int d = 0; setup->position && d < scene.box.dimensions; d++)
+        start.position[d] = setup->position[d];
+    if (setup->position)
+        scene.placement.kind = PLACEMENT_FILE;
+    TRY(begin_rdf(observation, &scene, setup));
+    if (setup->thermodynamics || goals_ask(setup->goals, GOAL_PRESSURE)) {
+        TRY(thermodynamics_init(&observation->thermodynamics, (size_t)setup->plan.samples));
+        observation->targets.thermodynamics = &observation->thermodynamics;
+    }
+    TRY(simulation_init(&observation->simulation, &scene, setup->position ? &start : NULL));
+    return begin_dynamics(observation, setup);
+}
+
+void observation_clear(struct observation *observation) {
+    simulation_clear(&observation->simulation);
+    rdf_clear(&observation->rdf);
+    rdf_force_clear(&observation->rdf_force);
+    etd_clear(&observation->etd);
+    motion_clear(&observation->motion);
+    thermodynamics_clear(&observation->thermodynamics);
+}
+
+enum status observation_values_init(struct observed *observed, const struct goals *goals) {
+    enum status status = STATUS_OK;
+    *observed = (struct observed){0};
+    for (int kind = 0; kind < GOALS; kind++) {
+        if (!goals_ask(goals, kind))
+            continue;
+        NEW_ARRAY(observed->value[kind], goals->goal[kind].count);
+        NEW_ARRAY(observed->error[kind], goals->goal[kind].count);
+    }
+done:
+    return status;
+}
+
+void observation_values_clear(struct observed *observed) {
+    for (int kind = 0; kind < GOALS; kind++) {
+        memory_free(observed->value[kind]);
+        memory_free(observed->error[kind]);
+    }
+    *observed = (struct observed){0};
+}
+
+static enum status result_rdf(const struct observation *replicas, size_t count,
+                              struct observed *observed) {
+    enum status status = STATUS_OK;
+    struct rdf *rdf = NULL;
+    struct rdf_force *force = NULL;
+    NEW_ARRAY(rdf, count);
+    NEW_ARRAY(force, count);
+    for (size_t k = 0; k < count; k++) {
+        rdf[k] = replicas[k].rdf;
+        force[k] = replicas[k].rdf_force;
+    }
+    if (replicas->targets.rdf_force)
+        CHECK(rdf_force_result(force, count, RDF_FORCE_COUNTED, observed->value[GOAL_RDF],
+                               observed->error[GOAL_RDF]));
+    else
+        rdf_result(rdf, count, observed->value[GOAL_RDF], observed->error[GOAL_RDF]);
+done:
+    memory_free(rdf);
+    memory_free(force);
+    return status;
+}
+
+static enum status result_etd(const struct observation *replicas, size_t count,
+                              struct observed *observed) {
+    enum status status = STATUS_OK;
+    const struct etd **etd = NULL;
+    NEW_ARRAY(etd, count);
+    for (size_t k = 0; k < count; k++)
+        etd[k] = &replicas[k].etd;
+    CHECK(etd_result(etd, count, observed->value[GOAL_ETD], observed->error[GOAL_ETD], NULL));
+    // At time 0 all are there: no measurement.
+    for (size_t k = 0; k < (size_t)replicas->goals->etd.bins; k++)
+        observed->value[GOAL_ETD][k] = NAN;
+done:
+    memory_free(etd);
+    return status;
+}
+
+/// Add a replica's values to the means over `count` of them, and its errors squared.
+static void add_mean(struct observed *observed, enum goal_kind kind, size_t values,
+                     const double *value, const double *error, double count) {
+    if (observed->value[kind] == NULL)
+        return;
+    for (size_t k = 0; k < values; k++) {
+        observed->value[kind][k] += value[k] / count;
+        observed->error[kind][k] = hypot(observed->error[kind][k], error[k] / count);
+    }
+}
+
+static void clear_values(struct observed *observed, const struct goals *goals) {
+    for (int kind = 0; kind < GOALS; kind++)
+        for (size_t k = 0; k < goals->goal[kind].count; k++)
+            observed->value[kind][k] = observed->error[kind][k] = 0;
+}
+
+static enum status result_motion(const struct observation *replicas, size_t count,
+                                 struct observed *observed) {
+    enum status status = STATUS_OK;
+    const size_t values = replicas->goals->motion_lags + 1;
+    double *memory = NULL;
+    NEW_ARRAY(memory, 4 * values);
+    const struct motion_curves curves = {memory, memory + values, memory + 2 * values,
+                                         memory + 3 * values};
+    for (size_t k = 0; k < count; k++) {
+        const struct motion_summary summary = motion_result(&replicas[k].motion, &curves);
+        add_mean(observed, GOAL_VACF, values, curves.vacf, curves.vacf_error, (double)count);
+        add_mean(observed, GOAL_MSD, values, curves.msd, curves.msd_error, (double)count);
+        add_mean(observed, GOAL_DIFFUSION, 1, &summary.msd, &summary.msd_error, (double)count);
+    }
+done:
+    memory_free(memory);
+    return status;
+}
+
+enum status observation_result(const struct observation *replicas, size_t count,
+                               struct observed *observed) {
+    const struct goals *goals = replicas->goals;
+    clear_values(observed, goals);
+    if (goals_ask(goals, GOAL_RDF))
+        TRY(result_rdf(replicas, count, observed));
+    if (goals_ask(goals, GOAL_ETD))
+        TRY(result_etd(replicas, count, observed));
+    if (asks_for_motion(goals))
+        TRY(result_motion(replicas, count, observed));
+    for (size_t k = 0; k < count && goals_ask(goals, GOAL_PRESSURE); k++) {
+        const struct thermodynamics_summary t =
+            thermodynamics_result(&replicas[k].thermodynamics, 1);
+        add_mean(observed, GOAL_PRESSURE, 1, &t.pressure, &t.pressure_error, (double)count);
+    }
+    return STATUS_OK;
+}
+
+void observation_distance(const struct observed *observed, const struct goals *goals,
+                          struct goal_distance distance[GOALS]) {
+    for (int kind = 0; kind < GOALS; kind++)
+        distance[kind] =
+            goals_ask(goals, kind)
+                ? goals_distance(&goals->goal[kind], observed->value[kind], observed->error[kind])
+                : (struct goal_distance){0};
+}

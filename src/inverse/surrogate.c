@@ -1,0 +1,387 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "inverse/surrogate.h"
+
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/// Rows of a fit for each gene, at least and at most, and besides.
+enum { ROWS_PER_GENE = 3, MOST_ROWS_PER_GENE = 6, MORE_ROWS = 10 };
+
+/// Ridge of the least squares for J in units of the rows' spread, so that a direction in which they
+/// do not differ has no slope.
+static const double ridge = 1e-3;
+
+/// Standard deviation of a gene that the target leaves open: uniform in [0, 1].
+static const double prior_width = 0.28867513459481287;
+
+/// Standard error below which a feature is not believed.
+static const double least_error = 1e-4;
+
+enum status surrogate_init(struct surrogate *surrogate, size_t genes, size_t features,
+                           size_t capacity, const double *target, const double *target_error) {
+    enum status status = STATUS_OK;
+    *surrogate = (struct surrogate){.genes = genes,
+                                    .features = features,
+                                    .capacity = capacity,
+                                    .target = target,
+                                    .target_error = target_error};
+    NEW_ARRAY(surrogate->x, capacity * genes);
+    NEW_ARRAY(surrogate->y, capacity * features);
+done:
+    return status;
+}
+
+void surrogate_clear(struct surrogate *surrogate) {
+    memory_free(surrogate->x);
+    memory_free(surrogate->y);
+    *surrogate = (struct surrogate){0};
+}
+
+void surrogate_add(struct surrogate *surrogate, const double *genes, const double *features) {
+    const size_t row = surrogate->rows.added++ % surrogate->capacity;
+    memcpy(surrogate->x + row * surrogate->genes, genes, surrogate->genes * sizeof *genes);
+    memcpy(surrogate->y + row * surrogate->features, features,
+           surrogate->features * sizeof *features);
+}
+
+/// A row and its distance from the centre.
+struct near {
+    double distance;
+    size_t row;
+};
+
+static int by_distance(const void *a, const void *b) {
+    const struct near *p = a, *q = b;
+    if (p->distance != q->distance)
+        return p->distance < q->distance ? -1 : 1;
+    return p->row < q->row ? -1 : 1;
+}
+
+/// What a fit works on. Matrices are row-major.
+struct work {
+    const struct surrogate *surrogate;
+    size_t rows, terms; ///< terms: 1 and the genes
+    struct near *near;  ///< shape [kept]: nearest first
+    double *weight;     ///< shape [rows]
+    double *design;     ///< shape [rows, terms]: 1, x − x_c
+    double *normal;     ///< shape [terms, terms]: Cholesky factor of Σ w d dᵀ + ridge
+    double *model;      ///< shape [features, terms]: y_c, J
+    double *residual;   ///< shape [rows, features]
+    double *scatter;    ///< shape [features]: σ_j²
+    double *spread;     ///< shape [terms, terms]: covariance of a row of `model` over its scatter
+    double *term;       ///< shape [terms]: scratch
+    double freedom;     ///< rows that the scatter rests on
+};
+
+static void work_clear(struct work *work) {
+    void *arrays[] = {work->near,     work->weight,  work->design, work->normal, work->model,
+                      work->residual, work->scatter, work->spread, work->term};
+    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
+        memory_free(arrays[k]);
+}
+
+size_t surrogate_least_rows(size_t genes) {
+    return ROWS_PER_GENE * genes + MORE_ROWS;
+}
+
+static enum status work_init(struct work *work, const struct surrogate *surrogate, size_t kept) {
+    enum status status = STATUS_OK;
+    const size_t most = MOST_ROWS_PER_GENE * surrogate->genes + MORE_ROWS;
+    const size_t rows = kept < most ? kept : most, terms = surrogate->genes + 1;
+    *work = (struct work){.surrogate = surrogate, .rows = rows, .terms = terms};
+    NEW_ARRAY(work->near, kept);
+    NEW_ARRAY(work->weight, rows);
+    NEW_ARRAY(work->design, rows * terms);
+    NEW_ARRAY(work->normal, terms * terms);
+    NEW_ARRAY(work->model, surrogate->features * terms);
+    NEW_ARRAY(work->residual, rows * surrogate->features);
+    NEW_ARRAY(work->scatter, surrogate->features);
+    NEW_ARRAY(work->spread, terms * terms);
+    NEW_ARRAY(work->term, terms);
+done:
+    return status;
+}
+
+/// The rows nearest to the centre, weighted by exp(−d²/2h²) with h the distance of the middle one.
+static void choose_rows(struct work *work, const double *centre, size_t kept) {
+    const struct surrogate *s = work->surrogate;
+    for (size_t k = 0; k < kept; k++) {
+        double sum = 0;
+        for (size_t n = 0; n < s->genes; n++) {
+            const double difference = s->x[k * s->genes + n] - centre[n];
+            sum += difference * difference;
+        }
+        work->near[k] = (struct near){sum, k};
+    }
+    qsort(work->near, kept, sizeof *work->near, by_distance);
+    const double width = fmax(work->near[work->rows / 2].distance, 1e-300);
+    for (size_t k = 0; k < work->rows; k++) {
+        const double *x = s->x + work->near[k].row * s->genes;
+        work->weight[k] = exp(-0.5 * work->near[k].distance / width);
+        work->design[k * work->terms] = 1;
+        for (size_t n = 0; n < s->genes; n++)
+            work->design[k * work->terms + n + 1] = x[n] - centre[n];
+    }
+}
+
+/// Cholesky factor of the weighted normal matrix with its ridge.
+static void factor(struct work *work) {
+    const size_t terms = work->terms;
+    for (size_t k = 0; k < work->rows; k++) {
+        const double *d = work->design + k * terms;
+        for (size_t a = 0; a < terms; a++)
+            for (size_t b = 0; b < terms; b++)
+                work->normal[a * terms + b] += work->weight[k] * d[a] * d[b];
+    }
+    double trace = 0;
+    for (size_t a = 1; a < terms; a++)
+        trace += work->normal[a * terms + a] / (double)(terms - 1);
+    for (size_t a = 1; a < terms; a++)
+        work->normal[a * terms + a] += ridge * trace + 1e-300;
+    gsl_matrix_view view = gsl_matrix_view_array(work->normal, terms, terms);
+    gsl_linalg_cholesky_decomp1(&view.matrix);
+}
+
+/// y_c and J of every feature, and how the rows scatter about them.
+static void fit_features(struct work *work) {
+    const struct surrogate *s = work->surrogate;
+    const size_t terms = work->terms;
+    gsl_matrix_view factor = gsl_matrix_view_array(work->normal, terms, terms);
+    double weights = 0, squares = 0;
+    for (size_t k = 0; k < work->rows; k++) {
+        weights += work->weight[k];
+        squares += work->weight[k] * work->weight[k];
+    }
+    // Rows that the weights are worth, less the terms that were fitted to them.
+    work->freedom = fmax(1, weights * weights / squares - (double)terms);
+    for (size_t j = 0; j < s->features; j++) {
+        double *model = work->model + j * terms;
+        for (size_t k = 0; k < work->rows; k++)
+            for (size_t a = 0; a < terms; a++)
+                model[a] += work->weight[k] * work->design[k * terms + a] *
+                            s->y[work->near[k].row * s->features + j];
+        gsl_vector_view view = gsl_vector_view_array(model, terms);
+        gsl_linalg_cholesky_svx(&factor.matrix, &view.vector);
+        for (size_t k = 0; k < work->rows; k++) {
+            double residual = s->y[work->near[k].row * s->features + j];
+            for (size_t a = 0; a < terms; a++)
+                residual -= work->design[k * terms + a] * model[a];
+            work->residual[k * s->features + j] = residual;
+            work->scatter[j] += work->weight[k] * residual * residual / weights *
+                                (work->freedom + (double)terms) / work->freedom;
+        }
+    }
+}
+
+/// Weight of a feature in the fit of the target.
+static double feature_weight(const struct work *work, size_t j) {
+    const double target = work->surrogate->target_error[j];
+    return 1 / (work->scatter[j] + target * target + least_error * least_error);
+}
+
+/// Cholesky factor of H = Jᵀ W J + damping.
+static void factor_hessian(const struct work *work, double damping, double *hessian) {
+    const struct surrogate *s = work->surrogate;
+    const size_t genes = s->genes;
+    memset(hessian, 0, genes * genes * sizeof *hessian);
+    for (size_t j = 0; j < s->features; j++) {
+        const double *slope = work->model + j * work->terms + 1;
+        const double weight = feature_weight(work, j);
+        for (size_t a = 0; a < genes; a++)
+            for (size_t b = 0; b < genes; b++)
+                hessian[a * genes + b] += weight * slope[a] * slope[b];
+    }
+    for (size_t a = 0; a < genes; a++)
+        hessian[a * genes + a] += damping;
+    gsl_matrix_view view = gsl_matrix_view_array(hessian, genes, genes);
+    gsl_linalg_cholesky_decomp1(&view.matrix);
+}
+
+/// δ = H⁻¹ Jᵀ W v for a vector of features, times `scale` of each feature if given.
+static void solve(const struct work *work, double *hessian, const double *v, const double *scale,
+                  double *delta) {
+    const struct surrogate *s = work->surrogate;
+    memset(delta, 0, s->genes * sizeof *delta);
+    for (size_t j = 0; j < s->features; j++) {
+        const double *slope = work->model + j * work->terms + 1;
+        const double term = feature_weight(work, j) * v[j] * (scale ? scale[j] : 1);
+        for (size_t a = 0; a < s->genes; a++)
+            delta[a] += slope[a] * term;
+    }
+    gsl_matrix_view factor = gsl_matrix_view_array(hessian, s->genes, s->genes);
+    gsl_vector_view view = gsl_vector_view_array(delta, s->genes);
+    gsl_linalg_cholesky_svx(&factor.matrix, &view.vector);
+}
+
+/// Σ += share · δ δᵀ.
+static void add_outer(double *covariance, const double *delta, size_t size, double share) {
+    for (size_t a = 0; a < size; a++)
+        for (size_t b = 0; b < size; b++)
+            covariance[a * size + b] += share * delta[a] * delta[b];
+}
+
+/// How the noise of the rows makes y_c and J of a feature vary: N⁻¹ (Σ w² d dᵀ) N⁻¹ with the normal
+/// matrix N.
+static void find_spread(struct work *work) {
+    const size_t terms = work->terms;
+    gsl_matrix_view factor = gsl_matrix_view_array(work->normal, terms, terms);
+    gsl_vector_view view = gsl_vector_view_array(work->term, terms);
+    for (size_t k = 0; k < work->rows; k++) {
+        for (size_t a = 0; a < terms; a++)
+            work->term[a] = work->weight[k] * work->design[k * terms + a];
+        gsl_linalg_cholesky_svx(&factor.matrix, &view.vector);
+        add_outer(work->spread, work->term, terms, 1);
+    }
+}
+
+/// Variance of the model's features at `delta` from the centre over that of a row: it grows with
+/// the distance, since the slopes have errors too.
+static double leverage(const struct work *work, const double *delta) {
+    double sum = 0;
+    work->term[0] = 1;
+    memcpy(work->term + 1, delta, (work->terms - 1) * sizeof *delta);
+    for (size_t a = 0; a < work->terms; a++)
+        for (size_t b = 0; b < work->terms; b++)
+            sum += work->term[a] * work->spread[a * work->terms + b] * work->term[b];
+    return sum;
+}
+
+/// What the noise of the target and that of the model where the solution lies do to it. The
+/// target's noise is taken to be correlated as that of the simulations is, which the residuals
+/// show, with the standard errors that it has.
+static void add_noise(const struct work *work, double *hessian, double *scale, double *delta,
+                      double *covariance) {
+    const struct surrogate *s = work->surrogate;
+    const double lever = leverage(work, delta);
+    double weights = 0;
+    for (size_t k = 0; k < work->rows; k++)
+        weights += work->weight[k];
+    for (size_t j = 0; j < s->features; j++)
+        scale[j] = s->target_error[j] / sqrt(work->scatter[j] + least_error * least_error);
+    for (size_t k = 0; k < work->rows; k++) {
+        const double *residual = work->residual + k * s->features;
+        const double share =
+            work->weight[k] / weights * (work->freedom + (double)work->terms) / work->freedom;
+        solve(work, hessian, residual, scale, delta);
+        add_outer(covariance, delta, s->genes, share);
+        solve(work, hessian, residual, NULL, delta);
+        add_outer(covariance, delta, s->genes, share * lever);
+    }
+}
+
+/// delta = H⁻¹ delta.
+static void divide(const struct work *work, double *hessian, double *delta) {
+    const size_t genes = work->surrogate->genes;
+    gsl_matrix_view factor = gsl_matrix_view_array(hessian, genes, genes);
+    gsl_vector_view view = gsl_vector_view_array(delta, genes);
+    gsl_linalg_cholesky_svx(&factor.matrix, &view.vector);
+}
+
+/// to = Λ from, Λ = Σ_j w_j σ_j² spread: so much do slopes of noise alone add to Jᵀ W J.
+static void attenuate(const struct work *work, const double *from, double *to) {
+    double noise = 0;
+    for (size_t j = 0; j < work->surrogate->features; j++)
+        noise += feature_weight(work, j) * work->scatter[j];
+    for (size_t a = 0; a + 1 < work->terms; a++) {
+        to[a] = 0;
+        for (size_t b = 0; b + 1 < work->terms; b++)
+            to[a] += noise * work->spread[(a + 1) * work->terms + b + 1] * from[b];
+    }
+}
+
+/// What the data say nothing of is as wide as the prior: H⁻¹/s² of a gene is held back by it, and
+/// H⁻¹ Λ by the noise of the slopes (attenuation: W. A. Fuller, Measurement Error Models (1987),
+/// section 1.1), without which a gene that has no effect would pass for one that is known. How
+/// much of a step that is comes first; the share's share, H⁻¹ Λ H⁻¹ Λ, counts as not known.
+static void add_open(const struct work *work, double *hessian, double *delta, double *covariance) {
+    const size_t genes = work->surrogate->genes;
+    double *held = work->term;
+    attenuate(work, delta, held);
+    divide(work, hessian, held);
+    add_outer(covariance, held, genes, 1);
+    for (size_t a = 0; a < genes; a++) {
+        memset(delta, 0, genes * sizeof *delta);
+        delta[a] = 1;
+        attenuate(work, delta, held);
+        divide(work, hessian, held);
+        attenuate(work, held, delta);
+        delta[a] += 1 / (prior_width * prior_width);
+        divide(work, hessian, delta);
+        add_outer(covariance, delta, genes, prior_width * prior_width);
+    }
+}
+
+static double rms(const double *values, size_t count) {
+    double sum = 0;
+    for (size_t k = 0; k < count; k++)
+        sum += values[k] * values[k];
+    return sqrt(sum / (double)count);
+}
+
+/// The step to where the target is met best, damped until it stays within the reach.
+static void take_step(const struct work *work, double reach, const double *miss, double *hessian,
+                      double *delta) {
+    double damping = 1 / (prior_width * prior_width);
+    do {
+        factor_hessian(work, damping, hessian);
+        solve(work, hessian, miss, NULL, delta);
+        damping *= 2;
+    } while (rms(delta, work->surrogate->genes) > reach);
+}
+
+enum status surrogate_fit(const struct surrogate *surrogate, const double *centre, double reach,
+                          struct surrogate_model *model, bool *known) {
+    enum status status = STATUS_OK;
+    struct work work = {0};
+    const size_t genes = surrogate->genes;
+    const size_t added = (size_t)surrogate->rows.added;
+    const size_t kept = added < surrogate->capacity ? added : surrogate->capacity;
+    double *hessian = NULL, *miss = NULL, *delta = NULL, *scale = NULL;
+    *model = (struct surrogate_model){.genes = genes};
+    *known = kept >= surrogate_least_rows(genes);
+    if (!*known)
+        return STATUS_OK;
+    CHECK(work_init(&work, surrogate, kept));
+    NEW_ARRAY(hessian, genes * genes);
+    NEW_ARRAY(miss, surrogate->features);
+    NEW_ARRAY(scale, surrogate->features);
+    NEW_ARRAY(delta, genes);
+    NEW_ARRAY(model->best, genes);
+    NEW_ARRAY(model->covariance, genes * genes);
+    choose_rows(&work, centre, kept);
+    factor(&work);
+    find_spread(&work);
+    fit_features(&work);
+    for (size_t j = 0; j < surrogate->features; j++)
+        miss[j] = surrogate->target[j] - work.model[j * work.terms];
+    take_step(&work, reach, miss, hessian, delta);
+    for (size_t n = 0; n < genes; n++)
+        model->best[n] = fmin(1, fmax(0, centre[n] + delta[n]));
+    factor_hessian(&work, 1 / (prior_width * prior_width), hessian);
+    add_noise(&work, hessian, scale, delta, model->covariance);
+    solve(&work, hessian, miss, NULL, delta);
+    add_open(&work, hessian, delta, model->covariance);
+done:
+    work_clear(&work);
+    memory_free(hessian);
+    memory_free(miss);
+    memory_free(delta);
+    memory_free(scale);
+    return status;
+}
+
+void surrogate_model_clear(struct surrogate_model *model) {
+    memory_free(model->best);
+    memory_free(model->covariance);
+    *model = (struct surrogate_model){0};
+}
+
+size_t surrogate_spans(struct surrogate *surrogate, struct memory_span *spans) {
+    const size_t capacity = surrogate->capacity;
+    spans[0] = (struct memory_span){&surrogate->rows, sizeof surrogate->rows};
+    spans[1] = (struct memory_span){surrogate->x, capacity * surrogate->genes * sizeof(double)};
+    spans[2] = (struct memory_span){surrogate->y, capacity * surrogate->features * sizeof(double)};
+    return SURROGATE_SPANS;
+}

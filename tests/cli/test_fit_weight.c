@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// `mesofit fit` of a dissipative weight to escape times, alone and together with the potential: its
+// files, the same bits for any threads, from its used settings and after any interruption.
+#include "shared/results.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+/// A soft fluid whose escape times and g(r) are the targets.
+static const char soft_fluid[] =
+    "{\"seed\": 5, \"box\": [3, 3, 3], \"particles\": {\"count\": 81}, \"time_step\": 0.02,\n"
+    "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25},\n"
+    "\"dissipative\": {\"law\": \"power\", \"sigma\": 3},\n"
+    "\"measure\": {\"equilibration\": 100, \"samples\": 60, \"every\": 10},\n"
+    "\"etd\": {\"r_minimum\": 0.4, \"r_maximum\": 0.9, \"bins\": 12, \"times\": 12, \"every\": "
+    "2},\n"
+    "\"rdf\": {\"range\": 1, \"bins\": 20}}\n";
+
+#define ETD                                                                                        \
+    "\"etd\": {\"file\": \"target/etd.tsv\", \"error_file\": \"target/etd_error.tsv\", "           \
+    "\"r_minimum\": 0.4, \"r_maximum\": 0.9}"
+#define POTENTIAL "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25}"
+#define WEIGHT                                                                                     \
+    "\"weight\": {\"genes\": 4, \"maximum\": 6, \"truth\": {\"law\": \"power\", \"sigma\": 3}}"
+#define METHOD "METHOD"
+
+#define RUN(target, unknowns, scene)                                                               \
+    "{\"seed\": 3, \"target\": {" target "}, \"unknowns\": {" unknowns "},\n"                      \
+    "\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, \"time_step\": 0.02" scene    \
+    "},\n"                                                                                         \
+    "\"method\": {" METHOD ", \"equilibration\": 10, \"samples\": 4, \"every\": 8, "               \
+    "\"temperature_tolerance\": 0.5},\n"                                                           \
+    "\"core\": {\"threshold\": 0.05, \"stiffness\": 50},\n"                                        \
+    "\"verification\": {\"replicas\": 2, \"equilibration\": 20, \"samples\": 5, \"every\": 8}}\n"
+
+static const char weight_fit[] = RUN(ETD, WEIGHT, ", " POTENTIAL);
+static const char joint_fit[] =
+    RUN(ETD ", \"rdf\": {\"file\": \"target/rdf.tsv\"}",
+        WEIGHT ", \"potential\": {\"genes\": 5, \"maximum\": 30, "
+               "\"truth\": {\"law\": \"soft-repulsion\", \"a\": 25}}", );
+
+#define GENETIC "\"name\": \"genetic\", \"population\": 7, \"generations\": 3"
+#define CMAES "\"name\": \"cma-es\", \"rounds\": 4, \"racing\": 1, \"warm_start\": \"yes\""
+#define NLOPT "\"name\": \"nlopt\", \"algorithm\": \"LN_SBPLX\", \"evaluations\": 25"
+#define GAUSS_NEWTON "\"name\": \"gauss-newton\", \"iterations\": 3, \"warm_start\": \"yes\""
+
+static const char *const weight_tables[] = {"history.tsv", "weight_history.tsv", "omega.tsv",
+                                            "etd_cells.tsv", NULL};
+static const char *const joint_tables[] = {
+    "history.tsv",           "weight_history.tsv", "omega.tsv", "potential.tsv",
+    "potential_history.tsv", "etd_cells.tsv",      "rdf.tsv",   NULL};
+
+/// A fit that was not given the time to converge.
+enum { CONVERGED = 0, UNCONVERGED = 1 };
+
+static void write_fit(struct temporary_folder *folder, const char *fit, const char *method) {
+    static struct run_program_result result;
+    small_inputs_write(folder, "scene.json", soft_fluid, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "target", "--quiet");
+    run_program_assert_code(&result, 0);
+    small_inputs_write(folder, "run.json", fit, METHOD, method);
+}
+
+static void run_fit(const char *file, const char *out, const char *threads, int code) {
+    static struct run_program_result result;
+    RUN_PROGRAM(&result, "fit", file, "-o", out, "--threads", threads, "--quiet");
+    run_program_assert_code(&result, code);
+}
+
+/// The same bits for 1, 2 and 3 threads, from used.json, and in pieces.
+static void check_bits(struct temporary_folder *folder, const char *fit, const char *method,
+                       const char *const *tables, int code) {
+    static const char *const words[] = {"fit", "run.json", "-o", "pieces", "--threads", "2", NULL};
+    static const char *const used[] = {"used.json", NULL};
+    static const char *const numbers[] = {"iterations", "evaluations", "engine_steps",
+                                          "etd_rmse",   "truth_error", "diffusion"};
+    write_fit(folder, fit, method);
+    run_fit("run.json", "1", "1", code);
+    run_fit("run.json", "2", "2", code);
+    run_fit("run.json", "3", "3", code);
+    results_assert_same("1", "2", tables);
+    results_assert_same("1", "3", tables);
+    run_fit("1/used.json", "again", "1", code);
+    results_assert_same("1", "again", tables);
+    results_assert_same("1", "again", used);
+    run_program_in_pieces(code, words);
+    results_assert_same("1", "pieces", tables);
+    results_assert_same("1", "pieces", used);
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
+        results_assert_number("pieces/summary.json", numbers[k],
+                              results_number("1/summary.json", numbers[k]));
+}
+
+static void test_genetic_gives_a_weight_of_the_same_bits(void **state) {
+    check_bits(*state, weight_fit, GENETIC, weight_tables, CONVERGED);
+}
+
+static void test_cmaes_gives_a_weight_of_the_same_bits(void **state) {
+    check_bits(*state, weight_fit, CMAES, weight_tables, CONVERGED);
+}
+
+static void test_nlopt_gives_a_weight_of_the_same_bits(void **state) {
+    check_bits(*state, weight_fit, NLOPT, weight_tables, CONVERGED);
+}
+
+static void test_gauss_newton_gives_a_weight_of_the_same_bits(void **state) {
+    check_bits(*state, weight_fit, GAUSS_NEWTON, weight_tables, CONVERGED);
+}
+
+static void test_gauss_newton_gives_both_unknowns_of_the_same_bits(void **state) {
+    check_bits(*state, joint_fit, GAUSS_NEWTON, joint_tables, UNCONVERGED);
+    static const char *const numbers[] = {"truth_error",     "truth_rms", "rdf_rmse",  "etd_rmse",
+                                          "diffusion_error", "rdf_noise", "etd_noise", NULL};
+    results_assert_numbers("1/summary.json", numbers);
+    results_assert_table("1/omega.tsv", 4, 201);
+    results_assert_table("1/potential.tsv", 5, 21);
+    results_assert_table("1/etd_cells.tsv", 6, 144);
+}
+
+static void test_cmaes_gives_both_unknowns_of_the_same_bits(void **state) {
+    check_bits(*state, joint_fit, CMAES, joint_tables, CONVERGED);
+}
+
+/// A time step at which stronger friction blows up: those candidates lose, and the fit goes on.
+static void test_unstable_candidates_lose_and_never_stop_a_fit(void **state) {
+    static const char *const methods[] = {GENETIC, CMAES, NLOPT, GAUSS_NEWTON};
+    for (int k = 0; k < 4; k++) {
+        static struct run_program_result result;
+        write_fit(*state, weight_fit, methods[k]);
+        char *text = temporary_folder_read("run.json");
+        small_inputs_write(*state, "run.json", text, "\"maximum\": 6", "\"maximum\": 60");
+        free(text);
+        RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--quiet");
+        if (result.code != CONVERGED && result.code != UNCONVERGED)
+            run_program_assert_code(&result, CONVERGED);
+        results_assert_table("out/history.tsv", 9, 0);
+        assert_true(temporary_folder_exists("out/summary.json"));
+    }
+}
+
+#define TEST_WITHOUT_FIGURES(name)                                                                 \
+    cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        TEST_WITHOUT_FIGURES(test_genetic_gives_a_weight_of_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_cmaes_gives_a_weight_of_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_nlopt_gives_a_weight_of_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_gauss_newton_gives_a_weight_of_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_gauss_newton_gives_both_unknowns_of_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_cmaes_gives_both_unknowns_of_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_unstable_candidates_lose_and_never_stop_a_fit),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "inverse/decoder.h"
+
+#include "base/rng.h"
+#include "curves/formula.h"
+#include "curves/shape.h"
+#include "shared/is_close.h"
+#include "shared/testing.h"
+
+#include <math.h>
+
+enum { BINS = 40, CORE = 8, POTENTIAL_GENES = 12, WEIGHT_GENES = 10, MOST_POINTS = 256 };
+
+/// A problem with both unknowns, and what it borrows.
+struct both {
+    double g[BINS];
+    struct formula_soft_repulsion_parameters soft;
+    struct formula_power_weight_parameters power;
+    struct curve potential, weight;
+    struct inverse_problem problem;
+    struct decoder decoder;
+    double genes[POTENTIAL_GENES + WEIGHT_GENES];
+};
+
+static int index_of(const struct shape *shape) {
+    for (int k = 0; shapes[k]; k++)
+        if (shapes[k] == shape)
+            return k;
+    return -1;
+}
+
+static void begin(struct both *both, bool potential, bool weight) {
+    *both = (struct both){.soft = {25, 4}, .power = {3, 1, 0, 1.5}};
+    for (int k = CORE; k < BINS; k++)
+        both->g[k] = 1;
+    both->potential = (struct curve){&formula_soft_repulsion, &both->soft};
+    both->weight = (struct curve){&formula_power_weight, &both->power};
+    const int bspline = index_of(shape_find("bspline"));
+    both->problem = (struct inverse_problem){
+        .goals = {.bins = {0, 0.1, BINS}, .goal[GOAL_RDF] = {.count = BINS, .value = both->g}},
+        .unknown = {{potential, {bspline, POTENTIAL_GENES, -20, 80, 0, 0}, &both->potential},
+                    {weight, {bspline, WEIGHT_GENES, 0, 5, 0.1, 1.5}, &both->weight}},
+        .scene = {.temperature = 1},
+        .core_threshold = 1e-3,
+        .core_stiffness = 2000};
+    assert_ok(decoder_init(&both->decoder, &both->problem));
+    assert_ok(decoder_start(&both->decoder, both->genes));
+}
+
+static void check_curve(const struct both *both, enum unknown_kind kind, const struct curve *start,
+                        size_t first, double tolerance) {
+    double curve[MOST_POINTS];
+    const double *r = decoder_r(&both->decoder, kind);
+    decoder_curve(&both->decoder, kind, both->genes, curve);
+    for (size_t k = first; k < decoder_points(&both->decoder, kind); k++)
+        assert_close(curve[k], curve_value(start, r[k]), tolerance);
+}
+
+static void test_decoder_start_gives_back_both_curves_side_by_side(void **state) {
+    (void)state;
+    struct both both;
+    begin(&both, true, true);
+    assert_int_equal(both.decoder.genes, POTENTIAL_GENES + WEIGHT_GENES);
+    assert_int_equal(both.decoder.first[UNKNOWN_WEIGHT], POTENTIAL_GENES);
+    assert_int_equal(decoder_points(&both.decoder, UNKNOWN_POTENTIAL), BINS + 1);
+    assert_int_equal(decoder_points(&both.decoder, UNKNOWN_WEIGHT), WEIGHT_POINTS);
+    check_curve(&both, UNKNOWN_POTENTIAL, &both.potential, CORE, 0.1);
+    check_curve(&both, UNKNOWN_WEIGHT, &both.weight, 0, 0.02);
+    for (size_t k = 0; k < both.decoder.genes; k++)
+        assert_true(both.genes[k] >= 0 && both.genes[k] <= 1);
+    decoder_clear(&both.decoder);
+}
+
+static void test_decoder_start_is_the_same_alone_and_beside_the_other(void **state) {
+    (void)state;
+    struct both both, alone;
+    begin(&both, true, true);
+    begin(&alone, false, true);
+    assert_int_equal(alone.decoder.genes, WEIGHT_GENES);
+    assert_int_equal(decoder_points(&alone.decoder, UNKNOWN_POTENTIAL), 0);
+    for (int k = 0; k < WEIGHT_GENES; k++)
+        assert_identical(alone.genes[k], both.genes[POTENTIAL_GENES + k]);
+    decoder_clear(&alone.decoder);
+    begin(&alone, true, false);
+    assert_int_equal(alone.decoder.genes, POTENTIAL_GENES);
+    assert_int_equal(decoder_points(&alone.decoder, UNKNOWN_WEIGHT), 0);
+    for (int k = 0; k < POTENTIAL_GENES; k++)
+        assert_identical(alone.genes[k], both.genes[k]);
+    decoder_clear(&alone.decoder);
+    decoder_clear(&both.decoder);
+}
+
+static void test_decoder_start_is_clamped_when_it_leaves_the_range(void **state) {
+    (void)state;
+    struct both both;
+    double curve[WEIGHT_POINTS];
+    begin(&both, false, true);
+    both.power.sigma = 500;
+    assert_ok(decoder_start(&both.decoder, both.genes));
+    for (int k = 0; k < WEIGHT_GENES; k++)
+        assert_true(both.genes[k] >= 0 && both.genes[k] <= 1);
+    assert_close(both.genes[0], 1, 0);
+    decoder_curve(&both.decoder, UNKNOWN_WEIGHT, both.genes, curve);
+    assert_close(curve[0], 5, 1e-9);
+    decoder_clear(&both.decoder);
+}
+
+static void test_decoder_start_falls_from_the_middle_when_no_weight_is_given(void **state) {
+    (void)state;
+    struct both both;
+    double curve[WEIGHT_POINTS];
+    begin(&both, false, true);
+    both.problem.unknown[UNKNOWN_WEIGHT].start = NULL;
+    assert_ok(decoder_start(&both.decoder, both.genes));
+    decoder_curve(&both.decoder, UNKNOWN_WEIGHT, both.genes, curve);
+    for (int k = 0; k < WEIGHT_POINTS; k++)
+        assert_close(curve[k], 2.5 * (1 - both.decoder.weight.r[k] / 1.5), 0.02);
+    decoder_clear(&both.decoder);
+}
+
+static void test_decoder_curve_of_a_weight_is_never_negative(void **state) {
+    (void)state;
+    struct both both;
+    double curve[WEIGHT_POINTS];
+    size_t zeros = 0;
+    begin(&both, false, true);
+    both.problem.unknown[UNKNOWN_WEIGHT].parameters.minimum = -5;
+    for (int k = 0; k < WEIGHT_GENES; k++)
+        both.genes[k] = k % 2;
+    decoder_curve(&both.decoder, UNKNOWN_WEIGHT, both.genes, curve);
+    for (int k = 0; k < WEIGHT_POINTS; k++) {
+        assert_true(curve[k] >= 0);
+        zeros += curve[k] <= 0;
+    }
+    assert_in_range(zeros, 20, WEIGHT_POINTS - 20);
+    decoder_clear(&both.decoder);
+}
+
+/// Σ of some matrix M Mᵀ of random numbers.
+static void make_covariance(double *covariance, size_t genes) {
+    double factor[32 * 32] = {0};
+    struct rng_sequence random = rng_sequence_begin(4, RNG_INITIAL, 0, 0);
+    for (size_t k = 0; k < genes * genes; k++)
+        factor[k] = rng_sequence_uniform(&random) - 0.5;
+    for (size_t a = 0; a < genes; a++)
+        for (size_t b = 0; b < genes; b++) {
+            covariance[a * genes + b] = 0;
+            for (size_t c = 0; c < genes; c++)
+                covariance[a * genes + b] += factor[a * genes + c] * factor[b * genes + c];
+        }
+}
+
+/// The band is what the covariance makes of the curve's derivatives, which differences show.
+static void check_band(const struct both *both, enum unknown_kind kind, size_t first) {
+    enum { ALL = POTENTIAL_GENES + WEIGHT_GENES };
+    static double slope[ALL][MOST_POINTS];
+    double covariance[ALL * ALL], zero[MOST_POINTS], error[MOST_POINTS], genes[ALL] = {0};
+    const size_t points = decoder_points(&both->decoder, kind);
+    make_covariance(covariance, ALL);
+    decoder_curve(&both->decoder, kind, genes, zero);
+    for (int n = 0; n < ALL; n++) {
+        genes[n] = 1;
+        decoder_curve(&both->decoder, kind, genes, slope[n]);
+        genes[n] = 0;
+    }
+    decoder_band(&both->decoder, kind, covariance, error);
+    for (size_t k = first; k < points; k++) {
+        double sum = 0;
+        for (int a = 0; a < ALL; a++)
+            for (int b = 0; b < ALL; b++)
+                sum += (slope[a][k] - zero[k]) * covariance[a * ALL + b] * (slope[b][k] - zero[k]);
+        assert_close(error[k], sqrt(fmax(0, sum)), 1e-6);
+    }
+    for (size_t k = 0; k < first; k++)
+        assert_true(isnan(error[k]));
+    decoder_band(&both->decoder, kind, NULL, error);
+    for (size_t k = 0; k < points; k++)
+        assert_true(isnan(error[k]));
+}
+
+static void test_decoder_band_is_the_error_that_the_covariance_gives_the_curve(void **state) {
+    (void)state;
+    struct both both;
+    begin(&both, true, true);
+    check_band(&both, UNKNOWN_POTENTIAL, CORE);
+    check_band(&both, UNKNOWN_WEIGHT, 0);
+    decoder_clear(&both.decoder);
+}
+
+static void test_decoder_laws_are_those_of_the_scene_when_they_are_known(void **state) {
+    (void)state;
+    struct both both;
+    struct decoder_laws laws;
+    struct table known = {.cutoff = 7};
+    double value;
+    begin(&both, false, true);
+    both.problem.scene.potential = &known;
+    assert_ok(decoder_laws(&both.decoder, both.genes, &laws));
+    assert_ptr_equal(laws.table[UNKNOWN_POTENTIAL], &known);
+    assert_ptr_equal(laws.table[UNKNOWN_WEIGHT], &laws.own[UNKNOWN_WEIGHT]);
+    table_evaluate(laws.table[UNKNOWN_WEIGHT], 0.75, &value, NULL, NULL);
+    assert_close(value, 1.5, 0.02);
+    decoder_laws_clear(&laws);
+    decoder_clear(&both.decoder);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_decoder_start_gives_back_both_curves_side_by_side),
+        cmocka_unit_test(test_decoder_start_is_the_same_alone_and_beside_the_other),
+        cmocka_unit_test(test_decoder_start_is_clamped_when_it_leaves_the_range),
+        cmocka_unit_test(test_decoder_start_falls_from_the_middle_when_no_weight_is_given),
+        cmocka_unit_test(test_decoder_curve_of_a_weight_is_never_negative),
+        cmocka_unit_test(test_decoder_band_is_the_error_that_the_covariance_gives_the_curve),
+        cmocka_unit_test(test_decoder_laws_are_those_of_the_scene_when_they_are_known),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
