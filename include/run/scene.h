@@ -22,6 +22,7 @@ struct scene {
     struct table potential_table, weight_table;
     struct units units;
     struct simulation_start start; ///< arrays of a placement file
+    int unknown;                   ///< as it was read
     double *start_values;
 };
 

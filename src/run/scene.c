@@ -207,9 +207,11 @@ static enum status read_particles(struct scene *scene, struct json_object *objec
 }
 
 enum status scene_read(struct scene *scene, struct json_object *object, int unknown) {
-    *scene = (struct scene){0};
+    *scene = (struct scene){.unknown = unknown};
     read_top(scene, object);
     TRY(read_particles(scene, object));
+    if (unknown == SCENE_FITS_WEIGHT) // between what particles, a fit would ask in vain
+        json_child(object, "conservative", true);
     if (!(unknown & SCENE_FITS_POTENTIAL)) {
         TRY(scene_read_curve(&scene->potential, object, "conservative", curve_potentials));
         if (scene->potential.family)
@@ -258,7 +260,7 @@ void scene_write(const struct scene *scene, struct json_writer *writer) {
     json_begin(writer, "particles");
     json_put_fields(writer, placement_fields, &setup->placement);
     json_end(writer);
-    if (scene->potential.family)
+    if (scene->potential.family || scene->unknown == SCENE_FITS_WEIGHT)
         scene_write_curve(&scene->potential, writer, "conservative");
     if (scene->weight.family)
         scene_write_curve(&scene->weight, writer, "dissipative");
