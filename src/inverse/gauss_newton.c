@@ -81,7 +81,7 @@ static size_t round_size(const struct state *state) {
 static size_t most_candidates(const struct state *state) {
     const size_t genes = state->decoder.genes, least = 11 * surrogate_least_rows(genes) / 10;
     const size_t wanted = state->own.spread > 0 ? (size_t)state->own.spread : 2 * genes;
-    return (wanted > least ? wanted : least) + 2;
+    return ((wanted > least ? wanted : least) + 1) / 2 * 2;
 }
 
 static void destroy(void *memory) {
@@ -106,6 +106,14 @@ static enum status create(void *memory, const struct inverse_method *method,
     state->problem = problem;
     state->progress = (struct progress){.reach = state->own.reach, .error = NAN, .noise = NAN};
     CHECK(decoder_init(&state->decoder, problem));
+    if (most_candidates(state) > CANDIDATES_MOST) {
+        status = status_fail(
+            STATUS_BAD_INPUT,
+            "method.name: \"gauss-newton\" needs %zu candidates in a round for %zu "
+            "genes, and %d are the most",
+            surrogate_least_rows(state->decoder.genes), state->decoder.genes, CANDIDATES_MOST);
+        goto done;
+    }
     NEW_ARRAY(state->round, most_candidates(state) * state->decoder.genes);
     NEW_ARRAY(state->proposal, state->decoder.genes);
     NEW_ARRAY(state->best, state->decoder.genes);
@@ -143,18 +151,19 @@ static void move(struct state *state, const double *genes, double error, double 
                  double variance) {
     struct progress *progress = &state->progress;
     memcpy(state->best, genes, state->decoder.genes * sizeof *genes);
-    progress->known = error < OPTIMISER_FAILED;
-    progress->error = progress->known ? error : NAN;
+    progress->known = true;
+    progress->error = error;
     progress->noise = noise;
     progress->variance = variance;
 }
 
-/// Compare the proposal's measurement with the best's: go there unless it is worse by more than
-/// chance, and trust the model in a wider or narrower region.
+/// Compare the proposal's measurement with the best's: go there unless it failed or is worse by
+/// more than chance, and trust the model in a wider or narrower region.
 static void judge(struct state *state, double error, double noise, double variance) {
     struct progress *progress = &state->progress;
     const double chance = sqrt(variance + progress->variance);
-    if (!progress->known || error < progress->error + chance) {
+    const bool better = !progress->known || error < progress->error + chance;
+    if (error < OPTIMISER_FAILED && better) {
         if (progress->known && error < progress->error - chance)
             progress->reach = fmin(widest, widen * progress->reach);
         move(state, state->proposal, error, noise, variance);
