@@ -71,6 +71,18 @@ static enum status load(struct run *run) {
     return STATUS_OK;
 }
 
+/// Curves to begin with may come from files, which used.json only names.
+static void digest_starts(struct run *run) {
+    enum { POINTS = 1000 };
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        const struct curve *start = run->fit.problem.unknown[kind].start;
+        for (int k = 0; start && k < POINTS; k++) {
+            const double value = curve_value(start, curve_cutoff(start) * k / POINTS);
+            checkpoint_digest_add(&run->digest, &value, sizeof value);
+        }
+    }
+}
+
 /// Write all settings to used.json and take their digest. A run that is resumed leaves used.json
 /// alone, since the settings may turn out to be others.
 static enum status write_used(struct run *run, bool resume) {
@@ -81,6 +93,7 @@ static enum status write_used(struct run *run, bool resume) {
     TRY(checkpoint_digest(path, &run->digest));
     targets_digest(&fit->targets, &run->digest);
     scene_digest(&fit->scene, &run->digest);
+    digest_starts(run);
     if (resume)
         remove(path);
     return STATUS_OK;
@@ -112,6 +125,11 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
     TRY(fit_file_read(&run->fit, file, options));
     TRY(run_folder_open(&run->folder, file, options));
     TRY(write_used(run, options->resume));
+    const struct target_etd *etd = &run->fit.targets.etd;
+    if (etd->left_out > 0)
+        progress_say(&run->progress,
+                     "target.etd: %zu of %zu cells of the target are not known and left out",
+                     etd->left_out, (size_t)(etd->grid.times * etd->grid.bins));
     const enum status status = create(run);
     if (status != STATUS_OK)
         return status_prefix(status, "%s", file);
@@ -210,7 +228,7 @@ static enum status iterate(struct run *run) {
 static void tell_unconverged(const struct run *run) {
     const char *folder = run->folder.path;
     if (isfinite(run->standing.error))
-        status_fail(STATUS_UNCONVERGED, "the fit has not converged; its best potential is in %s",
+        status_fail(STATUS_UNCONVERGED, "the fit has not converged; its best curves are in %s",
                     folder);
     else
         status_fail(STATUS_UNCONVERGED,
@@ -219,10 +237,10 @@ static void tell_unconverged(const struct run *run) {
                     folder);
 }
 
-/// A potential whose verification blows up leaves a summary that says so.
+/// A result whose verification blows up leaves a summary that says so.
 static enum status write_unstable(struct run *run) {
     const struct fit_result result = result_so_far(run, STATUS_UNSTABLE);
-    status_prefix(STATUS_UNSTABLE, "the verification of the fitted potential%s",
+    status_prefix(STATUS_UNSTABLE, "the verification of what was fitted%s",
                   isfinite(run->standing.error) ? ""
                                                 : " (not one simulation of the fit succeeded)");
     char reason[512];

@@ -250,6 +250,12 @@ static double weight_truth(const struct fit_file *fit, const struct decoder *dec
     return sqrt(squares / count) / largest;
 }
 
+/// A number that is not known is left out.
+static void put_known(struct json_writer *writer, const char *key, double value) {
+    if (isfinite(value))
+        json_put_number(writer, key, value);
+}
+
 /// "etd_rmse", "etd_rmse_error", "etd_noise", and so on for every target.
 static void put_distances(struct json_writer *writer, const struct fit_file *fit,
                           const struct verification *v) {
@@ -258,9 +264,9 @@ static void put_distances(struct json_writer *writer, const struct fit_file *fit
         if (!fit->targets.given[kind])
             continue;
         snprintf(key, sizeof key, "%s_rmse", goals_names[kind]);
-        json_put_number(writer, key, v->distance[kind].rms);
+        put_known(writer, key, v->distance[kind].rms);
         snprintf(key, sizeof key, "%s_rmse_error", goals_names[kind]);
-        json_put_number(writer, key, v->distance_error[kind]);
+        put_known(writer, key, v->distance_error[kind]);
         snprintf(key, sizeof key, "%s_noise", goals_names[kind]);
         json_put_number(writer, key, v->distance[kind].noise);
     }
@@ -273,12 +279,12 @@ static void put_diffusion(struct json_writer *writer, const struct fit_file *fit
         return;
     const double value = *v->observed.value[GOAL_DIFFUSION];
     const double error = *v->observed.error[GOAL_DIFFUSION];
-    json_put_number(writer, "diffusion", value);
-    json_put_number(writer, "diffusion_error", error);
+    put_known(writer, "diffusion", value);
+    put_known(writer, "diffusion_error", error);
     if (units_known(units)) {
         const double unit = units_diffusion_cm2_per_s(units);
         json_put_number(writer, "diffusion_cm2_per_s", value * unit);
-        json_put_number(writer, "diffusion_error_cm2_per_s", error * unit);
+        put_known(writer, "diffusion_error_cm2_per_s", error * unit);
     }
 }
 
@@ -292,7 +298,7 @@ static void put_truth(struct json_writer *writer, const struct fit_file *fit,
         json_put_number(writer, "truth_rms_without_ramp", truth.rms_without_ramp);
     }
     if (omega && fit->unknown[UNKNOWN_WEIGHT].truth.family)
-        json_put_number(writer, "truth_error", weight_truth(fit, decoder, omega));
+        put_known(writer, "truth_error", weight_truth(fit, decoder, omega));
 }
 
 static void put_verification(struct json_writer *writer, const struct fit_file *fit,
@@ -304,9 +310,8 @@ static void put_verification(struct json_writer *writer, const struct fit_file *
     put_diffusion(writer, fit, v);
     json_put_number(writer, "temperature", t->temperature);
     json_put_number(writer, "temperature_error", t->temperature_error);
-    json_put_number(writer, "temperature_configurational", t->temperature_configurational);
-    json_put_number(writer, "temperature_configurational_error",
-                    t->temperature_configurational_error);
+    put_known(writer, "temperature_configurational", t->temperature_configurational);
+    put_known(writer, "temperature_configurational_error", t->temperature_configurational_error);
     json_put_number(writer, "potential_energy", t->potential_energy);
     json_put_number(writer, "potential_energy_error", t->potential_energy_error);
     json_put_number(writer, "pressure", t->pressure);
@@ -330,6 +335,8 @@ enum status fit_output_summary(const struct fit_file *fit, const struct decoder 
     if (result->verification)
         put_verification(writer, fit, result->verification);
     put_truth(writer, fit, decoder, result);
+    if (fit->targets.given[GOAL_ETD])
+        json_put_number(writer, "etd_cells_left_out", (double)fit->targets.etd.left_out);
     json_put_number(writer, "seed", (double)fit->heading.seed);
     json_put_text(writer, "version", MESOFIT_VERSION);
     run_folder_file(folder, "summary.json", path);
