@@ -81,6 +81,7 @@ struct optimiser;
 struct inverse_sampling {
     int64_t every;  ///< steps between samples; 0: no dynamics are simulated
     bool rdf_force; ///< g(r) from forces, where the potential allows
+    int64_t samples;
 };
 
 struct inverse_method {

@@ -30,6 +30,10 @@ struct observation_setup {
     uint64_t seed;
 };
 
+/// Steps of the longest window of what is asked for, and the goal that it belongs to: a plan must
+/// have as many behind its equilibration. 0 if nothing has a window.
+int64_t observation_window(const struct goals *goals, double time_step, enum goal_kind *longest);
+
 /// Begin the simulation, at step 0. Must be cleared, also after a failure.
 /// Fails: as simulation_init; BAD_INPUT if the plan is shorter than the window of a goal.
 enum status observation_init(struct observation *observation, const struct inverse_problem *problem,

@@ -42,7 +42,9 @@ const struct field candidates_fields[] = {
 struct inverse_sampling candidates_sampling(const void *settings) {
     const struct evaluate_parameters *evaluate =
         &((const struct candidates_settings *)settings)->candidates.evaluate;
-    return (struct inverse_sampling){evaluate->plan.every, evaluate->estimator == RDF_FORCE_USED};
+    return (struct inverse_sampling){.every = evaluate->plan.every,
+                                     .rdf_force = evaluate->estimator == RDF_FORCE_USED,
+                                     .samples = evaluate->plan.samples};
 }
 
 static size_t coordinates(const struct candidates *candidates) {

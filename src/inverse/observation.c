@@ -10,9 +10,28 @@ static bool asks_for_motion(const struct goals *goals) {
            goals_ask(goals, GOAL_DIFFUSION);
 }
 
-/// Steps in an interval, which run/fit_file has found to be whole.
+/// Steps in an interval, which run/fit_file has found to be whole if a target says it.
 static int64_t steps_of(double interval, double time_step) {
-    return llround(interval / time_step);
+    const int64_t steps = llround(interval / time_step);
+    return steps > 0 ? steps : 1;
+}
+
+int64_t observation_window(const struct goals *goals, double time_step, enum goal_kind *longest) {
+    int64_t window = 0;
+    *longest = GOALS;
+    if (goals_ask(goals, GOAL_ETD)) {
+        window = (goals->etd.times - 1) * steps_of(goals->etd_interval, time_step);
+        *longest = GOAL_ETD;
+    }
+    for (int kind = GOAL_VACF; kind <= GOAL_DIFFUSION; kind++) {
+        const int64_t steps =
+            (int64_t)goals->motion_lags * steps_of(goals->motion_interval, time_step);
+        if (!goals_ask(goals, kind) || steps <= window)
+            continue;
+        window = steps;
+        *longest = kind;
+    }
+    return window;
 }
 
 static enum status begin_rdf(struct observation *observation, const struct simulation_setup *scene,

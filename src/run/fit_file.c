@@ -144,6 +144,9 @@ static enum status check_unknowns(const struct fit_file *fit, const char *file) 
     if (fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->targets.given[GOAL_RDF])
         return status_fail(STATUS_BAD_INPUT, "%s: target.rdf is required to find a potential",
                            file);
+    if (fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->targets.goal[GOAL_RDF].fitted)
+        return status_fail(STATUS_BAD_INPUT,
+                           "%s: target.rdf.fitted: a potential is found from its g(r)", file);
     return STATUS_OK;
 }
 
@@ -157,6 +160,33 @@ static enum status check_steps(const struct fit_file *fit, const char *file) {
                                : status_prefix(status, "%s: verification.time_step", file);
 }
 
+/// A simulation must be as long as the longest window of what is measured in it.
+static enum status check_window(const char *file, const char *key, const struct goals *goals,
+                                double time_step, int64_t samples, int64_t every) {
+    enum goal_kind longest;
+    const int64_t window = observation_window(goals, time_step, &longest);
+    if (samples * every >= window)
+        return STATUS_OK;
+    return status_fail(STATUS_BAD_INPUT,
+                       "%s: %s.samples: %lld, one \"every\" %lld steps, are %lld steps, but \"%s\" "
+                       "looks at %lld; %lld would do",
+                       file, key, (long long)samples, (long long)every,
+                       (long long)(samples * every), goals_names[longest], (long long)window,
+                       (long long)((window + every - 1) / every));
+}
+
+static enum status check_windows(const struct fit_file *fit, const char *file) {
+    const struct inverse_sampling sampling = fit->method->sampling(fit->method_parameters);
+    const struct verify_parameters *verification = &fit->verification;
+    const double time_step = fit->scene.setup.time_step;
+    if (sampling.every > 0)
+        TRY(check_window(file, "method", &fit->problem.goals, time_step, sampling.samples,
+                         sampling.every));
+    return check_window(file, "verification", &fit->problem.compared,
+                        verification->time_step > 0 ? verification->time_step : time_step,
+                        verification->plan.samples, verification->plan.every);
+}
+
 /// What only the parts together can get wrong.
 static enum status check(const struct fit_file *fit, const char *file) {
     const struct targets *targets = &fit->targets;
@@ -168,6 +198,7 @@ static enum status check(const struct fit_file *fit, const char *file) {
     if (goals_count(&fit->problem.goals) == 0)
         return status_fail(STATUS_BAD_INPUT, "%s: target: nothing is to be fitted", file);
     TRY(check_steps(fit, file));
+    TRY(check_windows(fit, file));
     if (fit->scene.setup.placement.kind == PLACEMENT_FILE)
         return status_fail(STATUS_BAD_INPUT,
                            "%s: scene.particles.placement: a fit places its particles on a lattice "

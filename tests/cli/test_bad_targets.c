@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Fits of a weight that cannot be right: exit code 2, one line with the file and the key, found
+// when the run file is read. And what is unusual but right.
+#include "shared/results.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+/// Times 0.04 apart and a window of 0.16: 8 steps.
+static const char escape[] = "# t E E E\n0 1 1 1\n0.04 0.98 0.9 0.7\n0.08 0.95 0.8 0.6\n"
+                             "0.12 0.9 0.75 0.5\n0.16 0.88 0.7 0.45\n";
+static const char escape_with_holes[] = "# t E E E\n0 1 1 1\n0.04 nan 0.9 0.7\n0.08 nan 0.8 0.6\n"
+                                        "0.12 0.9 0.75 nan\n0.16 0.88 0.7 0.45\n";
+
+#define ETD "\"etd\": {\"file\": \"etd.tsv\", \"r_minimum\": 0.4, \"r_maximum\": 0.9}"
+#define WEIGHT "\"weight\": {\"genes\": 4, \"maximum\": 6}"
+#define POTENTIAL "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25}"
+#define STEP "\"time_step\": 0.02"
+#define GENETIC "\"name\": \"genetic\", \"population\": 4, \"generations\": 1"
+#define FIT_PLAN "\"samples\": 4, \"every\": 4"
+#define CHECK_PLAN "\"samples\": 3, \"every\": 5"
+
+static const char good[] =
+    "{\"seed\": 3, \"target\": {" ETD "}, \"unknowns\": {" WEIGHT "},\n"
+    "\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, " STEP ", " POTENTIAL "},\n"
+    "\"method\": {" GENETIC ", \"equilibration\": 10, " FIT_PLAN
+    ", \"temperature_tolerance\": 0.9},\n"
+    "\"verification\": {\"replicas\": 2, \"equilibration\": 10, " CHECK_PLAN "}}\n";
+
+enum { MOST_WORDS = 5 };
+
+struct fault {
+    const char *what, *from, *to; ///< in the good file
+    const char *words[MOST_WORDS];
+};
+
+#define FAULT(name, old, new, ...)                                                                 \
+    {                                                                                              \
+        .what = (name), .from = (old), .to = (new), .words = { "run.json", __VA_ARGS__ }           \
+    }
+
+static const struct fault faults[] = {
+    FAULT("a time step that does not divide the interval", STEP, "\"time_step\": 0.03",
+          "scene.time_step", "etd.tsv", "a time step of 0.02 or 0.04"),
+    FAULT("the same of the verification", CHECK_PLAN, CHECK_PLAN ", \"time_step\": 0.015",
+          "verification.time_step", "etd.tsv", "a time step of 0.0133333 or 0.02"),
+    FAULT("a fit shorter than the window", FIT_PLAN, "\"samples\": 2, \"every\": 3",
+          "method.samples: 2", "6 steps", "\"etd\" looks at 8; 3 would do"),
+    FAULT("a verification shorter than the window", CHECK_PLAN, "\"samples\": 1, \"every\": 7",
+          "verification.samples: 1", "7 steps", "looks at 8; 2 would do"),
+    FAULT("a verification that is too short by its time step", CHECK_PLAN,
+          CHECK_PLAN ", \"time_step\": 0.01", "verification.samples: 3", "looks at 16; 4 would do"),
+    FAULT("a window of motion", ETD, "\"diffusion\": {\"value\": 0.2}", "method.samples",
+          "\"diffusion\" looks at"),
+    FAULT("a cutoff longer than half the cell", "\"genes\": 4", "\"genes\": 4, \"cutoff\": 1.6",
+          "scene", "box", "1.6"),
+    FAULT("a cutoff below the inner one", "\"genes\": 4",
+          "\"genes\": 4, \"cutoff\": 0.5, \"inner_cutoff\": 0.6", "unknowns.weight.cutoff", "0.6"),
+    FAULT("genes without a range", "\"maximum\": 6", "\"maximum\": 0", "unknowns.weight.maximum"),
+    FAULT("no unknown", WEIGHT, "", "unknowns", "needs \"potential\", \"weight\" or both"),
+    FAULT("another unknown", WEIGHT, WEIGHT ", \"mass\": {}", "unknowns.mass", "unknown key"),
+    FAULT("a potential that is known and unknown", WEIGHT, WEIGHT ", \"potential\": {}",
+          "scene.conservative", "unknown key"),
+    FAULT("no potential", ", " POTENTIAL, "", "scene.conservative", "missing"),
+    FAULT("a weight that is known and unknown", POTENTIAL,
+          POTENTIAL ", \"dissipative\": {\"law\": \"power\"}", "scene.dissipative", "unknown key"),
+    FAULT("a potential without its g(r)",
+          WEIGHT "},\n\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, " STEP
+                 ", " POTENTIAL,
+          "\"potential\": {}},\n\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, "
+          "" STEP,
+          "target.rdf is required"),
+    FAULT("a potential whose g(r) is not fitted",
+          ETD "}, \"unknowns\": {" WEIGHT "},\n\"scene\": {\"box\": [3, 3, 3], \"particles\": "
+              "{\"count\": 81}, " STEP ", " POTENTIAL,
+          ETD ", \"rdf\": {\"file\": \"target.tsv\", \"fitted\": \"no\"}}, \"unknowns\": "
+              "{\"potential\": {}},\n\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": "
+              "81}, " STEP,
+          "target.rdf.fitted"),
+    FAULT("nothing to be fitted", "\"etd\": {", "\"etd\": {\"fitted\": \"no\", ",
+          "target: nothing is to be fitted"),
+    FAULT("no target", ETD, "", "target: nothing is to be fitted"),
+    FAULT("IMC of a weight",
+          GENETIC ", \"equilibration\": 10, " FIT_PLAN ", \"temperature_tolerance\": 0.9",
+          "\"name\": \"imc\"", "method.name", "\"imc\" does not find a weight"),
+    FAULT("an algorithm that NLopt does not know", GENETIC,
+          "\"name\": \"nlopt\", \"algorithm\": \"LN_FOO\"", "method.algorithm", "LN_SBPLX",
+          "GN_ESCH"),
+    FAULT("escape farther than half the cell", "\"r_maximum\": 0.9", "\"r_maximum\": 1.6",
+          "scene.box", "etd", "1.6"),
+};
+
+static void test_fit_of_a_weight_refuses_with_a_line_for_each_fault(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "etd.tsv", escape, NULL, NULL);
+    small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
+    for (size_t k = 0; k < sizeof faults / sizeof *faults; k++) {
+        small_inputs_write(*state, "run.json", good, faults[k].from, faults[k].to);
+        RUN_PROGRAM(&result, "fit", "run.json");
+        run_program_assert_refused(&result, ".", faults[k].what, 1, faults[k].words);
+        assert_false(temporary_folder_exists("out"));
+    }
+}
+
+static void test_fit_of_a_weight_refuses_more_genes_than_a_round_can_hold(void **state) {
+    static struct run_program_result result;
+    char *text;
+    small_inputs_write(*state, "etd.tsv", escape, NULL, NULL);
+    small_inputs_write(*state, "run.json", good, GENETIC, "\"name\": \"gauss-newton\"");
+    text = temporary_folder_read("run.json");
+    small_inputs_write(*state, "run.json", text, "\"genes\": 4", "\"genes\": 340");
+    free(text);
+    RUN_PROGRAM(&result, "fit", "run.json");
+    run_program_assert_refused(&result, ".", "too many genes", 1,
+                               (const char *[]){"run.json: method.name", "1030", "1024", NULL});
+}
+
+/// The fit is told once, and the number is in the summary.
+static void check_left_out(struct temporary_folder *folder, const char *table, double cells) {
+    static struct run_program_result result;
+    char line[128];
+    small_inputs_write(folder, "etd.tsv", table, NULL, NULL);
+    small_inputs_write(folder, "run.json", good, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    results_assert_number("out/summary.json", "etd_cells_left_out", cells);
+    snprintf(line, sizeof line,
+             "target.etd: %.0f of 15 cells of the target are not known and left out\n", cells);
+    if (cells > 0)
+        assert_ptr_equal(strstr(result.err, line), result.err);
+    else
+        assert_null(strstr(result.err, "left out"));
+}
+
+static void test_fit_of_a_weight_tells_how_many_cells_are_left_out(void **state) {
+    check_left_out(*state, escape, 0);
+    check_left_out(*state, escape_with_holes, 3);
+}
+
+/// One replica has no error, a table of no use no distance, and a weight that ends before the first
+/// bin no truth: the rest of the summary is written.
+static void test_fit_of_a_weight_leaves_out_what_it_does_not_know(void **state) {
+    static struct run_program_result result;
+    char *text;
+    small_inputs_write(*state, "etd.tsv", escape, NULL, NULL);
+    small_inputs_write(*state, "run.json", good, "\"replicas\": 2", "\"replicas\": 1");
+    text = temporary_folder_read("run.json");
+    small_inputs_write(*state, "run.json", text, "\"maximum\": 6",
+                       "\"maximum\": 6, \"cutoff\": 0.3, \"truth\": {\"law\": \"power\"}");
+    free(text);
+    RUN_PROGRAM(&result, "fit", "run.json");
+    run_program_assert_code(&result, 0);
+    results_number("out/summary.json", "etd_rmse");
+    text = temporary_folder_read("out/summary.json");
+    assert_null(strstr(text, "etd_rmse_error"));
+    assert_null(strstr(text, "truth_error"));
+    free(text);
+}
+
+/// A D whose window has steps longer than its intervals is measured at every step.
+static void test_fit_to_a_diffusion_coefficient_has_a_window_for_any_time_step(void **state) {
+    static struct run_program_result result;
+    char *text;
+    small_inputs_write(*state, "run.json", good, ETD, "\"diffusion\": {\"value\": 0.2}");
+    text = temporary_folder_read("run.json");
+    small_inputs_write(*state, "run.json", text, FIT_PLAN, "\"samples\": 20, \"every\": 4");
+    free(text);
+    text = temporary_folder_read("run.json");
+    small_inputs_write(*state, "run.json", text, CHECK_PLAN, "\"samples\": 20, \"every\": 4");
+    free(text);
+    text = temporary_folder_read("run.json");
+    small_inputs_write(*state, "run.json", text, STEP, "\"time_step\": 0.08");
+    free(text);
+    RUN_PROGRAM(&result, "fit", "run.json", "--quiet");
+    run_program_assert_code(&result, 0);
+    results_number("out/summary.json", "diffusion_rmse");
+}
+
+static void test_fit_refuses_to_resume_when_the_curve_to_begin_with_is_another(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "etd.tsv", escape, NULL, NULL);
+    small_inputs_write(*state, "start.tsv", "0 3\n0.5 2\n1 0\n", NULL, NULL);
+    small_inputs_write(*state, "run.json", good, "\"genes\": 4",
+                       "\"genes\": 4, \"start\": {\"law\": \"table\", \"file\": \"start.tsv\"}");
+    RUN_PROGRAM(&result, "fit", "run.json", "--quiet");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "fit", "run.json", "--resume", "--quiet");
+    run_program_assert_code(&result, 0);
+    small_inputs_write(*state, "start.tsv", "0 3\n0.5 1\n1 0\n", NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "--resume", "--quiet");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "settings have changed");
+}
+
+#define TEST(name)                                                                                 \
+    cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        TEST(test_fit_of_a_weight_refuses_with_a_line_for_each_fault),
+        TEST(test_fit_of_a_weight_refuses_more_genes_than_a_round_can_hold),
+        TEST(test_fit_of_a_weight_tells_how_many_cells_are_left_out),
+        TEST(test_fit_of_a_weight_leaves_out_what_it_does_not_know),
+        TEST(test_fit_to_a_diffusion_coefficient_has_a_window_for_any_time_step),
+        TEST(test_fit_refuses_to_resume_when_the_curve_to_begin_with_is_another),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
