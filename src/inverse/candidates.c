@@ -96,7 +96,7 @@ void candidates_next_round(struct candidates *candidates) {
     if (candidates->parameters.warm_start && totals->best_error < OPTIMISER_FAILED) {
         memcpy(candidates->position, candidates->best_position,
                coordinates(candidates) * sizeof *candidates->position);
-        totals->warm = totals->rounds > 0;
+        totals->warm = totals->evaluations > 0;
     }
     totals->best_error = OPTIMISER_FAILED;
     totals->rounds++;
