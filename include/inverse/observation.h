@@ -30,6 +30,13 @@ struct observation_setup {
     uint64_t seed;
 };
 
+/// When escape times and motion are sampled, if they are.
+void observation_plans(const struct goals *goals, double time_step, struct etd_plan *etd,
+                       struct motion_plan *motion);
+
+/// Whether VACF, MSD or D is asked for.
+bool observation_moves(const struct goals *goals);
+
 /// Steps of the longest window of what is asked for, and the goal that it belongs to: a plan must
 /// have as many behind its equilibration. 0 if nothing has a window.
 int64_t observation_window(const struct goals *goals, double time_step, enum goal_kind *longest);

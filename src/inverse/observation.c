@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-static bool asks_for_motion(const struct goals *goals) {
+bool observation_moves(const struct goals *goals) {
     return goals_ask(goals, GOAL_VACF) || goals_ask(goals, GOAL_MSD) ||
            goals_ask(goals, GOAL_DIFFUSION);
 }
@@ -14,6 +14,17 @@ static bool asks_for_motion(const struct goals *goals) {
 static int64_t steps_of(double interval, double time_step) {
     const int64_t steps = llround(interval / time_step);
     return steps > 0 ? steps : 1;
+}
+
+void observation_plans(const struct goals *goals, double time_step, struct etd_plan *etd,
+                       struct motion_plan *motion) {
+    *etd = (struct etd_plan){.every = steps_of(goals->etd_interval, time_step)};
+    if (goals_ask(goals, GOAL_ETD))
+        etd->origin_every = steps_of(goals->etd_origins, goals->etd_interval);
+    *motion = (struct motion_plan){.every = steps_of(goals->motion_interval, time_step),
+                                   .lags = (int64_t)goals->motion_lags,
+                                   .origin_every = 5,
+                                   .fit_from = 0.5};
 }
 
 int64_t observation_window(const struct goals *goals, double time_step, enum goal_kind *longest) {
@@ -58,19 +69,15 @@ static enum status begin_dynamics(struct observation *observation,
     const double time_step = simulation->setup.time_step;
     const int64_t begin = setup->plan.equilibration;
     const int64_t steps = setup->plan.samples * setup->plan.every;
+    struct etd_plan etd;
+    struct motion_plan motion;
+    observation_plans(goals, time_step, &etd, &motion);
     if (goals_ask(goals, GOAL_ETD)) {
-        const struct etd_plan plan = {.every = steps_of(goals->etd_interval, time_step),
-                                      .origin_every =
-                                          steps_of(goals->etd_origins, goals->etd_interval)};
-        TRY(etd_init(&observation->etd, &goals->etd, &plan, simulation, begin, steps));
+        TRY(etd_init(&observation->etd, &goals->etd, &etd, simulation, begin, steps));
         observation->targets.etd = &observation->etd;
     }
-    if (asks_for_motion(goals)) {
-        const struct motion_plan plan = {.every = steps_of(goals->motion_interval, time_step),
-                                         .lags = (int64_t)goals->motion_lags,
-                                         .origin_every = 5,
-                                         .fit_from = 0.5};
-        TRY(motion_init(&observation->motion, &plan, simulation, begin, steps));
+    if (observation_moves(goals)) {
+        TRY(motion_init(&observation->motion, &motion, simulation, begin, steps));
         observation->targets.motion = &observation->motion;
     }
     return STATUS_OK;
@@ -212,7 +219,7 @@ enum status observation_result(const struct observation *replicas, size_t count,
         TRY(result_rdf(replicas, count, observed));
     if (goals_ask(goals, GOAL_ETD))
         TRY(result_etd(replicas, count, observed));
-    if (asks_for_motion(goals))
+    if (observation_moves(goals))
         TRY(result_motion(replicas, count, observed));
     for (size_t k = 0; k < count && goals_ask(goals, GOAL_PRESSURE); k++) {
         const struct thermodynamics_summary t =

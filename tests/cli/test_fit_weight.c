@@ -125,6 +125,32 @@ static void test_cmaes_gives_both_unknowns_of_the_same_bits(void **state) {
     check_bits(*state, joint_fit, CMAES, joint_tables, CONVERGED);
 }
 
+static void test_explain_and_describe_know_the_weight_and_its_targets(void **state) {
+    static const char *const names[] = {"etd-target",    "curve-target", "rdf-target",
+                                        "number-target", "weight",       "potential"};
+    static struct run_program_result result;
+    write_fit(*state, weight_fit, GENETIC);
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "a potential with cutoff 1");
+    assert_contains(result.out, "a weight with cutoff 1; its pairs are kept");
+    assert_contains(result.out, "pairs a particle within 0.9, one step in 2; an origin in 20");
+    const char *verification = strstr(result.out, "A replica of the verification");
+    assert_non_null(verification);
+    assert_contains(verification, "diffusion                          on");
+    RUN_PROGRAM(&result, "describe");
+    run_program_assert_code(&result, 0);
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++)
+        assert_contains(result.out, names[k]);
+    // Every group stands there once.
+    const char *files = strstr(result.out, "files\n");
+    assert_non_null(files);
+    assert_null(strstr(files + 1, "\nfiles\n"));
+    RUN_PROGRAM(&result, "describe", "weight");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "inner_cutoff");
+}
+
 /// A time step at which stronger friction blows up: those candidates lose, and the fit goes on.
 static void test_unstable_candidates_lose_and_never_stop_a_fit(void **state) {
     static const char *const methods[] = {GENETIC, CMAES, NLOPT, GAUSS_NEWTON};
@@ -142,6 +168,27 @@ static void test_unstable_candidates_lose_and_never_stop_a_fit(void **state) {
     }
 }
 
+/// A tolerance that no simulation keeps to.
+static void test_fit_of_a_weight_ends_and_says_so_when_no_candidate_survives(void **state) {
+    static const char *const methods[] = {GENETIC, CMAES, NLOPT, GAUSS_NEWTON};
+    for (int k = 0; k < 4; k++) {
+        static struct run_program_result result;
+        write_fit(*state, weight_fit, methods[k]);
+        char *text = temporary_folder_read("run.json");
+        small_inputs_write(*state, "run.json", text, "tolerance\": 0.5", "tolerance\": 1e-9");
+        free(text);
+        RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--quiet");
+        run_program_assert_code(&result, UNCONVERGED);
+        assert_contains(result.err, "not one simulation of the fit succeeded");
+        text = temporary_folder_read("out/history.tsv");
+        assert_contains(text, "\tnan\t");
+        assert_null(strstr(text, "1000000000"));
+        free(text);
+        results_assert_table("out/omega.tsv", 3, 201);
+        results_assert_text("out/summary.json", "status", "unconverged");
+    }
+}
+
 #define TEST_WITHOUT_FIGURES(name)                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -153,6 +200,8 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_gauss_newton_gives_a_weight_of_the_same_bits),
         TEST_WITHOUT_FIGURES(test_gauss_newton_gives_both_unknowns_of_the_same_bits),
         TEST_WITHOUT_FIGURES(test_cmaes_gives_both_unknowns_of_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_explain_and_describe_know_the_weight_and_its_targets),
+        TEST_WITHOUT_FIGURES(test_fit_of_a_weight_ends_and_says_so_when_no_candidate_survives),
         TEST_WITHOUT_FIGURES(test_unstable_candidates_lose_and_never_stop_a_fit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
