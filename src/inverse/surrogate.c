@@ -331,6 +331,21 @@ static void take_step(const struct work *work, double reach, const double *miss,
     } while (rms(delta, work->surrogate->genes) > reach);
 }
 
+/// No gene is less known than by the prior: C becomes (C⁻¹ + 1/s²)⁻¹ = s² − s² (C + s²)⁻¹ s².
+static void bound(double *scratch, double *covariance, size_t genes) {
+    const double width = prior_width * prior_width;
+    memcpy(scratch, covariance, genes * genes * sizeof *scratch);
+    for (size_t a = 0; a < genes; a++)
+        scratch[a * genes + a] += width;
+    gsl_matrix_view view = gsl_matrix_view_array(scratch, genes, genes);
+    gsl_linalg_cholesky_decomp1(&view.matrix);
+    gsl_linalg_cholesky_invert(&view.matrix);
+    for (size_t a = 0; a < genes; a++)
+        for (size_t b = 0; b < genes; b++)
+            covariance[a * genes + b] =
+                (a == b ? width : 0) - width * scratch[a * genes + b] * width;
+}
+
 enum status surrogate_fit(const struct surrogate *surrogate, const double *centre, double reach,
                           struct surrogate_model *model, bool *known) {
     enum status status = STATUS_OK;
@@ -363,6 +378,7 @@ enum status surrogate_fit(const struct surrogate *surrogate, const double *centr
     add_noise(&work, hessian, scale, delta, model->covariance);
     solve(&work, hessian, miss, NULL, delta);
     add_open(&work, hessian, delta, model->covariance);
+    bound(hessian, model->covariance, genes);
 done:
     work_clear(&work);
     memory_free(hessian);
