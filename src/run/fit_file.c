@@ -141,6 +141,13 @@ static enum status check_unknowns(const struct fit_file *fit, const char *file) 
         if (fit->unknown[kind].wanted && !fit->method->fits[kind])
             return status_fail(STATUS_BAD_INPUT, "%s: method.name: \"%s\" does not find a %s", file,
                                fit->method->name, inverse_unknown_names[kind]);
+    const struct inverse_sampling sampling = fit->method->sampling(fit->method_parameters);
+    for (int kind = 0; kind < GOALS && sampling.every == 0; kind++)
+        if (kind != GOAL_RDF && goals_ask(&fit->problem.goals, kind))
+            return status_fail(STATUS_BAD_INPUT,
+                               "%s: target.%s.fitted: \"%s\" fits g(r) alone; \"no\" compares it "
+                               "with the result",
+                               file, goals_names[kind], fit->method->name);
     if (fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->targets.given[GOAL_RDF])
         return status_fail(STATUS_BAD_INPUT, "%s: target.rdf is required to find a potential",
                            file);

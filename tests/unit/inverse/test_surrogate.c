@@ -269,6 +269,27 @@ static void test_surrogate_errors_hold_the_truth_as_often_as_they_say(void **sta
             }
 }
 
+/// What has been measured again and again at one place, or nearly so, says nothing of slopes.
+static void test_surrogate_knows_nothing_when_all_rows_are_at_one_place(void **state) {
+    (void)state;
+    static const double spreads[] = {0, 1e-12, 1e-7};
+    for (int k = 0; k < 3; k++) {
+        const struct experiment e = {
+            .spread = spreads[k], .noise = 0.01, .target_error = 0.01, .rows = CAPACITY};
+        struct data data;
+        struct surrogate_model model;
+        begin(&data, &e, 0.1, 0);
+        fit(&data, 0.3, &model);
+        for (int n = 0; n < GENES; n++) {
+            const double error = sqrt(model.covariance[n * (GENES + 1)]);
+            assert_true(model.best[n] >= 0 && model.best[n] <= 1);
+            assert_true(error > 0.15 && error <= 0.3);
+        }
+        surrogate_model_clear(&model);
+        surrogate_clear(&data.surrogate);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_surrogate_finds_the_truth_when_there_is_next_to_no_noise),
@@ -277,6 +298,7 @@ int main(void) {
         cmocka_unit_test(test_surrogate_is_not_known_when_there_are_too_few_rows),
         cmocka_unit_test(test_surrogate_forgets_the_oldest_rows_when_it_is_full),
         cmocka_unit_test(test_surrogate_stays_within_the_genes_when_the_target_is_beyond),
+        cmocka_unit_test(test_surrogate_knows_nothing_when_all_rows_are_at_one_place),
         cmocka_unit_test(test_surrogate_is_the_same_from_its_spans),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
