@@ -184,7 +184,7 @@ static void test_fit_of_a_weight_ends_and_says_so_when_no_candidate_survives(voi
         assert_contains(text, "\tnan\t");
         assert_null(strstr(text, "1000000000"));
         free(text);
-        results_assert_table("out/omega.tsv", 3, 201);
+        results_assert_table("out/omega.tsv", 4, 201);
         results_assert_text("out/summary.json", "status", "unconverged");
     }
 }
