@@ -7,7 +7,7 @@
 #include <string.h>
 
 /// Rows of a fit for each gene, at least and at most, and besides.
-enum { ROWS_PER_GENE = 3, MOST_ROWS_PER_GENE = 6, MORE_ROWS = 10 };
+enum { ROWS_PER_GENE = 3, MOST_ROWS_PER_GENE = 10, MORE_ROWS = 10 };
 
 /// Ridge of the least squares for J in units of the rows' spread, so that a direction in which they
 /// do not differ has no slope.
@@ -72,12 +72,17 @@ struct work {
     double *scatter;    ///< shape [features]: σ_j²
     double *spread;     ///< shape [terms, terms]: covariance of a row of `model` over its scatter
     double *term;       ///< shape [terms]: scratch
+    double *hessian;    ///< shape [genes, genes]: Cholesky factor of Jᵀ W J + damping
+    double *miss;       ///< shape [features]: t − y_c
+    double *scale;      ///< shape [features]: scratch
+    double *delta;      ///< shape [genes]: a step
     double freedom;     ///< rows that the scatter rests on
 };
 
 static void work_clear(struct work *work) {
     void *arrays[] = {work->near,     work->weight,  work->design, work->normal, work->model,
-                      work->residual, work->scatter, work->spread, work->term};
+                      work->residual, work->scatter, work->spread, work->term,   work->hessian,
+                      work->miss,     work->scale,   work->delta};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         memory_free(arrays[k]);
 }
@@ -86,10 +91,10 @@ size_t surrogate_least_rows(size_t genes) {
     return ROWS_PER_GENE * genes + MORE_ROWS;
 }
 
-static enum status work_init(struct work *work, const struct surrogate *surrogate, size_t kept) {
+static enum status work_init(struct work *work, const struct surrogate *surrogate, size_t kept,
+                             size_t rows) {
     enum status status = STATUS_OK;
-    const size_t most = MOST_ROWS_PER_GENE * surrogate->genes + MORE_ROWS;
-    const size_t rows = kept < most ? kept : most, terms = surrogate->genes + 1;
+    const size_t terms = surrogate->genes + 1;
     *work = (struct work){.surrogate = surrogate, .rows = rows, .terms = terms};
     NEW_ARRAY(work->near, kept);
     NEW_ARRAY(work->weight, rows);
@@ -100,6 +105,10 @@ static enum status work_init(struct work *work, const struct surrogate *surrogat
     NEW_ARRAY(work->scatter, surrogate->features);
     NEW_ARRAY(work->spread, terms * terms);
     NEW_ARRAY(work->term, terms);
+    NEW_ARRAY(work->hessian, surrogate->genes * surrogate->genes);
+    NEW_ARRAY(work->miss, surrogate->features);
+    NEW_ARRAY(work->scale, surrogate->features);
+    NEW_ARRAY(work->delta, surrogate->genes);
 done:
     return status;
 }
@@ -182,9 +191,10 @@ static double feature_weight(const struct work *work, size_t j) {
 }
 
 /// Cholesky factor of H = Jᵀ W J + damping.
-static void factor_hessian(const struct work *work, double damping, double *hessian) {
+static void factor_hessian(const struct work *work, double damping) {
     const struct surrogate *s = work->surrogate;
     const size_t genes = s->genes;
+    double *hessian = work->hessian;
     memset(hessian, 0, genes * genes * sizeof *hessian);
     for (size_t j = 0; j < s->features; j++) {
         const double *slope = work->model + j * work->terms + 1;
@@ -199,10 +209,18 @@ static void factor_hessian(const struct work *work, double damping, double *hess
     gsl_linalg_cholesky_decomp1(&view.matrix);
 }
 
+/// delta = H⁻¹ delta.
+static void divide(const struct work *work, double *delta) {
+    const size_t genes = work->surrogate->genes;
+    gsl_matrix_view factor = gsl_matrix_view_array(work->hessian, genes, genes);
+    gsl_vector_view view = gsl_vector_view_array(delta, genes);
+    gsl_linalg_cholesky_svx(&factor.matrix, &view.vector);
+}
+
 /// δ = H⁻¹ Jᵀ W v for a vector of features, times `scale` of each feature if given.
-static void solve(const struct work *work, double *hessian, const double *v, const double *scale,
-                  double *delta) {
+static void solve(const struct work *work, const double *v, const double *scale) {
     const struct surrogate *s = work->surrogate;
+    double *delta = work->delta;
     memset(delta, 0, s->genes * sizeof *delta);
     for (size_t j = 0; j < s->features; j++) {
         const double *slope = work->model + j * work->terms + 1;
@@ -210,9 +228,7 @@ static void solve(const struct work *work, double *hessian, const double *v, con
         for (size_t a = 0; a < s->genes; a++)
             delta[a] += slope[a] * term;
     }
-    gsl_matrix_view factor = gsl_matrix_view_array(hessian, s->genes, s->genes);
-    gsl_vector_view view = gsl_vector_view_array(delta, s->genes);
-    gsl_linalg_cholesky_svx(&factor.matrix, &view.vector);
+    divide(work, delta);
 }
 
 /// Σ += share · δ δᵀ.
@@ -251,32 +267,23 @@ static double leverage(const struct work *work, const double *delta) {
 /// What the noise of the target and that of the model where the solution lies do to it. The
 /// target's noise is taken to be correlated as that of the simulations is, which the residuals
 /// show, with the standard errors that it has.
-static void add_noise(const struct work *work, double *hessian, double *scale, double *delta,
-                      double *covariance) {
+static void add_noise(const struct work *work, double *covariance) {
     const struct surrogate *s = work->surrogate;
-    const double lever = leverage(work, delta);
+    const double lever = leverage(work, work->delta);
     double weights = 0;
     for (size_t k = 0; k < work->rows; k++)
         weights += work->weight[k];
     for (size_t j = 0; j < s->features; j++)
-        scale[j] = s->target_error[j] / sqrt(work->scatter[j] + least_error * least_error);
+        work->scale[j] = s->target_error[j] / sqrt(work->scatter[j] + least_error * least_error);
     for (size_t k = 0; k < work->rows; k++) {
         const double *residual = work->residual + k * s->features;
         const double share =
             work->weight[k] / weights * (work->freedom + (double)work->terms) / work->freedom;
-        solve(work, hessian, residual, scale, delta);
-        add_outer(covariance, delta, s->genes, share);
-        solve(work, hessian, residual, NULL, delta);
-        add_outer(covariance, delta, s->genes, share * lever);
+        solve(work, residual, work->scale);
+        add_outer(covariance, work->delta, s->genes, share);
+        solve(work, residual, NULL);
+        add_outer(covariance, work->delta, s->genes, share * lever);
     }
-}
-
-/// delta = H⁻¹ delta.
-static void divide(const struct work *work, double *hessian, double *delta) {
-    const size_t genes = work->surrogate->genes;
-    gsl_matrix_view factor = gsl_matrix_view_array(hessian, genes, genes);
-    gsl_vector_view view = gsl_vector_view_array(delta, genes);
-    gsl_linalg_cholesky_svx(&factor.matrix, &view.vector);
 }
 
 /// to = Λ from, Λ = Σ_j w_j σ_j² spread: so much do slopes of noise alone add to Jᵀ W J.
@@ -295,20 +302,20 @@ static void attenuate(const struct work *work, const double *from, double *to) {
 /// H⁻¹ Λ by the noise of the slopes (attenuation: W. A. Fuller, Measurement Error Models (1987),
 /// section 1.1), without which a gene that has no effect would pass for one that is known. How
 /// much of a step that is comes first; the share's share, H⁻¹ Λ H⁻¹ Λ, counts as not known.
-static void add_open(const struct work *work, double *hessian, double *delta, double *covariance) {
+static void add_open(const struct work *work, double *covariance) {
     const size_t genes = work->surrogate->genes;
-    double *held = work->term;
+    double *held = work->term, *delta = work->delta;
     attenuate(work, delta, held);
-    divide(work, hessian, held);
+    divide(work, held);
     add_outer(covariance, held, genes, 1);
     for (size_t a = 0; a < genes; a++) {
         memset(delta, 0, genes * sizeof *delta);
         delta[a] = 1;
         attenuate(work, delta, held);
-        divide(work, hessian, held);
+        divide(work, held);
         attenuate(work, held, delta);
         delta[a] += 1 / (prior_width * prior_width);
-        divide(work, hessian, delta);
+        divide(work, delta);
         add_outer(covariance, delta, genes, prior_width * prior_width);
     }
 }
@@ -321,14 +328,13 @@ static double rms(const double *values, size_t count) {
 }
 
 /// The step to where the target is met best, damped until it stays within the reach.
-static void take_step(const struct work *work, double reach, const double *miss, double *hessian,
-                      double *delta) {
+static void take_step(const struct work *work, double reach) {
     double damping = 1 / (prior_width * prior_width);
     do {
-        factor_hessian(work, damping, hessian);
-        solve(work, hessian, miss, NULL, delta);
+        factor_hessian(work, damping);
+        solve(work, work->miss, NULL);
         damping *= 2;
-    } while (rms(delta, work->surrogate->genes) > reach);
+    } while (rms(work->delta, work->surrogate->genes) > reach);
 }
 
 /// No gene is less known than by the prior: C becomes (C⁻¹ + 1/s²)⁻¹ = s² − s² (C + s²)⁻¹ s².
@@ -346,45 +352,66 @@ static void bound(double *scratch, double *covariance, size_t genes) {
                 (a == b ? width : 0) - width * scratch[a * genes + b] * width;
 }
 
+/// Fit the model to the `rows` nearest to the centre.
+static enum status fit_rows(struct work *work, const struct surrogate *surrogate,
+                            const double *centre, size_t kept, size_t rows) {
+    TRY(work_init(work, surrogate, kept, rows));
+    choose_rows(work, centre, kept);
+    factor(work);
+    find_spread(work);
+    fit_features(work);
+    for (size_t j = 0; j < surrogate->features; j++)
+        work->miss[j] = surrogate->target[j] - work->model[j * work->terms];
+    return STATUS_OK;
+}
+
+/// Where the target is met best, by the rows near the centre.
+static enum status find_best(const struct surrogate *surrogate, const double *centre, size_t kept,
+                             double reach, struct surrogate_model *model) {
+    struct work work = {0};
+    const size_t most = MOST_ROWS_PER_GENE * surrogate->genes + MORE_ROWS;
+    enum status status = fit_rows(&work, surrogate, centre, kept, kept < most ? kept : most);
+    if (status == STATUS_OK) {
+        take_step(&work, reach);
+        for (size_t n = 0; n < surrogate->genes; n++)
+            model->best[n] = fmin(1, fmax(0, centre[n] + work.delta[n]));
+    }
+    work_clear(&work);
+    return status;
+}
+
+/// How well it is known, by all rows: those of a region that has become narrow do not differ by
+/// more than their noise, and would say nothing of slopes.
+static enum status find_covariance(const struct surrogate *surrogate, const double *centre,
+                                   size_t kept, struct surrogate_model *model) {
+    struct work work = {0};
+    enum status status = fit_rows(&work, surrogate, centre, kept, kept);
+    if (status == STATUS_OK) {
+        factor_hessian(&work, 1 / (prior_width * prior_width));
+        solve(&work, work.miss, NULL);
+        add_noise(&work, model->covariance);
+        solve(&work, work.miss, NULL);
+        add_open(&work, model->covariance);
+        bound(work.hessian, model->covariance, surrogate->genes);
+    }
+    work_clear(&work);
+    return status;
+}
+
 enum status surrogate_fit(const struct surrogate *surrogate, const double *centre, double reach,
                           struct surrogate_model *model, bool *known) {
     enum status status = STATUS_OK;
-    struct work work = {0};
-    const size_t genes = surrogate->genes;
-    const size_t added = (size_t)surrogate->rows.added;
+    const size_t genes = surrogate->genes, added = (size_t)surrogate->rows.added;
     const size_t kept = added < surrogate->capacity ? added : surrogate->capacity;
-    double *hessian = NULL, *miss = NULL, *delta = NULL, *scale = NULL;
     *model = (struct surrogate_model){.genes = genes};
     *known = kept >= surrogate_least_rows(genes);
     if (!*known)
         return STATUS_OK;
-    CHECK(work_init(&work, surrogate, kept));
-    NEW_ARRAY(hessian, genes * genes);
-    NEW_ARRAY(miss, surrogate->features);
-    NEW_ARRAY(scale, surrogate->features);
-    NEW_ARRAY(delta, genes);
     NEW_ARRAY(model->best, genes);
     NEW_ARRAY(model->covariance, genes * genes);
-    choose_rows(&work, centre, kept);
-    factor(&work);
-    find_spread(&work);
-    fit_features(&work);
-    for (size_t j = 0; j < surrogate->features; j++)
-        miss[j] = surrogate->target[j] - work.model[j * work.terms];
-    take_step(&work, reach, miss, hessian, delta);
-    for (size_t n = 0; n < genes; n++)
-        model->best[n] = fmin(1, fmax(0, centre[n] + delta[n]));
-    factor_hessian(&work, 1 / (prior_width * prior_width), hessian);
-    add_noise(&work, hessian, scale, delta, model->covariance);
-    solve(&work, hessian, miss, NULL, delta);
-    add_open(&work, hessian, delta, model->covariance);
-    bound(hessian, model->covariance, genes);
+    CHECK(find_best(surrogate, centre, kept, reach, model));
+    CHECK(find_covariance(surrogate, centre, kept, model));
 done:
-    work_clear(&work);
-    memory_free(hessian);
-    memory_free(miss);
-    memory_free(delta);
-    memory_free(scale);
     return status;
 }
 
