@@ -15,7 +15,7 @@ struct decoder {
     struct weight_grid weight;       ///< if it is unknown
     size_t genes;                    ///< of all unknowns
     size_t first[UNKNOWNS];          ///< gene of each
-    double *basis[UNKNOWNS];         ///< shape [points, genes of it]: curve = basis · x
+    double *basis[UNKNOWNS]; ///< shape [points, genes of it]: curve = basis · x; NULL: a formula
 };
 
 /// Fails: NO_MEMORY; BAD_INPUT as potential_grid_init.
@@ -30,10 +30,11 @@ const double *decoder_r(const struct decoder *decoder, enum unknown_kind kind);
 void decoder_curve(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
                    double *curve);
 
-/// Standard errors of a curve, shape [points], from the covariance of the genes, shape [genes,
-/// genes] of all unknowns; NaN if that is NULL, and in the core, which is set.
-void decoder_band(const struct decoder *decoder, enum unknown_kind kind, const double *covariance,
-                  double *error);
+/// Standard errors of the curve of some genes, shape [points], from the covariance of the genes,
+/// shape [genes, genes] of all unknowns; NaN if that is NULL, and in the core, which is set.
+/// Fails: NO_MEMORY.
+enum status decoder_band(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
+                         const double *covariance, double *error) MUST_USE;
 
 /// Table for the kernels from a curve. Fails: NO_MEMORY.
 enum status decoder_table(const struct decoder *decoder, enum unknown_kind kind,

@@ -16,9 +16,14 @@ enum unknown_kind { UNKNOWN_POTENTIAL, UNKNOWN_WEIGHT, UNKNOWNS };
 /// Names in run files, shape [UNKNOWNS].
 extern const char *const inverse_unknown_names[UNKNOWNS];
 
+/// What genes make: the shapes of curves/shape.h in their order, or the formula of a weight,
+/// ω = σ(1 − r/r_c)^s beyond r_0, of which the genes are σ in [minimum, maximum], s in [0, 4] and
+/// r_0 from the inner cutoff to half-way to the cutoff.
+enum { INVERSE_CURVE_BEZIER, INVERSE_CURVE_BSPLINE, INVERSE_CURVE_POWER, INVERSE_POWER_GENES = 3 };
+
 /// How an optimiser writes an unknown as a curve of some genes.
 struct unknown_parameters {
-    int shape;                   ///< index into `shapes`
+    int shape;                   ///< INVERSE_CURVE_…
     int64_t genes;               ///< of the curve
     double minimum, maximum;     ///< of a gene [k_B T_0] or [sqrt(mass/time)]
     double inner_cutoff, cutoff; ///< of a weight [λ]

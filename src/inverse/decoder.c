@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inverse/decoder.h"
 
+#include "curves/formula.h"
 #include "curves/shape.h"
 
 #include <math.h>
@@ -38,11 +39,17 @@ static void find_places(const struct decoder *decoder, enum unknown_kind kind, d
         place[k - first] = (r[k] - r[first]) / (r[points - 1] - r[first]);
 }
 
+static bool is_formula(const struct decoder *decoder, enum unknown_kind kind) {
+    return unknown_of(decoder, kind)->parameters.shape == INVERSE_CURVE_POWER;
+}
+
 static enum status make_basis(struct decoder *decoder, enum unknown_kind kind) {
     enum status status = STATUS_OK;
     const size_t genes = genes_of(decoder, kind);
     const size_t points = decoder_points(decoder, kind) - first_point(decoder, kind);
     double *place = NULL;
+    if (is_formula(decoder, kind))
+        return STATUS_OK;
     NEW_ARRAY(place, points);
     NEW_ARRAY(decoder->basis[kind], points * genes);
     find_places(decoder, kind, place);
@@ -75,40 +82,100 @@ void decoder_clear(struct decoder *decoder) {
     *decoder = (struct decoder){0};
 }
 
-void decoder_curve(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
-                   double *curve) {
+/// Σ of basis and genes, in the unknown's unit.
+static void linear_curve(const struct decoder *decoder, enum unknown_kind kind, const double *x,
+                         double *curve) {
     const struct unknown_parameters *p = &unknown_of(decoder, kind)->parameters;
     const size_t count = genes_of(decoder, kind), first = first_point(decoder, kind);
-    const size_t points = decoder_points(decoder, kind);
-    const double *x = genes + decoder->first[kind];
-    for (size_t k = first; k < points; k++) {
+    for (size_t k = first; k < decoder_points(decoder, kind); k++) {
         const double *row = decoder->basis[kind] + (k - first) * count;
         double sum = 0;
         for (size_t n = 0; n < count; n++)
             sum += row[n] * (p->minimum + x[n] * (p->maximum - p->minimum));
         curve[k] = kind == UNKNOWN_WEIGHT ? fmax(0, sum) : sum;
     }
+}
+
+/// Largest exponent of the formula, and how much of the way to the cutoff r_0 may go.
+static const double largest_exponent = 4, inner_part = 0.5;
+
+static void power_curve(const struct decoder *decoder, const double *x, double *curve) {
+    const struct unknown_parameters *p = &unknown_of(decoder, UNKNOWN_WEIGHT)->parameters;
+    struct formula_power_weight_parameters formula = {
+        .sigma = p->minimum + x[0] * (p->maximum - p->minimum),
+        .exponent = largest_exponent * x[1],
+        .inner_cutoff = p->inner_cutoff + inner_part * x[2] * (p->cutoff - p->inner_cutoff),
+        .cutoff = p->cutoff};
+    const struct curve power = {&formula_power_weight, &formula};
+    for (size_t k = 0; k < WEIGHT_POINTS; k++)
+        curve[k] = fmax(0, curve_value(&power, decoder->weight.r[k]));
+}
+
+void decoder_curve(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
+                   double *curve) {
+    const double *x = genes + decoder->first[kind];
+    if (is_formula(decoder, kind))
+        power_curve(decoder, x, curve);
+    else
+        linear_curve(decoder, kind, x, curve);
     if (kind == UNKNOWN_POTENTIAL)
         potential_grid_complete(&decoder->potential, curve);
 }
 
-void decoder_band(const struct decoder *decoder, enum unknown_kind kind, const double *covariance,
-                  double *error) {
+/// How the curve changes with each gene, shape [points − first, genes of it].
+static enum status find_slopes(const struct decoder *decoder, enum unknown_kind kind,
+                               const double *genes, double *slopes) {
+    enum status status = STATUS_OK;
     const struct unknown_parameters *p = &unknown_of(decoder, kind)->parameters;
     const size_t count = genes_of(decoder, kind), first = first_point(decoder, kind);
-    for (size_t k = 0; k < decoder_points(decoder, kind); k++) {
+    const size_t points = decoder_points(decoder, kind);
+    double *moved = NULL, *curve = NULL;
+    if (!is_formula(decoder, kind)) {
+        for (size_t k = 0; k < (points - first) * count; k++)
+            slopes[k] = decoder->basis[kind][k] * (p->maximum - p->minimum);
+        return STATUS_OK;
+    }
+    NEW_ARRAY(moved, decoder->genes);
+    NEW_ARRAY(curve, 2 * points);
+    for (size_t n = 0; n < count; n++) {
+        static const double step = 1e-3;
+        for (int side = 0; side < 2; side++) {
+            memcpy(moved, genes, decoder->genes * sizeof *genes);
+            moved[decoder->first[kind] + n] += side ? step : -step;
+            decoder_curve(decoder, kind, moved, curve + (size_t)side * points);
+        }
+        for (size_t k = first; k < points; k++)
+            slopes[(k - first) * count + n] = (curve[points + k] - curve[k]) / (2 * step);
+    }
+done:
+    memory_free(moved);
+    memory_free(curve);
+    return status;
+}
+
+enum status decoder_band(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
+                         const double *covariance, double *error) {
+    enum status status = STATUS_OK;
+    const size_t count = genes_of(decoder, kind), first = first_point(decoder, kind);
+    const size_t points = decoder_points(decoder, kind), at = decoder->first[kind];
+    double *slopes = NULL;
+    for (size_t k = 0; k < points; k++)
         error[k] = NAN;
-        if (covariance == NULL || k < first)
-            continue;
-        const double *row = decoder->basis[kind] + (k - first) * count;
+    if (covariance == NULL)
+        return STATUS_OK;
+    NEW_ARRAY(slopes, (points - first) * count);
+    CHECK(find_slopes(decoder, kind, genes, slopes));
+    for (size_t k = first; k < points; k++) {
+        const double *row = slopes + (k - first) * count;
         double sum = 0;
         for (size_t a = 0; a < count; a++)
             for (size_t b = 0; b < count; b++)
-                sum += row[a] * row[b] *
-                       covariance[(decoder->first[kind] + a) * decoder->genes +
-                                  decoder->first[kind] + b];
-        error[k] = sqrt(fmax(0, sum)) * (p->maximum - p->minimum);
+                sum += row[a] * row[b] * covariance[(at + a) * decoder->genes + at + b];
+        error[k] = sqrt(fmax(0, sum));
     }
+done:
+    memory_free(slopes);
+    return status;
 }
 
 enum status decoder_table(const struct decoder *decoder, enum unknown_kind kind,
@@ -156,8 +223,28 @@ static void start_curve(const struct decoder *decoder, enum unknown_kind kind, d
                                   : middle * (1 - grid->r[k] / grid->cutoff);
 }
 
+/// Genes of a formula in the middle of its range, or those of the start if it is the same formula.
+static void start_power(const struct decoder *decoder, double *genes) {
+    const struct unknown *unknown = unknown_of(decoder, UNKNOWN_WEIGHT);
+    const struct unknown_parameters *p = &unknown->parameters;
+    genes[0] = 0.5;
+    genes[1] = 1 / largest_exponent;
+    genes[2] = 0;
+    if (unknown->start == NULL || unknown->start->family != &formula_power_weight)
+        return;
+    const struct formula_power_weight_parameters *start = unknown->start->parameters;
+    const double room = inner_part * (p->cutoff - p->inner_cutoff);
+    genes[0] = fmin(1, fmax(0, (start->sigma - p->minimum) / (p->maximum - p->minimum)));
+    genes[1] = fmin(1, fmax(0, start->exponent / largest_exponent));
+    genes[2] = fmin(1, fmax(0, (start->inner_cutoff - p->inner_cutoff) / room));
+}
+
 static enum status start_of(const struct decoder *decoder, enum unknown_kind kind, double *genes) {
     enum status status = STATUS_OK;
+    if (is_formula(decoder, kind)) {
+        start_power(decoder, genes);
+        return STATUS_OK;
+    }
     const struct unknown_parameters *p = &unknown_of(decoder, kind)->parameters;
     const size_t count = genes_of(decoder, kind), first = first_point(decoder, kind);
     const size_t points = decoder_points(decoder, kind);

@@ -172,11 +172,12 @@ static void judge(struct state *state, double error, double noise, double varian
     }
 }
 
-static void find_bands(struct state *state, const struct surrogate_model *model) {
+static enum status find_bands(struct state *state, const struct surrogate_model *model) {
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (state->problem->unknown[kind].wanted)
-            decoder_band(&state->decoder, kind, model ? model->covariance : NULL,
-                         state->curve_error[kind]);
+            TRY(decoder_band(&state->decoder, kind, state->best, model ? model->covariance : NULL,
+                             state->curve_error[kind]));
+    return STATUS_OK;
 }
 
 /// Measure what the model says, if enough simulations succeeded to have one.
@@ -193,7 +194,7 @@ static enum status propose(struct state *state) {
                                    &error, &noise, &variance));
         judge(state, error, noise, variance);
     }
-    find_bands(state, known ? &model : NULL);
+    CHECK(find_bands(state, known ? &model : NULL));
 done:
     surrogate_model_clear(&model);
     return status;

@@ -174,11 +174,12 @@ static enum status check_favourite(struct state *state, double slack) {
 }
 
 /// Standard errors of the curves from those of the genes; NaN without a model.
-static void find_bands(struct state *state, const struct surrogate_model *model) {
+static enum status find_bands(struct state *state, const struct surrogate_model *model) {
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (state->problem->unknown[kind].wanted)
-            decoder_band(&state->decoder, kind, model ? model->covariance : NULL,
-                         state->curve_error[kind]);
+            TRY(decoder_band(&state->decoder, kind, state->best, model ? model->covariance : NULL,
+                             state->curve_error[kind]));
+    return STATUS_OK;
 }
 
 /// Try what a linear model of all measurements near the best thinks better. It rests on many
@@ -189,7 +190,7 @@ static enum status try_surrogate(struct state *state) {
     bool known = false;
     if (state->progress.known)
         CHECK(surrogate_fit(&state->candidates.surrogate, state->best, reach, &model, &known));
-    find_bands(state, known ? &model : NULL);
+    CHECK(find_bands(state, known ? &model : NULL));
     if (!known || !state->parameters.surrogate)
         goto done;
     memcpy(state->favourite, model.best, state->decoder.genes * sizeof(double));

@@ -41,14 +41,24 @@ static const struct field *unknown_fields(enum unknown_kind kind) {
     return kind == UNKNOWN_POTENTIAL ? inverse_potential_fields : inverse_weight_fields;
 }
 
+/// Genes of a curve if the file does not say how many.
+static const int64_t genes_of_curve[] = {[INVERSE_CURVE_BEZIER] = 100,
+                                         [INVERSE_CURVE_BSPLINE] = 12,
+                                         [INVERSE_CURVE_POWER] = INVERSE_POWER_GENES};
+
 static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind kind,
                                 struct json_object *object) {
     const struct curve_family *const *laws =
         kind == UNKNOWN_POTENTIAL ? curve_potentials : curve_weights;
     json_fields(object, unknown_fields(kind), &unknown->parameters);
-    const struct unknown_parameters *p = &unknown->parameters;
+    struct unknown_parameters *p = &unknown->parameters;
+    if (p->genes == 0)
+        p->genes = genes_of_curve[p->shape];
     if (object->item == NULL)
         return STATUS_OK;
+    if (p->shape == INVERSE_CURVE_POWER && p->genes != INVERSE_POWER_GENES)
+        json_fault(object, "genes", "the curve \"power\" has %d: sigma, exponent, inner cutoff",
+                   INVERSE_POWER_GENES);
     if (p->maximum <= p->minimum)
         json_fault(object, "maximum", "%g is not above the minimum %g", p->maximum, p->minimum);
     if (kind == UNKNOWN_WEIGHT && p->cutoff <= p->inner_cutoff)

@@ -163,7 +163,7 @@ static void check_band(const struct both *both, enum unknown_kind kind, size_t f
         decoder_curve(&both->decoder, kind, genes, slope[n]);
         genes[n] = 0;
     }
-    decoder_band(&both->decoder, kind, covariance, error);
+    assert_ok(decoder_band(&both->decoder, kind, genes, covariance, error));
     for (size_t k = first; k < points; k++) {
         double sum = 0;
         for (int a = 0; a < ALL; a++)
@@ -173,7 +173,7 @@ static void check_band(const struct both *both, enum unknown_kind kind, size_t f
     }
     for (size_t k = 0; k < first; k++)
         assert_true(isnan(error[k]));
-    decoder_band(&both->decoder, kind, NULL, error);
+    assert_ok(decoder_band(&both->decoder, kind, genes, NULL, error));
     for (size_t k = 0; k < points; k++)
         assert_true(isnan(error[k]));
 }
@@ -204,6 +204,39 @@ static void test_decoder_laws_are_those_of_the_scene_when_they_are_known(void **
     decoder_clear(&both.decoder);
 }
 
+/// A weight of three genes beside nothing else.
+static void begin_power(struct both *both) {
+    *both = (struct both){.power = {2.5, 1.5, 0.4, 1.6}};
+    both->weight = (struct curve){&formula_power_weight, &both->power};
+    both->problem.unknown[UNKNOWN_WEIGHT] =
+        (struct unknown){true, {INVERSE_CURVE_POWER, 3, 0, 5, 0.1, 1.6}, &both->weight};
+    assert_ok(decoder_init(&both->decoder, &both->problem));
+    assert_ok(decoder_start(&both->decoder, both->genes));
+}
+
+static void test_decoder_power_is_the_formula_and_starts_at_it(void **state) {
+    (void)state;
+    struct both both;
+    begin_power(&both);
+    assert_int_equal(both.decoder.genes, INVERSE_POWER_GENES);
+    check_curve(&both, UNKNOWN_WEIGHT, &both.weight, 0, 1e-12);
+    decoder_clear(&both.decoder);
+}
+
+static void test_decoder_band_of_the_formula_follows_its_genes(void **state) {
+    (void)state;
+    struct both both;
+    double error[WEIGHT_POINTS], covariance[9] = {0};
+    begin_power(&both);
+    // Only σ is uncertain: the band is the curve itself, scaled.
+    covariance[0] = 0.01 * 0.01;
+    assert_ok(decoder_band(&both.decoder, UNKNOWN_WEIGHT, both.genes, covariance, error));
+    for (size_t k = 0; k < WEIGHT_POINTS; k++)
+        assert_close(error[k], curve_value(&both.weight, both.decoder.weight.r[k]) / 2.5 * 5 * 0.01,
+                     1e-9);
+    decoder_clear(&both.decoder);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_decoder_start_gives_back_both_curves_side_by_side),
@@ -212,6 +245,8 @@ int main(void) {
         cmocka_unit_test(test_decoder_start_falls_from_the_middle_when_no_weight_is_given),
         cmocka_unit_test(test_decoder_curve_of_a_weight_is_never_negative),
         cmocka_unit_test(test_decoder_band_is_the_error_that_the_covariance_gives_the_curve),
+        cmocka_unit_test(test_decoder_power_is_the_formula_and_starts_at_it),
+        cmocka_unit_test(test_decoder_band_of_the_formula_follows_its_genes),
         cmocka_unit_test(test_decoder_laws_are_those_of_the_scene_when_they_are_known),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
