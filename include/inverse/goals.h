@@ -31,9 +31,10 @@ struct goals {
 
 /// Distance of measured values from one goal.
 struct goal_distance {
-    double rms;   ///< of measured − wanted over what is known of both
-    double noise; ///< rms of their standard errors
-    size_t count; ///< values compared
+    double rms;      ///< of measured − wanted over what is known of both
+    double noise;    ///< rms of their standard errors
+    double variance; ///< of rms by the noise of what was measured: another measurement differs so
+    size_t count;    ///< values compared
 };
 
 static inline bool goals_ask(const struct goals *goals, enum goal_kind kind) {
@@ -53,6 +54,9 @@ double goals_weight(const struct goal *goal);
 /// All distances in one number: that of a single goal as it is; of several the weighted rms,
 /// sqrt(Σ (w rms)² / count), in which 1 is as far as the statistical errors of the targets alone.
 double goals_error(const struct goals *goals, const struct goal_distance *distance);
+
+/// Variance of that sum.
+double goals_variance(const struct goals *goals, const struct goal_distance *distance);
 
 /// The same sum over the noise of each.
 double goals_noise(const struct goals *goals, const struct goal_distance *distance);

@@ -10,10 +10,6 @@ static const double collapse_factor = 2;
 /// have by then, so that their errors mean something.
 enum { PARTS = 16, LEAST_SAMPLES = 4 };
 
-/// Values of an observable that count as independent, for the variance of its rms: bins of g(r) and
-/// cells of E(t, r_0) next to each other see the same pairs.
-static const double independent_values = 10;
-
 static bool has_collapsed(const struct simulation *simulation) {
     const struct neighbours *neighbours = &simulation->neighbours;
     const double count = (double)simulation->particles.count;
@@ -35,13 +31,6 @@ static enum status equilibrate(struct simulation *simulation, const struct measu
     return STATUS_OK;
 }
 
-/// Variance of an rms e over n independent values, each with the variance s²: e² has 4 e² s²/n +
-/// 2 s⁴/n, and e that over (2e)².
-static double error_variance(double error, double noise) {
-    const double square = noise * noise;
-    return (square + 0.5 * square * square / fmax(error * error, 1e-300)) / independent_values;
-}
-
 static enum status score(const struct observation *observation, struct observed *observed,
                          struct evaluate_result *result) {
     const struct goals *goals = observation->goals;
@@ -49,7 +38,7 @@ static enum status score(const struct observation *observation, struct observed 
     observation_distance(observed, goals, result->distance);
     result->error = goals_error(goals, result->distance);
     result->noise = goals_noise(goals, result->distance);
-    result->variance = error_variance(result->error, result->noise);
+    result->variance = goals_variance(goals, result->distance);
     return STATUS_OK;
 }
 

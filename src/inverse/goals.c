@@ -5,6 +5,10 @@
 
 const char *const goals_names[GOALS] = {"rdf", "etd", "vacf", "msd", "diffusion", "pressure"};
 
+/// Values of an observable that count as independent, for the variance of its rms: bins of g(r) and
+/// cells of E(t, r_0) next to each other see the same pairs.
+static const double most_independent = 10;
+
 /// Weight of a goal without errors: as if they were this [unit of the goal].
 static const double assumed_error = 0.01;
 
@@ -15,10 +19,17 @@ size_t goals_count(const struct goals *goals) {
     return count;
 }
 
+/// Variance of an rms e over n independent values, each with the variance s²: e² has 4 e² s²/n +
+/// 2 s⁴/n, and e that over (2e)².
+static double rms_variance(double rms, double square, double count) {
+    const double independent = fmin(count, most_independent);
+    return (square + 0.5 * square * square / fmax(rms * rms, 1e-300)) / independent;
+}
+
 struct goal_distance goals_distance(const struct goal *goal, const double *value,
                                     const double *error) {
     struct goal_distance distance = {0};
-    double squares = 0, noise = 0;
+    double squares = 0, noise = 0, own = 0;
     for (size_t k = 0; k < goal->count; k++) {
         if (!isfinite(goal->value[k]) || !isfinite(value[k]))
             continue;
@@ -27,11 +38,16 @@ struct goal_distance goals_distance(const struct goal *goal, const double *value
         const double own_error = isfinite(error[k]) ? error[k] : 0;
         squares += difference * difference;
         noise += own_error * own_error + target_error * target_error;
+        own += own_error * own_error;
         distance.count++;
     }
+    const double count = (double)distance.count;
     // Nothing in common with the goal is as bad as a failure.
-    distance.rms = distance.count > 0 ? sqrt(squares / (double)distance.count) : INFINITY;
-    distance.noise = distance.count > 0 ? sqrt(noise / (double)distance.count) : 0;
+    distance.rms = count > 0 ? sqrt(squares / count) : INFINITY;
+    if (count > 0) {
+        distance.noise = sqrt(noise / count);
+        distance.variance = rms_variance(distance.rms, own / count, count);
+    }
     return distance;
 }
 
@@ -59,6 +75,21 @@ static double combine(const struct goals *goals, const struct goal_distance *dis
         sum += term * term / (double)count;
     }
     return sqrt(sum);
+}
+
+double goals_variance(const struct goals *goals, const struct goal_distance *distance) {
+    const size_t count = goals_count(goals);
+    const double error = goals_error(goals, distance);
+    double sum = 0;
+    for (int kind = 0; kind < GOALS; kind++) {
+        if (!goals_ask(goals, kind))
+            continue;
+        const double weight = count > 1 ? goals_weight(&goals->goal[kind]) : 1;
+        const double slope =
+            error > 0 ? weight * weight * distance[kind].rms / ((double)count * error) : weight;
+        sum += slope * slope * distance[kind].variance;
+    }
+    return sum;
 }
 
 static double rms_of(const struct goal_distance *distance) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inverse/goals.h"
 
+#include "base/rng.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
 
@@ -157,8 +158,34 @@ static void test_goals_features_are_0_when_the_target_does_not_know(void **state
         assert_close(value[k], measured[k], 0);
 }
 
+/// A number measured again and again: its distance from the target scatters as the variance says,
+/// whatever error the target has.
+static void test_goals_variance_is_that_of_repeated_measurements(void **state) {
+    (void)state;
+    enum { MEASUREMENTS = 4000 };
+    static const double wanted = 1, target_error = 7, truth = 1.5, error = 0.1;
+    const struct goals goals = {.goal[GOAL_DIFFUSION] = {1, &wanted, &target_error, 0}};
+    struct rng_sequence random = rng_sequence_begin(3, RNG_INITIAL, 0, 0);
+    double mean = 0, square = 0, variance = 0;
+    for (int k = 0; k < MEASUREMENTS; k++) {
+        // Twelve uniform numbers make a normal one.
+        double value = -6;
+        for (int n = 0; n < 12; n++)
+            value += rng_sequence_uniform(&random);
+        value = truth + error * value;
+        struct goal_distance distance[GOALS] = {0};
+        distance[GOAL_DIFFUSION] = goals_distance(&goals.goal[GOAL_DIFFUSION], &value, &error);
+        const double e = goals_error(&goals, distance);
+        mean += e / MEASUREMENTS;
+        square += e * e / MEASUREMENTS;
+        variance += goals_variance(&goals, distance) / MEASUREMENTS;
+    }
+    assert_close(variance / (square - mean * mean), 1, 0.1);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_goals_variance_is_that_of_repeated_measurements),
         cmocka_unit_test(test_goals_distance_is_the_rms_of_what_both_know),
         cmocka_unit_test(test_goals_distance_is_infinite_when_nothing_is_common),
         cmocka_unit_test(test_goals_weight_is_one_over_the_errors_when_none_is_given),
