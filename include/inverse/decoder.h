@@ -54,3 +54,23 @@ void decoder_laws_clear(struct decoder_laws *laws);
 /// mean force and a weight that falls linearly from the middle of its range.
 /// Fails: NO_MEMORY.
 enum status decoder_start(const struct decoder *decoder, double *genes) MUST_USE;
+
+/// The unknowns' curves with their standard errors, for a method to show.
+struct decoder_curves {
+    double *value[UNKNOWNS], *error[UNKNOWNS]; ///< shape [points]; NULL for what is known
+};
+enum status decoder_curves_init(const struct decoder *decoder,
+                                struct decoder_curves *curves) MUST_USE;
+void decoder_curves_clear(struct decoder_curves *curves);
+
+/// Put the curves of some genes into a step.
+void decoder_curves_show(const struct decoder *decoder, const double *genes,
+                         struct decoder_curves *curves, struct inverse_step *step);
+
+/// Standard errors of all curves, as decoder_band. Fails: NO_MEMORY.
+enum status decoder_curves_bands(const struct decoder *decoder, const double *genes,
+                                 const double *covariance, struct decoder_curves *curves) MUST_USE;
+
+/// The errors, for a checkpoint.
+size_t decoder_curves_spans(const struct decoder *decoder, struct decoder_curves *curves,
+                            struct memory_span *spans);

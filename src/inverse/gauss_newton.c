@@ -32,10 +32,10 @@ struct state {
     const struct inverse_problem *problem;
     struct decoder decoder;
     struct candidates candidates;
-    double *round;    ///< shape [candidates, genes]: spread about the best
-    double *proposal; ///< shape [genes]
-    double *best;     ///< shape [genes]: the centre of the region
-    double *curve[UNKNOWNS], *curve_error[UNKNOWNS];
+    double *round;                ///< shape [candidates, genes]: spread about the best
+    double *proposal;             ///< shape [genes]
+    double *best;                 ///< shape [genes]: the centre of the region
+    struct decoder_curves curves; ///< of the best
     struct progress {
         uint32_t iteration;
         bool known;                    ///< whether the best has been measured
@@ -91,10 +91,7 @@ static void destroy(void *memory) {
     memory_free(state->round);
     memory_free(state->proposal);
     memory_free(state->best);
-    for (int kind = 0; kind < UNKNOWNS; kind++) {
-        memory_free(state->curve[kind]);
-        memory_free(state->curve_error[kind]);
-    }
+    decoder_curves_clear(&state->curves);
 }
 
 static enum status create(void *memory, const struct inverse_method *method,
@@ -117,12 +114,7 @@ static enum status create(void *memory, const struct inverse_method *method,
     NEW_ARRAY(state->round, most_candidates(state) * state->decoder.genes);
     NEW_ARRAY(state->proposal, state->decoder.genes);
     NEW_ARRAY(state->best, state->decoder.genes);
-    for (int kind = 0; kind < UNKNOWNS; kind++) {
-        if (!problem->unknown[kind].wanted)
-            continue;
-        NEW_ARRAY(state->curve[kind], decoder_points(&state->decoder, kind));
-        NEW_ARRAY(state->curve_error[kind], decoder_points(&state->decoder, kind));
-    }
+    CHECK(decoder_curves_init(&state->decoder, &state->curves));
     CHECK(decoder_start(&state->decoder, state->best));
     CHECK(candidates_init(&state->candidates, &state->decoder, &settings->candidates));
     state->candidates.iterations = most_iterations(method, problem, parameters);
@@ -172,14 +164,6 @@ static void judge(struct state *state, double error, double noise, double varian
     }
 }
 
-static enum status find_bands(struct state *state, const struct surrogate_model *model) {
-    for (int kind = 0; kind < UNKNOWNS; kind++)
-        if (state->problem->unknown[kind].wanted)
-            TRY(decoder_band(&state->decoder, kind, state->best, model ? model->covariance : NULL,
-                             state->curve_error[kind]));
-    return STATUS_OK;
-}
-
 /// Measure what the model says, if enough simulations succeeded to have one.
 static enum status propose(struct state *state) {
     enum status status = STATUS_OK;
@@ -194,7 +178,8 @@ static enum status propose(struct state *state) {
                                    &error, &noise, &variance));
         judge(state, error, noise, variance);
     }
-    CHECK(find_bands(state, known ? &model : NULL));
+    CHECK(decoder_curves_bands(&state->decoder, state->best, known ? model.covariance : NULL,
+                               &state->curves));
 done:
     surrogate_model_clear(&model);
     return status;
@@ -216,13 +201,7 @@ static void describe(struct state *state, struct inverse_step *step) {
         .finished = last || narrowed,
         .converged = progress->known && (last || narrowed),
     };
-    for (int kind = 0; kind < UNKNOWNS; kind++) {
-        if (!state->problem->unknown[kind].wanted)
-            continue;
-        decoder_curve(&state->decoder, kind, state->best, state->curve[kind]);
-        step->curve[kind] = state->curve[kind];
-        step->curve_error[kind] = state->curve_error[kind];
-    }
+    decoder_curves_show(&state->decoder, state->best, &state->curves, step);
 }
 
 static enum status iterate(void *memory, struct inverse_step *step,
@@ -248,10 +227,7 @@ static size_t spans(void *memory, struct memory_span *span) {
     size_t n = 0;
     span[n++] = (struct memory_span){&state->progress, sizeof state->progress};
     span[n++] = (struct memory_span){state->best, state->decoder.genes * sizeof(double)};
-    for (int kind = 0; kind < UNKNOWNS; kind++)
-        if (state->curve_error[kind])
-            span[n++] = (struct memory_span){
-                state->curve_error[kind], decoder_points(&state->decoder, kind) * sizeof(double)};
+    n += decoder_curves_spans(&state->decoder, &state->curves, span + n);
     return n + candidates_spans(&state->candidates, span + n);
 }
 

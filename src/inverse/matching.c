@@ -29,10 +29,9 @@ struct state {
     bool created;
     struct decoder decoder;
     struct candidates candidates;
-    double *favourite;             ///< shape [genes]: what is thought best
-    double *best;                  ///< shape [genes]: the best by fresh measurements
-    double *curve[UNKNOWNS];       ///< of the best
-    double *curve_error[UNKNOWNS]; ///< by the linear model; NaN while there is none
+    double *favourite;            ///< shape [genes]: what is thought best
+    double *best;                 ///< shape [genes]: the best by fresh measurements
+    struct decoder_curves curves; ///< of the best, with errors by the linear model
     struct progress {
         uint32_t iteration;
         int stage;           ///< of `check`
@@ -81,10 +80,7 @@ static void destroy(void *memory) {
     decoder_clear(&state->decoder);
     memory_free(state->favourite);
     memory_free(state->best);
-    for (int kind = 0; kind < UNKNOWNS; kind++) {
-        memory_free(state->curve[kind]);
-        memory_free(state->curve_error[kind]);
-    }
+    decoder_curves_clear(&state->curves);
 }
 
 static enum status create_optimiser(struct state *state) {
@@ -117,12 +113,7 @@ static enum status create(void *memory, const struct inverse_method *method,
     CHECK(decoder_init(&state->decoder, problem));
     NEW_ARRAY(state->favourite, state->decoder.genes);
     NEW_ARRAY(state->best, state->decoder.genes);
-    for (int kind = 0; kind < UNKNOWNS; kind++) {
-        if (!problem->unknown[kind].wanted)
-            continue;
-        NEW_ARRAY(state->curve[kind], decoder_points(&state->decoder, kind));
-        NEW_ARRAY(state->curve_error[kind], decoder_points(&state->decoder, kind));
-    }
+    CHECK(decoder_curves_init(&state->decoder, &state->curves));
     CHECK(create_optimiser(state));
     CHECK(candidates_init(&state->candidates, &state->decoder,
                           &state->parameters.settings.candidates));
@@ -173,15 +164,6 @@ static enum status check_favourite(struct state *state, double slack) {
     return STATUS_OK;
 }
 
-/// Standard errors of the curves from those of the genes; NaN without a model.
-static enum status find_bands(struct state *state, const struct surrogate_model *model) {
-    for (int kind = 0; kind < UNKNOWNS; kind++)
-        if (state->problem->unknown[kind].wanted)
-            TRY(decoder_band(&state->decoder, kind, state->best, model ? model->covariance : NULL,
-                             state->curve_error[kind]));
-    return STATUS_OK;
-}
-
 /// Try what a linear model of all measurements near the best thinks better. It rests on many
 /// simulations and what is best so far on few, so it need only be as good within the noise.
 static enum status try_surrogate(struct state *state) {
@@ -190,7 +172,8 @@ static enum status try_surrogate(struct state *state) {
     bool known = false;
     if (state->progress.known)
         CHECK(surrogate_fit(&state->candidates.surrogate, state->best, reach, &model, &known));
-    CHECK(find_bands(state, known ? &model : NULL));
+    CHECK(decoder_curves_bands(&state->decoder, state->best, known ? model.covariance : NULL,
+                               &state->curves));
     if (!known || !state->parameters.surrogate)
         goto done;
     memcpy(state->favourite, model.best, state->decoder.genes * sizeof(double));
@@ -213,15 +196,9 @@ static void describe(struct state *state, struct inverse_step *step, bool finish
         .finished = finished,
         .converged = finished && state->progress.known,
     };
-    for (int kind = 0; kind < UNKNOWNS; kind++) {
-        if (!state->problem->unknown[kind].wanted)
-            continue;
-        decoder_curve(&state->decoder, kind,
-                      state->progress.known ? state->best : state->candidates.first,
-                      state->curve[kind]);
-        step->curve[kind] = state->curve[kind];
-        step->curve_error[kind] = state->curve_error[kind];
-    }
+    decoder_curves_show(&state->decoder,
+                        state->progress.known ? state->best : state->candidates.first,
+                        &state->curves, step);
 }
 
 /// Measure what the optimiser, and then the linear model, thinks best. Each stage is done once,
@@ -269,10 +246,7 @@ static size_t spans(void *memory, struct memory_span *span) {
     size_t n = 0;
     span[n++] = (struct memory_span){&state->progress, sizeof state->progress};
     span[n++] = (struct memory_span){state->best, bytes};
-    for (int kind = 0; kind < UNKNOWNS; kind++)
-        if (state->curve_error[kind])
-            span[n++] = (struct memory_span){
-                state->curve_error[kind], decoder_points(&state->decoder, kind) * sizeof(double)};
+    n += decoder_curves_spans(&state->decoder, &state->curves, span + n);
     n += candidates_spans(&state->candidates, span + n);
     n += state->optimiser->spans(state->optimiser_state, span + n);
     return n;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "inverse/surrogate.h"
+#include "surrogate_rows.h"
 
 #include <gsl/gsl_linalg.h>
 #include <math.h>
@@ -8,10 +8,6 @@
 
 /// Rows of a fit for each gene, at least and at most, and besides.
 enum { ROWS_PER_GENE = 3, MOST_ROWS_PER_GENE = 10, MORE_ROWS = 10 };
-
-/// Ridge of the least squares for J in units of the rows' spread, so that a direction in which they
-/// do not differ has no slope.
-static const double ridge = 1e-3;
 
 /// Standard deviation of a gene that the target leaves open: uniform in [0, 1].
 static const double prior_width = 0.28867513459481287;
@@ -46,152 +42,18 @@ void surrogate_add(struct surrogate *surrogate, const double *genes, const doubl
            surrogate->features * sizeof *features);
 }
 
-/// A row and its distance from the centre.
-struct near {
-    double distance;
-    size_t row;
-};
-
-static int by_distance(const void *a, const void *b) {
-    const struct near *p = a, *q = b;
-    if (p->distance != q->distance)
-        return p->distance < q->distance ? -1 : 1;
-    return p->row < q->row ? -1 : 1;
-}
-
-/// What a fit works on. Matrices are row-major.
-struct work {
-    const struct surrogate *surrogate;
-    size_t rows, terms; ///< terms: 1 and the genes
-    struct near *near;  ///< shape [kept]: nearest first
-    double *weight;     ///< shape [rows]
-    double *design;     ///< shape [rows, terms]: 1, x − x_c
-    double *normal;     ///< shape [terms, terms]: Cholesky factor of Σ w d dᵀ + ridge
-    double *model;      ///< shape [features, terms]: y_c, J
-    double *residual;   ///< shape [rows, features]
-    double *scatter;    ///< shape [features]: σ_j²
-    double *spread;     ///< shape [terms, terms]: covariance of a row of `model` over its scatter
-    double *term;       ///< shape [terms]: scratch
-    double *hessian;    ///< shape [genes, genes]: Cholesky factor of Jᵀ W J + damping
-    double *miss;       ///< shape [features]: t − y_c
-    double *scale;      ///< shape [features]: scratch
-    double *delta;      ///< shape [genes]: a step
-    double freedom;     ///< rows that the scatter rests on
-};
-
-static void work_clear(struct work *work) {
-    void *arrays[] = {work->near,     work->weight,  work->design, work->normal, work->model,
-                      work->residual, work->scatter, work->spread, work->term,   work->hessian,
-                      work->miss,     work->scale,   work->delta};
-    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
-        memory_free(arrays[k]);
-}
-
 size_t surrogate_least_rows(size_t genes) {
     return ROWS_PER_GENE * genes + MORE_ROWS;
 }
 
-static enum status work_init(struct work *work, const struct surrogate *surrogate, size_t kept,
-                             size_t rows) {
-    enum status status = STATUS_OK;
-    const size_t terms = surrogate->genes + 1;
-    *work = (struct work){.surrogate = surrogate, .rows = rows, .terms = terms};
-    NEW_ARRAY(work->near, kept);
-    NEW_ARRAY(work->weight, rows);
-    NEW_ARRAY(work->design, rows * terms);
-    NEW_ARRAY(work->normal, terms * terms);
-    NEW_ARRAY(work->model, surrogate->features * terms);
-    NEW_ARRAY(work->residual, rows * surrogate->features);
-    NEW_ARRAY(work->scatter, surrogate->features);
-    NEW_ARRAY(work->spread, terms * terms);
-    NEW_ARRAY(work->term, terms);
-    NEW_ARRAY(work->hessian, surrogate->genes * surrogate->genes);
-    NEW_ARRAY(work->miss, surrogate->features);
-    NEW_ARRAY(work->scale, surrogate->features);
-    NEW_ARRAY(work->delta, surrogate->genes);
-done:
-    return status;
-}
-
-/// The rows nearest to the centre, weighted by exp(−d²/2h²) with h the distance of the middle one.
-static void choose_rows(struct work *work, const double *centre, size_t kept) {
-    const struct surrogate *s = work->surrogate;
-    for (size_t k = 0; k < kept; k++) {
-        double sum = 0;
-        for (size_t n = 0; n < s->genes; n++) {
-            const double difference = s->x[k * s->genes + n] - centre[n];
-            sum += difference * difference;
-        }
-        work->near[k] = (struct near){sum, k};
-    }
-    qsort(work->near, kept, sizeof *work->near, by_distance);
-    const double width = fmax(work->near[work->rows / 2].distance, 1e-300);
-    for (size_t k = 0; k < work->rows; k++) {
-        const double *x = s->x + work->near[k].row * s->genes;
-        work->weight[k] = exp(-0.5 * work->near[k].distance / width);
-        work->design[k * work->terms] = 1;
-        for (size_t n = 0; n < s->genes; n++)
-            work->design[k * work->terms + n + 1] = x[n] - centre[n];
-    }
-}
-
-/// Cholesky factor of the weighted normal matrix with its ridge.
-static void factor(struct work *work) {
-    const size_t terms = work->terms;
-    for (size_t k = 0; k < work->rows; k++) {
-        const double *d = work->design + k * terms;
-        for (size_t a = 0; a < terms; a++)
-            for (size_t b = 0; b < terms; b++)
-                work->normal[a * terms + b] += work->weight[k] * d[a] * d[b];
-    }
-    double trace = 0;
-    for (size_t a = 1; a < terms; a++)
-        trace += work->normal[a * terms + a] / (double)(terms - 1);
-    for (size_t a = 1; a < terms; a++)
-        work->normal[a * terms + a] += ridge * trace + 1e-300;
-    gsl_matrix_view view = gsl_matrix_view_array(work->normal, terms, terms);
-    gsl_linalg_cholesky_decomp1(&view.matrix);
-}
-
-/// y_c and J of every feature, and how the rows scatter about them.
-static void fit_features(struct work *work) {
-    const struct surrogate *s = work->surrogate;
-    const size_t terms = work->terms;
-    gsl_matrix_view factor = gsl_matrix_view_array(work->normal, terms, terms);
-    double weights = 0, squares = 0;
-    for (size_t k = 0; k < work->rows; k++) {
-        weights += work->weight[k];
-        squares += work->weight[k] * work->weight[k];
-    }
-    // Rows that the weights are worth, less the terms that were fitted to them.
-    work->freedom = fmax(1, weights * weights / squares - (double)terms);
-    for (size_t j = 0; j < s->features; j++) {
-        double *model = work->model + j * terms;
-        for (size_t k = 0; k < work->rows; k++)
-            for (size_t a = 0; a < terms; a++)
-                model[a] += work->weight[k] * work->design[k * terms + a] *
-                            s->y[work->near[k].row * s->features + j];
-        gsl_vector_view view = gsl_vector_view_array(model, terms);
-        gsl_linalg_cholesky_svx(&factor.matrix, &view.vector);
-        for (size_t k = 0; k < work->rows; k++) {
-            double residual = s->y[work->near[k].row * s->features + j];
-            for (size_t a = 0; a < terms; a++)
-                residual -= work->design[k * terms + a] * model[a];
-            work->residual[k * s->features + j] = residual;
-            work->scatter[j] += work->weight[k] * residual * residual / weights *
-                                (work->freedom + (double)terms) / work->freedom;
-        }
-    }
-}
-
 /// Weight of a feature in the fit of the target.
-static double feature_weight(const struct work *work, size_t j) {
+static double feature_weight(const struct surrogate_work *work, size_t j) {
     const double target = work->surrogate->target_error[j];
     return 1 / (work->scatter[j] + target * target + least_error * least_error);
 }
 
 /// Cholesky factor of H = Jᵀ W J + damping.
-static void factor_hessian(const struct work *work, double damping) {
+static void factor_hessian(const struct surrogate_work *work, double damping) {
     const struct surrogate *s = work->surrogate;
     const size_t genes = s->genes;
     double *hessian = work->hessian;
@@ -210,7 +72,7 @@ static void factor_hessian(const struct work *work, double damping) {
 }
 
 /// delta = H⁻¹ delta.
-static void divide(const struct work *work, double *delta) {
+static void divide(const struct surrogate_work *work, double *delta) {
     const size_t genes = work->surrogate->genes;
     gsl_matrix_view factor = gsl_matrix_view_array(work->hessian, genes, genes);
     gsl_vector_view view = gsl_vector_view_array(delta, genes);
@@ -218,7 +80,7 @@ static void divide(const struct work *work, double *delta) {
 }
 
 /// δ = H⁻¹ Jᵀ W v for a vector of features, times `scale` of each feature if given.
-static void solve(const struct work *work, const double *v, const double *scale) {
+static void solve(const struct surrogate_work *work, const double *v, const double *scale) {
     const struct surrogate *s = work->surrogate;
     double *delta = work->delta;
     memset(delta, 0, s->genes * sizeof *delta);
@@ -231,30 +93,9 @@ static void solve(const struct work *work, const double *v, const double *scale)
     divide(work, delta);
 }
 
-/// Σ += share · δ δᵀ.
-static void add_outer(double *covariance, const double *delta, size_t size, double share) {
-    for (size_t a = 0; a < size; a++)
-        for (size_t b = 0; b < size; b++)
-            covariance[a * size + b] += share * delta[a] * delta[b];
-}
-
-/// How the noise of the rows makes y_c and J of a feature vary: N⁻¹ (Σ w² d dᵀ) N⁻¹ with the normal
-/// matrix N.
-static void find_spread(struct work *work) {
-    const size_t terms = work->terms;
-    gsl_matrix_view factor = gsl_matrix_view_array(work->normal, terms, terms);
-    gsl_vector_view view = gsl_vector_view_array(work->term, terms);
-    for (size_t k = 0; k < work->rows; k++) {
-        for (size_t a = 0; a < terms; a++)
-            work->term[a] = work->weight[k] * work->design[k * terms + a];
-        gsl_linalg_cholesky_svx(&factor.matrix, &view.vector);
-        add_outer(work->spread, work->term, terms, 1);
-    }
-}
-
 /// Variance of the model's features at `delta` from the centre over that of a row: it grows with
 /// the distance, since the slopes have errors too.
-static double leverage(const struct work *work, const double *delta) {
+static double leverage(const struct surrogate_work *work, const double *delta) {
     double sum = 0;
     work->term[0] = 1;
     memcpy(work->term + 1, delta, (work->terms - 1) * sizeof *delta);
@@ -267,7 +108,7 @@ static double leverage(const struct work *work, const double *delta) {
 /// What the noise of the target and that of the model where the solution lies do to it. The
 /// target's noise is taken to be correlated as that of the simulations is, which the residuals
 /// show, with the standard errors that it has.
-static void add_noise(const struct work *work, double *covariance) {
+static void add_noise(const struct surrogate_work *work, double *covariance) {
     const struct surrogate *s = work->surrogate;
     const double lever = leverage(work, work->delta);
     double weights = 0;
@@ -280,14 +121,14 @@ static void add_noise(const struct work *work, double *covariance) {
         const double share =
             work->weight[k] / weights * (work->freedom + (double)work->terms) / work->freedom;
         solve(work, residual, work->scale);
-        add_outer(covariance, work->delta, s->genes, share);
+        surrogate_add_outer(covariance, work->delta, s->genes, share);
         solve(work, residual, NULL);
-        add_outer(covariance, work->delta, s->genes, share * lever);
+        surrogate_add_outer(covariance, work->delta, s->genes, share * lever);
     }
 }
 
 /// to = Λ from, Λ = Σ_j w_j σ_j² spread: so much do slopes of noise alone add to Jᵀ W J.
-static void attenuate(const struct work *work, const double *from, double *to) {
+static void attenuate(const struct surrogate_work *work, const double *from, double *to) {
     double noise = 0;
     for (size_t j = 0; j < work->surrogate->features; j++)
         noise += feature_weight(work, j) * work->scatter[j];
@@ -302,12 +143,12 @@ static void attenuate(const struct work *work, const double *from, double *to) {
 /// H⁻¹ Λ by the noise of the slopes (attenuation: W. A. Fuller, Measurement Error Models (1987),
 /// section 1.1), without which a gene that has no effect would pass for one that is known. How
 /// much of a step that is comes first; the share's share, H⁻¹ Λ H⁻¹ Λ, counts as not known.
-static void add_open(const struct work *work, double *covariance) {
+static void add_open(const struct surrogate_work *work, double *covariance) {
     const size_t genes = work->surrogate->genes;
     double *held = work->term, *delta = work->delta;
     attenuate(work, delta, held);
     divide(work, held);
-    add_outer(covariance, held, genes, 1);
+    surrogate_add_outer(covariance, held, genes, 1);
     for (size_t a = 0; a < genes; a++) {
         memset(delta, 0, genes * sizeof *delta);
         delta[a] = 1;
@@ -316,7 +157,7 @@ static void add_open(const struct work *work, double *covariance) {
         attenuate(work, held, delta);
         delta[a] += 1 / (prior_width * prior_width);
         divide(work, delta);
-        add_outer(covariance, delta, genes, prior_width * prior_width);
+        surrogate_add_outer(covariance, delta, genes, prior_width * prior_width);
     }
 }
 
@@ -328,7 +169,7 @@ static double rms(const double *values, size_t count) {
 }
 
 /// The step to where the target is met best, damped until it stays within the reach.
-static void take_step(const struct work *work, double reach) {
+static void take_step(const struct surrogate_work *work, double reach) {
     double damping = 1 / (prior_width * prior_width);
     do {
         factor_hessian(work, damping);
@@ -352,31 +193,19 @@ static void bound(double *scratch, double *covariance, size_t genes) {
                 (a == b ? width : 0) - width * scratch[a * genes + b] * width;
 }
 
-/// Fit the model to the `rows` nearest to the centre.
-static enum status fit_rows(struct work *work, const struct surrogate *surrogate,
-                            const double *centre, size_t kept, size_t rows) {
-    TRY(work_init(work, surrogate, kept, rows));
-    choose_rows(work, centre, kept);
-    factor(work);
-    find_spread(work);
-    fit_features(work);
-    for (size_t j = 0; j < surrogate->features; j++)
-        work->miss[j] = surrogate->target[j] - work->model[j * work->terms];
-    return STATUS_OK;
-}
-
 /// Where the target is met best, by the rows near the centre.
 static enum status find_best(const struct surrogate *surrogate, const double *centre, size_t kept,
                              double reach, struct surrogate_model *model) {
-    struct work work = {0};
+    struct surrogate_work work = {0};
     const size_t most = MOST_ROWS_PER_GENE * surrogate->genes + MORE_ROWS;
-    enum status status = fit_rows(&work, surrogate, centre, kept, kept < most ? kept : most);
+    enum status status =
+        surrogate_fit_rows(&work, surrogate, centre, kept, kept < most ? kept : most);
     if (status == STATUS_OK) {
         take_step(&work, reach);
         for (size_t n = 0; n < surrogate->genes; n++)
             model->best[n] = fmin(1, fmax(0, centre[n] + work.delta[n]));
     }
-    work_clear(&work);
+    surrogate_clear_rows(&work);
     return status;
 }
 
@@ -384,8 +213,8 @@ static enum status find_best(const struct surrogate *surrogate, const double *ce
 /// more than their noise, and would say nothing of slopes.
 static enum status find_covariance(const struct surrogate *surrogate, const double *centre,
                                    size_t kept, struct surrogate_model *model) {
-    struct work work = {0};
-    enum status status = fit_rows(&work, surrogate, centre, kept, kept);
+    struct surrogate_work work = {0};
+    enum status status = surrogate_fit_rows(&work, surrogate, centre, kept, kept);
     if (status == STATUS_OK) {
         factor_hessian(&work, 1 / (prior_width * prior_width));
         solve(&work, work.miss, NULL);
@@ -394,7 +223,7 @@ static enum status find_covariance(const struct surrogate *surrogate, const doub
         add_open(&work, model->covariance);
         bound(work.hessian, model->covariance, surrogate->genes);
     }
-    work_clear(&work);
+    surrogate_clear_rows(&work);
     return status;
 }
 

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "inverse/decoder.h"
+
+#include "base/memory.h"
+
+enum status decoder_curves_init(const struct decoder *decoder, struct decoder_curves *curves) {
+    enum status status = STATUS_OK;
+    *curves = (struct decoder_curves){0};
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        const size_t points = decoder_points(decoder, kind);
+        if (points == 0)
+            continue;
+        NEW_ARRAY(curves->value[kind], points);
+        NEW_ARRAY(curves->error[kind], points);
+    }
+done:
+    return status;
+}
+
+void decoder_curves_clear(struct decoder_curves *curves) {
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        memory_free(curves->value[kind]);
+        memory_free(curves->error[kind]);
+    }
+    *curves = (struct decoder_curves){0};
+}
+
+void decoder_curves_show(const struct decoder *decoder, const double *genes,
+                         struct decoder_curves *curves, struct inverse_step *step) {
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        if (curves->value[kind] == NULL)
+            continue;
+        decoder_curve(decoder, kind, genes, curves->value[kind]);
+        step->curve[kind] = curves->value[kind];
+        step->curve_error[kind] = curves->error[kind];
+    }
+}
+
+enum status decoder_curves_bands(const struct decoder *decoder, const double *genes,
+                                 const double *covariance, struct decoder_curves *curves) {
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        if (curves->error[kind])
+            TRY(decoder_band(decoder, kind, genes, covariance, curves->error[kind]));
+    return STATUS_OK;
+}
+
+size_t decoder_curves_spans(const struct decoder *decoder, struct decoder_curves *curves,
+                            struct memory_span *spans) {
+    size_t n = 0;
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        if (curves->error[kind])
+            spans[n++] = (struct memory_span){curves->error[kind],
+                                              decoder_points(decoder, kind) * sizeof(double)};
+    return n;
+}
