@@ -32,9 +32,11 @@ void decoder_curve(const struct decoder *decoder, enum unknown_kind kind, const 
 
 /// Standard errors of the curve of some genes, shape [points], from the covariance of the genes,
 /// shape [genes, genes] of all unknowns; NaN if that is NULL, and in the core, which is set.
+/// @param[out] flat  as curve_flat of an inverse_step: principal components of the curve's errors,
+///                   each upwards where it is largest; NaN as the errors
 /// Fails: NO_MEMORY.
 enum status decoder_band(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
-                         const double *covariance, double *error) MUST_USE;
+                         const double *covariance, double *error, double *flat) MUST_USE;
 
 /// Table for the kernels from a curve. Fails: NO_MEMORY.
 enum status decoder_table(const struct decoder *decoder, enum unknown_kind kind,
@@ -58,6 +60,7 @@ enum status decoder_start(const struct decoder *decoder, double *genes) MUST_USE
 /// The unknowns' curves with their standard errors, for a method to show.
 struct decoder_curves {
     double *value[UNKNOWNS], *error[UNKNOWNS]; ///< shape [points]; NULL for what is known
+    double *flat[UNKNOWNS];                    ///< as curve_flat of an inverse_step
 };
 enum status decoder_curves_init(const struct decoder *decoder,
                                 struct decoder_curves *curves) MUST_USE;

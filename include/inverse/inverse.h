@@ -50,6 +50,9 @@ struct inverse_problem {
     int threads;
 };
 
+/// Directions of a curve that the data say least of.
+enum { INVERSE_FLAT = 2 };
+
 /// State of a fit after an iteration. Arrays belong to the method.
 struct inverse_step {
     uint32_t iteration;    ///< from 0
@@ -60,6 +63,9 @@ struct inverse_step {
     double extra[4];       ///< columns of the method's own
     const double *curve[UNKNOWNS];       ///< on the unknown's points, best so far; NULL: not fitted
     const double *curve_error[UNKNOWNS]; ///< standard errors; NULL where the method has none
+    /// Changes of a curve that the data say least of, one standard error each, widest first: shape
+    /// [INVERSE_FLAT, points]; NULL where the method has none.
+    const double *curve_flat[UNKNOWNS];
     bool finished;
     bool converged;
 };

@@ -12,6 +12,7 @@ struct fit_result {
     double seconds;                          ///< of the fit, without its verification
     const double *curve[UNKNOWNS];           ///< on the unknown's points; NULL: not fitted
     const double *curve_error[UNKNOWNS];     ///< may hold NaN: not known
+    const double *curve_flat[UNKNOWNS];      ///< shape [INVERSE_FLAT, points]; may hold NaN
     const struct verification *verification; ///< NULL if there was none
 };
 

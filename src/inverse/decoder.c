@@ -153,28 +153,115 @@ done:
     return status;
 }
 
-enum status decoder_band(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
-                         const double *covariance, double *error) {
-    enum status status = STATUS_OK;
-    const size_t count = genes_of(decoder, kind), first = first_point(decoder, kind);
-    const size_t points = decoder_points(decoder, kind), at = decoder->first[kind];
-    double *slopes = NULL;
+/// Make a vector's length 1, upwards where it is largest; returns what it was.
+static double normalise(size_t count, double *vector) {
+    double sum = 0, largest = 0;
+    for (size_t k = 0; k < count; k++) {
+        sum += vector[k] * vector[k];
+        largest = fabs(vector[k]) > fabs(largest) ? vector[k] : largest;
+    }
+    const double length = sqrt(sum), factor = length > 0 ? copysign(1 / length, largest) : 0;
+    for (size_t k = 0; k < count; k++)
+        vector[k] *= factor;
+    return length;
+}
+
+/// Take the part along `axis`, of any length, out of a vector.
+static void remove_component(const double *axis, size_t count, double *vector) {
+    double product = 0, square = 0;
+    for (size_t k = 0; k < count; k++) {
+        product += axis[k] * vector[k];
+        square += axis[k] * axis[k];
+    }
+    for (size_t k = 0; k < count && square > 0; k++)
+        vector[k] -= product / square * axis[k];
+}
+
+/// to = Σ of slopes and a vector of genes or, transposed, of points.
+static void multiply(const double *slopes, size_t points, size_t count, const double *from,
+                     double *to, bool transposed) {
+    memset(to, 0, (transposed ? count : points) * sizeof *to);
     for (size_t k = 0; k < points; k++)
-        error[k] = NAN;
-    if (covariance == NULL)
-        return STATUS_OK;
-    NEW_ARRAY(slopes, (points - first) * count);
-    CHECK(find_slopes(decoder, kind, genes, slopes));
-    for (size_t k = first; k < points; k++) {
-        const double *row = slopes + (k - first) * count;
+        for (size_t n = 0; n < count; n++)
+            to[transposed ? n : k] += slopes[k * count + n] * from[transposed ? k : n];
+}
+
+/// Rounds of the power iteration, which only needs to tell the widest directions from the rest.
+enum { POWER_ROUNDS = 200 };
+
+/// Widest principal component of the curve's errors S C Sᵀ that is orthogonal to the `before` ones,
+/// by power iteration; its length is one standard error.
+static enum status find_flat(const double *slopes, const double *covariance, size_t points,
+                             size_t count, const double *before, size_t before_count,
+                             double *flat) {
+    enum status status = STATUS_OK;
+    double *gene = NULL, *moved = NULL, length = 0;
+    NEW_ARRAY(gene, count);
+    NEW_ARRAY(moved, count);
+    for (size_t k = 0; k < points; k++)
+        flat[k] = 1 + 0.1 * sin((double)(k * (before_count + 1)));
+    for (int round = 0; round < POWER_ROUNDS; round++) {
+        for (size_t n = 0; n < before_count; n++)
+            remove_component(before + n * points, points, flat);
+        length = normalise(points, flat);
+        multiply(slopes, points, count, flat, gene, true);
+        multiply(covariance, count, count, gene, moved, false);
+        multiply(slopes, points, count, moved, flat, false);
+    }
+    for (size_t n = 0; n < before_count; n++)
+        remove_component(before + n * points, points, flat);
+    length = normalise(points, flat);
+    for (size_t k = 0; k < points; k++)
+        flat[k] *= sqrt(length);
+done:
+    memory_free(gene);
+    memory_free(moved);
+    return status;
+}
+
+/// Errors of the points that follow the genes, from the slopes and the covariance of these genes.
+static void find_errors(const double *slopes, const double *covariance, size_t points, size_t count,
+                        double *error) {
+    for (size_t k = 0; k < points; k++) {
+        const double *row = slopes + k * count;
         double sum = 0;
         for (size_t a = 0; a < count; a++)
             for (size_t b = 0; b < count; b++)
-                sum += row[a] * row[b] * covariance[(at + a) * decoder->genes + at + b];
+                sum += row[a] * row[b] * covariance[a * count + b];
         error[k] = sqrt(fmax(0, sum));
+    }
+}
+
+enum status decoder_band(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
+                         const double *covariance, double *error, double *flat) {
+    enum status status = STATUS_OK;
+    const size_t count = genes_of(decoder, kind), first = first_point(decoder, kind);
+    const size_t points = decoder_points(decoder, kind), at = decoder->first[kind];
+    const size_t moving = points - first;
+    double *slopes = NULL, *own = NULL, *directions = NULL;
+    for (size_t k = 0; k < points; k++)
+        error[k] = NAN;
+    for (size_t k = 0; k < INVERSE_FLAT * points; k++)
+        flat[k] = NAN;
+    if (covariance == NULL)
+        return STATUS_OK;
+    NEW_ARRAY(slopes, moving * count);
+    NEW_ARRAY(own, count * count);
+    NEW_ARRAY(directions, INVERSE_FLAT * moving);
+    for (size_t a = 0; a < count; a++)
+        for (size_t b = 0; b < count; b++)
+            own[a * count + b] = covariance[(at + a) * decoder->genes + at + b];
+    CHECK(find_slopes(decoder, kind, genes, slopes));
+    find_errors(slopes, own, moving, count, error + first);
+    for (size_t n = 0; n < INVERSE_FLAT; n++) {
+        double *direction = directions + n * moving;
+        CHECK(find_flat(slopes, own, moving, count, directions, n, direction));
+        memcpy(flat + n * points + first, direction, moving * sizeof *direction);
     }
 done:
     memory_free(slopes);
+    memory_free(own);
+    memory_free(directions);
     return status;
 }
 

@@ -12,6 +12,7 @@ enum status decoder_curves_init(const struct decoder *decoder, struct decoder_cu
             continue;
         NEW_ARRAY(curves->value[kind], points);
         NEW_ARRAY(curves->error[kind], points);
+        NEW_ARRAY(curves->flat[kind], INVERSE_FLAT * points);
     }
 done:
     return status;
@@ -21,6 +22,7 @@ void decoder_curves_clear(struct decoder_curves *curves) {
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         memory_free(curves->value[kind]);
         memory_free(curves->error[kind]);
+        memory_free(curves->flat[kind]);
     }
     *curves = (struct decoder_curves){0};
 }
@@ -33,6 +35,7 @@ void decoder_curves_show(const struct decoder *decoder, const double *genes,
         decoder_curve(decoder, kind, genes, curves->value[kind]);
         step->curve[kind] = curves->value[kind];
         step->curve_error[kind] = curves->error[kind];
+        step->curve_flat[kind] = curves->flat[kind];
     }
 }
 
@@ -40,16 +43,20 @@ enum status decoder_curves_bands(const struct decoder *decoder, const double *ge
                                  const double *covariance, struct decoder_curves *curves) {
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (curves->error[kind])
-            TRY(decoder_band(decoder, kind, genes, covariance, curves->error[kind]));
+            TRY(decoder_band(decoder, kind, genes, covariance, curves->error[kind],
+                             curves->flat[kind]));
     return STATUS_OK;
 }
 
 size_t decoder_curves_spans(const struct decoder *decoder, struct decoder_curves *curves,
                             struct memory_span *spans) {
     size_t n = 0;
-    for (int kind = 0; kind < UNKNOWNS; kind++)
-        if (curves->error[kind])
-            spans[n++] = (struct memory_span){curves->error[kind],
-                                              decoder_points(decoder, kind) * sizeof(double)};
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        const size_t bytes = decoder_points(decoder, kind) * sizeof(double);
+        if (bytes == 0)
+            continue;
+        spans[n++] = (struct memory_span){curves->error[kind], bytes};
+        spans[n++] = (struct memory_span){curves->flat[kind], INVERSE_FLAT * bytes};
+    }
     return n;
 }

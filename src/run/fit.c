@@ -25,6 +25,7 @@ struct run {
     double last_checkpoint;
     double seconds_before;                           ///< of a run before a restart
     double *curve[UNKNOWNS], *curve_error[UNKNOWNS]; ///< shape [decoder_points]
+    double *curve_flat[UNKNOWNS];                    ///< shape [INVERSE_FLAT, decoder_points]
     struct standing {
         bool finished, converged;
         uint64_t iterations, evaluations, engine_steps;
@@ -36,7 +37,7 @@ static double seconds(const struct run *run) {
     return run->seconds_before + progress_seconds(&run->progress);
 }
 
-enum { MAX_SPANS = INVERSE_MAX_SPANS + HISTORY_SPANS + 1 + 2 * UNKNOWNS };
+enum { MAX_SPANS = INVERSE_MAX_SPANS + HISTORY_SPANS + 1 + 3 * UNKNOWNS };
 
 static size_t run_spans(struct run *run, struct memory_span *spans) {
     size_t n = run->fit.method->spans(run->state, spans);
@@ -48,6 +49,7 @@ static size_t run_spans(struct run *run, struct memory_span *spans) {
             continue;
         spans[n++] = (struct memory_span){run->curve[kind], bytes};
         spans[n++] = (struct memory_span){run->curve_error[kind], bytes};
+        spans[n++] = (struct memory_span){run->curve_flat[kind], INVERSE_FLAT * bytes};
     }
     return n;
 }
@@ -109,6 +111,7 @@ static enum status create(struct run *run) {
             continue;
         NEW_ARRAY(run->curve[kind], points[kind]);
         NEW_ARRAY(run->curve_error[kind], points[kind]);
+        NEW_ARRAY(run->curve_flat[kind], INVERSE_FLAT * points[kind]);
     }
     CHECK(history_init(
         &run->history, fit->method, points,
@@ -171,6 +174,7 @@ static struct fit_result result_so_far(const struct run *run, enum status status
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         result.curve[kind] = run->curve[kind];
         result.curve_error[kind] = run->curve_error[kind];
+        result.curve_flat[kind] = run->curve_flat[kind];
     }
     return result;
 }
@@ -185,6 +189,8 @@ static void keep_curves(struct run *run, const struct inverse_step *step) {
             run->curve[kind][k] = step->curve[kind][k];
             run->curve_error[kind][k] = known ? step->curve_error[kind][k] : NAN;
         }
+        for (size_t k = 0; k < INVERSE_FLAT * points; k++)
+            run->curve_flat[kind][k] = step->curve_flat[kind] ? step->curve_flat[kind][k] : NAN;
     }
 }
 
@@ -338,6 +344,7 @@ done:
         for (int kind = 0; kind < UNKNOWNS; kind++) {
             memory_free(run->curve[kind]);
             memory_free(run->curve_error[kind]);
+            memory_free(run->curve_flat[kind]);
         }
         fit_file_clear(&run->fit);
     }

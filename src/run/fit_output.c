@@ -108,8 +108,34 @@ static enum status write_fitted_omega(const struct fit_file *fit, const struct d
     return status;
 }
 
+/// Changes that the data say least of; no table where the method does not tell.
+static enum status write_flat(enum unknown_kind kind, const struct decoder *decoder,
+                              const struct fit_result *result, const struct run_folder *folder) {
+    const size_t points = decoder_points(decoder, kind);
+    const double *flat = result->curve_flat[kind];
+    char path[OUTPUT_PATH_SIZE], name[64];
+    if (flat == NULL || isnan(flat[points - 1]))
+        return STATUS_OK;
+    const char *unit = kind == UNKNOWN_POTENTIAL ? "k_B.T_0" : "sqrt(mu/tau)";
+    char names[INVERSE_FLAT][64];
+    struct data_column columns[1 + INVERSE_FLAT] = {{"r[lambda]", decoder_r(decoder, kind), NULL}};
+    for (size_t n = 0; n < INVERSE_FLAT; n++) {
+        snprintf(names[n], sizeof names[n], "flat_%zu[%s]", n + 1, unit);
+        columns[n + 1] = (struct data_column){names[n], flat + n * points, "%.5g"};
+    }
+    snprintf(name, sizeof name, "%s_flat.tsv", inverse_unknown_names[kind]);
+    run_folder_file(folder, name, path);
+    return data_table_write(path,
+                            "changes of the curve that the data say least of, widest first; one "
+                            "standard error each",
+                            columns, 1 + INVERSE_FLAT, points);
+}
+
 enum status fit_output_curves(const struct fit_file *fit, const struct decoder *decoder,
                               const struct fit_result *result, const struct run_folder *folder) {
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        if (result->curve[kind])
+            TRY(write_flat(kind, decoder, result, folder));
     if (result->curve[UNKNOWN_POTENTIAL])
         TRY(write_potential(fit, decoder, result, folder));
     if (result->curve[UNKNOWN_WEIGHT])
@@ -288,6 +314,31 @@ static void put_diffusion(struct json_writer *writer, const struct fit_file *fit
     }
 }
 
+/// What part of a curve's variance its widest direction is, and of a potential's how much of that
+/// is the ramp 1 − r/r_c, which moves the pressure and hardly g(r).
+static void put_flat(struct json_writer *writer, enum unknown_kind kind,
+                     const struct decoder *decoder, const struct fit_result *result) {
+    const size_t points = decoder_points(decoder, kind);
+    const double *r = decoder_r(decoder, kind), *flat = result->curve_flat[kind];
+    double all = 0, widest = 0, ramps = 0, product = 0;
+    char key[64];
+    for (size_t k = 0; flat && k < points; k++) {
+        const double ramp = 1 - r[k] / r[points - 1], error = result->curve_error[kind][k];
+        if (!isfinite(flat[k]) || !isfinite(error))
+            continue;
+        all += error * error;
+        widest += flat[k] * flat[k];
+        ramps += ramp * ramp;
+        product += ramp * flat[k];
+    }
+    if (!(all > 0))
+        return;
+    snprintf(key, sizeof key, "%s_flat_share", inverse_unknown_names[kind]);
+    json_put_number(writer, key, fmin(1, widest / all));
+    if (kind == UNKNOWN_POTENTIAL)
+        json_put_number(writer, "potential_flat_is_ramp", product * product / (widest * ramps));
+}
+
 static void put_truth(struct json_writer *writer, const struct fit_file *fit,
                       const struct decoder *decoder, const struct fit_result *result) {
     const double *phi = result->curve[UNKNOWN_POTENTIAL], *omega = result->curve[UNKNOWN_WEIGHT];
@@ -335,6 +386,9 @@ enum status fit_output_summary(const struct fit_file *fit, const struct decoder 
     if (result->verification)
         put_verification(writer, fit, result->verification);
     put_truth(writer, fit, decoder, result);
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        if (result->curve[kind])
+            put_flat(writer, kind, decoder, result);
     if (fit->targets.given[GOAL_ETD])
         json_put_number(writer, "etd_cells_left_out", (double)fit->targets.etd.left_out);
     json_put_number(writer, "seed", (double)fit->heading.seed);

@@ -155,6 +155,7 @@ static void check_band(const struct both *both, enum unknown_kind kind, size_t f
     enum { ALL = POTENTIAL_GENES + WEIGHT_GENES };
     static double slope[ALL][MOST_POINTS];
     double covariance[ALL * ALL], zero[MOST_POINTS], error[MOST_POINTS], genes[ALL] = {0};
+    double flat[INVERSE_FLAT * MOST_POINTS];
     const size_t points = decoder_points(&both->decoder, kind);
     make_covariance(covariance, ALL);
     decoder_curve(&both->decoder, kind, genes, zero);
@@ -163,7 +164,7 @@ static void check_band(const struct both *both, enum unknown_kind kind, size_t f
         decoder_curve(&both->decoder, kind, genes, slope[n]);
         genes[n] = 0;
     }
-    assert_ok(decoder_band(&both->decoder, kind, genes, covariance, error));
+    assert_ok(decoder_band(&both->decoder, kind, genes, covariance, error, flat));
     for (size_t k = first; k < points; k++) {
         double sum = 0;
         for (int a = 0; a < ALL; a++)
@@ -173,7 +174,7 @@ static void check_band(const struct both *both, enum unknown_kind kind, size_t f
     }
     for (size_t k = 0; k < first; k++)
         assert_true(isnan(error[k]));
-    assert_ok(decoder_band(&both->decoder, kind, genes, NULL, error));
+    assert_ok(decoder_band(&both->decoder, kind, genes, NULL, error, flat));
     for (size_t k = 0; k < points; k++)
         assert_true(isnan(error[k]));
 }
@@ -226,11 +227,11 @@ static void test_decoder_power_is_the_formula_and_starts_at_it(void **state) {
 static void test_decoder_band_of_the_formula_follows_its_genes(void **state) {
     (void)state;
     struct both both;
-    double error[WEIGHT_POINTS], covariance[9] = {0};
+    double error[WEIGHT_POINTS], flat[INVERSE_FLAT * WEIGHT_POINTS], covariance[9] = {0};
     begin_power(&both);
     // Only σ is uncertain: the band is the curve itself, scaled.
     covariance[0] = 0.01 * 0.01;
-    assert_ok(decoder_band(&both.decoder, UNKNOWN_WEIGHT, both.genes, covariance, error));
+    assert_ok(decoder_band(&both.decoder, UNKNOWN_WEIGHT, both.genes, covariance, error, flat));
     for (size_t k = 0; k < WEIGHT_POINTS; k++)
         assert_close(error[k], curve_value(&both.weight, both.decoder.weight.r[k]) / 2.5 * 5 * 0.01,
                      1e-9);
