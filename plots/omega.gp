@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The dissipative weight that was found with its 95 % band, and the true one if it is known.
-# Reads omega.tsv: r, omega, omega_error (nan where not known), and perhaps truth.
+# Reads omega.tsv: r, omega, omega_error (nan where not known), and perhaps truth; and weight_flat.tsv
+# if it is there: the change that the data say least of, on the same r.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
@@ -21,6 +22,12 @@ show_band = !has_numbers("omega.tsv", 3) ? "" : "'omega.tsv' " . \
 show_truth = !truth ? "" : ", 'omega.tsv' using 1:(column(truth)) " . \
     "with lines title 'truth' @true_line"
 
+both = '"< paste omega.tsv weight_flat.tsv" using 1:'
+offset = truth ? 6 : 5
+show_flat = !has("weight_flat.tsv") ? "" : sprintf(", for [s = -1:1:2] %s($2 + 1.96 * s * $%d) " . \
+    "with lines linewidth 1.2 dashtype 3 linecolor rgb ink title s < 0 ? 'flattest direction' : ''", \
+    both, offset)
+
 do for [kind in kinds] {
     eval open(kind, "omega", 720, 480)
     set lmargin at screen 0.13
@@ -33,6 +40,6 @@ do for [kind in kinds] {
     eval name_axis(omega_label, 0.024)
     set key at screen 0.97, screen 0.985 right top vertical maxrows 1
     plot @show_band "omega.tsv" using 1:2 with lines title "result" \
-            linewidth 2.6 linecolor rgb vermillion @show_truth
+            linewidth 2.6 linecolor rgb vermillion @show_truth @show_flat
     eval close
 }
