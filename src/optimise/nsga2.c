@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "optimise/nsga2.h"
+
+#include "base/rng.h"
+#include "base/statistics.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define MEMBER(name) .offset = offsetof(struct nsga2_parameters, name)
+const struct field nsga2_fields[] = {
+    {"population", FIELD_INTEGER, MEMBER(population), .initial = 40, .minimum = 4, .maximum = 512,
+     .unit = "", .help = "parents, and children of a generation"},
+    {"generations", FIELD_INTEGER, MEMBER(generations), .initial = 50, .minimum = 1,
+     .maximum = 10000, .unit = "", .help = "after which the fit ends"},
+    {"spread", FIELD_NUMBER, MEMBER(spread), .initial = 0.1, .minimum = 0, .maximum = 1, .unit = "",
+     .help = "of the first population's genes about the start; 0: they are anywhere"},
+    {"crossover", FIELD_NUMBER, MEMBER(crossover), .initial = 0.9, .minimum = 0, .maximum = 1,
+     .unit = "", .help = "probability of crossover of two parents"},
+    {"crossover_exponent", FIELD_NUMBER, MEMBER(crossover_exponent), .initial = 15, .minimum = 0,
+     .maximum = 1000, .unit = "", .help = "larger: children nearer to their parents"},
+    {"mutation", FIELD_NUMBER, MEMBER(mutation), .initial = 1, .minimum = 0, .maximum = 1000,
+     .unit = "genes", .help = "of a child that mutate, on average"},
+    {"mutation_exponent", FIELD_NUMBER, MEMBER(mutation_exponent), .initial = 20, .minimum = 0,
+     .maximum = 1000, .unit = "", .help = "larger: smaller mutations"},
+    {"remeasured", FIELD_NUMBER, MEMBER(remeasured), .initial = 0.25, .minimum = 0, .maximum = 1,
+     .unit = "", .help = "part of the parents that every generation measures again"},
+    FIELD_END,
+};
+
+/// Widths of the first population about the start: from this part of `spread` to all of it.
+static const double least_spread = 0.1;
+
+static double *row(const struct nsga2 *nsga2, size_t index) {
+    return nsga2->x + index * nsga2->genes;
+}
+
+static double *value_of(const struct nsga2 *nsga2, size_t index) {
+    return nsga2->value + index * nsga2->objectives;
+}
+
+/// First individual that is there: there are no parents before the first tell.
+static size_t first_row(const struct nsga2 *nsga2) {
+    return nsga2->progress.generation == 0 ? nsga2->population : 0;
+}
+
+size_t nsga2_parents(const struct nsga2 *nsga2) {
+    return nsga2->population - first_row(nsga2);
+}
+
+const double *nsga2_parent(const struct nsga2 *nsga2, size_t parent) {
+    return row(nsga2, parent);
+}
+
+bool nsga2_is_over(const struct nsga2 *nsga2) {
+    return nsga2->progress.generation >= (uint32_t)nsga2->parameters.generations;
+}
+
+/// Individuals about the start, each at a distance of its own; the first is the start.
+static void make_first(struct nsga2 *nsga2, const double *start) {
+    const double spread = nsga2->parameters.spread;
+    for (size_t k = 0; k < nsga2->population; k++) {
+        struct rng_sequence random = rng_sequence_begin(nsga2->seed, RNG_INITIAL, (uint32_t)k, 0);
+        const double width = spread * pow(least_spread, rng_sequence_uniform(&random));
+        double *x = row(nsga2, nsga2->population + k);
+        for (size_t n = 0; n < nsga2->genes; n++) {
+            const double u = rng_sequence_uniform(&random), v = rng_sequence_uniform(&random);
+            const double normal = sqrt(-2 * log(u)) * cos(2 * M_PI * v);
+            x[n] = start && spread > 0 ? optimiser_reflect(start[n] + width * normal) : u;
+            if (start && k == 0)
+                x[n] = fmin(1, fmax(0, start[n]));
+        }
+    }
+}
+
+enum status nsga2_init(struct nsga2 *nsga2, const struct nsga2_parameters *parameters,
+                       const struct nsga2_space *space) {
+    enum status status = STATUS_OK;
+    const size_t population = (size_t)parameters->population;
+    *nsga2 = (struct nsga2){.parameters = *parameters,
+                            .genes = space->genes,
+                            .objectives = space->objectives,
+                            .population = population,
+                            .seed = space->seed};
+    if (space->genes < 1 || space->objectives < 1)
+        return status_fail(STATUS_BAD_INPUT, "nothing to optimise: %zu genes, %zu objectives",
+                           space->genes, space->objectives);
+    NEW_ARRAY(nsga2->x, 3 * population * space->genes);
+    NEW_ARRAY(nsga2->value, 2 * population * space->objectives);
+    NEW_ARRAY(nsga2->measured, 2 * population);
+    NEW_ARRAY(nsga2->rank, 2 * population);
+    NEW_ARRAY(nsga2->crowding, 2 * population);
+    NEW_ARRAY(nsga2->again, population);
+    NEW_ARRAY(nsga2->planted, NSGA2_PLANTED * space->genes);
+    make_first(nsga2, space->start);
+    nsga2->progress.is_made = 1;
+done:
+    return status;
+}
+
+void nsga2_clear(struct nsga2 *nsga2) {
+    memory_free(nsga2->x);
+    memory_free(nsga2->value);
+    memory_free(nsga2->measured);
+    memory_free(nsga2->rank);
+    memory_free(nsga2->crowding);
+    memory_free(nsga2->again);
+    memory_free(nsga2->planted);
+    *nsga2 = (struct nsga2){0};
+}
+
+// A round ---------------------------------------------------------------------------------------
+
+/// The crowded comparison: by rank, then by room.
+static bool is_better(const struct nsga2 *nsga2, size_t a, size_t b) {
+    if (nsga2->rank[a] != nsga2->rank[b])
+        return nsga2->rank[a] < nsga2->rank[b];
+    return nsga2->crowding[a] > nsga2->crowding[b];
+}
+
+/// A copy of the better of two parents.
+static void copy_winner(const struct nsga2 *nsga2, double *child, struct rng_sequence *random) {
+    const size_t a = rng_sequence_below(random, (uint32_t)nsga2->population);
+    const size_t b = rng_sequence_below(random, (uint32_t)nsga2->population);
+    memcpy(child, row(nsga2, is_better(nsga2, b, a) ? b : a), nsga2->genes * sizeof *child);
+}
+
+static bool is_twin(const struct nsga2 *nsga2, const double *child) {
+    for (size_t k = 0; k < nsga2->population; k++)
+        if (memcmp(row(nsga2, k), child, nsga2->genes * sizeof *child) == 0)
+            return true;
+    return false;
+}
+
+/// Mutate some genes, and one at least of a child that would be a parent's twin: a twin is a second
+/// draw of the same noise.
+static void mutate(const struct nsga2 *nsga2, double *child, struct rng_sequence *random) {
+    const struct nsga2_parameters *p = &nsga2->parameters;
+    for (size_t n = 0; n < nsga2->genes; n++)
+        if (rng_sequence_uniform(random) * (double)nsga2->genes < p->mutation)
+            child[n] = nsga2_mutate(child[n], p->mutation_exponent, random);
+    if (!is_twin(nsga2, child))
+        return;
+    const size_t n = rng_sequence_below(random, (uint32_t)nsga2->genes);
+    child[n] = nsga2_mutate(child[n], p->mutation_exponent, random);
+}
+
+static void make_children(struct nsga2 *nsga2) {
+    const struct nsga2_parameters *p = &nsga2->parameters;
+    for (size_t k = 0; k < nsga2->population; k += 2) {
+        struct rng_sequence random =
+            rng_sequence_begin(nsga2->seed, RNG_SELECTION, nsga2->progress.generation, (uint32_t)k);
+        // The second of the last pair of an odd population stands where `again` is copied to.
+        double *a = row(nsga2, nsga2->population + k), *b = a + nsga2->genes;
+        copy_winner(nsga2, a, &random);
+        copy_winner(nsga2, b, &random);
+        if (rng_sequence_uniform(&random) < p->crossover)
+            nsga2_cross(a, b, nsga2->genes, p->crossover_exponent, &random);
+        mutate(nsga2, a, &random);
+        mutate(nsga2, b, &random);
+    }
+    const size_t planted = nsga2->progress.planted;
+    memcpy(row(nsga2, 2 * nsga2->population - planted), nsga2->planted,
+           planted * nsga2->genes * sizeof *nsga2->planted);
+    nsga2->progress.planted = 0;
+}
+
+static bool is_chosen_again(const struct nsga2 *nsga2, size_t parent) {
+    for (uint32_t k = 0; k < nsga2->progress.again; k++)
+        if (nsga2->again[k] == parent)
+            return true;
+    return false;
+}
+
+/// Member of the first front that was measured least, of those not chosen yet; `population` if
+/// there is none.
+static size_t least_measured(const struct nsga2 *nsga2) {
+    size_t least = nsga2->population;
+    for (size_t k = 0; k < nsga2->population; k++)
+        if (nsga2->rank[k] == 1 && value_of(nsga2, k)[0] < OPTIMISER_FAILED &&
+            !is_chosen_again(nsga2, k) &&
+            (least == nsga2->population || nsga2->measured[k] < nsga2->measured[least]))
+            least = k;
+    return least;
+}
+
+static void choose_again(struct nsga2 *nsga2) {
+    const size_t most = (size_t)ceil(nsga2->parameters.remeasured * (double)nsga2->population);
+    nsga2->progress.again = 0;
+    while (nsga2->progress.again < most) {
+        const size_t parent = least_measured(nsga2);
+        if (parent == nsga2->population)
+            break;
+        memcpy(row(nsga2, 2 * nsga2->population + nsga2->progress.again), row(nsga2, parent),
+               nsga2->genes * sizeof(double));
+        nsga2->again[nsga2->progress.again++] = (uint32_t)parent;
+    }
+}
+
+struct optimiser_round nsga2_ask(struct nsga2 *nsga2) {
+    if (nsga2_is_over(nsga2))
+        return (struct optimiser_round){0};
+    if (!nsga2->progress.is_made) {
+        make_children(nsga2);
+        choose_again(nsga2);
+        nsga2->progress.is_made = 1;
+    }
+    return (struct optimiser_round){row(nsga2, nsga2->population),
+                                    nsga2->population + nsga2->progress.again};
+}
+
+void nsga2_plant(struct nsga2 *nsga2, const double *genes) {
+    const size_t planted = nsga2->progress.planted;
+    if (planted >= NSGA2_PLANTED || planted >= nsga2->population / 2)
+        return;
+    for (size_t n = 0; n < nsga2->genes; n++)
+        nsga2->planted[planted * nsga2->genes + n] = fmin(1, fmax(0, genes[n]));
+    nsga2->progress.planted++;
+}
+
+// Selection ---------------------------------------------------------------------------------------
+
+/// Add a measurement to the means; what failed once has failed.
+static void add(struct nsga2 *nsga2, size_t index, const double *value) {
+    double *mean = value_of(nsga2, index);
+    bool failed = nsga2->measured[index] > 0 && mean[0] >= OPTIMISER_FAILED;
+    nsga2->measured[index] += 1;
+    for (size_t m = 0; m < nsga2->objectives; m++) {
+        failed = failed || optimiser_error(value[m]) >= OPTIMISER_FAILED;
+        mean[m] += (value[m] - mean[m]) / nsga2->measured[index];
+    }
+    for (size_t m = 0; m < nsga2->objectives && failed; m++)
+        mean[m] = OPTIMISER_FAILED;
+}
+
+static enum status sort(struct nsga2 *nsga2, size_t first, size_t count) {
+    const double *value = value_of(nsga2, first);
+    TRY(nsga2_sort(value, count, nsga2->objectives, nsga2->rank + first));
+    return nsga2_crowd(value, count, nsga2->objectives, nsga2->rank + first,
+                       nsga2->crowding + first);
+}
+
+enum status nsga2_add_measurement(struct nsga2 *nsga2, size_t parent, const double *value) {
+    add(nsga2, parent, value);
+    return sort(nsga2, 0, nsga2_parents(nsga2));
+}
+
+struct rival {
+    const struct nsga2 *nsga2;
+    size_t index;
+};
+
+static int compare_rivals(const void *a, const void *b) {
+    const struct rival *x = a, *y = b;
+    if (is_better(x->nsga2, x->index, y->index))
+        return -1;
+    if (is_better(x->nsga2, y->index, x->index))
+        return 1;
+    return (x->index > y->index) - (x->index < y->index);
+}
+
+/// The best of parents and children become the parents.
+static enum status select_parents(struct nsga2 *nsga2) {
+    enum status status = STATUS_OK;
+    const size_t first = first_row(nsga2), end = 2 * nsga2->population;
+    const size_t genes = nsga2->genes, objectives = nsga2->objectives;
+    struct rival *rivals = NULL;
+    double *copy = NULL;
+    const size_t width = genes + objectives + 1;
+    NEW_ARRAY(rivals, end - first);
+    NEW_ARRAY(copy, nsga2->population * width);
+    CHECK(sort(nsga2, first, end - first));
+    for (size_t k = first; k < end; k++)
+        rivals[k - first] = (struct rival){nsga2, k};
+    qsort(rivals, end - first, sizeof *rivals, compare_rivals);
+    for (size_t k = 0; k < nsga2->population; k++) {
+        double *to = copy + k * width;
+        memcpy(to, row(nsga2, rivals[k].index), genes * sizeof *to);
+        memcpy(to + genes, value_of(nsga2, rivals[k].index), objectives * sizeof *to);
+        to[genes + objectives] = nsga2->measured[rivals[k].index];
+    }
+    for (size_t k = 0; k < nsga2->population; k++) {
+        const double *from = copy + k * width;
+        memcpy(row(nsga2, k), from, genes * sizeof *from);
+        memcpy(value_of(nsga2, k), from + genes, objectives * sizeof *from);
+        nsga2->measured[k] = from[genes + objectives];
+    }
+    CHECK(sort(nsga2, 0, nsga2->population));
+done:
+    memory_free(rivals);
+    memory_free(copy);
+    return status;
+}
+
+enum status nsga2_tell(struct nsga2 *nsga2, const double *value) {
+    for (size_t k = 0; k < nsga2->population; k++) {
+        nsga2->measured[nsga2->population + k] = 0;
+        add(nsga2, nsga2->population + k, value + k * nsga2->objectives);
+    }
+    for (size_t k = 0; k < nsga2->progress.again; k++)
+        add(nsga2, nsga2->again[k], value + (nsga2->population + k) * nsga2->objectives);
+    TRY(select_parents(nsga2));
+    nsga2->progress.generation++;
+    nsga2->progress.again = 0;
+    nsga2->progress.is_made = 0;
+    return STATUS_OK;
+}
+
+double nsga2_diversity(const struct nsga2 *nsga2) {
+    const size_t first = first_row(nsga2);
+    double sum = 0;
+    for (size_t n = 0; n < nsga2->genes; n++) {
+        struct running_mean over = {0};
+        for (size_t k = first; k < first + nsga2->population; k++)
+            statistics_add(&over, row(nsga2, k)[n]);
+        sum += sqrt(over.squares / over.count);
+    }
+    return sum / (double)nsga2->genes;
+}
+
+size_t nsga2_spans(struct nsga2 *nsga2, struct memory_span *span) {
+    const size_t rows = 2 * nsga2->population;
+    size_t n = 0;
+    span[n++] = (struct memory_span){&nsga2->progress, sizeof nsga2->progress};
+    span[n++] =
+        (struct memory_span){nsga2->x, 3 * nsga2->population * nsga2->genes * sizeof(double)};
+    span[n++] = (struct memory_span){nsga2->value, rows * nsga2->objectives * sizeof(double)};
+    span[n++] = (struct memory_span){nsga2->measured, rows * sizeof(double)};
+    span[n++] = (struct memory_span){nsga2->rank, rows * sizeof *nsga2->rank};
+    span[n++] = (struct memory_span){nsga2->crowding, rows * sizeof(double)};
+    span[n++] = (struct memory_span){nsga2->again, nsga2->population * sizeof *nsga2->again};
+    span[n++] = (struct memory_span){nsga2->planted, NSGA2_PLANTED * nsga2->genes * sizeof(double)};
+    return n;
+}
