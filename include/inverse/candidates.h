@@ -45,13 +45,14 @@ struct candidates {
     const struct decoder *decoder;
     struct candidates_parameters parameters;
     double *errors, *variances; ///< shape [CANDIDATES_MOST]; an error is negative if not measured
-    double *features;           ///< shape [CANDIDATES_MOST, features] of the goals
-    struct surrogate surrogate; ///< that remembers them
-    double *target, *target_error;  ///< shape [features]
-    double *first;                  ///< shape [genes]: the first candidate of the last round
-    double *position;               ///< shape [dimensions, particles]: where simulations begin
-    double *best_position;          ///< where the best of this round ended
-    uint32_t iteration, iterations; ///< for progress: of the method, at most
+    struct goal_distance *distances; ///< shape [CANDIDATES_MOST, GOALS]; not set of what failed
+    double *features;                ///< shape [CANDIDATES_MOST, features] of the goals
+    struct surrogate surrogate;      ///< that remembers them
+    double *target, *target_error;   ///< shape [features]
+    double *first;                   ///< shape [genes]: the first candidate of the last round
+    double *position;                ///< shape [dimensions, particles]: where simulations begin
+    double *best_position;           ///< where the best of this round ended
+    uint32_t iteration, iterations;  ///< for progress: of the method, at most
     struct candidates_survey survey;
     struct candidates_totals {
         uint64_t rounds, evaluations, steps;
@@ -78,10 +79,12 @@ void candidates_next_round(struct candidates *candidates);
 
 /// Mean error of `count` fresh measurements of one candidate, the noise in each, and the variance
 /// of the mean; OPTIMISER_FAILED if one of them fails.
+/// @param[out] distance  shape [GOALS]: means, or NULL
 enum status candidates_remeasure(struct candidates *candidates, const double *genes, size_t count,
-                                 double *error, double *noise, double *variance) MUST_USE;
+                                 double *error, double *noise, double *variance,
+                                 struct goal_distance *distance) MUST_USE;
 
 void candidates_forget_survey(struct candidates *candidates);
 
-enum { CANDIDATES_SPANS = 8 + SURROGATE_SPANS };
+enum { CANDIDATES_SPANS = 9 + SURROGATE_SPANS };
 size_t candidates_spans(struct candidates *candidates, struct memory_span *spans);

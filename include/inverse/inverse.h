@@ -84,6 +84,13 @@ struct inverse_listener {
     void *context;
 };
 
+/// Where a method puts tables of its own.
+struct inverse_folder {
+    /// Path of a file in it, into OUTPUT_PATH_SIZE bytes (io/output.h).
+    void (*file)(void *context, const char *name, char *path);
+    void *context;
+};
+
 enum { INVERSE_MAX_SPANS = 512 };
 
 struct optimiser;
@@ -117,6 +124,8 @@ struct inverse_method {
                            const struct inverse_listener *listener);
     /// List the state; returns the number of spans.
     size_t (*spans)(void *state, struct memory_span *spans);
+    /// Write its own tables after an iteration, or NULL. Fails: IO, NO_MEMORY.
+    enum status (*write)(const void *state, const struct inverse_folder *folder);
 };
 
 /// All methods, NULL-terminated.
@@ -124,4 +133,5 @@ extern const struct inverse_method *const inverse_methods[];
 
 extern const struct inverse_method imc;
 extern const struct inverse_method gauss_newton;
+extern const struct inverse_method pareto;
 extern const struct inverse_method matching_genetic, matching_cmaes, matching_nlopt;

@@ -59,6 +59,7 @@ enum status candidates_init(struct candidates *candidates, const struct decoder 
     *candidates = (struct candidates){.decoder = decoder, .parameters = *parameters};
     NEW_ARRAY(candidates->errors, CANDIDATES_MOST);
     NEW_ARRAY(candidates->variances, CANDIDATES_MOST);
+    NEW_ARRAY(candidates->distances, CANDIDATES_MOST * GOALS);
     NEW_ARRAY(candidates->first, decoder->genes);
     const struct goals *goals = &decoder->problem->goals;
     const size_t features = goals_features(goals);
@@ -80,6 +81,7 @@ done:
 void candidates_clear(struct candidates *candidates) {
     memory_free(candidates->errors);
     memory_free(candidates->variances);
+    memory_free(candidates->distances);
     memory_free(candidates->first);
     memory_free(candidates->features);
     memory_free(candidates->target);
@@ -178,6 +180,7 @@ static void take(struct candidates *candidates, size_t index, const struct evalu
     struct candidates_totals *totals = &candidates->totals;
     candidates->errors[index] = result->error;
     candidates->variances[index] = result->variance;
+    memcpy(candidates->distances + index * GOALS, result->distance, sizeof result->distance);
     totals->evaluations++;
     totals->steps += result->engine_steps;
     const bool better = result->error < totals->best_error ||
@@ -277,8 +280,19 @@ enum status candidates_measure(struct candidates *candidates, const struct optim
     return STATUS_OK;
 }
 
+static struct goal_distance mean_distance(const struct evaluate_result *results, size_t count,
+                                          enum goal_kind kind) {
+    struct goal_distance mean = {.count = results[0].distance[kind].count};
+    for (size_t k = 0; k < count; k++) {
+        mean.rms += results[k].distance[kind].rms / (double)count;
+        mean.noise += results[k].distance[kind].noise / (double)count;
+    }
+    return mean;
+}
+
 enum status candidates_remeasure(struct candidates *candidates, const double *genes, size_t count,
-                                 double *error, double *noise, double *variance) {
+                                 double *error, double *noise, double *variance,
+                                 struct goal_distance *distance) {
     enum status status = STATUS_OK;
     struct evaluate_result *results = NULL;
     double *end = NULL, *features = NULL;
@@ -307,6 +321,8 @@ enum status candidates_remeasure(struct candidates *candidates, const double *ge
     }
     candidates->totals.remeasured++;
     *error = *noise = *variance = 0;
+    for (int kind = 0; kind < GOALS && distance; kind++)
+        distance[kind] = mean_distance(results, count, kind);
     for (size_t k = 0; k < count; k++) {
         *error += results[k].error / (double)count;
         *noise += results[k].noise / (double)count;
@@ -332,6 +348,8 @@ size_t candidates_spans(struct candidates *candidates, struct memory_span *span)
     span[n++] = (struct memory_span){&candidates->totals, sizeof candidates->totals};
     span[n++] = (struct memory_span){candidates->errors, errors};
     span[n++] = (struct memory_span){candidates->variances, errors};
+    span[n++] = (struct memory_span){candidates->distances,
+                                     CANDIDATES_MOST * GOALS * sizeof *candidates->distances};
     span[n++] = (struct memory_span){candidates->position, positions};
     span[n++] = (struct memory_span){candidates->best_position, positions};
     span[n++] =

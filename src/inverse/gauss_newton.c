@@ -175,7 +175,7 @@ static enum status propose(struct state *state) {
     if (known) {
         memcpy(state->proposal, model.best, state->decoder.genes * sizeof *model.best);
         CHECK(candidates_remeasure(&state->candidates, state->proposal, (size_t)state->own.checks,
-                                   &error, &noise, &variance));
+                                   &error, &noise, &variance, NULL));
         judge(state, error, noise, variance);
     }
     CHECK(decoder_curves_bands(&state->decoder, state->best, known ? model.covariance : NULL,

@@ -153,7 +153,7 @@ static bool wants_check(const struct state *state, bool last) {
 static enum status check_favourite(struct state *state, double slack) {
     double error, noise, variance;
     TRY(candidates_remeasure(&state->candidates, state->favourite, (size_t)state->parameters.checks,
-                             &error, &noise, &variance));
+                             &error, &noise, &variance, NULL));
     if (error >= OPTIMISER_FAILED ||
         (state->progress.known && error > state->progress.error + slack * sqrt(variance)))
         return STATUS_OK;

@@ -194,6 +194,10 @@ static void keep_curves(struct run *run, const struct inverse_step *step) {
     }
 }
 
+static void own_file(void *context, const char *name, char *path) {
+    run_folder_file(context, name, path);
+}
+
 /// Remember an iteration and put it on disk.
 static enum status record(struct run *run, const struct inverse_step *step) {
     keep_curves(run, step);
@@ -210,6 +214,10 @@ static enum status record(struct run *run, const struct inverse_step *step) {
     TRY(history_write(&run->history, run->fit.method, r, &run->folder));
     const struct fit_result result = result_so_far(run, STATUS_UNCONVERGED);
     TRY(fit_output_curves(&run->fit, &run->decoder, &result, &run->folder));
+    if (run->fit.method->write) {
+        const struct inverse_folder own = {own_file, &run->folder};
+        TRY(run->fit.method->write(run->state, &own));
+    }
     progress_say(&run->progress, "iteration %u  error %.4f  noise %.4f  %.1f s", step->iteration,
                  step->error, step->noise, run->standing.seconds);
     return save(run);

@@ -8,9 +8,28 @@
 #include <unistd.h>
 
 static const char *const results[] = {
-    "summary.json", "history.tsv",          "timing.tsv", "potential.tsv",  "potential_history.tsv",
-    "rdf.tsv",      "thermodynamics.tsv",   "motion.tsv", "etd.tsv",        "etd_error.tsv",
-    "etd_bins.tsv", "force_covariance.tsv", "omega.tsv",  "checkpoint.bin",
+    "summary.json",
+    "history.tsv",
+    "timing.tsv",
+    "potential.tsv",
+    "potential_history.tsv",
+    "rdf.tsv",
+    "thermodynamics.tsv",
+    "motion.tsv",
+    "etd.tsv",
+    "etd_error.tsv",
+    "etd_bins.tsv",
+    "force_covariance.tsv",
+    "omega.tsv",
+    "checkpoint.bin",
+    "weight_history.tsv",
+    "etd_cells.tsv",
+    "vacf.tsv",
+    "msd.tsv",
+    "pareto.tsv",
+    "pareto_history.tsv",
+    "pareto_potential.tsv",
+    "pareto_weight.tsv",
 };
 
 static enum status remove_results(const struct run_folder *folder) {
