@@ -30,6 +30,7 @@ static const struct figure figures[] = {
     {"vacf", {"vacf.tsv"}, "target"},
     {"error", {"history.tsv", "timing.tsv"}, NULL},
     {"generations", {"history.tsv"}, "diversity"},
+    {"pareto", {"pareto.tsv", "pareto_history.tsv"}, NULL},
     {"simulation", {"thermodynamics.tsv"}, NULL},
     {"motion", {"motion.tsv"}, NULL},
     {"etd", {"etd.tsv", "etd_error.tsv", "etd_bins.tsv"}, NULL},

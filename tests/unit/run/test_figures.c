@@ -80,6 +80,36 @@ static void test_draws_what_the_tables_allow(void **state) {
     assert_false(is_drawn(folder, "simulation"));
 }
 
+/// Two goals, with one member on the front and errors that are not known, and three.
+static void test_draws_the_front_of_several_goals(void **state) {
+    (void)state;
+    skip_without_gnuplot();
+    char folder[PATH];
+    make_folder(folder, "front");
+    write_table(folder, "pareto.tsv",
+                "# member\trank\tchosen\tmeasured\terror[1]\trdf_rmse[1]\tetd_rmse[1]\t"
+                "rdf_noise[1]\tetd_noise[1]\n1\t1\t1\t3\t2\t0.1\t0.2\t0\t0\n");
+    assert_int_equal(figures_draw(folder), STATUS_OK);
+    assert_false(is_drawn(folder, "pareto"));
+    write_table(folder, "pareto_history.tsv",
+                "# iteration\tfront\terror[1]\trdf_rmse[1]\tetd_rmse[1]\n"
+                "0\t0\t2\t0.1\t0.2\n0\t2\t2\t0.1\t0.2\n");
+    if (figures_draw(folder) != STATUS_OK)
+        fail_msg("%s", status_message());
+    assert_true(is_drawn(folder, "pareto"));
+    write_table(folder, "pareto.tsv",
+                "# member\trank\tchosen\tmeasured\terror[1]\trdf_rmse[1]\tetd_rmse[1]\t"
+                "pressure_rmse[1]\trdf_noise[1]\tetd_noise[1]\tpressure_noise[1]\n"
+                "1\t1\t0\t1\t2\t0.1\t0.3\t1\t0.05\t0.1\t0.2\n"
+                "2\t1\t1\t3\t2\t0.2\t0.2\t1\t0.05\t0.1\t0.2\n"
+                "3\t2\t0\t1\t2\t0.3\t0.4\t2\t0.05\t0.1\t0.2\n");
+    write_table(folder, "pareto_history.tsv",
+                "# iteration\tfront\terror[1]\trdf_rmse[1]\tetd_rmse[1]\tpressure_rmse[1]\n"
+                "0\t0\t2\t0.1\t0.2\t1\n0\t2\t2\t0.1\t0.2\t1\n");
+    if (figures_draw(folder) != STATUS_OK)
+        fail_msg("%s", status_message());
+}
+
 static void test_draws_no_generations_without_diversity(void **state) {
     (void)state;
     skip_without_gnuplot();
@@ -269,6 +299,7 @@ static int remove_root(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_draws_what_the_tables_allow),
+        cmocka_unit_test(test_draws_the_front_of_several_goals),
         cmocka_unit_test(test_draws_no_generations_without_diversity),
         cmocka_unit_test(test_draws_simulation_and_no_fit),
         cmocka_unit_test(test_draws_dynamics_of_a_fit),
