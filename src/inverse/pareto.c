@@ -196,13 +196,12 @@ static bool is_checked(const struct state *state, size_t parent) {
     return state->nsga2.measured[parent] > (double)state->own.checks;
 }
 
-/// Member of the front of the least error, of those that have been checked or of all; false if
-/// there is none.
-static bool find_best(const struct state *state, bool checked, size_t *best) {
+/// Member of the front of the least error; false if there is none.
+static bool find_best(const struct state *state, size_t *best) {
     double least = OPTIMISER_FAILED;
     for (size_t k = 0; k < nsga2_parents(&state->nsga2); k++) {
         const double error = error_of(state, value_of(state, k));
-        if (!is_member(state, k) || (checked && !is_checked(state, k)) || error >= least)
+        if (!is_member(state, k) || error >= least)
             continue;
         least = error;
         *best = k;
@@ -225,18 +224,14 @@ static enum status check_one(struct state *state, size_t parent) {
     return STATUS_OK;
 }
 
-/// Choose from the front: by fresh measurements, since what seems best on one is a lucky draw. In
-/// the end they go on until the best has been checked.
-static enum status choose(struct state *state, bool last) {
-    size_t best;
-    for (int tries = 0; find_best(state, false, &best) && !is_checked(state, best); tries++) {
-        if (tries > 0 && !last)
-            break;
+/// Choose from the front: by fresh measurements, since what seems best on one is a lucky draw. They
+/// go on until the best has been checked.
+static enum status choose(struct state *state) {
+    size_t best = 0;
+    while (find_best(state, &best) && !is_checked(state, best))
         TRY(check_one(state, best));
-    }
-    state->progress.known = find_best(state, true, &best) || find_best(state, false, &best);
-    if (state->progress.known)
-        state->progress.chosen = best;
+    state->progress.known = find_best(state, &best);
+    state->progress.chosen = best;
     return STATUS_OK;
 }
 
@@ -314,7 +309,7 @@ static enum status iterate(void *memory, struct inverse_step *step,
         TRY(take_round(state, listener));
         state->progress.stage = CHOICE;
     }
-    TRY(choose(state, nsga2_is_over(&state->nsga2)));
+    TRY(choose(state));
     TRY(ask_surrogate(state));
     log_front(state);
     describe(state, step);
