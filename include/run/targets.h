@@ -47,7 +47,8 @@ void targets_write(const struct targets *targets, struct json_writer *writer);
 void targets_digest(const struct targets *targets, uint64_t *digest);
 
 /// The goals of a scene with `count` particles: those to be fitted, and all. With `moves`, D is
-/// among those to be compared even if no value is given, so that a result knows its own.
+/// among those to be compared even if no value is given, so that a result knows its own, if another
+/// target says in what window.
 void targets_goals(struct targets *targets, size_t count, bool moves, struct goals *fitted,
                    struct goals *compared);
 

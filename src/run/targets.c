@@ -255,7 +255,9 @@ void targets_goals(struct targets *targets, size_t count, bool moves, struct goa
     for (int kind = 0; kind < GOALS; kind++)
         if (!targets->goal[kind].fitted)
             fitted->goal[kind] = (struct goal){0};
-    if (moves && !targets->given[GOAL_DIFFUSION])
+    const bool has_window =
+        targets->given[GOAL_ETD] || targets->given[GOAL_VACF] || targets->given[GOAL_MSD];
+    if (moves && has_window && !targets->given[GOAL_DIFFUSION])
         compared->goal[GOAL_DIFFUSION] = (struct goal){1, &unknown, &unknown, 0};
 }
 

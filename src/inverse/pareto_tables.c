@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pareto_state.h"
+
+#include "base/memory.h"
+#include "io/data_table.h"
+#include "io/output.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { NAME_SIZE = 32, EXTRA_COLUMNS = 5 };
+
+/// Parents in the order of the tables: by rank, then by the first objective.
+struct line {
+    size_t parent;
+    uint32_t rank;
+    double value;
+};
+
+static int compare_lines(const void *a, const void *b) {
+    const struct line *x = a, *y = b;
+    if (x->rank != y->rank)
+        return x->rank < y->rank ? -1 : 1;
+    if (x->value != y->value)
+        return x->value < y->value ? -1 : 1;
+    return (x->parent > y->parent) - (x->parent < y->parent);
+}
+
+/// Parents that have not failed, in order; `members` are on the first front and come first.
+static size_t sort_lines(const struct pareto_state *state, struct line *lines, size_t *members) {
+    size_t count = 0;
+    *members = 0;
+    for (size_t k = 0; k < nsga2_parents(&state->nsga2); k++) {
+        if (pareto_value(state, k)[0] >= OPTIMISER_FAILED)
+            continue;
+        lines[count++] = (struct line){k, state->nsga2.rank[k], pareto_value(state, k)[0]};
+        *members += pareto_is_member(state, k);
+    }
+    qsort(lines, count, sizeof *lines, compare_lines);
+    return count;
+}
+
+/// A column of a table under construction: `rows` numbers in `memory`, which it returns.
+static double *begin_column(struct data_column *column, const char *name, double *memory,
+                            const char *format) {
+    *column = (struct data_column){name, memory, format};
+    return memory;
+}
+
+/// pareto.tsv: every parent that has not failed.
+static enum status write_front(const struct pareto_state *state,
+                               const struct inverse_folder *folder, const struct line *lines,
+                               size_t rows) {
+    enum status status = STATUS_OK;
+    const size_t objectives = state->objectives, most = EXTRA_COLUMNS + 2 * objectives;
+    char names[2 * GOALS][NAME_SIZE], path[OUTPUT_PATH_SIZE];
+    struct data_column *column = NULL;
+    double *memory = NULL;
+    NEW_ARRAY(column, most);
+    NEW_ARRAY(memory, most * (rows + 1));
+    double *value[EXTRA_COLUMNS + 2 * GOALS];
+    static const char *const extra[EXTRA_COLUMNS] = {"member", "rank", "chosen", "measured",
+                                                     "error[1]"};
+    for (size_t c = 0; c < most; c++) {
+        const size_t m = (c - EXTRA_COLUMNS) % objectives;
+        if (c >= EXTRA_COLUMNS)
+            snprintf(names[c - EXTRA_COLUMNS], NAME_SIZE, "%s_%s[1]", goals_names[state->goal[m]],
+                     c < EXTRA_COLUMNS + objectives ? "rmse" : "noise");
+        value[c] = begin_column(&column[c], c < EXTRA_COLUMNS ? extra[c] : names[c - EXTRA_COLUMNS],
+                                memory + c * (rows + 1), NULL);
+    }
+    for (size_t k = 0; k < rows; k++) {
+        const size_t parent = lines[k].parent;
+        value[0][k] = (double)k + 1;
+        value[1][k] = lines[k].rank;
+        value[2][k] = state->progress.known && parent == state->progress.chosen;
+        value[3][k] = state->nsga2.measured[parent];
+        value[4][k] = pareto_error(state, pareto_value(state, parent));
+        for (size_t m = 0; m < objectives; m++) {
+            value[EXTRA_COLUMNS + m][k] = pareto_value(state, parent)[m];
+            value[EXTRA_COLUMNS + objectives + m][k] = state->progress.noise[m];
+        }
+    }
+    folder->file(folder->context, "pareto.tsv", path);
+    CHECK(data_table_write(path, NULL, column, most, rows));
+done:
+    memory_free(column);
+    memory_free(memory);
+    return status;
+}
+
+/// pareto_history.tsv: the log.
+static enum status write_log(const struct pareto_state *state,
+                             const struct inverse_folder *folder) {
+    enum status status = STATUS_OK;
+    static const char *const first[LOG_OBJECTIVES] = {"iteration", "front", "error[1]"};
+    const size_t rows = state->progress.rows, width = pareto_log_width(state);
+    char names[GOALS][NAME_SIZE], path[OUTPUT_PATH_SIZE];
+    struct data_column column[LOG_OBJECTIVES + GOALS];
+    double *memory = NULL;
+    NEW_ARRAY(memory, width * (rows + 1));
+    for (size_t c = 0; c < width; c++) {
+        if (c >= LOG_OBJECTIVES)
+            snprintf(names[c - LOG_OBJECTIVES], NAME_SIZE, "%s_rmse[1]",
+                     goals_names[state->goal[c - LOG_OBJECTIVES]]);
+        double *value =
+            begin_column(&column[c], c < LOG_OBJECTIVES ? first[c] : names[c - LOG_OBJECTIVES],
+                         memory + c * (rows + 1), NULL);
+        for (size_t k = 0; k < rows; k++)
+            value[k] = state->log[k * width + c];
+    }
+    folder->file(folder->context, "pareto_history.tsv", path);
+    CHECK(data_table_write(path, NULL, column, width, rows));
+done:
+    memory_free(memory);
+    return status;
+}
+
+/// pareto_potential.tsv or pareto_weight.tsv: a column a member of the front, named by its number
+/// in pareto.tsv.
+static enum status write_curves(const struct pareto_state *state, enum unknown_kind kind,
+                                const struct inverse_folder *folder, const struct line *lines,
+                                size_t members) {
+    enum status status = STATUS_OK;
+    const size_t points = decoder_points(&state->decoder, kind);
+    struct data_column *column = NULL;
+    double *curves = NULL;
+    char *names = NULL, name[NAME_SIZE], path[OUTPUT_PATH_SIZE];
+    NEW_ARRAY(column, members + 1);
+    NEW_ARRAY(curves, (members + 1) * points);
+    NEW_ARRAY(names, (members + 1) * NAME_SIZE);
+    column[0] = (struct data_column){"r[lambda]", decoder_r(&state->decoder, kind), NULL};
+    for (size_t k = 0; k < members; k++) {
+        snprintf(names + k * NAME_SIZE, NAME_SIZE, "%zu", k + 1);
+        decoder_curve(&state->decoder, kind, nsga2_parent(&state->nsga2, lines[k].parent),
+                      curves + k * points);
+        column[k + 1] = (struct data_column){names + k * NAME_SIZE, curves + k * points, "%.8g"};
+    }
+    snprintf(name, sizeof name, "pareto_%s.tsv", inverse_unknown_names[kind]);
+    folder->file(folder->context, name, path);
+    CHECK(data_table_write(path, NULL, column, members + 1, points));
+done:
+    memory_free(column);
+    memory_free(curves);
+    memory_free(names);
+    return status;
+}
+
+enum status pareto_write_tables(const void *memory, const struct inverse_folder *folder) {
+    enum status status = STATUS_OK;
+    const struct pareto_state *state = memory;
+    struct line *lines = NULL;
+    NEW_ARRAY(lines, state->nsga2.population);
+    size_t members;
+    const size_t rows = sort_lines(state, lines, &members);
+    CHECK(write_front(state, folder, lines, rows));
+    CHECK(write_log(state, folder));
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        if (state->problem->unknown[kind].wanted)
+            CHECK(write_curves(state, kind, folder, lines, members));
+done:
+    memory_free(lines);
+    return status;
+}
