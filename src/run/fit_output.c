@@ -263,7 +263,8 @@ struct fit_truth fit_output_truth(const struct fit_file *fit, const struct decod
 static double weight_truth(const struct fit_file *fit, const struct decoder *decoder,
                            const double *omega) {
     double squares = 0, largest = 0, count = 0;
-    for (size_t k = 0; k + 1 < WEIGHT_POINTS; k++) {
+    // Between the cutoffs, at which a weight may end in a step.
+    for (size_t k = 1; k + 1 < WEIGHT_POINTS; k++) {
         const double r = decoder->weight.r[k];
         const double truth = curve_value(&fit->unknown[UNKNOWN_WEIGHT].truth, r);
         largest = fmax(largest, truth);

@@ -17,11 +17,12 @@ mkdir -p "$folder"
 
 scene='"box": [5.3874, 5.3874, 5.3874], "particles": {"count": 512}, "temperature": 1'
 
-# What a candidate's simulation is: $1 plan; the problem says how long one may be.
+# What a candidate's simulation is: $1 plan, $2 problem, which says how long one may be.
 plan() {
     fast='"equilibration": 50, "warm_start": "yes"'
     slow='"equilibration": 350'
     precise='"precision": 0.1'
+    [ "$2" = potential ] || precise='"precision": 0.2'
     race='"racing": 2'
     case $1 in
     plain) echo "$slow" ;;
