@@ -10,8 +10,11 @@
 /// there, beyond the cutoff 0.
 extern const struct curve_family sampled_family;
 
+enum { SAMPLED_COLUMNS, SAMPLED_VOTCA };
+
 struct sampled_parameters {
     char file[FIELD_TEXT_SIZE]; ///< where the points came from; "" if from memory
+    int format;                 ///< SAMPLED_…: of the file
     double cutoff;              ///< 0 means the last point [λ]
     gsl_spline *spline;         ///< NULL until sampled_set_points
     double first_slope;

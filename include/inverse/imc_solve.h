@@ -36,3 +36,13 @@ struct imc_solution {
 /// Fails: NO_MEMORY. Tested: test_imc_solve.
 enum status imc_solve(const struct imc_system *system, double strength, double *x, double *x_error,
                       struct imc_solution *solution) MUST_USE;
+
+/// The step as VOTCA's csg_imc_solve takes it, for those who come from there:
+///   x = −k_B T (AᵀA + λ)⁻¹ Aᵀ · excess,   A = −C (VOTCA's .gmc), excess (its .imc), λ =
+///   `strength`,
+/// where eigenvalues of AᵀA + λ below 1e-12 are left out. The unit of λ is that of S⁴: what is
+/// right depends on the number of particles. Interactions of several kinds are blocks of one C. D.
+/// Rosenberger, M. Hanke and N. F. A. van der Vegt, Eur. Phys. J. Spec. Top. 225, 1323 (2016).
+/// Parameters and failures as imc_solve; `spacing` is not read. Tested: test_imc_votca.
+enum status imc_votca(const struct imc_system *system, double strength, double *x, double *x_error,
+                      struct imc_solution *solution) MUST_USE;

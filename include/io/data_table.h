@@ -14,6 +14,7 @@ struct data_table {
     size_t rows, columns;
     double *values; ///< shape [rows, columns], row-major
     size_t *line;   ///< shape [rows]: line number in the file, for messages
+    char *flags;    ///< shape [rows]: the letter that ends each row; NULL unless asked for
     char *header;   ///< the last comment line before the data, without `#`; "" if none
     char *comments; ///< all comment lines before the data, as they stand in the file
 };
@@ -23,6 +24,10 @@ struct data_table {
 /// first `least_columns` may a word be "nan": what the caller did not ask for may be unknown.
 enum status data_table_read(struct data_table *table, const char *file,
                             size_t least_columns) MUST_USE;
+
+/// The same for rows that end with a letter, such as "0.24 28.4 i"; it is not among the columns.
+enum status data_table_read_flagged(struct data_table *table, const char *file,
+                                    size_t least_columns) MUST_USE;
 
 void data_table_clear(struct data_table *table);
 

@@ -40,7 +40,9 @@ void scene_write(const struct scene *scene, struct json_writer *writer);
 /// Add the tables that a scene only names to the digest of a checkpoint.
 void scene_digest(const struct scene *scene, uint64_t *digest);
 
-/// Read {"law": …} at `key` into a curve; an absent object or "none" leaves it empty.
+/// Read {"law": …} at `key` into a curve; an absent object or "none" leaves it empty. `units`
+/// convert VOTCA's tables.
 enum status scene_read_curve(struct curve *curve, struct json_object *parent, const char *key,
-                             const struct curve_family *const *list) MUST_USE;
+                             const struct curve_family *const *list,
+                             const struct units *units) MUST_USE;
 void scene_write_curve(const struct curve *curve, struct json_writer *writer, const char *key);

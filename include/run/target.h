@@ -4,10 +4,16 @@
 
 #include "io/json.h"
 #include "observe/rdf.h"
+#include "run/units.h"
+
+/// Of the file: columns in units of the scene, or a .dist.tgt of VOTCA.
+enum { TARGET_COLUMNS, TARGET_VOTCA };
 
 /// "rdf" among the targets of a run file.
 struct target_parameters {
     char file[FIELD_TEXT_SIZE];
+    int format;                               ///< TARGET_…
+    double cutoff;                            ///< bins beyond are left out; 0: none [λ]
     int64_t r_column, g_column, error_column; ///< from 1; error_column 0: no errors given
     int64_t particles; ///< of the system it was measured in; 0: as many as the scene has
 };
@@ -21,9 +27,12 @@ struct target {
 };
 
 /// Read the members of {"file": …}. Faults (gaps, negative values, …) go to the document and leave
-/// the target empty. Fails: NO_MEMORY.
-enum status target_read(struct target *target, struct json_object *object) MUST_USE;
-/// Convert g and its errors to a system of `count` particles (rdf_finite_size_factor).
+/// the target empty. `units` convert VOTCA's nm. Fails: NO_MEMORY. Tested: test_target.
+enum status target_read(struct target *target, struct json_object *object,
+                        const struct units *units) MUST_USE;
+
+/// Convert g and its errors to a system of `count` particles (rdf_finite_size_factor). VOTCA's are
+/// normalised by N², so that their tail does not depend on N: their factor is 1/(1 − 1/count).
 void target_convert(struct target *target, size_t count);
 
 void target_clear(struct target *target);

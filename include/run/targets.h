@@ -38,8 +38,10 @@ struct targets {
     } goal[GOALS];
 };
 
-/// Read the object "target". Faults go to the document. Fails: NO_MEMORY.
-enum status targets_read(struct targets *targets, struct json_object *root) MUST_USE;
+/// Read the object "target"; `units` convert VOTCA's tables. Faults go to the document. Fails:
+/// NO_MEMORY.
+enum status targets_read(struct targets *targets, struct json_object *root,
+                         const struct units *units) MUST_USE;
 void targets_clear(struct targets *targets);
 void targets_write(const struct targets *targets, struct json_writer *writer);
 

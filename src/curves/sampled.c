@@ -19,9 +19,14 @@ static void clear(void *parameters) {
     gsl_spline_free(((struct sampled_parameters *)parameters)->spline);
 }
 
+static const char *const formats[] = {"columns", "votca", NULL};
+
 static const struct field fields[] = {
     {"file", FIELD_FILE, .offset = offsetof(struct sampled_parameters, file), .required = true,
      .unit = "", .help = "columns r, value"},
+    {"format", FIELD_CHOICE, .offset = offsetof(struct sampled_parameters, format),
+     .choices = formats, .initial = SAMPLED_COLUMNS, .unit = "",
+     .help = "votca: a .pot in nm and kJ/mol, by the scene's \"units\""},
     {"cutoff", FIELD_NUMBER, .offset = offsetof(struct sampled_parameters, cutoff), .initial = 0,
      .minimum = 0, .maximum = DBL_MAX, .unit = "lambda",
      .help = "distance beyond which the value is 0; 0 means the table's last r"},

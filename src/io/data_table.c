@@ -57,22 +57,30 @@ static size_t count_words(const struct line *line) {
     return count;
 }
 
+/// What is asked of a file.
+struct demand {
+    size_t columns; ///< at least, and strictly numbers
+    bool flagged;   ///< a letter ends each row
+};
+
 /// Count the rows and take the number of columns from the first one.
 static enum status measure(struct data_table *table, const char *file, const char *text,
-                           size_t least_columns) {
+                           const struct demand *demand) {
+    const size_t least = demand->columns + demand->flagged;
     struct line line = first_line(text);
     do {
         if (!is_data(&line))
             continue;
         if (table->rows++ == 0)
             table->columns = count_words(&line);
-        if (table->columns < least_columns)
+        if (table->columns < least)
             return status_fail(STATUS_BAD_INPUT, "%s:%zu: %zu columns, at least %zu are needed",
-                               file, line.number, table->columns, least_columns);
+                               file, line.number, table->columns, least);
     } while (next_line(&line));
     if (table->rows == 0)
         return status_fail(STATUS_BAD_INPUT, "%s:%zu: the file ends without a row of numbers", file,
                            line.number);
+    table->columns -= demand->flagged;
     return STATUS_OK;
 }
 
@@ -91,30 +99,45 @@ static enum status read_number(const char *file, size_t line, size_t column, siz
     return STATUS_OK;
 }
 
-static enum status read_row(const struct data_table *table, const char *file, size_t strict,
-                            const struct line *line, double *row) {
-    const size_t words = count_words(line);
+/// The letter that is exactly the word at `word`.
+static enum status read_flag(const char *file, const struct line *line, const char *word,
+                             char *flag) {
+    *flag = *word;
+    if (word_length(word) == 1 &&
+        ((*word >= 'a' && *word <= 'z') || (*word >= 'A' && *word <= 'Z')))
+        return STATUS_OK;
+    return status_fail(STATUS_BAD_INPUT, "%s:%zu: the row does not end with a letter", file,
+                       line->number);
+}
+
+static enum status read_row(const struct data_table *table, const char *file,
+                            const struct demand *demand, const struct line *line, size_t row) {
+    const size_t words = count_words(line), wanted = table->columns + demand->flagged;
     const char *word = first_word(line);
-    for (size_t column = 0; column < words && column < table->columns; column++) {
-        TRY(read_number(file, line->number, column, strict, word, &row[column]));
+    for (size_t column = 0; column < words && column < wanted; column++) {
+        if (column < table->columns)
+            TRY(read_number(file, line->number, column, demand->columns, word,
+                            &table->values[row * table->columns + column]));
+        else
+            TRY(read_flag(file, line, word, &table->flags[row]));
         word += word_length(word);
         word += strspn(word, blanks);
     }
-    if (words != table->columns)
+    if (words != wanted)
         return status_fail(STATUS_BAD_INPUT, "%s:%zu: %zu columns, the first row has %zu", file,
-                           line->number, words, table->columns);
+                           line->number, words, wanted);
     return STATUS_OK;
 }
 
-static enum status read_rows(struct data_table *table, const char *file, size_t strict,
-                             const char *text) {
+static enum status read_rows(struct data_table *table, const char *file,
+                             const struct demand *demand, const char *text) {
     struct line line = first_line(text);
     size_t row = 0;
     do {
         if (!is_data(&line))
             continue;
         table->line[row] = line.number;
-        TRY(read_row(table, file, strict, &line, table->values + row * table->columns));
+        TRY(read_row(table, file, demand, &line, row));
         row++;
     } while (next_line(&line));
     return STATUS_OK;
@@ -145,18 +168,21 @@ static void read_comments(struct data_table *table, const char *text) {
     } while (next_line(&line));
 }
 
-enum status data_table_read(struct data_table *table, const char *file, size_t least_columns) {
+static enum status read_table(struct data_table *table, const char *file,
+                              const struct demand *demand) {
     enum status status = STATUS_OK;
     char *text = NULL;
     size_t length = 0;
     *table = (struct data_table){0};
     CHECK(text_file_read(file, &text, &length));
-    CHECK(measure(table, file, text, least_columns));
+    CHECK(measure(table, file, text, demand));
     NEW_ARRAY(table->values, table->rows * table->columns);
     NEW_ARRAY(table->line, table->rows);
+    if (demand->flagged)
+        NEW_ARRAY(table->flags, table->rows);
     NEW_ARRAY(table->header, length + 1);
     NEW_ARRAY(table->comments, length + 2);
-    CHECK(read_rows(table, file, least_columns, text));
+    CHECK(read_rows(table, file, demand, text));
     read_comments(table, text);
 done:
     memory_free(text);
@@ -165,7 +191,17 @@ done:
     return status;
 }
 
+enum status data_table_read(struct data_table *table, const char *file, size_t least_columns) {
+    return read_table(table, file, &(struct demand){.columns = least_columns});
+}
+
+enum status data_table_read_flagged(struct data_table *table, const char *file,
+                                    size_t least_columns) {
+    return read_table(table, file, &(struct demand){.columns = least_columns, .flagged = true});
+}
+
 void data_table_clear(struct data_table *table) {
+    memory_free(table->flags);
     memory_free(table->values);
     memory_free(table->line);
     memory_free(table->header);

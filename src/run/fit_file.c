@@ -47,7 +47,7 @@ static const int64_t genes_of_curve[] = {[INVERSE_CURVE_BEZIER] = 100,
                                          [INVERSE_CURVE_POWER] = INVERSE_POWER_GENES};
 
 static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind kind,
-                                struct json_object *object) {
+                                struct json_object *object, const struct units *units) {
     const struct curve_family *const *laws =
         kind == UNKNOWN_POTENTIAL ? curve_potentials : curve_weights;
     json_fields(object, unknown_fields(kind), &unknown->parameters);
@@ -64,8 +64,8 @@ static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind k
     if (kind == UNKNOWN_WEIGHT && p->cutoff <= p->inner_cutoff)
         json_fault(object, "cutoff", "%g is not above the inner cutoff %g", p->cutoff,
                    p->inner_cutoff);
-    TRY(scene_read_curve(&unknown->start, object, "start", laws));
-    TRY(scene_read_curve(&unknown->truth, object, "truth", laws));
+    TRY(scene_read_curve(&unknown->start, object, "start", laws, units));
+    TRY(scene_read_curve(&unknown->truth, object, "truth", laws, units));
     json_finish(object);
     return STATUS_OK;
 }
@@ -76,7 +76,7 @@ static enum status read_unknowns(struct fit_file *fit, struct json_object *root)
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         struct json_object child = json_child(&object, inverse_unknown_names[kind], false);
         fit->unknown[kind].wanted = child.item != NULL;
-        TRY(read_unknown(&fit->unknown[kind], kind, &child));
+        TRY(read_unknown(&fit->unknown[kind], kind, &child, &fit->scene.units));
     }
     if (object.item) {
         json_finish(&object);
@@ -88,17 +88,28 @@ static enum status read_unknowns(struct fit_file *fit, struct json_object *root)
     return STATUS_OK;
 }
 
+/// The scene leaves out what "unknowns" names.
+static enum status read_scene(struct fit_file *fit, struct json_object *root) {
+    struct json_object scene = json_child(root, "scene", true);
+    if (scene.item == NULL)
+        return STATUS_OK;
+    int unknown = SCENE_FITS_POTENTIAL;
+    if (json_has(root, "unknowns")) {
+        struct json_object unknowns = json_child(root, "unknowns", false);
+        unknown = (json_has(&unknowns, inverse_unknown_names[0]) ? SCENE_FITS_POTENTIAL : 0) |
+                  (json_has(&unknowns, inverse_unknown_names[1]) ? SCENE_FITS_WEIGHT : 0);
+    }
+    TRY(scene_read(&fit->scene, &scene, unknown));
+    json_finish(&scene);
+    return STATUS_OK;
+}
+
 static enum status read_root(struct fit_file *fit, struct json_object *root) {
     json_fields(root, heading_fields, &fit->heading);
-    TRY(targets_read(&fit->targets, root));
+    // Before what its units convert.
+    TRY(read_scene(fit, root));
+    TRY(targets_read(&fit->targets, root, &fit->scene.units));
     TRY(read_unknowns(fit, root));
-    struct json_object scene = json_child(root, "scene", true);
-    if (scene.item) {
-        const int unknown = (fit->unknown[UNKNOWN_POTENTIAL].wanted ? SCENE_FITS_POTENTIAL : 0) |
-                            (fit->unknown[UNKNOWN_WEIGHT].wanted ? SCENE_FITS_WEIGHT : 0);
-        TRY(scene_read(&fit->scene, &scene, unknown));
-        json_finish(&scene);
-    }
     TRY(read_method(fit, root));
     struct json_object core = json_child(root, "core", false);
     json_fields(&core, fit_core_fields, &fit->core);

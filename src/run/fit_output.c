@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "io/data_table.h"
+#include "io/votca.h"
 #include "mesofit.h"
 
 #include <math.h>
@@ -64,6 +65,10 @@ static enum status write_potential(const struct fit_file *fit, const struct deco
     }
     run_folder_file(folder, "potential.tsv", path);
     CHECK(data_table_write(path, NULL, columns, count, points));
+    if (units_known(units)) {
+        run_folder_file(folder, "potential.pot", path);
+        CHECK(votca_write(path, nanometres, energy, points, decoder->potential.core));
+    }
 done:
     table_clear(&table);
     memory_free(force);

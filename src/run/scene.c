@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "curves/sampled.h"
 #include "io/data_table.h"
+#include "io/votca.h"
 #include "run/checkpoint.h"
 
 /// The members of a scene that stand at its top.
@@ -42,32 +43,68 @@ const struct field scene_fields[] = {
     FIELD_END,
 };
 
-/// Points of a table file for a curve of the law "table".
-static enum status load_points(struct curve *curve, struct json_object *object) {
-    struct sampled_parameters *parameters = curve->parameters;
+/// The first two columns of a file as points. Faults go to the document and leave `count` 0.
+static enum status read_columns(const char *file, double **r, double **value, size_t *count) {
     struct data_table table = {0};
-    double *r = NULL, *value = NULL;
-    enum status status = data_table_read(&table, parameters->file, 2);
-    if (status == STATUS_OK)
-        status = data_table_check_increasing(&table, parameters->file, 0, 0);
-    if (status != STATUS_OK) {
-        json_fault(object, "file", "%s", status_message());
-        data_table_clear(&table);
-        return status == STATUS_NO_MEMORY ? status : STATUS_OK;
-    }
-    NEW_ARRAY(r, table.rows);
-    NEW_ARRAY(value, table.rows);
+    enum status status = STATUS_OK;
+    CHECK(data_table_read(&table, file, 2));
+    CHECK(data_table_check_increasing(&table, file, 0, 0));
+    NEW_ARRAY(*r, table.rows);
+    NEW_ARRAY(*value, table.rows);
     for (size_t k = 0; k < table.rows; k++) {
-        r[k] = table.values[k * table.columns];
-        value[k] = table.values[k * table.columns + 1];
+        (*r)[k] = table.values[k * table.columns];
+        (*value)[k] = table.values[k * table.columns + 1];
     }
-    if (sampled_set_points(curve, r, value, table.rows) != STATUS_OK)
-        json_fault(object, "file", "%s: %s", parameters->file, status_message());
+    *count = table.rows;
 done:
-    memory_free(r);
-    memory_free(value);
     data_table_clear(&table);
     return status;
+}
+
+/// VOTCA's points, from nm and kJ/mol.
+static enum status read_votca(const char *file, const struct units *units, double **r,
+                              double **value, size_t *count) {
+    struct votca_table table = {0};
+    enum status status = STATUS_OK;
+    CHECK(votca_read(&table, file));
+    NEW_ARRAY(*r, table.rows);
+    NEW_ARRAY(*value, table.rows);
+    for (size_t k = 0; k < table.rows; k++) {
+        if (table.x[k] < 0) {
+            status = status_fail(STATUS_BAD_INPUT, "%s:%zu: r = %g is negative", file,
+                                 table.line[k], table.x[k]);
+            goto done;
+        }
+        (*r)[k] = table.x[k] / units->length;
+        (*value)[k] = table.y[k] / units_energy_kj_per_mol(units);
+    }
+    *count = table.rows;
+done:
+    votca_clear(&table);
+    return status;
+}
+
+/// Points of a table file for a curve of the law "table".
+static enum status load_points(struct curve *curve, struct json_object *object,
+                               const struct units *units) {
+    struct sampled_parameters *parameters = curve->parameters;
+    double *r = NULL, *value = NULL;
+    size_t count = 0;
+    enum status status = STATUS_OK;
+    if (parameters->format == SAMPLED_VOTCA && !units_known(units)) {
+        json_fault(object, "format", "VOTCA's nm and kJ/mol need \"units\" in the scene");
+        return STATUS_OK;
+    }
+    status = parameters->format == SAMPLED_VOTCA
+                 ? read_votca(parameters->file, units, &r, &value, &count)
+                 : read_columns(parameters->file, &r, &value, &count);
+    if (status != STATUS_OK)
+        json_fault(object, "file", "%s", status_message());
+    else if (sampled_set_points(curve, r, value, count) != STATUS_OK)
+        json_fault(object, "file", "%s: %s", parameters->file, status_message());
+    memory_free(r);
+    memory_free(value);
+    return status == STATUS_NO_MEMORY ? status : STATUS_OK;
 }
 
 /// A table that could not be loaded has no points: forget the curve, the fault is recorded.
@@ -77,7 +114,7 @@ static bool is_usable(const struct curve *curve) {
 }
 
 enum status scene_read_curve(struct curve *curve, struct json_object *parent, const char *key,
-                             const struct curve_family *const *list) {
+                             const struct curve_family *const *list, const struct units *units) {
     enum { MOST = 16 };
     const char *names[MOST] = {"none"};
     for (size_t k = 0; list[k] && k + 2 < MOST; k++)
@@ -92,7 +129,7 @@ enum status scene_read_curve(struct curve *curve, struct json_object *parent, co
         TRY(curve_create(curve, family));
         json_fields(&object, family->fields, curve->parameters);
         if (family == &sampled_family && json_fault_count(object.document) == faults)
-            TRY(load_points(curve, &object));
+            TRY(load_points(curve, &object, units));
         if (!is_usable(curve))
             curve_clear(curve);
     }
@@ -102,7 +139,7 @@ enum status scene_read_curve(struct curve *curve, struct json_object *parent, co
 }
 
 static enum status read_weight(struct scene *scene, struct json_object *object) {
-    TRY(scene_read_curve(&scene->weight, object, "dissipative", curve_weights));
+    TRY(scene_read_curve(&scene->weight, object, "dissipative", curve_weights, &scene->units));
     if (scene->weight.family == NULL)
         return STATUS_OK;
     TRY(table_init_weight(&scene->weight_table, &scene->weight));
@@ -208,22 +245,23 @@ static enum status read_particles(struct scene *scene, struct json_object *objec
 
 enum status scene_read(struct scene *scene, struct json_object *object, int unknown) {
     *scene = (struct scene){.unknown = unknown};
+    struct json_object units = json_child(object, "units", false);
+    json_fields(&units, units_fields, &scene->units);
+    if (units.item)
+        json_finish(&units);
     read_top(scene, object);
     TRY(read_particles(scene, object));
     if (unknown == SCENE_FITS_WEIGHT) // between what particles, a fit would ask in vain
         json_child(object, "conservative", true);
     if (!(unknown & SCENE_FITS_POTENTIAL)) {
-        TRY(scene_read_curve(&scene->potential, object, "conservative", curve_potentials));
+        TRY(scene_read_curve(&scene->potential, object, "conservative", curve_potentials,
+                             &scene->units));
         if (scene->potential.family)
             TRY(table_init_potential(&scene->potential_table, &scene->potential));
     }
     if (!(unknown & SCENE_FITS_WEIGHT))
         TRY(read_weight(scene, object));
     read_dynamics(scene, object, unknown);
-    struct json_object units = json_child(object, "units", false);
-    json_fields(&units, units_fields, &scene->units);
-    if (units.item)
-        json_finish(&units);
     scene->setup.potential = scene->potential.family ? &scene->potential_table : NULL;
     scene->setup.weight = scene->weight.family ? &scene->weight_table : NULL;
     return STATUS_OK;

@@ -3,14 +3,22 @@
 
 #include "base/memory.h"
 #include "io/data_table.h"
+#include "io/votca.h"
 
 #include <math.h>
+
+static const char *const formats[] = {"columns", "votca", NULL};
 
 #define MEMBER(name) .offset = offsetof(struct target_parameters, name)
 #define COLUMN .maximum = 1000, .unit = ""
 const struct field target_fields[] = {
     {"file", FIELD_FILE, MEMBER(file), .required = true, .unit = "",
      .help = "g(r) at equally spaced bin centres, in units of the scene"},
+    {"format", FIELD_CHOICE, MEMBER(format), .choices = formats, .initial = TARGET_COLUMNS,
+     .unit = "",
+     .help = "votca: a .dist.tgt in nm, by the scene's \"units\"; its columns are known"},
+    {"cutoff", FIELD_NUMBER, MEMBER(cutoff), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
+     .unit = "lambda", .help = "bins with centres beyond are left out; 0: none"},
     {"r_column", FIELD_INTEGER, MEMBER(r_column), .initial = 1, .minimum = 1, COLUMN,
      .help = "number of the column with the bin centres, from 1"},
     {"g_column", FIELD_INTEGER, MEMBER(g_column), .initial = 2, .minimum = 1, COLUMN,
@@ -24,18 +32,93 @@ const struct field target_fields[] = {
     FIELD_END,
 };
 
+/// Rows of a file, in units of the scene.
+struct rows {
+    size_t count;
+    double *r, *g, *error;
+    size_t *line;
+};
+
+static void rows_clear(struct rows *rows) {
+    memory_free(rows->r);
+    memory_free(rows->g);
+    memory_free(rows->error);
+    memory_free(rows->line);
+}
+
+static enum status rows_allocate(struct rows *rows, size_t count) {
+    enum status status = STATUS_OK;
+    rows->count = count;
+    NEW_ARRAY(rows->r, count);
+    NEW_ARRAY(rows->g, count);
+    NEW_ARRAY(rows->error, count);
+    NEW_ARRAY(rows->line, count);
+done:
+    return status;
+}
+
 static double cell(const struct data_table *table, size_t row, int64_t column) {
     return table->values[row * table->columns + (size_t)column - 1];
 }
 
+static enum status read_columns(const struct target_parameters *p, struct rows *rows) {
+    enum status status = STATUS_OK;
+    struct data_table table = {0};
+    const int64_t most = p->r_column > p->g_column ? p->r_column : p->g_column;
+    const int64_t columns = p->error_column > most ? p->error_column : most;
+    CHECK(data_table_read(&table, p->file, (size_t)columns));
+    CHECK(data_table_check_increasing(&table, p->file, (size_t)p->r_column - 1, 0));
+    CHECK(rows_allocate(rows, table.rows));
+    for (size_t k = 0; k < table.rows; k++) {
+        rows->r[k] = cell(&table, k, p->r_column);
+        rows->g[k] = cell(&table, k, p->g_column);
+        rows->error[k] = p->error_column ? cell(&table, k, p->error_column) : 0;
+        rows->line[k] = table.line[k];
+    }
+done:
+    data_table_clear(&table);
+    return status;
+}
+
+/// From nm. VOTCA's bin about r = 0 is half a bin, and empty: it is left out.
+static enum status read_votca(const struct target_parameters *p, const struct units *units,
+                              struct rows *rows) {
+    enum status status = STATUS_OK;
+    struct votca_table table = {0};
+    CHECK(votca_read(&table, p->file));
+    const size_t first = table.rows > 0 && table.x[0] == 0 && table.y[0] == 0;
+    CHECK(rows_allocate(rows, table.rows - first));
+    for (size_t k = first; k < table.rows; k++) {
+        rows->r[k - first] = table.x[k] / units->length;
+        rows->g[k - first] = table.y[k];
+        rows->error[k - first] = table.error[k];
+        rows->line[k - first] = table.line[k];
+    }
+    for (size_t k = 1; k < rows->count; k++)
+        if (!(rows->r[k] > rows->r[k - 1])) {
+            status = status_fail(STATUS_BAD_INPUT, "%s:%zu: column 1 does not grow", p->file,
+                                 rows->line[k]);
+            goto done;
+        }
+done:
+    votca_clear(&table);
+    return status;
+}
+
+/// Leave out what lies beyond the cutoff.
+static void cut(const struct target_parameters *p, struct rows *rows) {
+    // One part in 10^9 forgives a rounded cutoff.
+    while (p->cutoff > 0 && rows->count > 0 && rows->r[rows->count - 1] > p->cutoff * (1 + 1e-9))
+        rows->count--;
+}
+
 /// The row whose step from the one before is farthest from `width`, the mean step: with a gap, the
 /// row behind it.
-static size_t oddest_row(const struct data_table *table, int64_t column, double width,
-                         double *step) {
+static size_t oddest_row(const struct rows *rows, double width, double *step) {
     size_t oddest = 1;
     *step = width;
-    for (size_t k = 1; k < table->rows; k++) {
-        const double here = cell(table, k, column) - cell(table, k - 1, column);
+    for (size_t k = 1; k < rows->count; k++) {
+        const double here = rows->r[k] - rows->r[k - 1];
         if (fabs(here - width) > fabs(*step - width)) {
             oddest = k;
             *step = here;
@@ -45,69 +128,66 @@ static size_t oddest_row(const struct data_table *table, int64_t column, double 
 }
 
 /// Bins from their centres, which must be equally spaced to the digits of the file.
-static enum status find_bins(const struct data_table *table, const struct target_parameters *p,
-                             struct rdf_bins *bins) {
-    TRY(data_table_check_increasing(table, p->file, (size_t)p->r_column - 1, 0));
-    if (table->rows < 4)
-        return status_fail(STATUS_BAD_INPUT, "%s: only %zu bins", p->file, table->rows);
-    const double first = cell(table, 0, p->r_column);
-    const double width =
-        (cell(table, table->rows - 1, p->r_column) - first) / (double)(table->rows - 1);
+static enum status find_bins(const struct rows *rows, const char *file, struct rdf_bins *bins) {
+    if (rows->count < 4)
+        return status_fail(STATUS_BAD_INPUT, "%s: only %zu bins", file, rows->count);
+    const double first = rows->r[0];
+    const double width = (rows->r[rows->count - 1] - first) / (double)(rows->count - 1);
     double step;
-    const size_t oddest = oddest_row(table, p->r_column, width, &step);
+    const size_t oddest = oddest_row(rows, width, &step);
     if (fabs(step / width - 1) > 0.01)
         return status_fail(STATUS_BAD_INPUT,
                            "%s:%zu: the bins are not equally spaced: a step of %g where the mean "
                            "is %g (a gap in the target?)",
-                           p->file, table->line[oddest], step, width);
+                           file, rows->line[oddest], step, width);
     // First edges come out as 0 but for the file's rounding.
     const double low = first - 0.5 * width;
     if (low < -0.01 * width)
         return status_fail(STATUS_BAD_INPUT,
-                           "%s:%zu: r = %g is not the centre of a bin of width %g", p->file,
-                           table->line[0], first, width);
+                           "%s:%zu: r = %g is not the centre of a bin of width %g", file,
+                           rows->line[0], first, width);
     *bins = (struct rdf_bins){
-        .low = fabs(low) < 0.01 * width ? 0 : low, .width = width, .count = table->rows};
+        .low = fabs(low) < 0.01 * width ? 0 : low, .width = width, .count = rows->count};
     return STATUS_OK;
 }
 
-static enum status take_values(struct target *target, const struct data_table *table) {
+static enum status check_values(const struct rows *rows, const char *file) {
+    for (size_t k = 0; k < rows->count; k++)
+        if (rows->g[k] < 0 || rows->error[k] < 0)
+            return status_fail(STATUS_BAD_INPUT, "%s:%zu: a negative g or error", file,
+                               rows->line[k]);
+    return STATUS_OK;
+}
+
+static enum status load(struct target *target, const struct units *units) {
     enum status status = STATUS_OK;
     const struct target_parameters *p = &target->parameters;
-    NEW_ARRAY(target->g, table->rows);
-    NEW_ARRAY(target->error, table->rows);
-    for (size_t k = 0; k < table->rows; k++) {
-        target->g[k] = cell(table, k, p->g_column);
-        target->error[k] = p->error_column ? cell(table, k, p->error_column) : 0;
-        if (target->g[k] < 0 || target->error[k] < 0) {
-            status = status_fail(STATUS_BAD_INPUT, "%s:%zu: a negative g or error", p->file,
-                                 table->line[k]);
-            goto done;
-        }
-    }
+    struct rows rows = {0};
+    CHECK(p->format == TARGET_VOTCA ? read_votca(p, units, &rows) : read_columns(p, &rows));
+    cut(p, &rows);
+    CHECK(find_bins(&rows, p->file, &target->bins));
+    CHECK(check_values(&rows, p->file));
+    target->g = rows.g;
+    target->error = rows.error;
+    rows.g = rows.error = NULL;
 done:
+    rows_clear(&rows);
     return status;
 }
 
-static enum status load(struct target *target, struct data_table *table) {
-    const struct target_parameters *p = &target->parameters;
-    const int64_t most = p->r_column > p->g_column ? p->r_column : p->g_column;
-    const int64_t columns = p->error_column > most ? p->error_column : most;
-    TRY(data_table_read(table, p->file, (size_t)columns));
-    TRY(find_bins(table, p, &target->bins));
-    return take_values(target, table);
-}
-
-enum status target_read(struct target *target, struct json_object *object) {
+enum status target_read(struct target *target, struct json_object *object,
+                        const struct units *units) {
     *target = (struct target){0};
     const size_t faults = json_fault_count(object->document);
     json_fields(object, target_fields, &target->parameters);
     json_finish(object);
     if (json_fault_count(object->document) > faults)
         return STATUS_OK;
-    struct data_table table = {0};
-    const enum status status = load(target, &table);
-    data_table_clear(&table);
+    if (target->parameters.format == TARGET_VOTCA && !units_known(units)) {
+        json_fault(object, "format", "VOTCA's nm need \"units\" in the scene");
+        return STATUS_OK;
+    }
+    const enum status status = load(target, units);
     if (status == STATUS_NO_MEMORY)
         return status;
     if (status != STATUS_OK)
@@ -116,9 +196,12 @@ enum status target_read(struct target *target, struct json_object *object) {
 }
 
 void target_convert(struct target *target, size_t count) {
-    if (target->parameters.particles == 0)
+    const bool votca = target->parameters.format == TARGET_VOTCA;
+    if (target->parameters.particles == 0 && !votca)
         return;
-    const double factor = rdf_finite_size_factor((size_t)target->parameters.particles, count);
+    const double factor = votca
+                              ? 1 / (1 - 1 / (double)count)
+                              : rdf_finite_size_factor((size_t)target->parameters.particles, count);
     for (size_t k = 0; k < target->bins.count; k++) {
         target->g[k] *= factor;
         target->error[k] *= factor;

@@ -115,10 +115,10 @@ static enum status read_number(struct target_number *number, struct json_object 
 
 /// What belongs to one kind alone.
 static enum status read_kind(struct targets *targets, enum goal_kind kind,
-                             struct json_object *object) {
+                             struct json_object *object, const struct units *units) {
     switch (kind) {
     case GOAL_RDF:
-        return target_read(&targets->rdf, object);
+        return target_read(&targets->rdf, object, units);
     case GOAL_ETD:
         return target_etd_read(&targets->etd, object);
     case GOAL_VACF:
@@ -143,7 +143,8 @@ static void check_motion(const struct targets *targets, struct json_object *obje
         json_fault(object, "msd", "must have the times of \"vacf\"");
 }
 
-enum status targets_read(struct targets *targets, struct json_object *root) {
+enum status targets_read(struct targets *targets, struct json_object *root,
+                         const struct units *units) {
     *targets = (struct targets){0};
     struct json_object object = json_child(root, "target", true);
     if (object.item == NULL)
@@ -154,7 +155,7 @@ enum status targets_read(struct targets *targets, struct json_object *root) {
         json_fields(&child, targets_goal_fields, &targets->goal[kind]);
         if (!targets->given[kind])
             continue;
-        TRY(read_kind(targets, kind, &child));
+        TRY(read_kind(targets, kind, &child, units));
     }
     json_finish(&object);
     check_motion(targets, &object);

@@ -6,6 +6,9 @@
 
 #include <stdio.h>
 
+/// λ is half a nanometre, k_B T_0 2.5 kJ/mol.
+static const struct units units = {.length = 0.5, .temperature = 300.68, .mass = 1e-26};
+
 /// Read the target `table` with more members of its object; the status is that of the document.
 static enum status read(void **state, const char *table, const char *members,
                         struct target *target) {
@@ -16,7 +19,7 @@ static enum status read(void **state, const char *table, const char *members,
     assert_ok(json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
     struct json_object root = json_root(document);
     struct json_object object = json_child(&root, "rdf", true);
-    assert_ok(target_read(target, &object));
+    assert_ok(target_read(target, &object, &units));
     json_finish(&root);
     return json_close(document);
 }
@@ -100,8 +103,37 @@ static void test_target_read_refuses_what_is_no_g_of_r(void **state) {
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, temporary_folder_create, temporary_folder_remove)
 
+#define VOTCA ", \"format\": \"votca\""
+
+static void test_target_read_takes_votca_in_nanometres(void **state) {
+    struct target target;
+    // A bin about 0 is half a bin, and what is not flagged i is not measured.
+    assert_ok(read(state, "0 0 i\n0.1 0 i\n0.2 0.5 i\n0.3 1.5 i\n0.4 1 i\n0.5 1 i\n0.6 9 o\n",
+                   VOTCA ", \"cutoff\": 0.8", &target));
+    assert_int_equal(target.bins.count, 4);
+    assert_close(target.bins.low, 0.1, 1e-15);
+    assert_close(target.bins.width, 0.2, 1e-15);
+    assert_identical(target.g[2], 1.5);
+    assert_identical(target.error[2], 0);
+    // Normalised by N².
+    target_convert(&target, 11);
+    assert_close(target.g[2], 1.65, 1e-15);
+    target_clear(&target);
+}
+
+static void test_target_read_refuses_what_votca_does_not_write(void **state) {
+    assert_refused(state, "0.1 0 i\n0.2 0.5 o\n0.3 1.5 i\n0.4 1 i\n", VOTCA, "g.tsv:2: flagged o");
+    assert_refused(state, "0.1 0 i\n0.3 0.5 i\n0.2 1.5 i\n0.4 1 i\n", VOTCA,
+                   "g.tsv:3: column 1 does not grow");
+    assert_refused(state, "0.1 0 0\n0.2 0.5 0\n0.3 1.5 0\n0.4 1 0\n", VOTCA,
+                   "g.tsv:1: the row does not end with a letter");
+    assert_refused(state, "0.1 0 i\n0.2 0 i\n0.3 -1.5 i\n0.4 1 i\n", VOTCA, "g.tsv:3: a negative");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        TEST(test_target_read_takes_votca_in_nanometres),
+        TEST(test_target_read_refuses_what_votca_does_not_write),
         TEST(test_target_read_takes_the_bins_from_their_centres),
         TEST(test_target_read_lets_the_first_bin_begin_above_0),
         TEST(test_target_read_forgives_the_rounding_of_the_file),
