@@ -94,6 +94,7 @@ struct inverse_folder {
 enum { INVERSE_MAX_SPANS = 512 };
 
 struct optimiser;
+struct inversion;
 
 /// What a method measures of an evaluation.
 struct inverse_sampling {
@@ -115,6 +116,9 @@ struct inverse_method {
     const char *const *columns;        ///< names of `extra`, NULL-terminated
     bool fits[UNKNOWNS];               ///< what it can find
     const struct optimiser *optimiser; ///< that matching drives, or NULL
+    /// The step of an inversion (inverse/inversion.h) from its samples: `step` and `error` of the
+    /// known bins, and two columns of the method's own. NULL of other methods.
+    enum status (*update)(struct inversion *inversion, double extra[2]);
     enum status (*create)(void *state, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters);
     void (*destroy)(void *state);
@@ -131,7 +135,7 @@ struct inverse_method {
 /// All methods, NULL-terminated.
 extern const struct inverse_method *const inverse_methods[];
 
-extern const struct inverse_method imc;
+extern const struct inverse_method imc, ibi, hnc;
 extern const struct inverse_method gauss_newton;
 extern const struct inverse_method pareto;
 extern const struct inverse_method matching_genetic, matching_cmaes, matching_nlopt;

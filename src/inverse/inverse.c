@@ -39,4 +39,5 @@ const struct field inverse_weight_fields[] = {
 };
 
 const struct inverse_method *const inverse_methods[] = {
-    &imc, &matching_genetic, &matching_cmaes, &matching_nlopt, &gauss_newton, &pareto, NULL};
+    &imc,          &ibi,    &hnc, &matching_genetic, &matching_cmaes, &matching_nlopt,
+    &gauss_newton, &pareto, NULL};

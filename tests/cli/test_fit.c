@@ -27,9 +27,12 @@ static const char fit[] =
     "\"method\": {" METHOD "}, \"core\": {\"threshold\": 0.05, \"stiffness\": 50},\n"
     "\"verification\": {\"replicas\": 2, \"equilibration\": 50, \"samples\": 10, \"every\": 5}}\n";
 
-#define IMC                                                                                        \
-    "\"name\": \"imc\", \"replicas\": 4, \"equilibration\": 10, \"samples\": 30, \"every\": 2, "   \
+#define INVERSION(name)                                                                            \
+    "\"name\": \"" name                                                                            \
+    "\", \"replicas\": 4, \"equilibration\": 10, \"samples\": 30, \"every\": 2, "                  \
     "\"iterations\": 4, \"precision\": 1e-4"
+
+#define IMC INVERSION("imc")
 
 /// An odd population.
 #define GENETIC(tolerance)                                                                         \
@@ -71,6 +74,16 @@ static void check_threads(int code) {
 
 static void test_imc_gives_the_same_bits_for_any_threads(void **state) {
     write_fit(*state, IMC);
+    check_threads(UNCONVERGED);
+}
+
+static void test_ibi_gives_the_same_bits_for_any_threads(void **state) {
+    write_fit(*state, INVERSION("ibi"));
+    check_threads(UNCONVERGED);
+}
+
+static void test_hnc_gives_the_same_bits_for_any_threads(void **state) {
+    write_fit(*state, INVERSION("hnc"));
     check_threads(UNCONVERGED);
 }
 
@@ -122,6 +135,45 @@ static void check_interruption(int code) {
 static void test_interrupted_imc_goes_on_with_the_same_bits(void **state) {
     write_fit(*state, IMC);
     check_interruption(UNCONVERGED);
+}
+
+static void test_interrupted_ibi_goes_on_with_the_same_bits(void **state) {
+    write_fit(*state, INVERSION("ibi"));
+    check_interruption(UNCONVERGED);
+}
+
+static void test_interrupted_hnc_goes_on_with_the_same_bits(void **state) {
+    write_fit(*state, INVERSION("hnc") ", \"ridge\": 0.5");
+    check_interruption(UNCONVERGED);
+}
+
+/// λ is half a nanometre, k_B T_0 2.494 kJ/mol.
+#define UNITS ", \"units\": {\"length\": 0.5, \"temperature\": 300, \"mass\": 1e-26}"
+
+/// A fit with units and what stands for VOTCA in it.
+#define VOTCA_FIT(start, units)                                                                    \
+    "{\"seed\": 3, \"target\": {\"rdf\": {\"file\": \"target/rdf.tsv\"}},\n"                       \
+    "\"unknowns\": {\"potential\": {" start "}},\n"                                                \
+    "\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, \"time_step\": 0.02" units    \
+    "},\n\"method\": {" INVERSION(                                                                 \
+        "imc") ", \"regularisation\": \"votca\", \"strength\": 1000},\n"                           \
+               "\"core\": {\"threshold\": 0.05}, \"verification\": {\"equilibration\": 50, "       \
+               "\"samples\": 10, \"every\": 5}}\n"
+#define VOTCA_START                                                                                \
+    "\"start\": {\"law\": \"table\", \"file\": \"one/potential.pot\", \"format\": \"votca\"}"
+
+static void test_potential_for_votca_is_read_again(void **state) {
+    static struct run_program_result result;
+    write_fit(*state, IMC); // for the target
+    small_inputs_write(*state, "run.json", VOTCA_FIT("", UNITS), NULL, NULL);
+    run_fit("one", "2", UNCONVERGED);
+    small_inputs_write(*state, "run.json", VOTCA_FIT(VOTCA_START, UNITS), NULL, NULL);
+    run_fit("two", "2", UNCONVERGED);
+    small_inputs_write(*state, "run.json", VOTCA_FIT(VOTCA_START, ""), NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "three", "--quiet");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "unknowns.potential.start.format");
+    assert_contains(result.err, "\"units\"");
 }
 
 static void test_explain_tells_how_an_evaluation_measures_the_rdf(void **state) {
@@ -272,6 +324,11 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_results_are_drawn_compared_and_drawn_again),
         TEST_WITHOUT_FIGURES(test_imc_gives_the_same_bits_for_any_threads),
+        TEST_WITHOUT_FIGURES(test_ibi_gives_the_same_bits_for_any_threads),
+        TEST_WITHOUT_FIGURES(test_hnc_gives_the_same_bits_for_any_threads),
+        TEST_WITHOUT_FIGURES(test_interrupted_ibi_goes_on_with_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_interrupted_hnc_goes_on_with_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_potential_for_votca_is_read_again),
         TEST_WITHOUT_FIGURES(test_genetic_gives_the_same_bits_for_any_threads),
         TEST_WITHOUT_FIGURES(test_imc_gives_the_same_bits_from_its_used_settings),
         TEST_WITHOUT_FIGURES(test_genetic_gives_the_same_bits_from_its_used_settings),

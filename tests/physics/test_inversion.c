@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Inverse Monte Carlo finds a known potential from its own g(r), but for the direction that g(r)
-// hardly sees: the ramp A (1 − r/r_c).
+// Inverse Monte Carlo, Boltzmann and hypernetted-chain inversion find a known potential from its
+// own g(r), but for the direction that g(r) hardly sees: the ramp A (1 − r/r_c).
 #include "curves/formula.h"
 #include "dynamics/metropolis.h"
-#include "inverse/inverse.h"
+#include "inverse/inversion.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
@@ -79,38 +79,41 @@ static void ignore(void *context, const struct inverse_progress *progress) {
 
 /// Set an integer parameter of the method by its name.
 static void set_parameter(void *parameters, const char *name, int64_t value) {
-    for (const struct field *field = imc.tables[0]; field->name; field++)
+    for (const struct field *field = inversion_fields; field->name; field++)
         if (strcmp(field->name, name) == 0) {
             memcpy((char *)parameters + field->offset, &value, sizeof value);
             return;
         }
-    fail_msg("imc has no parameter \"%s\"", name);
+    fail_msg("there is no parameter \"%s\"", name);
 }
 
 /// Invert until the method says that it is done, or `iterations`; returns phi of the best.
-static void invert(const struct inverse_problem *problem, double *phi, struct inverse_step *step) {
+static void invert(const struct inverse_method *method, const struct inverse_problem *problem,
+                   double *phi, struct inverse_step *step) {
     const struct inverse_listener listener = {ignore, NULL};
-    void *state = calloc(1, imc.state_size), *parameters = calloc(1, imc.parameters_size);
+    void *state = calloc(1, method->state_size), *parameters = calloc(1, method->parameters_size);
     assert_non_null(state);
     assert_non_null(parameters);
-    fields_set_defaults(imc.tables[0], parameters);
+    for (size_t k = 0; method->tables[k]; k++)
+        fields_set_defaults(method->tables[k], parameters);
     set_parameter(parameters, "replicas", 4);
     set_parameter(parameters, "samples", 250);
     set_parameter(parameters, "equilibration", 100);
-    set_parameter(parameters, "iterations", 10);
-    assert_ok(imc.create(state, &imc, problem, parameters));
+    set_parameter(parameters, "iterations", 40);
+    assert_ok(method->create(state, method, problem, parameters));
     do {
-        assert_ok(imc.iterate(state, step, &listener));
-        print_message("iteration %u: rms of g %.5f, noise %.5f, misfit %.2f\n", step->iteration,
-                      step->error, step->noise, step->extra[3]);
+        assert_ok(method->iterate(state, step, &listener));
+        print_message("%s, iteration %u: rms of g %.5f, noise %.5f\n", method->name,
+                      step->iteration, step->error, step->noise);
     } while (!step->finished);
     memcpy(phi, step->curve[UNKNOWN_POTENTIAL], (problem->goals.bins.count + 1) * sizeof *phi);
-    imc.destroy(state);
+    method->destroy(state);
     free(state);
     free(parameters);
 }
 
-static void assert_truth_is_found(const struct fluid *fluid, const struct rdf_bins *bins) {
+static void assert_truth_is_found(const struct inverse_method *method, const struct fluid *fluid,
+                                  const struct rdf_bins *bins) {
     double g[MOST_BINS], error[MOST_BINS], start[MOST_BINS], phi[MOST_BINS + 1], ramp, rms;
     struct inverse_step step;
     measure_target(fluid, bins, g, error);
@@ -127,7 +130,7 @@ static void assert_truth_is_found(const struct fluid *fluid, const struct rdf_bi
     compare_with_truth(&problem, start, &ramp, &rms);
     print_message("-ln g: rms without the ramp %.3f, ramp %.3f\n", rms, ramp);
     assert_true(rms > least_start_error);
-    invert(&problem, phi, &step);
+    invert(method, &problem, phi, &step);
     compare_with_truth(&problem, phi, &ramp, &rms);
     print_message("found: rms without the ramp %.4f, ramp %.3f\n", rms, ramp);
     assert_true(step.converged);
@@ -135,12 +138,26 @@ static void assert_truth_is_found(const struct fluid *fluid, const struct rdf_bi
     assert_true(fabs(ramp) < ramp_tolerance);
 }
 
-static void test_imc_finds_the_truth_when_the_potential_is_soft(void **state) {
-    (void)state;
+static void check_soft(const struct inverse_method *method) {
     struct fluid fluid;
     fluid_groot_warren(&fluid, PARTICLES, 0.01);
-    assert_truth_is_found(&fluid, &(struct rdf_bins){0, 0.05, 20});
+    assert_truth_is_found(method, &fluid, &(struct rdf_bins){0, 0.05, 20});
     fluid_clear(&fluid);
+}
+
+static void test_imc_finds_the_truth_when_the_potential_is_soft(void **state) {
+    (void)state;
+    check_soft(&imc);
+}
+
+static void test_ibi_finds_the_truth_when_the_potential_is_soft(void **state) {
+    (void)state;
+    check_soft(&ibi);
+}
+
+static void test_hnc_finds_the_truth_when_the_potential_is_soft(void **state) {
+    (void)state;
+    check_soft(&hnc);
 }
 
 static void test_imc_finds_the_truth_when_it_has_a_core_and_a_well(void **state) {
@@ -153,12 +170,14 @@ static void test_imc_finds_the_truth_when_it_has_a_core_and_a_well(void **state)
     table_clear(&fluid.potential);
     assert_ok(table_init_potential(&fluid.potential, &curve));
     fluid.setup.temperature = 1.5;
-    assert_truth_is_found(&fluid, &(struct rdf_bins){0, 0.06, 30});
+    assert_truth_is_found(&imc, &fluid, &(struct rdf_bins){0, 0.06, 30});
     fluid_clear(&fluid);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_ibi_finds_the_truth_when_the_potential_is_soft),
+        cmocka_unit_test(test_hnc_finds_the_truth_when_the_potential_is_soft),
         cmocka_unit_test(test_imc_finds_the_truth_when_the_potential_is_soft),
         cmocka_unit_test(test_imc_finds_the_truth_when_it_has_a_core_and_a_well),
     };

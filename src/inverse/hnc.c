@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Newton steps with the slope of the hypernetted-chain potential: F. Delbary, M. Hanke and D.
+// Ivanizki, J. Inverse Ill-Posed Probl. 28 (2020). With K the slope of h − c (hnc_closure_slope),
+//   Φ ← Φ + k_B T [ln(g/g*) − K (g − g*)],
+// where ibi takes the first term alone. Differs from it: K is that of the target, at all steps. The
+// whole of h − c instead of its slope (D. Levesque, J. J. Weis and L. Reatto, Phys. Rev. Lett. 54,
+// 451 (1985)) was tried: for water the noise of S at small q made every step but the first useless.
+#include "inverse/hnc_closure.h"
+#include "inverse/inversion.h"
+
+#include <assert.h>
+#include <math.h>
+
+struct own {
+    double ridge;
+};
+
+static_assert(sizeof(struct own) <= sizeof((struct inversion_settings){0}.own), "no room");
+
+static const struct field own_fields[] = {
+    {"ridge", FIELD_NUMBER,
+     .offset = offsetof(struct inversion_settings, own) + offsetof(struct own, ridge),
+     .initial = 0.35, .minimum = 0.01, .maximum = 10, .unit = "",
+     .help = "structure factors below this are not trusted"},
+    FIELD_END,
+};
+
+static const char *const columns[] = {INVERSION_COLUMNS, NULL};
+
+static enum status update(struct inversion *inversion, double extra[2]) {
+    (void)extra;
+    enum status status = STATUS_OK;
+    const struct own *own = (const void *)inversion->settings.own;
+    const struct potential_grid *grid = &inversion->grid;
+    const struct rdf_bins *bins = &inversion->problem->goals.bins;
+    const double least = inversion->problem->core_threshold;
+    double *target = NULL, *difference = NULL, *indirect = NULL;
+    NEW_ARRAY(target, bins->count);
+    NEW_ARRAY(difference, bins->count);
+    NEW_ARRAY(indirect, bins->count);
+    for (size_t k = 0; k < bins->count; k++) {
+        target[k] = inversion_target_g(inversion, k);
+        difference[k] = inversion_g(inversion, k) - target[k];
+    }
+    CHECK(hnc_closure_slope(bins, &inversion->box, inversion->particles, target, difference,
+                            own->ridge, indirect));
+    for (size_t k = grid->core; k < grid->core + grid->known; k++) {
+        // An empty bin is as full as one with the threshold's few pairs.
+        const double ratio = fmax(inversion_g(inversion, k), least) / fmax(target[k], least);
+        inversion->step[k] = inversion->problem->scene.temperature * (log(ratio) - indirect[k]);
+        inversion->error[k] = NAN;
+    }
+done:
+    memory_free(target);
+    memory_free(difference);
+    memory_free(indirect);
+    return status;
+}
+
+static enum status create(void *inversion, const struct inverse_method *method,
+                          const struct inverse_problem *problem, const void *parameters) {
+    if (problem->scene.box.dimensions != 3)
+        return status_fail(STATUS_BAD_INPUT, "method.name: \"hnc\" is for three dimensions");
+    return inversion_create(inversion, method, problem, parameters);
+}
+
+const struct inverse_method hnc = {
+    .name = "hnc",
+    .summary = "Newton steps by the hypernetted chain; F. Delbary, M. Hanke and D. Ivanizki, J. "
+               "Inverse Ill-Posed Probl. 28 (2020)",
+    .tables = (const struct field *const[]){inversion_fields, own_fields, NULL},
+    .parameters_size = sizeof(struct inversion_settings),
+    .state_size = sizeof(struct inversion),
+    .fits = {[UNKNOWN_POTENTIAL] = true},
+    .most_iterations = inversion_most_iterations,
+    .sampling = inversion_sampling,
+    .columns = columns,
+    .update = update,
+    .create = create,
+    .destroy = inversion_destroy,
+    .iterate = inversion_iterate,
+    .spans = inversion_spans,
+};

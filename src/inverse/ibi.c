@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Iterative Boltzmann inversion. D. Reith, M. Pütz and F. Müller-Plathe, J. Comput. Chem. 24, 1624
+// (2003).
+#include "inverse/inversion.h"
+
+#include <math.h>
+
+static const char *const columns[] = {INVERSION_COLUMNS, NULL};
+
+/// k_B T ln(g/g*). It has no error of its own: where it stops, not the noise, decides what is left.
+static enum status update(struct inversion *inversion, double extra[2]) {
+    (void)extra;
+    const struct potential_grid *grid = &inversion->grid;
+    const double least = inversion->problem->core_threshold;
+    for (size_t k = grid->core; k < grid->core + grid->known; k++) {
+        // An empty bin is as full as one with the threshold's few pairs.
+        const double ratio =
+            fmax(inversion_g(inversion, k), least) / fmax(inversion_target_g(inversion, k), least);
+        inversion->step[k] = inversion->problem->scene.temperature * log(ratio);
+        inversion->error[k] = NAN;
+    }
+    return STATUS_OK;
+}
+
+const struct inverse_method ibi = {
+    .name = "ibi",
+    .summary =
+        "iterative Boltzmann inversion; D. Reith, M. Puetz and F. Mueller-Plathe, J. Comput. "
+        "Chem. 24, 1624 (2003)",
+    .tables = (const struct field *const[]){inversion_fields, NULL},
+    .parameters_size = sizeof(struct inversion_settings),
+    .state_size = sizeof(struct inversion),
+    .fits = {[UNKNOWN_POTENTIAL] = true},
+    .most_iterations = inversion_most_iterations,
+    .sampling = inversion_sampling,
+    .columns = columns,
+    .update = update,
+    .create = inversion_create,
+    .destroy = inversion_destroy,
+    .iterate = inversion_iterate,
+    .spans = inversion_spans,
+};

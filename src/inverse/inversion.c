@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "inverse/inversion.h"
+
+#include "inverse/hnc_closure.h"
+
+#include <math.h>
+#include <string.h>
+
+/// The error counts as statistical below this multiple of the noise of target and measurement: the
+/// potential also carries the noise of the measurement before (a factor of up to sqrt 2), and the
+/// errors of a target are themselves known to 10 to 20 %.
+static const double noise_margin = 1.5;
+
+/// Largest change of the potential in one iteration where the target is well known [k_B T_0].
+static const double largest_change = 1;
+
+/// Share of the step where the error is near the noise: what it follows there is noise as much as
+/// error, and a whole step would hand all of it on to the next potential.
+static const double careful = 0.5;
+
+/// The first equilibration of a start is longer: it begins from a lattice.
+enum { FIRST_EQUILIBRATION = 5 };
+
+static const char *const starts[] = {"auto", "mean-force", NULL};
+
+#define MEMBER(name) .offset = offsetof(struct inversion_settings, common.name)
+const struct field inversion_fields[] = {
+    {"particles", FIELD_INTEGER, MEMBER(particles), .initial = 0, .minimum = 0, .maximum = 1e7,
+     .unit = "", .help = "of the Monte Carlo system, at the scene's density; 0 means the scene's"},
+    {"replicas", FIELD_INTEGER, MEMBER(replicas), .initial = 8, .minimum = 2,
+     .maximum = REPLICAS_MOST, .unit = "", .help = "independent Markov chains"},
+    {"equilibration", FIELD_INTEGER, MEMBER(equilibration), .initial = 200, .minimum = 0,
+     .maximum = 1e9, .unit = "sweeps",
+     .help = "before each iteration's samples; five times as "
+             "many before the first"},
+    {"samples", FIELD_INTEGER, MEMBER(samples), .initial = 200, .minimum = 2 * REPLICAS_BLOCKS,
+     .maximum = 1e9, .unit = "",
+     .help = "of each replica in the first iteration; doubled when "
+             "the error has come down to the noise"},
+    {"every", FIELD_INTEGER, MEMBER(every), .initial = 4, .minimum = 1, .maximum = 1e6,
+     .unit = "sweeps", .help = "between samples"},
+    {"iterations", FIELD_INTEGER, MEMBER(iterations), .initial = 30, .minimum = 1, .maximum = 10000,
+     .unit = "", .help = "at most"},
+    {"precision", FIELD_NUMBER, MEMBER(precision), .initial = 0.004, .minimum = FIELD_ABOVE_ZERO,
+     .maximum = 1, .unit = "",
+     .help = "statistical error of g, rms over bins, at which an "
+             "agreement is believed"},
+    {"damping", FIELD_NUMBER, MEMBER(damping), .initial = 1, .minimum = FIELD_ABOVE_ZERO,
+     .maximum = 1, .unit = "", .help = "share of a method's step taken at first; adapts"},
+    {"start", FIELD_CHOICE, MEMBER(start), .choices = starts, .initial = INVERSION_FROM_HNC,
+     .unit = "",
+     .help = "without unknowns.potential.start: the hypernetted-chain inversion, and -k_B T ln g "
+             "where that leads nowhere or in two dimensions; mean-force: -k_B T ln g"},
+    FIELD_END,
+};
+
+struct inverse_sampling inversion_sampling(const void *parameters) {
+    (void)parameters;
+    return (struct inverse_sampling){0};
+}
+
+uint32_t inversion_most_iterations(const struct inverse_method *method,
+                                   const struct inverse_problem *problem, const void *parameters) {
+    (void)method, (void)problem;
+    return (uint32_t)((const struct inversion_settings *)parameters)->common.iterations;
+}
+
+static size_t bin_count(const struct inversion *inversion) {
+    return inversion->problem->goals.bins.count;
+}
+
+void inversion_destroy(void *memory) {
+    struct inversion *inversion = memory;
+    replicas_clear(&inversion->replicas);
+    table_clear(&inversion->table);
+    potential_grid_clear(&inversion->grid);
+    double *arrays[] = {inversion->ideal,     inversion->target_counts, inversion->excess,
+                        inversion->variance,  inversion->phi,           inversion->step,
+                        inversion->error,     inversion->best,          inversion->best_step,
+                        inversion->best_error};
+    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
+        memory_free(arrays[k]);
+}
+
+static enum status allocate(struct inversion *inversion) {
+    enum status status = STATUS_OK;
+    const size_t bins = bin_count(inversion), points = inversion->grid.points;
+    NEW_ARRAY(inversion->ideal, bins);
+    NEW_ARRAY(inversion->target_counts, bins);
+    NEW_ARRAY(inversion->excess, bins);
+    NEW_ARRAY(inversion->variance, bins);
+    NEW_ARRAY(inversion->phi, points);
+    NEW_ARRAY(inversion->step, points);
+    NEW_ARRAY(inversion->error, points);
+    NEW_ARRAY(inversion->best, points);
+    NEW_ARRAY(inversion->best_step, points);
+    NEW_ARRAY(inversion->best_error, points);
+done:
+    return status;
+}
+
+static bool starts_from_hnc(const struct inversion *inversion) {
+    return inversion->problem->unknown[UNKNOWN_POTENTIAL].start == NULL &&
+           inversion->box.dimensions == 3 && inversion->settings.common.start == INVERSION_FROM_HNC;
+}
+
+/// The potential of the first iteration.
+static enum status start(struct inversion *inversion) {
+    const struct inverse_problem *problem = inversion->problem;
+    const struct potential_grid *grid = &inversion->grid;
+    potential_grid_start(grid, problem, inversion->phi);
+    if (!starts_from_hnc(inversion))
+        return STATUS_OK;
+    double *g = inversion->excess, *indirect = inversion->variance; // free until the first samples
+    for (size_t k = 0; k < bin_count(inversion); k++)
+        g[k] = inversion_target_g(inversion, k);
+    TRY(hnc_closure(&problem->goals.bins, &inversion->box, inversion->particles, g, indirect));
+    for (size_t k = grid->core; k + 1 < grid->points; k++)
+        inversion->phi[k] += problem->scene.temperature * indirect[k];
+    potential_grid_complete(grid, inversion->phi);
+    return STATUS_OK;
+}
+
+/// The first step from the hypernetted chain made it worse: begin with the mean force.
+static void start_again(struct inversion *inversion) {
+    potential_grid_start(&inversion->grid, inversion->problem, inversion->phi);
+    inversion->progress.best_rmse = INFINITY;
+    inversion->progress.damping = inversion->settings.common.damping;
+}
+
+enum status inversion_create(void *memory, const struct inverse_method *method,
+                             const struct inverse_problem *problem, const void *parameters) {
+    struct inversion *inversion = memory;
+    const struct rdf_bins *bins = &problem->goals.bins;
+    inversion->settings = *(const struct inversion_settings *)parameters;
+    inversion->method = method;
+    inversion->problem = problem;
+    const struct inversion_parameters *p = &inversion->settings.common;
+    const size_t scene_count = (size_t)problem->scene.placement.count;
+    const size_t count = p->particles > 0 ? (size_t)p->particles : scene_count;
+    inversion->particles = count;
+    inversion->box = problem->scene.box;
+    for (int d = 0; d < inversion->box.dimensions; d++)
+        inversion->box.length[d] *=
+            pow((double)count / (double)scene_count, 1.0 / inversion->box.dimensions);
+    TRY(potential_grid_init(&inversion->grid, problem));
+    TRY(allocate(inversion));
+    const double finite_size = rdf_finite_size_factor(scene_count, count);
+    for (size_t a = 0; a < bins->count; a++) {
+        inversion->ideal[a] = rdf_ideal_pairs(bins, a, &inversion->box, count);
+        inversion->target_counts[a] =
+            inversion->ideal[a] * problem->goals.goal[GOAL_RDF].value[a] * finite_size;
+    }
+    TRY(start(inversion));
+    TRY(potential_grid_table(&inversion->grid, inversion->phi, &inversion->table));
+    TRY(replicas_init(&inversion->replicas, (size_t)p->replicas, bins, &inversion->box, count,
+                      &inversion->table, problem->scene.temperature, problem->seed));
+    inversion->progress =
+        (struct inversion_progress){.effort = 1, .damping = p->damping, .best_rmse = INFINITY};
+    return STATUS_OK;
+}
+
+double inversion_g(const struct inversion *inversion, size_t bin) {
+    return inversion->replicas.counts.mean[bin] / inversion->ideal[bin];
+}
+
+double inversion_target_g(const struct inversion *inversion, size_t bin) {
+    return inversion->target_counts[bin] / inversion->ideal[bin];
+}
+
+/// Fill excess and variance of S; returns rms errors of g over all bins.
+static void assess(struct inversion *inversion, double *rmse, double *noise, double *own_noise) {
+    const size_t bins = bin_count(inversion);
+    const struct comoments *counts = &inversion->replicas.counts;
+    const double independent =
+        counts->count /
+        replicas_inefficiency(&inversion->replicas, inversion->ideal, inversion->grid.core);
+    double sum = 0, own = 0, both = 0;
+    for (size_t a = 0; a < bins; a++) {
+        const double target_error =
+            inversion->ideal[a] * inversion->problem->goals.goal[GOAL_RDF].error[a];
+        // An empty bin still has the uncertainty of one pair.
+        const double sampled =
+            fmax(comoments_covariance(counts, a, a), 1 / counts->count) / independent;
+        inversion->excess[a] = counts->mean[a] - inversion->target_counts[a];
+        inversion->variance[a] = sampled + target_error * target_error;
+        const double unit = 1 / (inversion->ideal[a] * inversion->ideal[a]);
+        if (a >= inversion->grid.core) {
+            own += unit * sampled;
+            both += unit * inversion->variance[a];
+        }
+        sum += unit * inversion->excess[a] * inversion->excess[a];
+    }
+    *rmse = sqrt(sum / (double)bins);
+    *own_noise = sqrt(own / (double)bins);
+    *noise = sqrt(both / (double)bins);
+}
+
+/// phi = best + damping · best_step, with a bound where the target is well known.
+static void take_step(struct inversion *inversion) {
+    const struct potential_grid *grid = &inversion->grid;
+    double largest = 0;
+    for (size_t a = grid->core; a < grid->core + grid->known; a++)
+        if (inversion->problem->goals.goal[GOAL_RDF].value[a] > 0.1)
+            largest = fmax(largest, fabs(inversion->best_step[a]));
+    const struct inversion_progress *progress = &inversion->progress;
+    const double caution = progress->best_rmse < 2 * progress->best_noise ? careful : 1;
+    const double share = fmin(progress->damping * caution, largest_change / fmax(largest, 1e-300));
+    for (size_t a = grid->core; a < grid->core + grid->known; a++)
+        inversion->phi[a] = inversion->best[a] + share * inversion->best_step[a];
+    potential_grid_complete(grid, inversion->phi);
+}
+
+/// Keep the present potential as the best, with the step that leads on from it.
+static void keep(struct inversion *inversion, double rmse, double noise) {
+    const size_t bytes = inversion->grid.points * sizeof(double);
+    memcpy(inversion->best, inversion->phi, bytes);
+    memcpy(inversion->best_step, inversion->step, bytes);
+    memcpy(inversion->best_error, inversion->error, bytes);
+    inversion->progress.best_rmse = rmse;
+    inversion->progress.best_noise = noise;
+}
+
+/// The sweeps and samples of this iteration.
+static struct replicas_plan plan(const struct inversion *inversion) {
+    const struct inversion_parameters *p = &inversion->settings.common;
+    const bool first = isinf(inversion->progress.best_rmse);
+    return (struct replicas_plan){.equilibration =
+                                      p->equilibration * (first ? FIRST_EQUILIBRATION : 1),
+                                  .samples = p->samples * inversion->progress.effort,
+                                  .every = p->every};
+}
+
+static enum status sample(struct inversion *inversion, const struct inverse_listener *listener) {
+    const struct replicas_plan now = plan(inversion);
+    const uint64_t replicas = (uint64_t)inversion->settings.common.replicas;
+    const struct inverse_progress progress = {
+        .iteration = inversion->progress.iteration,
+        .iterations = (uint32_t)inversion->settings.common.iterations,
+        .best = inversion->progress.best_rmse,
+        .mean = NAN,
+    };
+    table_clear(&inversion->table);
+    TRY(potential_grid_table(&inversion->grid, inversion->phi, &inversion->table));
+    TRY(replicas_run(&inversion->replicas, &now, inversion->problem->threads, &progress, listener));
+    inversion->progress.evaluations += replicas;
+    inversion->progress.sweeps +=
+        replicas * (uint64_t)(now.samples * now.every + now.equilibration);
+    return STATUS_OK;
+}
+
+/// Keep the present potential, or go back to the best and take half the step; returns which.
+static bool judge(struct inversion *inversion, double rmse, double noise) {
+    struct inversion_progress *progress = &inversion->progress;
+    // A worse potential than the best, by more than chance.
+    if (rmse > progress->best_rmse + 2 * noise) {
+        progress->damping *= 0.5;
+        return false;
+    }
+    if (progress->iteration > 0)
+        progress->damping = fmin(1, 1.5 * progress->damping);
+    keep(inversion, rmse, noise);
+    return true;
+}
+
+enum status inversion_iterate(void *memory, struct inverse_step *step,
+                              const struct inverse_listener *listener) {
+    struct inversion *inversion = memory;
+    struct inversion_progress *progress = &inversion->progress;
+    const struct inversion_parameters *p = &inversion->settings.common;
+    double rmse, noise, own_noise, extra[2] = {0};
+    TRY(sample(inversion, listener));
+    assess(inversion, &rmse, &noise, &own_noise);
+    TRY(inversion->method->update(inversion, extra));
+    const bool kept = judge(inversion, rmse, noise);
+    const bool agrees = kept && rmse <= noise_margin * noise;
+    const bool precise = own_noise <= p->precision;
+    if (kept && rmse < 2 * noise && !precise)
+        progress->effort *= 2;
+    *step = (struct inverse_step){
+        .iteration = progress->iteration,
+        .evaluations = progress->evaluations,
+        .engine_steps = progress->sweeps,
+        .error = progress->best_rmse,
+        .noise = progress->best_noise,
+        .extra = {progress->damping, own_noise, extra[0], extra[1]},
+        .curve = {inversion->best},
+        .curve_error = {inversion->best_error},
+        .converged = agrees && precise,
+        .finished = (agrees && precise) || progress->iteration + 1 >= p->iterations,
+    };
+    const bool leads_nowhere =
+        !step->finished && !kept && progress->iteration == 1 && starts_from_hnc(inversion);
+    progress->iteration++;
+    if (leads_nowhere)
+        start_again(inversion);
+    else if (!step->finished)
+        take_step(inversion);
+    return STATUS_OK;
+}
+
+size_t inversion_spans(void *memory, struct memory_span *span) {
+    struct inversion *inversion = memory;
+    const size_t bytes = inversion->grid.points * sizeof(double);
+    size_t n = 0;
+    span[n++] = (struct memory_span){&inversion->progress, sizeof inversion->progress};
+    double *arrays[] = {inversion->phi, inversion->best, inversion->best_step,
+                        inversion->best_error};
+    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
+        span[n++] = (struct memory_span){arrays[k], bytes};
+    return n + replicas_spans(&inversion->replicas, span + n);
+}

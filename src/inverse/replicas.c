@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "inverse/replicas.h"
+
+#include "base/rng.h"
+#include "base/statistics.h"
+
+#include <math.h>
+#include <string.h>
+
+enum status replicas_init(struct replicas *replicas, size_t count, const struct rdf_bins *bins,
+                          const struct box *box, size_t particles, const struct table *potential,
+                          double temperature, uint64_t seed) {
+    enum status status = STATUS_OK;
+    *replicas = (struct replicas){.bins = bins, .box = box, .count = count};
+    CHECK(comoments_init(&replicas->counts, bins->count));
+    for (size_t k = 0; k < count; k++) {
+        struct replica *replica = &replicas->member[k];
+        NEW_ARRAY(replica->histogram, bins->count);
+        NEW_ARRAY(replica->block, REPLICAS_BLOCKS * bins->count);
+        CHECK(comoments_init(&replica->counts, bins->count));
+        CHECK(metropolis_init(&replica->sampler, box, particles, potential, temperature,
+                              rng_child_seed(seed, RNG_EVALUATION, (uint32_t)k, 0)));
+    }
+done:
+    return status;
+}
+
+void replicas_clear(struct replicas *replicas) {
+    for (size_t k = 0; k < replicas->count; k++) {
+        struct replica *replica = &replicas->member[k];
+        metropolis_clear(&replica->sampler);
+        comoments_clear(&replica->counts);
+        memory_free(replica->histogram);
+        memory_free(replica->block);
+    }
+    comoments_clear(&replicas->counts);
+    *replicas = (struct replicas){0};
+}
+
+/// Equilibrate one chain, then take its samples block by block.
+static enum status run_one(const struct replicas *replicas, struct replica *replica,
+                           const struct replicas_plan *plan) {
+    const size_t bins = replicas->bins->count;
+    comoments_reset(&replica->counts);
+    memset(replica->block, 0, REPLICAS_BLOCKS * bins * sizeof *replica->block);
+    TRY(metropolis_refresh(&replica->sampler));
+    TRY(metropolis_equilibrate(&replica->sampler, (uint32_t)plan->equilibration));
+    for (int64_t block = 0; block < REPLICAS_BLOCKS; block++) {
+        const int64_t begin = plan->samples * block / REPLICAS_BLOCKS;
+        const int64_t end = plan->samples * (block + 1) / REPLICAS_BLOCKS;
+        for (int64_t sample = begin; sample < end; sample++) {
+            TRY(metropolis_run(&replica->sampler, (uint32_t)plan->every));
+            memset(replica->histogram, 0, bins * sizeof *replica->histogram);
+            rdf_count_pairs(replicas->bins, &replica->sampler.particles,
+                            &replica->sampler.neighbours, replica->histogram);
+            // The sampler's list has each pair from both sides.
+            for (size_t a = 0; a < bins; a++)
+                replica->histogram[a] *= 0.5;
+            comoments_add(&replica->counts, replica->histogram);
+            for (size_t a = 0; a < bins; a++)
+                replica->block[(size_t)block * bins + a] +=
+                    replica->histogram[a] / (double)(end - begin);
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status replicas_run(struct replicas *replicas, const struct replicas_plan *plan, int threads,
+                         const struct inverse_progress *progress,
+                         const struct inverse_listener *listener) {
+    enum status worst = STATUS_OK;
+    uint64_t done = 0;
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
+    for (size_t k = 0; k < replicas->count; k++) {
+        const enum status status = run_one(replicas, &replicas->member[k], plan);
+#pragma omp critical
+        {
+            if (status != STATUS_OK)
+                worst = status;
+            struct inverse_progress now = *progress;
+            now.done = ++done;
+            now.total = replicas->count;
+            listener->tell(listener->context, &now);
+        }
+    }
+    if (worst == STATUS_INTERRUPTED)
+        return status_fail(worst, "interrupted");
+    if (worst != STATUS_OK)
+        return status_fail(worst, "no memory for the Monte Carlo replicas");
+    comoments_reset(&replicas->counts);
+    for (size_t k = 0; k < replicas->count; k++)
+        comoments_merge(&replicas->counts, &replicas->member[k].counts);
+    return STATUS_OK;
+}
+
+double replicas_inefficiency(const struct replicas *replicas, const double *ideal, size_t first) {
+    const size_t bins = replicas->bins->count;
+    double scatter = 0, variance = 0;
+    for (size_t a = first; a < bins; a++) {
+        struct running_mean blocks = {0};
+        for (size_t k = 0; k < replicas->count; k++)
+            for (size_t b = 0; b < REPLICAS_BLOCKS; b++)
+                statistics_add(&blocks, replicas->member[k].block[b * bins + a]);
+        // Weighted by 1/S²: bins with many pairs would drown the others.
+        const double weight = 1 / (ideal[a] * ideal[a]);
+        scatter += weight * blocks.squares / (blocks.count - 1);
+        variance += weight * comoments_covariance(&replicas->counts, a, a);
+    }
+    const double block_samples =
+        replicas->counts.count / (double)(replicas->count * REPLICAS_BLOCKS);
+    return variance > 0 ? fmax(1, scatter / variance * block_samples) : 1;
+}
+
+size_t replicas_spans(struct replicas *replicas, struct memory_span *span) {
+    size_t n = 0;
+    for (size_t k = 0; k < replicas->count; k++) {
+        struct metropolis *sampler = &replicas->member[k].sampler;
+        struct particles *particles = &sampler->particles;
+        for (int d = 0; d < replicas->box->dimensions; d++)
+            span[n++] =
+                (struct memory_span){particles->position[d], particles->count * sizeof(double)};
+        span[n++] = (struct memory_span){particles->id, particles->count * sizeof(uint32_t)};
+        span[n++] = (struct memory_span){&sampler->step, sizeof sampler->step};
+        span[n++] = (struct memory_span){&sampler->sweep, sizeof sampler->sweep};
+    }
+    return n;
+}
