@@ -8,15 +8,13 @@
 
 /// The error counts as statistical below this multiple of the noise of target and measurement: the
 /// potential also carries the noise of the measurement before (a factor of up to sqrt 2), and the
-/// errors of a target are themselves known to 10 to 20 %.
-static const double noise_margin = 1.5;
+/// errors of a target are themselves known to 10 to 20 %. Measured for SPC water: of twelve
+/// iterations of imc that changed no more than noise, one came within 1.5 times the noise, six
+/// within 1.7.
+static const double noise_margin = 1.7;
 
 /// Largest change of the potential in one iteration where the target is well known [k_B T_0].
 static const double largest_change = 1;
-
-/// Share of the step where the error is near the noise: what it follows there is noise as much as
-/// error, and a whole step would hand all of it on to the next potential.
-static const double careful = 0.5;
 
 /// The first equilibration of a start is longer: it begins from a lattice.
 enum { FIRST_EQUILIBRATION = 5 };
@@ -203,9 +201,7 @@ static void take_step(struct inversion *inversion) {
     for (size_t a = grid->core; a < grid->core + grid->known; a++)
         if (inversion->problem->goals.goal[GOAL_RDF].value[a] > 0.1)
             largest = fmax(largest, fabs(inversion->best_step[a]));
-    const struct inversion_progress *progress = &inversion->progress;
-    const double caution = progress->best_rmse < 2 * progress->best_noise ? careful : 1;
-    const double share = fmin(progress->damping * caution, largest_change / fmax(largest, 1e-300));
+    const double share = fmin(inversion->progress.damping, largest_change / fmax(largest, 1e-300));
     for (size_t a = grid->core; a < grid->core + grid->known; a++)
         inversion->phi[a] = inversion->best[a] + share * inversion->best_step[a];
     potential_grid_complete(grid, inversion->phi);
