@@ -38,7 +38,7 @@ struct candidates_survey {
     size_t evaluations;
     double best; ///< error; infinite if there is none
     struct running_mean alive;
-    uint64_t failures, stopped;
+    uint64_t failures;
 };
 
 struct candidates {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command.h"
 #include "base/nearest.h"
-#include "optimise/optimiser.h"
 #include "run/fit_file.h"
 #include "run/simulate.h"
 
@@ -93,9 +92,6 @@ static size_t collect(struct topic topics[MAX_TOPICS]) {
             topics[n].tables[t] = method->tables[t];
         n++;
     }
-    for (size_t k = 0; optimisers[k]; k++)
-        topics[n++] = (struct topic){
-            "optimiser", optimisers[k]->name, optimisers[k]->summary, {optimisers[k]->tables[0]}};
     return n;
 }
 

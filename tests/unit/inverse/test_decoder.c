@@ -238,6 +238,30 @@ static void test_decoder_band_of_the_formula_follows_its_genes(void **state) {
     decoder_clear(&both.decoder);
 }
 
+/// Two uncertain genes are two directions: orthogonal, the wider first, and together all of the
+/// errors.
+static void test_decoder_flat_directions_are_principal_components(void **state) {
+    (void)state;
+    struct both both;
+    double error[WEIGHT_POINTS], flat[INVERSE_FLAT * WEIGHT_POINTS], covariance[9] = {0};
+    double all = 0, squares[2] = {0}, product = 0;
+    begin_power(&both);
+    covariance[0] = 0.01 * 0.01;
+    covariance[4] = 0.02 * 0.02;
+    assert_ok(decoder_band(&both.decoder, UNKNOWN_WEIGHT, both.genes, covariance, error, flat));
+    for (size_t k = 0; k < WEIGHT_POINTS; k++) {
+        const double second = flat[WEIGHT_POINTS + k];
+        all += error[k] * error[k];
+        squares[0] += flat[k] * flat[k];
+        squares[1] += second * second;
+        product += flat[k] * second;
+    }
+    assert_close((squares[0] + squares[1]) / all, 1, 1e-6);
+    assert_true(squares[0] > squares[1] && squares[1] > 0.01 * all);
+    assert_close(product / all, 0, 1e-6);
+    decoder_clear(&both.decoder);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_decoder_start_gives_back_both_curves_side_by_side),
@@ -248,6 +272,7 @@ int main(void) {
         cmocka_unit_test(test_decoder_band_is_the_error_that_the_covariance_gives_the_curve),
         cmocka_unit_test(test_decoder_power_is_the_formula_and_starts_at_it),
         cmocka_unit_test(test_decoder_band_of_the_formula_follows_its_genes),
+        cmocka_unit_test(test_decoder_flat_directions_are_principal_components),
         cmocka_unit_test(test_decoder_laws_are_those_of_the_scene_when_they_are_known),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
