@@ -33,6 +33,9 @@ enum status metropolis_equilibrate(struct metropolis *metropolis, uint32_t sweep
 /// Sweeps with a fixed step size, as detailed balance asks. Fails: NO_MEMORY, INTERRUPTED.
 enum status metropolis_run(struct metropolis *metropolis, uint32_t sweeps) MUST_USE;
 
+/// Σ r·F over all pairs, in double precision [k_B T_0].
+double metropolis_virial(const struct metropolis *metropolis);
+
 /// Sort the particles and build the list anew from the positions alone, so that a run that
 /// continues and one that was reloaded here go on with the same bits. Fails: NO_MEMORY.
 enum status metropolis_refresh(struct metropolis *metropolis) MUST_USE;

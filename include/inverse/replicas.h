@@ -18,11 +18,11 @@ struct replicas {
     size_t count;
     struct replica {
         struct metropolis sampler;
-        struct comoments counts; ///< of S over the samples
-        double *histogram;       ///< shape [bins]: S of one sample
+        struct comoments counts; ///< of the samples
+        double *sample;          ///< shape [bins + 1]: S, then the virial Σ r·F [k_B T_0]
         double *block;           ///< shape [REPLICAS_BLOCKS, bins]: mean S of each block
     } member[REPLICAS_MOST];
-    struct comoments counts; ///< of all
+    struct comoments counts; ///< of all: S of the bins, then the virial
 };
 
 struct replicas_plan {

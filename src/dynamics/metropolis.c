@@ -172,3 +172,25 @@ enum status metropolis_equilibrate(struct metropolis *metropolis, uint32_t sweep
     metropolis->accepted = metropolis->tried = 0;
     return STATUS_OK;
 }
+
+struct virial {
+    const struct table *potential;
+    double sum;
+};
+
+static void add_virial(void *context, const float *squared_distances, size_t count) {
+    struct virial *virial = context;
+    for (size_t k = 0; k < count; k++) {
+        const double r = sqrt((double)squared_distances[k]);
+        double slope;
+        table_evaluate(virial->potential, r, NULL, &slope, NULL);
+        virial->sum -= r * slope;
+    }
+}
+
+double metropolis_virial(const struct metropolis *metropolis) {
+    struct virial virial = {metropolis->potential, 0};
+    neighbours_visit_distances(&metropolis->neighbours, &metropolis->particles,
+                               metropolis->potential->cutoff, add_virial, &virial);
+    return 0.5 * virial.sum; // the list has each pair from both sides
+}

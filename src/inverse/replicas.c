@@ -12,12 +12,12 @@ enum status replicas_init(struct replicas *replicas, size_t count, const struct 
                           double temperature, uint64_t seed) {
     enum status status = STATUS_OK;
     *replicas = (struct replicas){.bins = bins, .box = box, .count = count};
-    CHECK(comoments_init(&replicas->counts, bins->count));
+    CHECK(comoments_init(&replicas->counts, bins->count + 1));
     for (size_t k = 0; k < count; k++) {
         struct replica *replica = &replicas->member[k];
-        NEW_ARRAY(replica->histogram, bins->count);
+        NEW_ARRAY(replica->sample, bins->count + 1);
         NEW_ARRAY(replica->block, REPLICAS_BLOCKS * bins->count);
-        CHECK(comoments_init(&replica->counts, bins->count));
+        CHECK(comoments_init(&replica->counts, bins->count + 1));
         CHECK(metropolis_init(&replica->sampler, box, particles, potential, temperature,
                               rng_child_seed(seed, RNG_EVALUATION, (uint32_t)k, 0)));
     }
@@ -30,11 +30,22 @@ void replicas_clear(struct replicas *replicas) {
         struct replica *replica = &replicas->member[k];
         metropolis_clear(&replica->sampler);
         comoments_clear(&replica->counts);
-        memory_free(replica->histogram);
+        memory_free(replica->sample);
         memory_free(replica->block);
     }
     comoments_clear(&replicas->counts);
     *replicas = (struct replicas){0};
+}
+
+/// S and the virial of the present configuration.
+static void take_sample(struct replica *replica, const struct rdf_bins *bins) {
+    memset(replica->sample, 0, bins->count * sizeof *replica->sample);
+    rdf_count_pairs(bins, &replica->sampler.particles, &replica->sampler.neighbours,
+                    replica->sample);
+    // The sampler's list has each pair from both sides.
+    for (size_t a = 0; a < bins->count; a++)
+        replica->sample[a] *= 0.5;
+    replica->sample[bins->count] = metropolis_virial(&replica->sampler);
 }
 
 /// Equilibrate one chain, then take its samples block by block.
@@ -50,16 +61,11 @@ static enum status run_one(const struct replicas *replicas, struct replica *repl
         const int64_t end = plan->samples * (block + 1) / REPLICAS_BLOCKS;
         for (int64_t sample = begin; sample < end; sample++) {
             TRY(metropolis_run(&replica->sampler, (uint32_t)plan->every));
-            memset(replica->histogram, 0, bins * sizeof *replica->histogram);
-            rdf_count_pairs(replicas->bins, &replica->sampler.particles,
-                            &replica->sampler.neighbours, replica->histogram);
-            // The sampler's list has each pair from both sides.
-            for (size_t a = 0; a < bins; a++)
-                replica->histogram[a] *= 0.5;
-            comoments_add(&replica->counts, replica->histogram);
+            take_sample(replica, replicas->bins);
+            comoments_add(&replica->counts, replica->sample);
             for (size_t a = 0; a < bins; a++)
                 replica->block[(size_t)block * bins + a] +=
-                    replica->histogram[a] / (double)(end - begin);
+                    replica->sample[a] / (double)(end - begin);
         }
     }
     return STATUS_OK;
