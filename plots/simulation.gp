@@ -2,15 +2,20 @@
 # One simulation: its radial distribution function, and how it came to equilibrium.
 # Reads thermodynamics.tsv: step, time, temperature, potential_energy, pressure,
 # temperature_configurational (nan on steps where it was not measured),
-# and, if it is there, rdf.tsv: r, g, g_error.
+# and, if they are there, rdf.tsv or, in a mixture, rdf_A-A.tsv, rdf_A-B.tsv, …: r, g, g_error.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
-with_rdf = has("rdf.tsv")
-if (with_rdf) {
-    stats "rdf.tsv" using 1 name "R" nooutput
-    stats "rdf.tsv" using ($2 + known(3)) name "G" nooutput
+rdfs = system("ls rdf.tsv rdf_*-*.tsv 2> /dev/null")
+with_rdf = words(rdfs) > 0
+g_top = 0
+do for [file in rdfs] {
+    stats file using 1 name "R" nooutput
+    stats file using ($2 + known(3)) name "G" nooutput
+    g_top = high(g_top, G_max)
 }
+# The kind of pairs that a table is of: nothing, or A-B.
+kind_of(file) = strlen(file) > 7 ? file[5:strlen(file) - 4] : ""
 stats "thermodynamics.tsv" using 2 name "T" nooutput
 stats "thermodynamics.tsv" using (valid(6) ? low($3, $6) : $3) name "L" nooutput
 stats "thermodynamics.tsv" using (valid(6) ? high($3, $6) : $3) name "H" nooutput
@@ -39,13 +44,15 @@ do for [kind in kinds] {
         set bmargin at screen 0.14
         set xrange [0:R_max]
         set ytics autofreq
-        set yrange [0:G_max > 0 ? 1.08 * G_max : 1]
+        set yrange [0:g_top > 0 ? 1.08 * g_top : 1]
         set format x "%h"
         set xlabel r_label
         eval name_axis(g_label, 0.018)
-        set key off
-        plot "rdf.tsv" using 1:($2 - $3):($2 + $3) with filledcurves @band linecolor rgb blue, \
-            "" using 1:2 with lines linewidth 2.2 linecolor rgb blue
+        set key right bottom vertical
+        plot for [i = 1:words(rdfs)] word(rdfs, i) using 1:($2 - $3):($2 + $3) \
+                with filledcurves @band linecolor rgb colour_of(i - 1), \
+            for [i = 1:words(rdfs)] word(rdfs, i) using 1:2 with lines title kind_of(word(rdfs, i)) \
+                linewidth 2.2 linecolor rgb colour_of(i - 1)
     }
     set lmargin at screen left
     set rmargin at screen 0.98

@@ -20,7 +20,8 @@ enum rng_stream {
     RNG_EVALUATION,    ///< seeds of simulations inside a fit: round, candidate
     RNG_VERIFICATION,  ///< seeds of the verification simulations
     RNG_MEAN_VELOCITY, ///< of a test of velocities; counters: step
-    RNG_REMEASUREMENT  ///< seeds of fresh measurements in a fit: candidate, number
+    RNG_REMEASUREMENT, ///< seeds of fresh measurements in a fit: candidate, number
+    RNG_MIXING         ///< which sites of a lattice get which type
 };
 
 struct rng_block {

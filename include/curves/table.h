@@ -4,6 +4,10 @@
 /// A potential becomes a twice continuously differentiable cubic spline; value and slope come from
 /// the same polynomial, so F = −dΦ/dr holds to rounding. A weight becomes straight pieces, since
 /// ω(r) may jump and a spline would ring there.
+///
+/// A mixture has a curve for each kind of pairs. They stand in one table, one after the other: row
+/// k of curve p is p (TABLE_INTERVALS + 1) + k. Each keeps the grid it would have alone, up to its
+/// own cutoff, so that none loses its resolution or its end to a longer one.
 #pragma once
 
 #include "curves/curve.h"
@@ -14,14 +18,19 @@
 /// of the formula, and the single-precision copy (16 KiB) still fits the first-level cache.
 enum { TABLE_INTERVALS = 1024 };
 
+/// Kinds of pairs of a mixture of eight types.
+enum { TABLE_MOST_CURVES = 36 };
+
 struct table {
-    double cutoff;          ///< [λ]
-    double inverse_spacing; ///< intervals / cutoff [1/λ]
-    int terms;              ///< coefficients an interval: 4 (potential) or 2 (weight)
-    double *coefficient;    ///< shape [TABLE_INTERVALS + 1, terms]; the last row is 0
-    /// What kernels want, a row for one load; f is the fraction of the interval. Potential: value
-    /// at f = 0, then the force F = c1 + f(c2 + f c3), so that Φ = c0 − f(c1 + f(c2/2 + f c3/3)) /
-    /// inverse_spacing. Weight: ω = c0 + f c1.
+    double cutoff;                   ///< the largest of all curves [λ]
+    double inverse_spacing;          ///< of a table of one curve: intervals / cutoff [1/λ]
+    int terms;                       ///< coefficients an interval: 4 (potential) or 2 (weight)
+    int curves;                      ///< 1, for all pairs, or one for each kind of pairs
+    double reach[TABLE_MOST_CURVES]; ///< cutoff of each curve; 0: it is 0 everywhere [λ]
+    double *coefficient; ///< shape [curves, TABLE_INTERVALS + 1, terms]; the last row of each is 0
+    /// What kernels want, shape [curves, TABLE_INTERVALS + 1, 4], a row for one load; f is the
+    /// fraction of the interval. Potential: value at f = 0, then the force F = c1 + f(c2 + f c3),
+    /// so that Φ = c0 − f(c1 + f(c2/2 + f c3/3)) / inverse_spacing. Weight: ω = c0 + f c1.
     double (*precise)[4];
     float (*single)[4]; ///< the same rounded
 };
@@ -32,13 +41,36 @@ enum status table_init_potential(struct table *table, const struct curve *curve)
 /// Weight: straight pieces.
 enum status table_init_weight(struct table *table, const struct curve *curve) MUST_USE;
 
+/// One table of the curves of several, of one curve each, for the kinds of pairs in their order. A
+/// zeroed part is a curve that is 0 everywhere; one at least is not.
+/// @param[in] parts  shape [curves]; copied
+/// Fails: NO_MEMORY.
+enum status table_stack(struct table *table, const struct table *parts, int curves) MUST_USE;
+
 void table_clear(struct table *table);
 
-/// Interval of distance r, clamped to the zero row beyond the cutoff.
-static inline int table_interval(const struct table *table, double r) {
-    return (int)fmin(r * table->inverse_spacing, TABLE_INTERVALS);
+/// Which curve a kind of pairs has: a table of one is for all.
+static inline int table_curve(const struct table *table, int pair) {
+    return table->curves > 1 ? pair : 0;
 }
 
-/// Value, slope and curvature of a potential's table in double precision; each may be NULL.
+/// From the curve of one kind of pairs to that of the next, in rows.
+static inline int table_stride(const struct table *table) {
+    return table->curves > 1 ? TABLE_INTERVALS + 1 : 0;
+}
+
+/// Cutoff of the curve of a kind of pairs [λ].
+static inline double table_reach(const struct table *table, int pair) {
+    return table->reach[table_curve(table, pair)];
+}
+
+/// Intervals of that curve per length [1/λ]; for one that is 0 everywhere any would do.
+double table_inverse_spacing(const struct table *table, int pair);
+
+/// Value, slope and curvature in double precision, of a table of one curve; each may be NULL.
 void table_evaluate(const struct table *table, double r, double *value, double *slope,
                     double *curvature);
+
+/// The same of the curve of a kind of pairs.
+void table_evaluate_pair(const struct table *table, int pair, double r, double *value,
+                         double *slope, double *curvature);

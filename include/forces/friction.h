@@ -27,8 +27,8 @@ typedef struct friction_factors friction_method(double omega, double time_step, 
 enum { FRICTION_WORK = 4 };
 
 struct friction {
-    /// Shape [TABLE_INTERVALS + 1], over the intervals of the table of ω: damping at the start of
-    /// an interval, its change over it, and the same of the amplitude.
+    /// Shape [curves, TABLE_INTERVALS + 1], over the intervals of the table of ω: damping at the
+    /// start of an interval, its change over it, and the same of the amplitude.
     double (*precise)[4];
     float (*single)[4];    ///< the same rounded
     float (*direction)[4]; ///< e of each pair, from j to i; the last is 0

@@ -9,6 +9,7 @@
 
 #include "curves/table.h"
 #include "forces/friction.h"
+#include "system/composition.h"
 #include "system/neighbours.h"
 #include "system/particles.h"
 
@@ -19,20 +20,29 @@ enum pair_precision {
     PAIR_DOUBLE, ///< double, from double positions; the noise is the same
 };
 
+_Static_assert((int)TABLE_MOST_CURVES >= (int)COMPOSITION_MOST_PAIRS, "a table holds a curve a kind");
+
 /// Distances counted in passing: bin k holds those from low + k width on.
 struct pair_histogram {
     double low, width; ///< [λ]
     size_t bins;
-    uint32_t *counts; ///< shape [NEIGHBOURS_MOST_PARTS, bins + 1]: the last is for all other pairs
+    size_t pairs;     ///< kinds of pairs of a mixture, to count each apart; 0 or 1: all together
+    uint32_t *counts; ///< shape [NEIGHBOURS_MOST_PARTS, pair_histogram_size]
 };
+
+/// Numbers of a part: shape [pairs, bins], and a last one for all pairs beyond the bins.
+static inline size_t pair_histogram_size(const struct pair_histogram *histogram) {
+    return (histogram->pairs > 1 ? histogram->pairs : 1) * histogram->bins + 1;
+}
 
 /// What acts between pairs, and what is counted of them. The tables belong to the caller.
 struct pair_law {
-    const struct table *potential; ///< Φ(r), or NULL
-    const struct table *weight;    ///< ω(r), or NULL
-    double temperature;            ///< of the noise [k_B T_0]
-    double time_step;              ///< Δt of the noise [τ]
-    uint64_t seed;                 ///< key of the noise
+    struct composition composition; ///< the types of beads, if they are not alike
+    const struct table *potential;  ///< Φ(r), one or for each kind of pairs, or NULL
+    const struct table *weight;     ///< ω(r), the same, or NULL
+    double temperature;             ///< of the noise [k_B T_0]
+    double time_step;               ///< Δt of the noise [τ]
+    uint64_t seed;                  ///< key of the noise
     enum pair_precision precision;
     const struct pair_histogram *histogram; ///< of the pairs in range, or NULL
     struct friction *friction; ///< keeps the pairs within the cutoff of ω instead of adding their
@@ -47,7 +57,7 @@ struct pair_sums {
 
 enum pair_wants { PAIR_FORCES, PAIR_FORCES_AND_SUMS };
 
-/// Largest distance at which a law acts [λ].
+/// Largest distance at which a law acts on any pair [λ].
 double pair_cutoff(const struct pair_law *law);
 
 /// Replace `force` of all particles by the forces of `law`.

@@ -13,16 +13,16 @@ void reference_forces(const struct pair_law *law, struct particles *particles, u
 
 /// Configurational temperature Σ_i |F_i|² / Σ_i ∇_i² U [k_B T_0] from the potential alone.
 ///   Σ_i ∇_i² U = 2 Σ_pairs [Φ''(r) + (d − 1) Φ'(r)/r]
-/// and, where the force ends abruptly at the cutoff, the jump of the slope there, which needs to
-/// know the temperature roughly.
-/// H. H. Rugh, Phys. Rev. Lett. 78, 772 (1997); O. G. Jepps, G. Ayton and D. J. Evans, Phys. Rev. E
-/// 62, 4757 (2000), eq. 37. It sees positions only, so it shows errors of the time step that the
-/// kinetic temperature hides.
+/// and, where the force of a kind of pairs ends abruptly at its cutoff, the jump of the slope
+/// there, which needs to know the temperature roughly. H. H. Rugh, Phys. Rev. Lett. 78, 772 (1997);
+/// O. G. Jepps, G. Ayton and D. J. Evans, Phys. Rev. E 62, 4757 (2000), eq. 37. It sees positions
+/// only, so it shows errors of the time step that the kinetic temperature hides.
 /// @param[in] neighbours  half list, complete for the cutoff of the potential
 /// @param[out] squares    Σ |F_i|² [(k_B T_0/λ)²]
 /// @param[out] laplacian  Σ ∇_i² U [k_B T_0/λ²]; the temperature is ⟨squares⟩ / ⟨laplacian⟩
 /// Fails: NO_MEMORY.
-enum status reference_configurational(const struct table *potential, double temperature,
+enum status reference_configurational(const struct table *potential,
+                                      const struct composition *composition, double temperature,
                                       const struct particles *particles,
                                       const struct neighbours *neighbours, double *squares,
                                       double *laplacian) MUST_USE;

@@ -2,7 +2,10 @@
 /// @file Radial distribution function with standard errors.
 ///
 ///   g(r_k) = (2 V / (N (N − 1))) ⟨S_k⟩ / v_k
-/// with S_k the pairs in bin k and v_k the exact volume of its shell (area of its ring in 2D).
+/// with S_k the pairs in bin k and v_k the exact volume of its shell (area of its ring in 2D). A
+/// mixture has a partial g for each kind of pairs,
+///   g_ab(r_k) = (V / (N_a N_b)) ⟨S_ab,k⟩ / v_k for a ≠ b, and as above with N_a for a = b.
+/// Arrays over kinds and bins have shape [pairs, bins], the kinds in the order of composition_pair.
 #pragma once
 
 #include "base/status.h"
@@ -23,6 +26,10 @@ double rdf_bins_range(const struct rdf_bins *bins);            ///< upper edge o
 /// Expected S_k if g were 1 [pairs]: N (N − 1) v_k / (2 V).
 double rdf_ideal_pairs(const struct rdf_bins *bins, size_t k, const struct box *box, size_t count);
 
+/// The same of one kind of pairs: N_a N_b v_k / V if they are unlike.
+double rdf_ideal_pairs_of(const struct rdf_bins *bins, size_t k, const struct box *box,
+                          const struct composition *composition, int pair);
+
 /// What g of a system of `from` particles is to be multiplied by to compare with one of `to`
 /// particles at the same density: (1 − 1/from) / (1 − 1/to).
 ///
@@ -33,19 +40,31 @@ double rdf_ideal_pairs(const struct rdf_bins *bins, size_t k, const struct box *
 /// SPC water, 35 instead of 22 k_B T/λ³.
 double rdf_finite_size_factor(size_t from, size_t to);
 
-/// Add the pairs of one configuration to `histogram`, shape [bins], uncleared. The list must be a
-/// half list complete for the range of the bins.
+/// The same of one kind of pairs: with the numbers of its type, and 1 if they are unlike, which
+/// N_a N_b counts right.
+double rdf_finite_size_factor_of(const struct composition *from, const struct composition *to,
+                                 int pair);
+
+/// Add the pairs of one configuration to `histogram`, shape [bins], uncleared, whatever their
+/// types. The list must be a half list complete for the range of the bins.
 void rdf_count_pairs(const struct rdf_bins *bins, const struct particles *particles,
                      const struct neighbours *neighbours, double *histogram);
+
+/// The same by kinds of pairs: shape [pairs, bins].
+void rdf_count_pairs_of(const struct rdf_bins *bins, const struct composition *composition,
+                        const struct particles *particles, const struct neighbours *neighbours,
+                        double *histogram);
 
 /// Accumulates configurations into consecutive blocks.
 struct rdf {
     struct rdf_bins bins;
     struct box box;
     size_t particle_count;
+    struct composition composition; ///< of what is told apart
+    size_t pairs;                   ///< kinds of pairs
     size_t planned, samples;
     size_t blocks;
-    double *histogram;             ///< shape [blocks, bins.count]
+    double *histogram;             ///< shape [blocks, pairs, bins.count]
     double *block_samples;         ///< shape [blocks]
     bool needs_own_list;           ///< the range exceeds that of the simulation's list
     struct pair_histogram counted; ///< by the force pass
@@ -53,10 +72,16 @@ struct rdf {
     struct neighbours own_list;
 };
 
-/// Prepare for `planned` samples of a system whose list is complete up to `list_cutoff`.
-/// Fails: NO_MEMORY; BAD_INPUT if the box is shorter than twice the range of the bins.
+/// Prepare for `planned` samples of a system of particles, whatever their types, whose list is
+/// complete up to `list_cutoff`. Fails: NO_MEMORY; BAD_INPUT if the box is shorter than twice the
+/// range of the bins.
 enum status rdf_init(struct rdf *rdf, const struct rdf_bins *bins, const struct box *box,
                      size_t particle_count, double list_cutoff, size_t planned) MUST_USE;
+
+/// The same for the partial g of a mixture, which counts its types.
+enum status rdf_init_mixture(struct rdf *rdf, const struct rdf_bins *bins, const struct box *box,
+                             const struct composition *composition, double list_cutoff,
+                             size_t planned) MUST_USE;
 void rdf_clear(struct rdf *rdf);
 
 /// What a force pass is to count for the next sample, cleared: for pair_law.histogram. NULL if the
@@ -71,12 +96,12 @@ enum status rdf_sample(struct rdf *rdf, const struct particles *particles,
                        const struct neighbours *neighbours) MUST_USE;
 
 /// g and its standard error over the blocks of all replicas.
-/// @param[in]  replicas  shape [count], same bins, box and particle number
-/// @param[out] g, error  shape [bins.count]; error may be NULL
+/// @param[in]  replicas  shape [count], same bins, box and composition
+/// @param[out] g, error  shape [pairs, bins.count]; error may be NULL
 void rdf_result(const struct rdf *replicas, size_t count, double *g, double *error);
 
-/// Root mean square of g − g* over all bins, with its standard error by leaving out blocks
-/// (jackknife); `error` may be NULL. Fails: NO_MEMORY.
+/// Root mean square of g − g* over all bins of all kinds of pairs, with its standard error by
+/// leaving out blocks (jackknife); `error` may be NULL. Fails: NO_MEMORY.
 enum status rdf_distance(const struct rdf *replicas, size_t count, const double *target,
                          double *rmse, double *error) MUST_USE;
 

@@ -2,11 +2,8 @@
 /// @file A scene: what a JSON file says of a simulation, read, checked and written back.
 #pragma once
 
-#include "curves/curve.h"
 #include "dynamics/simulation.h"
-#include "io/json.h"
-#include "io/json_write.h"
-#include "run/units.h"
+#include "run/scene_law.h"
 
 /// What a fit looks for, and the scene therefore does not say.
 enum scene_unknown {
@@ -15,11 +12,10 @@ enum scene_unknown {
     SCENE_FITS_WEIGHT = 2,    ///< no "dissipative"; there will be friction
 };
 
-/// Owns its curves, tables and arrays; `setup` borrows them.
+/// Owns its laws and arrays; `setup` borrows them.
 struct scene {
     struct simulation_setup setup;
-    struct curve potential, weight; ///< family NULL: none
-    struct table potential_table, weight_table;
+    struct scene_law potential, weight;
     struct units units;
     struct simulation_start start; ///< arrays of a placement file
     int unknown;                   ///< as it was read
@@ -39,10 +35,3 @@ void scene_write(const struct scene *scene, struct json_writer *writer);
 
 /// Add the tables that a scene only names to the digest of a checkpoint.
 void scene_digest(const struct scene *scene, uint64_t *digest);
-
-/// Read {"law": …} at `key` into a curve; an absent object or "none" leaves it empty. `units`
-/// convert VOTCA's tables.
-enum status scene_read_curve(struct curve *curve, struct json_object *parent, const char *key,
-                             const struct curve_family *const *list,
-                             const struct units *units) MUST_USE;
-void scene_write_curve(const struct curve *curve, struct json_writer *writer, const char *key);

@@ -40,6 +40,9 @@ struct neighbours_rows {
     int32_t *particle; ///< at each place
 };
 
+/// Pairs handed over together.
+enum { NEIGHBOURS_BATCH = 512 };
+
 /// Enough for the processors of a desk.
 enum { NEIGHBOURS_MOST_PARTS = 64 };
 
@@ -95,6 +98,19 @@ enum status neighbours_rebuild(struct neighbours *neighbours, struct particles *
 
 /// True if some particle has moved by half the skin or more since the last build.
 bool neighbours_are_stale(const struct neighbours *neighbours, const struct particles *particles);
+
+/// Pairs in range, for a mixture, whose types follow from the ids.
+struct neighbours_batch {
+    size_t count;
+    float squared[NEIGHBOURS_BATCH]; ///< distances [λ²]
+    uint32_t id_i[NEIGHBOURS_BATCH], id_j[NEIGHBOURS_BATCH];
+};
+
+/// neighbours_visit_distances with the ids of the pairs.
+void neighbours_visit_pairs(const struct neighbours *neighbours, const struct particles *particles,
+                            double range,
+                            void (*visit)(void *context, const struct neighbours_batch *batch),
+                            void *context);
 
 /// Hand the squared distances [λ²] of all pairs nearer than `range` (≤ the complete range of a half
 /// list) to `visit`, in batches, in the order of the list.

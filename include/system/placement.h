@@ -16,11 +16,16 @@ struct placement {
     char file[FIELD_TEXT_SIZE];
 };
 
-extern const struct field placement_fields[];
+/// The number alone, which a mixture gives for each of its types, and all the rest.
+extern const struct field placement_count_fields[], placement_fields[];
 
 /// Simple cubic (square) lattice of the smallest size that holds all particles, filled evenly,
 /// each particle shifted by a uniform random amount.
 void placement_lattice(struct particles *particles, double jitter, uint64_t seed);
+
+/// Exchange the ids of all particles at random, so that the types of a mixture stand on the sites
+/// of a lattice without order. Before velocities are drawn, which belong to ids.
+void placement_mix(struct particles *particles, uint64_t seed);
 
 /// Uniform random positions no two of which are nearer than `separation` (sequential addition).
 /// Fails: BAD_INPUT when no place is found in 10,000 trials: the density is too high for it.

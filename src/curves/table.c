@@ -3,15 +3,19 @@
 
 #include "base/memory.h"
 
-static enum status allocate(struct table *table, const struct curve *curve, int terms) {
+#include <string.h>
+
+static enum status allocate(struct table *table, double cutoff, int terms, int curves) {
     enum status status = STATUS_OK;
-    const double cutoff = curve_cutoff(curve);
-    *table = (struct table){
-        .cutoff = cutoff, .inverse_spacing = TABLE_INTERVALS / cutoff, .terms = terms};
-    const size_t size = (size_t)(TABLE_INTERVALS + 1) * (size_t)terms;
-    NEW_ARRAY(table->coefficient, size);
-    NEW_ARRAY(table->precise, TABLE_INTERVALS + 1);
-    NEW_ARRAY(table->single, TABLE_INTERVALS + 1);
+    *table = (struct table){.cutoff = cutoff,
+                            .inverse_spacing = TABLE_INTERVALS / cutoff,
+                            .terms = terms,
+                            .curves = curves,
+                            .reach = {cutoff}};
+    const size_t rows = (size_t)(TABLE_INTERVALS + 1) * (size_t)curves;
+    NEW_ARRAY(table->coefficient, rows * (size_t)terms);
+    NEW_ARRAY(table->precise, rows);
+    NEW_ARRAY(table->single, rows);
 done:
     return status;
 }
@@ -70,7 +74,7 @@ static void spline_slopes(const double *y, double *m, double *ratio) {
 enum status table_init_potential(struct table *table, const struct curve *curve) {
     enum status status = STATUS_OK;
     double *y = NULL, *m = NULL, *ratio = NULL;
-    CHECK(allocate(table, curve, 4));
+    CHECK(allocate(table, curve_cutoff(curve), 4, 1));
     NEW_ARRAY(y, TABLE_INTERVALS + 1);
     NEW_ARRAY(m, TABLE_INTERVALS + 1);
     NEW_ARRAY(ratio, TABLE_INTERVALS + 1);
@@ -100,13 +104,38 @@ done:
 
 enum status table_init_weight(struct table *table, const struct curve *curve) {
     enum status status = STATUS_OK;
-    CHECK(allocate(table, curve, 2));
+    CHECK(allocate(table, curve_cutoff(curve), 2, 1));
     for (int k = 0; k < TABLE_INTERVALS; k++) {
         const double low = value_at_node(curve, k, table->cutoff);
         table->coefficient[2 * k] = low;
         table->coefficient[2 * k + 1] = value_at_node(curve, k + 1, table->cutoff) - low;
     }
     fill_rows(table);
+done:
+    if (status != STATUS_OK)
+        table_clear(table);
+    return status;
+}
+
+enum status table_stack(struct table *table, const struct table *parts, int curves) {
+    enum status status = STATUS_OK;
+    double cutoff = 0;
+    int terms = 0;
+    for (int p = 0; p < curves; p++) {
+        cutoff = fmax(cutoff, parts[p].cutoff);
+        terms = parts[p].terms > terms ? parts[p].terms : terms;
+    }
+    CHECK(allocate(table, cutoff, terms, curves));
+    for (int p = 0; p < curves; p++) {
+        const size_t rows = TABLE_INTERVALS + 1, first = (size_t)p * rows;
+        table->reach[p] = parts[p].cutoff;
+        if (parts[p].curves == 0)
+            continue;
+        memcpy(table->coefficient + first * (size_t)terms, parts[p].coefficient,
+               rows * (size_t)terms * sizeof *table->coefficient);
+        memcpy(table->precise + first, parts[p].precise, rows * sizeof *table->precise);
+        memcpy(table->single + first, parts[p].single, rows * sizeof *table->single);
+    }
 done:
     if (status != STATUS_OK)
         table_clear(table);
@@ -120,11 +149,23 @@ void table_clear(struct table *table) {
     *table = (struct table){0};
 }
 
+double table_inverse_spacing(const struct table *table, int pair) {
+    const double reach = table_reach(table, pair);
+    return TABLE_INTERVALS / (reach > 0 ? reach : table->cutoff);
+}
+
 void table_evaluate(const struct table *table, double r, double *value, double *slope,
                     double *curvature) {
-    const int k = table_interval(table, r);
-    const double h = table->inverse_spacing, f = r * h - k;
-    const double *c = table->coefficient + (ptrdiff_t)table->terms * k;
+    table_evaluate_pair(table, 0, r, value, slope, curvature);
+}
+
+void table_evaluate_pair(const struct table *table, int pair, double r, double *value,
+                         double *slope, double *curvature) {
+    const double h = table_inverse_spacing(table, pair);
+    const int k = (int)fmin(r * h, TABLE_INTERVALS); // the row of zeros beyond the cutoff
+    const double f = r * h - k;
+    const ptrdiff_t row = (ptrdiff_t)pair * table_stride(table) + k;
+    const double *c = table->coefficient + (ptrdiff_t)table->terms * row;
     const double c2 = table->terms == 4 ? c[2] : 0, c3 = table->terms == 4 ? c[3] : 0;
     if (value)
         *value = c[0] + f * (c[1] + f * (c2 + f * c3));

@@ -13,6 +13,8 @@ static enum status place(struct simulation *simulation, const struct simulation_
     switch ((enum placement_kind)setup->placement.kind) {
     case PLACEMENT_LATTICE:
         placement_lattice(particles, setup->placement.jitter, setup->seed);
+        if (composition_is_mixed(&setup->composition))
+            placement_mix(particles, setup->seed);
         break;
     case PLACEMENT_RANDOM:
         TRY(placement_random(particles, setup->placement.separation, setup->seed));
@@ -52,7 +54,8 @@ enum status simulation_init(struct simulation *simulation, const struct simulati
     enum status status = STATUS_OK;
     *simulation = (struct simulation){
         .setup = *setup,
-        .law = {.potential = setup->potential,
+        .law = {.composition = setup->composition,
+                .potential = setup->potential,
                 .weight = setup->weight,
                 .temperature = setup->temperature,
                 .time_step = setup->time_step,

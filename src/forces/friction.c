@@ -10,9 +10,12 @@ enum status friction_init(struct friction *friction, const struct table *weight,
                           double temperature, friction_method *method) {
     enum status status = STATUS_OK;
     *friction = (struct friction){0};
-    NEW_ARRAY(friction->precise, TABLE_INTERVALS + 1);
-    NEW_ARRAY(friction->single, TABLE_INTERVALS + 1);
-    for (int k = 0; k < TABLE_INTERVALS; k++) {
+    const int rows = (TABLE_INTERVALS + 1) * weight->curves;
+    NEW_ARRAY(friction->precise, rows);
+    NEW_ARRAY(friction->single, rows);
+    for (int k = 0; k < rows; k++) {
+        if (k % (TABLE_INTERVALS + 1) == TABLE_INTERVALS) // beyond the cutoff is nothing
+            continue;
         const double *omega = weight->coefficient + 2 * k;
         const struct friction_factors low = method(omega[0], time_step, temperature),
                                       high = method(omega[0] + omega[1], time_step, temperature);

@@ -18,8 +18,18 @@ enum {
 struct pair_batch {
     int count;
     int32_t i[PAIR_ROOM], j[PAIR_ROOM];
-    int32_t id_i[PAIR_ROOM], id_j[PAIR_ROOM]; ///< where friction is kept
+    int32_t id_i[PAIR_ROOM], id_j[PAIR_ROOM]; ///< where friction is kept, and in mixtures
     REAL dx[PAIR_ROOM], dy[PAIR_ROOM], dz[PAIR_ROOM];
+};
+
+/// What tells kinds of pairs apart in a mixture.
+struct pair_mixture {
+    int types;
+    int32_t first[COMPOSITION_MOST_TYPES]; ///< least id of each type
+    /// For each kind of pairs, in a record: intervals of Φ and of ω per length, length of one of Φ.
+    REAL grid[COMPOSITION_MOST_PAIRS][4];
+    int32_t potential_stride, weight_stride; ///< table_stride
+    int32_t bins_apart;                      ///< of the histogram, from kind to kind
 };
 
 /// What stays the same from pair to pair.
@@ -33,6 +43,7 @@ struct pair_scene {
     REAL cutoff2, near_cutoff2; ///< squared: of the law, of its dissipative part
     bool has_few;               ///< particles have few pairs each
     size_t *kept;               ///< where the next pair is kept
+    struct pair_mixture mixture;
 };
 
 /// Pairs of a vector.
@@ -62,7 +73,8 @@ INLINE int pair_append(struct pair_batch *batch, int n, unsigned mask,
 /// Collect those of `count` entries of the list that are in range.
 INLINE void pair_collect(struct pair_batch *near, struct pair_batch *far,
                          const struct pair_scene *scene, const int32_t *list, const int32_t *owner,
-                         int count, const int dim, const bool has_far, const bool has_ids) {
+                         int count, const int dim, const bool has_far, const bool has_ids,
+                         const bool far_has_ids) {
     const struct PAIR_PLACE *place = scene->particles->PAIR_PLACES;
     int near_count = near->count, far_count = far->count;
     for (int k = 0; k < count; k += LANES) {
@@ -89,7 +101,7 @@ INLINE void pair_collect(struct pair_batch *near, struct pair_batch *far,
         }
         const unsigned is_near = in_range & lanes_below(r2, lanes_all(scene->near_cutoff2));
         near_count = pair_append(near, near_count, is_near, &pairs, dim, has_ids);
-        far_count = pair_append(far, far_count, in_range & ~is_near, &pairs, dim, false);
+        far_count = pair_append(far, far_count, in_range & ~is_near, &pairs, dim, far_has_ids);
     }
     near->count = near_count;
     far->count = far_count;

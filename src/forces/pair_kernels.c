@@ -30,7 +30,8 @@ static pair_kernel choose(const struct pair_law *law, int dimensions, enum pair_
                                         : law->friction     ? PAIR_KEEPS_FRICTION
                                                             : PAIR_ADDS_FRICTION;
     pair_kernels *kernels = choose_set(law->precision == PAIR_DOUBLE);
-    return (*kernels)[dimensions - 2][conservative][friction][wants];
+    return (*kernels)[dimensions - 2][conservative][friction][wants]
+                     [composition_is_mixed(&law->composition)];
 }
 
 static void clear_forces(void *context, size_t begin, size_t end) {

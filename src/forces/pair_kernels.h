@@ -19,8 +19,8 @@ enum pair_friction {
 typedef void (*pair_kernel)(PAIR_KERNEL_ARGUMENTS);
 
 /// Adds the forces of the pairs of one part of the list to kernel_force, and their sums to `sums`.
-/// [dimensions − 2][potential][friction][sums]
-typedef const pair_kernel pair_kernels[2][2][PAIR_FRICTIONS][2];
+/// [dimensions − 2][potential][friction][sums][mixed]
+typedef const pair_kernel pair_kernels[2][2][PAIR_FRICTIONS][2][2];
 
 extern pair_kernels pair_portable, pair_avx2, pair_avx512;
 extern pair_kernels pair_portable_double, pair_avx2_double, pair_avx512_double;

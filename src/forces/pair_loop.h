@@ -18,14 +18,16 @@
 /// The forces of the first `count` pairs of a batch.
 INLINE void pair_evaluate(struct pair_batch *batch, int count, const struct pair_scene *scene,
                           const int dim, const bool conservative, const enum pair_friction friction,
-                          const bool wants_sums) {
+                          const bool wants_sums, const bool mixed) {
     const struct pair_law *law = scene->law;
     struct pair_columns columns;
-    pair_distances(&columns, batch, count, law, dim, conservative, friction);
+    if (mixed)
+        pair_kinds(&columns, batch, count, &scene->mixture);
+    pair_distances(&columns, batch, count, scene, dim, conservative, friction, mixed);
     if (scene->counts)
-        pair_count(&columns, count, law->histogram, scene->counts);
+        pair_count(&columns, count, scene, mixed);
     if (conservative)
-        pair_conservative(&columns, count, law->potential, scene->sums, wants_sums);
+        pair_conservative(&columns, count, scene, wants_sums, mixed);
     if (friction == PAIR_ADDS_FRICTION) {
         pair_velocities(&columns, batch, count, scene->particles->PAIR_MOTIONS, dim);
         pair_noise(&columns, count, law->seed, scene->step);
@@ -50,15 +52,16 @@ INLINE void pair_evaluate(struct pair_batch *batch, int count, const struct pair
 /// Evaluate a full batch, and move what is beyond to the front.
 INLINE void pair_evaluate_full(struct pair_batch *batch, const struct pair_scene *scene,
                                const int dim, const bool conservative,
-                               const enum pair_friction friction, const bool wants_sums) {
+                               const enum pair_friction friction, const bool wants_sums,
+                               const bool mixed) {
     if (batch->count < PAIR_BATCH)
         return;
-    pair_evaluate(batch, PAIR_BATCH, scene, dim, conservative, friction, wants_sums);
+    pair_evaluate(batch, PAIR_BATCH, scene, dim, conservative, friction, wants_sums, mixed);
     batch->count -= PAIR_BATCH;
     for (int k = 0; k < PAIR_PIECE; k += LANES) { // always as many: predictable
         lanes_store_int(batch->i + k, lanes_load_int(batch->i + PAIR_BATCH + k));
         lanes_store_int(batch->j + k, lanes_load_int(batch->j + PAIR_BATCH + k));
-        if (friction == PAIR_KEEPS_FRICTION) {
+        if (friction == PAIR_KEEPS_FRICTION || mixed) {
             lanes_store_int(batch->id_i + k, lanes_load_int(batch->id_i + PAIR_BATCH + k));
             lanes_store_int(batch->id_j + k, lanes_load_int(batch->id_j + PAIR_BATCH + k));
         }
@@ -72,20 +75,42 @@ INLINE void pair_evaluate_full(struct pair_batch *batch, const struct pair_scene
 /// Evaluate what is left. The last vector is filled up with pairs beyond the cutoff, without force.
 INLINE void pair_evaluate_rest(struct pair_batch *batch, const struct pair_scene *scene,
                                const int dim, const bool conservative,
-                               const enum pair_friction friction, const bool wants_sums) {
+                               const enum pair_friction friction, const bool wants_sums,
+                               const bool mixed) {
     const REAL beyond = 2 * (REAL)sqrt(scene->cutoff2);
     for (int k = batch->count; k < batch->count + RNG_LANES; k++) {
         batch->i[k] = batch->j[k] = batch->id_i[k] = batch->id_j[k] = 0;
         batch->dx[k] = beyond;
         batch->dy[k] = batch->dz[k] = 0;
     }
-    pair_evaluate(batch, batch->count, scene, dim, conservative, friction, wants_sums);
+    pair_evaluate(batch, batch->count, scene, dim, conservative, friction, wants_sums, mixed);
+}
+
+/// What the pairs of a mixture need to find their curves and bins.
+INLINE struct pair_mixture pair_mixture_of(const struct pair_law *law) {
+    const struct composition *composition = &law->composition;
+    struct pair_mixture mixture = {.types = composition->types};
+    for (int t = 1; t < composition->types; t++)
+        mixture.first[t] = mixture.first[t - 1] + (int32_t)composition->count[t - 1];
+    for (int p = 0; p < composition_pairs(composition); p++) {
+        if (law->potential) {
+            mixture.grid[p][0] = (REAL)table_inverse_spacing(law->potential, p);
+            mixture.grid[p][2] = (REAL)(1 / table_inverse_spacing(law->potential, p));
+        }
+        if (law->weight)
+            mixture.grid[p][1] = (REAL)table_inverse_spacing(law->weight, p);
+    }
+    mixture.potential_stride = law->potential ? table_stride(law->potential) : 0;
+    mixture.weight_stride = law->weight ? table_stride(law->weight) : 0;
+    if (law->histogram && law->histogram->pairs > 1)
+        mixture.bins_apart = (int32_t)law->histogram->bins;
+    return mixture;
 }
 
 INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
                       const struct neighbours *neighbours, int part_number, uint64_t step,
                       struct pair_sums *sums, const int dim, const bool conservative,
-                      const enum pair_friction friction, const bool wants_sums) {
+                      const enum pair_friction friction, const bool wants_sums, const bool mixed) {
     const struct neighbours_part *part = &neighbours->part[part_number];
     const struct pair_histogram *histogram = law->histogram;
     const double cutoff = pair_cutoff(law);
@@ -98,11 +123,13 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
                                .cutoff2 = (REAL)(cutoff * cutoff),
                                .near_cutoff2 = (REAL)(near_cutoff * near_cutoff)};
     if (histogram)
-        scene.counts = histogram->counts + (size_t)part_number * (histogram->bins + 1);
+        scene.counts = histogram->counts + (size_t)part_number * pair_histogram_size(histogram);
     scene.has_few =
         sizeof(REAL) == 4 && part->end - part->begin < PAIR_FEW * (part->last - part->first);
     if (friction == PAIR_KEEPS_FRICTION)
         scene.kept = &law->friction->end[part_number];
+    if (mixed)
+        scene.mixture = pair_mixture_of(law);
     // Near pairs feel the whole law, far ones the potential alone.
     const bool has_far = conservative && friction != PAIR_NO_FRICTION && near_cutoff < cutoff;
     struct pair_batch near, far;
@@ -111,21 +138,29 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
         const int count = part->end - k < PAIR_PIECE ? (int)(part->end - k) : PAIR_PIECE;
         pair_collect(&near, &far, &scene, neighbours->list + k,
                      neighbours->owner + k / NEIGHBOURS_ROW, count, dim, has_far,
-                     friction == PAIR_KEEPS_FRICTION);
-        pair_evaluate_full(&near, &scene, dim, conservative, friction, wants_sums);
+                     friction == PAIR_KEEPS_FRICTION || mixed, mixed);
+        pair_evaluate_full(&near, &scene, dim, conservative, friction, wants_sums, mixed);
         if (has_far)
-            pair_evaluate_full(&far, &scene, dim, conservative, PAIR_NO_FRICTION, wants_sums);
+            pair_evaluate_full(&far, &scene, dim, conservative, PAIR_NO_FRICTION, wants_sums,
+                               mixed);
     }
-    pair_evaluate_rest(&near, &scene, dim, conservative, friction, wants_sums);
+    pair_evaluate_rest(&near, &scene, dim, conservative, friction, wants_sums, mixed);
     if (has_far)
-        pair_evaluate_rest(&far, &scene, dim, conservative, PAIR_NO_FRICTION, wants_sums);
+        pair_evaluate_rest(&far, &scene, dim, conservative, PAIR_NO_FRICTION, wants_sums, mixed);
 }
 
+/// An instance for beads that are alike and one for mixtures.
 #define PAIR_INSTANCE(name, dim, conservative, friction, wants_sums)                               \
     static void name(PAIR_KERNEL_ARGUMENTS) {                                                      \
         pair_loop(law, particles, neighbours, part, step, sums, dim, conservative, friction,       \
-                  wants_sums);                                                                     \
+                  wants_sums, false);                                                              \
+    }                                                                                              \
+    static void name##_mixed(PAIR_KERNEL_ARGUMENTS) {                                              \
+        pair_loop(law, particles, neighbours, part, step, sums, dim, conservative, friction,       \
+                  wants_sums, true);                                                               \
     }
+#define PAIR_BOTH(name)                                                                            \
+    { name, name##_mixed }
 
 /// All instances of a friction.
 #define PAIR_FRICTION_INSTANCES(set, friction)                                                     \
@@ -137,6 +172,10 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
     PAIR_INSTANCE(set##_3d_s, 3, false, friction, true)                                            \
     PAIR_INSTANCE(set##_3d_c, 3, true, friction, false)                                            \
     PAIR_INSTANCE(set##_3d_cs, 3, true, friction, true)
+#define PAIR_WITHOUT_POTENTIAL(set)                                                                \
+    { PAIR_BOTH(set), PAIR_BOTH(set##_s) }
+#define PAIR_WITH_POTENTIAL(set)                                                                   \
+    { PAIR_BOTH(set##_c), PAIR_BOTH(set##_cs) }
 
 /// All instances for one instruction set and precision, by name, and the table from which
 /// pair_kernels.c chooses.
@@ -147,12 +186,14 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
     PAIR_INSTANCE(set##_3d_cs, 3, true, PAIR_NO_FRICTION, true)                                    \
     PAIR_FRICTION_INSTANCES(set##_added, PAIR_ADDS_FRICTION)                                       \
     PAIR_FRICTION_INSTANCES(set##_kept, PAIR_KEEPS_FRICTION)                                       \
-    const pair_kernel set[2][2][PAIR_FRICTIONS][2] = {                                             \
-        {{{NULL, NULL}, {set##_added_2d, set##_added_2d_s}, {set##_kept_2d, set##_kept_2d_s}},     \
-         {{set##_2d_c, set##_2d_cs},                                                               \
-          {set##_added_2d_c, set##_added_2d_cs},                                                   \
-          {set##_kept_2d_c, set##_kept_2d_cs}}},                                                   \
-        {{{NULL, NULL}, {set##_added_3d, set##_added_3d_s}, {set##_kept_3d, set##_kept_3d_s}},     \
-         {{set##_3d_c, set##_3d_cs},                                                               \
-          {set##_added_3d_c, set##_added_3d_cs},                                                   \
-          {set##_kept_3d_c, set##_kept_3d_cs}}}};
+    const pair_kernel set[2][2][PAIR_FRICTIONS][2][2] = {                                          \
+        {{{{NULL}},                                                                                \
+          PAIR_WITHOUT_POTENTIAL(set##_added_2d),                                                  \
+          PAIR_WITHOUT_POTENTIAL(set##_kept_2d)},                                                  \
+         {PAIR_WITH_POTENTIAL(set##_2d), PAIR_WITH_POTENTIAL(set##_added_2d),                      \
+          PAIR_WITH_POTENTIAL(set##_kept_2d)}},                                                    \
+        {{{{NULL}},                                                                                \
+          PAIR_WITHOUT_POTENTIAL(set##_added_3d),                                                  \
+          PAIR_WITHOUT_POTENTIAL(set##_kept_3d)},                                                  \
+         {PAIR_WITH_POTENTIAL(set##_3d), PAIR_WITH_POTENTIAL(set##_added_3d),                      \
+          PAIR_WITH_POTENTIAL(set##_kept_3d)}}};

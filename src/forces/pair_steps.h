@@ -14,24 +14,68 @@ struct pair_places {
 struct pair_columns {
     REAL r[PAIR_BATCH], inverse_r[PAIR_BATCH];
     struct pair_places potential, weight;
+    int32_t kind[PAIR_BATCH]; ///< of a mixture: composition_pair
     REAL force_over_r[PAIR_BATCH];
     REAL r_dot_v[PAIR_BATCH];
     int32_t low_id[PAIR_BATCH], high_id[PAIR_BATCH], noise[PAIR_BATCH];
     REAL force[PAIR_BATCH][4];
 };
 
-INLINE void pair_place(struct pair_places *places, int k, const struct table *table, lanes_real r) {
-    const REAL inverse_spacing = (REAL)table->inverse_spacing;
+/// Types of particles. A comparison that holds is −1.
+INLINE lanes_int pair_type(const struct pair_mixture *mixture, lanes_int id) {
+    lanes_int type = lanes_all_int(0);
+    for (int t = 1; t < mixture->types; t++)
+        type -= id >= lanes_all_int(mixture->first[t]);
+    return type;
+}
+
+/// Kinds of the pairs, as composition_pair numbers them.
+INLINE void pair_kinds(struct pair_columns *columns, const struct pair_batch *batch, int count,
+                       const struct pair_mixture *mixture) {
+    const int32_t twice = 2 * mixture->types - 1;
+    for (int k = 0; k < count; k += LANES) {
+        const lanes_int a = pair_type(mixture, lanes_load_int(batch->id_i + k));
+        const lanes_int b = pair_type(mixture, lanes_load_int(batch->id_j + k));
+        const lanes_int low = lanes_least_int(a, b), high = lanes_most_int(a, b);
+        lanes_store_int(columns->kind + k, (low * (twice - low) >> 1) + high);
+    }
+}
+
+/// Rows of distances in a table whose curves for these pairs begin at `first`.
+INLINE void pair_place(struct pair_places *places, int k, lanes_real inverse_spacing,
+                       lanes_int first, lanes_real r) {
     // Beyond the cutoff is the last row, of zeros.
     const lanes_real place = lanes_least(r * inverse_spacing, lanes_all(TABLE_INTERVALS));
     const lanes_int interval = lanes_to_int(place);
-    lanes_store_int(places->interval + k, interval);
+    lanes_store_int(places->interval + k, first + interval);
     lanes_store(places->fraction + k, place - lanes_to_real(interval));
 }
 
-INLINE void pair_distances(struct pair_columns *columns, const struct pair_batch *batch, int count,
-                           const struct pair_law *law, const int dim, const bool conservative,
+INLINE void pair_place_all(struct pair_columns *columns, int k, const struct pair_law *law,
+                           lanes_real r, const bool conservative,
                            const enum pair_friction friction) {
+    const lanes_int first = lanes_all_int(0);
+    if (conservative)
+        pair_place(&columns->potential, k, lanes_all((REAL)law->potential->inverse_spacing), first,
+                   r);
+    if (friction != PAIR_NO_FRICTION)
+        pair_place(&columns->weight, k, lanes_all((REAL)law->weight->inverse_spacing), first, r);
+}
+
+INLINE void pair_place_mixed(struct pair_columns *columns, int k,
+                             const struct pair_mixture *mixture, lanes_real r,
+                             const bool conservative, const enum pair_friction friction) {
+    const struct lanes_record grid = lanes_load_records(mixture->grid, columns->kind + k);
+    const lanes_int kind = lanes_load_int(columns->kind + k);
+    if (conservative)
+        pair_place(&columns->potential, k, grid.word[0], kind * mixture->potential_stride, r);
+    if (friction != PAIR_NO_FRICTION)
+        pair_place(&columns->weight, k, grid.word[1], kind * mixture->weight_stride, r);
+}
+
+INLINE void pair_distances(struct pair_columns *columns, const struct pair_batch *batch, int count,
+                           const struct pair_scene *scene, const int dim, const bool conservative,
+                           const enum pair_friction friction, const bool mixed) {
     for (int k = 0; k < count; k += LANES) {
         const lanes_real dx = lanes_load(batch->dx + k), dy = lanes_load(batch->dy + k);
         lanes_real r2 = dx * dx + dy * dy;
@@ -44,18 +88,18 @@ INLINE void pair_distances(struct pair_columns *columns, const struct pair_batch
         const lanes_real r = lanes_sqrt(r2);
         lanes_store(columns->r + k, r);
         lanes_store(columns->inverse_r + k, 1 / r);
-        if (conservative)
-            pair_place(&columns->potential, k, law->potential, r);
-        if (friction != PAIR_NO_FRICTION)
-            pair_place(&columns->weight, k, law->weight, r);
+        if (mixed)
+            pair_place_mixed(columns, k, &scene->mixture, r, conservative, friction);
+        else
+            pair_place_all(columns, k, scene->law, r, conservative, friction);
     }
 }
 
 /// F_C / r = −Φ'(r) / r, and the sums.
 INLINE void pair_conservative(struct pair_columns *columns, int count,
-                              const struct table *potential, struct pair_sums *sums,
-                              const bool wants_sums) {
-    const REAL spacing = (REAL)(1 / potential->inverse_spacing);
+                              const struct pair_scene *scene, const bool wants_sums,
+                              const bool mixed) {
+    const struct table *potential = scene->law->potential;
     lanes_real energy = lanes_all(0), virial = lanes_all(0);
     for (int k = 0; k < count; k += LANES) {
         const struct lanes_record c =
@@ -65,13 +109,16 @@ INLINE void pair_conservative(struct pair_columns *columns, int count,
         lanes_store(columns->force_over_r + k, force * lanes_load(columns->inverse_r + k));
         if (wants_sums) {
             const lanes_real c2 = c.word[2] / 2, c3 = c.word[3] / 3;
+            const lanes_real spacing =
+                mixed ? lanes_load_records(scene->mixture.grid, columns->kind + k).word[2]
+                      : lanes_all((REAL)(1 / potential->inverse_spacing));
             energy += c.word[0] - spacing * f * (c.word[1] + f * (c2 + f * c3));
             virial += force * lanes_load(columns->r + k);
         }
     }
     if (wants_sums) {
-        sums->energy += lanes_sum(energy);
-        sums->virial += lanes_sum(virial);
+        scene->sums->energy += lanes_sum(energy);
+        scene->sums->virial += lanes_sum(virial);
     }
 }
 
@@ -215,11 +262,15 @@ INLINE void pair_keep(const struct pair_columns *columns, const struct pair_batc
 }
 
 INLINE void pair_count(const struct pair_columns *columns, int count,
-                       const struct pair_histogram *histogram, uint32_t *counts) {
+                       const struct pair_scene *scene, const bool mixed) {
+    const struct pair_histogram *histogram = scene->law->histogram;
+    uint32_t *counts = scene->counts;
     const REAL low = (REAL)histogram->low, inverse_width = (REAL)(1 / histogram->width);
     const REAL bins = (REAL)histogram->bins;
+    const size_t none = pair_histogram_size(histogram) - 1;
     for (int k = 0; k < count; k++) {
         const REAL place = (columns->r[k] - low) * inverse_width;
-        counts[place >= 0 && place < bins ? (size_t)place : histogram->bins]++;
+        const int32_t first = mixed ? columns->kind[k] * scene->mixture.bins_apart : 0;
+        counts[place >= 0 && place < bins ? (size_t)(first + (int32_t)place) : none]++;
     }
 }

@@ -28,7 +28,8 @@ static double friction_and_noise(const struct pair_law *law, const struct partic
                                  size_t i, size_t j, const double r_ij[3], double r,
                                  uint64_t step) {
     double omega, speed = 0;
-    table_evaluate(law->weight, r, &omega, NULL, NULL);
+    const int pair = composition_pair_of_ids(&law->composition, particles->id[i], particles->id[j]);
+    table_evaluate_pair(law->weight, pair, r, &omega, NULL, NULL);
     for (int d = 0; d < particles->box.dimensions; d++)
         speed += r_ij[d] / r * (particles->velocity[d][i] - particles->velocity[d][j]);
     const double zeta = pair_noise(law, particles->id[i], particles->id[j], step);
@@ -48,7 +49,9 @@ void reference_forces(const struct pair_law *law, struct particles *particles, u
             double force = 0;
             if (law->potential && r < law->potential->cutoff) {
                 double phi, slope;
-                table_evaluate(law->potential, r, &phi, &slope, NULL);
+                const int pair =
+                    composition_pair_of_ids(&law->composition, particles->id[i], particles->id[j]);
+                table_evaluate_pair(law->potential, pair, r, &phi, &slope, NULL);
                 force -= slope;
                 total.energy += phi;
                 total.virial -= slope * r;
@@ -69,30 +72,32 @@ static const double shell = 0.01;
 
 /// What a pair in the shell says of the density of pairs at the cutoff, where Φ = 0: those nearer
 /// have less room, and are rarer or more frequent by exp(−Φ/k_B T).
-static double density_at_cutoff(const struct table *potential, double r, double temperature,
-                                int dimensions) {
+static double density_at_cutoff(const struct table *potential, int pair, double r,
+                                double temperature, int dimensions) {
+    const double cutoff = table_reach(potential, pair);
     double phi;
-    table_evaluate(potential, r, &phi, NULL, NULL);
-    return pow(potential->cutoff / r, dimensions - 1) * exp(phi / temperature) /
-           (shell * potential->cutoff);
+    table_evaluate_pair(potential, pair, r, &phi, NULL, NULL);
+    return pow(cutoff / r, dimensions - 1) * exp(phi / temperature) / (shell * cutoff);
 }
 
 /// Σ∇²U of a force that ends abruptly: the slope jumps to 0 at the cutoff, which is a Dirac peak of
 /// Φ'' seen by the pairs that are just there.
-static double edge_laplacian(const struct table *potential, double density) {
+static double edge_laplacian(const struct table *potential, int pair, double density) {
     double slope;
-    table_evaluate(potential, potential->cutoff * (1 - 1e-9), NULL, &slope, NULL);
+    table_evaluate_pair(potential, pair, table_reach(potential, pair) * (1 - 1e-9), NULL, &slope,
+                        NULL);
     return -2 * slope * density;
 }
 
-enum status reference_configurational(const struct table *potential, double temperature,
+enum status reference_configurational(const struct table *potential,
+                                      const struct composition *composition, double temperature,
                                       const struct particles *particles,
                                       const struct neighbours *neighbours, double *squares,
                                       double *laplacian) {
     enum status status = STATUS_OK;
     const int dimensions = particles->box.dimensions;
     double *force = NULL;
-    double density = 0;
+    double density[COMPOSITION_MOST_PAIRS] = {0}; // of each kind of pairs
     *squares = *laplacian = 0;
     NEW_ARRAY(force, 3 * particles->count);
     for (size_t i = 0; i < particles->count; i++)
@@ -102,18 +107,22 @@ enum status reference_configurational(const struct table *potential, double temp
                 continue;
             double r_ij[3], slope, curvature;
             const double r = separation(particles, i, j, r_ij);
-            if (r >= potential->cutoff)
+            const int pair =
+                composition_pair_of_ids(composition, particles->id[i], particles->id[j]);
+            const double cutoff = table_reach(potential, pair);
+            if (r >= cutoff)
                 continue;
-            table_evaluate(potential, r, NULL, &slope, &curvature);
-            if (r > (1 - shell) * potential->cutoff)
-                density += density_at_cutoff(potential, r, temperature, dimensions);
+            table_evaluate_pair(potential, pair, r, NULL, &slope, &curvature);
+            if (r > (1 - shell) * cutoff)
+                density[pair] += density_at_cutoff(potential, pair, r, temperature, dimensions);
             *laplacian += 2 * (curvature + (dimensions - 1) * slope / r);
             for (int d = 0; d < dimensions; d++) {
                 force[3 * i + (size_t)d] -= slope * r_ij[d] / r;
                 force[3 * j + (size_t)d] += slope * r_ij[d] / r;
             }
         }
-    *laplacian += edge_laplacian(potential, density);
+    for (int pair = 0; pair < composition_pairs(composition); pair++)
+        *laplacian += edge_laplacian(potential, pair, density[pair]);
     for (size_t k = 0; k < 3 * particles->count; k++)
         *squares += force[k] * force[k];
 done:

@@ -178,6 +178,15 @@ bool json_has(struct json_object *object, const char *key) {
     return ask(object, key) != NULL;
 }
 
+const char *json_key(const struct json_object *object, size_t n) {
+    const cJSON *member;
+    cJSON_ArrayForEach(member, (const cJSON *)object->item) {
+        if (n-- == 0)
+            return member->string;
+    }
+    return NULL;
+}
+
 void json_finish(struct json_object *object) {
     const cJSON *member;
     cJSON_ArrayForEach(member, (const cJSON *)object->item) {

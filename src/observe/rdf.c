@@ -27,12 +27,29 @@ double rdf_ideal_pairs(const struct rdf_bins *bins, size_t k, const struct box *
            box_volume(box);
 }
 
+double rdf_ideal_pairs_of(const struct rdf_bins *bins, size_t k, const struct box *box,
+                          const struct composition *composition, int pair) {
+    return composition_possible_pairs(composition, pair) *
+           box_shell_volume(box, rdf_bins_edge(bins, k), rdf_bins_edge(bins, k + 1)) /
+           box_volume(box);
+}
+
 double rdf_finite_size_factor(size_t from, size_t to) {
     return (1 - 1 / (double)from) / (1 - 1 / (double)to);
 }
 
+double rdf_finite_size_factor_of(const struct composition *from, const struct composition *to,
+                                 int pair) {
+    int type[2];
+    composition_pair_types(from, pair, type);
+    return type[0] == type[1]
+               ? rdf_finite_size_factor((size_t)from->count[type[0]], (size_t)to->count[type[0]])
+               : 1;
+}
+
 struct counting {
     const struct rdf_bins *bins;
+    const struct composition *composition; ///< of a mixture
     double *histogram;
 };
 
@@ -49,24 +66,65 @@ static void count_batch(void *context, const float *squared_distances, size_t co
 
 void rdf_count_pairs(const struct rdf_bins *bins, const struct particles *particles,
                      const struct neighbours *neighbours, double *histogram) {
-    struct counting counting = {bins, histogram};
+    struct counting counting = {bins, NULL, histogram};
     neighbours_visit_distances(neighbours, particles, rdf_bins_range(bins), count_batch, &counting);
+}
+
+static void count_batch_of(void *context, const struct neighbours_batch *batch) {
+    const struct counting *counting = context;
+    const struct rdf_bins *bins = counting->bins;
+    const double inverse_width = 1 / bins->width;
+    for (size_t k = 0; k < batch->count; k++) {
+        const double place = (sqrt((double)batch->squared[k]) - bins->low) * inverse_width;
+        const int pair =
+            composition_pair_of_ids(counting->composition, batch->id_i[k], batch->id_j[k]);
+        if (place >= 0 && place < (double)bins->count)
+            counting->histogram[(size_t)pair * bins->count + (size_t)place] += 1;
+    }
+}
+
+void rdf_count_pairs_of(const struct rdf_bins *bins, const struct composition *composition,
+                        const struct particles *particles, const struct neighbours *neighbours,
+                        double *histogram) {
+    struct counting counting = {bins, composition, histogram};
+    if (composition_is_mixed(composition))
+        neighbours_visit_pairs(neighbours, particles, rdf_bins_range(bins), count_batch_of,
+                               &counting);
+    else
+        rdf_count_pairs(bins, particles, neighbours, histogram);
 }
 
 enum status rdf_init(struct rdf *rdf, const struct rdf_bins *bins, const struct box *box,
                      size_t particle_count, double list_cutoff, size_t planned) {
+    const struct composition composition = composition_of_one((int64_t)particle_count);
+    return rdf_init_mixture(rdf, bins, box, &composition, list_cutoff, planned);
+}
+
+static size_t count_all(const struct composition *composition) {
+    size_t count = 0;
+    for (int type = 0; type < composition->types; type++)
+        count += (size_t)composition->count[type];
+    return count;
+}
+
+enum status rdf_init_mixture(struct rdf *rdf, const struct rdf_bins *bins, const struct box *box,
+                             const struct composition *composition, double list_cutoff,
+                             size_t planned) {
     enum status status = STATUS_OK;
+    const size_t particle_count = count_all(composition);
     *rdf = (struct rdf){.bins = *bins,
                         .box = *box,
                         .particle_count = particle_count,
+                        .composition = *composition,
+                        .pairs = (size_t)composition_pairs(composition),
                         .planned = planned,
                         .blocks = planned < BLOCKS ? planned : BLOCKS,
                         // A part in 10⁹ forgives a range that was rounded in another unit.
                         .needs_own_list = rdf_bins_range(bins) > list_cutoff * (1 + 1e-9)};
-    NEW_ARRAY(rdf->histogram, rdf->blocks * bins->count);
+    NEW_ARRAY(rdf->histogram, rdf->blocks * rdf->pairs * bins->count);
     NEW_ARRAY(rdf->block_samples, rdf->blocks);
-    rdf->counted = (struct pair_histogram){bins->low, bins->width, bins->count, NULL};
-    NEW_ARRAY(rdf->counted.counts, NEIGHBOURS_MOST_PARTS * (bins->count + 1));
+    rdf->counted = (struct pair_histogram){bins->low, bins->width, bins->count, rdf->pairs, NULL};
+    NEW_ARRAY(rdf->counted.counts, NEIGHBOURS_MOST_PARTS * pair_histogram_size(&rdf->counted));
     if (rdf->needs_own_list) {
         if (box_shortest(box) < 2 * rdf_bins_range(bins)) {
             status = status_fail(STATUS_BAD_INPUT,
@@ -94,11 +152,17 @@ void rdf_clear(struct rdf *rdf) {
     *rdf = (struct rdf){0};
 }
 
+/// Bins of all kinds of pairs.
+static size_t all_bins(const struct rdf *rdf) {
+    return rdf->pairs * rdf->bins.count;
+}
+
 /// A sorted copy of the particles with a list of the bins' range.
 static enum status make_own_list(struct rdf *rdf, const struct particles *particles) {
     for (int d = 0; d < particles->box.dimensions; d++)
         memcpy(rdf->own_particles.position[d], particles->position[d],
                particles->count * sizeof *particles->position[d]);
+    memcpy(rdf->own_particles.id, particles->id, particles->count * sizeof *particles->id);
     return neighbours_sort_and_build(&rdf->own_list, &rdf->own_particles);
 }
 
@@ -109,22 +173,23 @@ static double *next_block(struct rdf *rdf) {
         block = rdf->blocks - 1;
     rdf->block_samples[block] += 1;
     rdf->samples++;
-    return rdf->histogram + block * rdf->bins.count;
+    return rdf->histogram + block * all_bins(rdf);
 }
 
 const struct pair_histogram *rdf_histogram(struct rdf *rdf) {
     if (rdf->needs_own_list)
         return NULL;
     memset(rdf->counted.counts, 0,
-           NEIGHBOURS_MOST_PARTS * (rdf->bins.count + 1) * sizeof *rdf->counted.counts);
+           NEIGHBOURS_MOST_PARTS * pair_histogram_size(&rdf->counted) *
+               sizeof *rdf->counted.counts);
     return &rdf->counted;
 }
 
 void rdf_sample_counted(struct rdf *rdf) {
     double *histogram = next_block(rdf);
     for (size_t part = 0; part < NEIGHBOURS_MOST_PARTS; part++)
-        for (size_t k = 0; k < rdf->bins.count; k++)
-            histogram[k] += rdf->counted.counts[part * (rdf->bins.count + 1) + k];
+        for (size_t k = 0; k < all_bins(rdf); k++)
+            histogram[k] += rdf->counted.counts[part * pair_histogram_size(&rdf->counted) + k];
 }
 
 enum status rdf_sample(struct rdf *rdf, const struct particles *particles,
@@ -132,22 +197,29 @@ enum status rdf_sample(struct rdf *rdf, const struct particles *particles,
     double *histogram = next_block(rdf);
     if (rdf->needs_own_list) {
         TRY(make_own_list(rdf, particles));
-        rdf_count_pairs(&rdf->bins, &rdf->own_particles, &rdf->own_list, histogram);
+        rdf_count_pairs_of(&rdf->bins, &rdf->composition, &rdf->own_particles, &rdf->own_list,
+                           histogram);
     } else {
-        rdf_count_pairs(&rdf->bins, particles, neighbours, histogram);
+        rdf_count_pairs_of(&rdf->bins, &rdf->composition, particles, neighbours, histogram);
     }
     return STATUS_OK;
 }
 
+/// Expected pairs in place k of an array over kinds and bins.
+static double ideal_at(const struct rdf *rdf, size_t k) {
+    return rdf_ideal_pairs_of(&rdf->bins, k % rdf->bins.count, &rdf->box, &rdf->composition,
+                              (int)(k / rdf->bins.count));
+}
+
 void rdf_result(const struct rdf *replicas, size_t count, double *g, double *error) {
-    const struct rdf_bins *bins = &replicas->bins;
-    for (size_t k = 0; k < bins->count; k++) {
-        const double ideal = rdf_ideal_pairs(bins, k, &replicas->box, replicas->particle_count);
+    const size_t all = all_bins(replicas);
+    for (size_t k = 0; k < all; k++) {
+        const double ideal = ideal_at(replicas, k);
         struct running_mean blocks = {0};
         double pairs = 0, samples = 0;
         for (size_t r = 0; r < count; r++)
             for (size_t b = 0; b < replicas[r].blocks; b++) {
-                const double here = replicas[r].histogram[b * bins->count + k];
+                const double here = replicas[r].histogram[b * all + k];
                 if (replicas[r].block_samples[b] == 0)
                     continue;
                 pairs += here;
@@ -170,13 +242,13 @@ double rdf_rmse(const double *g, const double *target, size_t count) {
 enum status rdf_distance(const struct rdf *replicas, size_t count, const double *target,
                          double *rmse, double *error) {
     enum status status = STATUS_OK;
-    const struct rdf_bins *bins = &replicas->bins;
+    const size_t all = all_bins(replicas);
     double *g = NULL, *without = NULL, samples = 0;
     struct running_mean jackknife = {0};
-    NEW_ARRAY(g, bins->count);
-    NEW_ARRAY(without, bins->count);
+    NEW_ARRAY(g, all);
+    NEW_ARRAY(without, all);
     rdf_result(replicas, count, g, NULL);
-    *rmse = rdf_rmse(g, target, bins->count);
+    *rmse = rdf_rmse(g, target, all);
     for (size_t r = 0; r < count; r++)
         samples += (double)replicas[r].samples;
     for (size_t r = 0; error && r < count; r++)
@@ -184,13 +256,11 @@ enum status rdf_distance(const struct rdf *replicas, size_t count, const double 
             const double here = replicas[r].block_samples[b];
             if (here == 0 || samples == here)
                 continue;
-            for (size_t k = 0; k < bins->count; k++) {
-                const double ideal =
-                    rdf_ideal_pairs(bins, k, &replicas->box, replicas->particle_count);
-                without[k] = (g[k] * samples - replicas[r].histogram[b * bins->count + k] / ideal) /
-                             (samples - here);
-            }
-            statistics_add(&jackknife, rdf_rmse(without, target, bins->count));
+            for (size_t k = 0; k < all; k++)
+                without[k] =
+                    (g[k] * samples - replicas[r].histogram[b * all + k] / ideal_at(replicas, k)) /
+                    (samples - here);
+            statistics_add(&jackknife, rdf_rmse(without, target, all));
         }
     if (error)
         *error = jackknife.count < 2

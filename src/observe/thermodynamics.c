@@ -30,8 +30,9 @@ enum status thermodynamics_sample(struct thermodynamics *thermodynamics,
     here[THERMODYNAMICS_POTENTIAL_ENERGY * stride] = simulation->sums.energy / count;
     here[THERMODYNAMICS_PRESSURE * stride] = simulation_pressure(simulation);
     if (simulation->law.potential)
-        TRY(reference_configurational(simulation->law.potential, simulation->setup.temperature,
-                                      &simulation->particles, &simulation->neighbours,
+        TRY(reference_configurational(simulation->law.potential, &simulation->law.composition,
+                                      simulation->setup.temperature, &simulation->particles,
+                                      &simulation->neighbours,
                                       &here[THERMODYNAMICS_FORCE_SQUARES * stride],
                                       &here[THERMODYNAMICS_LAPLACIAN * stride]));
     thermodynamics->samples++;

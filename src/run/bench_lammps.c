@@ -49,8 +49,10 @@ enum status bench_lammps_check(void) {
 }
 
 const char *bench_lammps_objection(const struct scene *scene) {
-    const struct curve_family *family = scene->potential.family;
-    if (scene->weight.family)
+    const struct curve_family *family = scene->potential.curve[0].family;
+    if (composition_is_mixed(&scene->setup.composition))
+        return "it is a mixture";
+    if (scene->weight.curves)
         return "Debian's LAMMPS has no pair style with friction and noise";
     if (scene->setup.integrator != &velocity_verlet)
         return "its integrator is not velocity-verlet";
@@ -108,12 +110,12 @@ static enum status write_table(const char *folder, const struct table *table) {
 }
 
 static void write_pair_style(FILE *stream, const struct scene *scene) {
-    if (scene->potential.family == &sampled_family) {
+    if (scene->potential.curve[0].family == &sampled_family) {
         fprintf(stream, "pair_style table linear %d\npair_coeff 1 1 pair.table SCENE %.17g\n",
-                TABLE_POINTS, scene->potential_table.cutoff);
+                TABLE_POINTS, scene->potential.table.cutoff);
         return;
     }
-    const struct formula_lennard_jones_parameters *p = scene->potential.parameters;
+    const struct formula_lennard_jones_parameters *p = scene->potential.curve[0].parameters;
     fprintf(stream, "pair_style lj/cut %.17g\npair_coeff 1 1 %.17g %.17g\npair_modify shift yes\n",
             p->cutoff, p->epsilon, p->sigma);
 }
@@ -122,8 +124,8 @@ enum status bench_lammps_write(const char *folder, const struct scene *scene,
                                const struct simulation *simulation) {
     struct output output;
     TRY(write_start(folder, &simulation->particles));
-    if (scene->potential.family == &sampled_family)
-        TRY(write_table(folder, &scene->potential_table));
+    if (scene->potential.curve[0].family == &sampled_family)
+        TRY(write_table(folder, &scene->potential.table));
     TRY(open_in(&output, folder, "in.bench"));
     fprintf(output.stream, "# from mesofit bench: -var skin S -var steps N\n"
                            "units lj\natom_style atomic\nnewton on\nread_data start.data\n");
@@ -191,7 +193,8 @@ static enum status choose_variant(const char *folder, double skin, double ours, 
 }
 
 static void describe_variant(const struct scene *scene, const struct variant *variant, char *text) {
-    const char *style = scene->potential.family == &sampled_family ? "table linear" : "lj/cut";
+    const char *style =
+        scene->potential.curve[0].family == &sampled_family ? "table linear" : "lj/cut";
     int used = snprintf(text, BENCH_NAME_SIZE, "pair_style %s, skin %g", style, variant->skin);
     for (size_t k = 0; k < SUFFIX_WORDS && variant->suffix[k]; k++)
         used += snprintf(text + used, (size_t)(BENCH_NAME_SIZE - used), "%s%s", k ? " " : ", ",

@@ -9,10 +9,10 @@
 /// Nanoseconds, measured on Zen 5 with AVX-512 in mixed precision, one thread: of a particle and
 /// step, of an entry of the list, of a pair in range; of a particle and sample of the motion, and
 /// of each time origin of that; of a pair and sample of the escape times, and of one at an origin;
-/// of a pair and sample of the force covariance.
+/// of a pair and sample of the force covariance; `tell`: the types of a pair in range.
 static const struct {
     double move, sort, build, go_through, pair, conservative, dissipative, kept, count, flux, sum,
-        curvature, gather, correlate, follow, begin, covary;
+        curvature, tell, gather, correlate, follow, begin, covary;
 } cost = {.move = 8,
           .sort = 28,
           .build = 0.9,
@@ -25,13 +25,14 @@ static const struct {
           .flux = 5,
           .sum = 0.2,
           .curvature = 8,
+          .tell = 0.7,
           .gather = 4,
           .correlate = 1.3,
           .follow = 2.4,
           .begin = 30,
           .covary = 3};
 
-enum { MOST_STAGES = 14 };
+enum { MOST_STAGES = 15 };
 
 struct stage {
     const char *name;
@@ -79,6 +80,11 @@ static void add_forces(struct plan *plan, const struct simulation_setup *setup,
     const double cutoff = measured->cutoff, pairs = pairs_within(setup, cutoff);
     add(plan, "distances and forces on particles", true, cost.pair * pairs, "%s, %s precision",
         simd_name(), setup->precision == PAIR_DOUBLE ? "double" : "mixed");
+    const int types = setup->composition.types;
+    if (composition_is_mixed(&setup->composition))
+        add(plan, "types of beads", true, cost.tell * pairs,
+            "%d types: which curve a pair of the %d kinds has", types,
+            composition_pairs(&setup->composition));
     if (measured->has_potential)
         add(plan, "conservative force", true, cost.conservative * pairs,
             "a potential with cutoff %.3g", cutoff);

@@ -100,6 +100,8 @@ static enum status read_scene(struct fit_file *fit, struct json_object *root) {
                   (json_has(&unknowns, inverse_unknown_names[1]) ? SCENE_FITS_WEIGHT : 0);
     }
     TRY(scene_read(&fit->scene, &scene, unknown));
+    if (composition_is_mixed(&fit->scene.setup.composition))
+        json_fault(&scene, "particles.types", "mixtures: a fit wants beads that are alike");
     json_finish(&scene);
     return STATUS_OK;
 }

@@ -82,10 +82,10 @@ done:
 static enum status write_known_omega(const struct fit_file *fit, const struct run_folder *folder) {
     double r[OMEGA_POINTS + 1], omega[OMEGA_POINTS + 1];
     char path[OUTPUT_PATH_SIZE];
-    const double cutoff = curve_cutoff(&fit->scene.weight);
+    const double cutoff = curve_cutoff(&fit->scene.weight.curve[0]);
     for (int k = 0; k <= OMEGA_POINTS; k++) {
         r[k] = cutoff * k / OMEGA_POINTS;
-        omega[k] = curve_value(&fit->scene.weight, r[k]);
+        omega[k] = curve_value(&fit->scene.weight.curve[0], r[k]);
     }
     const struct data_column columns[] = {{"r[lambda]", r, NULL},
                                           {"omega[sqrt(mu/tau)]", omega, NULL}};
@@ -145,7 +145,7 @@ enum status fit_output_curves(const struct fit_file *fit, const struct decoder *
         TRY(write_potential(fit, decoder, result, folder));
     if (result->curve[UNKNOWN_WEIGHT])
         return write_fitted_omega(fit, decoder, result, folder);
-    return fit->scene.weight.family ? write_known_omega(fit, folder) : STATUS_OK;
+    return fit->scene.weight.curves ? write_known_omega(fit, folder) : STATUS_OK;
 }
 
 static enum status write_rdf(const struct fit_file *fit, const struct observed *observed,

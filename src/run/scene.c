@@ -2,9 +2,7 @@
 #include "run/scene.h"
 
 #include "base/memory.h"
-#include "curves/sampled.h"
 #include "io/data_table.h"
-#include "io/votca.h"
 #include "run/checkpoint.h"
 
 /// The members of a scene that stand at its top.
@@ -43,113 +41,15 @@ const struct field scene_fields[] = {
     FIELD_END,
 };
 
-/// The first two columns of a file as points. Faults go to the document and leave `count` 0.
-static enum status read_columns(const char *file, double **r, double **value, size_t *count) {
-    struct data_table table = {0};
-    enum status status = STATUS_OK;
-    CHECK(data_table_read(&table, file, 2));
-    CHECK(data_table_check_increasing(&table, file, 0, 0));
-    NEW_ARRAY(*r, table.rows);
-    NEW_ARRAY(*value, table.rows);
-    for (size_t k = 0; k < table.rows; k++) {
-        (*r)[k] = table.values[k * table.columns];
-        (*value)[k] = table.values[k * table.columns + 1];
-    }
-    *count = table.rows;
-done:
-    data_table_clear(&table);
-    return status;
-}
-
-/// VOTCA's points, from nm and kJ/mol.
-static enum status read_votca(const char *file, const struct units *units, double **r,
-                              double **value, size_t *count) {
-    struct votca_table table = {0};
-    enum status status = STATUS_OK;
-    CHECK(votca_read(&table, file));
-    NEW_ARRAY(*r, table.rows);
-    NEW_ARRAY(*value, table.rows);
-    for (size_t k = 0; k < table.rows; k++) {
-        if (table.x[k] < 0) {
-            status = status_fail(STATUS_BAD_INPUT, "%s:%zu: r = %g is negative", file,
-                                 table.line[k], table.x[k]);
-            goto done;
-        }
-        (*r)[k] = table.x[k] / units->length;
-        (*value)[k] = table.y[k] / units_energy_kj_per_mol(units);
-    }
-    *count = table.rows;
-done:
-    votca_clear(&table);
-    return status;
-}
-
-/// Points of a table file for a curve of the law "table".
-static enum status load_points(struct curve *curve, struct json_object *object,
-                               const struct units *units) {
-    struct sampled_parameters *parameters = curve->parameters;
-    double *r = NULL, *value = NULL;
-    size_t count = 0;
-    enum status status = STATUS_OK;
-    if (parameters->format == SAMPLED_VOTCA && !units_known(units)) {
-        json_fault(object, "format", "VOTCA's nm and kJ/mol need \"units\" in the scene");
-        return STATUS_OK;
-    }
-    status = parameters->format == SAMPLED_VOTCA
-                 ? read_votca(parameters->file, units, &r, &value, &count)
-                 : read_columns(parameters->file, &r, &value, &count);
-    if (status != STATUS_OK)
-        json_fault(object, "file", "%s", status_message());
-    else if (sampled_set_points(curve, r, value, count) != STATUS_OK)
-        json_fault(object, "file", "%s: %s", parameters->file, status_message());
-    memory_free(r);
-    memory_free(value);
-    return status == STATUS_NO_MEMORY ? status : STATUS_OK;
-}
-
-/// A table that could not be loaded has no points: forget the curve, the fault is recorded.
-static bool is_usable(const struct curve *curve) {
-    return curve->family != &sampled_family ||
-           ((const struct sampled_parameters *)curve->parameters)->spline != NULL;
-}
-
-enum status scene_read_curve(struct curve *curve, struct json_object *parent, const char *key,
-                             const struct curve_family *const *list, const struct units *units) {
-    enum { MOST = 16 };
-    const char *names[MOST] = {"none"};
-    for (size_t k = 0; list[k] && k + 2 < MOST; k++)
-        names[k + 1] = list[k]->name;
-    struct json_object object = json_child(parent, key, false);
-    if (object.item == NULL)
-        return STATUS_OK;
-    const char *law = json_choice(&object, "law", names, NULL);
-    const struct curve_family *family = law ? curve_find(list, law) : NULL;
-    if (family) {
-        const size_t faults = json_fault_count(object.document);
-        TRY(curve_create(curve, family));
-        json_fields(&object, family->fields, curve->parameters);
-        if (family == &sampled_family && json_fault_count(object.document) == faults)
-            TRY(load_points(curve, &object, units));
-        if (!is_usable(curve))
-            curve_clear(curve);
-    }
-    if (law)
-        json_finish(&object);
-    return STATUS_OK;
-}
-
-static enum status read_weight(struct scene *scene, struct json_object *object) {
-    TRY(scene_read_curve(&scene->weight, object, "dissipative", curve_weights, &scene->units));
-    if (scene->weight.family == NULL)
-        return STATUS_OK;
-    TRY(table_init_weight(&scene->weight_table, &scene->weight));
-    for (int k = 0; k <= TABLE_INTERVALS; k++)
-        if (scene->weight_table.coefficient[2 * k] < 0) {
+static void check_weight(const struct scene *scene, struct json_object *object) {
+    const struct table *table = &scene->weight.table;
+    for (int row = 0; row < table->curves * (TABLE_INTERVALS + 1); row++)
+        if (table->coefficient[2 * row] < 0) {
+            const int pair = row / (TABLE_INTERVALS + 1), k = row % (TABLE_INTERVALS + 1);
             json_fault(object, "dissipative", "omega is negative at r = %g",
-                       k / scene->weight_table.inverse_spacing);
-            break;
+                       k / table_inverse_spacing(table, pair));
+            return;
         }
-    return STATUS_OK;
 }
 
 static void read_top(struct scene *scene, struct json_object *object) {
@@ -176,7 +76,7 @@ static void read_dynamics(struct scene *scene, struct json_object *object, int u
     for (size_t k = 0; integrator_list[k] && k + 1 < MOST; k++)
         names[k] = integrator_list[k]->name;
     struct json_object dynamics = json_child(object, "dynamics", false);
-    const bool dissipative = scene->weight.family != NULL || (unknown & SCENE_FITS_WEIGHT);
+    const bool dissipative = scene->weight.curves > 0 || (unknown & SCENE_FITS_WEIGHT);
     const char *name = dissipative ? aboba.name : velocity_verlet.name;
     if (dynamics.item)
         name = json_choice(&dynamics, "integrator", names, name);
@@ -227,9 +127,45 @@ done:
     return status;
 }
 
+static void read_count(struct scene *scene, struct json_object *particles) {
+    json_fields(particles, placement_count_fields, &scene->setup.placement);
+    scene->setup.composition = composition_of_one(scene->setup.placement.count);
+}
+
+/// One type of a mixture and how many beads there are of it, after those that were read before.
+static void read_type(struct scene *scene, struct json_object *types, const char *name) {
+    struct composition *composition = &scene->setup.composition;
+    struct field fields[] = {placement_count_fields[0], FIELD_END};
+    int64_t *count = &composition->count[composition->types];
+    fields[0].name = name;
+    fields[0].offset = 0;
+    json_fields(types, fields, count);
+    scene->setup.placement.count += *count;
+    if (!composition_is_name(name))
+        json_fault(types, name, "a type is called by up to %d letters, digits and _",
+                   COMPOSITION_NAME_SIZE - 1);
+    snprintf(composition->name[composition->types++], COMPOSITION_NAME_SIZE, "%s", name);
+}
+
+/// "types": {"A": 500, "B": 300} in the place of "count".
+static void read_types(struct scene *scene, struct json_object *particles) {
+    struct json_object types = json_child(particles, "types", true);
+    size_t n = 0;
+    for (const char *name; (name = json_key(&types, n)); n++)
+        if (n < COMPOSITION_MOST_TYPES)
+            read_type(scene, &types, name);
+    if (types.item && (n < 2 || n > COMPOSITION_MOST_TYPES))
+        json_fault(particles, "types", "a mixture has 2 to %d types, not %zu; \"count\" is for one",
+                   COMPOSITION_MOST_TYPES, n);
+}
+
 static enum status read_particles(struct scene *scene, struct json_object *object) {
     struct json_object particles = json_child(object, "particles", true);
     struct placement *placement = &scene->setup.placement;
+    if (json_has(&particles, "types"))
+        read_types(scene, &particles);
+    else
+        read_count(scene, &particles);
     json_fields(&particles, placement_fields, placement);
     if (particles.item == NULL)
         return STATUS_OK;
@@ -254,33 +190,38 @@ enum status scene_read(struct scene *scene, struct json_object *object, int unkn
     if (unknown == SCENE_FITS_WEIGHT) // between what particles, a fit would ask in vain
         json_child(object, "conservative", true);
     if (!(unknown & SCENE_FITS_POTENTIAL)) {
-        TRY(scene_read_curve(&scene->potential, object, "conservative", curve_potentials,
-                             &scene->units));
-        if (scene->potential.family)
-            TRY(table_init_potential(&scene->potential_table, &scene->potential));
+        TRY(scene_law_read(&scene->potential, object, "conservative", curve_potentials,
+                           &scene->setup.composition, &scene->units));
+        TRY(scene_law_tabulate(&scene->potential, table_init_potential));
     }
-    if (!(unknown & SCENE_FITS_WEIGHT))
-        TRY(read_weight(scene, object));
+    if (!(unknown & SCENE_FITS_WEIGHT)) {
+        TRY(scene_law_read(&scene->weight, object, "dissipative", curve_weights,
+                           &scene->setup.composition, &scene->units));
+        TRY(scene_law_tabulate(&scene->weight, table_init_weight));
+        check_weight(scene, object);
+    }
     read_dynamics(scene, object, unknown);
-    scene->setup.potential = scene->potential.family ? &scene->potential_table : NULL;
-    scene->setup.weight = scene->weight.family ? &scene->weight_table : NULL;
+    scene->setup.potential = scene->potential.curves ? &scene->potential.table : NULL;
+    scene->setup.weight = scene->weight.curves ? &scene->weight.table : NULL;
     return STATUS_OK;
 }
 
 void scene_clear(struct scene *scene) {
-    curve_clear(&scene->potential);
-    curve_clear(&scene->weight);
-    table_clear(&scene->potential_table);
-    table_clear(&scene->weight_table);
+    scene_law_clear(&scene->potential);
+    scene_law_clear(&scene->weight);
     memory_free(scene->start_values);
     *scene = (struct scene){0};
 }
 
-void scene_write_curve(const struct curve *curve, struct json_writer *writer, const char *key) {
-    json_begin(writer, key);
-    json_put_text(writer, "law", curve->family ? curve->family->name : "none");
-    if (curve->family)
-        json_put_fields(writer, curve->family->fields, curve->parameters);
+static void write_count(const struct simulation_setup *setup, struct json_writer *writer) {
+    const struct composition *composition = &setup->composition;
+    if (!composition_is_mixed(composition)) {
+        json_put_fields(writer, placement_count_fields, &setup->placement);
+        return;
+    }
+    json_begin(writer, "types");
+    for (int type = 0; type < composition->types; type++)
+        json_put_number(writer, composition->name[type], (double)composition->count[type]);
     json_end(writer);
 }
 
@@ -296,12 +237,13 @@ void scene_write(const struct scene *scene, struct json_writer *writer) {
         top.box[d] = setup->box.length[d];
     json_put_fields(writer, scene_fields, &top);
     json_begin(writer, "particles");
+    write_count(setup, writer);
     json_put_fields(writer, placement_fields, &setup->placement);
     json_end(writer);
-    if (scene->potential.family || scene->unknown == SCENE_FITS_WEIGHT)
-        scene_write_curve(&scene->potential, writer, "conservative");
-    if (scene->weight.family)
-        scene_write_curve(&scene->weight, writer, "dissipative");
+    if (scene->potential.curves || scene->unknown == SCENE_FITS_WEIGHT)
+        scene_law_write(&scene->potential, &setup->composition, writer, "conservative");
+    if (scene->weight.curves)
+        scene_law_write(&scene->weight, &setup->composition, writer, "dissipative");
     json_begin(writer, "dynamics");
     json_put_text(writer, "integrator", setup->integrator->name);
     json_put_fields(writer, setup->integrator->fields, &setup->integrator_parameters);
@@ -313,14 +255,9 @@ void scene_write(const struct scene *scene, struct json_writer *writer) {
     }
 }
 
-static void digest_table(const struct table *table, uint64_t *digest) {
-    checkpoint_digest_add(digest, table->coefficient,
-                          (size_t)((TABLE_INTERVALS + 1) * table->terms) * sizeof(double));
-}
-
 void scene_digest(const struct scene *scene, uint64_t *digest) {
-    digest_table(&scene->potential_table, digest);
-    digest_table(&scene->weight_table, digest);
+    scene_law_digest(&scene->potential, digest);
+    scene_law_digest(&scene->weight, digest);
     const size_t count = (size_t)scene->setup.placement.count;
     for (int d = 0; d < scene->setup.box.dimensions; d++) {
         checkpoint_digest_add(digest, scene->start.position[d], count * sizeof(double));

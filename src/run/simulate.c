@@ -131,7 +131,8 @@ static size_t run_spans(struct run *run, struct memory_span *spans) {
     size_t n = simulation_spans(&run->simulation, spans);
     const struct rdf *rdf = &run->rdf;
     spans[n++] = (struct memory_span){&run->rdf.samples, sizeof rdf->samples};
-    spans[n++] = (struct memory_span){rdf->histogram, rdf->blocks * rdf->bins.count * 8};
+    spans[n++] =
+        (struct memory_span){rdf->histogram, rdf->blocks * rdf->pairs * rdf->bins.count * 8};
     spans[n++] = (struct memory_span){rdf->block_samples, rdf->blocks * 8};
     spans[n++] = (struct memory_span){&run->thermodynamics.samples, sizeof rdf->samples};
     spans[n++] = (struct memory_span){run->thermodynamics.values,
@@ -179,29 +180,41 @@ static void tell(void *context, const struct simulation *simulation, uint64_t do
         progress_say(&run->progress, "mesofit: warning: %s", status_message());
 }
 
+/// Names the table of a kind of pairs: rdf.tsv, or rdf_A-B.tsv in a mixture.
+static void rdf_file(const struct run *run, int pair, char path[OUTPUT_PATH_SIZE]) {
+    char kind[COMPOSITION_PAIR_NAME_SIZE], name[COMPOSITION_PAIR_NAME_SIZE + 8];
+    composition_pair_name(&run->scene.setup.composition, pair, kind);
+    snprintf(name, sizeof name, "rdf%s%s.tsv", kind[0] ? "_" : "", kind);
+    run_folder_file(&run->folder, name, path);
+}
+
 static enum status write_rdf(const struct run *run) {
     enum status status = STATUS_OK;
     const struct rdf_bins *bins = &run->rdf.bins;
+    const size_t all = run->rdf.pairs * bins->count;
     char path[OUTPUT_PATH_SIZE];
     double *r = NULL, *g = NULL, *error = NULL, *counted = NULL, *counted_error = NULL;
     NEW_ARRAY(r, bins->count);
     NEW_ARRAY(g, bins->count);
     NEW_ARRAY(error, bins->count);
-    NEW_ARRAY(counted, bins->count);
-    NEW_ARRAY(counted_error, bins->count);
+    NEW_ARRAY(counted, all);
+    NEW_ARRAY(counted_error, all);
     for (size_t k = 0; k < bins->count; k++)
         r[k] = rdf_bins_centre(bins, k);
     rdf_result(&run->rdf, 1, counted, counted_error);
     if (uses_force(run))
         CHECK(rdf_force_result(&run->rdf_force, 1, RDF_FORCE_COUNTED, g, error));
-    const struct data_column columns[] = {
-        {"r[lambda]", r, NULL},
-        {"g[1]", uses_force(run) ? g : counted, "%.8g"},
-        {"g_error[1]", uses_force(run) ? error : counted_error, "%.3g"},
-        {"g_histogram[1]", counted, "%.8g"},
-        {"g_histogram_error[1]", counted_error, "%.3g"}};
-    run_folder_file(&run->folder, "rdf.tsv", path);
-    CHECK(data_table_write(path, NULL, columns, uses_force(run) ? 5 : 3, bins->count));
+    for (size_t pair = 0; pair < run->rdf.pairs; pair++) {
+        const size_t first = pair * bins->count;
+        const struct data_column columns[] = {
+            {"r[lambda]", r, NULL},
+            {"g[1]", uses_force(run) ? g : counted + first, "%.8g"},
+            {"g_error[1]", uses_force(run) ? error : counted_error + first, "%.3g"},
+            {"g_histogram[1]", counted + first, "%.8g"},
+            {"g_histogram_error[1]", counted_error + first, "%.3g"}};
+        rdf_file(run, (int)pair, path);
+        CHECK(data_table_write(path, NULL, columns, uses_force(run) ? 5 : 3, bins->count));
+    }
 done:
     memory_free(r);
     memory_free(g);
@@ -278,6 +291,9 @@ static enum status write_summary(const struct run *run, double seconds) {
 
 static enum status prepare_force(struct run *run, const struct rdf_bins *bins) {
     const struct simulation_setup *setup = &run->scene.setup;
+    if (composition_is_mixed(&setup->composition))
+        return status_fail(STATUS_BAD_INPUT, "rdf: \"estimator\": \"force\" is not for mixtures; "
+                                             "\"histogram\" counts their partial g(r)");
     if (!rdf_force_applies(setup->potential, setup->temperature))
         return status_fail(STATUS_BAD_INPUT,
                            "rdf: \"estimator\": \"force\" wants a potential that keeps particles "
@@ -299,8 +315,8 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
     const double range = run->rdf_parameters.range > 0 ? run->rdf_parameters.range : cutoff;
     const struct rdf_bins bins = {.width = range / (double)run->rdf_parameters.bins,
                                   .count = (size_t)run->rdf_parameters.bins};
-    status = rdf_init(&run->rdf, &bins, &setup->box, run->simulation.particles.count, cutoff,
-                      (size_t)run->plan.samples);
+    status = rdf_init_mixture(&run->rdf, &bins, &setup->box, &setup->composition, cutoff,
+                              (size_t)run->plan.samples);
     if (status == STATUS_OK && uses_force(run))
         status = prepare_force(run, &bins);
     if (status != STATUS_OK)

@@ -179,32 +179,64 @@ bool neighbours_are_stale(const struct neighbours *neighbours, const struct part
     return parallel_sum(particles->count, particles->threads, has_moved, &watched) > 0;
 }
 
+/// Lengths of the box in units of its fractions, 0 along an axis that is not there.
+static void find_scale(const struct box *box, float scale[3]) {
+    for (int d = 0; d < 3; d++)
+        scale[d] = d < box->dimensions ? (float)(box->length[d] * 0x1p-32) : 0;
+}
+
+static inline float square_distance(const struct particles *particles, const float scale[3],
+                                    size_t i, size_t j) {
+    float square = 0;
+    for (int d = 0; d < 3; d++) {
+        const float dx = scale[d] * (float)box_fraction_difference(particles->fraction[d][i],
+                                                                   particles->fraction[d][j]);
+        square += dx * dx;
+    }
+    return square;
+}
+
 void neighbours_visit_distances(
     const struct neighbours *neighbours, const struct particles *particles, double range,
     void (*visit)(void *context, const float *squared_distances, size_t count), void *context) {
-    enum { BATCH = 512 };
-    const struct box *box = &particles->box;
     const float limit = (float)(range * range);
-    float scale[3], squared[BATCH];
-    for (int d = 0; d < 3; d++)
-        scale[d] = d < box->dimensions ? (float)(box->length[d] * 0x1p-32) : 0;
+    float scale[3], squared[NEIGHBOURS_BATCH];
     size_t found = 0;
+    find_scale(&particles->box, scale);
     for (size_t i = 0; i < particles->count; i++)
         for (size_t k = neighbours->start[i]; k < neighbours->stop[i]; k++) {
             const size_t j = (size_t)neighbours->list[k];
-            float square = 0;
-            for (int d = 0; d < 3; d++) {
-                const float dx =
-                    scale[d] * (float)box_fraction_difference(particles->fraction[d][i],
-                                                              particles->fraction[d][j]);
-                square += dx * dx;
-            }
+            const float square = square_distance(particles, scale, i, j);
             squared[found] = square;
             found += square < limit && j != i;
-            if (found == BATCH) {
+            if (found == NEIGHBOURS_BATCH) {
                 visit(context, squared, found);
                 found = 0;
             }
         }
     visit(context, squared, found);
+}
+
+void neighbours_visit_pairs(const struct neighbours *neighbours, const struct particles *particles,
+                            double range,
+                            void (*visit)(void *context, const struct neighbours_batch *batch),
+                            void *context) {
+    const float limit = (float)(range * range);
+    struct neighbours_batch batch = {0};
+    float scale[3];
+    find_scale(&particles->box, scale);
+    for (size_t i = 0; i < particles->count; i++)
+        for (size_t k = neighbours->start[i]; k < neighbours->stop[i]; k++) {
+            const size_t j = (size_t)neighbours->list[k];
+            const float square = square_distance(particles, scale, i, j);
+            batch.squared[batch.count] = square;
+            batch.id_i[batch.count] = particles->id[i];
+            batch.id_j[batch.count] = particles->id[j];
+            batch.count += square < limit && j != i;
+            if (batch.count == NEIGHBOURS_BATCH) {
+                visit(context, &batch);
+                batch.count = 0;
+            }
+        }
+    visit(context, &batch);
 }

@@ -7,9 +7,13 @@
 static const char *const kinds[] = {"lattice", "random", "file", NULL};
 
 #define MEMBER(name) .offset = offsetof(struct placement, name)
-const struct field placement_fields[] = {
+const struct field placement_count_fields[] = {
     {"count", FIELD_INTEGER, MEMBER(count), .required = true, .minimum = 2, .maximum = 1e8,
      .unit = "", .help = "number of particles"},
+    FIELD_END,
+};
+
+const struct field placement_fields[] = {
     {"placement", FIELD_CHOICE, MEMBER(kind), .initial = PLACEMENT_LATTICE, .choices = kinds,
      .unit = "",
      .help = "simple cubic lattice with jitter, random without overlap, or a file of "
@@ -59,6 +63,16 @@ void placement_lattice(struct particles *particles, double jitter, uint64_t seed
     }
     particles_wrap(particles);
     particles_update_fractions(particles);
+}
+
+void placement_mix(struct particles *particles, uint64_t seed) {
+    struct rng_sequence sequence = rng_sequence_begin(seed, RNG_MIXING, 0, 0);
+    for (size_t k = particles->count; k > 1; k--) {
+        const size_t other = rng_sequence_below(&sequence, (uint32_t)k);
+        const uint32_t id = particles->id[k - 1];
+        particles->id[k - 1] = particles->id[other];
+        particles->id[other] = id;
+    }
 }
 
 /// Linked cells of an edge of at least `separation`, at most a few for each particle.

@@ -228,8 +228,9 @@ static void add_configurational(const struct metropolis *metropolis, double *squ
     assert_ok(neighbours_init(&half, NEIGHBOURS_HALF, &copy.box, count,
                               metropolis->potential->cutoff, 0));
     assert_ok(neighbours_sort_and_build(&half, &copy));
-    assert_ok(reference_configurational(metropolis->potential, metropolis->temperature, &copy,
-                                        &half, &here[0], &here[1]));
+    const struct composition alike = {0};
+    assert_ok(reference_configurational(metropolis->potential, &alike, metropolis->temperature,
+                                        &copy, &half, &here[0], &here[1]));
     *squares += here[0];
     *laplacian += here[1];
     neighbours_clear(&half);

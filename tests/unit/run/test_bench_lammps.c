@@ -28,17 +28,17 @@ static void make_liquid(struct liquid *liquid, bool from_table) {
     fluid_clear(&fluid);
     scene->setup.integrator = &velocity_verlet;
     scene->setup.weight = NULL;
-    assert_ok(curve_create(&scene->potential, &formula_lennard_jones));
+    assert_ok(curve_create(&scene->potential.curve[0], &formula_lennard_jones));
     if (from_table) {
         for (int k = 0; k < POINTS; k++) {
             r[k] = 0.8 + 1.7 * k / (POINTS - 1);
-            value[k] = curve_value(&scene->potential, r[k]);
+            value[k] = curve_value(&scene->potential.curve[0], r[k]);
         }
-        curve_clear(&scene->potential);
-        assert_ok(sampled_create(&scene->potential, r, value, POINTS));
+        curve_clear(&scene->potential.curve[0]);
+        assert_ok(sampled_create(&scene->potential.curve[0], r, value, POINTS));
     }
-    assert_ok(table_init_potential(&scene->potential_table, &scene->potential));
-    scene->setup.potential = &scene->potential_table;
+    assert_ok(table_init_potential(&scene->potential.table, &scene->potential.curve[0]));
+    scene->setup.potential = &scene->potential.table;
     assert_ok(simulation_init(&liquid->simulation, &scene->setup, NULL));
     assert_ok(simulation_run(&liquid->simulation, 200));
     liquid->simulation.wants = PAIR_FORCES_AND_SUMS;
@@ -102,15 +102,15 @@ static void test_bench_lammps_objection_says_what_debians_lammps_lacks(void **st
     (void)state;
     struct scene scene = {.setup = {.integrator = &velocity_verlet, .box.dimensions = 3}};
     assert_contains(bench_lammps_objection(&scene), "neither a table nor Lennard-Jones");
-    scene.potential.family = &formula_lennard_jones;
+    scene.potential.curve[0].family = &formula_lennard_jones;
     assert_null(bench_lammps_objection(&scene));
-    scene.potential.family = &sampled_family;
+    scene.potential.curve[0].family = &sampled_family;
     assert_null(bench_lammps_objection(&scene));
     scene.setup.box.dimensions = 2;
     assert_contains(bench_lammps_objection(&scene), "three dimensions");
     scene.setup.integrator = &dpd_verlet;
     assert_contains(bench_lammps_objection(&scene), "velocity-verlet");
-    scene.weight.family = &formula_power_weight;
+    scene.weight.curves = 1;
     assert_contains(bench_lammps_objection(&scene), "friction");
 }
 

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Types of beads in a mixture, and the kinds of their pairs.
+///
+/// Ids 0 … n_A − 1 are beads of the first type, the next n_B of the second, and so on: the type
+/// follows from the id, is never saved, and survives every sort. The T (T + 1)/2 kinds of pairs are
+/// numbered A-A, A-B, …, B-B, B-C, …
+#pragma once
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum {
+    COMPOSITION_MOST_TYPES = 8,
+    COMPOSITION_MOST_PAIRS = COMPOSITION_MOST_TYPES * (COMPOSITION_MOST_TYPES + 1) / 2,
+    COMPOSITION_NAME_SIZE = 16,
+    COMPOSITION_PAIR_NAME_SIZE = 2 * COMPOSITION_NAME_SIZE,
+};
+
+/// Plain data; all zero is a system whose beads are alike.
+struct composition {
+    int types;                             ///< 0 or 1: all beads are alike
+    int64_t count[COMPOSITION_MOST_TYPES]; ///< beads of each type
+    char name[COMPOSITION_MOST_TYPES][COMPOSITION_NAME_SIZE];
+};
+
+/// `count` beads of one type without a name.
+struct composition composition_of_one(int64_t count);
+
+static inline bool composition_is_mixed(const struct composition *composition) {
+    return composition->types > 1;
+}
+
+/// Number of kinds of pairs: T (T + 1)/2, at least 1.
+int composition_pairs(const struct composition *composition);
+
+/// Number of the kind of pairs of types a and b, in either order.
+int composition_pair(const struct composition *composition, int a, int b);
+
+/// The same of two beads.
+int composition_pair_of_ids(const struct composition *composition, uint32_t i, uint32_t j);
+
+/// Type of a bead.
+int composition_type(const struct composition *composition, uint32_t id);
+
+/// The types of a kind of pairs, type[0] ≤ type[1].
+void composition_pair_types(const struct composition *composition, int pair, int type[2]);
+
+/// How many pairs of a kind there are: N_a (N_a − 1)/2 alike, N_a N_b unlike.
+double composition_possible_pairs(const struct composition *composition, int pair);
+
+/// Print the name of a kind of pairs, "A-B", or nothing for beads without names.
+void composition_pair_name(const struct composition *composition, int pair,
+                           char text[COMPOSITION_PAIR_NAME_SIZE]);
+
+/// The kind of pairs called "A-B" or "B-A", or −1.
+int composition_find_pair(const struct composition *composition, const char *name);
+
+/// Whether a type can be called so: letters, digits and _, not too many.
+bool composition_is_name(const char *name);
