@@ -48,7 +48,7 @@ do for [kind in kinds] {
         set format x "%h"
         set xlabel r_label
         eval name_axis(g_label, 0.018)
-        set key right bottom vertical
+        set key on inside left top vertical maxrows auto
         plot for [i = 1:words(rdfs)] word(rdfs, i) using 1:($2 - $3):($2 + $3) \
                 with filledcurves @band linecolor rgb colour_of(i - 1), \
             for [i = 1:words(rdfs)] word(rdfs, i) using 1:2 with lines title kind_of(word(rdfs, i)) \

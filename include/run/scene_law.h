@@ -21,8 +21,9 @@ struct scene_law {
 /// table_init_potential or table_init_weight.
 typedef enum status scene_law_table(struct table *table, const struct curve *curve);
 
-/// Read the curves at `key` of `parent`; an absent object leaves none. Faults, among them pairs
-/// that are missing, unknown or twice there, go to the document. Fails: NO_MEMORY.
+/// Read the curves at `key` of `parent`; an absent object leaves none, and so do types that could
+/// not be read (a composition of none). Faults, among them pairs that are missing, unknown or twice
+/// there, go to the document. Fails: NO_MEMORY.
 enum status scene_law_read(struct scene_law *law, struct json_object *parent, const char *key,
                            const struct curve_family *const *list,
                            const struct composition *composition,

@@ -3,7 +3,9 @@
 
 #include "run/figures.h"
 
+#include <dirent.h>
 #include <errno.h>
+#include <fnmatch.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -32,14 +34,29 @@ static const char *const results[] = {
     "pareto_weight.tsv",
 };
 
-static enum status remove_results(const struct run_folder *folder) {
-    for (size_t k = 0; k < sizeof results / sizeof *results; k++) {
-        char path[OUTPUT_PATH_SIZE];
-        run_folder_file(folder, results[k], path);
-        if (unlink(path) != 0 && errno != ENOENT)
-            return status_fail(STATUS_IO, "%s: %s", path, strerror(errno));
-    }
+/// g(r) of the kinds of pairs of a mixture, which its file names.
+static const char partial_rdfs[] = "rdf_*-*.tsv";
+
+static enum status remove_result(const struct run_folder *folder, const char *name) {
+    char path[OUTPUT_PATH_SIZE];
+    run_folder_file(folder, name, path);
+    if (unlink(path) != 0 && errno != ENOENT)
+        return status_fail(STATUS_IO, "%s: %s", path, strerror(errno));
     return STATUS_OK;
+}
+
+static enum status remove_results(const struct run_folder *folder) {
+    enum status status = STATUS_OK;
+    for (size_t k = 0; k < sizeof results / sizeof *results; k++)
+        TRY(remove_result(folder, results[k]));
+    DIR *directory = opendir(folder->path);
+    if (directory == NULL)
+        return status_fail(STATUS_IO, "%s: %s", folder->path, strerror(errno));
+    for (const struct dirent *entry; status == STATUS_OK && (entry = readdir(directory));)
+        if (fnmatch(partial_rdfs, entry->d_name, 0) == 0)
+            status = remove_result(folder, entry->d_name);
+    closedir(directory);
+    return status;
 }
 
 /// Find out now, and not after an hour, that the folder cannot be written.

@@ -150,6 +150,7 @@ static void read_type(struct scene *scene, struct json_object *types, const char
 /// "types": {"A": 500, "B": 300} in the place of "count".
 static void read_types(struct scene *scene, struct json_object *particles) {
     struct json_object types = json_child(particles, "types", true);
+    const size_t faults = json_fault_count(types.document);
     size_t n = 0;
     for (const char *name; (name = json_key(&types, n)); n++)
         if (n < COMPOSITION_MOST_TYPES)
@@ -157,6 +158,8 @@ static void read_types(struct scene *scene, struct json_object *particles) {
     if (types.item && (n < 2 || n > COMPOSITION_MOST_TYPES))
         json_fault(particles, "types", "a mixture has 2 to %d types, not %zu; \"count\" is for one",
                    COMPOSITION_MOST_TYPES, n);
+    if (types.item == NULL || json_fault_count(types.document) > faults)
+        scene->setup.composition.types = 0; // not known
 }
 
 static enum status read_particles(struct scene *scene, struct json_object *object) {

@@ -159,6 +159,10 @@ static enum status read_pairs(struct scene_law *law, struct json_object *object,
 enum status scene_law_read(struct scene_law *law, struct json_object *parent, const char *key,
                            const struct curve_family *const *list,
                            const struct composition *composition, const struct units *units) {
+    if (composition->types == 0) {
+        json_has(parent, key); // a fault of the types is told, those of their pairs would mislead
+        return STATUS_OK;
+    }
     if (composition_is_mixed(composition)) {
         struct json_object object = json_child(parent, key, false);
         if (object.item == NULL)

@@ -136,9 +136,46 @@ static const struct fault run_faults[] = {
     FAULT("unknown method", "\"imc\"", "\"imcc\"", "method.name", "did you mean \"imc\"?"),
     FAULT("a key of another method", "\"samples\": 8", "\"generations\": 8",
           "method.generations: unknown"),
+    FAULT("a mixture in a fit", "\"count\": 81", "\"types\": {\"A\": 40, \"B\": 41}",
+          "scene.particles.types: mixtures"),
     FAULT("a potential in a fit", STEP, STEP ", \"conservative\": {}", "input.json",
           "scene.conservative"),
 
+};
+
+#define TYPES "\"types\": {\"A\": 40, \"B\": 41}"
+#define LAW "{\"law\": \"soft-repulsion\"}"
+
+static const char good_mixture[] =
+    "{\"seed\": 1, \"box\": [3, 3, 3], \"particles\": {" TYPES "}, \"time_step\": 0.02,\n"
+    "\"conservative\": {\"A-A\": " LAW
+    ", \"A-B\": {\"law\": \"gaussian\", \"cutoff\": 1.2}, \"B-B\": "
+    "{\"law\": \"none\"}},\n"
+    "\"dissipative\": {\"law\": \"power\"}, \"measure\": {\"equilibration\": 2, \"samples\": 4}}\n";
+
+static const struct fault mixture_faults[] = {
+    FAULT("a missing pair", "\"A-A\": " LAW ", ", "", "input.json: conservative.A-A: missing"),
+    FAULT("an unknown pair", "\"A-A\"", "\"A-A\": " LAW ", \"A-C\"",
+          "input.json: conservative.A-C: is no pair of the types A, B"),
+    FAULT("a pair in both orders", "\"A-A\"", "\"B-A\": " LAW ", \"A-A\"",
+          "input.json: conservative.A-B", "twice"),
+    FAULT("an unknown law of a pair", "\"gaussian\"", "\"gausian\"", "conservative.A-B.law",
+          "did you mean \"gaussian\"?"),
+    FAULT("an unknown key of a pair", "\"cutoff\": 1.2", "\"cutof\": 1.2",
+          "conservative.A-B.cutof: unknown key"),
+    FAULT("a pair of friction alone", "{\"law\": \"power\"}",
+          "{\"A-A\": {\"law\": \"power\"}, \"B-A\": {\"law\": \"power\"}}",
+          "dissipative.B-B: missing"),
+    FAULT("a name of a type", "\"A\": 40", "\"A/\": 40, \"A\": 40", "particles.types.A/",
+          "letters"),
+    FAULT("one bead of a type", "\"A\": 40", "\"A\": 1",
+          "input.json: particles.types.A: 1 is out of range"),
+    FAULT("types and a count", TYPES, TYPES ", \"count\": 81", "particles.count: unknown key"),
+    FAULT("a mixture of one type", TYPES, "\"types\": {\"A\": 81}",
+          "particles.types: a mixture has 2 to 8 types, not 1"),
+    FAULT("a number for the types", TYPES, "\"types\": 81", "particles.types: expected an object"),
+    FAULT("the RDF from forces", "\"measure\"", "\"rdf\": {\"estimator\": \"force\"}, \"measure\"",
+          "input.json: rdf", "not for mixtures"),
 };
 
 static void check_faults(struct temporary_folder *folder, const char *verb, const char *good,
@@ -153,6 +190,7 @@ static void check_faults(struct temporary_folder *folder, const char *verb, cons
 static void test_simulate_refuses_with_a_line_for_each_fault(void **state) {
     CHECK_FAULTS(*state, "simulate", small_inputs_scene, common_faults);
     CHECK_FAULTS(*state, "simulate", small_inputs_scene, scene_faults);
+    CHECK_FAULTS(*state, "simulate", good_mixture, mixture_faults);
 }
 
 static void test_fit_refuses_with_a_line_for_each_fault(void **state) {
@@ -180,6 +218,9 @@ static void test_good_files_are_accepted(void **state) {
     small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
     small_inputs_write(*state, "scene.json", small_inputs_scene, NULL, NULL);
     small_inputs_write(*state, "run.json", small_inputs_run, NULL, NULL);
+    small_inputs_write(*state, "mixture.json", good_mixture, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "mixture.json", "-o", "mixture");
+    run_program_assert_code(&result, 0);
     RUN_PROGRAM(&result, "simulate", "scene.json");
     run_program_assert_code(&result, 0);
     RUN_PROGRAM(&result, "fit", "run.json");

@@ -77,6 +77,55 @@ static void test_simulate_leaves_all_files_of_a_run(void **state) {
     assert_false(temporary_folder_exists("out/checkpoint.bin"));
 }
 
+static const char mixture[] =
+    "{\"seed\": 5, \"box\": [4.64, 4.64, 4.64],\n"
+    "\"particles\": {\"types\": {\"A\": 120, \"B\": 180}}, \"time_step\": 0.04,\n"
+    "\"conservative\": {\"A-A\": {\"law\": \"soft-repulsion\", \"a\": 25},\n"
+    "  \"B-A\": {\"law\": \"soft-repulsion\", \"a\": 30, \"cutoff\": 0.9},\n"
+    "  \"B-B\": {\"law\": \"none\"}},\n"
+    "\"dissipative\": {\"law\": \"power\", \"sigma\": 2.1213},\n"
+    "\"measure\": {\"equilibration\": 100, \"samples\": 20, \"every\": 10}}\n";
+static const char *const mixture_tables[] = {"rdf_A-A.tsv", "rdf_A-B.tsv", "rdf_B-B.tsv",
+                                             "thermodynamics.tsv", NULL};
+
+static void test_simulate_leaves_a_table_for_each_kind_of_pairs_of_a_mixture(void **state) {
+    static struct run_program_result result;
+    write_scene(*state, mixture, NULL, NULL);
+    simulate(&result, "out");
+    for (int k = 0; k < 3; k++) {
+        char path[64];
+        snprintf(path, sizeof path, "out/%s", mixture_tables[k]);
+        results_assert_table(path, 3, 100);
+    }
+    assert_false(temporary_folder_exists("out/rdf.tsv"));
+    char *used = temporary_folder_read("out/used.json");
+    assert_contains(used, "\"B\":\t180");
+    assert_contains(used, "\"A-B\":");
+    assert_null(strstr(used, "\"B-A\":"));
+    free(used);
+    RUN_PROGRAM(&result, "simulate", "out/used.json", "-o", "again", "--threads", "2");
+    run_program_assert_code(&result, 0);
+    results_assert_same("out", "again", mixture_tables);
+    results_assert_same("out", "again", (const char *const[]){"used.json", NULL});
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--explain");
+    assert_contains(result.out, "2 types: which curve a pair of the 3 kinds has");
+}
+
+static void test_simulate_takes_a_dissipative_law_for_each_kind_of_pairs(void **state) {
+    static struct run_program_result result;
+    write_scene(*state, mixture, NULL, NULL);
+    simulate(&result, "one");
+    write_scene(*state, mixture, "{\"law\": \"power\", \"sigma\": 2.1213}",
+                "{\"A-A\": {\"law\": \"power\", \"sigma\": 2.1213}, \"B-B\": {\"law\": \"power\", "
+                "\"sigma\": 2.1213}, \"A-B\": {\"law\": \"power\", \"sigma\": 2.1213}}");
+    simulate(&result, "each");
+    results_assert_same("one", "each", mixture_tables);
+    write_scene(*state, groot_warren, NULL, NULL);
+    simulate(&result, "each");
+    assert_true(temporary_folder_exists("each/rdf.tsv"));
+    assert_false(temporary_folder_exists("each/rdf_A-B.tsv"));
+}
+
 static void test_simulate_measures_diffusion_when_asked(void **state) {
     static struct run_program_result result;
     write_scene(*state, groot_warren, NULL, NULL);
@@ -132,6 +181,20 @@ static void test_simulate_draws_its_figure_when_gnuplot_is_there(void **state) {
     simulate(&result, "out");
     assert_true(temporary_folder_exists("out/figures/simulation.svg"));
     assert_true(temporary_folder_exists("out/figures/simulation.png"));
+    if (strstr(result.err, "warning"))
+        fail_msg("%s", result.err);
+}
+
+static void test_simulate_draws_all_g_of_a_mixture_when_gnuplot_is_there(void **state) {
+    static struct run_program_result result;
+    small_inputs_need_gnuplot();
+    write_scene(*state, mixture, NULL, NULL);
+    simulate(&result, "out");
+    char *figure = temporary_folder_read("out/figures/simulation.svg");
+    assert_contains(figure, "A-A");
+    assert_contains(figure, "A-B");
+    assert_contains(figure, "B-B");
+    free(figure);
     if (strstr(result.err, "warning"))
         fail_msg("%s", result.err);
 }
@@ -208,16 +271,27 @@ static void test_threads_do_not_change_the_bits(void **state) {
 }
 
 /// Interrupted again and again at different places, the run ends with the bits of one in peace.
-static void check_interruption(struct temporary_folder *folder, const char *scene, const char *from,
-                               const char *to) {
+static void check_interruption_of(struct temporary_folder *folder, const char *scene,
+                                  const char *from, const char *to, const char *const *expected) {
     static struct run_program_result result;
     write_scene(folder, scene, from, to);
     simulate(&result, "whole");
     const char *const words[] = {"simulate", "scene.json", "-o", "pieces", NULL};
     run_program_in_pieces(0, words);
     assert_true(temporary_folder_exists("pieces/checkpoint.bin"));
-    results_assert_same("whole", "pieces", tables);
+    results_assert_same("whole", "pieces", expected);
     results_assert_same("whole", "pieces", (const char *const[]){"used.json", NULL});
+}
+
+static void check_interruption(struct temporary_folder *folder, const char *scene, const char *from,
+                               const char *to) {
+    check_interruption_of(folder, scene, from, to, tables);
+}
+
+static void test_interrupted_mixture_goes_on_with_the_same_bits(void **state) {
+    check_interruption_of(*state, mixture,
+                          "\"measure\": {\"equilibration\": 100, \"samples\": 20, \"every\": 10}",
+                          LONG_MEASURE, mixture_tables);
 }
 
 static void test_interrupted_dpd_goes_on_with_the_same_bits(void **state) {
@@ -386,6 +460,10 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_simulate_leaves_all_files_of_a_run),
         TEST(test_simulate_draws_diffusion_when_gnuplot_is_there),
         TEST_WITHOUT_FIGURES(test_simulate_measures_diffusion_when_asked),
+        TEST_WITHOUT_FIGURES(test_simulate_leaves_a_table_for_each_kind_of_pairs_of_a_mixture),
+        TEST_WITHOUT_FIGURES(test_simulate_takes_a_dissipative_law_for_each_kind_of_pairs),
+        TEST_WITHOUT_FIGURES(test_interrupted_mixture_goes_on_with_the_same_bits),
+        TEST(test_simulate_draws_all_g_of_a_mixture_when_gnuplot_is_there),
         TEST_WITHOUT_FIGURES(test_used_settings_run_again_give_the_same_bits),
         TEST_WITHOUT_FIGURES(test_the_seed_of_the_command_line_counts),
         TEST_WITHOUT_FIGURES(test_explain_tells_what_is_on_and_off),

@@ -56,9 +56,8 @@ static int clear_tables(void **state) {
 
 /// With DPD-VV's factors, the kept pairs add up to the friction and noise of all pairs. Not so in
 /// an interval where ω jumps: ω² is straight there if kept, and ω if added.
-static void check_sums(const struct box *box, size_t count, const struct table *potential,
-                       const struct table *omega) {
-    struct kept_pairs kept = {.law = kept_pairs_law(potential, omega, 0.02)};
+static void check_law(const struct box *box, size_t count, const struct pair_law *law) {
+    struct kept_pairs kept = {.law = *law};
     const uint64_t step = 0x100000007;
     kept_pairs_init(&kept, box, count, 0.02);
     struct particles *particles = &kept.particles;
@@ -89,6 +88,27 @@ static void check_sums(const struct box *box, size_t count, const struct table *
         memory_free(expected[d]);
     pair_scales_clear(&scales);
     kept_pairs_clear(&kept);
+}
+
+static void check_sums(const struct box *box, size_t count, const struct table *potential,
+                       const struct table *omega) {
+    const struct pair_law law = kept_pairs_law(potential, omega, 0.02);
+    check_law(box, count, &law);
+}
+
+static void test_kept_pairs_add_up_to_friction_and_noise_when_types_differ(void **state) {
+    (void)state;
+    const struct box three = {3, {5.1, 4.6, 6.3}}, two = {2, {9.1, 7.7, 1}};
+    const struct table parts[] = {weight, short_weight, long_weight};
+    struct table omega;
+    assert_ok(table_stack(&omega, parts, 3));
+    for (int p = 0; p < 2; p++) {
+        struct pair_law law = kept_pairs_law(p ? &soft : NULL, &omega, 0.02);
+        law.composition = (struct composition){.types = 2, .count = {120, 323}};
+        check_law(&three, 443, &law);
+        check_law(&two, 301, &law);
+    }
+    table_clear(&omega);
 }
 
 static void test_kept_pairs_add_up_to_friction_and_noise_when_they_are_forces(void **state) {
@@ -247,6 +267,7 @@ static void test_sweep_conserves_momentum_when_particles_are_many(void **state) 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_kept_pairs_add_up_to_friction_and_noise_when_they_are_forces),
+        cmocka_unit_test(test_kept_pairs_add_up_to_friction_and_noise_when_types_differ),
         cmocka_unit_test(test_sweep_follows_the_formula_when_there_are_two_particles),
         cmocka_unit_test(test_exact_friction_has_its_mean_and_variance_when_drawn_often),
         cmocka_unit_test(test_factors_keep_the_temperature_when_the_time_step_is_anything),

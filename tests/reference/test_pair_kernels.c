@@ -274,6 +274,56 @@ static void test_pair_kernels_agree_with_all_pairs_when_particles_are_few(void *
     }
 }
 
+/// Every kind of pairs with a potential and a weight of its own, of different ranges; some have
+/// none.
+static void check_mixture(const struct system *system, const struct composition *composition) {
+    const struct table *const potentials[] = {
+        &tables.soft, &tables.sampled, NULL, &tables.gaussian, &tables.lennard_jones, &tables.soft};
+    const struct table *const weights[] = {&tables.thesis_weight, &tables.weight,
+                                           &tables.weight,        NULL,
+                                           &tables.thesis_weight, &tables.weight};
+    struct table parts[2][6] = {{{0}}}, potential, weight;
+    const int pairs = composition_pairs(composition);
+    for (int p = 0; p < pairs; p++) {
+        if (potentials[p])
+            parts[0][p] = *potentials[p];
+        if (weights[p])
+            parts[1][p] = *weights[p];
+    }
+    assert_ok(table_stack(&potential, parts[0], pairs));
+    assert_ok(table_stack(&weight, parts[1], pairs));
+    struct pair_law laws[] = {make_law(&potential, NULL), make_law(NULL, &weight),
+                              make_law(&potential, &weight), make_law(&tables.soft, &weight),
+                              make_law(&potential, &tables.weight)};
+    for (size_t n = 0; n < sizeof laws / sizeof *laws; n++) {
+        laws[n].composition = *composition;
+        check_law(system, &laws[n]);
+    }
+    table_clear(&potential);
+    table_clear(&weight);
+}
+
+static void test_pair_kernels_agree_with_all_pairs_when_types_differ(void **state) {
+    (void)state;
+    const struct composition two_types = {.types = 2, .count = {120, 181}},
+                             three_types = {.types = 3, .count = {20, 150, 131}};
+    const struct system three = {{3, {5.1, 5.6, 6.3}}, 301, RANDOM, 0.25};
+    const struct system two = {{2, {9.1, 7.7, 1}}, 301, RANDOM, 0.25};
+    check_mixture(&three, &two_types);
+    check_mixture(&three, &three_types);
+    check_mixture(&two, &two_types);
+    check_mixture(&two, &three_types);
+}
+
+static void test_pair_kernels_agree_with_all_pairs_when_types_differ_and_are_few(void **state) {
+    (void)state;
+    for (int count = 6; count <= 36; count += 3) {
+        const struct composition composition = {.types = 3, .count = {1, 3, count - 4}};
+        const struct system system = {{3, {5.1, 5.4, 5.8}}, (size_t)count, CLUSTERED, 0.3};
+        check_mixture(&system, &composition);
+    }
+}
+
 static void test_pair_kernels_give_no_force_when_pairs_are_out_of_range(void **state) {
     (void)state;
     const struct system system = {{3, {12, 12, 12}}, 27, LATTICE, 0.3};
@@ -510,6 +560,8 @@ int main(void) {
         cmocka_unit_test(test_pair_kernels_agree_with_all_pairs_when_box_is_very_long),
         cmocka_unit_test(test_pair_kernels_agree_with_all_pairs_when_box_is_two_cutoffs),
         cmocka_unit_test(test_pair_kernels_agree_with_all_pairs_when_particles_are_few),
+        cmocka_unit_test(test_pair_kernels_agree_with_all_pairs_when_types_differ),
+        cmocka_unit_test(test_pair_kernels_agree_with_all_pairs_when_types_differ_and_are_few),
         cmocka_unit_test(test_pair_kernels_give_no_force_when_pairs_are_out_of_range),
         cmocka_unit_test(test_pair_kernels_give_no_force_when_there_is_no_law),
         cmocka_unit_test(test_pair_kernels_give_no_force_when_particles_coincide),

@@ -29,8 +29,9 @@ static void count_pair(const struct rdf_bins *bins, double r, struct counts *cou
     }
 }
 
-static void count_all(const struct rdf_bins *bins, const struct particles *particles,
-                      struct counts *counts) {
+/// Pairs of one kind.
+static void count_kind(const struct rdf_bins *bins, const struct composition *composition, int pair,
+                       const struct particles *particles, struct counts *counts) {
     *counts = (struct counts){0};
     for (size_t i = 0; i < particles->count; i++)
         for (size_t j = 0; j < i; j++) {
@@ -40,8 +41,15 @@ static void count_all(const struct rdf_bins *bins, const struct particles *parti
                                               particles->box.length[d]);
                 square += dx * dx;
             }
-            count_pair(bins, sqrt(square), counts);
+            if (composition_pair_of_ids(composition, particles->id[i], particles->id[j]) == pair)
+                count_pair(bins, sqrt(square), counts);
         }
+}
+
+static void count_all(const struct rdf_bins *bins, const struct particles *particles,
+                      struct counts *counts) {
+    const struct composition alike = {0};
+    count_kind(bins, &alike, 0, particles, counts);
 }
 
 /// A histogram with `times` the pairs of `counts`.
@@ -86,6 +94,59 @@ static void assert_passing_counts(const struct rdf_bins *bins, struct simulation
     rdf_sample_counted(&rdf);
     assert_histogram(rdf.histogram, &counts, bins->count, 1);
     rdf_clear(&rdf);
+}
+
+/// The partial histograms of a sample, from a list or from the force pass.
+static void assert_kinds(const struct rdf_bins *bins, struct simulation *simulation,
+                         bool in_passing) {
+    const struct particles *particles = &simulation->particles;
+    const struct composition *composition = &simulation->setup.composition;
+    struct rdf rdf;
+    assert_ok(rdf_init_mixture(&rdf, bins, &particles->box, composition, 1, 1));
+    struct pair_law law = simulation->law;
+    law.histogram = rdf_histogram(&rdf);
+    assert_int_equal(law.histogram == NULL, rdf.needs_own_list);
+    if (in_passing) {
+        pair_forces(&law, &simulation->particles, &simulation->neighbours, 1, PAIR_FORCES, NULL);
+        rdf_sample_counted(&rdf);
+    } else {
+        assert_ok(rdf_sample(&rdf, particles, &simulation->neighbours));
+    }
+    for (int pair = 0; pair < composition_pairs(composition); pair++) {
+        struct counts counts;
+        count_kind(bins, composition, pair, particles, &counts);
+        assert_histogram(rdf.histogram + (size_t)pair * bins->count, &counts, bins->count, 1);
+    }
+    rdf_clear(&rdf);
+}
+
+static void assert_mixture_counts(struct fluid *fluid, const struct composition *composition) {
+    const struct rdf_bins within = {0, 0.025, 40}, above_zero = {0.31, 0.023, 30},
+                          beyond = {0, 0.05, 40};
+    static struct simulation simulation;
+    fluid->setup.composition = *composition;
+    for (int precision = PAIR_MIXED; precision <= PAIR_DOUBLE; precision++) {
+        fluid->setup.precision = precision;
+        assert_ok(simulation_init(&simulation, &fluid->setup, NULL));
+        assert_ok(simulation_run(&simulation, 53));
+        assert_kinds(&within, &simulation, false);
+        assert_kinds(&within, &simulation, true);
+        assert_kinds(&above_zero, &simulation, true);
+        assert_kinds(&beyond, &simulation, false);
+        simulation_clear(&simulation);
+    }
+    fluid_clear(fluid);
+}
+
+static void test_rdf_counts_every_pair_once_when_types_differ(void **state) {
+    (void)state;
+    const struct composition three = {.types = 3, .count = {300, 500, 400}},
+                             two = {.types = 2, .count = {250, 350}};
+    struct fluid fluid;
+    fluid_groot_warren(&fluid, 1200, 0.04);
+    assert_mixture_counts(&fluid, &three);
+    fluid_soft_discs(&fluid, 600, 0.04);
+    assert_mixture_counts(&fluid, &two);
 }
 
 /// A fluid after some steps, so that particles have moved since the last build of the list and some
@@ -186,6 +247,7 @@ int main(void) {
         cmocka_unit_test(test_rdf_counts_every_pair_once_when_the_box_is_a_cube),
         cmocka_unit_test(test_rdf_counts_every_pair_once_when_the_box_is_long),
         cmocka_unit_test(test_rdf_counts_every_pair_once_when_the_scene_is_flat),
+        cmocka_unit_test(test_rdf_counts_every_pair_once_when_types_differ),
         cmocka_unit_test(test_rdf_counts_every_pair_twice_when_the_list_is_full),
         cmocka_unit_test(test_rdf_counts_the_end_of_the_step_when_forces_are_midway),
     };

@@ -22,7 +22,10 @@ struct run {
 static void begin(struct run *run, const struct simulation_setup *setup) {
     const struct rdf_bins bins = {0, 1.0 / BINS, BINS};
     assert_ok(simulation_init(&run->simulation, setup, NULL));
-    assert_ok(rdf_init(&run->rdf, &bins, &setup->box, (size_t)setup->placement.count, 1, SAMPLES));
+    const struct composition alike = composition_of_one(setup->placement.count);
+    assert_ok(rdf_init_mixture(
+        &run->rdf, &bins, &setup->box,
+        composition_is_mixed(&setup->composition) ? &setup->composition : &alike, 1, SAMPLES));
     assert_ok(thermodynamics_init(&run->thermodynamics, SAMPLES));
 }
 
@@ -60,7 +63,7 @@ static void assert_same(const struct run *a, const struct run *b) {
     restart_assert_same(&a->simulation, &b->simulation);
     assert_int_equal(a->rdf.samples, b->rdf.samples);
     assert_memory_equal(a->rdf.histogram, b->rdf.histogram,
-                        a->rdf.blocks * BINS * sizeof *a->rdf.histogram);
+                        a->rdf.blocks * a->rdf.pairs * BINS * sizeof *a->rdf.histogram);
     assert_memory_equal(a->thermodynamics.values, b->thermodynamics.values,
                         THERMODYNAMICS_QUANTITIES * SAMPLES * sizeof(double));
 }
@@ -107,6 +110,13 @@ static void test_restart_goes_on_with_the_same_bits_when_sampled(void **state) {
     check_integrators(&fluid);
 }
 
+static void test_restart_goes_on_with_the_same_bits_when_types_differ(void **state) {
+    (void)state;
+    struct fluid fluid;
+    fluid_mixture(&fluid, 300, 0.04);
+    check_integrators(&fluid);
+}
+
 static void test_restart_goes_on_with_the_same_bits_when_the_scene_is_flat(void **state) {
     (void)state;
     struct fluid fluid;
@@ -125,6 +135,7 @@ static void test_restart_goes_on_with_the_same_bits_when_there_is_no_potential(v
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_restart_goes_on_with_the_same_bits_when_sampled),
+        cmocka_unit_test(test_restart_goes_on_with_the_same_bits_when_types_differ),
         cmocka_unit_test(test_restart_goes_on_with_the_same_bits_when_the_scene_is_flat),
         cmocka_unit_test(test_restart_goes_on_with_the_same_bits_when_there_is_no_potential),
     };

@@ -9,11 +9,11 @@
 #include <string.h>
 
 /// Few: on a busy machine threads wait long for each other, a dozen times in a step.
-enum { STEPS = 15, MOST_PARTICLES = 2500, BINS = 50 };
+enum { STEPS = 15, MOST_PARTICLES = 2500, BINS = 50, MOST_PAIRS = 6 };
 
 /// All that a run leaves, by id.
 struct outcome {
-    double position[MOST_PARTICLES][3], velocity[MOST_PARTICLES][3], histogram[BINS];
+    double position[MOST_PARTICLES][3], velocity[MOST_PARTICLES][3], histogram[MOST_PAIRS * BINS];
     struct pair_sums sums;
     uint64_t list_builds;
 };
@@ -28,7 +28,11 @@ static void run(const struct simulation_setup *setup, int threads, struct outcom
     const double cutoff = pair_cutoff(&simulation.law);
     const struct rdf_bins bins = {0, cutoff / BINS, BINS};
     const size_t count = simulation.particles.count;
-    assert_ok(rdf_init(&rdf, &bins, &shared.box, count, cutoff, 1));
+    const struct composition alike = composition_of_one((int64_t)count);
+    assert_ok(rdf_init_mixture(
+        &rdf, &bins, &shared.box,
+        composition_is_mixed(&shared.composition) ? &shared.composition : &alike, cutoff, 1));
+    assert_true(rdf.pairs <= MOST_PAIRS);
     assert_ok(simulation_run(&simulation, STEPS - 1));
     simulation.wants = PAIR_FORCES_AND_SUMS;
     simulation.law.histogram = rdf_histogram(&rdf);
@@ -40,7 +44,7 @@ static void run(const struct simulation_setup *setup, int threads, struct outcom
             outcome->position[simulation.particles.id[k]][d] = simulation.particles.position[d][k];
             outcome->velocity[simulation.particles.id[k]][d] = simulation.particles.velocity[d][k];
         }
-    memcpy(outcome->histogram, rdf.histogram, sizeof outcome->histogram);
+    memcpy(outcome->histogram, rdf.histogram, rdf.pairs * BINS * sizeof *rdf.histogram);
     outcome->sums = simulation.sums;
     outcome->list_builds = simulation.list_builds;
     rdf_clear(&rdf);
@@ -102,12 +106,23 @@ static void test_threads_give_the_same_bits_when_friction_is_split_off(void **st
     fluid_clear(&fluid);
 }
 
+static void test_threads_give_the_same_bits_when_types_differ(void **state) {
+    (void)state;
+    struct fluid fluid;
+    fluid_mixture(&fluid, 1000, 0.04);
+    check(&fluid);
+    fluid_mixture(&fluid, 1000, 0.04);
+    fluid.setup.integrator = &aboba;
+    check(&fluid);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_threads_give_the_same_bits_when_there_is_friction_and_noise),
         cmocka_unit_test(test_threads_give_the_same_bits_when_energy_is_conserved),
         cmocka_unit_test(test_threads_give_the_same_bits_when_the_scene_is_flat),
         cmocka_unit_test(test_threads_give_the_same_bits_when_friction_is_split_off),
+        cmocka_unit_test(test_threads_give_the_same_bits_when_types_differ),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -55,6 +55,31 @@ void fluid_groot_warren(struct fluid *fluid, int64_t count, double time_step) {
     make_weight(fluid, sqrt(4.5), 1);
 }
 
+void fluid_mixture(struct fluid *fluid, int64_t count, double time_step) {
+    enum { PAIRS = 6 };
+    struct table potential[PAIRS], weight[PAIRS];
+    begin(fluid, 3, count, 3, time_step);
+    fluid->setup.composition = (struct composition){
+        .types = 3, .count = {count / 4, count / 3, 0}, .name = {"A", "B", "C"}};
+    fluid->setup.composition.count[2] = count - count / 4 - count / 3;
+    for (int pair = 0; pair < PAIRS; pair++) {
+        struct formula_soft_repulsion_parameters soft = {25 + 3 * pair, 1 - 0.04 * pair};
+        struct formula_power_weight_parameters power = {1.5 + 0.3 * pair, 1, 0, 0.8 + 0.04 * pair};
+        const struct curve phi = {&formula_soft_repulsion, &soft},
+                           omega = {&formula_power_weight, &power};
+        assert_ok(table_init_potential(&potential[pair], &phi));
+        assert_ok(table_init_weight(&weight[pair], &omega));
+    }
+    assert_ok(table_stack(&fluid->potential, potential, PAIRS));
+    assert_ok(table_stack(&fluid->weight, weight, PAIRS));
+    fluid->setup.potential = &fluid->potential;
+    fluid->setup.weight = &fluid->weight;
+    for (int pair = 0; pair < PAIRS; pair++) {
+        table_clear(&potential[pair]);
+        table_clear(&weight[pair]);
+    }
+}
+
 void fluid_soft_discs(struct fluid *fluid, int64_t count, double time_step) {
     begin(fluid, 2, count, 2, time_step);
     make_soft_potential(fluid);

@@ -18,6 +18,10 @@ void fluid_lennard_jones(struct fluid *fluid, int64_t count, double time_step);
 /// R. D. Groot and P. B. Warren, J. Chem. Phys. 107, 4423 (1997).
 void fluid_groot_warren(struct fluid *fluid, int64_t count, double time_step);
 
+/// The same of three types, with a potential and a friction of its own for each kind of pairs: a =
+/// 25 to 40, cutoffs of 0.8 to 1.
+void fluid_mixture(struct fluid *fluid, int64_t count, double time_step);
+
 /// Soft discs: density 2, Φ and ω and T of the standard fluid, in two dimensions.
 void fluid_soft_discs(struct fluid *fluid, int64_t count, double time_step);
 

@@ -15,20 +15,20 @@ static double separation(const struct particles *particles, size_t i, size_t j) 
 }
 
 /// |F| + r |dF/dr| of the potential.
-static double conservative_scale(const struct table *potential, double r) {
+static double conservative_scale(const struct table *potential, int pair, double r) {
     double slope, curvature;
-    table_evaluate(potential, r, NULL, &slope, &curvature);
+    table_evaluate_pair(potential, pair, r, NULL, &slope, &curvature);
     return fabs(slope) + r * fabs(curvature);
 }
 
 /// The same for friction at a relative velocity of 4 and noise at its largest. Where ω jumps, the
 /// slope is that of one interval of the table; a rounding may fall on either side of its ends.
-static double dissipative_scale(const struct pair_law *law, double r) {
+static double dissipative_scale(const struct pair_law *law, int pair, double r) {
     double omega = 0, slope = 0;
     for (int side = -1; side <= 1; side++) {
         double value, steepness;
-        table_evaluate(law->weight, fmin(r * (1 + 1e-6 * side), law->weight->cutoff), &value,
-                       &steepness, NULL);
+        table_evaluate_pair(law->weight, pair, fmin(r * (1 + 1e-6 * side), law->weight->cutoff),
+                            &value, &steepness, NULL);
         omega = fmax(omega, fabs(value));
         slope = fmax(slope, fabs(steepness));
     }
@@ -42,15 +42,17 @@ struct pair_scales pair_scales_find(const struct pair_law *law, const struct par
     for (size_t i = 0; i < particles->count; i++)
         for (size_t j = i + 1; j < particles->count; j++) {
             const double r = separation(particles, i, j);
+            const int pair =
+                composition_pair_of_ids(&law->composition, particles->id[i], particles->id[j]);
             double force = 0, phi, slope;
             if (law->potential && r < law->potential->cutoff) {
-                table_evaluate(law->potential, r, &phi, &slope, NULL);
+                table_evaluate_pair(law->potential, pair, r, &phi, &slope, NULL);
                 scales.energy += fabs(phi);
                 scales.virial += fabs(r * slope);
-                force += conservative_scale(law->potential, r);
+                force += conservative_scale(law->potential, pair, r);
             }
             if (law->weight && r < law->weight->cutoff) {
-                force += dissipative_scale(law, r);
+                force += dissipative_scale(law, pair, r);
                 scales.near++;
             }
             scales.force[i] += force;

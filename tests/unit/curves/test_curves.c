@@ -171,6 +171,36 @@ static void test_table_is_zero_when_beyond_the_cutoff(void **state) {
 }
 
 /// Value and slope are continuous at every node, and so is the curvature.
+/// Each curve keeps its own grid, shift and end; a part without one is 0.
+static void test_table_stack_holds_each_curve_as_it_was_alone(void **state) {
+    (void)state;
+    struct curve soft = make(&formula_soft_repulsion), gaussian = make(&formula_gaussian);
+    struct table parts[3] = {{0}}, stack;
+    assert_ok(table_init_potential(&parts[0], &soft));
+    assert_ok(table_init_potential(&parts[2], &gaussian));
+    assert_ok(table_stack(&stack, parts, 3));
+    assert_int_equal(stack.curves, 3);
+    assert_identical(stack.cutoff, fmax(parts[0].cutoff, parts[2].cutoff));
+    for (double r = 0; r < 1.2 * stack.cutoff; r += 0.00371)
+        for (int pair = 0; pair < 3; pair++) {
+            double here[3], alone[3] = {0};
+            table_evaluate_pair(&stack, pair, r, &here[0], &here[1], &here[2]);
+            if (pair != 1)
+                table_evaluate(&parts[pair], r, &alone[0], &alone[1], &alone[2]);
+            for (int n = 0; n < 3; n++)
+                assert_identical(here[n], alone[n]);
+            // A table of one curve is for all pairs.
+            table_evaluate_pair(&parts[0], pair, r, &here[0], NULL, NULL);
+            table_evaluate(&parts[0], r, &alone[0], NULL, NULL);
+            assert_identical(here[0], alone[0]);
+        }
+    table_clear(&parts[0]);
+    table_clear(&parts[2]);
+    table_clear(&stack);
+    curve_clear(&soft);
+    curve_clear(&gaussian);
+}
+
 static void test_table_is_twice_continuous_when_a_potential(void **state) {
     (void)state;
     struct curve curve = make(&formula_lennard_jones);
@@ -366,6 +396,7 @@ int main(void) {
         cmocka_unit_test(test_power_weight_is_zero_outside_its_shell_when_it_has_an_inner_cutoff),
         cmocka_unit_test(test_table_follows_its_potential_when_smooth),
         cmocka_unit_test(test_table_is_zero_when_beyond_the_cutoff),
+        cmocka_unit_test(test_table_stack_holds_each_curve_as_it_was_alone),
         cmocka_unit_test(test_table_is_twice_continuous_when_a_potential),
         cmocka_unit_test(test_table_of_a_weight_jumps_within_one_interval_when_the_weight_does),
         cmocka_unit_test(test_sampled_curve_goes_through_its_points_when_evaluated),

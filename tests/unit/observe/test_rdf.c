@@ -52,6 +52,26 @@ static void test_rdf_finite_size_factor_is_one_when_sizes_are_equal(void **state
     assert_close(rdf_finite_size_factor(2, 4), 0.5 / 0.75, rounding);
 }
 
+static void test_rdf_ideal_pairs_are_of_the_kind_when_types_differ(void **state) {
+    (void)state;
+    const struct rdf_bins bins = {0.5, 0.25, 6};
+    const struct composition from = {.types = 2, .count = {10, 30}},
+                             to = {.types = 2, .count = {20, 60}};
+    const double whole = rdf_ideal_pairs(&bins, 3, &cube, 40);
+    double sum = 0;
+    for (int pair = 0; pair < 3; pair++)
+        sum += rdf_ideal_pairs_of(&bins, 3, &cube, &from, pair);
+    assert_close(sum, whole, rounding);
+    assert_close(rdf_ideal_pairs_of(&bins, 3, &cube, &from, 1), whole * 300 / 780, rounding);
+    assert_close(rdf_ideal_pairs_of(&bins, 3, &cube, &from, 2),
+                 rdf_ideal_pairs(&bins, 3, &cube, 30), rounding);
+    assert_close(rdf_finite_size_factor_of(&from, &to, 0), rdf_finite_size_factor(10, 20),
+                 rounding);
+    assert_identical(rdf_finite_size_factor_of(&from, &to, 1), 1);
+    assert_close(rdf_finite_size_factor_of(&from, &to, 2), rdf_finite_size_factor(30, 60),
+                 rounding);
+}
+
 /// Particles at given x, the other coordinates 1, with the list of a box of `dimensions`.
 static void place(struct particles *particles, const struct box *box, const double *x,
                   size_t count) {
@@ -59,6 +79,34 @@ static void place(struct particles *particles, const struct box *box, const doub
     for (int d = 0; d < box->dimensions; d++)
         for (size_t k = 0; k < count; k++)
             particles->position[d][k] = d == 0 ? x[k] : 1;
+}
+
+static void test_rdf_result_is_of_the_kind_when_types_differ(void **state) {
+    (void)state;
+    // A at 0.5 and 2, B at 5.1 and 3.2: A-A 1.5, A-B 1.4, 2.7, 2.9 and 1.2, B-B 1.9.
+    static const double x[] = {0.5, 2, 5.1, 3.2}, pairs[] = {1, 0, 2, 2, 1, 0};
+    const struct composition composition = {.types = 2, .count = {2, 2}};
+    const struct rdf_bins bins = {1, 1, 2};
+    struct particles particles;
+    struct rdf rdf;
+    double g[6], error[6], rmse, spread;
+    place(&particles, &cube, x, 4);
+    assert_ok(rdf_init_mixture(&rdf, &bins, &cube, &composition, 0, 3));
+    for (int sample = 0; sample < 3; sample++)
+        assert_ok(rdf_sample(&rdf, &particles, NULL));
+    rdf_result(&rdf, 1, g, error);
+    for (int k = 0; k < 6; k++) {
+        assert_close(
+            g[k], pairs[k] / rdf_ideal_pairs_of(&bins, (size_t)k % 2, &cube, &composition, k / 2),
+            rounding * (1 + g[k]));
+        assert_close(error[k], 0, rounding);
+        g[k] += k == 5 ? 6 : 0;
+    }
+    assert_ok(rdf_distance(&rdf, 1, g, &rmse, &spread));
+    assert_close(rmse, sqrt(6), rounding * 100);
+    assert_close(spread, 0, rounding * 100);
+    rdf_clear(&rdf);
+    particles_clear(&particles);
 }
 
 static void test_rdf_result_is_normalised_when_pairs_are_known(void **state) {
@@ -227,6 +275,8 @@ int main(void) {
         cmocka_unit_test(test_rdf_ideal_pairs_are_exact_when_a_bin_is_wide),
         cmocka_unit_test(test_rdf_ideal_pairs_fill_the_range_when_added),
         cmocka_unit_test(test_rdf_finite_size_factor_is_one_when_sizes_are_equal),
+        cmocka_unit_test(test_rdf_ideal_pairs_are_of_the_kind_when_types_differ),
+        cmocka_unit_test(test_rdf_result_is_of_the_kind_when_types_differ),
         cmocka_unit_test(test_rdf_result_is_normalised_when_pairs_are_known),
         cmocka_unit_test(test_rdf_init_refuses_when_the_range_exceeds_half_the_box),
         cmocka_unit_test(test_rdf_errors_cover_the_truth_when_samples_are_independent),

@@ -112,6 +112,8 @@ static void test_bench_lammps_objection_says_what_debians_lammps_lacks(void **st
     assert_contains(bench_lammps_objection(&scene), "velocity-verlet");
     scene.weight.curves = 1;
     assert_contains(bench_lammps_objection(&scene), "friction");
+    scene.setup.composition.types = 2;
+    assert_contains(bench_lammps_objection(&scene), "mixture");
 }
 
 #define IN_FOLDER(test)                                                                            \

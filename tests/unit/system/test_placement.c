@@ -70,6 +70,33 @@ static void test_placement_lattice_keeps_particles_apart_when_count_is_odd(void 
         }
 }
 
+/// Every id once, the same for the same seed, and hardly any where it was.
+static void test_placement_mix_exchanges_ids_when_asked(void **state) {
+    (void)state;
+    enum { COUNT = 1000 };
+    const struct box box = {3, {10, 10, 10}};
+    struct particles particles, again;
+    bool found[COUNT] = {false};
+    size_t same = 0;
+    double middle = 0;
+    assert_ok(particles_init(&particles, &box, COUNT));
+    assert_ok(particles_init(&again, &box, COUNT));
+    placement_mix(&particles, 7);
+    placement_mix(&again, 7);
+    assert_memory_equal(particles.id, again.id, COUNT * sizeof *again.id);
+    for (size_t k = 0; k < COUNT; k++) {
+        assert_false(found[particles.id[k]]);
+        found[particles.id[k]] = true;
+        same += particles.id[k] == k;
+        middle += particles.id[k] < COUNT / 2 && k < COUNT / 2;
+    }
+    assert_true(same < 10);
+    // 250 expected with a standard deviation of 8: no false alarm to speak of, and one seed.
+    assert_true(fabs(middle - 250) < 40);
+    particles_clear(&particles);
+    particles_clear(&again);
+}
+
 static void test_placement_lattice_shifts_within_the_jitter_when_asked(void **state) {
     (void)state;
     struct particles even, shifted, again, other;
@@ -155,6 +182,7 @@ int main(void) {
         cmocka_unit_test(test_placement_lattice_is_square_when_in_two_dimensions),
         cmocka_unit_test(test_placement_lattice_keeps_particles_apart_when_count_is_odd),
         cmocka_unit_test(test_placement_lattice_shifts_within_the_jitter_when_asked),
+        cmocka_unit_test(test_placement_mix_exchanges_ids_when_asked),
         cmocka_unit_test(test_placement_random_keeps_the_separation_when_there_is_room),
         cmocka_unit_test(test_placement_random_is_uniform_when_there_is_no_separation),
         cmocka_unit_test(test_placement_random_fails_when_the_density_is_too_high),
