@@ -14,10 +14,10 @@ struct simulation_setup {
     struct box box;
     struct placement placement;
     struct composition composition; ///< types of its beads; all zero: they are alike
-    double temperature;       ///< of the start and of the noise              [k_B T_0]
-    double time_step;         ///< Δt                                         [τ]
-    double skin;              ///< of the neighbour list; 0: the code chooses [λ]
-    double temperature_limit; ///< above limit × temperature: UNSTABLE
+    double temperature;             ///< of the start and of the noise              [k_B T_0]
+    double time_step;               ///< Δt                                         [τ]
+    double skin;                    ///< of the neighbour list; 0: the code chooses [λ]
+    double temperature_limit;       ///< above limit × temperature: UNSTABLE
     const struct integrator *integrator;
     struct integrator_parameters integrator_parameters;
     const struct table *potential; ///< Φ(r), one or for each kind of pairs, or NULL; borrowed

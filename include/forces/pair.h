@@ -20,7 +20,8 @@ enum pair_precision {
     PAIR_DOUBLE, ///< double, from double positions; the noise is the same
 };
 
-_Static_assert((int)TABLE_MOST_CURVES >= (int)COMPOSITION_MOST_PAIRS, "a table holds a curve a kind");
+_Static_assert((int)TABLE_MOST_CURVES >= (int)COMPOSITION_MOST_PAIRS,
+               "a table holds a curve a kind");
 
 /// Distances counted in passing: bin k holds those from low + k width on.
 struct pair_histogram {

@@ -42,8 +42,8 @@ struct json_object json_child(struct json_object *parent, const char *key, bool 
 /// True if `key` is present, with any value. Counts as asked for.
 bool json_has(struct json_object *object, const char *key);
 
-/// The key of member number n of an object whose keys the file chooses, or NULL beyond the last. The
-/// text lives with the document. Counts as nothing: the reader asks for the keys that it takes.
+/// The key of member number n of an object whose keys the file chooses, or NULL beyond the last.
+/// The text lives with the document. Counts as nothing: the reader asks for the keys that it takes.
 const char *json_key(const struct json_object *object, size_t n);
 
 /// Read the members described by `fields` into `parameters`, defaults where absent.

@@ -6,6 +6,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fnmatch.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -37,6 +38,10 @@ static const char *const results[] = {
 /// g(r) of the kinds of pairs of a mixture, which its file names.
 static const char partial_rdfs[] = "rdf_*-*.tsv";
 
+static int is_partial_rdf(const struct dirent *entry) {
+    return fnmatch(partial_rdfs, entry->d_name, 0) == 0;
+}
+
 static enum status remove_result(const struct run_folder *folder, const char *name) {
     char path[OUTPUT_PATH_SIZE];
     run_folder_file(folder, name, path);
@@ -49,13 +54,16 @@ static enum status remove_results(const struct run_folder *folder) {
     enum status status = STATUS_OK;
     for (size_t k = 0; k < sizeof results / sizeof *results; k++)
         TRY(remove_result(folder, results[k]));
-    DIR *directory = opendir(folder->path);
-    if (directory == NULL)
+    struct dirent **entries;
+    const int count = scandir(folder->path, &entries, is_partial_rdf, alphasort);
+    if (count < 0)
         return status_fail(STATUS_IO, "%s: %s", folder->path, strerror(errno));
-    for (const struct dirent *entry; status == STATUS_OK && (entry = readdir(directory));)
-        if (fnmatch(partial_rdfs, entry->d_name, 0) == 0)
-            status = remove_result(folder, entry->d_name);
-    closedir(directory);
+    for (int k = 0; k < count; k++) {
+        if (status == STATUS_OK)
+            status = remove_result(folder, entries[k]->d_name);
+        free(entries[k]);
+    }
+    free(entries);
     return status;
 }
 

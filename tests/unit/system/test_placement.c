@@ -88,7 +88,7 @@ static void test_placement_mix_exchanges_ids_when_asked(void **state) {
         assert_false(found[particles.id[k]]);
         found[particles.id[k]] = true;
         same += particles.id[k] == k;
-        middle += particles.id[k] < COUNT / 2 && k < COUNT / 2;
+        middle += k < COUNT / 2 && particles.id[k] < COUNT / 2;
     }
     assert_true(same < 10);
     // 250 expected with a standard deviation of 8: no false alarm to speak of, and one seed.
