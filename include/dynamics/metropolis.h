@@ -6,8 +6,7 @@
 /// neighbour search and same tables as the dynamics.
 #pragma once
 
-#include "curves/table.h"
-#include "system/neighbours.h"
+#include "forces/pair.h"
 
 struct metropolis {
     struct particles particles;
@@ -33,8 +32,9 @@ enum status metropolis_equilibrate(struct metropolis *metropolis, uint32_t sweep
 /// Sweeps with a fixed step size, as detailed balance asks. Fails: NO_MEMORY, INTERRUPTED.
 enum status metropolis_run(struct metropolis *metropolis, uint32_t sweeps) MUST_USE;
 
-/// Σ r·F over all pairs, in double precision [k_B T_0].
-double metropolis_virial(const struct metropolis *metropolis);
+/// Add all pairs nearer than the cutoff to a histogram of one part, and sum Φ and r·F.
+void metropolis_count(const struct metropolis *metropolis, const struct pair_histogram *histogram,
+                      struct pair_sums *sums);
 
 /// Sort the particles and build the list anew from the positions alone, so that a run that
 /// continues and one that was reloaded here go on with the same bits. Fails: NO_MEMORY.

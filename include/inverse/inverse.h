@@ -91,7 +91,7 @@ struct inverse_folder {
     void *context;
 };
 
-enum { INVERSE_MAX_SPANS = 512 };
+enum { INVERSE_MAX_SPANS = 1024 };
 
 struct optimiser;
 struct inversion;

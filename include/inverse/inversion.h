@@ -19,7 +19,8 @@ struct inversion_parameters {
     int64_t equilibration, samples, every;
     int64_t iterations;
     double precision, damping;
-    int start; ///< INVERSION_FROM_…
+    int start;   ///< INVERSION_FROM_…
+    int sampler; ///< enum sampler_kind
 };
 
 enum { INVERSION_FROM_HNC, INVERSION_FROM_MEAN_FORCE };

@@ -25,8 +25,11 @@ static const char *const starts[] = {"auto", "mean-force", NULL};
 const struct field inversion_fields[] = {
     {"particles", FIELD_INTEGER, MEMBER(particles), .initial = 0, .minimum = 0, .maximum = 1e7,
      .unit = "", .help = "of the Monte Carlo system, at the scene's density; 0 means the scene's"},
+    {"sampler", FIELD_CHOICE, MEMBER(sampler), .choices = sampler_kinds,
+     .initial = SAMPLER_MONTE_CARLO, .unit = "",
+     .help = "Metropolis moves, or dynamics with collisions with a heat bath"},
     {"replicas", FIELD_INTEGER, MEMBER(replicas), .initial = 8, .minimum = 2,
-     .maximum = REPLICAS_MOST, .unit = "", .help = "independent Markov chains"},
+     .maximum = REPLICAS_MOST, .unit = "", .help = "independent samplers"},
     {"equilibration", FIELD_INTEGER, MEMBER(equilibration), .initial = 200, .minimum = 0,
      .maximum = 1e9, .unit = "sweeps",
      .help = "before each iteration's samples; five times as "
@@ -151,8 +154,15 @@ enum status inversion_create(void *memory, const struct inverse_method *method,
     }
     TRY(start(inversion));
     TRY(potential_grid_table(&inversion->grid, inversion->phi, &inversion->table));
-    TRY(replicas_init(&inversion->replicas, (size_t)p->replicas, bins, &inversion->box, count,
-                      &inversion->table, problem->scene.temperature, problem->seed));
+    TRY(replicas_init(&inversion->replicas, (size_t)p->replicas, (enum sampler_kind)p->sampler,
+                      &(struct sampler_system){.box = &inversion->box,
+                                               .particles = count,
+                                               .potential = &inversion->table,
+                                               .temperature = problem->scene.temperature,
+                                               .low = bins->low,
+                                               .width = bins->width,
+                                               .bins = bins->count,
+                                               .seed = problem->seed}));
     inversion->progress =
         (struct inversion_progress){.effort = 1, .damping = p->damping, .best_rmse = INFINITY};
     return STATUS_OK;

@@ -7,19 +7,20 @@
 #include <math.h>
 #include <string.h>
 
-enum status replicas_init(struct replicas *replicas, size_t count, const struct rdf_bins *bins,
-                          const struct box *box, size_t particles, const struct table *potential,
-                          double temperature, uint64_t seed) {
+enum status replicas_init(struct replicas *replicas, size_t count, enum sampler_kind kind,
+                          const struct sampler_system *system) {
     enum status status = STATUS_OK;
-    *replicas = (struct replicas){.bins = bins, .box = box, .count = count};
-    CHECK(comoments_init(&replicas->counts, bins->count + 1));
+    const size_t bins = system->bins;
+    struct sampler_system own = *system;
+    *replicas = (struct replicas){.bins = bins, .count = count};
+    CHECK(comoments_init(&replicas->counts, bins + 1));
     for (size_t k = 0; k < count; k++) {
         struct replica *replica = &replicas->member[k];
-        NEW_ARRAY(replica->sample, bins->count + 1);
-        NEW_ARRAY(replica->block, REPLICAS_BLOCKS * bins->count);
-        CHECK(comoments_init(&replica->counts, bins->count + 1));
-        CHECK(metropolis_init(&replica->sampler, box, particles, potential, temperature,
-                              rng_child_seed(seed, RNG_EVALUATION, (uint32_t)k, 0)));
+        NEW_ARRAY(replica->sample, bins + 1);
+        NEW_ARRAY(replica->block, REPLICAS_BLOCKS * bins);
+        CHECK(comoments_init(&replica->counts, bins + 1));
+        own.seed = rng_child_seed(system->seed, RNG_EVALUATION, (uint32_t)k, 0);
+        CHECK(sampler_init(&replica->sampler, kind, &own));
     }
 done:
     return status;
@@ -28,7 +29,7 @@ done:
 void replicas_clear(struct replicas *replicas) {
     for (size_t k = 0; k < replicas->count; k++) {
         struct replica *replica = &replicas->member[k];
-        metropolis_clear(&replica->sampler);
+        sampler_clear(&replica->sampler);
         comoments_clear(&replica->counts);
         memory_free(replica->sample);
         memory_free(replica->block);
@@ -37,31 +38,19 @@ void replicas_clear(struct replicas *replicas) {
     *replicas = (struct replicas){0};
 }
 
-/// S and the virial of the present configuration.
-static void take_sample(struct replica *replica, const struct rdf_bins *bins) {
-    memset(replica->sample, 0, bins->count * sizeof *replica->sample);
-    rdf_count_pairs(bins, &replica->sampler.particles, &replica->sampler.neighbours,
-                    replica->sample);
-    // The sampler's list has each pair from both sides.
-    for (size_t a = 0; a < bins->count; a++)
-        replica->sample[a] *= 0.5;
-    replica->sample[bins->count] = metropolis_virial(&replica->sampler);
-}
-
 /// Equilibrate one chain, then take its samples block by block.
 static enum status run_one(const struct replicas *replicas, struct replica *replica,
                            const struct replicas_plan *plan) {
-    const size_t bins = replicas->bins->count;
+    const size_t bins = replicas->bins;
     comoments_reset(&replica->counts);
     memset(replica->block, 0, REPLICAS_BLOCKS * bins * sizeof *replica->block);
-    TRY(metropolis_refresh(&replica->sampler));
-    TRY(metropolis_equilibrate(&replica->sampler, (uint32_t)plan->equilibration));
+    TRY(sampler_begin(&replica->sampler));
+    TRY(sampler_equilibrate(&replica->sampler, (uint64_t)plan->equilibration));
     for (int64_t block = 0; block < REPLICAS_BLOCKS; block++) {
         const int64_t begin = plan->samples * block / REPLICAS_BLOCKS;
         const int64_t end = plan->samples * (block + 1) / REPLICAS_BLOCKS;
         for (int64_t sample = begin; sample < end; sample++) {
-            TRY(metropolis_run(&replica->sampler, (uint32_t)plan->every));
-            take_sample(replica, replicas->bins);
+            TRY(sampler_sample(&replica->sampler, (uint64_t)plan->every, replica->sample));
             comoments_add(&replica->counts, replica->sample);
             for (size_t a = 0; a < bins; a++)
                 replica->block[(size_t)block * bins + a] +=
@@ -69,6 +58,12 @@ static enum status run_one(const struct replicas *replicas, struct replica *repl
         }
     }
     return STATUS_OK;
+}
+
+/// The one that decides: an interrupted run must not be taken for an unstable one, whichever thread
+/// comes first.
+static enum status worse(enum status a, enum status b) {
+    return a == STATUS_OK || a == STATUS_UNSTABLE ? b == STATUS_OK ? a : b : a;
 }
 
 enum status replicas_run(struct replicas *replicas, const struct replicas_plan *plan, int threads,
@@ -81,18 +76,18 @@ enum status replicas_run(struct replicas *replicas, const struct replicas_plan *
         const enum status status = run_one(replicas, &replicas->member[k], plan);
 #pragma omp critical
         {
-            if (status != STATUS_OK)
-                worst = status;
+            worst = worse(worst, status);
             struct inverse_progress now = *progress;
             now.done = ++done;
             now.total = replicas->count;
             listener->tell(listener->context, &now);
         }
     }
-    if (worst == STATUS_INTERRUPTED)
-        return status_fail(worst, "interrupted");
     if (worst != STATUS_OK)
-        return status_fail(worst, "no memory for the Monte Carlo replicas");
+        return status_fail(worst, "%s",
+                           worst == STATUS_INTERRUPTED ? "interrupted"
+                           : worst == STATUS_UNSTABLE  ? "the simulations are unstable"
+                                                       : "no memory for the replicas");
     comoments_reset(&replicas->counts);
     for (size_t k = 0; k < replicas->count; k++)
         comoments_merge(&replicas->counts, &replicas->member[k].counts);
@@ -100,7 +95,7 @@ enum status replicas_run(struct replicas *replicas, const struct replicas_plan *
 }
 
 double replicas_inefficiency(const struct replicas *replicas, const double *ideal, size_t first) {
-    const size_t bins = replicas->bins->count;
+    const size_t bins = replicas->bins;
     double scatter = 0, variance = 0;
     for (size_t a = first; a < bins; a++) {
         struct running_mean blocks = {0};
@@ -119,15 +114,7 @@ double replicas_inefficiency(const struct replicas *replicas, const double *idea
 
 size_t replicas_spans(struct replicas *replicas, struct memory_span *span) {
     size_t n = 0;
-    for (size_t k = 0; k < replicas->count; k++) {
-        struct metropolis *sampler = &replicas->member[k].sampler;
-        struct particles *particles = &sampler->particles;
-        for (int d = 0; d < replicas->box->dimensions; d++)
-            span[n++] =
-                (struct memory_span){particles->position[d], particles->count * sizeof(double)};
-        span[n++] = (struct memory_span){particles->id, particles->count * sizeof(uint32_t)};
-        span[n++] = (struct memory_span){&sampler->step, sizeof sampler->step};
-        span[n++] = (struct memory_span){&sampler->sweep, sizeof sampler->sweep};
-    }
+    for (size_t k = 0; k < replicas->count; k++)
+        n += sampler_spans(&replicas->member[k].sampler, span + n);
     return n;
 }

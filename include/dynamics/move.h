@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What a Metropolis move needs of the pairs around a particle, and what a sample needs of
+/// all of them: one body (src/dynamics/move_loop.h), compiled for each instruction set.
+#pragma once
+
+#include "forces/pair.h"
+
+/// Change of potential energy when a particle goes to the fractions `to` of the box [k_B T_0]:
+/// Σ_j Φ(|r' − r_j|) − Φ(|r − r_j|), from the same rows of the table as the forces, in single
+/// precision. A NaN in the table shows.
+/// @param[in] neighbours  a full list, complete for the cutoff from both places
+/// Tested: test_move.
+double move_energy_change(const struct particles *particles, const struct neighbours *neighbours,
+                          const struct table *potential, size_t particle, const int32_t to[3]);
+
+/// Add the pairs nearer than the potential's cutoff to a histogram of one part, and sum Φ and r·F.
+/// @param[in] neighbours  a full list
+/// Tested: test_move.
+void move_count_pairs(const struct particles *particles, const struct neighbours *neighbours,
+                      const struct table *potential, const struct pair_histogram *histogram,
+                      struct pair_sums *sums);

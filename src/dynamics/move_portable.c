@@ -1,0 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "move_loop.h"
+
+MOVE_INSTANCE(move_portable)
