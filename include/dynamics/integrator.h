@@ -29,7 +29,6 @@ struct integrator {
 struct integrator_parameters {
     double lambda;    ///< dpd-verlet
     double tolerance; ///< aboba-implicit
-    int64_t turns;    ///< andersen: a particle collides every so many steps
 };
 
 /// All integrator_list, NULL-terminated.
@@ -42,8 +41,3 @@ extern const struct integrator shardlow;
 extern const struct integrator aboba;
 extern const struct integrator aboba_implicit;
 extern const struct integrator lowe_andersen;
-
-/// Samples the canonical ensemble of a potential and nothing else: no momentum is conserved and no
-/// motion is real. So no scene can choose it (it is not on the list); inverse/sampler.h does. In the
-/// order of B. Leimkuhler and C. Matthews, J. Chem. Phys. 138, 174102 (2013).
-extern const struct integrator andersen;

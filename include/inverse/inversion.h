@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file What the inversions of g(r) by Monte Carlo share: imc, ibi, hnc.
+/// @file What the inversions of g(r) by sampling share: imc, ibi, hnc.
 ///
 /// Each iteration samples the present potential and asks the method for a step towards the target
 /// (inverse_method.update). The best potential so far is kept; a worse one than chance allows makes
-/// the next step half as long, from the best. Samples double once the error is near the noise, and
-/// the fit has converged when the error is within the noise at the precision that was asked for.
+/// the next step half as long, from the best. Samples double
+/// until their noise is small against the error, or as small as was asked for: then the fit has
+/// converged when the error is within the noise.
 ///
 /// It starts from the hypernetted-chain inversion (hnc_closure): for water the error of g is then a
 /// quarter of that of −k_B T ln g. Where the first step from there makes it worse, as with a target
@@ -40,7 +41,7 @@ struct inversion {
     const struct inverse_method *method;
     const struct inverse_problem *problem;
     struct potential_grid grid;
-    struct box box; ///< of the Monte Carlo system
+    struct box box; ///< of the sampled system
     size_t particles;
     struct table table;
     struct replicas replicas;
@@ -51,7 +52,6 @@ struct inversion {
     // What a checkpoint keeps besides phi, best, … and the samplers:
     struct inversion_progress {
         uint32_t iteration;
-        int64_t effort; ///< the samples of an iteration are multiplied by this
         uint64_t evaluations, sweeps;
         double damping, best_rmse, best_noise;
     } progress;

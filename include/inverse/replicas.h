@@ -10,7 +10,7 @@
 enum { REPLICAS_MOST = 64 };
 
 /// Consecutive parts of each sampler's samples; their scatter gives the statistical error.
-enum { REPLICAS_BLOCKS = 4 };
+enum { REPLICAS_BLOCKS = 4 }; // even, so that they can be joined in pairs
 
 struct replicas {
     size_t bins, count;
@@ -25,7 +25,7 @@ struct replicas {
 
 struct replicas_plan {
     int64_t equilibration; ///< sweeps before the samples
-    int64_t samples;       ///< of each sampler
+    int64_t block_samples; ///< of each of the REPLICAS_BLOCKS of each sampler
     int64_t every;         ///< sweeps between them
 };
 
@@ -35,12 +35,18 @@ enum status replicas_init(struct replicas *replicas, size_t count, enum sampler_
                           const struct sampler_system *system) MUST_USE;
 void replicas_clear(struct replicas *replicas);
 
-/// Equilibrate, then sample; the samplers in parallel, merged in order: the same bits for any number
-/// of threads. `progress` is told after each, with `done` and `total` filled in.
-/// Fails: NO_MEMORY, INTERRUPTED, UNSTABLE. Tested: test_inversion, test_fit.
+/// Equilibrate, then sample; the samplers in parallel, merged in order: the same bits for any
+/// number of threads. `progress` is told after each, with `done` and `total` filled in. Fails:
+/// NO_MEMORY, INTERRUPTED. Tested: test_inversion, test_fit.
 enum status replicas_run(struct replicas *replicas, const struct replicas_plan *plan, int threads,
                          const struct inverse_progress *progress,
                          const struct inverse_listener *listener) MUST_USE;
+
+/// Go on with the same potential until there are twice as many samples, and double the plan. As
+/// replicas_run, without equilibration.
+enum status replicas_double(struct replicas *replicas, struct replicas_plan *plan, int threads,
+                            const struct inverse_progress *progress,
+                            const struct inverse_listener *listener) MUST_USE;
 
 /// How many samples count as one independent, from the scatter of the block means, averaged over
 /// the bins from `first` on because that of one bin is noisy.

@@ -3,6 +3,7 @@
 #include "base/nearest.h"
 #include "run/bench.h"
 #include "run/bench_accuracy.h"
+#include "run/bench_samplers.h"
 
 #include <omp.h>
 #include <string.h>
@@ -78,21 +79,33 @@ static enum status run_accuracy(const struct command_line *line) {
     return bench_accuracy(line->files[1], &common, &chosen);
 }
 
+static enum status run_samplers(const struct command_line *line) {
+    static const int foreign[] = {JSON,       AGAINST_LAMMPS, SKIPS,  ISA,
+                                  PRECISION,  OUTPUT,         WANTED, TIME,
+                                  TIME_STEPS, INTEGRATORS,    OPTIONS};
+    TRY(check_options(line, "samplers", foreign));
+    if (line->file_count != 2)
+        return status_fail(STATUS_BAD_INPUT, "usage: mesofit bench samplers SCENE.json");
+    return bench_samplers(line->files[1], &line->options);
+}
+
 static enum status run(const struct command_line *line) {
-    static const char *const subjects[] = {"engine", "accuracy"};
+    static const char *const subjects[] = {"engine", "accuracy", "samplers"};
     char hint[128];
     if (strcmp(line->files[0], subjects[0]) == 0)
         return run_engine(line);
     if (strcmp(line->files[0], subjects[1]) == 0)
         return run_accuracy(line);
-    nearest_hint(line->files[0], subjects, 2, hint, sizeof hint);
+    if (strcmp(line->files[0], subjects[2]) == 0)
+        return run_samplers(line);
+    nearest_hint(line->files[0], subjects, 3, hint, sizeof hint);
     return status_fail(STATUS_BAD_INPUT, "bench: \"%s\" is not known; %s", line->files[0], hint);
 }
 
 const struct command cmd_bench = {
     .name = "bench",
-    .usage = "engine|accuracy [SCENE...]",
-    .summary = "time the engine; what each integrator and time step costs and spoils",
+    .usage = "engine|accuracy|samplers [SCENE...]",
+    .summary = "time the engine; what time steps and samplers cost",
     .least_files = 1,
     .most_files = COMMAND_MAX_FILES,
     .options = options,

@@ -2,7 +2,8 @@
 /// @file The one body of Metropolis moves, compiled for each instruction set.
 ///
 /// Distances of the listed particles come first, a vector at a time; those in range are packed, and
-/// the table is read for them alone: a list with a skin of a quarter of the cutoff has twice as many.
+/// the table is read for them alone: a list with a skin of a quarter of the cutoff has twice as
+/// many.
 #pragma once
 
 #include "base/lanes.h"

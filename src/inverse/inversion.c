@@ -16,6 +16,9 @@ static const double noise_margin = 1.7;
 /// Largest change of the potential in one iteration where the target is well known [k_B T_0].
 static const double largest_change = 1;
 
+/// Samples are doubled until their noise is this share of the error, or as small as was asked for.
+static const double noise_share = 1.0 / 3;
+
 /// The first equilibration of a start is longer: it begins from a lattice.
 enum { FIRST_EQUILIBRATION = 5 };
 
@@ -27,7 +30,7 @@ const struct field inversion_fields[] = {
      .unit = "", .help = "of the Monte Carlo system, at the scene's density; 0 means the scene's"},
     {"sampler", FIELD_CHOICE, MEMBER(sampler), .choices = sampler_kinds,
      .initial = SAMPLER_MONTE_CARLO, .unit = "",
-     .help = "Metropolis moves, or dynamics with collisions with a heat bath"},
+     .help = "single moves, or short trajectories of all particles"},
     {"replicas", FIELD_INTEGER, MEMBER(replicas), .initial = 8, .minimum = 2,
      .maximum = REPLICAS_MOST, .unit = "", .help = "independent samplers"},
     {"equilibration", FIELD_INTEGER, MEMBER(equilibration), .initial = 200, .minimum = 0,
@@ -36,9 +39,9 @@ const struct field inversion_fields[] = {
              "many before the first"},
     {"samples", FIELD_INTEGER, MEMBER(samples), .initial = 200, .minimum = 2 * REPLICAS_BLOCKS,
      .maximum = 1e9, .unit = "",
-     .help = "of each replica in the first iteration; doubled when "
-             "the error has come down to the noise"},
-    {"every", FIELD_INTEGER, MEMBER(every), .initial = 4, .minimum = 1, .maximum = 1e6,
+     .help = "of each replica, at least; doubled until the noise is a third of the error, or as "
+             "small as \"precision\""},
+    {"every", FIELD_INTEGER, MEMBER(every), .initial = 2, .minimum = 1, .maximum = 1e6,
      .unit = "sweeps", .help = "between samples"},
     {"iterations", FIELD_INTEGER, MEMBER(iterations), .initial = 30, .minimum = 1, .maximum = 10000,
      .unit = "", .help = "at most"},
@@ -163,8 +166,7 @@ enum status inversion_create(void *memory, const struct inverse_method *method,
                                                .width = bins->width,
                                                .bins = bins->count,
                                                .seed = problem->seed}));
-    inversion->progress =
-        (struct inversion_progress){.effort = 1, .damping = p->damping, .best_rmse = INFINITY};
+    inversion->progress = (struct inversion_progress){.damping = p->damping, .best_rmse = INFINITY};
     return STATUS_OK;
 }
 
@@ -227,31 +229,46 @@ static void keep(struct inversion *inversion, double rmse, double noise) {
     inversion->progress.best_noise = noise;
 }
 
-/// The sweeps and samples of this iteration.
+/// The sweeps and least samples of this iteration.
 static struct replicas_plan plan(const struct inversion *inversion) {
     const struct inversion_parameters *p = &inversion->settings.common;
     const bool first = isinf(inversion->progress.best_rmse);
     return (struct replicas_plan){.equilibration =
                                       p->equilibration * (first ? FIRST_EQUILIBRATION : 1),
-                                  .samples = p->samples * inversion->progress.effort,
+                                  .block_samples = (p->samples - 1) / REPLICAS_BLOCKS + 1,
                                   .every = p->every};
 }
 
-static enum status sample(struct inversion *inversion, const struct inverse_listener *listener) {
-    const struct replicas_plan now = plan(inversion);
+/// Whether more samples would help: their noise is a large part of the error, and not yet what was
+/// asked for.
+static bool needs_samples(const struct inversion *inversion, double rmse, double own_noise) {
+    return own_noise > fmax(inversion->settings.common.precision, noise_share * rmse);
+}
+
+/// Sample the present potential until the noise is small against its error, and assess it.
+static enum status sample(struct inversion *inversion, const struct inverse_listener *listener,
+                          double *rmse, double *noise, double *own_noise) {
+    struct replicas_plan now = plan(inversion);
+    struct inversion_progress *state = &inversion->progress;
+    const int threads = inversion->problem->threads;
     const uint64_t replicas = (uint64_t)inversion->settings.common.replicas;
     const struct inverse_progress progress = {
-        .iteration = inversion->progress.iteration,
+        .iteration = state->iteration,
         .iterations = (uint32_t)inversion->settings.common.iterations,
-        .best = inversion->progress.best_rmse,
+        .best = state->best_rmse,
         .mean = NAN,
     };
     table_clear(&inversion->table);
     TRY(potential_grid_table(&inversion->grid, inversion->phi, &inversion->table));
-    TRY(replicas_run(&inversion->replicas, &now, inversion->problem->threads, &progress, listener));
-    inversion->progress.evaluations += replicas;
-    inversion->progress.sweeps +=
-        replicas * (uint64_t)(now.samples * now.every + now.equilibration);
+    state->evaluations += replicas;
+    TRY(replicas_run(&inversion->replicas, &now, threads, &progress, listener));
+    assess(inversion, rmse, noise, own_noise);
+    while (needs_samples(inversion, *rmse, *own_noise)) {
+        TRY(replicas_double(&inversion->replicas, &now, threads, &progress, listener));
+        assess(inversion, rmse, noise, own_noise);
+    }
+    state->sweeps +=
+        replicas * (uint64_t)(REPLICAS_BLOCKS * now.block_samples * now.every + now.equilibration);
     return STATUS_OK;
 }
 
@@ -275,14 +292,11 @@ enum status inversion_iterate(void *memory, struct inverse_step *step,
     struct inversion_progress *progress = &inversion->progress;
     const struct inversion_parameters *p = &inversion->settings.common;
     double rmse, noise, own_noise, extra[2] = {0};
-    TRY(sample(inversion, listener));
-    assess(inversion, &rmse, &noise, &own_noise);
+    TRY(sample(inversion, listener, &rmse, &noise, &own_noise));
     TRY(inversion->method->update(inversion, extra));
     const bool kept = judge(inversion, rmse, noise);
     const bool agrees = kept && rmse <= noise_margin * noise;
     const bool precise = own_noise <= p->precision;
-    if (kept && rmse < 2 * noise && !precise)
-        progress->effort *= 2;
     *step = (struct inverse_step){
         .iteration = progress->iteration,
         .evaluations = progress->evaluations,

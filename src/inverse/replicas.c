@@ -38,60 +38,83 @@ void replicas_clear(struct replicas *replicas) {
     *replicas = (struct replicas){0};
 }
 
-/// Equilibrate one chain, then take its samples block by block.
-static enum status run_one(const struct replicas *replicas, struct replica *replica,
-                           const struct replicas_plan *plan) {
-    const size_t bins = replicas->bins;
-    comoments_reset(&replica->counts);
-    memset(replica->block, 0, REPLICAS_BLOCKS * bins * sizeof *replica->block);
-    TRY(sampler_begin(&replica->sampler));
-    TRY(sampler_equilibrate(&replica->sampler, (uint64_t)plan->equilibration));
-    for (int64_t block = 0; block < REPLICAS_BLOCKS; block++) {
-        const int64_t begin = plan->samples * block / REPLICAS_BLOCKS;
-        const int64_t end = plan->samples * (block + 1) / REPLICAS_BLOCKS;
-        for (int64_t sample = begin; sample < end; sample++) {
+/// Take the samples of block first … last − 1.
+static enum status fill_blocks(struct replica *replica, size_t bins, size_t first, size_t last,
+                               const struct replicas_plan *plan) {
+    const double each = (double)plan->block_samples;
+    for (size_t block = first; block < last; block++) {
+        double *mean = replica->block + block * bins;
+        memset(mean, 0, bins * sizeof *mean);
+        for (int64_t sample = 0; sample < plan->block_samples; sample++) {
             TRY(sampler_sample(&replica->sampler, (uint64_t)plan->every, replica->sample));
             comoments_add(&replica->counts, replica->sample);
             for (size_t a = 0; a < bins; a++)
-                replica->block[(size_t)block * bins + a] +=
-                    replica->sample[a] / (double)(end - begin);
+                mean[a] += replica->sample[a] / each;
         }
     }
     return STATUS_OK;
 }
 
-/// The one that decides: an interrupted run must not be taken for an unstable one, whichever thread
-/// comes first.
-static enum status worse(enum status a, enum status b) {
-    return a == STATUS_OK || a == STATUS_UNSTABLE ? b == STATUS_OK ? a : b : a;
+/// Equilibrate one sampler, then take its samples.
+static enum status run_one(struct replica *replica, size_t bins, const struct replicas_plan *plan) {
+    comoments_reset(&replica->counts);
+    TRY(sampler_begin(&replica->sampler));
+    TRY(sampler_equilibrate(&replica->sampler, (uint64_t)plan->equilibration));
+    return fill_blocks(replica, bins, 0, REPLICAS_BLOCKS, plan);
 }
 
-enum status replicas_run(struct replicas *replicas, const struct replicas_plan *plan, int threads,
-                         const struct inverse_progress *progress,
-                         const struct inverse_listener *listener) {
+/// Two blocks become one, half as many; then as many samples again.
+static enum status double_one(struct replica *replica, size_t bins,
+                              const struct replicas_plan *plan) {
+    enum { HALF = REPLICAS_BLOCKS / 2 };
+    double *block = replica->block;
+    for (size_t b = 0; b < HALF; b++)
+        for (size_t a = 0; a < bins; a++)
+            block[b * bins + a] = 0.5 * (block[2 * b * bins + a] + block[(2 * b + 1) * bins + a]);
+    return fill_blocks(replica, bins, HALF, REPLICAS_BLOCKS, plan);
+}
+
+/// Run all, each by `one`.
+static enum status
+run_all(struct replicas *replicas, const struct replicas_plan *plan, int threads,
+        const struct inverse_progress *progress, const struct inverse_listener *listener,
+        enum status (*one)(struct replica *, size_t, const struct replicas_plan *)) {
     enum status worst = STATUS_OK;
     uint64_t done = 0;
 #pragma omp parallel for schedule(dynamic) num_threads(threads)
     for (size_t k = 0; k < replicas->count; k++) {
-        const enum status status = run_one(replicas, &replicas->member[k], plan);
+        const enum status status = one(&replicas->member[k], replicas->bins, plan);
 #pragma omp critical
         {
-            worst = worse(worst, status);
+            if (status != STATUS_OK)
+                worst = status;
             struct inverse_progress now = *progress;
             now.done = ++done;
             now.total = replicas->count;
             listener->tell(listener->context, &now);
         }
     }
+    if (worst == STATUS_INTERRUPTED)
+        return status_fail(worst, "interrupted");
     if (worst != STATUS_OK)
-        return status_fail(worst, "%s",
-                           worst == STATUS_INTERRUPTED ? "interrupted"
-                           : worst == STATUS_UNSTABLE  ? "the simulations are unstable"
-                                                       : "no memory for the replicas");
+        return status_fail(worst, "no memory for the replicas");
     comoments_reset(&replicas->counts);
     for (size_t k = 0; k < replicas->count; k++)
         comoments_merge(&replicas->counts, &replicas->member[k].counts);
     return STATUS_OK;
+}
+
+enum status replicas_run(struct replicas *replicas, const struct replicas_plan *plan, int threads,
+                         const struct inverse_progress *progress,
+                         const struct inverse_listener *listener) {
+    return run_all(replicas, plan, threads, progress, listener, run_one);
+}
+
+enum status replicas_double(struct replicas *replicas, struct replicas_plan *plan, int threads,
+                            const struct inverse_progress *progress,
+                            const struct inverse_listener *listener) {
+    plan->block_samples *= 2;
+    return run_all(replicas, plan, threads, progress, listener, double_one);
 }
 
 double replicas_inefficiency(const struct replicas *replicas, const double *ideal, size_t first) {

@@ -77,6 +77,11 @@ static void test_imc_gives_the_same_bits_for_any_threads(void **state) {
     check_threads(UNCONVERGED);
 }
 
+static void test_imc_by_dynamics_gives_the_same_bits_for_any_threads(void **state) {
+    write_fit(*state, IMC ", \"sampler\": \"dynamics\"");
+    check_threads(UNCONVERGED);
+}
+
 static void test_ibi_gives_the_same_bits_for_any_threads(void **state) {
     write_fit(*state, INVERSION("ibi"));
     check_threads(UNCONVERGED);
@@ -134,6 +139,11 @@ static void check_interruption(int code) {
 
 static void test_interrupted_imc_goes_on_with_the_same_bits(void **state) {
     write_fit(*state, IMC);
+    check_interruption(UNCONVERGED);
+}
+
+static void test_interrupted_imc_by_dynamics_goes_on_with_the_same_bits(void **state) {
+    write_fit(*state, IMC ", \"sampler\": \"dynamics\"");
     check_interruption(UNCONVERGED);
 }
 
@@ -324,6 +334,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_results_are_drawn_compared_and_drawn_again),
         TEST_WITHOUT_FIGURES(test_imc_gives_the_same_bits_for_any_threads),
+        TEST_WITHOUT_FIGURES(test_imc_by_dynamics_gives_the_same_bits_for_any_threads),
         TEST_WITHOUT_FIGURES(test_ibi_gives_the_same_bits_for_any_threads),
         TEST_WITHOUT_FIGURES(test_hnc_gives_the_same_bits_for_any_threads),
         TEST_WITHOUT_FIGURES(test_interrupted_ibi_goes_on_with_the_same_bits),
@@ -335,6 +346,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_genetic_with_forces_gives_the_same_bits_from_its_used_settings),
         TEST_WITHOUT_FIGURES(test_explain_tells_how_an_evaluation_measures_the_rdf),
         TEST_WITHOUT_FIGURES(test_interrupted_imc_goes_on_with_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_interrupted_imc_by_dynamics_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_genetic_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_fit_says_so_and_refuses_other_settings),
         TEST_WITHOUT_FIGURES(test_summary_has_what_other_programs_read),

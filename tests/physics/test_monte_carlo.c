@@ -4,6 +4,7 @@
 // the same g(r) and the same mean energy, within their errors.
 #include "base/statistics.h"
 #include "curves/sampled.h"
+#include "dynamics/hybrid.h"
 #include "dynamics/metropolis.h"
 #include "forces/reference_forces.h"
 #include "observe/rdf.h"
@@ -105,6 +106,33 @@ static void measure_monte_carlo(const struct simulation_setup *setup, const stru
     metropolis_clear(&metropolis);
 }
 
+static void measure_hybrid(const struct simulation_setup *setup, const struct rdf_bins *bins,
+                           const struct schedule *schedule, struct measurement *measurement) {
+    const struct pair_histogram pairs = {bins->low, bins->width, bins->count, NULL};
+    const size_t count = (size_t)setup->placement.count;
+    struct hybrid hybrid;
+    measurement_init(measurement);
+    assert_ok(hybrid_init(&hybrid, &setup->box, count, setup->potential, &pairs, setup->temperature,
+                          setup->seed));
+    assert_ok(hybrid_equilibrate(&hybrid, schedule->equilibration));
+    hybrid.simulation.setup.time_step *= 1.5;
+    for (int block = 0; block < BLOCKS; block++) {
+        struct rdf rdf;
+        double energy = 0;
+        assert_ok(rdf_init(&rdf, bins, &setup->box, count, 0, SAMPLES));
+        assert_ok(hybrid_run(&hybrid, schedule->gap));
+        for (int sample = 0; sample < SAMPLES; sample++) {
+            assert_ok(hybrid_run(&hybrid, schedule->every));
+            assert_ok(
+                rdf_sample(&rdf, &hybrid.simulation.particles, &hybrid.simulation.neighbours));
+            energy += hybrid.sums.energy;
+        }
+        add_block(measurement, energy, &rdf);
+        rdf_clear(&rdf);
+    }
+    hybrid_clear(&hybrid);
+}
+
 static double standard_error(const struct comoments *moments, size_t k) {
     return sqrt(comoments_covariance(moments, k, k) / (moments->count - 1));
 }
@@ -160,6 +188,44 @@ static void test_metropolis_agrees_with_dynamics_when_the_scene_is_flat(void **s
     // Beyond the cutoff of 1.
     compare(&fluid, &(struct rdf_bins){0.1, 0.25, BINS}, &(struct schedule){1000, 100, 10},
             &(struct schedule){500, 50, 5});
+    fluid_clear(&fluid);
+}
+
+/// With steps so long that a quarter of the trajectories and more go back, where dynamics alone
+/// would be off by many errors.
+static void test_hybrid_agrees_with_metropolis_when_steps_are_long(void **state) {
+    (void)state;
+    struct fluid fluid;
+    struct measurement first, second;
+    const struct rdf_bins bins = {0.85, 0.2, BINS};
+    fluid_lennard_jones(&fluid, 500, 0.01);
+    measure_hybrid(&fluid.setup, &bins, &(struct schedule){1000, 100, 8}, &first);
+    measure_monte_carlo(&fluid.setup, &bins, &(struct schedule){1000, 200, 15}, &second);
+    assert_equal_within_errors(&first, &second);
+    measurement_clear(&first);
+    measurement_clear(&second);
+    fluid_clear(&fluid);
+}
+
+/// Particles on top of each other with a huge repulsion: what is unstable is not taken.
+static void test_hybrid_survives_when_the_potential_is_wild(void **state) {
+    (void)state;
+    struct fluid fluid;
+    struct hybrid hybrid;
+    const struct pair_histogram pairs = {0, 0.1, BINS, NULL};
+    fluid_groot_warren(&fluid, 300, 0.01);
+    assert_ok(hybrid_init(&hybrid, &fluid.setup.box, 300, &fluid.potential, &pairs, 1, 3));
+    assert_ok(hybrid_equilibrate(&hybrid, 100));
+    for (int k = 0; k <= TABLE_INTERVALS; k++)
+        for (int n = 0; n < 4; n++)
+            fluid.potential.single[k][n] *= 1e7F;
+    assert_ok(hybrid_refresh(&hybrid));
+    const double before = hybrid.sums.energy;
+    assert_ok(hybrid_run(&hybrid, 20));
+    assert_close(hybrid.sums.energy, before, 1e-6 * before); // all of them went back
+    assert_ok(hybrid_equilibrate(&hybrid, 2000));
+    assert_true(hybrid.sums.energy < 0.9 * before); // steps became short enough
+    hybrid_clear(&hybrid);
     fluid_clear(&fluid);
 }
 
@@ -274,6 +340,8 @@ int main(void) {
         cmocka_unit_test(test_metropolis_agrees_with_dynamics_when_the_liquid_is_lennard_jones),
         cmocka_unit_test(test_metropolis_agrees_with_dynamics_when_the_fluid_is_soft),
         cmocka_unit_test(test_metropolis_agrees_with_dynamics_when_the_scene_is_flat),
+        cmocka_unit_test(test_hybrid_agrees_with_metropolis_when_steps_are_long),
+        cmocka_unit_test(test_hybrid_survives_when_the_potential_is_wild),
         cmocka_unit_test(test_metropolis_list_is_complete_when_the_step_is_the_first_or_tuned),
         cmocka_unit_test(test_configurational_temperature_sees_a_force_that_ends_abruptly),
     };

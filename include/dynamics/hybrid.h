@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Hybrid Monte Carlo: dynamics that sample the canonical ensemble exactly at any time step.
+///
+/// S. Duane, A. D. Kennedy, B. J. Pendleton and D. Roweth, Phys. Lett. B 195, 216 (1987), with
+/// velocities that persist as in A. M. Horowitz, Phys. Lett. B 268, 247 (1991): a few steps of
+/// velocity Verlet are a proposal, taken with probability min(1, exp(−ΔH/k_B T)); if it is not,
+/// the particles go back the way they came. Before each, some of them collide with a heat bath:
+/// they get velocities of Maxwell's distribution.
+#pragma once
+
+#include "dynamics/simulation.h"
+
+/// Time steps of a trajectory.
+enum { HYBRID_STEPS = 4 };
+
+struct hybrid {
+    struct simulation simulation;
+    uint32_t trajectory;         ///< so far: the counter of the random numbers
+    double *position[3];         ///< at the start of the trajectory, shape [particles]
+    double *velocity[3];         ///< the same
+    uint32_t *id;                ///< the same
+    double accepted;             ///< probability to be, of the last trajectory
+    struct pair_sums sums;       ///< of the present configuration
+    const uint32_t *counts;      ///< its pairs, shape [bins + 1]
+    struct pair_histogram trial; ///< of the end of a trajectory, shape [parts, bins + 1]
+    uint32_t *kept;
+};
+
+/// `count` particles on a lattice in `box`.
+/// @param[in] potential  borrowed; may be exchanged before hybrid_refresh
+/// @param[in] bins       of the pairs to be counted, within the cutoff; `counts` is not read
+/// Fails: as simulation_init.
+enum status hybrid_init(struct hybrid *hybrid, const struct box *box, size_t count,
+                        const struct table *potential, const struct pair_histogram *bins,
+                        double temperature, uint64_t seed) MUST_USE;
+void hybrid_clear(struct hybrid *hybrid);
+
+/// Begin with the potential as it is now, from positions, velocities and ids alone, so that a run
+/// that continues and one that was reloaded here go on with the same bits. Fails: NO_MEMORY.
+enum status hybrid_refresh(struct hybrid *hybrid) MUST_USE;
+
+/// Trajectories whose time step is tuned until nine of ten are taken. Fails: NO_MEMORY,
+/// INTERRUPTED.
+enum status hybrid_equilibrate(struct hybrid *hybrid, uint64_t trajectories) MUST_USE;
+
+/// Trajectories with a fixed time step, as detailed balance asks. Fails: NO_MEMORY, INTERRUPTED.
+enum status hybrid_run(struct hybrid *hybrid, uint64_t trajectories) MUST_USE;

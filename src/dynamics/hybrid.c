@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dynamics/hybrid.h"
+
+#include "base/rng.h"
+
+#include <math.h>
+#include <string.h>
+
+/// A particle collides once in so many trajectories.
+enum { TURNS = 25 };
+
+/// Accepted share of trajectories that the time step is tuned to, and how fast. A rejection turns
+/// all velocities round, which a liquid's own collisions do before ten trajectories are over.
+static const double wanted_acceptance = 0.9, gain = 0.05;
+
+/// The first time step, times ω of the fastest pair that ten k_B T can reach, ω² = 2 Φ''.
+static const double first_share = 0.4, highest = 10;
+
+/// A step goes no further than this share of the cutoff at the thermal velocity, however soft.
+static const double longest_flight = 0.05;
+
+static double longest_step(const struct table *potential, double temperature) {
+    return longest_flight * potential->cutoff / sqrt(temperature);
+}
+
+static double first_step(const struct table *potential, double temperature) {
+    double lowest = 0, fastest = 0;
+    for (int k = 0; k < TABLE_INTERVALS; k++)
+        lowest = fmin(lowest, potential->precise[k][0]);
+    for (int k = 0; k < TABLE_INTERVALS; k++) {
+        double value, curvature;
+        table_evaluate(potential, (k + 0.5) / potential->inverse_spacing, &value, NULL, &curvature);
+        if (value < lowest + highest * temperature)
+            fastest = fmax(fastest, 2 * curvature);
+    }
+    return fmin(first_share / sqrt(fastest), longest_step(potential, temperature));
+}
+
+enum status hybrid_init(struct hybrid *hybrid, const struct box *box, size_t count,
+                        const struct table *potential, const struct pair_histogram *bins,
+                        double temperature, uint64_t seed) {
+    enum status status = STATUS_OK;
+    const struct simulation_setup setup = {
+        .box = *box,
+        .placement = {.count = (int64_t)count, .kind = PLACEMENT_LATTICE, .jitter = 0.05},
+        .temperature = temperature,
+        .time_step = first_step(potential, temperature),
+        .temperature_limit = 1e6,
+        .integrator = &velocity_verlet,
+        .potential = potential,
+        .seed = seed,
+        .threads = 1,
+    };
+    *hybrid = (struct hybrid){.trial = *bins};
+    NEW_ARRAY(hybrid->trial.counts, NEIGHBOURS_MOST_PARTS * (bins->bins + 1));
+    NEW_ARRAY(hybrid->kept, bins->bins + 1);
+    hybrid->counts = hybrid->kept;
+    NEW_ARRAY(hybrid->id, count);
+    for (int d = 0; d < box->dimensions; d++) {
+        NEW_ARRAY(hybrid->position[d], count);
+        NEW_ARRAY(hybrid->velocity[d], count);
+    }
+    CHECK(simulation_init(&hybrid->simulation, &setup, NULL));
+    CHECK(hybrid_refresh(hybrid));
+done:
+    if (status != STATUS_OK)
+        hybrid_clear(hybrid);
+    return status;
+}
+
+void hybrid_clear(struct hybrid *hybrid) {
+    simulation_clear(&hybrid->simulation);
+    for (int d = 0; d < 3; d++) {
+        memory_free(hybrid->position[d]);
+        memory_free(hybrid->velocity[d]);
+    }
+    memory_free(hybrid->id);
+    memory_free(hybrid->trial.counts);
+    memory_free(hybrid->kept);
+    *hybrid = (struct hybrid){0};
+}
+
+/// From now on a force pass counts the pairs and sums Φ and r·F, or no longer.
+static void count_pairs(struct hybrid *hybrid, bool wanted) {
+    struct simulation *simulation = &hybrid->simulation;
+    const size_t row = hybrid->trial.bins + 1;
+    if (wanted)
+        memset(hybrid->trial.counts, 0,
+               (size_t)simulation->neighbours.parts * row * sizeof(uint32_t));
+    simulation->law.histogram = wanted ? &hybrid->trial : NULL;
+    simulation->wants = wanted ? PAIR_FORCES_AND_SUMS : PAIR_FORCES;
+}
+
+/// Keep what the last force pass has counted and summed.
+static void keep_sample(struct hybrid *hybrid) {
+    const size_t row = hybrid->trial.bins + 1;
+    for (size_t a = 0; a < row; a++) {
+        hybrid->kept[a] = 0;
+        for (int p = 0; p < hybrid->simulation.neighbours.parts; p++)
+            hybrid->kept[a] += hybrid->trial.counts[(size_t)p * row + a];
+    }
+    hybrid->sums = hybrid->simulation.sums;
+}
+
+enum status hybrid_refresh(struct hybrid *hybrid) {
+    struct simulation *simulation = &hybrid->simulation;
+    TRY(neighbours_sort_and_build(&simulation->neighbours, &simulation->particles));
+    count_pairs(hybrid, true);
+    TRY(simulation_compute_forces(simulation, 0));
+    count_pairs(hybrid, false);
+    keep_sample(hybrid);
+    return STATUS_OK;
+}
+
+/// New velocities for the particles whose turn it is, by their ids.
+static void collide(struct hybrid *hybrid) {
+    struct particles *particles = &hybrid->simulation.particles;
+    const double speed = sqrt(hybrid->simulation.setup.temperature);
+    for (size_t k = 0; k < particles->count; k++) {
+        if (particles->id[k] % TURNS != hybrid->trajectory % TURNS)
+            continue;
+        double normal[4];
+        rng_normal4(rng_philox(hybrid->simulation.setup.seed, RNG_COLLISIONS, hybrid->trajectory,
+                               particles->id[k], 0),
+                    normal);
+        for (int d = 0; d < particles->box.dimensions; d++)
+            particles->velocity[d][k] = speed * normal[d];
+    }
+}
+
+/// Φ + Σ v²/2 [k_B T_0].
+static double hamiltonian(const struct hybrid *hybrid, const struct pair_sums *sums) {
+    return sums->energy + 0.5 * particles_square_velocities(&hybrid->simulation.particles);
+}
+
+static void remember(struct hybrid *hybrid) {
+    const struct particles *particles = &hybrid->simulation.particles;
+    const size_t count = particles->count;
+    for (int d = 0; d < particles->box.dimensions; d++) {
+        memcpy(hybrid->position[d], particles->position[d], count * sizeof(double));
+        memcpy(hybrid->velocity[d], particles->velocity[d], count * sizeof(double));
+    }
+    memcpy(hybrid->id, particles->id, count * sizeof(uint32_t));
+}
+
+/// Back to where the trajectory began, the other way round.
+static enum status turn_round(struct hybrid *hybrid, uint64_t list_builds) {
+    struct simulation *simulation = &hybrid->simulation;
+    struct particles *particles = &simulation->particles;
+    const size_t count = particles->count;
+    for (int d = 0; d < particles->box.dimensions; d++) {
+        memcpy(particles->position[d], hybrid->position[d], count * sizeof(double));
+        for (size_t k = 0; k < count; k++)
+            particles->velocity[d][k] = -hybrid->velocity[d][k];
+    }
+    memcpy(particles->id, hybrid->id, count * sizeof(uint32_t));
+    // A list that was built meanwhile belongs to another order of the particles.
+    if (simulation->list_builds != list_builds)
+        TRY(neighbours_sort_and_build(&simulation->neighbours, particles));
+    return simulation_compute_forces(simulation, 0);
+}
+
+/// The steps of a trajectory; the last force pass counts. Unstable ones end beyond all energies.
+static enum status propose(struct hybrid *hybrid, double *energy) {
+    struct simulation *simulation = &hybrid->simulation;
+    enum status status = simulation_run(simulation, HYBRID_STEPS - 1);
+    count_pairs(hybrid, true);
+    if (status == STATUS_OK)
+        status = simulation_run(simulation, 1);
+    count_pairs(hybrid, false);
+    *energy = status == STATUS_OK ? hamiltonian(hybrid, &simulation->sums) : INFINITY;
+    return status == STATUS_UNSTABLE ? STATUS_OK : status;
+}
+
+static enum status run_trajectory(struct hybrid *hybrid) {
+    struct simulation *simulation = &hybrid->simulation;
+    double after;
+    collide(hybrid);
+    remember(hybrid);
+    const uint64_t list_builds = simulation->list_builds;
+    const double before = hamiltonian(hybrid, &hybrid->sums);
+    TRY(propose(hybrid, &after));
+    const struct rng_block random =
+        rng_philox(simulation->setup.seed, RNG_METROPOLIS, hybrid->trajectory++, UINT32_MAX, 0);
+    // Written so that a NaN is refused.
+    const double share = exp(-(after - before) / simulation->setup.temperature);
+    hybrid->accepted = share > 0 ? fmin(1, share) : 0;
+    if (!(rng_uniform(random.word[0], 0) < hybrid->accepted))
+        return turn_round(hybrid, list_builds);
+    keep_sample(hybrid);
+    return STATUS_OK;
+}
+
+enum status hybrid_run(struct hybrid *hybrid, uint64_t trajectories) {
+    for (uint64_t k = 0; k < trajectories; k++)
+        TRY(run_trajectory(hybrid));
+    return STATUS_OK;
+}
+
+enum status hybrid_equilibrate(struct hybrid *hybrid, uint64_t trajectories) {
+    struct simulation_setup *setup = &hybrid->simulation.setup;
+    const double longest = longest_step(setup->potential, setup->temperature);
+    for (uint64_t k = 0; k < trajectories; k++) {
+        TRY(run_trajectory(hybrid));
+        setup->time_step *= exp(gain * (hybrid->accepted - wanted_acceptance));
+        setup->time_step = fmin(setup->time_step, longest);
+    }
+    return STATUS_OK;
+}
