@@ -115,7 +115,7 @@ static void measure_hybrid(const struct simulation_setup *setup, const struct rd
     assert_ok(hybrid_init(&hybrid, &setup->box, count, setup->potential, &pairs, setup->temperature,
                           setup->seed));
     assert_ok(hybrid_equilibrate(&hybrid, schedule->equilibration));
-    hybrid.simulation.setup.time_step *= 1.5;
+    hybrid.simulation.setup.time_step *= 2.5;
     for (int block = 0; block < BLOCKS; block++) {
         struct rdf rdf;
         double energy = 0;
