@@ -21,8 +21,8 @@ static const double well_known = 0.1;
 static const double least_start_error = 0.2;
 
 /// rms over the well-known bins without the ramp [k_B T]. Measured with six seeds of target and
-/// inversion each: 0.018 to 0.029 (soft) and 0.009 to 0.045 (core and well). Since samples stop at the
-/// precision asked for, one seed: 0.023 to 0.032 and 0.071.
+/// inversion each: 0.018 to 0.029 (soft) and 0.009 to 0.045 (core and well). Since samples stop at
+/// the precision asked for, one seed: 0.023 to 0.032 and 0.071.
 static const double potential_tolerance = 0.08;
 
 /// The ramp itself [k_B T], which a target with errors of 0.004 leaves open: −0.8 to 0.02 (soft,

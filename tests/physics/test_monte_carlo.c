@@ -191,8 +191,8 @@ static void test_metropolis_agrees_with_dynamics_when_the_scene_is_flat(void **s
     fluid_clear(&fluid);
 }
 
-/// With steps so long that a quarter of the trajectories and more go back, where dynamics alone
-/// would be off by many errors.
+/// With steps 2.5 times as long as tuned, so that many trajectories go back: if all were taken, U/N
+/// was off by six of its errors (1.5 times as long: by two, which went unnoticed).
 static void test_hybrid_agrees_with_metropolis_when_steps_are_long(void **state) {
     (void)state;
     struct fluid fluid;
