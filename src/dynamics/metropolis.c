@@ -7,9 +7,9 @@
 #include "system/placement.h"
 
 /// Skin of the list in mean distances of the particles. It bounds the moves, and a wide one costs
-/// only distances (move_loop.h). Measured as the time for g to a given error, Zen 5, 729 particles:
-/// SPC water hardly feels it from 0.6 to 1.1; a Groot-Warren fluid takes 1.7 times as long with
-/// 0.36, 1.1 times with 0.5 and with 1.
+/// only distances (move_loop.h). Measured as the time for g to a given error, one run each, good to
+/// some 10 %, Zen 5, 729 particles: SPC water hardly feels it from 0.6 to 1.1; a Groot-Warren fluid
+/// takes 1.7 times as long with 0.36 as with 0.72, and 1.2 times with 0.5 and with 1.
 static const double skin_distances = 0.72;
 
 /// Accepted fraction that the step size is tuned to.
