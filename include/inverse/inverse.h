@@ -53,6 +53,18 @@ struct inverse_problem {
 /// Directions of a curve that the data say least of.
 enum { INVERSE_FLAT = 2 };
 
+/// Numbers of a method's own in a row of the history, and characters of its reason.
+enum { INVERSE_EXTRA = 8, INVERSE_REASON_SIZE = 256 };
+
+/// What g(r) leaves open of a potential: the ramp A (1 − r/r_c).
+struct inverse_ramp {
+    double error;         ///< standard error of A [k_B T_0]; 0: not known
+    double pressure;      ///< ∂P/∂A [1/λ^d]
+    double pressure_open; ///< standard error of the pressure by g(r) alone [k_B T_0/λ^d]
+    double directions;    ///< of the potential that the data determine,
+    double bins;          ///< out of so many
+};
+
 /// State of a fit after an iteration. Arrays belong to the method.
 struct inverse_step {
     uint32_t iteration;    ///< from 0
@@ -60,14 +72,19 @@ struct inverse_step {
     uint64_t engine_steps; ///< time steps or Monte Carlo sweeps so far, over all replicas
     double error;          ///< goals_error of the best curves so far, as the method measured it
     double noise;          ///< what the statistical errors alone would give
-    double extra[4];       ///< columns of the method's own
+    double extra[INVERSE_EXTRA];         ///< columns of the method's own
     const double *curve[UNKNOWNS];       ///< on the unknown's points, best so far; NULL: not fitted
     const double *curve_error[UNKNOWNS]; ///< standard errors; NULL where the method has none
     /// Changes of a curve that the data say least of, one standard error each, widest first: shape
     /// [INVERSE_FLAT, points]; NULL where the method has none.
     const double *curve_flat[UNKNOWNS];
+    /// Standard errors of the potential if A of its ramp were known; NULL where the method has
+    /// none.
+    const double *without_ramp;
+    struct inverse_ramp ramp;
     bool finished;
     bool converged;
+    char reason[INVERSE_REASON_SIZE]; ///< why it finished without having converged; or ""
 };
 
 /// Told from time to time inside an iteration, from one thread at a time.
@@ -116,9 +133,9 @@ struct inverse_method {
     const char *const *columns;        ///< names of `extra`, NULL-terminated
     bool fits[UNKNOWNS];               ///< what it can find
     const struct optimiser *optimiser; ///< that matching drives, or NULL
-    /// The step of an inversion (inverse/inversion.h) from its samples: `step` and `error` of the
-    /// known bins, and two columns of the method's own. NULL of other methods.
-    enum status (*update)(struct inversion *inversion, double extra[2]);
+    /// The step of an inversion (inverse/inversion.h) from its samples: `step` of the known bins,
+    /// and up to INVERSION_OWN_COLUMNS columns of the method's own. NULL of other methods.
+    enum status (*update)(struct inversion *inversion, double *extra);
     enum status (*create)(void *state, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters);
     void (*destroy)(void *state);
@@ -135,7 +152,7 @@ struct inverse_method {
 /// All methods, NULL-terminated.
 extern const struct inverse_method *const inverse_methods[];
 
-extern const struct inverse_method imc, ibi, hnc;
+extern const struct inverse_method imc, ibi, hnc, automatic;
 extern const struct inverse_method gauss_newton;
 extern const struct inverse_method pareto;
 extern const struct inverse_method matching_genetic, matching_cmaes, matching_nlopt;

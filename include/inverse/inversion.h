@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file What the inversions of g(r) by sampling share: imc, ibi, hnc.
+/// @file What the inversions of g(r) by sampling share: imc, ibi, hnc, auto.
 ///
-/// Each iteration samples the present potential and asks the method for a step towards the target
-/// (inverse_method.update). The best potential so far is kept; a worse one than chance allows makes
-/// the next step half as long, from the best. Samples double
+/// Each iteration samples the present potential and asks the method for a step towards the targets
+/// (inverse_method.update): g(r) and, if it is asked for, the pressure. The best potential so far
+/// is kept; a worse one than chance allows makes the next step half as long, from the best, or the
+/// method's other step if it has one. Several targets count in units of their noise. Samples double
 /// until their noise is small against the error, or as small as was asked for: then the fit has
-/// converged when the error is within the noise.
+/// converged when all errors are within their noise.
 ///
 /// It starts from the hypernetted-chain inversion (hnc_closure): for water the error of g is then a
 /// quarter of that of −k_B T ln g. Where the first step from there makes it worse, as with a target
 /// that ends before its oscillations do, it starts again from −k_B T ln g.
 #pragma once
 
+#include "inverse/inversion_band.h"
+#include "inverse/inversion_pressure.h"
 #include "inverse/potential_grid.h"
 #include "inverse/replicas.h"
 
@@ -45,15 +48,26 @@ struct inversion {
     size_t particles;
     struct table table;
     struct replicas replicas;
-    double *ideal, *target_counts; ///< shape [bins]
-    double *excess, *variance;     ///< of S, shape [bins]
-    double *phi, *step, *error;    ///< present potential and the last step, shape [points]
-    double *best, *best_step, *best_error;
+    double *ideal, *target_counts;        ///< shape [bins]
+    double *excess, *variance;            ///< of S, shape [bins]
+    double *covariance;                   ///< C of S in the known bins, shape [known, known]
+    double inefficiency;                  ///< samples that count as one independent
+    struct goal_distance distance[GOALS]; ///< of the samples from what is asked for
+    double own_noise;                     ///< of g by the samples alone, rms
+    struct inversion_pressure pressure;
+    double *phi, *step; ///< present potential and the step from it, shape [points]
+    double *other_step; ///< what to do if the step makes it worse; NaN: half of it
+    double *best, *best_step, *best_other;
+    double *best_counts;        ///< ⟨S⟩ of the best, shape [bins]
+    struct inversion_band band; ///< of the best
     // What a checkpoint keeps besides phi, best, … and the samplers:
     struct inversion_progress {
         uint32_t iteration;
         uint64_t evaluations, sweeps;
-        double damping, best_rmse, best_noise;
+        double damping;
+        struct goal_distance best[GOALS]; ///< rms of g infinite: there is none yet
+        double best_own_noise;
+        double first_error, second_error; ///< of g, in the first two iterations from a start
     } progress;
 };
 
@@ -70,9 +84,35 @@ enum status inversion_iterate(void *inversion, struct inverse_step *step,
                               const struct inverse_listener *listener) MUST_USE;
 size_t inversion_spans(void *inversion, struct memory_span *span);
 
-/// The first two of a method's columns; two may be its own.
-#define INVERSION_COLUMNS "damping[1]", "own_noise[1]"
+/// The first of a method's columns; the others may be its own.
+#define INVERSION_COLUMNS "damping[1]", "own_noise[1]", "rdf_rms[1]", "pressure", "pressure_error"
+enum { INVERSION_SHARED_COLUMNS = 5, INVERSION_OWN_COLUMNS = INVERSE_EXTRA - 5 };
 
 /// g of the samples in a bin, and of the target in the same system.
 double inversion_g(const struct inversion *inversion, size_t bin);
 double inversion_target_g(const struct inversion *inversion, size_t bin);
+
+/// Why a fit that has finished did not converge, in words.
+void inversion_reason_tell(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]);
+
+/// Error at or below this many times the noise of target and measurement counts as none.
+extern const double inversion_noise_margin;
+
+/// Damping below this part of the first: the step leads nowhere, and the fit ends.
+extern const double inversion_least_damping;
+
+/// @name The steps of the methods, for the known bins; each meets the pressure if it is asked for.
+
+/// k_B T ln(g/g*).
+void ibi_step(const struct inversion *inversion, double *step);
+
+/// The same and the slope of the hypernetted chain. Fails: NO_MEMORY.
+enum status hnc_step(const struct inversion *inversion, double ridge, double *step) MUST_USE;
+
+/// The regularised Newton step; `extra` are strength, misfit and directions. Fails: NO_MEMORY.
+struct imc_parameters {
+    double strength;
+    int regularisation;
+};
+enum status imc_step(const struct inversion *inversion, const struct imc_parameters *parameters,
+                     double *step, double extra[3]) MUST_USE;

@@ -31,3 +31,19 @@ enum status potential_grid_table(const struct potential_grid *grid, const double
 /// Where a fit begins: the problem's start curve, or the potential of mean force −k_B T ln g*.
 void potential_grid_start(const struct potential_grid *grid, const struct inverse_problem *problem,
                           double *phi);
+
+/// The virial of pairs, by the bin that they are in and the value that makes it: the mean over a
+/// bin's shell of −r ∂Φ'(r)/∂Φ_b, so that W = Σ_a S_a Σ_b virial_ab Φ_b + what the core's stiffness
+/// adds. Through the tables that the kernels read, so that spline and core are those of a
+/// simulation. g(r) counts as constant in a bin.
+/// @param[in]  phi     completed, shape [points]
+/// @param[out] virial  shape [bins, known], row-major
+/// Fails: NO_MEMORY. Tested: test_potential_grid, test_inversion_pressure.
+enum status potential_grid_virials(const struct potential_grid *grid, const struct rdf_bins *bins,
+                                   int dimensions, const double *phi, double *virial) MUST_USE;
+
+/// Whether the target has so many pairs in a bin, g* > 0.1, that it tells the potential there.
+bool potential_grid_well_known(const struct inverse_problem *problem, size_t bin);
+
+/// The ramp 1 − r/r_c, which moves the pressure and hardly g(r), at a point of the grid.
+double potential_grid_ramp(const struct potential_grid *grid, size_t point);

@@ -13,6 +13,9 @@ struct fit_result {
     const double *curve[UNKNOWNS];           ///< on the unknown's points; NULL: not fitted
     const double *curve_error[UNKNOWNS];     ///< may hold NaN: not known
     const double *curve_flat[UNKNOWNS];      ///< shape [INVERSE_FLAT, points]; may hold NaN
+    const double *without_ramp;              ///< inverse_step.without_ramp; may hold NaN
+    struct inverse_ramp ramp;                ///< error 0: not known
+    const char *reason;                      ///< why it has not converged, or ""
     const struct verification *verification; ///< NULL if there was none
 };
 

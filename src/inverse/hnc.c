@@ -28,10 +28,8 @@ static const struct field own_fields[] = {
 
 static const char *const columns[] = {INVERSION_COLUMNS, NULL};
 
-static enum status update(struct inversion *inversion, double extra[2]) {
-    (void)extra;
+enum status hnc_step(const struct inversion *inversion, double ridge, double *step) {
     enum status status = STATUS_OK;
-    const struct own *own = (const void *)inversion->settings.own;
     const struct potential_grid *grid = &inversion->grid;
     const struct rdf_bins *bins = &inversion->problem->goals.bins;
     const double least = inversion->problem->core_threshold;
@@ -43,19 +41,25 @@ static enum status update(struct inversion *inversion, double extra[2]) {
         target[k] = inversion_target_g(inversion, k);
         difference[k] = inversion_g(inversion, k) - target[k];
     }
-    CHECK(hnc_closure_slope(bins, &inversion->box, inversion->particles, target, difference,
-                            own->ridge, indirect));
+    CHECK(hnc_closure_slope(bins, &inversion->box, inversion->particles, target, difference, ridge,
+                            indirect));
     for (size_t k = grid->core; k < grid->core + grid->known; k++) {
         // An empty bin is as full as one with the threshold's few pairs.
         const double ratio = fmax(inversion_g(inversion, k), least) / fmax(target[k], least);
-        inversion->step[k] = inversion->problem->scene.temperature * (log(ratio) - indirect[k]);
-        inversion->error[k] = NAN;
+        step[k] = inversion->problem->scene.temperature * (log(ratio) - indirect[k]);
     }
+    inversion_pressure_add_ramp(inversion, step);
 done:
     memory_free(target);
     memory_free(difference);
     memory_free(indirect);
     return status;
+}
+
+static enum status update(struct inversion *inversion, double *extra) {
+    (void)extra;
+    const struct own *own = (const void *)inversion->settings.own;
+    return hnc_step(inversion, own->ridge, inversion->step);
 }
 
 static enum status create(void *inversion, const struct inverse_method *method,

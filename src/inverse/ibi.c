@@ -8,18 +8,21 @@
 
 static const char *const columns[] = {INVERSION_COLUMNS, NULL};
 
-/// k_B T ln(g/g*). It has no error of its own: where it stops, not the noise, decides what is left.
-static enum status update(struct inversion *inversion, double extra[2]) {
-    (void)extra;
+void ibi_step(const struct inversion *inversion, double *step) {
     const struct potential_grid *grid = &inversion->grid;
     const double least = inversion->problem->core_threshold;
     for (size_t k = grid->core; k < grid->core + grid->known; k++) {
         // An empty bin is as full as one with the threshold's few pairs.
         const double ratio =
             fmax(inversion_g(inversion, k), least) / fmax(inversion_target_g(inversion, k), least);
-        inversion->step[k] = inversion->problem->scene.temperature * log(ratio);
-        inversion->error[k] = NAN;
+        step[k] = inversion->problem->scene.temperature * log(ratio);
     }
+    inversion_pressure_add_ramp(inversion, step);
+}
+
+static enum status update(struct inversion *inversion, double *extra) {
+    (void)extra;
+    ibi_step(inversion, inversion->step);
     return STATUS_OK;
 }
 

@@ -6,55 +6,57 @@
 
 #include <assert.h>
 
-struct own {
-    double strength;
-    int regularisation;
-};
-
-static_assert(sizeof(struct own) <= sizeof((struct inversion_settings){0}.own), "no room");
+static_assert(sizeof(struct imc_parameters) <= sizeof((struct inversion_settings){0}.own),
+              "no room");
 
 /// How the linear equations are solved, in the order of `regularisations`.
-static enum status (*const solvers[])(const struct imc_system *, double, double *, double *,
-                                      struct imc_solution *) = {imc_solve, imc_votca};
-static const char *const regularisations[] = {"noise", "votca", NULL};
+static enum status (*const solvers[])(const struct imc_system *, double, double *,
+                                      struct imc_solution *) = {imc_solve, imc_truncated,
+                                                                imc_votca};
+static const char *const regularisations[] = {"noise", "truncated", "votca", NULL};
 
-#define MEMBER(name) .offset = offsetof(struct inversion_settings, own) + offsetof(struct own, name)
+#define MEMBER(name)                                                                               \
+    .offset = offsetof(struct inversion_settings, own) + offsetof(struct imc_parameters, name)
 static const struct field own_fields[] = {
     {"regularisation", FIELD_CHOICE, MEMBER(regularisation), .choices = regularisations,
      .initial = 0, .unit = "",
-     .help = "noise: smooth, and as strong as the noise asks; votca: Tikhonov's lambda, as there"},
+     .help = "noise: smooth, as strong as the noise asks; truncated: singular values above the "
+             "noise; votca: Tikhonov's lambda, as there"},
     {"strength", FIELD_NUMBER, MEMBER(strength), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "", .help = "of the regularisation; 0: chosen from the noise, or none with \"votca\""},
+     .unit = "",
+     .help = "of the regularisation; of \"truncated\" the least singular value over the largest; "
+             "0: chosen from the noise, or none with \"votca\""},
     FIELD_END,
 };
 
-static const char *const columns[] = {INVERSION_COLUMNS, "regularisation[1]", "misfit[1]", NULL};
+static const char *const columns[] = {INVERSION_COLUMNS, "regularisation[1]", "misfit[1]",
+                                      "directions", NULL};
 
-/// The regularised linear step for the known bins.
-static enum status update(struct inversion *inversion, double extra[2]) {
-    enum status status = STATUS_OK;
-    const struct own *own = (const void *)inversion->settings.own;
-    const size_t core = inversion->grid.core, known = inversion->grid.known;
-    double *covariance = NULL;
+enum status imc_step(const struct inversion *inversion, const struct imc_parameters *parameters,
+                     double *step, double extra[3]) {
+    const struct inverse_problem *problem = inversion->problem;
+    const struct goal *pressure = &problem->goals.goal[GOAL_PRESSURE];
+    const bool constrained = goals_ask(&problem->goals, GOAL_PRESSURE);
+    const size_t core = inversion->grid.core;
     struct imc_solution solution;
-    NEW_ARRAY(covariance, known * known);
-    for (size_t a = 0; a < known; a++)
-        for (size_t b = 0; b < known; b++)
-            covariance[a * known + b] =
-                comoments_covariance(&inversion->replicas.counts, core + a, core + b);
-    const struct imc_system system = {.size = known,
-                                      .covariance = covariance,
-                                      .excess = inversion->excess + core,
-                                      .variance = inversion->variance + core,
-                                      .temperature = inversion->problem->scene.temperature,
-                                      .spacing = inversion->problem->goals.bins.width};
-    CHECK(solvers[own->regularisation](&system, own->strength, inversion->step + core,
-                                       inversion->error + core, &solution));
+    const struct imc_system system = {
+        .size = inversion->grid.known,
+        .covariance = inversion->covariance,
+        .excess = inversion->excess + core,
+        .variance = inversion->variance + core,
+        .temperature = problem->scene.temperature,
+        .spacing = problem->goals.bins.width,
+        .constraint = constrained ? inversion->pressure.slope : NULL,
+        .wanted = constrained ? *pressure->value - inversion->pressure.value : 0};
+    TRY(solvers[parameters->regularisation](&system, parameters->strength, step + core, &solution));
     extra[0] = solution.strength;
     extra[1] = solution.misfit;
-done:
-    memory_free(covariance);
-    return status;
+    extra[2] = solution.directions;
+    return STATUS_OK;
+}
+
+static enum status update(struct inversion *inversion, double *extra) {
+    return imc_step(inversion, (const void *)inversion->settings.own, inversion->step, extra);
 }
 
 const struct inverse_method imc = {

@@ -18,12 +18,14 @@ static const double noise_share = 0.5;
 /// prior: the normal equations square the condition, and for a singular C gave standard errors of
 /// 0.
 struct workspace {
+    const struct imc_system *system;
     size_t size;
     gsl_matrix *rows;    ///< B = W^½ C / k_B T, then D and sqrt(ρ): shape [3 size − 1, size]
     gsl_vector *rhs;     ///< b = W^½ excess, then zeros
     gsl_matrix *factor;  ///< QR of `rows` at one strength
     gsl_vector *reflect; ///< of the Householder vectors
     gsl_vector *x, *residual;
+    gsl_vector *meet; ///< H⁻¹ p = R⁻¹ R⁻ᵀ p
 };
 
 static void workspace_free(struct workspace *w) {
@@ -33,9 +35,12 @@ static void workspace_free(struct workspace *w) {
     gsl_vector_free(w->reflect);
     gsl_vector_free(w->x);
     gsl_vector_free(w->residual);
+    gsl_vector_free(w->meet);
 }
 
-static enum status workspace_allocate(struct workspace *w, size_t n) {
+static enum status workspace_allocate(struct workspace *w, const struct imc_system *system) {
+    const size_t n = system->size;
+    w->system = system;
     w->size = n;
     w->rows = gsl_matrix_calloc(3 * n - 1, n);
     w->factor = gsl_matrix_alloc(3 * n - 1, n);
@@ -43,7 +48,8 @@ static enum status workspace_allocate(struct workspace *w, size_t n) {
     w->reflect = gsl_vector_alloc(n);
     w->x = gsl_vector_alloc(n);
     w->residual = gsl_vector_alloc(3 * n - 1);
-    if (w->rows && w->factor && w->rhs && w->reflect && w->x && w->residual)
+    w->meet = gsl_vector_alloc(n);
+    if (w->rows && w->factor && w->rhs && w->reflect && w->x && w->residual && w->meet)
         return STATUS_OK;
     return status_fail(STATUS_NO_MEMORY, "no memory for %zu linear equations", n);
 }
@@ -57,18 +63,21 @@ static void fill_equations(struct workspace *w, const struct imc_system *s) {
     }
 }
 
-/// Row k of D is (x_{k−1} − 2 x_k + x_{k+1}) (ℓ/h)², with x = 0 past the end.
-static void fill_prior(struct workspace *w, const struct imc_system *s) {
-    const size_t n = s->size;
-    const double scale = pow(smooth_length / s->spacing, 2);
-    for (size_t k = 1; k < n; k++) {
-        gsl_matrix_set(w->rows, n + k - 1, k - 1, scale);
-        gsl_matrix_set(w->rows, n + k - 1, k, -2 * scale);
-        if (k + 1 < n)
-            gsl_matrix_set(w->rows, n + k - 1, k + 1, scale);
+/// Row k of D is (x_{k−1} − 2 x_k + x_{k+1}) (ℓ/h)². In the last the neighbour is the cutoff, half
+/// a spacing away, where the curve is 0: the second difference of unequal steps, h and h/2.
+void imc_solve_prior(double spacing, gsl_matrix *rows) {
+    const size_t n = rows->size2;
+    const double scale = pow(smooth_length / spacing, 2);
+    gsl_matrix_set_zero(rows);
+    for (size_t k = 1; k + 1 < n; k++) {
+        gsl_matrix_set(rows, k - 1, k - 1, scale);
+        gsl_matrix_set(rows, k - 1, k, -2 * scale);
+        gsl_matrix_set(rows, k - 1, k + 1, scale);
     }
+    gsl_matrix_set(rows, n - 2, n - 2, 4 * scale / 3);
+    gsl_matrix_set(rows, n - 2, n - 1, -4 * scale);
     for (size_t k = 0; k < n; k++)
-        gsl_matrix_set(w->rows, 2 * n - 1 + k, k, sqrt(ridge));
+        gsl_matrix_set(rows, n - 1 + k, k, sqrt(ridge));
 }
 
 /// Sum of squares of the rows begin … end − 1.
@@ -80,6 +89,43 @@ static double square_rows(const gsl_matrix *rows, size_t begin, size_t end) {
     return sum;
 }
 
+double imc_solve_misfit(const struct imc_system *s, const double *x) {
+    double sum = 0;
+    for (size_t a = 0; a < s->size; a++) {
+        double left = s->excess[a];
+        for (size_t b = 0; b < s->size; b++)
+            left -= s->covariance[a * s->size + b] * x[b] / s->temperature;
+        sum += left * left / s->variance[a];
+    }
+    return sum / (double)s->size;
+}
+
+void imc_solve_meet(const struct imc_system *s, const double *u, double *x) {
+    double missing = s->wanted, response = 0;
+    for (size_t k = 0; k < s->size; k++) {
+        missing -= s->constraint[k] * x[k];
+        response += s->constraint[k] * u[k];
+    }
+    // Nothing that is free to change moves what is wanted.
+    if (!(response > 0))
+        return;
+    for (size_t k = 0; k < s->size; k++)
+        x[k] += u[k] * missing / response;
+}
+
+double imc_solve_discrepancy(double least) {
+    return fmax(1, least + noise_share);
+}
+
+/// H⁻¹ p, with H = RᵀR.
+static void find_meet(struct workspace *w) {
+    gsl_matrix_const_view factor = gsl_matrix_const_submatrix(w->factor, 0, 0, w->size, w->size);
+    for (size_t k = 0; k < w->size; k++)
+        gsl_vector_set(w->meet, k, w->system->constraint[k]);
+    gsl_blas_dtrsv(CblasUpper, CblasTrans, CblasNonUnit, &factor.matrix, w->meet);
+    gsl_blas_dtrsv(CblasUpper, CblasNoTrans, CblasNonUnit, &factor.matrix, w->meet);
+}
+
 /// Solve for x at one strength; returns χ² / size of what is left.
 static double solve_at(struct workspace *w, double strength) {
     const size_t n = w->size;
@@ -88,19 +134,19 @@ static double solve_at(struct workspace *w, double strength) {
     gsl_matrix_scale(&prior.matrix, sqrt(strength));
     gsl_linalg_QR_decomp(w->factor, w->reflect);
     gsl_linalg_QR_lssolve(w->factor, w->reflect, w->rhs, w->x, w->residual);
-    gsl_vector_view left = gsl_vector_subvector(w->residual, 0, n);
-    const double norm = gsl_blas_dnrm2(&left.vector);
-    return norm * norm / (double)n;
+    if (w->system->constraint) {
+        find_meet(w);
+        imc_solve_meet(w->system, w->meet->data, w->x->data);
+    }
+    return imc_solve_misfit(w->system, w->x->data);
 }
 
-/// Largest strength whose misfit is within the noise, by bisection of its logarithm. What not even
-/// the weakest strength removes counts as no more than noise is left of: to follow it down would
-/// make the potential large in directions that do not matter.
+/// Largest strength whose misfit is within the noise, by bisection of its logarithm.
 static double find_strength(struct workspace *w) {
     const size_t n = w->size;
     const double unit = square_rows(w->rows, 0, n) / square_rows(w->rows, n, 3 * n - 1);
     double low = -12, high = 6;
-    const double wanted = fmax(1, solve_at(w, unit * pow(10, low)) + noise_share);
+    const double wanted = imc_solve_discrepancy(solve_at(w, unit * pow(10, low)));
     for (int k = 0; k < 40; k++) {
         const double middle = 0.5 * (low + high);
         if (solve_at(w, unit * pow(10, middle)) > wanted)
@@ -111,33 +157,33 @@ static double find_strength(struct workspace *w) {
     return unit * pow(10, low);
 }
 
-/// Standard errors: x is linear in b, whose elements are independent with variance 1.
-static void find_errors(struct workspace *w, double *x_error) {
-    for (size_t k = 0; k < w->size; k++)
-        x_error[k] = 0;
+/// Trace of the hat matrix B H⁻¹ Bᵀ: Σ_a |R⁻ᵀ B_a|².
+static double count_directions(struct workspace *w) {
+    gsl_matrix_const_view factor = gsl_matrix_const_submatrix(w->factor, 0, 0, w->size, w->size);
+    double trace = 0;
     for (size_t a = 0; a < w->size; a++) {
-        gsl_vector_set_basis(w->rhs, a);
-        gsl_linalg_QR_lssolve(w->factor, w->reflect, w->rhs, w->x, w->residual);
-        for (size_t k = 0; k < w->size; k++)
-            x_error[k] += gsl_vector_get(w->x, k) * gsl_vector_get(w->x, k);
+        gsl_vector_const_view row = gsl_matrix_const_row(w->rows, a);
+        gsl_vector_memcpy(w->meet, &row.vector);
+        gsl_blas_dtrsv(CblasUpper, CblasTrans, CblasNonUnit, &factor.matrix, w->meet);
+        trace += pow(gsl_blas_dnrm2(w->meet), 2);
     }
-    for (size_t k = 0; k < w->size; k++)
-        x_error[k] = sqrt(x_error[k]);
+    return trace;
 }
 
-enum status imc_solve(const struct imc_system *system, double strength, double *x, double *x_error,
+enum status imc_solve(const struct imc_system *system, double strength, double *x,
                       struct imc_solution *solution) {
     enum status status = STATUS_OK;
     struct workspace w = {0};
-    CHECK(workspace_allocate(&w, system->size));
+    const size_t n = system->size;
+    CHECK(workspace_allocate(&w, system));
     fill_equations(&w, system);
-    fill_prior(&w, system);
+    gsl_matrix_view prior = gsl_matrix_submatrix(w.rows, n, 0, 2 * n - 1, n);
+    imc_solve_prior(system->spacing, &prior.matrix);
     solution->strength = strength > 0 ? strength : find_strength(&w);
     solution->misfit = solve_at(&w, solution->strength);
-    for (size_t k = 0; k < system->size; k++)
+    solution->directions = count_directions(&w);
+    for (size_t k = 0; k < n; k++)
         x[k] = gsl_vector_get(w.x, k);
-    if (x_error)
-        find_errors(&w, x_error);
 done:
     workspace_free(&w);
     return status;

@@ -39,5 +39,5 @@ const struct field inverse_weight_fields[] = {
 };
 
 const struct inverse_method *const inverse_methods[] = {
-    &imc,          &ibi,    &hnc, &matching_genetic, &matching_cmaes, &matching_nlopt,
-    &gauss_newton, &pareto, NULL};
+    &automatic,      &imc,          &ibi,    &hnc, &matching_genetic, &matching_cmaes,
+    &matching_nlopt, &gauss_newton, &pareto, NULL};

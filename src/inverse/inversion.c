@@ -11,13 +11,18 @@
 /// errors of a target are themselves known to 10 to 20 %. Measured for SPC water: of twelve
 /// iterations of imc that changed no more than noise, one came within 1.5 times the noise, six
 /// within 1.7.
-static const double noise_margin = 1.7;
+const double inversion_noise_margin = 1.7;
+
+const double inversion_least_damping = 1.0 / 64;
 
 /// Largest change of the potential in one iteration where the target is well known [k_B T_0].
 static const double largest_change = 1;
 
 /// Samples are doubled until their noise is this share of the error, or as small as was asked for.
 static const double noise_share = 1.0 / 3;
+
+/// Samples of an iteration double at most so often.
+enum { MOST_DOUBLINGS = 7 };
 
 /// The first equilibration of a start is longer: it begins from a lattice.
 enum { FIRST_EQUILIBRATION = 5 };
@@ -78,10 +83,12 @@ void inversion_destroy(void *memory) {
     replicas_clear(&inversion->replicas);
     table_clear(&inversion->table);
     potential_grid_clear(&inversion->grid);
-    double *arrays[] = {inversion->ideal,     inversion->target_counts, inversion->excess,
-                        inversion->variance,  inversion->phi,           inversion->step,
-                        inversion->error,     inversion->best,          inversion->best_step,
-                        inversion->best_error};
+    inversion_band_clear(&inversion->band);
+    double *arrays[] = {inversion->ideal,      inversion->target_counts, inversion->excess,
+                        inversion->variance,   inversion->covariance,    inversion->pressure.slope,
+                        inversion->phi,        inversion->step,          inversion->other_step,
+                        inversion->best,       inversion->best_step,     inversion->best_other,
+                        inversion->best_counts};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         memory_free(arrays[k]);
 }
@@ -89,16 +96,21 @@ void inversion_destroy(void *memory) {
 static enum status allocate(struct inversion *inversion) {
     enum status status = STATUS_OK;
     const size_t bins = bin_count(inversion), points = inversion->grid.points;
+    const size_t known = inversion->grid.known;
     NEW_ARRAY(inversion->ideal, bins);
     NEW_ARRAY(inversion->target_counts, bins);
     NEW_ARRAY(inversion->excess, bins);
     NEW_ARRAY(inversion->variance, bins);
+    NEW_ARRAY(inversion->covariance, known * known);
+    NEW_ARRAY(inversion->pressure.slope, known);
     NEW_ARRAY(inversion->phi, points);
     NEW_ARRAY(inversion->step, points);
-    NEW_ARRAY(inversion->error, points);
+    NEW_ARRAY(inversion->other_step, points);
     NEW_ARRAY(inversion->best, points);
     NEW_ARRAY(inversion->best_step, points);
-    NEW_ARRAY(inversion->best_error, points);
+    NEW_ARRAY(inversion->best_other, points);
+    NEW_ARRAY(inversion->best_counts, bins);
+    CHECK(inversion_band_init(&inversion->band, known, points));
 done:
     return status;
 }
@@ -128,7 +140,7 @@ static enum status start(struct inversion *inversion) {
 /// The first step from the hypernetted chain made it worse: begin with the mean force.
 static void start_again(struct inversion *inversion) {
     potential_grid_start(&inversion->grid, inversion->problem, inversion->phi);
-    inversion->progress.best_rmse = INFINITY;
+    inversion->progress.best[GOAL_RDF].rms = INFINITY;
     inversion->progress.damping = inversion->settings.common.damping;
 }
 
@@ -166,7 +178,8 @@ enum status inversion_create(void *memory, const struct inverse_method *method,
                                                .width = bins->width,
                                                .bins = bins->count,
                                                .seed = problem->seed}));
-    inversion->progress = (struct inversion_progress){.damping = p->damping, .best_rmse = INFINITY};
+    inversion->progress =
+        (struct inversion_progress){.damping = p->damping, .best[GOAL_RDF].rms = INFINITY};
     return STATUS_OK;
 }
 
@@ -178,13 +191,13 @@ double inversion_target_g(const struct inversion *inversion, size_t bin) {
     return inversion->target_counts[bin] / inversion->ideal[bin];
 }
 
-/// Fill excess and variance of S; returns rms errors of g over all bins.
-static void assess(struct inversion *inversion, double *rmse, double *noise, double *own_noise) {
+/// Fill excess and variance of S, and the distance of g over all bins, from the present samples.
+static void assess_rdf(struct inversion *inversion) {
     const size_t bins = bin_count(inversion);
     const struct comoments *counts = &inversion->replicas.counts;
-    const double independent =
-        counts->count /
+    inversion->inefficiency =
         replicas_inefficiency(&inversion->replicas, inversion->ideal, inversion->grid.core);
+    const double independent = counts->count / inversion->inefficiency;
     double sum = 0, own = 0, both = 0;
     for (size_t a = 0; a < bins; a++) {
         const double target_error =
@@ -201,9 +214,25 @@ static void assess(struct inversion *inversion, double *rmse, double *noise, dou
         }
         sum += unit * inversion->excess[a] * inversion->excess[a];
     }
-    *rmse = sqrt(sum / (double)bins);
-    *own_noise = sqrt(own / (double)bins);
-    *noise = sqrt(both / (double)bins);
+    inversion->distance[GOAL_RDF] =
+        (struct goal_distance){.rms = sqrt(sum / (double)bins), .noise = sqrt(both / (double)bins)};
+    inversion->own_noise = sqrt(own / (double)bins);
+}
+
+/// What the samples say besides g: how far the pressure is from what is asked for, and how all
+/// respond to the potential.
+static enum status assess_response(struct inversion *inversion) {
+    const struct goals *goals = &inversion->problem->goals;
+    const struct comoments *counts = &inversion->replicas.counts;
+    const size_t core = inversion->grid.core, known = inversion->grid.known;
+    inversion_pressure_measure(inversion);
+    if (goals_ask(goals, GOAL_PRESSURE))
+        inversion->distance[GOAL_PRESSURE] = goals_distance(
+            &goals->goal[GOAL_PRESSURE], &inversion->pressure.value, &inversion->pressure.error);
+    for (size_t a = 0; a < known; a++)
+        for (size_t b = 0; b < known; b++)
+            inversion->covariance[a * known + b] = comoments_covariance(counts, core + a, core + b);
+    return inversion_pressure_slopes(inversion);
 }
 
 /// phi = best + damping · best_step, with a bound where the target is well known.
@@ -211,7 +240,7 @@ static void take_step(struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
     double largest = 0;
     for (size_t a = grid->core; a < grid->core + grid->known; a++)
-        if (inversion->problem->goals.goal[GOAL_RDF].value[a] > 0.1)
+        if (potential_grid_well_known(inversion->problem, a))
             largest = fmax(largest, fabs(inversion->best_step[a]));
     const double share = fmin(inversion->progress.damping, largest_change / fmax(largest, 1e-300));
     for (size_t a = grid->core; a < grid->core + grid->known; a++)
@@ -219,20 +248,24 @@ static void take_step(struct inversion *inversion) {
     potential_grid_complete(grid, inversion->phi);
 }
 
-/// Keep the present potential as the best, with the step that leads on from it.
-static void keep(struct inversion *inversion, double rmse, double noise) {
+/// Keep the present potential as the best, with the steps that lead on from it.
+static enum status keep(struct inversion *inversion) {
+    struct inversion_progress *progress = &inversion->progress;
     const size_t bytes = inversion->grid.points * sizeof(double);
     memcpy(inversion->best, inversion->phi, bytes);
     memcpy(inversion->best_step, inversion->step, bytes);
-    memcpy(inversion->best_error, inversion->error, bytes);
-    inversion->progress.best_rmse = rmse;
-    inversion->progress.best_noise = noise;
+    memcpy(inversion->best_other, inversion->other_step, bytes);
+    memcpy(inversion->best_counts, inversion->replicas.counts.mean,
+           bin_count(inversion) * sizeof(double));
+    memcpy(progress->best, inversion->distance, sizeof progress->best);
+    progress->best_own_noise = inversion->own_noise;
+    return inversion_band_find(inversion);
 }
 
 /// The sweeps and least samples of this iteration.
 static struct replicas_plan plan(const struct inversion *inversion) {
     const struct inversion_parameters *p = &inversion->settings.common;
-    const bool first = isinf(inversion->progress.best_rmse);
+    const bool first = isinf(inversion->progress.best[GOAL_RDF].rms);
     return (struct replicas_plan){.equilibration =
                                       p->equilibration * (first ? FIRST_EQUILIBRATION : 1),
                                   .block_samples = (p->samples - 1) / REPLICAS_BLOCKS + 1,
@@ -240,14 +273,15 @@ static struct replicas_plan plan(const struct inversion *inversion) {
 }
 
 /// Whether more samples would help: their noise is a large part of the error, and not yet what was
-/// asked for.
-static bool needs_samples(const struct inversion *inversion, double rmse, double own_noise) {
-    return own_noise > fmax(inversion->settings.common.precision, noise_share * rmse);
+/// asked for. Replicas that are stuck would never be told apart from noise.
+static bool needs_samples(const struct inversion *inversion, int doublings) {
+    return inversion->own_noise > fmax(inversion->settings.common.precision,
+                                       noise_share * inversion->distance[GOAL_RDF].rms) &&
+           doublings < MOST_DOUBLINGS;
 }
 
-/// Sample the present potential until the noise is small against its error, and assess it.
-static enum status sample(struct inversion *inversion, const struct inverse_listener *listener,
-                          double *rmse, double *noise, double *own_noise) {
+/// Sample the present potential until the noise is small against its error.
+static enum status sample(struct inversion *inversion, const struct inverse_listener *listener) {
     struct replicas_plan now = plan(inversion);
     struct inversion_progress *state = &inversion->progress;
     const int threads = inversion->problem->threads;
@@ -255,60 +289,114 @@ static enum status sample(struct inversion *inversion, const struct inverse_list
     const struct inverse_progress progress = {
         .iteration = state->iteration,
         .iterations = (uint32_t)inversion->settings.common.iterations,
-        .best = state->best_rmse,
+        .best = goals_error(&inversion->problem->goals, state->best),
         .mean = NAN,
     };
     table_clear(&inversion->table);
     TRY(potential_grid_table(&inversion->grid, inversion->phi, &inversion->table));
     state->evaluations += replicas;
     TRY(replicas_run(&inversion->replicas, &now, threads, &progress, listener));
-    assess(inversion, rmse, noise, own_noise);
-    while (needs_samples(inversion, *rmse, *own_noise)) {
+    assess_rdf(inversion);
+    for (int n = 0; needs_samples(inversion, n); n++) {
         TRY(replicas_double(&inversion->replicas, &now, threads, &progress, listener));
-        assess(inversion, rmse, noise, own_noise);
+        assess_rdf(inversion);
     }
     state->sweeps +=
         replicas * (uint64_t)(REPLICAS_BLOCKS * now.block_samples * now.every + now.equilibration);
     return STATUS_OK;
 }
 
-/// Keep the present potential, or go back to the best and take half the step; returns which.
-static bool judge(struct inversion *inversion, double rmse, double noise) {
+/// Distances from all targets together, each in units of the noise of the present samples.
+static double count_noises(const struct inversion *inversion,
+                           const struct goal_distance distance[GOALS]) {
+    double sum = 0;
+    for (int kind = 0; kind < GOALS; kind++)
+        if (goals_ask(&inversion->problem->goals, kind))
+            sum += pow(distance[kind].rms / inversion->distance[kind].noise, 2);
+    return sqrt(sum);
+}
+
+/// Go back to the best, for its other step if it has one, or for half of its step.
+static void go_back(struct inversion *inversion) {
     struct inversion_progress *progress = &inversion->progress;
-    // A worse potential than the best, by more than chance.
-    if (rmse > progress->best_rmse + 2 * noise) {
+    const size_t bytes = inversion->grid.points * sizeof(double);
+    if (isnan(inversion->best_other[inversion->grid.core])) {
         progress->damping *= 0.5;
-        return false;
+        return;
+    }
+    memcpy(inversion->best_step, inversion->best_other, bytes);
+    inversion->best_other[inversion->grid.core] = NAN;
+    progress->damping = inversion->settings.common.damping;
+}
+
+/// Keep the present potential, or go back if it is worse than the best by more than chance.
+static enum status judge(struct inversion *inversion, bool *kept) {
+    struct inversion_progress *progress = &inversion->progress;
+    const double error = inversion->distance[GOAL_RDF].rms;
+    *kept =
+        count_noises(inversion, inversion->distance) <= count_noises(inversion, progress->best) + 2;
+    if (isinf(progress->best[GOAL_RDF].rms))
+        progress->first_error = progress->second_error = error;
+    else if (progress->second_error == progress->first_error)
+        progress->second_error = error;
+    if (!*kept) {
+        go_back(inversion);
+        return STATUS_OK;
     }
     if (progress->iteration > 0)
         progress->damping = fmin(1, 1.5 * progress->damping);
-    keep(inversion, rmse, noise);
+    return keep(inversion);
+}
+
+/// Whether the present potential meets all targets as far as their noise lets see.
+static bool meets_targets(const struct inversion *inversion) {
+    for (int kind = 0; kind < GOALS; kind++)
+        if (goals_ask(&inversion->problem->goals, kind) &&
+            inversion->distance[kind].rms >
+                inversion_noise_margin * inversion->distance[kind].noise)
+            return false;
     return true;
+}
+
+static void describe(const struct inversion *inversion, const double *own, bool converged,
+                     struct inverse_step *step) {
+    const struct inversion_progress *progress = &inversion->progress;
+    const struct inversion_parameters *p = &inversion->settings.common;
+    const bool stuck = progress->damping < inversion_least_damping * p->damping;
+    *step = (struct inverse_step){
+        .iteration = progress->iteration,
+        .evaluations = progress->evaluations,
+        .engine_steps = progress->sweeps,
+        .error = goals_error(&inversion->problem->goals, progress->best),
+        .noise = goals_noise(&inversion->problem->goals, progress->best),
+        .extra = {progress->damping, inversion->own_noise, inversion->distance[GOAL_RDF].rms,
+                  inversion->pressure.value, inversion->pressure.error},
+        .curve = {inversion->best},
+        .curve_error = {inversion->band.error},
+        .curve_flat = {inversion->band.flat},
+        .without_ramp = inversion->band.without_ramp,
+        .ramp = inversion->band.ramp,
+        .converged = converged,
+        .finished = converged || stuck || progress->iteration + 1 >= p->iterations,
+    };
+    memcpy(step->extra + INVERSION_SHARED_COLUMNS, own, INVERSION_OWN_COLUMNS * sizeof *own);
+    if (step->finished && !converged)
+        inversion_reason_tell(inversion, step->reason);
 }
 
 enum status inversion_iterate(void *memory, struct inverse_step *step,
                               const struct inverse_listener *listener) {
     struct inversion *inversion = memory;
     struct inversion_progress *progress = &inversion->progress;
-    const struct inversion_parameters *p = &inversion->settings.common;
-    double rmse, noise, own_noise, extra[2] = {0};
-    TRY(sample(inversion, listener, &rmse, &noise, &own_noise));
-    TRY(inversion->method->update(inversion, extra));
-    const bool kept = judge(inversion, rmse, noise);
-    const bool agrees = kept && rmse <= noise_margin * noise;
-    const bool precise = own_noise <= p->precision;
-    *step = (struct inverse_step){
-        .iteration = progress->iteration,
-        .evaluations = progress->evaluations,
-        .engine_steps = progress->sweeps,
-        .error = progress->best_rmse,
-        .noise = progress->best_noise,
-        .extra = {progress->damping, own_noise, extra[0], extra[1]},
-        .curve = {inversion->best},
-        .curve_error = {inversion->best_error},
-        .converged = agrees && precise,
-        .finished = (agrees && precise) || progress->iteration + 1 >= p->iterations,
-    };
+    double own[INVERSION_OWN_COLUMNS] = {0};
+    bool kept;
+    TRY(sample(inversion, listener));
+    TRY(assess_response(inversion));
+    inversion->other_step[inversion->grid.core] = NAN;
+    TRY(inversion->method->update(inversion, own));
+    TRY(judge(inversion, &kept));
+    const bool precise = inversion->own_noise <= inversion->settings.common.precision;
+    describe(inversion, own, kept && precise && meets_targets(inversion), step);
     const bool leads_nowhere =
         !step->finished && !kept && progress->iteration == 1 && starts_from_hnc(inversion);
     progress->iteration++;
@@ -325,8 +413,10 @@ size_t inversion_spans(void *memory, struct memory_span *span) {
     size_t n = 0;
     span[n++] = (struct memory_span){&inversion->progress, sizeof inversion->progress};
     double *arrays[] = {inversion->phi, inversion->best, inversion->best_step,
-                        inversion->best_error};
+                        inversion->best_other};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         span[n++] = (struct memory_span){arrays[k], bytes};
+    span[n++] = (struct memory_span){inversion->best_counts, bin_count(inversion) * sizeof(double)};
+    n += inversion_band_spans(&inversion->band, inversion->grid.points, span + n);
     return n + replicas_spans(&inversion->replicas, span + n);
 }

@@ -59,3 +59,63 @@ void potential_grid_start(const struct potential_grid *grid, const struct invers
     }
     potential_grid_complete(grid, phi);
 }
+
+bool potential_grid_well_known(const struct inverse_problem *problem, size_t bin) {
+    return problem->goals.goal[GOAL_RDF].value[bin] > 0.1;
+}
+
+double potential_grid_ramp(const struct potential_grid *grid, size_t point) {
+    return 1 - grid->r[point] / grid->r[grid->points - 1];
+}
+
+/// Places in a bin at which its mean is taken.
+enum { PLACES = 4 };
+
+/// Mean of −r Φ'(r) over the shell of a bin.
+static double shell_virial(const struct table *table, const struct rdf_bins *bins, size_t bin,
+                           int dimensions) {
+    double sum = 0, volume = 0;
+    for (int k = 0; k < PLACES; k++) {
+        const double r = rdf_bins_edge(bins, bin) + (k + 0.5) / PLACES * bins->width;
+        const double shell = pow(r, dimensions - 1);
+        double slope;
+        table_evaluate(table, r, NULL, &slope, NULL);
+        sum -= shell * r * slope;
+        volume += shell;
+    }
+    return sum / volume;
+}
+
+/// Add `factor` times the virials of the bins by a table that is `change` higher at one point.
+static enum status add_virials(const struct potential_grid *grid, const struct rdf_bins *bins,
+                               int dimensions, const double *phi, size_t point, double change,
+                               double factor, double *changed, double *virial) {
+    struct table table;
+    for (size_t k = 0; k < grid->points; k++)
+        changed[k] = phi[k];
+    changed[point] += change;
+    potential_grid_complete(grid, changed);
+    TRY(potential_grid_table(grid, changed, &table));
+    for (size_t a = 0; a < bins->count; a++)
+        virial[a * grid->known] += factor * shell_virial(&table, bins, a, dimensions);
+    table_clear(&table);
+    return STATUS_OK;
+}
+
+enum status potential_grid_virials(const struct potential_grid *grid, const struct rdf_bins *bins,
+                                   int dimensions, const double *phi, double *virial) {
+    // The table is linear in its values but for the kink of the core: any small step will do.
+    const double change = 1e-3;
+    enum status status = STATUS_OK;
+    double *changed = NULL;
+    NEW_ARRAY(changed, grid->points);
+    for (size_t k = 0; k < bins->count * grid->known; k++)
+        virial[k] = 0;
+    for (size_t b = 0; b < grid->known; b++)
+        for (int sign = -1; sign <= 1; sign += 2)
+            CHECK(add_virials(grid, bins, dimensions, phi, grid->core + b, sign * change,
+                              sign / (2 * change), changed, virial + b));
+done:
+    memory_free(changed);
+    return status;
+}

@@ -26,10 +26,13 @@ struct run {
     double seconds_before;                           ///< of a run before a restart
     double *curve[UNKNOWNS], *curve_error[UNKNOWNS]; ///< shape [decoder_points]
     double *curve_flat[UNKNOWNS];                    ///< shape [INVERSE_FLAT, decoder_points]
+    double *without_ramp;                            ///< shape [decoder_points of Φ]
     struct standing {
         bool finished, converged;
         uint64_t iterations, evaluations, engine_steps;
         double error, seconds;
+        struct inverse_ramp ramp;
+        char reason[INVERSE_REASON_SIZE];
     } standing;
 };
 
@@ -37,7 +40,7 @@ static double seconds(const struct run *run) {
     return run->seconds_before + progress_seconds(&run->progress);
 }
 
-enum { MAX_SPANS = INVERSE_MAX_SPANS + HISTORY_SPANS + 1 + 3 * UNKNOWNS };
+enum { MAX_SPANS = INVERSE_MAX_SPANS + HISTORY_SPANS + 2 + 3 * UNKNOWNS };
 
 static size_t run_spans(struct run *run, struct memory_span *spans) {
     size_t n = run->fit.method->spans(run->state, spans);
@@ -51,6 +54,9 @@ static size_t run_spans(struct run *run, struct memory_span *spans) {
         spans[n++] = (struct memory_span){run->curve_error[kind], bytes};
         spans[n++] = (struct memory_span){run->curve_flat[kind], INVERSE_FLAT * bytes};
     }
+    const size_t points = decoder_points(&run->decoder, UNKNOWN_POTENTIAL);
+    if (points > 0)
+        spans[n++] = (struct memory_span){run->without_ramp, points * sizeof(double)};
     return n;
 }
 
@@ -113,6 +119,8 @@ static enum status create(struct run *run) {
         NEW_ARRAY(run->curve_error[kind], points[kind]);
         NEW_ARRAY(run->curve_flat[kind], INVERSE_FLAT * points[kind]);
     }
+    if (points[UNKNOWN_POTENTIAL] > 0)
+        NEW_ARRAY(run->without_ramp, points[UNKNOWN_POTENTIAL]);
     CHECK(history_init(
         &run->history, fit->method, points,
         fit->method->most_iterations(fit->method, &fit->problem, fit->method_parameters)));
@@ -170,7 +178,10 @@ static struct fit_result result_so_far(const struct run *run, enum status status
                                 .iterations = s->iterations,
                                 .evaluations = s->evaluations,
                                 .engine_steps = s->engine_steps,
-                                .seconds = s->seconds};
+                                .seconds = s->seconds,
+                                .without_ramp = run->without_ramp,
+                                .ramp = s->ramp,
+                                .reason = s->reason};
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         result.curve[kind] = run->curve[kind];
         result.curve_error[kind] = run->curve_error[kind];
@@ -192,6 +203,11 @@ static void keep_curves(struct run *run, const struct inverse_step *step) {
         for (size_t k = 0; k < INVERSE_FLAT * points; k++)
             run->curve_flat[kind][k] = step->curve_flat[kind] ? step->curve_flat[kind][k] : NAN;
     }
+    for (size_t k = 0; k < decoder_points(&run->decoder, UNKNOWN_POTENTIAL); k++)
+        run->without_ramp[k] =
+            step->without_ramp && isfinite(run->curve_error[UNKNOWN_POTENTIAL][k])
+                ? step->without_ramp[k]
+                : NAN;
 }
 
 static void own_file(void *context, const char *name, char *path) {
@@ -207,7 +223,9 @@ static enum status record(struct run *run, const struct inverse_step *step) {
                                       .evaluations = step->evaluations,
                                       .engine_steps = step->engine_steps,
                                       .error = step->error,
-                                      .seconds = seconds(run)};
+                                      .seconds = seconds(run),
+                                      .ramp = step->ramp};
+    memcpy(run->standing.reason, step->reason, sizeof run->standing.reason);
     history_add(&run->history, step, run->standing.seconds);
     const double *const r[UNKNOWNS] = {decoder_r(&run->decoder, UNKNOWN_POTENTIAL),
                                        decoder_r(&run->decoder, UNKNOWN_WEIGHT)};
@@ -241,8 +259,8 @@ static enum status iterate(struct run *run) {
 static void tell_unconverged(const struct run *run) {
     const char *folder = run->folder.path;
     if (isfinite(run->standing.error))
-        status_fail(STATUS_UNCONVERGED, "the fit has not converged; its best curves are in %s",
-                    folder);
+        status_fail(STATUS_UNCONVERGED, "the fit has not converged%s%s; its best curves are in %s",
+                    run->standing.reason[0] ? ": " : "", run->standing.reason, folder);
     else
         status_fail(STATUS_UNCONVERGED,
                     "not one simulation of the fit succeeded; the failures are counted in "
@@ -354,6 +372,7 @@ done:
             memory_free(run->curve_error[kind]);
             memory_free(run->curve_flat[kind]);
         }
+        memory_free(run->without_ramp);
         fit_file_clear(&run->fit);
     }
     memory_free(run);

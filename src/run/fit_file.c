@@ -166,11 +166,12 @@ static enum status check_unknowns(const struct fit_file *fit, const char *file) 
                                fit->method->name, inverse_unknown_names[kind]);
     const struct inverse_sampling sampling = fit->method->sampling(fit->method_parameters);
     for (int kind = 0; kind < GOALS && sampling.every == 0; kind++)
-        if (kind != GOAL_RDF && goals_ask(&fit->problem.goals, kind))
-            return status_fail(STATUS_BAD_INPUT,
-                               "%s: target.%s.fitted: \"%s\" fits g(r) alone; \"no\" compares it "
-                               "with the result",
-                               file, goals_names[kind], fit->method->name);
+        if (kind != GOAL_RDF && kind != GOAL_PRESSURE && goals_ask(&fit->problem.goals, kind))
+            return status_fail(
+                STATUS_BAD_INPUT,
+                "%s: target.%s.fitted: \"%s\" fits g(r) and pressure; \"no\" compares it "
+                "with the result",
+                file, goals_names[kind], fit->method->name);
     if (fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->targets.given[GOAL_RDF])
         return status_fail(STATUS_BAD_INPUT, "%s: target.rdf is required to find a potential",
                            file);

@@ -51,12 +51,15 @@ static enum status write_potential(const struct fit_file *fit, const struct deco
     energy = scaled(phi, points, units_known(units) ? units_energy_kj_per_mol(units) : 0);
     truth = truth_at(fit, UNKNOWN_POTENTIAL, r, points);
     CHECK(nanometres && energy && truth ? STATUS_OK : STATUS_NO_MEMORY);
-    struct data_column columns[7] = {
+    struct data_column columns[8] = {
         {"r[lambda]", r, "%.17g"},
         {"phi[k_B.T_0]", phi, "%.17g"},
         {"force[k_B.T_0/lambda]", force, NULL},
         {"phi_error[k_B.T_0]", result->curve_error[UNKNOWN_POTENTIAL], "%.3g"}};
     count = 4;
+    if (result->ramp.error > 0)
+        columns[count++] =
+            (struct data_column){"phi_error_without_ramp[k_B.T_0]", result->without_ramp, "%.3g"};
     if (truth_known)
         columns[count++] = (struct data_column){"truth[k_B.T_0]", truth, "%.8g"};
     if (units_known(units)) {
@@ -345,6 +348,17 @@ static void put_flat(struct json_writer *writer, enum unknown_kind kind,
         json_put_number(writer, "potential_flat_is_ramp", product * product / (widest * ramps));
 }
 
+/// What g(r) leaves open.
+static void put_ramp(struct json_writer *writer, const struct inverse_ramp *ramp) {
+    if (!(ramp->error > 0))
+        return;
+    json_put_number(writer, "ramp_error", ramp->error);
+    json_put_number(writer, "ramp_pressure", ramp->pressure);
+    json_put_number(writer, "pressure_left_open", ramp->pressure_open);
+    json_put_number(writer, "directions", ramp->directions);
+    json_put_number(writer, "directions_of", ramp->bins);
+}
+
 static void put_truth(struct json_writer *writer, const struct fit_file *fit,
                       const struct decoder *decoder, const struct fit_result *result) {
     const double *phi = result->curve[UNKNOWN_POTENTIAL], *omega = result->curve[UNKNOWN_WEIGHT];
@@ -383,7 +397,10 @@ enum status fit_output_summary(const struct fit_file *fit, const struct decoder 
     char path[OUTPUT_PATH_SIZE];
     json_put_text(writer, "status",
                   result->status == STATUS_OK ? "converged" : status_name(result->status));
+    if (result->reason[0])
+        json_put_text(writer, "reason", result->reason);
     json_put_text(writer, "method", fit->method->name);
+    json_put_text(writer, "method_summary", fit->method->summary);
     json_put_number(writer, "seconds", result->seconds);
     json_put_number(writer, "threads", fit->problem.threads);
     json_put_number(writer, "iterations", (double)result->iterations);
@@ -395,6 +412,7 @@ enum status fit_output_summary(const struct fit_file *fit, const struct decoder 
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (result->curve[kind])
             put_flat(writer, kind, decoder, result);
+    put_ramp(writer, &result->ramp);
     if (fit->targets.given[GOAL_ETD])
         json_put_number(writer, "etd_cells_left_out", (double)fit->targets.etd.left_out);
     json_put_number(writer, "seed", (double)fit->heading.seed);

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { COMMON = 5, MOST_COLUMNS = COMMON + 4 };
+enum { COMMON = 5, MOST_COLUMNS = COMMON + INVERSE_EXTRA };
 
 enum status history_init(struct history *history, const struct inverse_method *method,
                          const size_t points[UNKNOWNS], size_t capacity) {

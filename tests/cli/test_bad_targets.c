@@ -106,15 +106,15 @@ static void test_fit_of_a_weight_refuses_with_a_line_for_each_fault(void **state
     }
 }
 
-static void test_imc_refuses_to_fit_more_than_the_rdf(void **state) {
+static void test_imc_refuses_to_fit_more_than_rdf_and_pressure(void **state) {
     static struct run_program_result result;
     small_inputs_write(*state, "etd.tsv", escape, NULL, NULL);
     small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
     small_inputs_write(*state, "run.json", small_inputs_run, "\"target\": {",
-                       "\"target\": {\"pressure\": {\"value\": 20}, ");
+                       "\"target\": {\"diffusion\": {\"value\": 1}, ");
     RUN_PROGRAM(&result, "fit", "run.json");
-    run_program_assert_refused(&result, ".", "pressure", 1,
-                               (const char *[]){"run.json: target.pressure.fitted", "imc", NULL});
+    run_program_assert_refused(&result, ".", "diffusion", 1,
+                               (const char *[]){"run.json: target.diffusion.fitted", "imc", NULL});
     small_inputs_write(*state, "run.json", small_inputs_run, "\"target\": {",
                        "\"target\": {\"pressure\": {\"value\": 20, \"fitted\": \"no\"}, ");
     RUN_PROGRAM(&result, "fit", "run.json");
@@ -218,7 +218,7 @@ static void test_fit_refuses_to_resume_when_the_curve_to_begin_with_is_another(v
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_fit_of_a_weight_refuses_with_a_line_for_each_fault),
-        TEST(test_imc_refuses_to_fit_more_than_the_rdf),
+        TEST(test_imc_refuses_to_fit_more_than_rdf_and_pressure),
         TEST(test_fit_of_a_weight_refuses_more_genes_than_a_round_can_hold),
         TEST(test_fit_of_a_weight_tells_how_many_cells_are_left_out),
         TEST(test_fit_of_a_weight_leaves_out_what_it_does_not_know),

@@ -92,6 +92,11 @@ static void test_hnc_gives_the_same_bits_for_any_threads(void **state) {
     check_threads(UNCONVERGED);
 }
 
+static void test_auto_gives_the_same_bits_for_any_threads(void **state) {
+    write_fit(*state, INVERSION("auto"));
+    check_threads(UNCONVERGED);
+}
+
 static void test_genetic_gives_the_same_bits_for_any_threads(void **state) {
     write_fit(*state, GENETIC("0.3"));
     check_threads(CONVERGED);
@@ -154,6 +159,39 @@ static void test_interrupted_ibi_goes_on_with_the_same_bits(void **state) {
 
 static void test_interrupted_hnc_goes_on_with_the_same_bits(void **state) {
     write_fit(*state, INVERSION("hnc") ", \"ridge\": 0.5");
+    check_interruption(UNCONVERGED);
+}
+
+static void test_interrupted_auto_goes_on_with_the_same_bits(void **state) {
+    write_fit(*state, INVERSION("auto"));
+    check_interruption(UNCONVERGED);
+}
+
+/// The same fit with a pressure as a second target.
+static void write_pressure_fit(struct temporary_folder *folder, const char *method) {
+    write_fit(folder, method);
+    char *text = temporary_folder_read("run.json");
+    small_inputs_write(folder, "run.json", text, "\"target/rdf.tsv\"}",
+                       "\"target/rdf.tsv\"}, \"pressure\": {\"value\": 22, \"error\": 0.1}");
+    free(text);
+}
+
+static void test_interrupted_fit_of_a_pressure_goes_on_with_the_same_bits(void **state) {
+    static const char *const methods[] = {IMC,
+                                          IMC ", \"regularisation\": \"truncated\"",
+                                          IMC ", \"regularisation\": \"votca\", \"strength\": 10",
+                                          INVERSION("ibi"),
+                                          INVERSION("hnc"),
+                                          INVERSION("auto")};
+    for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
+        write_pressure_fit(*state, methods[k]);
+        run_fit("out", "2", UNCONVERGED);
+        results_assert_number("out/summary.json", "iterations", 4);
+        // From 11; few samples of few particles leave 3.4 of it with "truncated".
+        assert_true(results_number("out/summary.json", "pressure_rmse") < 5);
+        assert_true(results_number("out/summary.json", "ramp_error") > 0);
+        assert_true(results_number("out/summary.json", "ramp_pressure") > 0);
+    }
     check_interruption(UNCONVERGED);
 }
 
@@ -245,10 +283,10 @@ static void test_summary_has_what_other_programs_read(void **state) {
     results_assert_number("out/summary.json", "iterations", 4);
     results_assert_number("out/summary.json", "evaluations", 16);
     results_assert_number("out/summary.json", "seed", 3);
-    results_assert_table("out/history.tsv", 9, 4);
+    results_assert_table("out/history.tsv", 13, 4);
     results_assert_table("out/timing.tsv", 2, 4);
     results_assert_table("out/rdf.tsv", 5, 20);
-    results_assert_table("out/potential.tsv", 4, 21);
+    results_assert_table("out/potential.tsv", 5, 21);
     results_assert_table("out/potential_history.tsv", 5, 21);
     results_assert_table("out/omega.tsv", 2, 0);
 }
@@ -260,7 +298,7 @@ static void test_true_potential_stands_beside_the_result(void **state) {
                        "\"truth\": {\"law\": \"soft-repulsion\", \"a\": 25}");
     free(text);
     run_fit("out", "2", UNCONVERGED);
-    results_assert_table("out/potential.tsv", 5, 21);
+    results_assert_table("out/potential.tsv", 6, 21);
     text = temporary_folder_read("out/potential.tsv");
     assert_contains(text, "\tphi_error[k_B.T_0]\ttruth[k_B.T_0]\n");
     assert_contains(text, "\t11.882812\n0.07"); // 25 (1 - 0.025)^2/2
@@ -339,6 +377,9 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_hnc_gives_the_same_bits_for_any_threads),
         TEST_WITHOUT_FIGURES(test_interrupted_ibi_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_hnc_goes_on_with_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_auto_gives_the_same_bits_for_any_threads),
+        TEST_WITHOUT_FIGURES(test_interrupted_auto_goes_on_with_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_interrupted_fit_of_a_pressure_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_potential_for_votca_is_read_again),
         TEST_WITHOUT_FIGURES(test_genetic_gives_the_same_bits_for_any_threads),
         TEST_WITHOUT_FIGURES(test_imc_gives_the_same_bits_from_its_used_settings),

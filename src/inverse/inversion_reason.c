@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "inverse/inversion.h"
+
+#include <stdio.h>
+
+/// The first reason that applies.
+void inversion_reason_tell(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]) {
+    const struct inversion_progress *p = &inversion->progress;
+    const struct inversion_parameters *settings = &inversion->settings.common;
+    const struct goal_distance *rdf = &p->best[GOAL_RDF], *pressure = &p->best[GOAL_PRESSURE];
+    const bool stuck = p->damping < inversion_least_damping * settings->damping;
+    const bool agrees = rdf->rms <= inversion_noise_margin * rdf->noise;
+    const double improved = rdf->rms / p->first_error;
+    if (improved > 0.9 && p->second_error > p->first_error + 2 * rdf->noise && !agrees)
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "the error of g rose from %.2g to %.2g with the first step, and no shorter one "
+                 "helped: the start is outside the basin of \"%s\"; the method \"auto\" or "
+                 "another start may lead there",
+                 p->first_error, p->second_error, inversion->method->name);
+    else if (agrees && goals_ask(&inversion->problem->goals, GOAL_PRESSURE) &&
+             pressure->rms > inversion_noise_margin * pressure->noise)
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "g agrees, but the pressure is %.3g off, with an error of %.2g", pressure->rms,
+                 pressure->noise);
+    else if (agrees)
+        snprintf(
+            reason, INVERSE_REASON_SIZE,
+            "g agrees within a statistical error of %.2g, but \"precision\" asks for %.2g: more "
+            "\"samples\" or \"iterations\" are needed",
+            p->best_own_noise, settings->precision);
+    else if (stuck)
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "the step has shrunk to 1/%.0f without progress: the error of g is %.2g, its "
+                 "statistical error %.2g",
+                 1 / p->damping, rdf->rms, rdf->noise);
+    else
+        snprintf(
+            reason, INVERSE_REASON_SIZE,
+            "after %lld iterations the error of g is %.2g, from %.2g at first, its statistical "
+            "error %.2g",
+            (long long)settings->iterations, rdf->rms, p->first_error, rdf->noise);
+}
