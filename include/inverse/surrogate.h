@@ -11,7 +11,7 @@
 /// with σ_j the scatter of the rows about the model, τ_j the target's standard error and λ as large
 /// as the step must be small, are the
 /// a damped Gauss-Newton step: J. Nocedal and S. J. Wright, Numerical Optimization (2nd ed., 2006),
-/// section 10.3.
+/// section 10.3. One feature may be a constraint instead, J_e δ = t_e − y_ce.
 #pragma once
 
 #include "base/memory.h"
@@ -21,6 +21,7 @@
 
 struct surrogate {
     size_t genes, features, capacity;
+    size_t exact; ///< the feature that steps meet exactly, not in the mean; `features`: none
     const double *target, *target_error; ///< shape [features]; borrowed
     struct surrogate_rows {
         uint64_t added; ///< rows ever; the last `capacity` are kept

@@ -25,7 +25,11 @@ static const double spread_part = 0.7;
 struct own {
     int64_t iterations, spread, checks;
     double reach, tolerance;
+    int pressure; ///< PRESSURE_…
 };
+
+enum { PRESSURE_WEIGHED, PRESSURE_CONSTRAINT };
+static const char *const pressures[] = {"weighed", "constraint", NULL};
 
 struct state {
     struct own own;
@@ -56,6 +60,9 @@ static const struct field own_fields[] = {
      .unit = "", .help = "measurements of what the model thinks best"},
     {"tolerance", FIELD_NUMBER, OWN(tolerance), .initial = 0.1, .minimum = FIELD_ABOVE_ZERO,
      .maximum = 1, .unit = "", .help = "of the first radius; with a smaller region the fit ends"},
+    {"pressure", FIELD_CHOICE, OWN(pressure), .choices = pressures, .initial = PRESSURE_WEIGHED,
+     .unit = "",
+     .help = "a fitted one: weighed with the other targets, or met exactly by the linear model"},
     FIELD_END,
 };
 
@@ -94,6 +101,16 @@ static void destroy(void *memory) {
     decoder_curves_clear(&state->curves);
 }
 
+/// The pressure, the last of the features, is met exactly.
+static enum status constrain_pressure(struct state *state) {
+    if (!goals_ask(&state->problem->goals, GOAL_PRESSURE))
+        return status_fail(
+            STATUS_BAD_INPUT,
+            "method.pressure: \"constraint\" needs a target.pressure that is fitted");
+    state->candidates.surrogate.exact = state->candidates.surrogate.features - 1;
+    return STATUS_OK;
+}
+
 static enum status create(void *memory, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters) {
     enum status status = STATUS_OK;
@@ -118,6 +135,8 @@ static enum status create(void *memory, const struct inverse_method *method,
     CHECK(decoder_start(&state->decoder, state->best));
     CHECK(candidates_init(&state->candidates, &state->decoder, &settings->candidates));
     state->candidates.iterations = most_iterations(method, problem, parameters);
+    if (state->own.pressure == PRESSURE_CONSTRAINT)
+        CHECK(constrain_pressure(state));
 done:
     return status;
 }

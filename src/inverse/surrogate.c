@@ -21,6 +21,7 @@ enum status surrogate_init(struct surrogate *surrogate, size_t genes, size_t fea
     *surrogate = (struct surrogate){.genes = genes,
                                     .features = features,
                                     .capacity = capacity,
+                                    .exact = features,
                                     .target = target,
                                     .target_error = target_error};
     NEW_ARRAY(surrogate->x, capacity * genes);
@@ -168,13 +169,34 @@ static double rms(const double *values, size_t count) {
     return sqrt(sum / (double)count);
 }
 
-/// The step to where the target is met best, damped until it stays within the reach.
+/// Move δ to where `share` of what the exact feature misses is made up for, at the least cost:
+/// δ ← δ + H⁻¹J_e (share (t_e − y_ce) − J_e δ)/(J_e H⁻¹J_e).
+static void meet_exactly(const struct surrogate_work *work, double share) {
+    const struct surrogate *s = work->surrogate;
+    if (s->exact >= s->features)
+        return;
+    const double *slope = work->model + s->exact * work->terms + 1;
+    double *direction = work->term, response = 0, missing = share * work->miss[s->exact];
+    memcpy(direction, slope, s->genes * sizeof *direction);
+    divide(work, direction);
+    for (size_t a = 0; a < s->genes; a++) {
+        response += slope[a] * direction[a];
+        missing -= slope[a] * work->delta[a];
+    }
+    for (size_t a = 0; response > 0 && a < s->genes; a++)
+        work->delta[a] += direction[a] * missing / response;
+}
+
+/// The step to where the target is met best, damped until it stays within the reach; of what the
+/// exact feature misses it then makes up for less and less.
 static void take_step(const struct surrogate_work *work, double reach) {
-    double damping = 1 / (prior_width * prior_width);
+    double damping = 1 / (prior_width * prior_width), share = 1;
     do {
         factor_hessian(work, damping);
         solve(work, work->miss, NULL);
+        meet_exactly(work, share);
         damping *= 2;
+        share *= 0.7;
     } while (rms(work->delta, work->surrogate->genes) > reach);
 }
 

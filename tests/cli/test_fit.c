@@ -270,10 +270,22 @@ static void test_interrupted_fit_says_so_and_refuses_other_settings(void **state
 }
 
 static void test_summary_has_what_other_programs_read(void **state) {
-    static const char *const numbers[] = {
-        "seconds",        "threads",   "iterations", "evaluations", "engine_steps",
-        "rdf_rmse",       "rdf_noise", "seed",       "temperature", "temperature_configurational",
-        "rdf_rmse_error", "pressure",  NULL};
+    static const char *const numbers[] = {"seconds",
+                                          "threads",
+                                          "iterations",
+                                          "evaluations",
+                                          "engine_steps",
+                                          "rdf_rmse",
+                                          "rdf_noise",
+                                          "seed",
+                                          "temperature",
+                                          "temperature_configurational",
+                                          "rdf_rmse_error",
+                                          "pressure",
+                                          "target_kirkwood_buff",
+                                          "kirkwood_buff",
+                                          "compressibility",
+                                          NULL};
     write_fit(*state, IMC);
     run_fit("out", "2", UNCONVERGED);
     results_assert_text("out/summary.json", "status", "unconverged");
@@ -300,7 +312,7 @@ static void test_true_potential_stands_beside_the_result(void **state) {
     run_fit("out", "2", UNCONVERGED);
     results_assert_table("out/potential.tsv", 6, 21);
     text = temporary_folder_read("out/potential.tsv");
-    assert_contains(text, "\tphi_error[k_B.T_0]\ttruth[k_B.T_0]\n");
+    assert_contains(text, "\tphi_error_without_ramp[k_B.T_0]\ttruth[k_B.T_0]\n");
     assert_contains(text, "\t11.882812\n0.07"); // 25 (1 - 0.025)^2/2
     free(text);
     results_assert_numbers("out/summary.json", (const char *const[]){"truth_rms", NULL});

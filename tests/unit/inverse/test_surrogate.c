@@ -106,6 +106,31 @@ static void test_surrogate_finds_the_truth_when_there_is_next_to_no_noise(void *
     surrogate_clear(&data.surrogate);
 }
 
+static void test_surrogate_meets_one_feature_exactly_when_it_is_a_constraint(void **state) {
+    (void)state;
+    const struct experiment e = {
+        .spread = 0.1, .noise = 1e-6, .target_error = 0.1, .rows = CAPACITY};
+    struct data data;
+    struct surrogate_model model;
+    begin(&data, &e, 0.1, 3);
+    for (int met = 0; met < 2; met++) {
+        data.surrogate.exact = met ? 2 : FEATURES;
+        fit(&data, 0.3, &model);
+        const double off = fabs(answer(&data, 2, model.best) - data.target[2]);
+        // What the others say differs by their errors of 0.1; the model's slopes have a ridge of
+        // 1e-3.
+        assert_true(met ? off < 1e-3 : off > 1e-2);
+        surrogate_model_clear(&model);
+    }
+    // Where it cannot be met, the step stays within the reach.
+    data.target[2] += 100;
+    fit(&data, 0.3, &model);
+    for (int n = 0; n < GENES; n++)
+        assert_true(fabs(model.best[n] - 0.5) < 0.3 * sqrt(GENES));
+    surrogate_model_clear(&model);
+    surrogate_clear(&data.surrogate);
+}
+
 /// The part of the genes of many experiments that lie within two standard errors: 0.954 if these
 /// are right. They are estimates from some twenty rows, and may be off by a quarter.
 static double coverage(const struct experiment *e, double offset) {
@@ -293,6 +318,7 @@ static void test_surrogate_knows_nothing_when_all_rows_are_at_one_place(void **s
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_surrogate_finds_the_truth_when_there_is_next_to_no_noise),
+        cmocka_unit_test(test_surrogate_meets_one_feature_exactly_when_it_is_a_constraint),
         cmocka_unit_test(test_surrogate_errors_hold_the_truth_as_often_as_they_say),
         cmocka_unit_test(test_surrogate_error_of_an_open_gene_is_about_that_of_no_knowledge),
         cmocka_unit_test(test_surrogate_is_not_known_when_there_are_too_few_rows),

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "observe/kirkwood_buff.h"
+
+#include "shared/is_close.h"
+#include "shared/testing.h"
+
+#include <math.h>
+
+enum { BINS = 4000 };
+
+/// So large that its finite size does not matter, or small.
+static const struct box huge = {.dimensions = 3, .length = {1e5, 1e5, 1e5}};
+
+static double hole(double r) {
+    return r < 1 ? 0 : 1;
+}
+
+static double decay(double r) {
+    return 1 - exp(-2 * r);
+}
+
+static struct kirkwood_buff integrate(double (*of)(double), double range, const struct box *box,
+                                      size_t count, double own_error) {
+    static double g[BINS], error[BINS];
+    const struct rdf_bins bins = {0, range / BINS, BINS};
+    for (size_t k = 0; k < BINS; k++) {
+        g[k] = of(rdf_bins_centre(&bins, k));
+        error[k] = own_error;
+    }
+    return kirkwood_buff_integrate(&bins, g, error, box, count);
+}
+
+static void test_kirkwood_buff_is_the_polynomial_of_a_hole(void **state) {
+    (void)state;
+    const double range = 4, x = 1 / range;
+    const double exact =
+        -4 * M_PI * range * range * range *
+        (x * x * x / 3 - 23.0 / 8 * pow(x, 6) / 6 + 0.75 * pow(x, 7) / 7 + 9.0 / 8 * pow(x, 8) / 8);
+    assert_close_relative(integrate(hole, range, &huge, 100, 0).integral, exact, 1e-9);
+}
+
+static void test_kirkwood_buff_converges_as_the_cube_of_the_range(void **state) {
+    (void)state;
+    double last = 0;
+    for (int k = 0; k < 2; k++) {
+        // −4π ∫ r² e^{−2r} dr = −π.
+        const double off = integrate(decay, 16 * pow(2, k), &huge, 100, 0).integral + M_PI;
+        if (k > 0)
+            assert_close(last / off, 8, 0.5);
+        last = off;
+    }
+    assert_close(last, 0, 3e-3);
+}
+
+static void test_kirkwood_buff_takes_out_the_finite_size(void **state) {
+    (void)state;
+    // The tail of N particles, −ρG/N, added by hand: the result is the same.
+    const struct box box = {.dimensions = 3, .length = {12, 12, 12}};
+    const size_t count = 3000;
+    static double g[BINS], error[BINS];
+    const struct rdf_bins bins = {0, 5.0 / BINS, BINS};
+    const double infinite = integrate(hole, 5, &huge, 100, 0).integral;
+    for (size_t k = 0; k < BINS; k++)
+        g[k] = hole(rdf_bins_centre(&bins, k)) - infinite / (12.0 * 12 * 12);
+    const struct kirkwood_buff found = kirkwood_buff_integrate(&bins, g, error, &box, count);
+    assert_close_relative(found.integral, infinite, 1e-9);
+    assert_close(found.compressibility, 1 + 3000 / 1728.0 * infinite, 1e-9);
+}
+
+static void test_kirkwood_buff_error_is_that_of_independent_bins(void **state) {
+    (void)state;
+    const struct rdf_bins bins = {0, 1, 2};
+    const double g[] = {0.5, 1.2}, error[] = {0.1, NAN};
+    const struct kirkwood_buff found = kirkwood_buff_integrate(&bins, g, error, &huge, 1000);
+    const double first =
+        4 * M_PI * 8 *
+        (0.125 / 3 - 23.0 / 48 * pow(0.5, 6) + 3.0 / 28 * pow(0.5, 7) + 9.0 / 64 * pow(0.5, 8));
+    assert_close_relative(found.integral_error, 0.1 * first, 1e-9);
+    assert_close_relative(found.compressibility_error, 1e-12 * found.integral_error, 1e-9);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_kirkwood_buff_is_the_polynomial_of_a_hole),
+        cmocka_unit_test(test_kirkwood_buff_converges_as_the_cube_of_the_range),
+        cmocka_unit_test(test_kirkwood_buff_takes_out_the_finite_size),
+        cmocka_unit_test(test_kirkwood_buff_error_is_that_of_independent_bins),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
