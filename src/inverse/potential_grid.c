@@ -69,7 +69,7 @@ double potential_grid_ramp(const struct potential_grid *grid, size_t point) {
 }
 
 /// Places in a bin at which its mean is taken.
-enum { PLACES = 4 };
+enum { PLACES = 8 };
 
 /// Mean of −r Φ'(r) over the shell of a bin.
 static double shell_virial(const struct table *table, const struct rdf_bins *bins, size_t bin,

@@ -161,6 +161,49 @@ static void test_potential_grid_table_is_smooth_and_repulsive_when_there_is_a_co
     potential_grid_clear(&grid);
 }
 
+/// Mean of −r Φ'(r) over a bin's shell by many points.
+static double virial_of(const struct potential_grid *grid, const double *phi,
+                        const struct rdf_bins *bins, size_t bin) {
+    enum { MANY = 1000 };
+    struct table table;
+    double sum = 0, volume = 0;
+    assert_ok(potential_grid_table(grid, phi, &table));
+    for (int k = 0; k < MANY; k++) {
+        const double r = rdf_bins_edge(bins, bin) + (k + 0.5) / MANY * bins->width;
+        double slope;
+        table_evaluate(&table, r, NULL, &slope, NULL);
+        sum -= r * r * r * slope;
+        volume += r * r;
+    }
+    table_clear(&table);
+    return sum / volume;
+}
+
+static void test_potential_grid_virials_are_those_of_a_changed_table(void **state) {
+    (void)state;
+    static double virial[BINS * BINS];
+    double target[BINS], phi[BINS + 1] = {0}, changed[BINS + 1];
+    struct potential_grid grid;
+    make_target(target);
+    const struct inverse_problem problem = make_problem(target);
+    const struct rdf_bins *bins = &problem.goals.bins;
+    assert_ok(potential_grid_init(&grid, &problem));
+    potential_grid_start(&grid, &problem, phi);
+    assert_ok(potential_grid_virials(&grid, bins, 3, phi, virial));
+    for (size_t k = 0; k < grid.points; k++)
+        changed[k] = phi[k] + 0.3 * potential_grid_ramp(&grid, k) + 0.1 * cos(3 * grid.r[k]);
+    potential_grid_complete(&grid, changed);
+    for (size_t a = 0; a < BINS; a++) {
+        double predicted = 0;
+        for (size_t b = 0; b < grid.known; b++)
+            predicted += virial[a * grid.known + b] * (changed[CORE + b] - phi[CORE + b]);
+        // The spline's end at the cutoff is steep; the change of its slope there is of order 1.
+        assert_close(predicted, virial_of(&grid, changed, bins, a) - virial_of(&grid, phi, bins, a),
+                     0.01);
+    }
+    potential_grid_clear(&grid);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_potential_grid_has_three_parts_when_the_target_has_a_core),
@@ -170,6 +213,7 @@ int main(void) {
         cmocka_unit_test(test_potential_grid_starts_from_the_curve_when_there_is_one),
         cmocka_unit_test(test_potential_grid_core_is_the_parabola_when_completed),
         cmocka_unit_test(test_potential_grid_table_is_smooth_and_repulsive_when_there_is_a_core),
+        cmocka_unit_test(test_potential_grid_virials_are_those_of_a_changed_table),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
