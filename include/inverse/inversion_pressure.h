@@ -29,6 +29,8 @@ double inversion_pressure_ramp_slope(const struct inversion *inversion);
 ///   A = (P* − P) d V / ⟨Σ_pairs r/r_c⟩,
 /// in three dimensions (P* − P) · 3 r_c/(2π ρ² ∫ g r³ dr): H. Wang, C. Junghans and K. Kremer, Eur.
 /// Phys. J. E 28, 221 (2009), eq. 10. That is the response of the virial with all pairs where they
-/// are; they also give way, so that the whole is some tenths of it (summary.json has both the same
-/// as "ramp_pressure"). Used in full: the paper's factor below 1 stands in "damping".
+/// are; they also give way, so that the whole, inversion_pressure_ramp_slope, differs. Used in
+/// full: measured for water and a soft fluid, P is at P* after two steps, and "damping" scales all
+/// of a step where that is too much. It comes with every step, so that g(r) and P converge
+/// together.
 void inversion_pressure_add_ramp(const struct inversion *inversion, double *step);

@@ -24,6 +24,8 @@ struct result_summary {
     double temperature_configurational, temperature_configurational_error;
     double potential_energy, potential_energy_error;
     double pressure, pressure_error;
+    double kirkwood_buff, kirkwood_buff_error, compressibility, compressibility_error;
+    double ramp_error, ramp_pressure, pressure_left_open, directions; ///< of an inversion
     double seed;
 };
 

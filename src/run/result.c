@@ -57,6 +57,12 @@ const struct field result_summary_fields[] = {
     MEAN(temperature_configurational, "T_0"),
     MEAN(potential_energy, "k_BT_0"),
     MEAN(pressure, "k_BT_0/lambda^3"),
+    MEAN(kirkwood_buff, "lambda^3"),
+    MEAN(compressibility, "1"),
+    NUMBER(ramp_error, "k_BT_0"),
+    NUMBER(ramp_pressure, "1/lambda^3"),
+    NUMBER(pressure_left_open, "k_BT_0/lambda^3"),
+    NUMBER(directions, "1"),
     NUMBER(seed, "1"),
     FIELD_END,
 };
