@@ -65,11 +65,10 @@ void inversion_pressure_add_ramp(const struct inversion *inversion, double *step
     const struct goals *goals = &inversion->problem->goals;
     if (!goals_ask(goals, GOAL_PRESSURE))
         return;
-    double pairs = 0;
-    for (size_t a = 0; a < goals->bins.count; a++)
-        pairs += inversion->replicas.counts.mean[a] * (1 - potential_grid_ramp(grid, a));
-    const double missing = *goals->goal[GOAL_PRESSURE].value - inversion->pressure.value;
-    const double amplitude = missing * virial_unit(inversion) / pairs;
+    double missing = *goals->goal[GOAL_PRESSURE].value - inversion->pressure.value;
+    for (size_t b = 0; b < grid->known; b++)
+        missing -= inversion->pressure.slope[b] * step[grid->core + b];
+    const double amplitude = missing / inversion_pressure_ramp_slope(inversion);
     for (size_t k = grid->core; k < grid->core + grid->known; k++)
         step[k] += amplitude * potential_grid_ramp(grid, k);
 }
