@@ -11,10 +11,10 @@
 enum { PARTICLES = 300, MOST_BINS = 40 };
 
 /// Of the predicted change of the pressure: g(r) counts as constant in a bin, the change is not
-/// infinitesimal, and both have statistical errors of about 1 %.
+/// infinitesimal, and both have statistical errors of about 1 %. Measured, predicted over found,
+/// ramp and bump: 1.001 and 1.002 (soft), 1.014 and 0.978 (core and well).
 static const double tolerance = 0.04;
 
-/// Measured, as predicted/found: 1.005 and 1.006 (soft), 0.992 and 1.002 (core and well).
 static void ignore(void *context, const struct inverse_progress *progress) {
     (void)context, (void)progress;
 }
