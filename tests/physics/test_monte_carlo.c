@@ -97,7 +97,7 @@ static void measure_monte_carlo(const struct simulation_setup *setup, const stru
             energy += sums.energy;
             // Distances are rounded to single precision before the table is read.
             uint32_t counts[2] = {0};
-            metropolis_count(&metropolis, &(struct pair_histogram){0, 1, 1, counts}, &fast);
+            metropolis_count(&metropolis, &(struct pair_histogram){0, 1, 1, 0, counts}, &fast);
             assert_close(fast.virial, sums.virial, 1e-4 * (double)count);
         }
         add_block(measurement, energy, &rdf);
@@ -108,7 +108,7 @@ static void measure_monte_carlo(const struct simulation_setup *setup, const stru
 
 static void measure_hybrid(const struct simulation_setup *setup, const struct rdf_bins *bins,
                            const struct schedule *schedule, struct measurement *measurement) {
-    const struct pair_histogram pairs = {bins->low, bins->width, bins->count, NULL};
+    const struct pair_histogram pairs = {bins->low, bins->width, bins->count, 0, NULL};
     const size_t count = (size_t)setup->placement.count;
     struct hybrid hybrid;
     measurement_init(measurement);
@@ -212,7 +212,7 @@ static void test_hybrid_survives_when_the_potential_is_wild(void **state) {
     (void)state;
     struct fluid fluid;
     struct hybrid hybrid;
-    const struct pair_histogram pairs = {0, 0.1, BINS, NULL};
+    const struct pair_histogram pairs = {0, 0.1, BINS, 0, NULL};
     fluid_groot_warren(&fluid, 300, 0.01);
     assert_ok(hybrid_init(&hybrid, &fluid.setup.box, 300, &fluid.potential, &pairs, 1, 3));
     assert_ok(hybrid_equilibrate(&hybrid, 100));

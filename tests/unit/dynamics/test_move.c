@@ -72,7 +72,7 @@ static void check_sums(const struct metropolis *metropolis) {
             at[d] = metropolis->particles.position[d][k];
         energy += 0.5 * energy_at(metropolis, k, at, &virial);
     }
-    metropolis_count(metropolis, &(struct pair_histogram){0, bins.width, BINS, counts}, &sums);
+    metropolis_count(metropolis, &(struct pair_histogram){0, bins.width, BINS, 0, counts}, &sums);
     assert_close(sums.energy, energy, energy_tolerance * COUNT);
     assert_close(sums.virial, 0.5 * virial, 10 * energy_tolerance * COUNT);
     // The list is full, and distances at an edge are rounded to either side.
