@@ -8,10 +8,9 @@ const char *const sampler_kinds[] = {"monte-carlo", "dynamics", NULL};
 enum status sampler_init(struct sampler *sampler, enum sampler_kind kind,
                          const struct sampler_system *system) {
     enum status status = STATUS_OK;
-    *sampler = (struct sampler){.kind = kind,
-                                .histogram = {.low = system->low,
-                                              .width = system->width,
-                                              .bins = system->bins}};
+    *sampler = (struct sampler){
+        .kind = kind,
+        .histogram = {.low = system->low, .width = system->width, .bins = system->bins}};
     if (kind == SAMPLER_DYNAMICS)
         return hybrid_init(&sampler->hybrid, system->box, system->particles, system->potential,
                            &sampler->histogram, system->temperature, system->seed);
