@@ -26,13 +26,14 @@ struct hybrid {
     uint32_t *kept;
 };
 
-/// `count` particles on a lattice in `box`.
+/// Particles on a lattice in `box`, mixed at random.
 /// @param[in] potential  borrowed; may be exchanged before hybrid_refresh
 /// @param[in] bins       of the pairs to be counted, within the cutoff; `counts` is not read
 /// Fails: as simulation_init.
-enum status hybrid_init(struct hybrid *hybrid, const struct box *box, size_t count,
-                        const struct table *potential, const struct pair_histogram *bins,
-                        double temperature, uint64_t seed) MUST_USE;
+enum status hybrid_init(struct hybrid *hybrid, const struct box *box,
+                        const struct composition *composition, const struct table *potential,
+                        const struct pair_histogram *bins, double temperature,
+                        uint64_t seed) MUST_USE;
 void hybrid_clear(struct hybrid *hybrid);
 
 /// Begin with the potential as it is now, from positions, velocities and ids alone, so that a run

@@ -11,19 +11,18 @@
 struct metropolis {
     struct particles particles;
     struct neighbours neighbours;  ///< full list
-    const struct table *potential; ///< borrowed; may be exchanged between sweeps
-    double temperature;            ///< [k_B T_0]
+    struct pair_law law;           ///< its potential is borrowed and may be exchanged
     double step;                   ///< half edge of the cube of moves [λ]
     uint64_t seed;
     uint32_t sweep; ///< sweeps so far: the counter of the random numbers
     uint64_t accepted, tried;
 };
 
-/// `count` particles on a lattice in `box`, ready for sweeps with `potential`.
+/// Particles on a lattice in `box`, mixed at random, ready for sweeps with `potential`.
 /// Fails: NO_MEMORY; BAD_INPUT if the box is below twice the cutoff, with some room for a list.
-enum status metropolis_init(struct metropolis *metropolis, const struct box *box, size_t count,
-                            const struct table *potential, double temperature,
-                            uint64_t seed) MUST_USE;
+enum status metropolis_init(struct metropolis *metropolis, const struct box *box,
+                            const struct composition *composition, const struct table *potential,
+                            double temperature, uint64_t seed) MUST_USE;
 void metropolis_clear(struct metropolis *metropolis);
 
 /// Sweeps whose step size is tuned towards 40 % accepted. Fails: NO_MEMORY, INTERRUPTED.

@@ -8,14 +8,16 @@
 /// Change of potential energy when a particle goes to the fractions `to` of the box [k_B T_0]:
 /// Σ_j Φ(|r' − r_j|) − Φ(|r − r_j|), from the same rows of the table as the forces, in single
 /// precision. A NaN in the table shows.
+/// @param[in] law         its potential and composition are read
 /// @param[in] neighbours  a full list, complete for the cutoff from both places
 /// Tested: test_move.
-double move_energy_change(const struct particles *particles, const struct neighbours *neighbours,
-                          const struct table *potential, size_t particle, const int32_t to[3]);
+double move_energy_change(const struct pair_law *law, const struct particles *particles,
+                          const struct neighbours *neighbours, size_t particle,
+                          const int32_t to[3]);
 
-/// Add the pairs nearer than the potential's cutoff to a histogram of one part, and sum Φ and r·F.
+/// Add the pairs nearer than the potential's cutoff to the law's histogram, of one part, and sum Φ
+/// and r·F.
 /// @param[in] neighbours  a full list
 /// Tested: test_move.
-void move_count_pairs(const struct particles *particles, const struct neighbours *neighbours,
-                      const struct table *potential, const struct pair_histogram *histogram,
-                      struct pair_sums *sums);
+void move_count_pairs(const struct pair_law *law, const struct particles *particles,
+                      const struct neighbours *neighbours, struct pair_sums *sums);

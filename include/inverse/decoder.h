@@ -26,6 +26,17 @@ void decoder_clear(struct decoder *decoder);
 size_t decoder_points(const struct decoder *decoder, enum unknown_kind kind);
 const double *decoder_r(const struct decoder *decoder, enum unknown_kind kind);
 
+/// The curves that an unknown is made of, one behind the other with as many points each: potentials
+/// are one for each kind of pairs. And whether a point of them is fitted: not in a core, and not at
+/// the cutoff.
+size_t decoder_curve_count(const struct decoder *decoder, enum unknown_kind kind);
+bool decoder_fits(const struct decoder *decoder, enum unknown_kind kind, size_t point);
+
+/// What files call one of them: "potential", or "potential_A-B" in a mixture.
+enum { DECODER_NAME_SIZE = COMPOSITION_PAIR_NAME_SIZE + 16 };
+void decoder_curve_name(const struct decoder *decoder, enum unknown_kind kind, size_t curve,
+                        char name[DECODER_NAME_SIZE]);
+
 /// Curve of some genes, shape [points]. A weight that would be negative is 0.
 void decoder_curve(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
                    double *curve);

@@ -11,6 +11,8 @@
 /// A. P. Lyubartsev and A. Laaksonen, Phys. Rev. E 52, 3730 (1995), eq. 8.
 struct imc_system {
     size_t size;
+    const size_t *block;      ///< sizes of the curves that x is made of, shape [blocks]
+    size_t blocks;            ///< 0: x is one curve
     const double *covariance; ///< C, shape [size, size], row-major
     const double *excess;     ///< ⟨S⟩ − S*, shape [size]
     const double *variance;   ///< of the excess by statistics alone, shape [size], > 0
@@ -75,5 +77,5 @@ double imc_solve_discrepancy(double least);
 /// Rows of the smoothness prior in `rows`, shape [2 size − 1, size]: D, the second difference over
 /// a tenth of λ, and sqrt(ρ). The curve ends at 0 half a spacing beyond its last bin, at the
 /// cutoff, so that D of the ramp 1 − r/r_c is 0 and the ramp is free but for ρ; below its first bin
-/// it is free: no row reaches there.
-void imc_solve_prior(double spacing, gsl_matrix *rows);
+/// it is free: no row reaches there. Each of several curves, `block` as in the system, has its own.
+void imc_solve_prior(double spacing, const size_t *block, size_t blocks, gsl_matrix *rows);

@@ -35,7 +35,8 @@ extern const struct field inverse_potential_fields[], inverse_weight_fields[];
 struct unknown {
     bool wanted;
     struct unknown_parameters parameters;
-    const struct curve *start; ///< to begin with, or NULL
+    /// To begin with, or NULL: of a potential for each kind of pairs, of a weight for all.
+    const struct curve *start[COMPOSITION_MOST_PAIRS];
 };
 
 /// What is to be fitted. Borrowed by the methods.

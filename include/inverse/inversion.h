@@ -44,12 +44,13 @@ struct inversion {
     const struct inverse_method *method;
     const struct inverse_problem *problem;
     struct potential_grid grid;
-    struct box box; ///< of the sampled system
-    size_t particles;
+    struct box box; ///< of the system that is sampled
+    struct composition composition;
+    size_t bins; ///< of all kinds of pairs
     struct table table;
     struct replicas replicas;
     double *ideal, *target_counts;        ///< shape [bins]
-    double *excess, *variance;            ///< of S, shape [bins]
+    double *excess, *variance;            ///< of S in the known bins, shape [known]
     double *covariance;                   ///< C of S in the known bins, shape [known, known]
     double inefficiency;                  ///< samples that count as one independent
     struct goal_distance distance[GOALS]; ///< of the samples from what is asked for
@@ -92,6 +93,9 @@ enum { INVERSION_SHARED_COLUMNS = 5, INVERSION_OWN_COLUMNS = INVERSE_EXTRA - 5 }
 double inversion_g(const struct inversion *inversion, size_t bin);
 double inversion_target_g(const struct inversion *inversion, size_t bin);
 
+/// The linear equations of the present samples, for g(r) alone.
+struct imc_system inversion_system(const struct inversion *inversion);
+
 /// Why a fit that has finished did not converge, in words.
 void inversion_reason_tell(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]);
 
@@ -101,12 +105,15 @@ extern const double inversion_noise_margin;
 /// Damping below this part of the first: the step leads nowhere, and the fit ends.
 extern const double inversion_least_damping;
 
+/// k_B T ln(g/g*) of the known bins.
+void ibi_logarithms(const struct inversion *inversion, double *step);
+
 /// @name The steps of the methods, for the known bins; each meets the pressure if it is asked for.
 
-/// k_B T ln(g/g*).
+/// The logarithms.
 void ibi_step(const struct inversion *inversion, double *step);
 
-/// The same and the slope of the hypernetted chain. Fails: NO_MEMORY.
+/// The same with the slope of the hypernetted chain. Fails: NO_MEMORY.
 enum status hnc_step(const struct inversion *inversion, double ridge, double *step) MUST_USE;
 
 /// The regularised Newton step; `extra` are strength, misfit and directions. Fails: NO_MEMORY.

@@ -14,6 +14,7 @@
 /// 0.1.
 #pragma once
 
+#include "inverse/imc_solve.h"
 #include "inverse/inverse.h"
 
 struct inversion;
@@ -27,13 +28,11 @@ struct inversion_band {
 };
 
 /// (F + prior)⁻¹.
-/// @param[in]  counts      C, shape [size, size]
-/// @param[in]  variance    of the excess of S, shape [size]
+/// @param[in]  system      size, blocks, C, variances, temperature, spacing
 /// @param[out] covariance  shape [size, size]
 /// @param[out] directions  that the data determine: trace of F (F + prior)⁻¹
 /// Fails: NO_MEMORY. Tested: test_inversion_band.
-enum status inversion_band_covariance(size_t size, const double *counts, const double *variance,
-                                      double temperature, double spacing, double *covariance,
+enum status inversion_band_covariance(const struct imc_system *system, double *covariance,
                                       double *directions) MUST_USE;
 
 enum status inversion_band_init(struct inversion_band *band, size_t known, size_t points) MUST_USE;

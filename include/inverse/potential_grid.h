@@ -1,25 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The points at which a fitted potential is known.
+/// @file The points at which the fitted potentials are known, one block for each pair of types.
 ///
-/// Bin centres of the target, in three parts: the core, where the target is 0 and the potential is
-/// continued (core_fill); the known bins; and the cutoff, the upper edge of the last bin, where the
-/// potential is 0.
+/// In each block the bin centres of the target, in three parts: the core, where the target is 0 and
+/// the potential is continued (core_fill); the known bins; and the cutoff, the upper edge of the
+/// last bin, where the potential is 0. A block has one point more than bins.
 #pragma once
 
 #include "inverse/inverse.h"
 
 struct potential_grid {
-    size_t points; ///< core + known + 1
-    size_t core;   ///< points in the core = index of the first known bin
-    size_t known;  ///< bins with a value of their own
-    double *r;     ///< shape [points] [λ]
+    size_t pairs; ///< of types: blocks
+    size_t bins;  ///< of a block
+    size_t points;       ///< of all blocks: pairs · (bins + 1)
+    size_t *core;        ///< shape [pairs]: points in the core = the first known bin
+    size_t *known_of;    ///< shape [pairs]: bins with a value of their own
+    size_t known;        ///< bins with a value of their own, of all blocks
+    size_t *known_point; ///< shape [known]: where they are among the points …
+    size_t *known_bin;   ///< … and among the bins of all blocks, pairs · bins
+    double *r;           ///< shape [points] [λ]
     double stiffness;
 };
 
-/// Fails: NO_MEMORY; BAD_INPUT if the target is nowhere above the threshold.
+/// Fails: NO_MEMORY; BAD_INPUT if a target is nowhere above the threshold.
 enum status potential_grid_init(struct potential_grid *grid,
                                 const struct inverse_problem *problem) MUST_USE;
 void potential_grid_clear(struct potential_grid *grid);
+
+/// First point of a block.
+size_t potential_grid_block(const struct potential_grid *grid, size_t pair);
+
+/// Whether a point is in the core of its block.
+bool potential_grid_in_core(const struct potential_grid *grid, size_t point);
 
 /// Complete phi, shape [points], from its known values: core below, 0 at the cutoff.
 void potential_grid_complete(const struct potential_grid *grid, double *phi);
@@ -28,7 +39,7 @@ void potential_grid_complete(const struct potential_grid *grid, double *phi);
 enum status potential_grid_table(const struct potential_grid *grid, const double *phi,
                                  struct table *table) MUST_USE;
 
-/// Where a fit begins: the problem's start curve, or the potential of mean force −k_B T ln g*.
+/// Where a fit begins: the problem's start curves, or the potentials of mean force −k_B T ln g*.
 void potential_grid_start(const struct potential_grid *grid, const struct inverse_problem *problem,
                           double *phi);
 
@@ -37,7 +48,7 @@ void potential_grid_start(const struct potential_grid *grid, const struct invers
 /// adds. Through the tables that the kernels read, so that spline and core are those of a
 /// simulation. g(r) counts as constant in a bin.
 /// @param[in]  phi     completed, shape [points]
-/// @param[out] virial  shape [bins, known], row-major
+/// @param[out] virial  shape [pairs · bins, known], row-major
 /// Fails: NO_MEMORY. Tested: test_potential_grid, test_inversion_pressure.
 enum status potential_grid_virials(const struct potential_grid *grid, const struct rdf_bins *bins,
                                    int dimensions, const double *phi, double *virial) MUST_USE;

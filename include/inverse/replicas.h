@@ -49,9 +49,10 @@ enum status replicas_double(struct replicas *replicas, struct replicas_plan *pla
                             const struct inverse_listener *listener) MUST_USE;
 
 /// How many samples count as one independent, from the scatter of the block means, averaged over
-/// the bins from `first` on because that of one bin is noisy.
+/// `count` bins, the numbers of which are in `seen`, because that of one bin is noisy.
 /// @param[in] ideal  shape [bins]: S if g were 1
-double replicas_inefficiency(const struct replicas *replicas, const double *ideal, size_t first);
+double replicas_inefficiency(const struct replicas *replicas, const double *ideal,
+                             const size_t *seen, size_t count);
 
 /// What a checkpoint keeps; returns the number of spans.
 size_t replicas_spans(struct replicas *replicas, struct memory_span *span);

@@ -24,11 +24,11 @@ struct sampler {
 /// What is to be sampled. Borrowed: the potential, which may be exchanged before sampler_begin.
 struct sampler_system {
     const struct box *box;
-    size_t particles;
+    const struct composition *composition;
     const struct table *potential;
     double temperature;
     double low, width; ///< of the bins that count pairs, within the potential's cutoff [λ]
-    size_t bins;
+    size_t bins;       ///< of each kind of pairs
     uint64_t seed;
 };
 
@@ -45,8 +45,9 @@ enum status sampler_begin(struct sampler *sampler) MUST_USE;
 /// INTERRUPTED.
 enum status sampler_equilibrate(struct sampler *sampler, uint64_t sweeps) MUST_USE;
 
-/// Sweeps, then a sample: S of each bin, and behind them the virial Σ r·F [k_B T_0].
-/// @param[out] sample  shape [bins + 1]
+/// Sweeps, then a sample: S of each bin of each kind of pairs, and behind them the virial Σ r·F
+/// [k_B T_0].
+/// @param[out] sample  shape [pairs · bins + 1]
 /// Fails: NO_MEMORY, INTERRUPTED. Tested: test_sampler.
 enum status sampler_sample(struct sampler *sampler, uint64_t sweeps, double *sample) MUST_USE;
 

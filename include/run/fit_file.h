@@ -19,8 +19,8 @@ extern const struct field fit_core_fields[];
 struct fit_unknown {
     bool wanted;
     struct unknown_parameters parameters;
-    struct curve start; ///< family NULL: as decoder_start says
-    struct curve truth; ///< the true curve where it is known, else family NULL
+    struct scene_law start; ///< without a curve: as decoder_start says
+    struct scene_law truth; ///< the true curves where they are known
 };
 
 /// Owns everything that the problem borrows.

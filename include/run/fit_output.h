@@ -33,11 +33,12 @@ enum status fit_output_summary(const struct fit_file *fit, const struct decoder 
                                const struct fit_result *result,
                                const struct run_folder *folder) MUST_USE;
 
-/// How far a fitted potential is from the known true one, over the bins with a target above 0.1.
+/// How far the fitted potential of a kind of pairs is from the known true one, over the bins with a
+/// target above 0.1.
 struct fit_truth {
     double rms;              ///< of Φ − Φ_true [k_B T_0]
     double ramp;             ///< A of the ramp A(1 − r/r_c) that explains most of it [k_B T_0]
     double rms_without_ramp; ///< of what is left
 };
 struct fit_truth fit_output_truth(const struct fit_file *fit, const struct decoder *decoder,
-                                  const double *phi);
+                                  const double *phi, size_t pair);

@@ -6,7 +6,7 @@
 /// any number of threads and any restart.
 #pragma once
 
-#include "inverse/inverse.h"
+#include "inverse/decoder.h"
 #include "run/run_folder.h"
 
 struct history {
@@ -26,10 +26,9 @@ void history_clear(struct history *history);
 /// Append an iteration.
 void history_add(struct history *history, const struct inverse_step *step, double seconds);
 
-/// Write the tables; r[kind] has shape [points[kind]].
+/// Write the tables.
 enum status history_write(const struct history *history, const struct inverse_method *method,
-                          const double *const r[UNKNOWNS],
-                          const struct run_folder *folder) MUST_USE;
+                          const struct decoder *decoder, const struct run_folder *folder) MUST_USE;
 
 /// Pieces for a checkpoint.
 enum { HISTORY_SPANS = 3 + UNKNOWNS };

@@ -4,6 +4,7 @@
 
 #include "base/status.h"
 #include "io/output.h"
+#include "system/composition.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -29,6 +30,10 @@ enum status run_folder_open(struct run_folder *folder, const char *input,
 
 /// Path of a file in the folder, into `path` of OUTPUT_PATH_SIZE bytes.
 void run_folder_file(const struct run_folder *folder, const char *name, char *path);
+
+/// Path of the g(r) of a kind of pairs: rdf.tsv, or rdf_A-B.tsv in a mixture.
+void run_folder_rdf(const struct run_folder *folder, const struct composition *composition,
+                    int pair, char *path);
 
 /// Draw the figures of the folder; what fails is a warning on stderr.
 void run_folder_draw(const struct run_folder *folder);

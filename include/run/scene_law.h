@@ -32,6 +32,9 @@ enum status scene_law_read(struct scene_law *law, struct json_object *parent, co
 /// Make the table of the curves. Fails: NO_MEMORY.
 enum status scene_law_tabulate(struct scene_law *law, scene_law_table *tabulate) MUST_USE;
 
+/// The curve of a kind of pairs, or NULL.
+const struct curve *scene_law_curve(const struct scene_law *law, int pair);
+
 void scene_law_clear(struct scene_law *law);
 void scene_law_write(const struct scene_law *law, const struct composition *composition,
                      struct json_writer *writer, const char *key);

@@ -33,6 +33,7 @@ enum status target_read(struct target *target, struct json_object *object,
 
 /// Convert g and its errors to a system of `count` particles (rdf_finite_size_factor). VOTCA's are
 /// normalised by N², so that their tail does not depend on N: their factor is 1/(1 − 1/count).
+/// Pairs of unlike types, `count` 0, stay as they are.
 void target_convert(struct target *target, size_t count);
 
 void target_clear(struct target *target);

@@ -23,6 +23,9 @@ double box_shortest(const struct box *box);
 /// Longest edge [λ].
 double box_longest(const struct box *box);
 
+/// The same shape with `volume_share` times the volume.
+struct box box_scaled(const struct box *box, double volume_share);
+
 /// Volume of the shell (ring) low ≤ r < high: exact [λ^d].
 double box_shell_volume(const struct box *box, double low, double high);
 

@@ -26,6 +26,12 @@ struct composition {
 /// `count` beads of one type without a name.
 struct composition composition_of_one(int64_t count);
 
+/// Beads of all types.
+int64_t composition_particles(const struct composition *composition);
+
+/// The same mixture of about `particles` beads, none of a type becoming 0.
+struct composition composition_scaled(const struct composition *composition, int64_t particles);
+
 static inline bool composition_is_mixed(const struct composition *composition) {
     return composition->types > 1;
 }

@@ -36,12 +36,15 @@ static double first_step(const struct table *potential, double temperature) {
     return fmin(first_share / sqrt(fastest), longest_step(potential, temperature));
 }
 
-enum status hybrid_init(struct hybrid *hybrid, const struct box *box, size_t count,
-                        const struct table *potential, const struct pair_histogram *bins,
-                        double temperature, uint64_t seed) {
+enum status hybrid_init(struct hybrid *hybrid, const struct box *box,
+                        const struct composition *composition, const struct table *potential,
+                        const struct pair_histogram *bins, double temperature,
+                        uint64_t seed) {
     enum status status = STATUS_OK;
+    const size_t count = (size_t)composition_particles(composition);
     const struct simulation_setup setup = {
         .box = *box,
+        .composition = *composition,
         .placement = {.count = (int64_t)count, .kind = PLACEMENT_LATTICE, .jitter = 0.05},
         .temperature = temperature,
         .time_step = first_step(potential, temperature),
@@ -52,8 +55,8 @@ enum status hybrid_init(struct hybrid *hybrid, const struct box *box, size_t cou
         .threads = 1,
     };
     *hybrid = (struct hybrid){.trial = *bins};
-    NEW_ARRAY(hybrid->trial.counts, NEIGHBOURS_MOST_PARTS * (bins->bins + 1));
-    NEW_ARRAY(hybrid->kept, bins->bins + 1);
+    NEW_ARRAY(hybrid->trial.counts, NEIGHBOURS_MOST_PARTS * (pair_histogram_size(bins)));
+    NEW_ARRAY(hybrid->kept, pair_histogram_size(bins));
     hybrid->counts = hybrid->kept;
     NEW_ARRAY(hybrid->id, count);
     for (int d = 0; d < box->dimensions; d++) {
@@ -83,7 +86,7 @@ void hybrid_clear(struct hybrid *hybrid) {
 /// From now on a force pass counts the pairs and sums Φ and r·F, or no longer.
 static void count_pairs(struct hybrid *hybrid, bool wanted) {
     struct simulation *simulation = &hybrid->simulation;
-    const size_t row = hybrid->trial.bins + 1;
+    const size_t row = pair_histogram_size(&hybrid->trial);
     if (wanted)
         memset(hybrid->trial.counts, 0,
                (size_t)simulation->neighbours.parts * row * sizeof(uint32_t));
@@ -93,7 +96,7 @@ static void count_pairs(struct hybrid *hybrid, bool wanted) {
 
 /// Keep what the last force pass has counted and summed.
 static void keep_sample(struct hybrid *hybrid) {
-    const size_t row = hybrid->trial.bins + 1;
+    const size_t row = pair_histogram_size(&hybrid->trial);
     for (size_t a = 0; a < row; a++) {
         hybrid->kept[a] = 0;
         for (int p = 0; p < hybrid->simulation.neighbours.parts; p++)

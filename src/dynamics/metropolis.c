@@ -24,11 +24,15 @@ static double largest_step(const struct metropolis *metropolis) {
     return 0.49 * metropolis->neighbours.skin / sqrt(metropolis->particles.box.dimensions);
 }
 
-enum status metropolis_init(struct metropolis *metropolis, const struct box *box, size_t count,
-                            const struct table *potential, double temperature, uint64_t seed) {
+enum status metropolis_init(struct metropolis *metropolis, const struct box *box,
+                            const struct composition *composition, const struct table *potential,
+                            double temperature, uint64_t seed) {
     enum status status = STATUS_OK;
+    const size_t count = (size_t)composition_particles(composition);
     *metropolis = (struct metropolis){
-        .potential = potential, .temperature = temperature, .step = 0.1, .seed = seed};
+        .law = {.potential = potential, .composition = *composition, .temperature = temperature},
+        .step = 0.1,
+        .seed = seed};
     CHECK(particles_init(&metropolis->particles, box, count));
     CHECK(neighbours_init(&metropolis->neighbours, NEIGHBOURS_FULL, box, count, potential->cutoff,
                           skin_distances * mean_distance(box, count)));
@@ -41,6 +45,8 @@ enum status metropolis_init(struct metropolis *metropolis, const struct box *box
     }
     metropolis->step = fmin(metropolis->step, largest_step(metropolis));
     placement_lattice(&metropolis->particles, 0.05, seed);
+    if (composition_is_mixed(composition))
+        placement_mix(&metropolis->particles, seed);
     CHECK(metropolis_refresh(metropolis));
 done:
     if (status != STATUS_OK)
@@ -71,10 +77,10 @@ static void try_move(struct metropolis *metropolis, size_t k) {
         to[d] = box_fraction(moved[d], 1 / box->length[d]);
     }
     const double change =
-        move_energy_change(particles, &metropolis->neighbours, metropolis->potential, k, to);
+        move_energy_change(&metropolis->law, particles, &metropolis->neighbours, k, to);
     metropolis->tried++;
     // Written so that a NaN is refused.
-    if (!(rng_uniform(random.word[3], 0) < exp(-change / metropolis->temperature)))
+    if (!(rng_uniform(random.word[3], 0) < exp(-change / metropolis->law.temperature)))
         return;
     metropolis->accepted++;
     for (int d = 0; d < box->dimensions; d++) {
@@ -124,6 +130,7 @@ enum status metropolis_equilibrate(struct metropolis *metropolis, uint32_t sweep
 
 void metropolis_count(const struct metropolis *metropolis, const struct pair_histogram *histogram,
                       struct pair_sums *sums) {
-    move_count_pairs(&metropolis->particles, &metropolis->neighbours, metropolis->potential,
-                     histogram, sums);
+    struct pair_law law = metropolis->law;
+    law.histogram = histogram;
+    move_count_pairs(&law, &metropolis->particles, &metropolis->neighbours, sums);
 }

@@ -5,11 +5,12 @@
 #include "dynamics/move.h"
 
 struct move_kernels {
-    double (*energy_change)(const struct particles *particles, const struct neighbours *neighbours,
-                            const struct table *potential, size_t particle, const int32_t to[3]);
-    void (*count_pairs)(const struct particles *particles, const struct neighbours *neighbours,
-                        const struct table *potential, const struct pair_histogram *histogram,
-                        struct pair_sums *sums);
+    double (*energy_change)(const struct pair_law *law, const struct particles *particles,
+                            const struct neighbours *neighbours, size_t particle,
+                            const int32_t to[3]);
+    void (*count_pairs)(const struct pair_law *law, const struct particles *particles,
+                        const struct neighbours *neighbours, struct pair_sums *sums);
 };
 
-extern const struct move_kernels move_portable, move_avx2, move_avx512;
+/// By dimensions − 2 and whether the beads are a mixture.
+extern const struct move_kernels move_portable[2][2], move_avx2[2][2], move_avx512[2][2];

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/rng_lanes.h"
+#include "forces/pair_mixture.h"
 #include "pair_precision.h"
 
 enum {
@@ -20,16 +21,6 @@ struct pair_batch {
     int32_t i[PAIR_ROOM], j[PAIR_ROOM];
     int32_t id_i[PAIR_ROOM], id_j[PAIR_ROOM]; ///< where friction is kept, and in mixtures
     REAL dx[PAIR_ROOM], dy[PAIR_ROOM], dz[PAIR_ROOM];
-};
-
-/// What tells kinds of pairs apart in a mixture.
-struct pair_mixture {
-    int types;
-    int32_t first[COMPOSITION_MOST_TYPES]; ///< least id of each type
-    /// For each kind of pairs, in a record: intervals of Φ and of ω per length, length of one of Φ.
-    REAL grid[COMPOSITION_MOST_PAIRS][4];
-    int32_t potential_stride, weight_stride; ///< table_stride
-    int32_t bins_apart;                      ///< of the histogram, from kind to kind
 };
 
 /// What stays the same from pair to pair.

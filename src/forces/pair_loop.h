@@ -86,27 +86,6 @@ INLINE void pair_evaluate_rest(struct pair_batch *batch, const struct pair_scene
     pair_evaluate(batch, batch->count, scene, dim, conservative, friction, wants_sums, mixed);
 }
 
-/// What the pairs of a mixture need to find their curves and bins.
-INLINE struct pair_mixture pair_mixture_of(const struct pair_law *law) {
-    const struct composition *composition = &law->composition;
-    struct pair_mixture mixture = {.types = composition->types};
-    for (int t = 1; t < composition->types; t++)
-        mixture.first[t] = mixture.first[t - 1] + (int32_t)composition->count[t - 1];
-    for (int p = 0; p < composition_pairs(composition); p++) {
-        if (law->potential) {
-            mixture.grid[p][0] = (REAL)table_inverse_spacing(law->potential, p);
-            mixture.grid[p][2] = (REAL)(1 / table_inverse_spacing(law->potential, p));
-        }
-        if (law->weight)
-            mixture.grid[p][1] = (REAL)table_inverse_spacing(law->weight, p);
-    }
-    mixture.potential_stride = law->potential ? table_stride(law->potential) : 0;
-    mixture.weight_stride = law->weight ? table_stride(law->weight) : 0;
-    if (law->histogram && law->histogram->pairs > 1)
-        mixture.bins_apart = (int32_t)law->histogram->bins;
-    return mixture;
-}
-
 INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
                       const struct neighbours *neighbours, int part_number, uint64_t step,
                       struct pair_sums *sums, const int dim, const bool conservative,

@@ -21,24 +21,12 @@ struct pair_columns {
     REAL force[PAIR_BATCH][4];
 };
 
-/// Types of particles. A comparison that holds is −1.
-INLINE lanes_int pair_type(const struct pair_mixture *mixture, lanes_int id) {
-    lanes_int type = lanes_all_int(0);
-    for (int t = 1; t < mixture->types; t++)
-        type -= id >= lanes_all_int(mixture->first[t]);
-    return type;
-}
-
-/// Kinds of the pairs, as composition_pair numbers them.
+/// Kinds of the pairs.
 INLINE void pair_kinds(struct pair_columns *columns, const struct pair_batch *batch, int count,
                        const struct pair_mixture *mixture) {
-    const int32_t twice = 2 * mixture->types - 1;
-    for (int k = 0; k < count; k += LANES) {
-        const lanes_int a = pair_type(mixture, lanes_load_int(batch->id_i + k));
-        const lanes_int b = pair_type(mixture, lanes_load_int(batch->id_j + k));
-        const lanes_int low = lanes_least_int(a, b), high = lanes_most_int(a, b);
-        lanes_store_int(columns->kind + k, (low * (twice - low) >> 1) + high);
-    }
+    for (int k = 0; k < count; k += LANES)
+        lanes_store_int(columns->kind + k, pair_kind(mixture, lanes_load_int(batch->id_i + k),
+                                                     lanes_load_int(batch->id_j + k)));
 }
 
 /// Rows of distances in a table whose curves for these pairs begin at `first`.

@@ -21,25 +21,27 @@ static const char *const columns[] = {INVERSION_COLUMNS, "newton", "misfit[1]", 
 /// Whether −C ΔΦ/k_B T is the change of S from the best potential to this one, in the norm of their
 /// noise, but for the noise of both.
 static bool predicts(const struct inversion *inversion) {
-    const size_t core = inversion->grid.core, known = inversion->grid.known;
+    const struct potential_grid *grid = &inversion->grid;
     double miss = 0, change = 0;
-    for (size_t a = 0; a < known; a++) {
-        const double actual =
-            inversion->replicas.counts.mean[core + a] - inversion->best_counts[core + a];
+    for (size_t a = 0; a < grid->known; a++) {
+        const size_t bin = grid->known_bin[a];
+        const double actual = inversion->replicas.counts.mean[bin] - inversion->best_counts[bin];
         double predicted = 0;
-        for (size_t b = 0; b < known; b++)
-            predicted -= inversion->covariance[a * known + b] *
-                         (inversion->phi[core + b] - inversion->best[core + b]) /
+        for (size_t b = 0; b < grid->known; b++) {
+            const size_t point = grid->known_point[b];
+            predicted -= inversion->covariance[a * grid->known + b] *
+                         (inversion->phi[point] - inversion->best[point]) /
                          inversion->problem->scene.temperature;
-        miss += (actual - predicted) * (actual - predicted) / inversion->variance[core + a];
-        change += actual * actual / inversion->variance[core + a];
+        }
+        miss += (actual - predicted) * (actual - predicted) / inversion->variance[a];
+        change += actual * actual / inversion->variance[a];
     }
-    return miss <= trust * trust * change + 2 * (double)known;
+    return miss <= trust * trust * change + 2 * (double)grid->known;
 }
 
 /// Whether the last step was Newton's, which keeps the other in reserve, and halved the error.
 static bool newton_helped(const struct inversion *inversion) {
-    return !isnan(inversion->best_other[inversion->grid.core]) &&
+    return !isnan(inversion->best_other[inversion->grid.known_point[0]]) &&
            inversion->distance[GOAL_RDF].rms < 0.5 * inversion->progress.best[GOAL_RDF].rms;
 }
 

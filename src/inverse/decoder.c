@@ -5,20 +5,45 @@
 #include "curves/shape.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static const struct unknown *unknown_of(const struct decoder *decoder, enum unknown_kind kind) {
     return &decoder->problem->unknown[kind];
 }
 
-static size_t genes_of(const struct decoder *decoder, enum unknown_kind kind) {
-    const struct unknown *unknown = unknown_of(decoder, kind);
-    return unknown->wanted ? (size_t)unknown->parameters.genes : 0;
+size_t decoder_curve_count(const struct decoder *decoder, enum unknown_kind kind) {
+    return kind == UNKNOWN_POTENTIAL ? decoder->potential.pairs : 1;
 }
 
-/// Points below this one do not follow the genes: the core of a potential.
-static size_t first_point(const struct decoder *decoder, enum unknown_kind kind) {
-    return kind == UNKNOWN_POTENTIAL ? decoder->potential.core : 0;
+bool decoder_fits(const struct decoder *decoder, enum unknown_kind kind, size_t point) {
+    const size_t each = decoder_points(decoder, kind) / decoder_curve_count(decoder, kind);
+    return point % each + 1 < each &&
+           !(kind == UNKNOWN_POTENTIAL && potential_grid_in_core(&decoder->potential, point));
+}
+
+void decoder_curve_name(const struct decoder *decoder, enum unknown_kind kind, size_t curve,
+                        char name[DECODER_NAME_SIZE]) {
+    char pair[COMPOSITION_PAIR_NAME_SIZE] = "";
+    if (kind == UNKNOWN_POTENTIAL)
+        composition_pair_name(&decoder->problem->scene.composition, (int)curve, pair);
+    snprintf(name, DECODER_NAME_SIZE, "%s%s%s", inverse_unknown_names[kind], pair[0] ? "_" : "",
+             pair);
+}
+
+static size_t genes_of_curve(const struct decoder *decoder, enum unknown_kind kind) {
+    return (size_t)unknown_of(decoder, kind)->parameters.genes;
+}
+
+static size_t genes_of(const struct decoder *decoder, enum unknown_kind kind) {
+    return unknown_of(decoder, kind)->wanted
+               ? decoder_curve_count(decoder, kind) * genes_of_curve(decoder, kind)
+               : 0;
+}
+
+/// Points of a curve below this one do not follow its genes: the core of a potential.
+static size_t first_point(const struct decoder *decoder, enum unknown_kind kind, size_t curve) {
+    return kind == UNKNOWN_POTENTIAL ? decoder->potential.core[curve] : 0;
 }
 
 size_t decoder_points(const struct decoder *decoder, enum unknown_kind kind) {
@@ -27,14 +52,20 @@ size_t decoder_points(const struct decoder *decoder, enum unknown_kind kind) {
     return kind == UNKNOWN_POTENTIAL ? decoder->potential.points : WEIGHT_POINTS;
 }
 
+static size_t points_of_curve(const struct decoder *decoder, enum unknown_kind kind) {
+    return decoder_points(decoder, kind) / decoder_curve_count(decoder, kind);
+}
+
 const double *decoder_r(const struct decoder *decoder, enum unknown_kind kind) {
     return kind == UNKNOWN_POTENTIAL ? decoder->potential.r : decoder->weight.r;
 }
 
-/// Where the points lie between the first that follows the genes (0) and the cutoff (1).
-static void find_places(const struct decoder *decoder, enum unknown_kind kind, double *place) {
-    const double *r = decoder_r(decoder, kind);
-    const size_t first = first_point(decoder, kind), points = decoder_points(decoder, kind);
+/// Where the points of a curve lie between the first that follows its genes (0) and the cutoff (1).
+static void find_places(const struct decoder *decoder, enum unknown_kind kind, size_t curve,
+                        double *place) {
+    const size_t points = points_of_curve(decoder, kind);
+    const size_t first = first_point(decoder, kind, curve);
+    const double *r = decoder_r(decoder, kind) + curve * points;
     for (size_t k = first; k < points; k++)
         place[k - first] = (r[k] - r[first]) / (r[points - 1] - r[first]);
 }
@@ -43,20 +74,35 @@ static bool is_formula(const struct decoder *decoder, enum unknown_kind kind) {
     return unknown_of(decoder, kind)->parameters.shape == INVERSE_CURVE_POWER;
 }
 
-static enum status make_basis(struct decoder *decoder, enum unknown_kind kind) {
+/// Basis of one curve: its block of the whole.
+static enum status fill_block(struct decoder *decoder, enum unknown_kind kind, size_t curve) {
     enum status status = STATUS_OK;
-    const size_t genes = genes_of(decoder, kind);
-    const size_t points = decoder_points(decoder, kind) - first_point(decoder, kind);
-    double *place = NULL;
-    if (is_formula(decoder, kind))
-        return STATUS_OK;
-    NEW_ARRAY(place, points);
-    NEW_ARRAY(decoder->basis[kind], points * genes);
-    find_places(decoder, kind, place);
-    CHECK(shape_basis(shapes[unknown_of(decoder, kind)->parameters.shape], genes, place, points,
-                      decoder->basis[kind]));
+    const size_t genes = genes_of(decoder, kind), own = genes_of_curve(decoder, kind);
+    const size_t points = points_of_curve(decoder, kind);
+    const size_t first = first_point(decoder, kind, curve), moving = points - first;
+    double *place = NULL, *block = NULL;
+    NEW_ARRAY(place, moving);
+    NEW_ARRAY(block, moving * own);
+    find_places(decoder, kind, curve, place);
+    CHECK(shape_basis(shapes[unknown_of(decoder, kind)->parameters.shape], own, place, moving,
+                      block));
+    for (size_t k = 0; k < moving; k++)
+        memcpy(decoder->basis[kind] + (curve * points + first + k) * genes + curve * own,
+               block + k * own, own * sizeof *block);
 done:
     memory_free(place);
+    memory_free(block);
+    return status;
+}
+
+static enum status make_basis(struct decoder *decoder, enum unknown_kind kind) {
+    enum status status = STATUS_OK;
+    if (is_formula(decoder, kind))
+        return STATUS_OK;
+    NEW_ARRAY(decoder->basis[kind], decoder_points(decoder, kind) * genes_of(decoder, kind));
+    for (size_t curve = 0; curve < decoder_curve_count(decoder, kind); curve++)
+        CHECK(fill_block(decoder, kind, curve));
+done:
     return status;
 }
 
@@ -86,9 +132,9 @@ void decoder_clear(struct decoder *decoder) {
 static void linear_curve(const struct decoder *decoder, enum unknown_kind kind, const double *x,
                          double *curve) {
     const struct unknown_parameters *p = &unknown_of(decoder, kind)->parameters;
-    const size_t count = genes_of(decoder, kind), first = first_point(decoder, kind);
-    for (size_t k = first; k < decoder_points(decoder, kind); k++) {
-        const double *row = decoder->basis[kind] + (k - first) * count;
+    const size_t count = genes_of(decoder, kind);
+    for (size_t k = 0; k < decoder_points(decoder, kind); k++) {
+        const double *row = decoder->basis[kind] + k * count;
         double sum = 0;
         for (size_t n = 0; n < count; n++)
             sum += row[n] * (p->minimum + x[n] * (p->maximum - p->minimum));
@@ -122,16 +168,15 @@ void decoder_curve(const struct decoder *decoder, enum unknown_kind kind, const 
         potential_grid_complete(&decoder->potential, curve);
 }
 
-/// How the curve changes with each gene, shape [points − first, genes of it].
+/// How the curve changes with each gene, shape [points, genes of it].
 static enum status find_slopes(const struct decoder *decoder, enum unknown_kind kind,
                                const double *genes, double *slopes) {
     enum status status = STATUS_OK;
     const struct unknown_parameters *p = &unknown_of(decoder, kind)->parameters;
-    const size_t count = genes_of(decoder, kind), first = first_point(decoder, kind);
-    const size_t points = decoder_points(decoder, kind);
+    const size_t count = genes_of(decoder, kind), points = decoder_points(decoder, kind);
     double *moved = NULL, *curve = NULL;
     if (!is_formula(decoder, kind)) {
-        for (size_t k = 0; k < (points - first) * count; k++)
+        for (size_t k = 0; k < points * count; k++)
             slopes[k] = decoder->basis[kind][k] * (p->maximum - p->minimum);
         return STATUS_OK;
     }
@@ -144,8 +189,8 @@ static enum status find_slopes(const struct decoder *decoder, enum unknown_kind 
             moved[decoder->first[kind] + n] += side ? step : -step;
             decoder_curve(decoder, kind, moved, curve + (size_t)side * points);
         }
-        for (size_t k = first; k < points; k++)
-            slopes[(k - first) * count + n] = (curve[points + k] - curve[k]) / (2 * step);
+        for (size_t k = 0; k < points; k++)
+            slopes[k * count + n] = (curve[points + k] - curve[k]) / (2 * step);
     }
 done:
     memory_free(moved);
@@ -232,36 +277,40 @@ static void find_errors(const double *slopes, const double *covariance, size_t p
     }
 }
 
+/// A core is set: it has no error.
+static void forget_core(const struct decoder *decoder, enum unknown_kind kind, double *values) {
+    for (size_t k = 0; k < decoder_points(decoder, kind); k++)
+        if (kind == UNKNOWN_POTENTIAL && potential_grid_in_core(&decoder->potential, k))
+            values[k] = NAN;
+}
+
 enum status decoder_band(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
                          const double *covariance, double *error, double *flat) {
     enum status status = STATUS_OK;
-    const size_t count = genes_of(decoder, kind), first = first_point(decoder, kind);
-    const size_t points = decoder_points(decoder, kind), at = decoder->first[kind];
-    const size_t moving = points - first;
-    double *slopes = NULL, *own = NULL, *directions = NULL;
+    const size_t count = genes_of(decoder, kind), at = decoder->first[kind];
+    const size_t points = decoder_points(decoder, kind);
+    double *slopes = NULL, *own = NULL;
     for (size_t k = 0; k < points; k++)
         error[k] = NAN;
     for (size_t k = 0; k < INVERSE_FLAT * points; k++)
         flat[k] = NAN;
     if (covariance == NULL)
         return STATUS_OK;
-    NEW_ARRAY(slopes, moving * count);
+    NEW_ARRAY(slopes, points * count);
     NEW_ARRAY(own, count * count);
-    NEW_ARRAY(directions, INVERSE_FLAT * moving);
     for (size_t a = 0; a < count; a++)
         for (size_t b = 0; b < count; b++)
             own[a * count + b] = covariance[(at + a) * decoder->genes + at + b];
     CHECK(find_slopes(decoder, kind, genes, slopes));
-    find_errors(slopes, own, moving, count, error + first);
-    for (size_t n = 0; n < INVERSE_FLAT; n++) {
-        double *direction = directions + n * moving;
-        CHECK(find_flat(slopes, own, moving, count, directions, n, direction));
-        memcpy(flat + n * points + first, direction, moving * sizeof *direction);
-    }
+    find_errors(slopes, own, points, count, error);
+    for (size_t n = 0; n < INVERSE_FLAT; n++)
+        CHECK(find_flat(slopes, own, points, count, flat, n, flat + n * points));
+    forget_core(decoder, kind, error);
+    for (size_t n = 0; n < INVERSE_FLAT; n++)
+        forget_core(decoder, kind, flat + n * points);
 done:
     memory_free(slopes);
     memory_free(own);
-    memory_free(directions);
     return status;
 }
 
@@ -306,7 +355,7 @@ static void start_curve(const struct decoder *decoder, enum unknown_kind kind, d
     const struct weight_grid *grid = &decoder->weight;
     const double middle = 0.5 * (unknown->parameters.minimum + unknown->parameters.maximum);
     for (int k = 0; k < WEIGHT_POINTS; k++)
-        curve[k] = unknown->start ? curve_value(unknown->start, grid->r[k])
+        curve[k] = unknown->start[0] ? curve_value(unknown->start[0], grid->r[k])
                                   : middle * (1 - grid->r[k] / grid->cutoff);
 }
 
@@ -317,40 +366,53 @@ static void start_power(const struct decoder *decoder, double *genes) {
     genes[0] = 0.5;
     genes[1] = 1 / largest_exponent;
     genes[2] = 0;
-    if (unknown->start == NULL || unknown->start->family != &formula_power_weight)
+    if (unknown->start[0] == NULL || unknown->start[0]->family != &formula_power_weight)
         return;
-    const struct formula_power_weight_parameters *start = unknown->start->parameters;
+    const struct formula_power_weight_parameters *start = unknown->start[0]->parameters;
     const double room = inner_part * (p->cutoff - p->inner_cutoff);
     genes[0] = fmin(1, fmax(0, (start->sigma - p->minimum) / (p->maximum - p->minimum)));
     genes[1] = fmin(1, fmax(0, start->exponent / largest_exponent));
     genes[2] = fmin(1, fmax(0, (start->inner_cutoff - p->inner_cutoff) / room));
 }
 
-static enum status start_of(const struct decoder *decoder, enum unknown_kind kind, double *genes) {
+/// Genes of one curve nearest to `curve`, shape [points of it], which is changed.
+static enum status start_of_curve(const struct decoder *decoder, enum unknown_kind kind,
+                                  size_t number, double *curve, double *genes) {
     enum status status = STATUS_OK;
-    if (is_formula(decoder, kind)) {
-        start_power(decoder, genes);
-        return STATUS_OK;
-    }
     const struct unknown_parameters *p = &unknown_of(decoder, kind)->parameters;
-    const size_t count = genes_of(decoder, kind), first = first_point(decoder, kind);
-    const size_t points = decoder_points(decoder, kind);
-    double *curve = NULL, *place = NULL;
-    NEW_ARRAY(curve, points);
+    const size_t count = genes_of_curve(decoder, kind), all = genes_of(decoder, kind);
+    const size_t first = first_point(decoder, kind, number), points = points_of_curve(decoder, kind);
+    const double *block = decoder->basis[kind] + number * (points * all + count);
+    double *place = NULL;
     NEW_ARRAY(place, points);
-    start_curve(decoder, kind, curve);
-    find_places(decoder, kind, place);
+    find_places(decoder, kind, number, place);
     // Genes that the curve leaves open stay in the middle of their range.
     const double middle = 0.5 * (p->minimum + p->maximum), range = p->maximum - p->minimum;
     for (size_t k = first; k < points; k++)
         for (size_t n = 0; n < count; n++)
-            curve[k] -= middle * decoder->basis[kind][(k - first) * count + n];
+            curve[k] -= middle * block[k * all + n];
     CHECK(shape_fit(shapes[p->shape], place, curve + first, NULL, points - first, genes, count));
     for (size_t k = 0; k < count; k++)
         genes[k] = fmin(1, fmax(0, 0.5 + genes[k] / range));
 done:
-    memory_free(curve);
     memory_free(place);
+    return status;
+}
+
+static enum status start_of(const struct decoder *decoder, enum unknown_kind kind, double *genes) {
+    enum status status = STATUS_OK;
+    double *curve = NULL;
+    if (is_formula(decoder, kind)) {
+        start_power(decoder, genes);
+        return STATUS_OK;
+    }
+    NEW_ARRAY(curve, decoder_points(decoder, kind));
+    start_curve(decoder, kind, curve);
+    for (size_t n = 0; n < decoder_curve_count(decoder, kind); n++)
+        CHECK(start_of_curve(decoder, kind, n, curve + n * points_of_curve(decoder, kind),
+                             genes + n * genes_of_curve(decoder, kind)));
+done:
+    memory_free(curve);
     return status;
 }
 

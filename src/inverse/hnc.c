@@ -10,7 +10,6 @@
 #include "inverse/inversion.h"
 
 #include <assert.h>
-#include <math.h>
 
 struct own {
     double ridge;
@@ -31,23 +30,20 @@ static const char *const columns[] = {INVERSION_COLUMNS, NULL};
 enum status hnc_step(const struct inversion *inversion, double ridge, double *step) {
     enum status status = STATUS_OK;
     const struct potential_grid *grid = &inversion->grid;
-    const struct rdf_bins *bins = &inversion->problem->goals.bins;
-    const double least = inversion->problem->core_threshold;
     double *target = NULL, *difference = NULL, *indirect = NULL;
-    NEW_ARRAY(target, bins->count);
-    NEW_ARRAY(difference, bins->count);
-    NEW_ARRAY(indirect, bins->count);
-    for (size_t k = 0; k < bins->count; k++) {
+    NEW_ARRAY(target, inversion->bins);
+    NEW_ARRAY(difference, inversion->bins);
+    NEW_ARRAY(indirect, inversion->bins);
+    for (size_t k = 0; k < inversion->bins; k++) {
         target[k] = inversion_target_g(inversion, k);
         difference[k] = inversion_g(inversion, k) - target[k];
     }
-    CHECK(hnc_closure_slope(bins, &inversion->box, inversion->particles, target, difference, ridge,
-                            indirect));
-    for (size_t k = grid->core; k < grid->core + grid->known; k++) {
-        // An empty bin is as full as one with the threshold's few pairs.
-        const double ratio = fmax(inversion_g(inversion, k), least) / fmax(target[k], least);
-        step[k] = inversion->problem->scene.temperature * (log(ratio) - indirect[k]);
-    }
+    CHECK(hnc_closure_slope(&inversion->problem->goals.bins, &inversion->box,
+                            &inversion->composition, target, difference, ridge, indirect));
+    ibi_logarithms(inversion, step);
+    for (size_t n = 0; n < grid->known; n++)
+        step[grid->known_point[n]] -=
+            inversion->problem->scene.temperature * indirect[grid->known_bin[n]];
     inversion_pressure_add_ramp(inversion, step);
 done:
     memory_free(target);

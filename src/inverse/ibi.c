@@ -8,15 +8,20 @@
 
 static const char *const columns[] = {INVERSION_COLUMNS, NULL};
 
-void ibi_step(const struct inversion *inversion, double *step) {
+void ibi_logarithms(const struct inversion *inversion, double *step) {
     const struct potential_grid *grid = &inversion->grid;
     const double least = inversion->problem->core_threshold;
-    for (size_t k = grid->core; k < grid->core + grid->known; k++) {
+    for (size_t n = 0; n < grid->known; n++) {
         // An empty bin is as full as one with the threshold's few pairs.
-        const double ratio =
-            fmax(inversion_g(inversion, k), least) / fmax(inversion_target_g(inversion, k), least);
-        step[k] = inversion->problem->scene.temperature * log(ratio);
+        const size_t bin = grid->known_bin[n];
+        const double g = fmax(inversion_g(inversion, bin), least);
+        const double target = fmax(inversion_target_g(inversion, bin), least);
+        step[grid->known_point[n]] = inversion->problem->scene.temperature * log(g / target);
     }
+}
+
+void ibi_step(const struct inversion *inversion, double *step) {
+    ibi_logarithms(inversion, step);
     inversion_pressure_add_ramp(inversion, step);
 }
 

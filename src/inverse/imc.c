@@ -37,22 +37,25 @@ enum status imc_step(const struct inversion *inversion, const struct imc_paramet
     const struct inverse_problem *problem = inversion->problem;
     const struct goal *pressure = &problem->goals.goal[GOAL_PRESSURE];
     const bool constrained = goals_ask(&problem->goals, GOAL_PRESSURE);
-    const size_t core = inversion->grid.core;
+    const struct potential_grid *grid = &inversion->grid;
+    enum status status = STATUS_OK;
     struct imc_solution solution;
-    const struct imc_system system = {
-        .size = inversion->grid.known,
-        .covariance = inversion->covariance,
-        .excess = inversion->excess + core,
-        .variance = inversion->variance + core,
-        .temperature = problem->scene.temperature,
-        .spacing = problem->goals.bins.width,
-        .constraint = constrained ? inversion->pressure.slope : NULL,
-        .wanted = constrained ? *pressure->value - inversion->pressure.value : 0};
-    TRY(solvers[parameters->regularisation](&system, parameters->strength, step + core, &solution));
+    double *x = NULL;
+    struct imc_system system = inversion_system(inversion);
+    if (constrained) {
+        system.constraint = inversion->pressure.slope;
+        system.wanted = *pressure->value - inversion->pressure.value;
+    }
+    NEW_ARRAY(x, grid->known);
+    CHECK(solvers[parameters->regularisation](&system, parameters->strength, x, &solution));
+    for (size_t a = 0; a < grid->known; a++)
+        step[grid->known_point[a]] = x[a];
     extra[0] = solution.strength;
     extra[1] = solution.misfit;
     extra[2] = solution.directions;
-    return STATUS_OK;
+done:
+    memory_free(x);
+    return status;
 }
 
 static enum status update(struct inversion *inversion, double *extra) {

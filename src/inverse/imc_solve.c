@@ -65,17 +65,24 @@ static void fill_equations(struct workspace *w, const struct imc_system *s) {
 
 /// Row k of D is (x_{k−1} − 2 x_k + x_{k+1}) (ℓ/h)². In the last the neighbour is the cutoff, half
 /// a spacing away, where the curve is 0: the second difference of unequal steps, h and h/2.
-void imc_solve_prior(double spacing, gsl_matrix *rows) {
-    const size_t n = rows->size2;
-    const double scale = pow(smooth_length / spacing, 2);
-    gsl_matrix_set_zero(rows);
-    for (size_t k = 1; k + 1 < n; k++) {
+static void fill_differences(gsl_matrix *rows, size_t begin, size_t end, double scale) {
+    for (size_t k = begin + 1; k + 1 < end; k++) {
         gsl_matrix_set(rows, k - 1, k - 1, scale);
         gsl_matrix_set(rows, k - 1, k, -2 * scale);
         gsl_matrix_set(rows, k - 1, k + 1, scale);
     }
-    gsl_matrix_set(rows, n - 2, n - 2, 4 * scale / 3);
-    gsl_matrix_set(rows, n - 2, n - 1, -4 * scale);
+    gsl_matrix_set(rows, end - 2, end - 2, 4 * scale / 3);
+    gsl_matrix_set(rows, end - 2, end - 1, -4 * scale);
+}
+
+void imc_solve_prior(double spacing, const size_t *block, size_t blocks, gsl_matrix *rows) {
+    const size_t n = rows->size2;
+    const double scale = pow(smooth_length / spacing, 2);
+    gsl_matrix_set_zero(rows);
+    if (blocks == 0)
+        fill_differences(rows, 0, n, scale);
+    for (size_t b = 0, begin = 0; b < blocks; begin += block[b], b++)
+        fill_differences(rows, begin, begin + block[b], scale);
     for (size_t k = 0; k < n; k++)
         gsl_matrix_set(rows, n - 1 + k, k, sqrt(ridge));
 }
@@ -178,7 +185,7 @@ enum status imc_solve(const struct imc_system *system, double strength, double *
     CHECK(workspace_allocate(&w, system));
     fill_equations(&w, system);
     gsl_matrix_view prior = gsl_matrix_submatrix(w.rows, n, 0, 2 * n - 1, n);
-    imc_solve_prior(system->spacing, &prior.matrix);
+    imc_solve_prior(system->spacing, system->block, system->blocks, &prior.matrix);
     solution->strength = strength > 0 ? strength : find_strength(&w);
     solution->misfit = solve_at(&w, solution->strength);
     solution->directions = count_directions(&w);

@@ -74,10 +74,6 @@ uint32_t inversion_most_iterations(const struct inverse_method *method,
     return (uint32_t)((const struct inversion_settings *)parameters)->common.iterations;
 }
 
-static size_t bin_count(const struct inversion *inversion) {
-    return inversion->problem->goals.bins.count;
-}
-
 void inversion_destroy(void *memory) {
     struct inversion *inversion = memory;
     replicas_clear(&inversion->replicas);
@@ -95,12 +91,12 @@ void inversion_destroy(void *memory) {
 
 static enum status allocate(struct inversion *inversion) {
     enum status status = STATUS_OK;
-    const size_t bins = bin_count(inversion), points = inversion->grid.points;
+    const size_t bins = inversion->bins, points = inversion->grid.points;
     const size_t known = inversion->grid.known;
     NEW_ARRAY(inversion->ideal, bins);
     NEW_ARRAY(inversion->target_counts, bins);
-    NEW_ARRAY(inversion->excess, bins);
-    NEW_ARRAY(inversion->variance, bins);
+    NEW_ARRAY(inversion->excess, known);
+    NEW_ARRAY(inversion->variance, known);
     NEW_ARRAY(inversion->covariance, known * known);
     NEW_ARRAY(inversion->pressure.slope, known);
     NEW_ARRAY(inversion->phi, points);
@@ -116,25 +112,32 @@ done:
 }
 
 static bool starts_from_hnc(const struct inversion *inversion) {
-    return inversion->problem->unknown[UNKNOWN_POTENTIAL].start == NULL &&
+    return inversion->problem->unknown[UNKNOWN_POTENTIAL].start[0] == NULL &&
            inversion->box.dimensions == 3 && inversion->settings.common.start == INVERSION_FROM_HNC;
 }
 
 /// The potential of the first iteration.
 static enum status start(struct inversion *inversion) {
+    enum status status = STATUS_OK;
     const struct inverse_problem *problem = inversion->problem;
     const struct potential_grid *grid = &inversion->grid;
+    double *g = NULL, *indirect = NULL;
     potential_grid_start(grid, problem, inversion->phi);
     if (!starts_from_hnc(inversion))
         return STATUS_OK;
-    double *g = inversion->excess, *indirect = inversion->variance; // free until the first samples
-    for (size_t k = 0; k < bin_count(inversion); k++)
+    NEW_ARRAY(g, inversion->bins);
+    NEW_ARRAY(indirect, inversion->bins);
+    for (size_t k = 0; k < inversion->bins; k++)
         g[k] = inversion_target_g(inversion, k);
-    TRY(hnc_closure(&problem->goals.bins, &inversion->box, inversion->particles, g, indirect));
-    for (size_t k = grid->core; k + 1 < grid->points; k++)
-        inversion->phi[k] += problem->scene.temperature * indirect[k];
+    CHECK(hnc_closure(&problem->goals.bins, &inversion->box, &inversion->composition, g, indirect));
+    for (size_t n = 0; n < grid->known; n++)
+        inversion->phi[grid->known_point[n]] +=
+            problem->scene.temperature * indirect[grid->known_bin[n]];
     potential_grid_complete(grid, inversion->phi);
-    return STATUS_OK;
+done:
+    memory_free(g);
+    memory_free(indirect);
+    return status;
 }
 
 /// The first step from the hypernetted chain made it worse: begin with the mean force.
@@ -144,6 +147,31 @@ static void start_again(struct inversion *inversion) {
     inversion->progress.damping = inversion->settings.common.damping;
 }
 
+/// As many particles as are asked for, at the densities of the scene.
+static void choose_size(struct inversion *inversion) {
+    const struct simulation_setup *scene = &inversion->problem->scene;
+    const int64_t wanted = inversion->settings.common.particles;
+    inversion->composition =
+        wanted > 0 ? composition_scaled(&scene->composition, wanted) : scene->composition;
+    inversion->box =
+        box_scaled(&scene->box, (double)composition_particles(&inversion->composition) /
+                                    (double)composition_particles(&scene->composition));
+}
+
+/// S if g were 1, and of the target.
+static void count_target(struct inversion *inversion) {
+    const struct inverse_problem *problem = inversion->problem;
+    const struct rdf_bins *bins = &problem->goals.bins;
+    for (size_t n = 0; n < inversion->bins; n++) {
+        const int pair = (int)(n / bins->count);
+        inversion->ideal[n] = rdf_ideal_pairs_of(bins, n % bins->count, &inversion->box,
+                                                 &inversion->composition, pair);
+        inversion->target_counts[n] =
+            inversion->ideal[n] * problem->goals.goal[GOAL_RDF].value[n] *
+            rdf_finite_size_factor_of(&problem->scene.composition, &inversion->composition, pair);
+    }
+}
+
 enum status inversion_create(void *memory, const struct inverse_method *method,
                              const struct inverse_problem *problem, const void *parameters) {
     struct inversion *inversion = memory;
@@ -151,27 +179,17 @@ enum status inversion_create(void *memory, const struct inverse_method *method,
     inversion->settings = *(const struct inversion_settings *)parameters;
     inversion->method = method;
     inversion->problem = problem;
+    inversion->bins = problem->goals.goal[GOAL_RDF].count;
     const struct inversion_parameters *p = &inversion->settings.common;
-    const size_t scene_count = (size_t)problem->scene.placement.count;
-    const size_t count = p->particles > 0 ? (size_t)p->particles : scene_count;
-    inversion->particles = count;
-    inversion->box = problem->scene.box;
-    for (int d = 0; d < inversion->box.dimensions; d++)
-        inversion->box.length[d] *=
-            pow((double)count / (double)scene_count, 1.0 / inversion->box.dimensions);
+    choose_size(inversion);
     TRY(potential_grid_init(&inversion->grid, problem));
     TRY(allocate(inversion));
-    const double finite_size = rdf_finite_size_factor(scene_count, count);
-    for (size_t a = 0; a < bins->count; a++) {
-        inversion->ideal[a] = rdf_ideal_pairs(bins, a, &inversion->box, count);
-        inversion->target_counts[a] =
-            inversion->ideal[a] * problem->goals.goal[GOAL_RDF].value[a] * finite_size;
-    }
+    count_target(inversion);
     TRY(start(inversion));
     TRY(potential_grid_table(&inversion->grid, inversion->phi, &inversion->table));
     TRY(replicas_init(&inversion->replicas, (size_t)p->replicas, (enum sampler_kind)p->sampler,
                       &(struct sampler_system){.box = &inversion->box,
-                                               .particles = count,
+                                               .composition = &inversion->composition,
                                                .potential = &inversion->table,
                                                .temperature = problem->scene.temperature,
                                                .low = bins->low,
@@ -193,45 +211,57 @@ double inversion_target_g(const struct inversion *inversion, size_t bin) {
 
 /// Fill excess and variance of S, and the distance of g over all bins, from the present samples.
 static void assess_rdf(struct inversion *inversion) {
-    const size_t bins = bin_count(inversion);
+    const struct potential_grid *grid = &inversion->grid;
     const struct comoments *counts = &inversion->replicas.counts;
-    inversion->inefficiency =
-        replicas_inefficiency(&inversion->replicas, inversion->ideal, inversion->grid.core);
+    inversion->inefficiency = replicas_inefficiency(&inversion->replicas, inversion->ideal,
+                                                    grid->known_bin, grid->known);
     const double independent = counts->count / inversion->inefficiency;
     double sum = 0, own = 0, both = 0;
-    for (size_t a = 0; a < bins; a++) {
-        const double target_error =
-            inversion->ideal[a] * inversion->problem->goals.goal[GOAL_RDF].error[a];
+    for (size_t n = 0; n < inversion->bins; n++)
+        sum += pow(inversion_g(inversion, n) - inversion_target_g(inversion, n), 2);
+    for (size_t a = 0; a < grid->known; a++) {
+        const size_t bin = grid->known_bin[a];
+        const double ideal = inversion->ideal[bin];
+        const double target_error = ideal * inversion->problem->goals.goal[GOAL_RDF].error[bin];
         // An empty bin still has the uncertainty of one pair.
         const double sampled =
-            fmax(comoments_covariance(counts, a, a), 1 / counts->count) / independent;
-        inversion->excess[a] = counts->mean[a] - inversion->target_counts[a];
+            fmax(comoments_covariance(counts, bin, bin), 1 / counts->count) / independent;
+        inversion->excess[a] = counts->mean[bin] - inversion->target_counts[bin];
         inversion->variance[a] = sampled + target_error * target_error;
-        const double unit = 1 / (inversion->ideal[a] * inversion->ideal[a]);
-        if (a >= inversion->grid.core) {
-            own += unit * sampled;
-            both += unit * inversion->variance[a];
-        }
-        sum += unit * inversion->excess[a] * inversion->excess[a];
+        own += sampled / (ideal * ideal);
+        both += inversion->variance[a] / (ideal * ideal);
     }
+    const double bins = (double)inversion->bins;
     inversion->distance[GOAL_RDF] =
-        (struct goal_distance){.rms = sqrt(sum / (double)bins), .noise = sqrt(both / (double)bins)};
-    inversion->own_noise = sqrt(own / (double)bins);
+        (struct goal_distance){.rms = sqrt(sum / bins), .noise = sqrt(both / bins)};
+    inversion->own_noise = sqrt(own / bins);
+}
+
+struct imc_system inversion_system(const struct inversion *inversion) {
+    return (struct imc_system){.size = inversion->grid.known,
+                               .block = inversion->grid.known_of,
+                               .blocks = inversion->grid.pairs,
+                               .covariance = inversion->covariance,
+                               .excess = inversion->excess,
+                               .variance = inversion->variance,
+                               .temperature = inversion->problem->scene.temperature,
+                               .spacing = inversion->problem->goals.bins.width};
 }
 
 /// What the samples say besides g: how far the pressure is from what is asked for, and how all
 /// respond to the potential.
 static enum status assess_response(struct inversion *inversion) {
     const struct goals *goals = &inversion->problem->goals;
+    const struct potential_grid *grid = &inversion->grid;
     const struct comoments *counts = &inversion->replicas.counts;
-    const size_t core = inversion->grid.core, known = inversion->grid.known;
     inversion_pressure_measure(inversion);
     if (goals_ask(goals, GOAL_PRESSURE))
         inversion->distance[GOAL_PRESSURE] = goals_distance(
             &goals->goal[GOAL_PRESSURE], &inversion->pressure.value, &inversion->pressure.error);
-    for (size_t a = 0; a < known; a++)
-        for (size_t b = 0; b < known; b++)
-            inversion->covariance[a * known + b] = comoments_covariance(counts, core + a, core + b);
+    for (size_t a = 0; a < grid->known; a++)
+        for (size_t b = 0; b < grid->known; b++)
+            inversion->covariance[a * grid->known + b] =
+                comoments_covariance(counts, grid->known_bin[a], grid->known_bin[b]);
     return inversion_pressure_slopes(inversion);
 }
 
@@ -239,12 +269,14 @@ static enum status assess_response(struct inversion *inversion) {
 static void take_step(struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
     double largest = 0;
-    for (size_t a = grid->core; a < grid->core + grid->known; a++)
-        if (potential_grid_well_known(inversion->problem, a))
-            largest = fmax(largest, fabs(inversion->best_step[a]));
+    for (size_t a = 0; a < grid->known; a++)
+        if (potential_grid_well_known(inversion->problem, grid->known_bin[a]))
+            largest = fmax(largest, fabs(inversion->best_step[grid->known_point[a]]));
     const double share = fmin(inversion->progress.damping, largest_change / fmax(largest, 1e-300));
-    for (size_t a = grid->core; a < grid->core + grid->known; a++)
-        inversion->phi[a] = inversion->best[a] + share * inversion->best_step[a];
+    for (size_t a = 0; a < grid->known; a++) {
+        const size_t point = grid->known_point[a];
+        inversion->phi[point] = inversion->best[point] + share * inversion->best_step[point];
+    }
     potential_grid_complete(grid, inversion->phi);
 }
 
@@ -256,7 +288,7 @@ static enum status keep(struct inversion *inversion) {
     memcpy(inversion->best_step, inversion->step, bytes);
     memcpy(inversion->best_other, inversion->other_step, bytes);
     memcpy(inversion->best_counts, inversion->replicas.counts.mean,
-           bin_count(inversion) * sizeof(double));
+           inversion->bins * sizeof(double));
     memcpy(progress->best, inversion->distance, sizeof progress->best);
     progress->best_own_noise = inversion->own_noise;
     return inversion_band_find(inversion);
@@ -320,12 +352,12 @@ static double count_noises(const struct inversion *inversion,
 static void go_back(struct inversion *inversion) {
     struct inversion_progress *progress = &inversion->progress;
     const size_t bytes = inversion->grid.points * sizeof(double);
-    if (isnan(inversion->best_other[inversion->grid.core])) {
+    if (isnan(inversion->best_other[inversion->grid.known_point[0]])) {
         progress->damping *= 0.5;
         return;
     }
     memcpy(inversion->best_step, inversion->best_other, bytes);
-    inversion->best_other[inversion->grid.core] = NAN;
+    inversion->best_other[inversion->grid.known_point[0]] = NAN;
     progress->damping = inversion->settings.common.damping;
 }
 
@@ -392,7 +424,7 @@ enum status inversion_iterate(void *memory, struct inverse_step *step,
     bool kept;
     TRY(sample(inversion, listener));
     TRY(assess_response(inversion));
-    inversion->other_step[inversion->grid.core] = NAN;
+    inversion->other_step[inversion->grid.known_point[0]] = NAN;
     TRY(inversion->method->update(inversion, own));
     TRY(judge(inversion, &kept));
     const bool precise = inversion->own_noise <= inversion->settings.common.precision;
@@ -416,7 +448,7 @@ size_t inversion_spans(void *memory, struct memory_span *span) {
                         inversion->best_other};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         span[n++] = (struct memory_span){arrays[k], bytes};
-    span[n++] = (struct memory_span){inversion->best_counts, bin_count(inversion) * sizeof(double)};
+    span[n++] = (struct memory_span){inversion->best_counts, inversion->bins * sizeof(double)};
     n += inversion_band_spans(&inversion->band, inversion->grid.points, span + n);
     return n + replicas_spans(&inversion->replicas, span + n);
 }

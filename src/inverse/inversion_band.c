@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inverse/inversion.h"
 
-#include "inverse/imc_solve.h"
-
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
@@ -36,27 +34,28 @@ size_t inversion_band_spans(struct inversion_band *band, size_t points, struct m
 }
 
 /// B, shape [size, size].
-static void fill_response(size_t size, const double *counts, const double *variance,
-                          double temperature, gsl_matrix *response) {
-    for (size_t a = 0; a < size; a++)
-        for (size_t b = 0; b < size; b++)
+static void fill_response(const struct imc_system *s, gsl_matrix *response) {
+    for (size_t a = 0; a < s->size; a++)
+        for (size_t b = 0; b < s->size; b++)
             gsl_matrix_set(response, a, b,
-                           counts[a * size + b] / (temperature * sqrt(variance[a])));
+                           s->covariance[a * s->size + b] /
+                               (s->temperature * sqrt(s->variance[a])));
 }
 
-enum status inversion_band_covariance(size_t size, const double *counts, const double *variance,
-                                      double temperature, double spacing, double *covariance,
+enum status inversion_band_covariance(const struct imc_system *system, double *covariance,
                                       double *directions) {
     enum status status = STATUS_OK;
+    const size_t size = system->size;
+    const double unit = 1 / (system->temperature * system->temperature);
     gsl_matrix *prior = gsl_matrix_alloc(2 * size - 1, size);
     gsl_matrix *response = gsl_matrix_alloc(size, size), *known = gsl_matrix_calloc(size, size);
     gsl_matrix_view to = gsl_matrix_view_array(covariance, size, size);
     CHECK(prior && response && known ? STATUS_OK : STATUS_NO_MEMORY);
-    fill_response(size, counts, variance, temperature, response);
-    imc_solve_prior(spacing, prior);
+    fill_response(system, response);
+    imc_solve_prior(system->spacing, system->block, system->blocks, prior);
     gsl_blas_dsyrk(CblasLower, CblasTrans, 1, response, 0, known);
     gsl_matrix_memcpy(&to.matrix, known);
-    gsl_blas_dsyrk(CblasLower, CblasTrans, 1 / (temperature * temperature), prior, 1, &to.matrix);
+    gsl_blas_dsyrk(CblasLower, CblasTrans, unit, prior, 1, &to.matrix);
     gsl_linalg_cholesky_decomp1(&to.matrix);
     gsl_linalg_cholesky_invert(&to.matrix);
     // trace of F (F + prior)⁻¹; F has its lower triangle alone.
@@ -77,9 +76,8 @@ static void weigh_ramp(const struct inversion *inversion, double *weight) {
     const struct potential_grid *grid = &inversion->grid;
     double squares = 0;
     for (size_t a = 0; a < grid->known; a++) {
-        const size_t point = grid->core + a;
-        const bool known = potential_grid_well_known(inversion->problem, point);
-        weight[a] = known ? potential_grid_ramp(grid, point) : 0;
+        const bool known = potential_grid_well_known(inversion->problem, grid->known_bin[a]);
+        weight[a] = known ? potential_grid_ramp(grid, grid->known_point[a]) : 0;
         squares += weight[a] * weight[a];
     }
     for (size_t a = 0; a < grid->known; a++)
@@ -121,8 +119,8 @@ static void find_errors(struct inversion *inversion, const double *weight, doubl
     const double ramp_variance = spread(inversion, weight, scratch);
     for (size_t a = 0; a < n; a++) {
         const double variance = band->covariance[a * n + a];
-        band->error[grid->core + a] = sqrt(variance);
-        band->without_ramp[grid->core + a] =
+        band->error[grid->known_point[a]] = sqrt(variance);
+        band->without_ramp[grid->known_point[a]] =
             sqrt(fmax(0, variance - scratch[a] * scratch[a] / ramp_variance));
     }
     band->ramp.error = sqrt(ramp_variance);
@@ -142,8 +140,8 @@ static enum status find_flat(struct inversion *inversion) {
     CHECK(part && vectors && values && work ? STATUS_OK : STATUS_NO_MEMORY);
     for (size_t a = 0; a < n; a++)
         for (size_t b = 0; b < n; b++)
-            if (potential_grid_well_known(inversion->problem, grid->core + a) &&
-                potential_grid_well_known(inversion->problem, grid->core + b))
+            if (potential_grid_well_known(inversion->problem, grid->known_bin[a]) &&
+                potential_grid_well_known(inversion->problem, grid->known_bin[b]))
                 gsl_matrix_set(part, a, b, band->covariance[a * n + b]);
     gsl_eigen_symmv(part, values, vectors, work);
     gsl_eigen_symmv_sort(values, vectors, GSL_EIGEN_SORT_VAL_DESC);
@@ -151,9 +149,9 @@ static enum status find_flat(struct inversion *inversion) {
         for (size_t a = 0; a < n; a++) {
             double sum = 0;
             for (size_t b = 0; b < n; b++)
-                if (potential_grid_well_known(inversion->problem, grid->core + b))
+                if (potential_grid_well_known(inversion->problem, grid->known_bin[b]))
                     sum += band->covariance[a * n + b] * gsl_matrix_get(vectors, b, k);
-            band->flat[k * grid->points + grid->core + a] = sum / sqrt(gsl_vector_get(values, k));
+            band->flat[k * grid->points + grid->known_point[a]] = sum / sqrt(gsl_vector_get(values, k));
         }
 done:
     gsl_matrix_free(part);
@@ -170,10 +168,8 @@ enum status inversion_band_find(struct inversion *inversion) {
     double *weight = NULL, *scratch = NULL;
     NEW_ARRAY(weight, grid->known);
     NEW_ARRAY(scratch, grid->known);
-    CHECK(inversion_band_covariance(
-        grid->known, inversion->covariance, inversion->variance + grid->core,
-        inversion->problem->scene.temperature, inversion->problem->goals.bins.width,
-        band->covariance, &band->ramp.directions));
+    const struct imc_system system = inversion_system(inversion);
+    CHECK(inversion_band_covariance(&system, band->covariance, &band->ramp.directions));
     add_pressure(inversion, scratch);
     weigh_ramp(inversion, weight);
     find_errors(inversion, weight, scratch);

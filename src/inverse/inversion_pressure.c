@@ -27,7 +27,7 @@ static double virial_error(const struct replicas *replicas, double inefficiency)
 void inversion_pressure_measure(struct inversion *inversion) {
     const struct replicas *replicas = &inversion->replicas;
     const double unit = virial_unit(inversion), mean = replicas->counts.mean[replicas->bins];
-    const double ideal = (double)inversion->particles * inversion->problem->scene.temperature;
+    const double ideal = (double)composition_particles(&inversion->composition) * inversion->problem->scene.temperature;
     inversion->pressure.value = (inversion->box.dimensions * ideal + mean) / unit;
     inversion->pressure.error = virial_error(replicas, inversion->inefficiency) / unit;
 }
@@ -35,15 +35,15 @@ void inversion_pressure_measure(struct inversion *inversion) {
 enum status inversion_pressure_slopes(struct inversion *inversion) {
     enum status status = STATUS_OK;
     const struct potential_grid *grid = &inversion->grid;
-    const struct rdf_bins *bins = &inversion->problem->goals.bins;
     const struct comoments *counts = &inversion->replicas.counts;
     double *virial = NULL;
-    NEW_ARRAY(virial, bins->count * grid->known);
-    CHECK(potential_grid_virials(grid, bins, inversion->box.dimensions, inversion->phi, virial));
+    NEW_ARRAY(virial, inversion->bins * grid->known);
+    CHECK(potential_grid_virials(grid, &inversion->problem->goals.bins, inversion->box.dimensions,
+                                 inversion->phi, virial));
     for (size_t b = 0; b < grid->known; b++) {
-        double slope = -comoments_covariance(counts, bins->count, grid->core + b) /
+        double slope = -comoments_covariance(counts, inversion->bins, grid->known_bin[b]) /
                        inversion->problem->scene.temperature;
-        for (size_t a = 0; a < bins->count; a++)
+        for (size_t a = 0; a < inversion->bins; a++)
             slope += counts->mean[a] * virial[a * grid->known + b];
         inversion->pressure.slope[b] = slope / virial_unit(inversion);
     }
@@ -56,7 +56,7 @@ double inversion_pressure_ramp_slope(const struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
     double slope = 0;
     for (size_t b = 0; b < grid->known; b++)
-        slope += inversion->pressure.slope[b] * potential_grid_ramp(grid, grid->core + b);
+        slope += inversion->pressure.slope[b] * potential_grid_ramp(grid, grid->known_point[b]);
     return slope;
 }
 
@@ -67,8 +67,8 @@ void inversion_pressure_add_ramp(const struct inversion *inversion, double *step
         return;
     double missing = *goals->goal[GOAL_PRESSURE].value - inversion->pressure.value;
     for (size_t b = 0; b < grid->known; b++)
-        missing -= inversion->pressure.slope[b] * step[grid->core + b];
+        missing -= inversion->pressure.slope[b] * step[grid->known_point[b]];
     const double amplitude = missing / inversion_pressure_ramp_slope(inversion);
-    for (size_t k = grid->core; k < grid->core + grid->known; k++)
-        step[k] += amplitude * potential_grid_ramp(grid, k);
+    for (size_t n = 0; n < grid->known; n++)
+        step[grid->known_point[n]] += amplitude * potential_grid_ramp(grid, grid->known_point[n]);
 }

@@ -52,14 +52,15 @@ static enum status begin_rdf(struct observation *observation, const struct simul
     const double cutoff = scene->potential ? scene->potential->cutoff : 0;
     if (!goals_ask(goals, GOAL_RDF))
         return STATUS_OK;
-    if (setup->force_estimator && scene->potential &&
+    if (setup->force_estimator && scene->potential && !composition_is_mixed(&scene->composition) &&
         rdf_force_applies(scene->potential, scene->temperature)) {
         observation->targets.rdf_force = &observation->rdf_force;
         return rdf_force_init(&observation->rdf_force, &goals->bins, &scene->box, count,
                               scene->potential, scene->temperature, cutoff, samples);
     }
     observation->targets.rdf = &observation->rdf;
-    return rdf_init(&observation->rdf, &goals->bins, &scene->box, count, cutoff, samples);
+    return rdf_init_mixture(&observation->rdf, &goals->bins, &scene->box, &scene->composition,
+                            cutoff, samples);
 }
 
 static enum status begin_dynamics(struct observation *observation,

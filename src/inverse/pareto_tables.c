@@ -116,29 +116,34 @@ done:
     return status;
 }
 
-/// pareto_potential.tsv or pareto_weight.tsv: a column a member of the front, named by its number
-/// in pareto.tsv.
-static enum status write_curves(const struct pareto_state *state, enum unknown_kind kind,
-                                const struct inverse_folder *folder, const struct line *lines,
-                                size_t members) {
+/// pareto_potential.tsv or pareto_weight.tsv, or one of several potentials: a column a member of
+/// the front, named by its number in pareto.tsv.
+static enum status write_curve(const struct pareto_state *state, enum unknown_kind kind,
+                               size_t curve, const struct inverse_folder *folder,
+                               const struct line *lines, size_t members) {
     enum status status = STATUS_OK;
-    const size_t points = decoder_points(&state->decoder, kind);
+    const struct decoder *decoder = &state->decoder;
+    const size_t points = decoder_points(decoder, kind);
+    const size_t each = points / decoder_curve_count(decoder, kind), first = curve * each;
     struct data_column *column = NULL;
     double *curves = NULL;
-    char *names = NULL, name[NAME_SIZE], path[OUTPUT_PATH_SIZE];
+    char *names = NULL, name[DECODER_NAME_SIZE], file[DECODER_NAME_SIZE + 16];
+    char path[OUTPUT_PATH_SIZE];
     NEW_ARRAY(column, members + 1);
     NEW_ARRAY(curves, (members + 1) * points);
     NEW_ARRAY(names, (members + 1) * NAME_SIZE);
-    column[0] = (struct data_column){"r[lambda]", decoder_r(&state->decoder, kind), NULL};
+    column[0] = (struct data_column){"r[lambda]", decoder_r(decoder, kind) + first, NULL};
     for (size_t k = 0; k < members; k++) {
         snprintf(names + k * NAME_SIZE, NAME_SIZE, "%zu", k + 1);
-        decoder_curve(&state->decoder, kind, nsga2_parent(&state->nsga2, lines[k].parent),
+        decoder_curve(decoder, kind, nsga2_parent(&state->nsga2, lines[k].parent),
                       curves + k * points);
-        column[k + 1] = (struct data_column){names + k * NAME_SIZE, curves + k * points, "%.8g"};
+        column[k + 1] =
+            (struct data_column){names + k * NAME_SIZE, curves + k * points + first, "%.8g"};
     }
-    snprintf(name, sizeof name, "pareto_%s.tsv", inverse_unknown_names[kind]);
-    folder->file(folder->context, name, path);
-    CHECK(data_table_write(path, NULL, column, members + 1, points));
+    decoder_curve_name(decoder, kind, curve, name);
+    snprintf(file, sizeof file, "pareto_%s.tsv", name);
+    folder->file(folder->context, file, path);
+    CHECK(data_table_write(path, NULL, column, members + 1, each));
 done:
     memory_free(column);
     memory_free(curves);
@@ -156,8 +161,10 @@ enum status pareto_write_tables(const void *memory, const struct inverse_folder 
     CHECK(write_front(state, folder, lines, rows));
     CHECK(write_log(state, folder));
     for (int kind = 0; kind < UNKNOWNS; kind++)
-        if (state->problem->unknown[kind].wanted)
-            CHECK(write_curves(state, kind, folder, lines, members));
+        for (size_t curve = 0; state->problem->unknown[kind].wanted &&
+                               curve < decoder_curve_count(&state->decoder, kind);
+             curve++)
+            CHECK(write_curve(state, kind, curve, folder, lines, members));
 done:
     memory_free(lines);
     return status;

@@ -10,7 +10,7 @@
 enum status replicas_init(struct replicas *replicas, size_t count, enum sampler_kind kind,
                           const struct sampler_system *system) {
     enum status status = STATUS_OK;
-    const size_t bins = system->bins;
+    const size_t bins = (size_t)composition_pairs(system->composition) * system->bins;
     struct sampler_system own = *system;
     *replicas = (struct replicas){.bins = bins, .count = count};
     CHECK(comoments_init(&replicas->counts, bins + 1));
@@ -117,10 +117,12 @@ enum status replicas_double(struct replicas *replicas, struct replicas_plan *pla
     return run_all(replicas, plan, threads, progress, listener, double_one);
 }
 
-double replicas_inefficiency(const struct replicas *replicas, const double *ideal, size_t first) {
+double replicas_inefficiency(const struct replicas *replicas, const double *ideal,
+                             const size_t *seen, size_t count) {
     const size_t bins = replicas->bins;
     double scatter = 0, variance = 0;
-    for (size_t a = first; a < bins; a++) {
+    for (size_t n = 0; n < count; n++) {
+        const size_t a = seen[n];
         struct running_mean blocks = {0};
         for (size_t k = 0; k < replicas->count; k++)
             for (size_t b = 0; b < REPLICAS_BLOCKS; b++)

@@ -8,14 +8,17 @@ const char *const sampler_kinds[] = {"monte-carlo", "dynamics", NULL};
 enum status sampler_init(struct sampler *sampler, enum sampler_kind kind,
                          const struct sampler_system *system) {
     enum status status = STATUS_OK;
-    *sampler = (struct sampler){
-        .kind = kind,
-        .histogram = {.low = system->low, .width = system->width, .bins = system->bins}};
+    *sampler =
+        (struct sampler){.kind = kind,
+                         .histogram = {.low = system->low,
+                                       .width = system->width,
+                                       .bins = system->bins,
+                                       .pairs = (size_t)composition_pairs(system->composition)}};
     if (kind == SAMPLER_DYNAMICS)
-        return hybrid_init(&sampler->hybrid, system->box, system->particles, system->potential,
+        return hybrid_init(&sampler->hybrid, system->box, system->composition, system->potential,
                            &sampler->histogram, system->temperature, system->seed);
-    NEW_ARRAY(sampler->histogram.counts, system->bins + 1);
-    CHECK(metropolis_init(&sampler->chain, system->box, system->particles, system->potential,
+    NEW_ARRAY(sampler->histogram.counts, pair_histogram_size(&sampler->histogram));
+    CHECK(metropolis_init(&sampler->chain, system->box, system->composition, system->potential,
                           system->temperature, system->seed));
 done:
     if (status != STATUS_OK)
@@ -43,7 +46,7 @@ enum status sampler_equilibrate(struct sampler *sampler, uint64_t sweeps) {
 }
 
 enum status sampler_sample(struct sampler *sampler, uint64_t sweeps, double *sample) {
-    const size_t bins = sampler->histogram.bins;
+    const size_t bins = pair_histogram_size(&sampler->histogram) - 1;
     const uint32_t *counts = sampler->histogram.counts;
     struct pair_sums sums;
     if (sampler->kind == SAMPLER_DYNAMICS) {

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <time.h>
 
-enum { REPLICAS = 4, REPEATS = 5, BINS = 100 };
+enum { REPLICAS = 4, REPEATS = 5, BINS = 100, MOST_BINS = BINS * COMPOSITION_MOST_PAIRS };
 
 /// As in the runs of water, and as in a simulation.
 static const size_t sizes[] = {729, 2744};
@@ -25,18 +25,19 @@ static double processor_seconds(void) {
     return (double)clock() / CLOCKS_PER_SEC;
 }
 
-/// rms over the bins of the standard error of g, from the first bin with pairs on.
+/// rms of the standard error of g over the bins that have pairs.
 static double error_of_g(const struct replicas *replicas, const double *ideal,
                          double *inefficiency) {
     const struct comoments *counts = &replicas->counts;
-    size_t first = 0;
-    while (first + 1 < replicas->bins && !(counts->mean[first] > 0))
-        first++;
-    *inefficiency = replicas_inefficiency(replicas, ideal, first);
+    size_t seen[MOST_BINS], count = 0;
     double sum = 0;
-    for (size_t a = first; a < replicas->bins; a++)
-        sum += comoments_covariance(counts, a, a) / (ideal[a] * ideal[a]);
-    return sqrt(sum / (double)(replicas->bins - first) * *inefficiency / counts->count);
+    for (size_t a = 0; a < replicas->bins; a++)
+        if (counts->mean[a] > 0)
+            seen[count++] = a;
+    *inefficiency = replicas_inefficiency(replicas, ideal, seen, count);
+    for (size_t n = 0; n < count; n++)
+        sum += comoments_covariance(counts, seen[n], seen[n]) / (ideal[seen[n]] * ideal[seen[n]]);
+    return sqrt(sum / (double)count * *inefficiency / counts->count);
 }
 
 /// Time one sampler, and print its row.
@@ -48,9 +49,11 @@ static enum status time_sampler(const struct sampler_system *system, enum sample
     const struct rdf_bins bins = {system->low, system->width, system->bins};
     struct running_mean merit = {0}, seconds = {0}, inefficiency = {0};
     struct replicas replicas = {0};
-    double ideal[BINS];
-    for (size_t a = 0; a < BINS; a++)
-        ideal[a] = rdf_ideal_pairs(&bins, a, system->box, system->particles);
+    double ideal[MOST_BINS];
+    for (int pair = 0; pair < composition_pairs(system->composition); pair++)
+        for (size_t a = 0; a < BINS; a++)
+            ideal[(size_t)pair * BINS + a] =
+                rdf_ideal_pairs_of(&bins, a, system->box, system->composition, pair);
     CHECK(replicas_init(&replicas, REPLICAS, kind, system));
     CHECK(replicas_run(&replicas, &warm_up, threads, &progress, &listener));
     for (int repeat = 0; repeat < REPEATS; repeat++) {
@@ -62,21 +65,23 @@ static enum status time_sampler(const struct sampler_system *system, enum sample
         statistics_add(&seconds, used / replicas.counts.count);
         statistics_add(&inefficiency, correlated);
     }
-    printf("%9zu  %-11s  %11.3f  %12.2f  %10.5f +- %.5f\n", system->particles, sampler_kinds[kind],
+    printf("%9lld  %-11s  %11.3f  %12.2f  %10.5f +- %.5f\n",
+           (long long)composition_particles(system->composition), sampler_kinds[kind],
            1e3 * seconds.mean, inefficiency.mean, merit.mean, statistics_standard_error(&merit));
 done:
     replicas_clear(&replicas);
     return status;
 }
 
-/// All samplers of a system with the scene's density.
+/// All samplers of a system with the scene's densities.
 static enum status time_size(const struct simulation_setup *setup, size_t particles, int threads) {
-    struct box box = setup->box;
-    for (int d = 0; d < box.dimensions; d++)
-        box.length[d] *=
-            pow((double)particles / (double)setup->placement.count, 1.0 / box.dimensions);
+    const struct composition composition =
+        composition_scaled(&setup->composition, (int64_t)particles);
+    const struct box box =
+        box_scaled(&setup->box, (double)composition_particles(&composition) /
+                                    (double)composition_particles(&setup->composition));
     const struct sampler_system system = {.box = &box,
-                                          .particles = particles,
+                                          .composition = &composition,
                                           .potential = setup->potential,
                                           .temperature = setup->temperature,
                                           .width = setup->potential->cutoff / BINS,

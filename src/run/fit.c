@@ -81,8 +81,9 @@ static enum status load(struct run *run) {
 /// Curves to begin with may come from files, which used.json only names.
 static void digest_starts(struct run *run) {
     enum { POINTS = 1000 };
-    for (int kind = 0; kind < UNKNOWNS; kind++) {
-        const struct curve *start = run->fit.problem.unknown[kind].start;
+    for (int n = 0; n < UNKNOWNS * COMPOSITION_MOST_PAIRS; n++) {
+        const int kind = n / COMPOSITION_MOST_PAIRS, pair = n % COMPOSITION_MOST_PAIRS;
+        const struct curve *start = run->fit.problem.unknown[kind].start[pair];
         for (int k = 0; start && k < POINTS; k++) {
             const double value = curve_value(start, curve_cutoff(start) * k / POINTS);
             checkpoint_digest_add(&run->digest, &value, sizeof value);
@@ -194,9 +195,8 @@ static struct fit_result result_so_far(const struct run *run, enum status status
 static void keep_curves(struct run *run, const struct inverse_step *step) {
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         const size_t points = decoder_points(&run->decoder, kind);
-        const size_t core = kind == UNKNOWN_POTENTIAL ? run->decoder.potential.core : 0;
         for (size_t k = 0; k < points; k++) {
-            const bool known = step->curve_error[kind] && k >= core && k + 1 < points;
+            const bool known = step->curve_error[kind] && decoder_fits(&run->decoder, kind, k);
             run->curve[kind][k] = step->curve[kind][k];
             run->curve_error[kind][k] = known ? step->curve_error[kind][k] : NAN;
         }
@@ -227,9 +227,7 @@ static enum status record(struct run *run, const struct inverse_step *step) {
                                       .ramp = step->ramp};
     memcpy(run->standing.reason, step->reason, sizeof run->standing.reason);
     history_add(&run->history, step, run->standing.seconds);
-    const double *const r[UNKNOWNS] = {decoder_r(&run->decoder, UNKNOWN_POTENTIAL),
-                                       decoder_r(&run->decoder, UNKNOWN_WEIGHT)};
-    TRY(history_write(&run->history, run->fit.method, r, &run->folder));
+    TRY(history_write(&run->history, run->fit.method, &run->decoder, &run->folder));
     const struct fit_result result = result_so_far(run, STATUS_UNCONVERGED);
     TRY(fit_output_curves(&run->fit, &run->decoder, &result, &run->folder));
     if (run->fit.method->write) {

@@ -47,7 +47,8 @@ static const int64_t genes_of_curve[] = {[INVERSE_CURVE_BEZIER] = 100,
                                          [INVERSE_CURVE_POWER] = INVERSE_POWER_GENES};
 
 static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind kind,
-                                struct json_object *object, const struct units *units) {
+                                struct json_object *object, const struct composition *composition,
+                                const struct units *units) {
     const struct curve_family *const *laws =
         kind == UNKNOWN_POTENTIAL ? curve_potentials : curve_weights;
     json_fields(object, unknown_fields(kind), &unknown->parameters);
@@ -64,8 +65,8 @@ static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind k
     if (kind == UNKNOWN_WEIGHT && p->cutoff <= p->inner_cutoff)
         json_fault(object, "cutoff", "%g is not above the inner cutoff %g", p->cutoff,
                    p->inner_cutoff);
-    TRY(scene_read_curve(&unknown->start, object, "start", laws, units));
-    TRY(scene_read_curve(&unknown->truth, object, "truth", laws, units));
+    TRY(scene_law_read(&unknown->start, object, "start", laws, composition, units));
+    TRY(scene_law_read(&unknown->truth, object, "truth", laws, composition, units));
     json_finish(object);
     return STATUS_OK;
 }
@@ -73,10 +74,13 @@ static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind k
 /// "unknowns": {"potential": {…}, "weight": {…}}; a file without it looks for the potential.
 static enum status read_unknowns(struct fit_file *fit, struct json_object *root) {
     struct json_object object = json_child(root, "unknowns", false);
+    // A potential for each kind of pairs, one weight for all.
+    const struct composition composition[UNKNOWNS] = {
+        [UNKNOWN_POTENTIAL] = fit->scene.setup.composition};
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         struct json_object child = json_child(&object, inverse_unknown_names[kind], false);
         fit->unknown[kind].wanted = child.item != NULL;
-        TRY(read_unknown(&fit->unknown[kind], kind, &child, &fit->scene.units));
+        TRY(read_unknown(&fit->unknown[kind], kind, &child, &composition[kind], &fit->scene.units));
     }
     if (object.item) {
         json_finish(&object);
@@ -100,8 +104,6 @@ static enum status read_scene(struct fit_file *fit, struct json_object *root) {
                   (json_has(&unknowns, inverse_unknown_names[1]) ? SCENE_FITS_WEIGHT : 0);
     }
     TRY(scene_read(&fit->scene, &scene, unknown));
-    if (composition_is_mixed(&fit->scene.setup.composition))
-        json_fault(&scene, "particles.types", "mixtures: a fit wants beads that are alike");
     json_finish(&scene);
     return STATUS_OK;
 }
@@ -110,7 +112,7 @@ static enum status read_root(struct fit_file *fit, struct json_object *root) {
     json_fields(root, heading_fields, &fit->heading);
     // Before what its units convert.
     TRY(read_scene(fit, root));
-    TRY(targets_read(&fit->targets, root, &fit->scene.units));
+    TRY(targets_read(&fit->targets, root, &fit->scene.setup.composition, &fit->scene.units));
     TRY(read_unknowns(fit, root));
     TRY(read_method(fit, root));
     struct json_object core = json_child(root, "core", false);
@@ -223,7 +225,7 @@ static enum status check(const struct fit_file *fit, const char *file) {
     const struct targets *targets = &fit->targets;
     TRY(check_unknowns(fit, file));
     if (targets->given[GOAL_RDF])
-        TRY(check_range(fit, file, "rdf", rdf_bins_range(&targets->rdf.bins)));
+        TRY(check_range(fit, file, "rdf", rdf_bins_range(&targets->rdf[0].bins)));
     if (targets->given[GOAL_ETD])
         TRY(check_range(fit, file, "etd", targets->etd.grid.r_maximum));
     if (goals_count(&fit->problem.goals) == 0)
@@ -239,7 +241,7 @@ static enum status check(const struct fit_file *fit, const char *file) {
     return status == STATUS_OK ? STATUS_OK : status_prefix(status, "%s: scene", file);
 }
 
-static void state_problem(struct fit_file *fit, const struct run_options *options) {
+static enum status state_problem(struct fit_file *fit, const struct run_options *options) {
     struct inverse_problem *problem = &fit->problem;
     *problem = (struct inverse_problem){
         .scene = fit->scene.setup,
@@ -248,14 +250,16 @@ static void state_problem(struct fit_file *fit, const struct run_options *option
         .seed = fit->heading.seed,
         .threads = options->threads,
     };
-    targets_goals(&fit->targets, (size_t)fit->scene.setup.placement.count,
-                  fit->unknown[UNKNOWN_WEIGHT].wanted, &problem->goals, &problem->compared);
-    for (int kind = 0; kind < UNKNOWNS; kind++)
-        problem->unknown[kind] = (struct unknown){
-            .wanted = fit->unknown[kind].wanted,
-            .parameters = fit->unknown[kind].parameters,
-            .start = fit->unknown[kind].start.family ? &fit->unknown[kind].start : NULL,
-        };
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        const struct fit_unknown *from = &fit->unknown[kind];
+        struct unknown *unknown = &problem->unknown[kind];
+        unknown->wanted = from->wanted;
+        unknown->parameters = from->parameters;
+        for (int pair = 0; pair < composition_pairs(&problem->scene.composition); pair++)
+            unknown->start[pair] = scene_law_curve(&from->start, pair);
+    }
+    return targets_goals(&fit->targets, fit->unknown[UNKNOWN_WEIGHT].wanted, &problem->goals,
+                         &problem->compared);
 }
 
 enum status fit_file_read(struct fit_file *fit, const char *file,
@@ -269,7 +273,7 @@ enum status fit_file_read(struct fit_file *fit, const char *file,
     TRY(status);
     if (options->has_seed)
         fit->heading.seed = options->seed;
-    state_problem(fit, options);
+    TRY(state_problem(fit, options));
     return check(fit, file);
 }
 
@@ -277,8 +281,8 @@ void fit_file_clear(struct fit_file *fit) {
     targets_clear(&fit->targets);
     scene_clear(&fit->scene);
     for (int kind = 0; kind < UNKNOWNS; kind++) {
-        curve_clear(&fit->unknown[kind].start);
-        curve_clear(&fit->unknown[kind].truth);
+        scene_law_clear(&fit->unknown[kind].start);
+        scene_law_clear(&fit->unknown[kind].truth);
     }
     memory_free(fit->method_parameters);
     *fit = (struct fit_file){0};
@@ -292,8 +296,8 @@ static void write_unknowns(const struct fit_file *fit, struct json_writer *write
             continue;
         json_begin(writer, inverse_unknown_names[kind]);
         json_put_fields(writer, unknown_fields(kind), &unknown->parameters);
-        scene_write_curve(&unknown->start, writer, "start");
-        scene_write_curve(&unknown->truth, writer, "truth");
+        scene_law_write(&unknown->start, &fit->scene.setup.composition, writer, "start");
+        scene_law_write(&unknown->truth, &fit->scene.setup.composition, writer, "truth");
         json_end(writer);
     }
     json_end(writer);

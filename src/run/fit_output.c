@@ -18,65 +18,87 @@ static double *scaled(const double *values, size_t count, double factor) {
     return copy;
 }
 
-/// The true curve at `r`, where the run file names one; the caller frees it.
-static double *truth_at(const struct fit_file *fit, enum unknown_kind kind, const double *r,
-                        size_t points) {
-    const struct curve *truth = &fit->unknown[kind].truth;
+/// The true curve number `curve` of an unknown at `r`, where the run file names it; the caller frees
+/// it.
+static double *truth_at(const struct fit_file *fit, enum unknown_kind kind, size_t curve,
+                        const double *r, size_t points) {
+    const struct curve *truth = scene_law_curve(&fit->unknown[kind].truth, (int)curve);
     double *values = memory_zeroed(points, sizeof *values);
-    for (size_t k = 0; values && truth->family && k < points; k++)
+    for (size_t k = 0; values && truth && k < points; k++)
         values[k] = curve_value(truth, r[k]);
     return values;
 }
 
+/// Path of a table about one curve of an unknown: its name and an ending.
+static void curve_file(const struct decoder *decoder, enum unknown_kind kind, size_t curve,
+                       const char *ending, const struct run_folder *folder, char *path) {
+    char name[DECODER_NAME_SIZE], file[DECODER_NAME_SIZE + 16];
+    decoder_curve_name(decoder, kind, curve, name);
+    snprintf(file, sizeof file, "%s%s", name, ending);
+    run_folder_file(folder, file, path);
+}
+
+/// Of one kind of pairs, from the table of all.
 static enum status write_potential(const struct fit_file *fit, const struct decoder *decoder,
-                                   const struct fit_result *result,
-                                   const struct run_folder *folder) {
+                                   const struct fit_result *result, const struct table *table,
+                                   size_t pair, const struct run_folder *folder) {
     enum status status = STATUS_OK;
     const struct units *units = &fit->scene.units;
-    const double *r = decoder->potential.r, *phi = result->curve[UNKNOWN_POTENTIAL];
-    const size_t points = decoder->potential.points;
-    const bool truth_known = fit->unknown[UNKNOWN_POTENTIAL].truth.family != NULL;
-    struct table table = {0};
+    const size_t points = decoder->potential.bins + 1;
+    const size_t first = potential_grid_block(&decoder->potential, pair);
+    const double *r = decoder->potential.r + first;
+    const double *phi = result->curve[UNKNOWN_POTENTIAL] + first;
     double *force = NULL, *truth = NULL, *nanometres = NULL, *energy = NULL;
     size_t count = 0;
     char path[OUTPUT_PATH_SIZE];
-    CHECK(potential_grid_table(&decoder->potential, phi, &table));
     NEW_ARRAY(force, points);
     for (size_t k = 0; k < points; k++) {
-        table_evaluate(&table, r[k], NULL, &force[k], NULL);
+        table_evaluate_pair(table, (int)pair, r[k], NULL, &force[k], NULL);
         force[k] = -force[k];
     }
     nanometres = scaled(r, points, units->length);
     energy = scaled(phi, points, units_known(units) ? units_energy_kj_per_mol(units) : 0);
-    truth = truth_at(fit, UNKNOWN_POTENTIAL, r, points);
+    truth = truth_at(fit, UNKNOWN_POTENTIAL, pair, r, points);
     CHECK(nanometres && energy && truth ? STATUS_OK : STATUS_NO_MEMORY);
     struct data_column columns[8] = {
         {"r[lambda]", r, "%.17g"},
         {"phi[k_B.T_0]", phi, "%.17g"},
         {"force[k_B.T_0/lambda]", force, NULL},
-        {"phi_error[k_B.T_0]", result->curve_error[UNKNOWN_POTENTIAL], "%.3g"}};
+        {"phi_error[k_B.T_0]", result->curve_error[UNKNOWN_POTENTIAL] + first, "%.3g"}};
     count = 4;
     if (result->ramp.error > 0)
-        columns[count++] =
-            (struct data_column){"phi_error_without_ramp[k_B.T_0]", result->without_ramp, "%.3g"};
-    if (truth_known)
+        columns[count++] = (struct data_column){"phi_error_without_ramp[k_B.T_0]",
+                                                result->without_ramp + first, "%.3g"};
+    if (scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair))
         columns[count++] = (struct data_column){"truth[k_B.T_0]", truth, "%.8g"};
     if (units_known(units)) {
         columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
         columns[count++] = (struct data_column){"phi[kJ/mol]", energy, NULL};
     }
-    run_folder_file(folder, "potential.tsv", path);
+    curve_file(decoder, UNKNOWN_POTENTIAL, pair, ".tsv", folder, path);
     CHECK(data_table_write(path, NULL, columns, count, points));
     if (units_known(units)) {
-        run_folder_file(folder, "potential.pot", path);
-        CHECK(votca_write(path, nanometres, energy, points, decoder->potential.core));
+        curve_file(decoder, UNKNOWN_POTENTIAL, pair, ".pot", folder, path);
+        CHECK(votca_write(path, nanometres, energy, points, decoder->potential.core[pair]));
     }
 done:
-    table_clear(&table);
     memory_free(force);
     memory_free(truth);
     memory_free(nanometres);
     memory_free(energy);
+    return status;
+}
+
+static enum status write_potentials(const struct fit_file *fit, const struct decoder *decoder,
+                                    const struct fit_result *result,
+                                    const struct run_folder *folder) {
+    enum status status = STATUS_OK;
+    struct table table = {0};
+    CHECK(potential_grid_table(&decoder->potential, result->curve[UNKNOWN_POTENTIAL], &table));
+    for (size_t pair = 0; pair < decoder->potential.pairs; pair++)
+        CHECK(write_potential(fit, decoder, result, &table, pair, folder));
+done:
+    table_clear(&table);
     return status;
 }
 
@@ -98,8 +120,8 @@ static enum status write_known_omega(const struct fit_file *fit, const struct ru
 static enum status write_fitted_omega(const struct fit_file *fit, const struct decoder *decoder,
                                       const struct fit_result *result,
                                       const struct run_folder *folder) {
-    const bool truth_known = fit->unknown[UNKNOWN_WEIGHT].truth.family != NULL;
-    double *truth = truth_at(fit, UNKNOWN_WEIGHT, decoder->weight.r, WEIGHT_POINTS);
+    const bool truth_known = fit->unknown[UNKNOWN_WEIGHT].truth.curves > 0;
+    double *truth = truth_at(fit, UNKNOWN_WEIGHT, 0, decoder->weight.r, WEIGHT_POINTS);
     if (truth == NULL)
         return STATUS_NO_MEMORY;
     char path[OUTPUT_PATH_SIZE];
@@ -116,22 +138,23 @@ static enum status write_fitted_omega(const struct fit_file *fit, const struct d
 }
 
 /// Changes that the data say least of; no table where the method does not tell.
-static enum status write_flat(enum unknown_kind kind, const struct decoder *decoder,
+static enum status write_flat(enum unknown_kind kind, size_t curve, const struct decoder *decoder,
                               const struct fit_result *result, const struct run_folder *folder) {
-    const size_t points = decoder_points(decoder, kind);
+    const size_t all = decoder_points(decoder, kind);
+    const size_t points = all / decoder_curve_count(decoder, kind), first = curve * points;
     const double *flat = result->curve_flat[kind];
-    char path[OUTPUT_PATH_SIZE], name[64];
-    if (flat == NULL || isnan(flat[points - 1]))
+    char path[OUTPUT_PATH_SIZE];
+    if (flat == NULL || isnan(flat[all - 1]))
         return STATUS_OK;
     const char *unit = kind == UNKNOWN_POTENTIAL ? "k_B.T_0" : "sqrt(mu/tau)";
     char names[INVERSE_FLAT][64];
-    struct data_column columns[1 + INVERSE_FLAT] = {{"r[lambda]", decoder_r(decoder, kind), NULL}};
+    struct data_column columns[1 + INVERSE_FLAT] = {
+        {"r[lambda]", decoder_r(decoder, kind) + first, NULL}};
     for (size_t n = 0; n < INVERSE_FLAT; n++) {
         snprintf(names[n], sizeof names[n], "flat_%zu[%s]", n + 1, unit);
-        columns[n + 1] = (struct data_column){names[n], flat + n * points, "%.5g"};
+        columns[n + 1] = (struct data_column){names[n], flat + n * all + first, "%.5g"};
     }
-    snprintf(name, sizeof name, "%s_flat.tsv", inverse_unknown_names[kind]);
-    run_folder_file(folder, name, path);
+    curve_file(decoder, kind, curve, "_flat.tsv", folder, path);
     return data_table_write(path,
                             "changes of the curve that the data say least of, widest first; one "
                             "standard error each",
@@ -141,20 +164,23 @@ static enum status write_flat(enum unknown_kind kind, const struct decoder *deco
 enum status fit_output_curves(const struct fit_file *fit, const struct decoder *decoder,
                               const struct fit_result *result, const struct run_folder *folder) {
     for (int kind = 0; kind < UNKNOWNS; kind++)
-        if (result->curve[kind])
-            TRY(write_flat(kind, decoder, result, folder));
+        for (size_t n = 0; result->curve[kind] && n < decoder_curve_count(decoder, kind); n++)
+            TRY(write_flat(kind, n, decoder, result, folder));
     if (result->curve[UNKNOWN_POTENTIAL])
-        TRY(write_potential(fit, decoder, result, folder));
+        TRY(write_potentials(fit, decoder, result, folder));
     if (result->curve[UNKNOWN_WEIGHT])
         return write_fitted_omega(fit, decoder, result, folder);
     return fit->scene.weight.curves ? write_known_omega(fit, folder) : STATUS_OK;
 }
 
+/// g(r) of a kind of pairs: rdf.tsv, or rdf_A-B.tsv in a mixture.
 static enum status write_rdf(const struct fit_file *fit, const struct observed *observed,
-                             const struct run_folder *folder) {
+                             size_t pair, const struct run_folder *folder) {
     enum status status = STATUS_OK;
-    const struct rdf_bins *bins = &fit->targets.rdf.bins;
+    const struct targets *targets = &fit->targets;
+    const struct rdf_bins *bins = &targets->rdf[0].bins;
     const struct units *units = &fit->scene.units;
+    const size_t first = pair * bins->count;
     double *r = NULL, *nanometres = NULL;
     char path[OUTPUT_PATH_SIZE];
     NEW_ARRAY(r, bins->count);
@@ -162,13 +188,14 @@ static enum status write_rdf(const struct fit_file *fit, const struct observed *
         r[k] = rdf_bins_centre(bins, k);
     nanometres = scaled(r, bins->count, units->length);
     CHECK(nanometres ? STATUS_OK : STATUS_NO_MEMORY);
-    const struct data_column columns[] = {{"r[lambda]", r, NULL},
-                                          {"target[1]", fit->targets.rdf.g, "%.8g"},
-                                          {"target_error[1]", fit->targets.rdf.error, "%.3g"},
-                                          {"result[1]", observed->value[GOAL_RDF], "%.8g"},
-                                          {"result_error[1]", observed->error[GOAL_RDF], "%.3g"},
-                                          {"r[nm]", nanometres, NULL}};
-    run_folder_file(folder, "rdf.tsv", path);
+    const struct data_column columns[] = {
+        {"r[lambda]", r, NULL},
+        {"target[1]", targets->rdf_g + first, "%.8g"},
+        {"target_error[1]", targets->rdf_error + first, "%.3g"},
+        {"result[1]", observed->value[GOAL_RDF] + first, "%.8g"},
+        {"result_error[1]", observed->error[GOAL_RDF] + first, "%.3g"},
+        {"r[nm]", nanometres, NULL}};
+    run_folder_rdf(folder, &targets->composition, (int)pair, path);
     CHECK(data_table_write(path, NULL, columns, units_known(units) ? 6 : 5, bins->count));
 done:
     memory_free(r);
@@ -231,8 +258,8 @@ enum status fit_output_observables(const struct fit_file *fit, const struct fit_
                                    const struct run_folder *folder) {
     const struct targets *targets = &fit->targets;
     const struct observed *observed = &result->verification->observed;
-    if (targets->given[GOAL_RDF])
-        TRY(write_rdf(fit, observed, folder));
+    for (size_t pair = 0; targets->given[GOAL_RDF] && pair < targets->pairs; pair++)
+        TRY(write_rdf(fit, observed, pair, folder));
     if (targets->given[GOAL_ETD])
         TRY(write_etd(fit, observed, folder));
     if (targets->given[GOAL_VACF])

@@ -7,16 +7,17 @@
 #include <math.h>
 
 struct fit_truth fit_output_truth(const struct fit_file *fit, const struct decoder *decoder,
-                                  const double *phi) {
+                                  const double *phi, size_t pair) {
     const struct potential_grid *grid = &decoder->potential;
-    const double cutoff = grid->r[grid->points - 1];
+    const struct curve *curve = scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair);
     double count = 0, squares = 0, with_ramp = 0, ramp_squares = 0;
-    for (size_t k = grid->core; k + 1 < grid->points; k++) {
-        if (fit->targets.rdf.g[k] <= 0.1)
+    for (size_t n = 0; n < grid->known; n++) {
+        const size_t point = grid->known_point[n];
+        if (point / (grid->bins + 1) != pair ||
+            !potential_grid_well_known(&fit->problem, grid->known_bin[n]))
             continue;
-        const double difference =
-            phi[k] - curve_value(&fit->unknown[UNKNOWN_POTENTIAL].truth, grid->r[k]);
-        const double ramp = 1 - grid->r[k] / cutoff;
+        const double difference = phi[point] - curve_value(curve, grid->r[point]);
+        const double ramp = potential_grid_ramp(grid, point);
         count += 1;
         squares += difference * difference;
         with_ramp += difference * ramp;
@@ -37,7 +38,7 @@ static double weight_truth(const struct fit_file *fit, const struct decoder *dec
     // Between the cutoffs, at which a weight may end in a step.
     for (size_t k = 1; k + 1 < WEIGHT_POINTS; k++) {
         const double r = decoder->weight.r[k];
-        const double truth = curve_value(&fit->unknown[UNKNOWN_WEIGHT].truth, r);
+        const double truth = curve_value(scene_law_curve(&fit->unknown[UNKNOWN_WEIGHT].truth, 0), r);
         largest = fmax(largest, truth);
         // Closer pairs than the target follows do not exist.
         if (fit->targets.given[GOAL_ETD] && r < fit->targets.etd.grid.r_minimum)
@@ -122,29 +123,41 @@ static void put_ramp(struct json_writer *writer, const struct inverse_ramp *ramp
     json_put_number(writer, "directions_of", ramp->bins);
 }
 
+/// "truth_rms" and so on, in a mixture "truth_rms_A-B".
+static void put_potential_truth(struct json_writer *writer, const struct fit_file *fit,
+                                const struct decoder *decoder, const double *phi, size_t pair) {
+    static const char *const names[] = {"truth_rms", "truth_ramp", "truth_rms_without_ramp"};
+    const struct fit_truth truth = fit_output_truth(fit, decoder, phi, pair);
+    const double values[] = {truth.rms, truth.ramp, truth.rms_without_ramp};
+    char kind[COMPOSITION_PAIR_NAME_SIZE], key[COMPOSITION_PAIR_NAME_SIZE + 32];
+    composition_pair_name(&fit->scene.setup.composition, (int)pair, kind);
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        snprintf(key, sizeof key, "%s%s%s", names[k], kind[0] ? "_" : "", kind);
+        json_put_number(writer, key, values[k]);
+    }
+}
+
 static void put_truth(struct json_writer *writer, const struct fit_file *fit,
                       const struct decoder *decoder, const struct fit_result *result) {
     const double *phi = result->curve[UNKNOWN_POTENTIAL], *omega = result->curve[UNKNOWN_WEIGHT];
-    if (phi && fit->unknown[UNKNOWN_POTENTIAL].truth.family) {
-        const struct fit_truth truth = fit_output_truth(fit, decoder, phi);
-        json_put_number(writer, "truth_rms", truth.rms);
-        json_put_number(writer, "truth_ramp", truth.ramp);
-        json_put_number(writer, "truth_rms_without_ramp", truth.rms_without_ramp);
-    }
-    if (omega && fit->unknown[UNKNOWN_WEIGHT].truth.family)
+    for (size_t pair = 0; phi && pair < decoder->potential.pairs; pair++)
+        if (scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair))
+            put_potential_truth(writer, fit, decoder, phi, pair);
+    if (omega && fit->unknown[UNKNOWN_WEIGHT].truth.curves > 0)
         put_known(writer, "truth_error", weight_truth(fit, decoder, omega));
 }
 
-/// S(0) of the target and of the result, in three dimensions.
+/// S(0) of the target and of the result, in three dimensions and of beads that are alike.
 static void put_kirkwood_buff(struct json_writer *writer, const struct fit_file *fit,
                               const struct verification *v) {
     const struct box *box = &fit->scene.setup.box;
-    const struct rdf_bins *bins = &fit->targets.rdf.bins;
+    const struct rdf_bins *bins = &fit->targets.rdf[0].bins;
     const size_t count = (size_t)fit->scene.setup.placement.count;
-    if (!fit->targets.given[GOAL_RDF] || box->dimensions != 3)
+    if (!fit->targets.given[GOAL_RDF] || box->dimensions != 3 ||
+        composition_is_mixed(&fit->scene.setup.composition))
         return;
     const struct kirkwood_buff target =
-        kirkwood_buff_integrate(bins, fit->targets.rdf.g, fit->targets.rdf.error, box, count);
+        kirkwood_buff_integrate(bins, fit->targets.rdf_g, fit->targets.rdf_error, box, count);
     const struct kirkwood_buff found = kirkwood_buff_integrate(
         bins, v->observed.value[GOAL_RDF], v->observed.error[GOAL_RDF], box, count);
     json_put_number(writer, "target_kirkwood_buff", target.integral);

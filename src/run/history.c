@@ -100,25 +100,29 @@ done:
     return status;
 }
 
-/// One column an iteration, named by its number.
-static enum status write_curves(const struct history *history, enum unknown_kind kind,
-                                const double *r, const struct run_folder *folder) {
+/// A curve of an unknown: one column an iteration, named by its number.
+static enum status write_curve(const struct history *history, const struct decoder *decoder,
+                               enum unknown_kind kind, size_t curve,
+                               const struct run_folder *folder) {
     enum { NAME_SIZE = 24 };
     enum status status = STATUS_OK;
+    const size_t points = history->points[kind] / decoder_curve_count(decoder, kind);
     struct data_column *columns = NULL;
     char *names = NULL;
-    char path[OUTPUT_PATH_SIZE], name[64];
+    char path[OUTPUT_PATH_SIZE], name[DECODER_NAME_SIZE], file[DECODER_NAME_SIZE + 16];
     NEW_ARRAY(columns, history->iterations + 1);
     NEW_ARRAY(names, history->iterations * NAME_SIZE);
-    columns[0] = (struct data_column){"r[lambda]", r, NULL};
+    columns[0] = (struct data_column){"r[lambda]", decoder_r(decoder, kind) + curve * points, NULL};
     for (size_t k = 0; k < history->iterations; k++) {
         snprintf(names + k * NAME_SIZE, NAME_SIZE, "%zu", k);
         columns[k + 1] = (struct data_column){
-            names + k * NAME_SIZE, history->curve[kind] + k * history->points[kind], "%.6g"};
+            names + k * NAME_SIZE,
+            history->curve[kind] + k * history->points[kind] + curve * points, "%.6g"};
     }
-    snprintf(name, sizeof name, "%s_history.tsv", inverse_unknown_names[kind]);
-    run_folder_file(folder, name, path);
-    CHECK(data_table_write(path, NULL, columns, history->iterations + 1, history->points[kind]));
+    decoder_curve_name(decoder, kind, curve, name);
+    snprintf(file, sizeof file, "%s_history.tsv", name);
+    run_folder_file(folder, file, path);
+    CHECK(data_table_write(path, NULL, columns, history->iterations + 1, points));
 done:
     memory_free(columns);
     memory_free(names);
@@ -126,12 +130,13 @@ done:
 }
 
 enum status history_write(const struct history *history, const struct inverse_method *method,
-                          const double *const r[UNKNOWNS], const struct run_folder *folder) {
+                          const struct decoder *decoder, const struct run_folder *folder) {
     TRY(write_history(history, method, folder));
     TRY(write_timing(history, folder));
     for (int kind = 0; kind < UNKNOWNS; kind++)
-        if (history->points[kind] > 0)
-            TRY(write_curves(history, kind, r[kind], folder));
+        for (size_t curve = 0; history->points[kind] > 0 && curve < decoder_curve_count(decoder, kind);
+             curve++)
+            TRY(write_curve(history, decoder, kind, curve, folder));
     return STATUS_OK;
 }
 

@@ -95,6 +95,14 @@ void run_folder_file(const struct run_folder *folder, const char *name, char *pa
     snprintf(path, OUTPUT_PATH_SIZE, "%.*s/%s", OUTPUT_PATH_SIZE - 64, folder->path, name);
 }
 
+void run_folder_rdf(const struct run_folder *folder, const struct composition *composition,
+                    int pair, char *path) {
+    char kind[COMPOSITION_PAIR_NAME_SIZE], name[COMPOSITION_PAIR_NAME_SIZE + 8];
+    composition_pair_name(composition, pair, kind);
+    snprintf(name, sizeof name, "rdf%s%s.tsv", kind[0] ? "_" : "", kind);
+    run_folder_file(folder, name, path);
+}
+
 void run_folder_draw(const struct run_folder *folder) {
     if (figures_draw(folder->path) != STATUS_OK)
         fprintf(stderr, "mesofit: warning: %s\n", status_message());

@@ -190,6 +190,11 @@ done:
     return status;
 }
 
+const struct curve *scene_law_curve(const struct scene_law *law, int pair) {
+    const struct curve *curve = &law->curve[law->curves > 1 ? pair : 0];
+    return curve->family ? curve : NULL;
+}
+
 void scene_law_clear(struct scene_law *law) {
     for (int pair = 0; pair < COMPOSITION_MOST_PAIRS; pair++)
         curve_clear(&law->curve[pair]);

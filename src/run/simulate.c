@@ -180,14 +180,6 @@ static void tell(void *context, const struct simulation *simulation, uint64_t do
         progress_say(&run->progress, "mesofit: warning: %s", status_message());
 }
 
-/// Names the table of a kind of pairs: rdf.tsv, or rdf_A-B.tsv in a mixture.
-static void rdf_file(const struct run *run, int pair, char path[OUTPUT_PATH_SIZE]) {
-    char kind[COMPOSITION_PAIR_NAME_SIZE], name[COMPOSITION_PAIR_NAME_SIZE + 8];
-    composition_pair_name(&run->scene.setup.composition, pair, kind);
-    snprintf(name, sizeof name, "rdf%s%s.tsv", kind[0] ? "_" : "", kind);
-    run_folder_file(&run->folder, name, path);
-}
-
 static enum status write_rdf(const struct run *run) {
     enum status status = STATUS_OK;
     const struct rdf_bins *bins = &run->rdf.bins;
@@ -212,7 +204,7 @@ static enum status write_rdf(const struct run *run) {
             {"g_error[1]", uses_force(run) ? error : counted_error + first, "%.3g"},
             {"g_histogram[1]", counted + first, "%.8g"},
             {"g_histogram_error[1]", counted_error + first, "%.3g"}};
-        rdf_file(run, (int)pair, path);
+        run_folder_rdf(&run->folder, &run->scene.setup.composition, (int)pair, path);
         CHECK(data_table_write(path, NULL, columns, uses_force(run) ? 5 : 3, bins->count));
     }
 done:

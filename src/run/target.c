@@ -197,7 +197,7 @@ enum status target_read(struct target *target, struct json_object *object,
 
 void target_convert(struct target *target, size_t count) {
     const bool votca = target->parameters.format == TARGET_VOTCA;
-    if (target->parameters.particles == 0 && !votca)
+    if ((target->parameters.particles == 0 && !votca) || count == 0)
         return;
     const double factor = votca
                               ? 1 / (1 - 1 / (double)count)

@@ -113,12 +113,57 @@ static enum status read_number(struct target_number *number, struct json_object 
     return STATUS_OK;
 }
 
+/// All kinds of pairs must have the bins of the first.
+static void check_bins(const struct targets *targets, struct json_object *object) {
+    const struct rdf_bins *first = &targets->rdf[0].bins;
+    for (size_t pair = 1; pair < targets->pairs; pair++) {
+        const struct rdf_bins *bins = &targets->rdf[pair].bins;
+        char name[COMPOSITION_PAIR_NAME_SIZE], first_name[COMPOSITION_PAIR_NAME_SIZE];
+        composition_pair_name(&targets->composition, (int)pair, name);
+        composition_pair_name(&targets->composition, 0, first_name);
+        // A file that could not be read has its own fault.
+        if (first->count > 0 && bins->count > 0 &&
+            (bins->count != first->count || fabs(bins->width / first->width - 1) > 1e-6 ||
+             fabs(bins->low - first->low) > 1e-6 * first->width))
+            json_fault(object, name, "must have the bins of \"%s\"", first_name);
+    }
+}
+
+/// What the file calls a kind of pairs: "A-B" or "B-A".
+static const char *pair_key(const struct composition *composition, int pair,
+                            const struct json_object *object,
+                            char name[COMPOSITION_PAIR_NAME_SIZE]) {
+    const char *key;
+    composition_pair_name(composition, pair, name);
+    for (size_t n = 0; (key = json_key(object, n)); n++)
+        if (composition_find_pair(composition, key) == pair)
+            return key;
+    return name;
+}
+
+/// g(r), or in a mixture that of each kind of pairs: {"A-A": {"file": …}, …}.
+static enum status read_rdf(struct targets *targets, struct json_object *object,
+                            const struct units *units) {
+    if (!composition_is_mixed(&targets->composition))
+        return target_read(&targets->rdf[0], object, units);
+    for (size_t pair = 0; pair < targets->pairs; pair++) {
+        char name[COMPOSITION_PAIR_NAME_SIZE];
+        struct json_object child = json_child(
+            object, pair_key(&targets->composition, (int)pair, object, name), true);
+        if (child.item)
+            TRY(target_read(&targets->rdf[pair], &child, units));
+    }
+    json_finish(object);
+    check_bins(targets, object);
+    return STATUS_OK;
+}
+
 /// What belongs to one kind alone.
 static enum status read_kind(struct targets *targets, enum goal_kind kind,
                              struct json_object *object, const struct units *units) {
     switch (kind) {
     case GOAL_RDF:
-        return target_read(&targets->rdf, object, units);
+        return read_rdf(targets, object, units);
     case GOAL_ETD:
         return target_etd_read(&targets->etd, object);
     case GOAL_VACF:
@@ -144,8 +189,9 @@ static void check_motion(const struct targets *targets, struct json_object *obje
 }
 
 enum status targets_read(struct targets *targets, struct json_object *root,
-                         const struct units *units) {
-    *targets = (struct targets){0};
+                         const struct composition *composition, const struct units *units) {
+    *targets = (struct targets){.composition = *composition,
+                                .pairs = (size_t)composition_pairs(composition)};
     struct json_object object = json_child(root, "target", true);
     if (object.item == NULL)
         return STATUS_OK;
@@ -163,7 +209,10 @@ enum status targets_read(struct targets *targets, struct json_object *root,
 }
 
 void targets_clear(struct targets *targets) {
-    target_clear(&targets->rdf);
+    for (size_t pair = 0; pair < targets->pairs; pair++)
+        target_clear(&targets->rdf[pair]);
+    memory_free(targets->rdf_g);
+    memory_free(targets->rdf_error);
     target_etd_clear(&targets->etd);
     memory_free(targets->vacf.value);
     memory_free(targets->vacf.error);
@@ -172,12 +221,25 @@ void targets_clear(struct targets *targets) {
     *targets = (struct targets){0};
 }
 
+static void write_rdf(const struct targets *targets, struct json_writer *writer) {
+    if (!composition_is_mixed(&targets->composition)) {
+        json_put_fields(writer, target_fields, &targets->rdf[0].parameters);
+        return;
+    }
+    for (size_t pair = 0; pair < targets->pairs; pair++) {
+        char name[COMPOSITION_PAIR_NAME_SIZE];
+        composition_pair_name(&targets->composition, (int)pair, name);
+        json_begin(writer, name);
+        json_put_fields(writer, target_fields, &targets->rdf[pair].parameters);
+        json_end(writer);
+    }
+}
+
 void targets_write(const struct targets *targets, struct json_writer *writer) {
     const struct {
         const struct field *fields;
         const void *parameters;
     } parts[GOALS] = {
-        [GOAL_RDF] = {target_fields, &targets->rdf.parameters},
         [GOAL_ETD] = {target_etd_fields, &targets->etd.parameters},
         [GOAL_VACF] = {targets_curve_fields, &targets->vacf.parameters},
         [GOAL_MSD] = {targets_curve_fields, &targets->msd.parameters},
@@ -189,7 +251,10 @@ void targets_write(const struct targets *targets, struct json_writer *writer) {
         if (!targets->given[kind])
             continue;
         json_begin(writer, goals_names[kind]);
-        json_put_fields(writer, parts[kind].fields, parts[kind].parameters);
+        if (kind == GOAL_RDF)
+            write_rdf(targets, writer);
+        else
+            json_put_fields(writer, parts[kind].fields, parts[kind].parameters);
         json_put_fields(writer, targets_goal_fields, &targets->goal[kind]);
         json_end(writer);
     }
@@ -203,8 +268,8 @@ static void digest(const double *values, size_t count, uint64_t *digest) {
 
 void targets_digest(const struct targets *targets, uint64_t *into) {
     const size_t cells = (size_t)(targets->etd.grid.times * targets->etd.grid.bins);
-    digest(targets->rdf.g, targets->rdf.bins.count, into);
-    digest(targets->rdf.error, targets->rdf.bins.count, into);
+    digest(targets->rdf_g, targets->pairs * targets->rdf[0].bins.count, into);
+    digest(targets->rdf_error, targets->pairs * targets->rdf[0].bins.count, into);
     digest(targets->etd.survival, cells, into);
     digest(targets->etd.error, cells, into);
     digest(targets->vacf.value, targets->vacf.times, into);
@@ -227,19 +292,45 @@ static void set_motion(const struct targets *targets, struct goals *goals) {
     }
 }
 
-void targets_goals(struct targets *targets, size_t count, bool moves, struct goals *fitted,
-                   struct goals *compared) {
+/// Beads that `pair` is made of if they are alike, else 0.
+static size_t alike(const struct composition *composition, int pair) {
+    int type[2];
+    composition_pair_types(composition, pair, type);
+    return type[0] == type[1] ? (size_t)composition->count[type[0]] : 0;
+}
+
+/// g and errors of all kinds of pairs, converted to the numbers of the scene.
+static enum status collect_rdf(struct targets *targets) {
+    enum status status = STATUS_OK;
+    const size_t bins = targets->rdf[0].bins.count;
+    NEW_ARRAY(targets->rdf_g, targets->pairs * bins);
+    NEW_ARRAY(targets->rdf_error, targets->pairs * bins);
+    for (size_t pair = 0; pair < targets->pairs; pair++) {
+        struct target *target = &targets->rdf[pair];
+        target_convert(target, alike(&targets->composition, (int)pair));
+        for (size_t k = 0; k < bins; k++) {
+            targets->rdf_g[pair * bins + k] = target->g[k];
+            targets->rdf_error[pair * bins + k] = target->error[k];
+        }
+    }
+done:
+    return status;
+}
+
+enum status targets_goals(struct targets *targets, bool moves, struct goals *fitted,
+                          struct goals *compared) {
     static const double unknown = NAN;
     const struct target_etd *etd = &targets->etd;
-    target_convert(&targets->rdf, count);
-    *compared = (struct goals){.bins = targets->rdf.bins,
+    TRY(collect_rdf(targets));
+    *compared = (struct goals){.bins = targets->rdf[0].bins,
                                .etd = etd->grid,
                                .etd_interval = etd->interval,
                                .etd_origins = origin_intervals * etd->interval};
     set_motion(targets, compared);
     const size_t cells = (size_t)(etd->grid.times * etd->grid.bins);
     const struct goal goals[GOALS] = {
-        [GOAL_RDF] = {targets->rdf.bins.count, targets->rdf.g, targets->rdf.error},
+        [GOAL_RDF] = {targets->pairs * targets->rdf[0].bins.count, targets->rdf_g,
+                      targets->rdf_error},
         [GOAL_ETD] = {cells, etd->survival, etd->error},
         [GOAL_VACF] = {targets->vacf.times, targets->vacf.value, targets->vacf.error},
         [GOAL_MSD] = {targets->msd.times, targets->msd.value, targets->msd.error},
@@ -260,6 +351,7 @@ void targets_goals(struct targets *targets, size_t count, bool moves, struct goa
         targets->given[GOAL_ETD] || targets->given[GOAL_VACF] || targets->given[GOAL_MSD];
     if (moves && has_window && !targets->given[GOAL_DIFFUSION])
         compared->goal[GOAL_DIFFUSION] = (struct goal){1, &unknown, &unknown, 0};
+    return STATUS_OK;
 }
 
 /// A curve's interval must be a whole number of steps.

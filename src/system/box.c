@@ -22,6 +22,13 @@ double box_longest(const struct box *box) {
     return longest;
 }
 
+struct box box_scaled(const struct box *box, double volume_share) {
+    struct box scaled = *box;
+    for (int d = 0; d < box->dimensions; d++)
+        scaled.length[d] *= pow(volume_share, 1.0 / box->dimensions);
+    return scaled;
+}
+
 double box_shell_volume(const struct box *box, double low, double high) {
     if (box->dimensions == 2)
         return M_PI * (high - low) * (high + low);

@@ -2,11 +2,27 @@
 #include "system/composition.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 struct composition composition_of_one(int64_t count) {
     return (struct composition){.types = 1, .count = {count}};
+}
+
+int64_t composition_particles(const struct composition *composition) {
+    int64_t sum = 0;
+    for (int type = 0; type < composition->types; type++)
+        sum += composition->count[type];
+    return sum;
+}
+
+struct composition composition_scaled(const struct composition *composition, int64_t particles) {
+    const double share = (double)particles / (double)composition_particles(composition);
+    struct composition scaled = *composition;
+    for (int type = 0; type < scaled.types; type++)
+        scaled.count[type] = (int64_t)fmax(1, round(share * (double)composition->count[type]));
+    return scaled;
 }
 
 int composition_pairs(const struct composition *composition) {

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file How kernels tell kinds of pairs apart: for the pair loop and for Monte Carlo moves.
+#pragma once
+
+#include "base/lanes.h"
+#include "forces/pair.h"
+
+/// What tells kinds of pairs apart in a mixture.
+struct pair_mixture {
+    int types;
+    int32_t first[COMPOSITION_MOST_TYPES]; ///< least id of each type
+    /// For each kind of pairs, in a record: intervals of Φ and of ω per length, length of one of Φ.
+    REAL grid[COMPOSITION_MOST_PAIRS][4];
+    int32_t potential_stride, weight_stride; ///< table_stride
+    int32_t bins_apart;                      ///< of the histogram, from kind to kind
+};
+
+/// What the pairs of a mixture need to find their curves and bins.
+LANES_INLINE struct pair_mixture pair_mixture_of(const struct pair_law *law) {
+    const struct composition *composition = &law->composition;
+    struct pair_mixture mixture = {.types = composition->types};
+    for (int t = 1; t < composition->types; t++)
+        mixture.first[t] = mixture.first[t - 1] + (int32_t)composition->count[t - 1];
+    for (int p = 0; p < composition_pairs(composition); p++) {
+        if (law->potential) {
+            mixture.grid[p][0] = (REAL)table_inverse_spacing(law->potential, p);
+            mixture.grid[p][2] = (REAL)(1 / table_inverse_spacing(law->potential, p));
+        }
+        if (law->weight)
+            mixture.grid[p][1] = (REAL)table_inverse_spacing(law->weight, p);
+    }
+    mixture.potential_stride = law->potential ? table_stride(law->potential) : 0;
+    mixture.weight_stride = law->weight ? table_stride(law->weight) : 0;
+    if (law->histogram && law->histogram->pairs > 1)
+        mixture.bins_apart = (int32_t)law->histogram->bins;
+    return mixture;
+}
+
+/// Types of particles. A comparison that holds is −1.
+LANES_INLINE lanes_int pair_type(const struct pair_mixture *mixture, lanes_int id) {
+    lanes_int type = lanes_all_int(0);
+    for (int t = 1; t < mixture->types; t++)
+        type -= id >= lanes_all_int(mixture->first[t]);
+    return type;
+}
+
+/// Kinds of the pairs of particles, as composition_pair numbers them.
+LANES_INLINE lanes_int pair_kind(const struct pair_mixture *mixture, lanes_int id_i,
+                                 lanes_int id_j) {
+    const int32_t twice = 2 * mixture->types - 1;
+    const lanes_int a = pair_type(mixture, id_i), b = pair_type(mixture, id_j);
+    const lanes_int low = lanes_least_int(a, b), high = lanes_most_int(a, b);
+    return (low * (twice - low) >> 1) + high;
+}
