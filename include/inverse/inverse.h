@@ -44,7 +44,7 @@ struct inverse_problem {
     struct goals goals;    ///< to be fitted
     struct goals compared; ///< by the verification: those and others
     struct unknown unknown[UNKNOWNS];
-    struct simulation_setup scene; ///< all but the unknowns
+    struct simulation_setup scene; ///< all but the unknowns; its composition is set
     double core_threshold;         ///< bins below the first with g* above this are the hard core
     double core_stiffness;         ///< of the core (core_fill) [k_B T_0/λ²]
     uint64_t seed;

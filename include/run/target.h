@@ -34,6 +34,7 @@ enum status target_read(struct target *target, struct json_object *object,
 /// Convert g and its errors to a system of `count` particles (rdf_finite_size_factor). VOTCA's are
 /// normalised by N², so that their tail does not depend on N: their factor is 1/(1 − 1/count).
 /// Pairs of unlike types, `count` 0, stay as they are.
-void target_convert(struct target *target, size_t count);
+/// @param[in,out] g, error  shape [bins.count]
+void target_convert(const struct target *target, size_t count, double *g, double *error);
 
 void target_clear(struct target *target);

@@ -31,7 +31,7 @@ struct targets {
     struct target rdf[COMPOSITION_MOST_PAIRS]; ///< of each kind of pairs
     struct composition composition;            ///< of the scene
     size_t pairs;                              ///< kinds of its pairs
-    double *rdf_g, *rdf_error;                 ///< of all, one behind the other: shape [pairs, bins]
+    double *rdf_g, *rdf_error; ///< of all, one behind the other: shape [pairs, bins]
     struct target_etd etd;
     struct target_curve vacf, msd;
     struct target_number diffusion, pressure;
@@ -44,8 +44,7 @@ struct targets {
 /// Read the object "target" of a scene of this composition; `units` convert VOTCA's tables. Faults
 /// go to the document. Fails: NO_MEMORY.
 enum status targets_read(struct targets *targets, struct json_object *root,
-                         const struct composition *composition,
-                         const struct units *units) MUST_USE;
+                         const struct composition *composition, const struct units *units) MUST_USE;
 void targets_clear(struct targets *targets);
 void targets_write(const struct targets *targets, struct json_writer *writer);
 
@@ -54,9 +53,9 @@ void targets_digest(const struct targets *targets, uint64_t *digest);
 
 /// The goals of the scene: those to be fitted, and all. With `moves`, D is among
 /// those to be compared even if no value is given, so that a result knows its own, if another
-/// target says in what window. Fails: NO_MEMORY.
-enum status targets_goals(struct targets *targets, bool moves, struct goals *fitted,
-                          struct goals *compared) MUST_USE;
+/// target says in what window.
+void targets_goals(struct targets *targets, bool moves, struct goals *fitted,
+                   struct goals *compared);
 
 /// BAD_INPUT with the time steps that would do if an interval is not a whole number of steps.
 enum status targets_check_steps(const struct targets *targets, double time_step) MUST_USE;

@@ -76,7 +76,8 @@ static enum status read_unknowns(struct fit_file *fit, struct json_object *root)
     struct json_object object = json_child(root, "unknowns", false);
     // A potential for each kind of pairs, one weight for all.
     const struct composition composition[UNKNOWNS] = {
-        [UNKNOWN_POTENTIAL] = fit->scene.setup.composition};
+        [UNKNOWN_POTENTIAL] = fit->scene.setup.composition,
+        [UNKNOWN_WEIGHT] = composition_of_one(fit->scene.setup.placement.count)};
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         struct json_object child = json_child(&object, inverse_unknown_names[kind], false);
         fit->unknown[kind].wanted = child.item != NULL;
@@ -241,7 +242,7 @@ static enum status check(const struct fit_file *fit, const char *file) {
     return status == STATUS_OK ? STATUS_OK : status_prefix(status, "%s: scene", file);
 }
 
-static enum status state_problem(struct fit_file *fit, const struct run_options *options) {
+static void state_problem(struct fit_file *fit, const struct run_options *options) {
     struct inverse_problem *problem = &fit->problem;
     *problem = (struct inverse_problem){
         .scene = fit->scene.setup,
@@ -258,8 +259,8 @@ static enum status state_problem(struct fit_file *fit, const struct run_options 
         for (int pair = 0; pair < composition_pairs(&problem->scene.composition); pair++)
             unknown->start[pair] = scene_law_curve(&from->start, pair);
     }
-    return targets_goals(&fit->targets, fit->unknown[UNKNOWN_WEIGHT].wanted, &problem->goals,
-                         &problem->compared);
+    targets_goals(&fit->targets, fit->unknown[UNKNOWN_WEIGHT].wanted, &problem->goals,
+                  &problem->compared);
 }
 
 enum status fit_file_read(struct fit_file *fit, const char *file,
@@ -273,7 +274,7 @@ enum status fit_file_read(struct fit_file *fit, const char *file,
     TRY(status);
     if (options->has_seed)
         fit->heading.seed = options->seed;
-    TRY(state_problem(fit, options));
+    state_problem(fit, options);
     return check(fit, file);
 }
 

@@ -165,8 +165,10 @@ static enum status load(struct target *target, const struct units *units) {
     struct rows rows = {0};
     CHECK(p->format == TARGET_VOTCA ? read_votca(p, units, &rows) : read_columns(p, &rows));
     cut(p, &rows);
-    CHECK(find_bins(&rows, p->file, &target->bins));
+    struct rdf_bins bins;
+    CHECK(find_bins(&rows, p->file, &bins));
     CHECK(check_values(&rows, p->file));
+    target->bins = bins;
     target->g = rows.g;
     target->error = rows.error;
     rows.g = rows.error = NULL;
@@ -195,7 +197,7 @@ enum status target_read(struct target *target, struct json_object *object,
     return STATUS_OK;
 }
 
-void target_convert(struct target *target, size_t count) {
+void target_convert(const struct target *target, size_t count, double *g, double *error) {
     const bool votca = target->parameters.format == TARGET_VOTCA;
     if ((target->parameters.particles == 0 && !votca) || count == 0)
         return;
@@ -203,8 +205,8 @@ void target_convert(struct target *target, size_t count) {
                               ? 1 / (1 - 1 / (double)count)
                               : rdf_finite_size_factor((size_t)target->parameters.particles, count);
     for (size_t k = 0; k < target->bins.count; k++) {
-        target->g[k] *= factor;
-        target->error[k] *= factor;
+        g[k] *= factor;
+        error[k] *= factor;
     }
 }
 

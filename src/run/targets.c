@@ -141,21 +141,40 @@ static const char *pair_key(const struct composition *composition, int pair,
     return name;
 }
 
+/// g and errors of all kinds of pairs, one behind the other, if all could be read.
+static enum status collect_rdf(struct targets *targets) {
+    enum status status = STATUS_OK;
+    const size_t bins = targets->rdf[0].bins.count;
+    for (size_t pair = 0; pair < targets->pairs; pair++)
+        if (targets->rdf[pair].bins.count != bins)
+            return STATUS_OK;
+    NEW_ARRAY(targets->rdf_g, targets->pairs * bins);
+    NEW_ARRAY(targets->rdf_error, targets->pairs * bins);
+    for (size_t n = 0; n < targets->pairs * bins; n++) {
+        targets->rdf_g[n] = targets->rdf[n / bins].g[n % bins];
+        targets->rdf_error[n] = targets->rdf[n / bins].error[n % bins];
+    }
+done:
+    return status;
+}
+
 /// g(r), or in a mixture that of each kind of pairs: {"A-A": {"file": …}, …}.
 static enum status read_rdf(struct targets *targets, struct json_object *object,
                             const struct units *units) {
-    if (!composition_is_mixed(&targets->composition))
-        return target_read(&targets->rdf[0], object, units);
+    if (!composition_is_mixed(&targets->composition)) {
+        TRY(target_read(&targets->rdf[0], object, units));
+        return collect_rdf(targets);
+    }
     for (size_t pair = 0; pair < targets->pairs; pair++) {
         char name[COMPOSITION_PAIR_NAME_SIZE];
-        struct json_object child = json_child(
-            object, pair_key(&targets->composition, (int)pair, object, name), true);
+        struct json_object child =
+            json_child(object, pair_key(&targets->composition, (int)pair, object, name), true);
         if (child.item)
             TRY(target_read(&targets->rdf[pair], &child, units));
     }
     json_finish(object);
     check_bins(targets, object);
-    return STATUS_OK;
+    return collect_rdf(targets);
 }
 
 /// What belongs to one kind alone.
@@ -299,29 +318,19 @@ static size_t alike(const struct composition *composition, int pair) {
     return type[0] == type[1] ? (size_t)composition->count[type[0]] : 0;
 }
 
-/// g and errors of all kinds of pairs, converted to the numbers of the scene.
-static enum status collect_rdf(struct targets *targets) {
-    enum status status = STATUS_OK;
+/// To the numbers of the scene.
+static void convert_rdf(struct targets *targets) {
     const size_t bins = targets->rdf[0].bins.count;
-    NEW_ARRAY(targets->rdf_g, targets->pairs * bins);
-    NEW_ARRAY(targets->rdf_error, targets->pairs * bins);
-    for (size_t pair = 0; pair < targets->pairs; pair++) {
-        struct target *target = &targets->rdf[pair];
-        target_convert(target, alike(&targets->composition, (int)pair));
-        for (size_t k = 0; k < bins; k++) {
-            targets->rdf_g[pair * bins + k] = target->g[k];
-            targets->rdf_error[pair * bins + k] = target->error[k];
-        }
-    }
-done:
-    return status;
+    for (size_t pair = 0; pair < targets->pairs; pair++)
+        target_convert(&targets->rdf[pair], alike(&targets->composition, (int)pair),
+                       targets->rdf_g + pair * bins, targets->rdf_error + pair * bins);
 }
 
-enum status targets_goals(struct targets *targets, bool moves, struct goals *fitted,
-                          struct goals *compared) {
+void targets_goals(struct targets *targets, bool moves, struct goals *fitted,
+                   struct goals *compared) {
     static const double unknown = NAN;
     const struct target_etd *etd = &targets->etd;
-    TRY(collect_rdf(targets));
+    convert_rdf(targets);
     *compared = (struct goals){.bins = targets->rdf[0].bins,
                                .etd = etd->grid,
                                .etd_interval = etd->interval,
@@ -351,7 +360,6 @@ enum status targets_goals(struct targets *targets, bool moves, struct goals *fit
         targets->given[GOAL_ETD] || targets->given[GOAL_VACF] || targets->given[GOAL_MSD];
     if (moves && has_window && !targets->given[GOAL_DIFFUSION])
         compared->goal[GOAL_DIFFUSION] = (struct goal){1, &unknown, &unknown, 0};
-    return STATUS_OK;
 }
 
 /// A curve's interval must be a whole number of steps.

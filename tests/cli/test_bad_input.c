@@ -136,8 +136,6 @@ static const struct fault run_faults[] = {
     FAULT("unknown method", "\"imc\"", "\"imcc\"", "method.name", "did you mean \"imc\"?"),
     FAULT("a key of another method", "\"samples\": 8", "\"generations\": 8",
           "method.generations: unknown"),
-    FAULT("a mixture in a fit", "\"count\": 81", "\"types\": {\"A\": 40, \"B\": 41}",
-          "scene.particles.types: mixtures"),
     FAULT("a potential in a fit", STEP, STEP ", \"conservative\": {}", "input.json",
           "scene.conservative"),
 

@@ -100,7 +100,9 @@ static void sample_monte_carlo(const struct box *box, const struct table *nothin
                                double *g) {
     struct metropolis metropolis;
     struct rdf rdf;
-    assert_ok(metropolis_init(&metropolis, box, PARTICLES, nothing, 1, seed));
+    assert_ok(metropolis_init(&metropolis, box,
+                              &(struct composition){.types = 1, .count = {PARTICLES}}, nothing, 1,
+                              seed));
     // Steps up to 0.07 to 0.09: what is left of the lattice's order is far below the noise.
     assert_ok(metropolis_equilibrate(&metropolis, 1000));
     assert_ok(rdf_init(&rdf, &bins, box, PARTICLES, 0, SAMPLES));

@@ -40,17 +40,22 @@ static void measure_target(const struct fluid *fluid, const struct rdf_bins *bin
                            double *error, double *pressure) {
     enum { SAMPLES = 1500 };
     const struct box *box = &fluid->setup.box;
+    uint32_t counts[2];
+    const struct pair_histogram pairs = {.width = 1, .bins = 1, .counts = counts};
+    struct pair_sums sums;
     double virial = 0;
     struct metropolis metropolis;
     struct rdf rdf;
-    assert_ok(metropolis_init(&metropolis, &fluid->setup.box, PARTICLES, &fluid->potential,
-                              fluid->setup.temperature, 77));
+    assert_ok(metropolis_init(&metropolis, &fluid->setup.box,
+                              &(struct composition){.types = 1, .count = {PARTICLES}},
+                              &fluid->potential, fluid->setup.temperature, 77));
     assert_ok(metropolis_equilibrate(&metropolis, 500));
     assert_ok(rdf_init(&rdf, bins, &fluid->setup.box, PARTICLES, 0, SAMPLES));
     for (int sample = 0; sample < SAMPLES; sample++) {
         assert_ok(metropolis_run(&metropolis, 4));
         assert_ok(rdf_sample(&rdf, &metropolis.particles, &metropolis.neighbours));
-        virial += metropolis_virial(&metropolis) / SAMPLES;
+        metropolis_count(&metropolis, &pairs, &sums);
+        virial += sums.virial / SAMPLES;
     }
     double volume = 1;
     for (int d = 0; d < box->dimensions; d++)

@@ -33,7 +33,7 @@ static void measure(const struct fluid *fluid, const struct rdf_bins *bins, cons
                                                      .damping = 1}};
     const struct inverse_problem problem = {
         .goals = {.bins = *bins, .goal[GOAL_RDF] = {bins->count, g, errors, 0}},
-        .unknown[UNKNOWN_POTENTIAL] = {.wanted = true, .start = potential},
+        .unknown[UNKNOWN_POTENTIAL] = {.wanted = true, .start = {potential}},
         .scene = fluid->setup,
         .core_threshold = 1e-3,
         .core_stiffness = 2000,
@@ -78,7 +78,7 @@ static void check_slopes(const struct fluid *fluid, const struct rdf_bins *bins,
         double predicted = 0;
         for (size_t b = 0; b < at.grid.known; b++)
             predicted += 2 * amount * at.pressure.slope[b] *
-                         change_of(kind, at.grid.r[at.grid.core + b], rdf_bins_range(bins));
+                         change_of(kind, at.grid.r[at.grid.known_point[b]], rdf_bins_range(bins));
         const double found = pressure_when_changed(fluid, bins, g, &at, kind, amount) -
                              pressure_when_changed(fluid, bins, g, &at, kind, -amount);
         print_message("pressure %.3f(%.3f), change predicted %.4f, found %.4f\n", at.pressure.value,

@@ -80,8 +80,9 @@ static void measure_monte_carlo(const struct simulation_setup *setup, const stru
     const size_t count = (size_t)setup->placement.count;
     struct metropolis metropolis;
     measurement_init(measurement);
-    assert_ok(metropolis_init(&metropolis, &setup->box, count, setup->potential, setup->temperature,
-                              setup->seed));
+    assert_ok(metropolis_init(&metropolis, &setup->box,
+                              &(struct composition){.types = 1, .count = {(int64_t)count}},
+                              setup->potential, setup->temperature, setup->seed));
     assert_ok(metropolis_equilibrate(&metropolis, (uint32_t)schedule->equilibration));
     for (int block = 0; block < BLOCKS; block++) {
         struct rdf rdf;
@@ -112,8 +113,9 @@ static void measure_hybrid(const struct simulation_setup *setup, const struct rd
     const size_t count = (size_t)setup->placement.count;
     struct hybrid hybrid;
     measurement_init(measurement);
-    assert_ok(hybrid_init(&hybrid, &setup->box, count, setup->potential, &pairs, setup->temperature,
-                          setup->seed));
+    assert_ok(hybrid_init(&hybrid, &setup->box,
+                          &(struct composition){.types = 1, .count = {(int64_t)count}},
+                          setup->potential, &pairs, setup->temperature, setup->seed));
     assert_ok(hybrid_equilibrate(&hybrid, schedule->equilibration));
     hybrid.simulation.setup.time_step *= 2.5;
     for (int block = 0; block < BLOCKS; block++) {
@@ -214,7 +216,9 @@ static void test_hybrid_survives_when_the_potential_is_wild(void **state) {
     struct hybrid hybrid;
     const struct pair_histogram pairs = {0, 0.1, BINS, 0, NULL};
     fluid_groot_warren(&fluid, 300, 0.01);
-    assert_ok(hybrid_init(&hybrid, &fluid.setup.box, 300, &fluid.potential, &pairs, 1, 3));
+    assert_ok(hybrid_init(&hybrid, &fluid.setup.box,
+                          &(struct composition){.types = 1, .count = {300}}, &fluid.potential,
+                          &pairs, 1, 3));
     assert_ok(hybrid_equilibrate(&hybrid, 100));
     for (int k = 0; k <= TABLE_INTERVALS; k++)
         for (int n = 0; n < 4; n++)
@@ -240,7 +244,7 @@ static bool is_listed(const struct neighbours *neighbours, size_t i, size_t j) {
 /// Pairs within the cutoff that the list does not hold.
 static size_t count_missing(const struct metropolis *metropolis) {
     const struct particles *particles = &metropolis->particles;
-    const double cutoff = metropolis->potential->cutoff;
+    const double cutoff = metropolis->law.potential->cutoff;
     size_t missing = 0;
     for (size_t i = 0; i < particles->count; i++)
         for (size_t j = 0; j < particles->count; j++) {
@@ -261,7 +265,9 @@ static void test_metropolis_list_is_complete_when_the_step_is_the_first_or_tuned
     struct fluid fluid;
     struct metropolis metropolis;
     fluid_groot_warren(&fluid, 300, 0.01);
-    assert_ok(metropolis_init(&metropolis, &fluid.setup.box, 300, &fluid.potential, 1, 3));
+    assert_ok(metropolis_init(&metropolis, &fluid.setup.box,
+                              &(struct composition){.types = 1, .count = {300}}, &fluid.potential,
+                              1, 3));
     for (int sweep = 0; sweep < 30; sweep++) {
         assert_ok(metropolis_run(&metropolis, 1));
         assert_int_equal(count_missing(&metropolis), 0);
@@ -294,11 +300,12 @@ static void add_configurational(const struct metropolis *metropolis, double *squ
     for (int d = 0; d < 3; d++)
         memcpy(copy.position[d], metropolis->particles.position[d], count * sizeof(double));
     assert_ok(neighbours_init(&half, NEIGHBOURS_HALF, &copy.box, count,
-                              metropolis->potential->cutoff, 0));
+                              metropolis->law.potential->cutoff, 0));
     assert_ok(neighbours_sort_and_build(&half, &copy));
     const struct composition alike = {0};
-    assert_ok(reference_configurational(metropolis->potential, &alike, metropolis->temperature,
-                                        &copy, &half, &here[0], &here[1]));
+    assert_ok(reference_configurational(metropolis->law.potential, &alike,
+                                        metropolis->law.temperature, &copy, &half, &here[0],
+                                        &here[1]));
     *squares += here[0];
     *laplacian += here[1];
     neighbours_clear(&half);
@@ -315,7 +322,8 @@ static void test_configurational_temperature_sees_a_force_that_ends_abruptly(voi
     struct metropolis metropolis;
     struct running_mean difference = {0}, squares = {0};
     make_linear(&linear);
-    assert_ok(metropolis_init(&metropolis, &box, PARTICLES, &linear, 1, 3));
+    assert_ok(metropolis_init(
+        &metropolis, &box, &(struct composition){.types = 1, .count = {PARTICLES}}, &linear, 1, 3));
     assert_ok(metropolis_equilibrate(&metropolis, 200));
     for (int block = 0; block < BLOCKS; block++) {
         double sum[2] = {0};

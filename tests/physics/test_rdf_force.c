@@ -35,8 +35,9 @@ static void measure(const struct fluid *fluid, const struct plan *plan, const st
                     struct both *both) {
     const struct simulation_setup *setup = &fluid->setup;
     struct metropolis metropolis;
-    assert_ok(metropolis_init(&metropolis, &setup->box, plan->count, &fluid->potential,
-                              setup->temperature, plan->seed));
+    assert_ok(metropolis_init(&metropolis, &setup->box,
+                              &(struct composition){.types = 1, .count = {(int64_t)plan->count}},
+                              &fluid->potential, setup->temperature, plan->seed));
     assert_ok(metropolis_equilibrate(&metropolis, 300));
     assert_ok(rdf_init(&both->rdf, bins, &setup->box, plan->count, 0, plan->samples));
     assert_ok(rdf_force_init(&both->force, bins, &setup->box, plan->count, &fluid->potential,

@@ -206,7 +206,9 @@ static void test_rdf_counts_every_pair_twice_when_the_list_is_full(void **state)
     struct fluid fluid;
     struct metropolis metropolis;
     fluid_groot_warren(&fluid, PARTICLES, 0.01);
-    assert_ok(metropolis_init(&metropolis, &fluid.setup.box, PARTICLES, &fluid.potential, 1, 6));
+    assert_ok(metropolis_init(&metropolis, &fluid.setup.box,
+                              &(struct composition){.types = 1, .count = {PARTICLES}},
+                              &fluid.potential, 1, 6));
     assert_ok(metropolis_equilibrate(&metropolis, 51));
     count_all(&bins, &metropolis.particles, &counts);
     rdf_count_pairs(&bins, &metropolis.particles, &metropolis.neighbours, counted);

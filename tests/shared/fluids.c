@@ -28,6 +28,7 @@ static void begin(struct fluid *fluid, int dimensions, int64_t count, double den
     const double edge = pow((double)count / density, 1.0 / dimensions);
     *fluid = (struct fluid){
         .setup = {.box = {dimensions, {edge, edge, dimensions == 3 ? edge : 1}},
+                  .composition = composition_of_one(count),
                   .placement = {.count = count, .kind = PLACEMENT_LATTICE, .jitter = 0.05},
                   .temperature = 1,
                   .time_step = time_step,

@@ -29,9 +29,9 @@ static double energy_at(const struct metropolis *metropolis, size_t self, const 
                 box_nearest(at[d] - particles->position[d][j], particles->box.length[d]);
             square += x * x;
         }
-        if (j == self || sqrt(square) >= metropolis->potential->cutoff)
+        if (j == self || sqrt(square) >= metropolis->law.potential->cutoff)
             continue;
-        table_evaluate(metropolis->potential, sqrt(square), &value, &slope, NULL);
+        table_evaluate(metropolis->law.potential, sqrt(square), &value, &slope, NULL);
         sum += value;
         *virial -= sqrt(square) * slope;
     }
@@ -52,7 +52,7 @@ static void check_changes(const struct metropolis *metropolis) {
         const double before = energy_at(metropolis, k, from, &unused);
         const double after = energy_at(metropolis, k, moved, &unused);
         const double fast =
-            move_energy_change(particles, &metropolis->neighbours, metropolis->potential, k, to);
+            move_energy_change(&metropolis->law, particles, &metropolis->neighbours, k, to);
         const double scale = fmax(1, 0.1 * (fabs(before) + fabs(after)));
         largest = fmax(largest, fabs(fast - (after - before)) / scale);
     }
@@ -61,7 +61,7 @@ static void check_changes(const struct metropolis *metropolis) {
 }
 
 static void check_sums(const struct metropolis *metropolis) {
-    const struct rdf_bins bins = {0, metropolis->potential->cutoff / BINS, BINS};
+    const struct rdf_bins bins = {0, metropolis->law.potential->cutoff / BINS, BINS};
     uint32_t counts[BINS + 1] = {0};
     double histogram[BINS] = {0}, energy = 0, virial = 0, differences = 0;
     struct pair_sums sums;
@@ -85,8 +85,9 @@ static void check_all_sets(const struct fluid *fluid) {
     static const char *const sets[] = {"portable", "avx2", "avx512"};
     const char *best = simd_name();
     struct metropolis metropolis;
-    assert_ok(metropolis_init(&metropolis, &fluid->setup.box, COUNT, &fluid->potential,
-                              fluid->setup.temperature, 3));
+    assert_ok(metropolis_init(&metropolis, &fluid->setup.box,
+                              &(struct composition){.types = 1, .count = {COUNT}},
+                              &fluid->potential, fluid->setup.temperature, 3));
     assert_ok(metropolis_equilibrate(&metropolis, 60));
     for (int s = 0; s < 3; s++) {
         if (!simd_select(sets[s]))

@@ -38,8 +38,8 @@ static void begin(struct both *both, bool potential, bool weight) {
     const int bspline = index_of(shape_find("bspline"));
     both->problem = (struct inverse_problem){
         .goals = {.bins = {0, 0.1, BINS}, .goal[GOAL_RDF] = {.count = BINS, .value = both->g}},
-        .unknown = {{potential, {bspline, POTENTIAL_GENES, -20, 80, 0, 0}, &both->potential},
-                    {weight, {bspline, WEIGHT_GENES, 0, 5, 0.1, 1.5}, &both->weight}},
+        .unknown = {{potential, {bspline, POTENTIAL_GENES, -20, 80, 0, 0}, {&both->potential}},
+                    {weight, {bspline, WEIGHT_GENES, 0, 5, 0.1, 1.5}, {&both->weight}}},
         .scene = {.temperature = 1},
         .core_threshold = 1e-3,
         .core_stiffness = 2000};
@@ -110,7 +110,7 @@ static void test_decoder_start_falls_from_the_middle_when_no_weight_is_given(voi
     struct both both;
     double curve[WEIGHT_POINTS];
     begin(&both, false, true);
-    both.problem.unknown[UNKNOWN_WEIGHT].start = NULL;
+    both.problem.unknown[UNKNOWN_WEIGHT].start[0] = NULL;
     assert_ok(decoder_start(&both.decoder, both.genes));
     decoder_curve(&both.decoder, UNKNOWN_WEIGHT, both.genes, curve);
     for (int k = 0; k < WEIGHT_POINTS; k++)
@@ -210,7 +210,7 @@ static void begin_power(struct both *both) {
     *both = (struct both){.power = {2.5, 1.5, 0.4, 1.6}};
     both->weight = (struct curve){&formula_power_weight, &both->power};
     both->problem.unknown[UNKNOWN_WEIGHT] =
-        (struct unknown){true, {INVERSE_CURVE_POWER, 3, 0, 5, 0.1, 1.6}, &both->weight};
+        (struct unknown){true, {INVERSE_CURVE_POWER, 3, 0, 5, 0.1, 1.6}, {&both->weight}};
     assert_ok(decoder_init(&both->decoder, &both->problem));
     assert_ok(decoder_start(&both->decoder, both->genes));
 }

@@ -77,7 +77,12 @@ static void test_imc_votca_leaves_out_what_is_singular(void **state) {
     (void)state;
     // C sees (1, 1) alone; the step is C's pseudo-inverse, and the misfit what it cannot remove.
     static const double covariance[] = {2, 2, 2, 2}, excess[] = {3, 1}, variance[] = {0.25, 0.25};
-    const struct imc_system system = {2, covariance, excess, variance, 1.5, 1, NULL, 0};
+    const struct imc_system system = {.size = 2,
+                                      .covariance = covariance,
+                                      .excess = excess,
+                                      .variance = variance,
+                                      .temperature = 1.5,
+                                      .spacing = 1};
     struct imc_solution solution;
     double x[2];
     assert_ok(imc_votca(&system, 0, x, &solution));

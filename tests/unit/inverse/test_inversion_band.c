@@ -31,8 +31,12 @@ static void test_inversion_band_is_the_scatter_when_the_data_say_all(void **stat
     make_counts(counts);
     for (int k = 0; k < SIZE; k++)
         variance[k] = 0.02 + 0.005 * k;
-    assert_ok(inversion_band_covariance(SIZE, &counts[0][0], variance, temperature, spacing,
-                                        covariance, &directions));
+    const struct imc_system response = {.size = SIZE,
+                                        .covariance = &counts[0][0],
+                                        .variance = variance,
+                                        .temperature = temperature,
+                                        .spacing = spacing};
+    assert_ok(inversion_band_covariance(&response, covariance, &directions));
     for (uint32_t trial = 0; trial < TRIALS; trial++) {
         double excess[SIZE], x[SIZE];
         struct imc_solution solution;
@@ -41,8 +45,8 @@ static void test_inversion_band_is_the_scatter_when_the_data_say_all(void **stat
             rng_normal4(rng_philox(22, RNG_INITIAL, trial, (uint32_t)a, 0), normal);
             excess[a] = sqrt(variance[a]) * normal[0];
         }
-        const struct imc_system system = {SIZE,        &counts[0][0], excess, variance,
-                                          temperature, spacing,       NULL,   0};
+        struct imc_system system = response;
+        system.excess = excess;
         assert_ok(imc_solve(&system, 1e-9, x, &solution));
         for (int k = 0; k < SIZE; k++)
             statistics_add(&scatter[k], x[k]);
@@ -58,8 +62,12 @@ static void test_inversion_band_is_the_prior_when_the_data_say_nothing(void **st
     double counts[SIZE][SIZE] = {{0}}, variance[SIZE], covariance[SIZE * SIZE], directions;
     for (int k = 0; k < SIZE; k++)
         variance[k] = 1;
-    assert_ok(inversion_band_covariance(SIZE, &counts[0][0], variance, temperature, spacing,
-                                        covariance, &directions));
+    const struct imc_system response = {.size = SIZE,
+                                        .covariance = &counts[0][0],
+                                        .variance = variance,
+                                        .temperature = temperature,
+                                        .spacing = spacing};
+    assert_ok(inversion_band_covariance(&response, covariance, &directions));
     assert_close(directions, 0, 1e-12);
     // One number has the ridge alone: 10 k_B T of it, spread over the whole curve; the last bin,
     // half a spacing from the end, is held by its bend.

@@ -37,7 +37,7 @@ static void test_potential_grid_has_three_parts_when_the_target_has_a_core(void 
     target[20] = 0;
     const struct inverse_problem problem = make_problem(target);
     assert_ok(potential_grid_init(&grid, &problem));
-    assert_int_equal(grid.core, CORE);
+    assert_int_equal(grid.core[0], CORE);
     assert_int_equal(grid.known, BINS - CORE);
     assert_int_equal(grid.points, BINS + 1);
     assert_close(grid.r[0], 0.05, rounding);
@@ -54,7 +54,7 @@ static void test_potential_grid_has_no_core_when_the_target_begins_at_once(void 
         target[k] = 0.5;
     const struct inverse_problem problem = make_problem(target);
     assert_ok(potential_grid_init(&grid, &problem));
-    assert_int_equal(grid.core, 0);
+    assert_int_equal(grid.core[0], 0);
     potential_grid_start(&grid, &problem, phi);
     assert_close(phi[0], 1.3 * log(2), rounding);
     potential_grid_clear(&grid);
@@ -91,7 +91,7 @@ static void test_potential_grid_starts_from_the_curve_when_there_is_one(void **s
     struct potential_grid grid;
     make_target(target);
     struct inverse_problem problem = make_problem(target);
-    problem.unknown[UNKNOWN_POTENTIAL].start = &curve;
+    problem.unknown[UNKNOWN_POTENTIAL].start[0] = &curve;
     assert_ok(potential_grid_init(&grid, &problem));
     potential_grid_start(&grid, &problem, phi);
     for (int k = CORE; k < BINS; k++)

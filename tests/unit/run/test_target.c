@@ -116,7 +116,7 @@ static void test_target_read_takes_votca_in_nanometres(void **state) {
     assert_identical(target.g[2], 1.5);
     assert_identical(target.error[2], 0);
     // Normalised by N².
-    target_convert(&target, 11);
+    target_convert(&target, 11, target.g, target.error);
     assert_close(target.g[2], 1.65, 1e-15);
     target_clear(&target);
 }

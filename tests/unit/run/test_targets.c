@@ -36,7 +36,8 @@ static enum status read(void **state, const char *members, struct targets *targe
     assert_in_range(length, 1, sizeof text - 1);
     assert_ok(json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
     struct json_object root = json_root(document);
-    assert_ok(targets_read(targets, &root, &units));
+    assert_ok(
+        targets_read(targets, &root, &(struct composition){.types = 1, .count = {100}}, &units));
     json_finish(&root);
     return json_close(document);
 }
@@ -53,7 +54,7 @@ static void test_targets_read_takes_all_kinds(void **state) {
     struct goals fitted, compared;
     write_tables(state);
     assert_ok(read(state, RDF ", " ETD ", " VACF ", " MSD ", " NUMBERS, &t));
-    targets_goals(&t, 100, true, &fitted, &compared);
+    targets_goals(&t, true, &fitted, &compared);
     assert_int_equal(goals_count(&compared), 6);
     assert_int_equal(goals_count(&fitted), 5);
     assert_false(goals_ask(&fitted, GOAL_PRESSURE));
@@ -97,21 +98,21 @@ static void test_targets_goals_measure_motion_as_the_targets_do(void **state) {
     write_tables(state);
     put(state, "v.tsv", "0 3 0\n0.3 2 0\n0.6 1 0\n0.9 1 0\n");
     assert_ok(read(state, ETD ", " VACF, &t));
-    targets_goals(&t, 100, true, &fitted, &compared);
+    targets_goals(&t, true, &fitted, &compared);
     assert_close(compared.motion_interval, 0.3, 1e-12);
     assert_int_equal(compared.motion_lags, 3);
     assert_true(goals_ask(&compared, GOAL_DIFFUSION) && !goals_ask(&fitted, GOAL_DIFFUSION));
     assert_true(isnan(*compared.goal[GOAL_DIFFUSION].value));
-    targets_goals(&t, 100, false, &fitted, &compared);
+    targets_goals(&t, false, &fitted, &compared);
     assert_false(goals_ask(&compared, GOAL_DIFFUSION));
     targets_clear(&t);
     assert_ok(read(state, ETD, &t));
-    targets_goals(&t, 100, true, &fitted, &compared);
+    targets_goals(&t, true, &fitted, &compared);
     assert_close(compared.motion_interval, 0.1, 1e-12);
     assert_int_equal(compared.motion_lags, 2);
     targets_clear(&t);
     assert_ok(read(state, "\"diffusion\": {\"value\": 1}", &t));
-    targets_goals(&t, 100, true, &fitted, &compared);
+    targets_goals(&t, true, &fitted, &compared);
     assert_close(compared.motion_interval * (double)compared.motion_lags, 1.6, 1e-12);
     targets_clear(&t);
 }
@@ -187,7 +188,7 @@ static void test_targets_digest_knows_every_number(void **state) {
     write_tables(state);
     assert_ok(read(state, RDF ", " ETD ", " VACF ", " MSD, &t));
     targets_digest(&t, &before);
-    double *const numbers[] = {t.rdf.g,      t.rdf.error,  t.etd.survival, t.etd.error,
+    double *const numbers[] = {t.rdf_g,      t.rdf_error,  t.etd.survival, t.etd.error,
                                t.vacf.value, t.vacf.error, t.msd.value,    t.msd.error};
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
         const double good = numbers[k][2];
