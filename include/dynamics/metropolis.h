@@ -10,9 +10,9 @@
 
 struct metropolis {
     struct particles particles;
-    struct neighbours neighbours;  ///< full list
-    struct pair_law law;           ///< its potential is borrowed and may be exchanged
-    double step;                   ///< half edge of the cube of moves [λ]
+    struct neighbours neighbours; ///< full list
+    struct pair_law law;          ///< its potential is borrowed and may be exchanged
+    double step;                  ///< half edge of the cube of moves [λ]
     uint64_t seed;
     uint32_t sweep; ///< sweeps so far: the counter of the random numbers
     uint64_t accepted, tried;

@@ -9,8 +9,8 @@
 #include "inverse/inverse.h"
 
 struct potential_grid {
-    size_t pairs; ///< of types: blocks
-    size_t bins;  ///< of a block
+    size_t pairs;        ///< of types: blocks
+    size_t bins;         ///< of a block
     size_t points;       ///< of all blocks: pairs · (bins + 1)
     size_t *core;        ///< shape [pairs]: points in the core = the first known bin
     size_t *known_of;    ///< shape [pairs]: bins with a value of their own

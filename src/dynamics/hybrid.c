@@ -38,8 +38,7 @@ static double first_step(const struct table *potential, double temperature) {
 
 enum status hybrid_init(struct hybrid *hybrid, const struct box *box,
                         const struct composition *composition, const struct table *potential,
-                        const struct pair_histogram *bins, double temperature,
-                        uint64_t seed) {
+                        const struct pair_histogram *bins, double temperature, uint64_t seed) {
     enum status status = STATUS_OK;
     const size_t count = (size_t)composition_particles(composition);
     const struct simulation_setup setup = {

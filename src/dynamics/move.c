@@ -7,7 +7,8 @@
 /// Kernels for the instruction set in use.
 static const struct move_kernels *choose(const struct pair_law *law,
                                          const struct particles *particles) {
-    const int flat = particles->box.dimensions == 2, mixed = composition_is_mixed(&law->composition);
+    const int flat = particles->box.dimensions == 2,
+              mixed = composition_is_mixed(&law->composition);
     switch (simd_used()) {
 #if SIMD_X86
     case SIMD_AVX512:

@@ -356,7 +356,7 @@ static void start_curve(const struct decoder *decoder, enum unknown_kind kind, d
     const double middle = 0.5 * (unknown->parameters.minimum + unknown->parameters.maximum);
     for (int k = 0; k < WEIGHT_POINTS; k++)
         curve[k] = unknown->start[0] ? curve_value(unknown->start[0], grid->r[k])
-                                  : middle * (1 - grid->r[k] / grid->cutoff);
+                                     : middle * (1 - grid->r[k] / grid->cutoff);
 }
 
 /// Genes of a formula in the middle of its range, or those of the start if it is the same formula.
@@ -381,7 +381,8 @@ static enum status start_of_curve(const struct decoder *decoder, enum unknown_ki
     enum status status = STATUS_OK;
     const struct unknown_parameters *p = &unknown_of(decoder, kind)->parameters;
     const size_t count = genes_of_curve(decoder, kind), all = genes_of(decoder, kind);
-    const size_t first = first_point(decoder, kind, number), points = points_of_curve(decoder, kind);
+    const size_t first = first_point(decoder, kind, number),
+                 points = points_of_curve(decoder, kind);
     const double *block = decoder->basis[kind] + number * (points * all + count);
     double *place = NULL;
     NEW_ARRAY(place, points);

@@ -213,8 +213,8 @@ double inversion_target_g(const struct inversion *inversion, size_t bin) {
 static void assess_rdf(struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
     const struct comoments *counts = &inversion->replicas.counts;
-    inversion->inefficiency = replicas_inefficiency(&inversion->replicas, inversion->ideal,
-                                                    grid->known_bin, grid->known);
+    inversion->inefficiency =
+        replicas_inefficiency(&inversion->replicas, inversion->ideal, grid->known_bin, grid->known);
     const double independent = counts->count / inversion->inefficiency;
     double sum = 0, own = 0, both = 0;
     for (size_t n = 0; n < inversion->bins; n++)

@@ -151,7 +151,8 @@ static enum status find_flat(struct inversion *inversion) {
             for (size_t b = 0; b < n; b++)
                 if (potential_grid_well_known(inversion->problem, grid->known_bin[b]))
                     sum += band->covariance[a * n + b] * gsl_matrix_get(vectors, b, k);
-            band->flat[k * grid->points + grid->known_point[a]] = sum / sqrt(gsl_vector_get(values, k));
+            band->flat[k * grid->points + grid->known_point[a]] =
+                sum / sqrt(gsl_vector_get(values, k));
         }
 done:
     gsl_matrix_free(part);

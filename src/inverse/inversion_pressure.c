@@ -27,7 +27,8 @@ static double virial_error(const struct replicas *replicas, double inefficiency)
 void inversion_pressure_measure(struct inversion *inversion) {
     const struct replicas *replicas = &inversion->replicas;
     const double unit = virial_unit(inversion), mean = replicas->counts.mean[replicas->bins];
-    const double ideal = (double)composition_particles(&inversion->composition) * inversion->problem->scene.temperature;
+    const double ideal = (double)composition_particles(&inversion->composition) *
+                         inversion->problem->scene.temperature;
     inversion->pressure.value = (inversion->box.dimensions * ideal + mean) / unit;
     inversion->pressure.error = virial_error(replicas, inversion->inefficiency) / unit;
 }

@@ -117,8 +117,8 @@ void potential_grid_start(const struct potential_grid *grid, const struct invers
         const size_t point = grid->known_point[n], pair = point / (grid->bins + 1);
         const struct curve *start = problem->unknown[UNKNOWN_POTENTIAL].start[pair];
         // A bin without pairs beyond the core is as high as one with the threshold's few.
-        const double g = fmax(problem->goals.goal[GOAL_RDF].value[grid->known_bin[n]],
-                              problem->core_threshold);
+        const double g =
+            fmax(problem->goals.goal[GOAL_RDF].value[grid->known_bin[n]], problem->core_threshold);
         phi[point] =
             start ? curve_value(start, grid->r[point]) : -problem->scene.temperature * log(g);
     }
@@ -151,7 +151,8 @@ static double shell_virial(const struct table *table, const struct rdf_bins *bin
     return sum / volume;
 }
 
-/// Add `factor` times the virials of a block's bins by a table that is `change` higher at one point.
+/// Add `factor` times the virials of a block's bins by a table that is `change` higher at one
+/// point.
 static enum status add_virials(const struct potential_grid *grid, const struct rdf_bins *bins,
                                int dimensions, const double *phi, size_t point, double change,
                                double factor, double *changed, double *virial) {

@@ -18,8 +18,8 @@ static double *scaled(const double *values, size_t count, double factor) {
     return copy;
 }
 
-/// The true curve number `curve` of an unknown at `r`, where the run file names it; the caller frees
-/// it.
+/// The true curve number `curve` of an unknown at `r`, where the run file names it; the caller
+/// frees it.
 static double *truth_at(const struct fit_file *fit, enum unknown_kind kind, size_t curve,
                         const double *r, size_t points) {
     const struct curve *truth = scene_law_curve(&fit->unknown[kind].truth, (int)curve);

@@ -38,7 +38,8 @@ static double weight_truth(const struct fit_file *fit, const struct decoder *dec
     // Between the cutoffs, at which a weight may end in a step.
     for (size_t k = 1; k + 1 < WEIGHT_POINTS; k++) {
         const double r = decoder->weight.r[k];
-        const double truth = curve_value(scene_law_curve(&fit->unknown[UNKNOWN_WEIGHT].truth, 0), r);
+        const double truth =
+            curve_value(scene_law_curve(&fit->unknown[UNKNOWN_WEIGHT].truth, 0), r);
         largest = fmax(largest, truth);
         // Closer pairs than the target follows do not exist.
         if (fit->targets.given[GOAL_ETD] && r < fit->targets.etd.grid.r_minimum)

@@ -134,8 +134,8 @@ enum status history_write(const struct history *history, const struct inverse_me
     TRY(write_history(history, method, folder));
     TRY(write_timing(history, folder));
     for (int kind = 0; kind < UNKNOWNS; kind++)
-        for (size_t curve = 0; history->points[kind] > 0 && curve < decoder_curve_count(decoder, kind);
-             curve++)
+        for (size_t curve = 0;
+             history->points[kind] > 0 && curve < decoder_curve_count(decoder, kind); curve++)
             TRY(write_curve(history, decoder, kind, curve, folder));
     return STATUS_OK;
 }
