@@ -5,14 +5,19 @@
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
+# Of a mixture "_A-B", the kind of pairs.
+pair = system("printf %s \"$MESOFIT_PAIR\"")
+table = "potential" . pair . ".tsv"
+history = "potential" . pair . "_history.tsv"
+
 # Number of columns, and of the first and last iteration, from the header. Of many iterations
 # every n-th is drawn: more than `most_lines` cannot be told apart.
 most_lines = 16
 columns = 1
-if (has("potential_history.tsv")) {
+if (has(history)) {
     found = system("awk -F '\t' '/^#/ { count = split($0, name, FS) } END { \
         gsub(/\\[.*|[^0-9]/, \"\", name[2]); gsub(/\\[.*|[^0-9]/, \"\", name[count]); \
-        print count, name[2] + 0, name[count] + 0 }' potential_history.tsv")
+        print count, name[2] + 0, name[count] + 0 }' " . history)
     columns = int(word(found, 1))
     first = real(word(found, 2))
     last = columns > 2 ? real(word(found, 3)) : first + 1
@@ -21,29 +26,29 @@ every = high(1, ceil((columns - 1) / real(most_lines)))
 iteration_of(column) = first + (last - first) * (column - 2.0) / high(1, columns - 2)
 
 # The iterations may go a little lower than the result.
-stats "potential.tsv" using 2 name "P" nooutput
+stats table using 2 name "P" nooutput
 bottom = low(0, P_min)
 top = potential_top(bottom, P_max)
-stats "potential.tsv" using ($2 < top ? $1 : NaN) name "R" nooutput
+stats table using ($2 < top ? $1 : NaN) name "R" nooutput
 begin = is_soft(P_max) ? 0 : floor(10 * (R_min - 0.06)) / 10.0
 lowest = 2 * bottom - 0.2
 do for [k = columns:2:-every] {
-    stats "potential_history.tsv" using k name "H" nooutput
+    stats history using k name "H" nooutput
     bottom = low(bottom, high(lowest, H_min))
 }
 bottom = bottom - 0.06 * (top - bottom)
 
-truth = column_of("potential.tsv", "truth")
+truth = column_of(table, "truth")
 lower = truth ? 0.065 : 0
 # An empty loop would keep its place in the legend; so would nan.
-show_band = !has_numbers("potential.tsv", 4) ? "" : "'potential.tsv' " . \
+show_band = !has_numbers(table, 4) ? "" : "'" . table . "' " . \
     "using 1:(band_low(2, 4)):(band_high(2, 4)) " . \
     "with filledcurves @band linecolor rgb blue title '95 % band', "
-show_truth = !truth ? "" : ", 'potential.tsv' using 1:(column(truth)) " . \
+show_truth = !truth ? "" : ", '" . table . "' using 1:(column(truth)) " . \
     "with lines title 'truth' @true_line"
 
 do for [kind in kinds] {
-    eval open(kind, "potential", 720, 480)
+    eval open(kind, "potential" . pair, 720, 480)
     set lmargin at screen 0.13
     set rmargin at screen 0.97
     set tmargin at screen 0.97
@@ -61,10 +66,10 @@ do for [kind in kinds] {
         set cbtics (first, last) scale 0 offset 0, 0.5
         set label 2 "iteration" at graph 0.865, graph 0.785 - lower center
     }
-    plot for [k = 2 + (columns - 2) % every:columns:every] "potential_history.tsv" \
+    plot for [k = 2 + (columns - 2) % every:columns:every] history \
             using 1:k:(iteration_of(k)) with lines linewidth 0.9 linecolor palette, \
         0 linewidth 0.8 linecolor rgb ink, \
-        @show_band "potential.tsv" using 1:2 with lines title "result" \
+        @show_band table using 1:2 with lines title "result" \
             linewidth 2.6 linecolor rgb blue @show_truth
     eval close
 }

@@ -4,15 +4,19 @@
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
+# Of a mixture "_A-B", the kind of pairs.
+pair = system("printf %s \"$MESOFIT_PAIR\"")
+table = "rdf" . pair . ".tsv"
+
 combined(a, b) = sqrt(known(a)**2 + known(b)**2)
 
-stats "rdf.tsv" using 1 name "R" nooutput
-stats "rdf.tsv" using (high($2, $4)) name "G" nooutput
-stats "rdf.tsv" using (high(abs($4 - $2), combined(3, 5))) name "D" nooutput
+stats table using 1 name "R" nooutput
+stats table using (high($2, $4)) name "G" nooutput
+stats table using (high(abs($4 - $2), combined(3, 5))) name "D" nooutput
 reach = D_max > 0 ? 1.15 * D_max : 1
 
 do for [kind in kinds] {
-    eval open(kind, "rdf", 720, 560)
+    eval open(kind, "rdf" . pair, 720, 560)
     set multiplot
     set lmargin at screen 0.145
     set rmargin at screen 0.97
@@ -25,9 +29,9 @@ do for [kind in kinds] {
     set format x ""
     eval name_axis(g_label, 0.024)
     set key at screen 0.97, screen 0.985 right top vertical maxrows 1
-    plot "rdf.tsv" using 1:($4 - $5):($4 + $5) with filledcurves @band linecolor rgb blue, \
-        "" using 1:4 with lines title "result" linewidth 2.6 linecolor rgb blue, \
-        "" using 1:2 with points title "target" pointtype 7 pointsize 0.38 linecolor rgb ink
+    plot table using 1:($4 - $5):($4 + $5) with filledcurves @band linecolor rgb blue, \
+        table using 1:4 with lines title "result" linewidth 2.6 linecolor rgb blue, \
+        table using 1:2 with points title "target" pointtype 7 pointsize 0.38 linecolor rgb ink
 
     set tmargin at screen 0.34
     set bmargin at screen 0.125
@@ -37,10 +41,10 @@ do for [kind in kinds] {
     set xlabel r_label
     eval name_axis("{/:Italic g} − {/:Italic g}_{target}", 0.024)
     set key at graph 0.99, graph 1.18 right top vertical maxrows 1
-    plot "rdf.tsv" using 1:(-combined(3, 5)):(combined(3, 5)) with filledcurves @band \
+    plot table using 1:(-combined(3, 5)):(combined(3, 5)) with filledcurves @band \
             title "± 1 standard error" linecolor rgb faint, \
         0 linewidth 0.8 linecolor rgb ink, \
-        "" using 1:($4 - $2) with lines linewidth 1.3 linecolor rgb blue
+        table using 1:($4 - $2) with lines linewidth 1.3 linecolor rgb blue
     unset xlabel
     unset multiplot
     eval close

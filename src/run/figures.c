@@ -4,7 +4,9 @@
 #include "io/output.h"
 #include "run/program.h"
 
+#include <dirent.h>
 #include <errno.h>
+#include <fnmatch.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,23 +22,24 @@ struct figure {
     const char *name;      ///< of the script and of the figure
     const char *tables[4]; ///< that the script cannot do without; NULL-terminated
     const char *column;    ///< that the first table must have, or NULL
+    bool by_pairs;         ///< in a mixture one for each kind of pairs, by the first table
 };
 
 static const struct figure figures[] = {
-    {"rdf", {"rdf.tsv"}, "target"},
-    {"potential", {"potential.tsv"}, NULL},
-    {"omega", {"omega.tsv"}, "omega_error"},
-    {"etd_cells", {"etd_cells.tsv"}, "target"},
-    {"vacf", {"vacf.tsv"}, "target"},
-    {"error", {"history.tsv", "timing.tsv"}, NULL},
-    {"generations", {"history.tsv"}, "diversity"},
-    {"pareto", {"pareto.tsv", "pareto_history.tsv"}, NULL},
-    {"simulation", {"thermodynamics.tsv"}, NULL},
-    {"motion", {"motion.tsv"}, NULL},
-    {"etd", {"etd.tsv", "etd_error.tsv", "etd_bins.tsv"}, NULL},
+    {"rdf", {"rdf.tsv"}, "target", true},
+    {"potential", {"potential.tsv"}, NULL, true},
+    {"omega", {"omega.tsv"}, "omega_error", false},
+    {"etd_cells", {"etd_cells.tsv"}, "target", false},
+    {"vacf", {"vacf.tsv"}, "target", false},
+    {"error", {"history.tsv", "timing.tsv"}, NULL, false},
+    {"generations", {"history.tsv"}, "diversity", false},
+    {"pareto", {"pareto.tsv", "pareto_history.tsv"}, NULL, false},
+    {"simulation", {"thermodynamics.tsv"}, NULL, false},
+    {"motion", {"motion.tsv"}, NULL, false},
+    {"etd", {"etd.tsv", "etd_error.tsv", "etd_bins.tsv"}, NULL, false},
 };
 
-static const struct figure comparison = {"compare", {"compare.tsv"}, NULL};
+static const struct figure comparison = {"compare", {"compare.tsv"}, NULL, false};
 
 // Which figures -----------------------------------------------------------------------------------
 
@@ -92,18 +95,46 @@ static void remove_figure(const char *folder, const char *name) {
     remove(path);
 }
 
-static enum status draw(const char *folder, const char *plots, const char *name) {
-    char path[PATH_SIZE], script[PATH_SIZE + 64];
+/// Draw a figure, of the kind of pairs `pair`, as "_A-B", or of all.
+static enum status draw(const char *folder, const char *plots, const char *name, const char *pair) {
+    char path[PATH_SIZE], script[PATH_SIZE + 64], drawn[512];
     snprintf(path, sizeof path, "%s/figures", folder);
     TRY(output_make_folder(path));
     snprintf(script, sizeof script, "%s/%s.gp", plots, name);
-    if (setenv("MESOFIT_PLOTS", plots, 1) != 0)
+    if (setenv("MESOFIT_PLOTS", plots, 1) != 0 || setenv("MESOFIT_PAIR", pair, 1) != 0)
         return status_fail(STATUS_NO_MEMORY, "out of memory");
     const enum status status = run_gnuplot(folder, script);
     if (status == STATUS_OK)
         return STATUS_OK;
-    remove_figure(folder, name);
-    return status_prefix(status, "no figure %s/%s", path, name);
+    snprintf(drawn, sizeof drawn, "%s%s", name, pair);
+    remove_figure(folder, drawn);
+    return status_prefix(status, "no figure %s/%s", path, drawn);
+}
+
+/// Draw a figure of each kind of pairs that has a table like rdf_A-B.tsv; the first failure.
+static enum status draw_pairs(const char *folder, const char *plots, const struct figure *figure) {
+    const int stem = (int)strcspn(figure->tables[0], ".");
+    enum status first = STATUS_OK;
+    char pattern[128];
+    snprintf(pattern, sizeof pattern, "%.*s_*-*.tsv", stem, figure->tables[0]);
+    DIR *entries = opendir(folder);
+    if (entries == NULL)
+        return status_fail(STATUS_IO, "%s: %s", folder, strerror(errno));
+    for (struct dirent *entry; (entry = readdir(entries));) {
+        char pair[sizeof entry->d_name], path[PATH_SIZE];
+        snprintf(pair, sizeof pair, "%s", entry->d_name);
+        snprintf(path, sizeof path, "%s/%s", folder, pair);
+        // What follows the name of a kind of pairs, as "_history", makes another table.
+        const char *type = strchr(pair, '-');
+        if (fnmatch(pattern, pair, 0) != 0 || strstr(type, "_history.tsv") ||
+            strstr(type, "_flat.tsv") || (figure->column && !has_column(path, figure->column)))
+            continue;
+        pair[strlen(pair) - strlen(".tsv")] = '\0';
+        const enum status status = draw(folder, plots, figure->name, pair + stem);
+        first = first == STATUS_OK ? status : first;
+    }
+    closedir(entries);
+    return first;
 }
 
 enum status figures_draw(const char *folder) {
@@ -113,9 +144,11 @@ enum status figures_draw(const char *folder) {
         return status_fail(STATUS_IO, "%s: %s", folder, strerror(errno));
     TRY(find_plots(plots));
     for (size_t k = 0; k < sizeof figures / sizeof figures[0]; k++) {
-        if (!has_tables(folder, &figures[k]))
-            continue;
-        const enum status status = draw(folder, plots, figures[k].name);
+        enum status status = STATUS_OK;
+        if (has_tables(folder, &figures[k]))
+            status = draw(folder, plots, figures[k].name, "");
+        else if (figures[k].by_pairs)
+            status = draw_pairs(folder, plots, &figures[k]);
         if (first != STATUS_OK || status == STATUS_OK)
             continue;
         first = status;
@@ -129,7 +162,7 @@ enum status figures_draw_comparison(const char *folder) {
     if (!has_tables(folder, &comparison))
         return status_fail(STATUS_IO, "no figure of a comparison: no compare.tsv in %s", folder);
     TRY(find_plots(plots));
-    return draw(folder, plots, comparison.name);
+    return draw(folder, plots, comparison.name, "");
 }
 
 enum status figures_draw_accuracy(const char *table) {
@@ -145,7 +178,7 @@ enum status figures_draw_accuracy(const char *table) {
     if (setenv("MESOFIT_TABLE", slash ? slash + 1 : table, 1) != 0 ||
         setenv("MESOFIT_FIGURE", name, 1) != 0)
         return status_fail(STATUS_NO_MEMORY, "out of memory");
-    const enum status status = draw(folder, plots, "accuracy");
+    const enum status status = draw(folder, plots, "accuracy", "");
     if (status != STATUS_OK)
         remove_figure(folder, name);
     return status;

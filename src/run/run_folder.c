@@ -38,11 +38,15 @@ static const char *const results[] = {
     "pareto_weight.tsv",
 };
 
-/// g(r) of the kinds of pairs of a mixture, which its file names.
-static const char partial_rdfs[] = "rdf_*-*.tsv";
+/// Tables about the kinds of pairs of a mixture, which its file names.
+static const char *const partial_results[] = {"rdf_*-*.tsv", "potential_*-*.tsv",
+                                              "potential_*-*.pot", "pareto_potential_*-*.tsv"};
 
-static int is_partial_rdf(const struct dirent *entry) {
-    return fnmatch(partial_rdfs, entry->d_name, 0) == 0;
+static int is_partial_result(const struct dirent *entry) {
+    for (size_t k = 0; k < sizeof partial_results / sizeof *partial_results; k++)
+        if (fnmatch(partial_results[k], entry->d_name, 0) == 0)
+            return 1;
+    return 0;
 }
 
 static enum status remove_result(const struct run_folder *folder, const char *name) {
@@ -58,7 +62,7 @@ static enum status remove_results(const struct run_folder *folder) {
     for (size_t k = 0; k < sizeof results / sizeof *results; k++)
         TRY(remove_result(folder, results[k]));
     struct dirent **entries;
-    const int count = scandir(folder->path, &entries, is_partial_rdf, alphasort);
+    const int count = scandir(folder->path, &entries, is_partial_result, alphasort);
     if (count < 0)
         return status_fail(STATUS_IO, "%s: %s", folder->path, strerror(errno));
     for (int k = 0; k < count; k++) {
