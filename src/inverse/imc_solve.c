@@ -81,7 +81,7 @@ void imc_solve_prior(double spacing, const size_t *block, size_t blocks, gsl_mat
     gsl_matrix_set_zero(rows);
     if (blocks == 0)
         fill_differences(rows, 0, n, scale);
-    for (size_t b = 0, begin = 0; b < blocks; begin += block[b], b++)
+    for (size_t b = 0, begin = 0; block && b < blocks; begin += block[b], b++)
         fill_differences(rows, begin, begin + block[b], scale);
     for (size_t k = 0; k < n; k++)
         gsl_matrix_set(rows, n - 1 + k, k, sqrt(ridge));

@@ -111,29 +111,36 @@ static enum status draw(const char *folder, const char *plots, const char *name,
     return status_prefix(status, "no figure %s/%s", path, drawn);
 }
 
-/// Draw a figure of each kind of pairs that has a table like rdf_A-B.tsv; the first failure.
-static enum status draw_pairs(const char *folder, const char *plots, const struct figure *figure) {
+/// Draw a figure from a table of one kind of pairs, like rdf_A-B.tsv, if `name` is one.
+static enum status draw_pair(const char *folder, const char *plots, const struct figure *figure,
+                             const char *name) {
     const int stem = (int)strcspn(figure->tables[0], ".");
-    enum status first = STATUS_OK;
-    char pattern[128];
+    char pattern[128], path[PATH_SIZE], pair[256];
     snprintf(pattern, sizeof pattern, "%.*s_*-*.tsv", stem, figure->tables[0]);
-    DIR *entries = opendir(folder);
-    if (entries == NULL)
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    if (fnmatch(pattern, name, 0) != 0 || (figure->column && !has_column(path, figure->column)))
+        return STATUS_OK;
+    // What follows the name of a kind of pairs, as "_history", makes another table.
+    const char *end = strchr(name, '-');
+    if (strstr(end, "_history.tsv") || strstr(end, "_flat.tsv"))
+        return STATUS_OK;
+    snprintf(pair, sizeof pair, "%.*s", (int)(strlen(name) - strlen(".tsv")) - stem, name + stem);
+    return draw(folder, plots, figure->name, pair);
+}
+
+/// Draw a figure for each kind of pairs; the first failure.
+static enum status draw_pairs(const char *folder, const char *plots, const struct figure *figure) {
+    struct dirent **entries;
+    enum status first = STATUS_OK;
+    const int count = scandir(folder, &entries, NULL, alphasort);
+    if (count < 0)
         return status_fail(STATUS_IO, "%s: %s", folder, strerror(errno));
-    for (struct dirent *entry; (entry = readdir(entries));) {
-        char pair[sizeof entry->d_name], path[PATH_SIZE];
-        snprintf(pair, sizeof pair, "%s", entry->d_name);
-        snprintf(path, sizeof path, "%s/%s", folder, pair);
-        // What follows the name of a kind of pairs, as "_history", makes another table.
-        const char *type = strchr(pair, '-');
-        if (fnmatch(pattern, pair, 0) != 0 || strstr(type, "_history.tsv") ||
-            strstr(type, "_flat.tsv") || (figure->column && !has_column(path, figure->column)))
-            continue;
-        pair[strlen(pair) - strlen(".tsv")] = '\0';
-        const enum status status = draw(folder, plots, figure->name, pair + stem);
+    for (int k = 0; k < count; k++) {
+        const enum status status = draw_pair(folder, plots, figure, entries[k]->d_name);
         first = first == STATUS_OK ? status : first;
+        free(entries[k]);
     }
-    closedir(entries);
+    free(entries);
     return first;
 }
 
