@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Where the target is 0 the potential is continued inwards by a guess, the stiffness of the core
+// (core_fill). It must not decide anything: whatever the guess, the potential that an inversion
+// finds gives the same g(r), within the noise of the fits.
+#include "curves/formula.h"
+#include "dynamics/metropolis.h"
+#include "inverse/inversion.h"
+#include "shared/fluids.h"
+#include "shared/testing.h"
+
+#include <stdlib.h>
+
+enum { PARTICLES = 250, BINS = 36, BLOCKS = 24, SAMPLES = 120 };
+
+static const struct rdf_bins bins = {0, 0.05, BINS};
+static const struct composition composition = {.types = 1, .count = {PARTICLES}};
+
+/// Two guesses [k_B T_0/λ²]; the curvature of this potential there is some 3000.
+static const double soft = 300, hard = 15000;
+
+/// Of g in the fits.
+static const double precision = 0.003;
+
+/// g, as the means of blocks.
+static void sample_g(const struct table *potential, const struct fluid *fluid, uint64_t seed,
+                     struct comoments *blocks) {
+    struct metropolis metropolis;
+    assert_ok(metropolis_init(&metropolis, &fluid->setup.box, &composition, potential,
+                              fluid->setup.temperature, seed));
+    assert_ok(metropolis_equilibrate(&metropolis, 600));
+    assert_ok(comoments_init(blocks, BINS));
+    for (int block = 0; block < BLOCKS; block++) {
+        struct rdf rdf;
+        double mean[BINS];
+        assert_ok(rdf_init(&rdf, &bins, &fluid->setup.box, PARTICLES, 0, SAMPLES));
+        assert_ok(metropolis_run(&metropolis, 60));
+        for (int sample = 0; sample < SAMPLES; sample++) {
+            assert_ok(metropolis_run(&metropolis, 8));
+            assert_ok(rdf_sample(&rdf, &metropolis.particles, &metropolis.neighbours));
+        }
+        rdf_result(&rdf, 1, mean, NULL);
+        comoments_add(blocks, mean);
+        rdf_clear(&rdf);
+    }
+    metropolis_clear(&metropolis);
+}
+
+static void ignore(void *context, const struct inverse_progress *progress) {
+    (void)context, (void)progress;
+}
+
+/// Set a parameter of the method.
+static void set(void *parameters, const char *name, double value) {
+    for (const struct field *field = inversion_fields; field->name; field++) {
+        const int64_t whole = (int64_t)value;
+        if (strcmp(field->name, name) == 0)
+            memcpy((char *)parameters + field->offset,
+                   field->type == FIELD_INTEGER ? (const void *)&whole : (const void *)&value,
+                   sizeof value);
+    }
+}
+
+/// Find the potential of the target by inverse Monte Carlo.
+static void invert(const struct inverse_problem *problem, double *phi) {
+    const struct inverse_listener listener = {ignore, NULL};
+    struct inverse_step step;
+    void *state = calloc(1, imc.state_size), *parameters = calloc(1, imc.parameters_size);
+    assert_true(state && parameters);
+    for (size_t k = 0; imc.tables[k]; k++)
+        fields_set_defaults(imc.tables[k], parameters);
+    set(parameters, "replicas", 4);
+    set(parameters, "precision", precision);
+    assert_ok(imc.create(state, &imc, problem, parameters));
+    do
+        assert_ok(imc.iterate(state, &step, &listener));
+    while (!step.finished);
+    assert_true(step.converged);
+    memcpy(phi, step.curve[UNKNOWN_POTENTIAL], (BINS + 1) * sizeof *phi);
+    imc.destroy(state);
+    free(state);
+    free(parameters);
+}
+
+/// rms over all bins of the difference of g of two potentials, and its standard error by sampling.
+static double compare(const struct fluid *fluid, const struct potential_grid *grid,
+                      const double *const phi[2], double *error) {
+    struct comoments blocks[2];
+    double square = 0, variance = 0;
+    for (int k = 0; k < 2; k++) {
+        struct table table;
+        assert_ok(potential_grid_table(grid, phi[k], &table));
+        sample_g(&table, fluid, 11 + (uint64_t)k, &blocks[k]);
+        table_clear(&table);
+    }
+    for (size_t k = 0; k < BINS; k++) {
+        square += pow(blocks[1].mean[k] - blocks[0].mean[k], 2) / BINS;
+        for (int n = 0; n < 2; n++)
+            variance += comoments_covariance(&blocks[n], k, k) / (BLOCKS - 1) / BINS;
+    }
+    print_message("g in the first known bin, at r = %.3f: %.4f and %.4f\n",
+                  rdf_bins_centre(&bins, grid->core[0]), blocks[0].mean[grid->core[0]],
+                  blocks[1].mean[grid->core[0]]);
+    for (int k = 0; k < 2; k++)
+        comoments_clear(&blocks[k]);
+    *error = sqrt(variance);
+    return sqrt(square);
+}
+
+static void test_core_model_does_not_matter_when_the_potential_is_fitted(void **state) {
+    (void)state;
+    struct fluid fluid;
+    struct comoments target;
+    struct potential_grid grid;
+    double error[BINS], with_soft[BINS + 1], with_hard[BINS + 1], error_of_rms;
+    const struct formula_lennard_jones_parameters parameters = {1, 1, 1.8};
+    const struct curve curve = {&formula_lennard_jones, (void *)&parameters};
+    fluid_lennard_jones(&fluid, PARTICLES, 0.01);
+    table_clear(&fluid.potential);
+    assert_ok(table_init_potential(&fluid.potential, &curve));
+    fluid.setup.temperature = 1.5;
+    sample_g(&fluid.potential, &fluid, 10, &target);
+    for (size_t k = 0; k < BINS; k++)
+        error[k] = sqrt(comoments_covariance(&target, k, k) / (BLOCKS - 1));
+    struct inverse_problem problem = {
+        .goals = {.bins = bins, .goal[GOAL_RDF] = {BINS, target.mean, error, 0}},
+        .unknown[UNKNOWN_POTENTIAL] = {.wanted = true},
+        .scene = fluid.setup,
+        .core_threshold = 1e-3,
+        .core_stiffness = soft,
+        .seed = 5,
+        .threads = 2};
+    invert(&problem, with_soft);
+    problem.core_stiffness = hard;
+    invert(&problem, with_hard);
+    assert_ok(potential_grid_init(&grid, &problem));
+    const double *const phi[] = {with_soft, with_hard};
+    const double rms = compare(&fluid, &grid, phi, &error_of_rms);
+    const double noise = sqrt(2 * precision * precision + error_of_rms * error_of_rms);
+    print_message("rms of the difference %.4f, noise %.4f\n", rms, noise);
+    assert_true(rms < inversion_noise_margin * noise);
+    potential_grid_clear(&grid);
+    comoments_clear(&target);
+    fluid_clear(&fluid);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_core_model_does_not_matter_when_the_potential_is_fitted),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
