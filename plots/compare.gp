@@ -182,7 +182,7 @@ do for [kind in kinds] {
         eval name_axis(y_label, 0.02)
         plot for [i = 1:count] "error_compare.tsv" index (i - 1) using 2:6 with lines \
                 linewidth 1.2 dashtype 3 linecolor rgb colour_of(i - 1), \
-            for [i = 1:count] "" index (i - 1) using 2:5 with lines linestyle i
+            for [i = 1:count] "" index (i - 1) using 2:5 with linespoints linestyle i pointtype 7 pointsize 0.45
 
         set format y ""
         unset label 1
@@ -190,13 +190,13 @@ do for [kind in kinds] {
         set xlabel steps_label
         plot for [i = 1:count] "error_compare.tsv" index (i - 1) using ($3 / unit):6 with lines \
                 linewidth 1.2 dashtype 3 linecolor rgb colour_of(i - 1), \
-            for [i = 1:count] "" index (i - 1) using ($3 / unit):5 with lines linestyle i
+            for [i = 1:count] "" index (i - 1) using ($3 / unit):5 with linespoints linestyle i pointtype 7 pointsize 0.45
 
         eval error_panel(2) . narrow(Q_min, U_max)
         set xlabel "time / s"
         plot for [i = 1:count] "error_compare.tsv" index (i - 1) using 4:6 with lines \
                 linewidth 1.2 dashtype 3 linecolor rgb colour_of(i - 1), \
-            for [i = 1:count] "" index (i - 1) using 4:5 with lines linestyle i
+            for [i = 1:count] "" index (i - 1) using 4:5 with linespoints linestyle i pointtype 7 pointsize 0.45
     }
     unset xlabel
     unset multiplot
