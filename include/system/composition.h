@@ -29,7 +29,8 @@ struct composition composition_of_one(int64_t count);
 /// Beads of all types.
 int64_t composition_particles(const struct composition *composition);
 
-/// The same mixture of about `particles` beads, none of a type becoming 0.
+/// The same mixture of about `particles` beads; a type keeps two if it has them, so that there are
+/// pairs of it.
 struct composition composition_scaled(const struct composition *composition, int64_t particles);
 
 static inline bool composition_is_mixed(const struct composition *composition) {

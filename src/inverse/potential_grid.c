@@ -13,9 +13,12 @@ static enum status find_core(struct potential_grid *grid, const struct inverse_p
     size_t *core = &grid->core[pair];
     while (*core < grid->bins && g[*core] <= problem->core_threshold)
         (*core)++;
-    if (*core + 3 > grid->bins)
-        return status_fail(STATUS_BAD_INPUT, "the target is nowhere above %g",
-                           problem->core_threshold);
+    if (*core + 3 > grid->bins) {
+        char name[COMPOSITION_PAIR_NAME_SIZE];
+        composition_pair_name(&problem->scene.composition, (int)pair, name);
+        return status_fail(STATUS_BAD_INPUT, "the target%s%s is nowhere above %g",
+                           name[0] ? " of " : "", name, problem->core_threshold);
+    }
     grid->known_of[pair] = grid->bins - *core;
     grid->known += grid->known_of[pair];
     return STATUS_OK;

@@ -20,8 +20,10 @@ int64_t composition_particles(const struct composition *composition) {
 struct composition composition_scaled(const struct composition *composition, int64_t particles) {
     const double share = (double)particles / (double)composition_particles(composition);
     struct composition scaled = *composition;
-    for (int type = 0; type < scaled.types; type++)
-        scaled.count[type] = (int64_t)fmax(1, round(share * (double)composition->count[type]));
+    for (int type = 0; type < scaled.types; type++) {
+        const double count = (double)composition->count[type];
+        scaled.count[type] = (int64_t)fmax(fmin(2, count), round(share * count));
+    }
     return scaled;
 }
 

@@ -2,6 +2,7 @@
 //
 // The vector kernels of Metropolis moves against sums over all pairs in double precision.
 #include "base/simd.h"
+#include "curves/formula.h"
 #include "dynamics/metropolis.h"
 #include "dynamics/move.h"
 #include "observe/rdf.h"
@@ -11,7 +12,7 @@
 
 #include <string.h>
 
-enum { COUNT = 400, BINS = 30 };
+enum { COUNT = 400, BINS = 30, MOST_PAIRS = 6 };
 
 /// Of changes between energies of up to 10 k_B T, and in proportion beyond. Measured: 1.8e-5 of
 /// Lennard-Jones, whose core is steep, 1.6e-6 of soft potentials.
@@ -31,7 +32,9 @@ static double energy_at(const struct metropolis *metropolis, size_t self, const 
         }
         if (j == self || sqrt(square) >= metropolis->law.potential->cutoff)
             continue;
-        table_evaluate(metropolis->law.potential, sqrt(square), &value, &slope, NULL);
+        const int pair = composition_pair_of_ids(&metropolis->law.composition, particles->id[self],
+                                                 particles->id[j]);
+        table_evaluate_pair(metropolis->law.potential, pair, sqrt(square), &value, &slope, NULL);
         sum += value;
         *virial -= sqrt(square) * slope;
     }
@@ -61,32 +64,51 @@ static void check_changes(const struct metropolis *metropolis) {
 }
 
 static void check_sums(const struct metropolis *metropolis) {
+    const struct composition *composition = &metropolis->law.composition;
     const struct rdf_bins bins = {0, metropolis->law.potential->cutoff / BINS, BINS};
-    uint32_t counts[BINS + 1] = {0};
-    double histogram[BINS] = {0}, energy = 0, virial = 0, differences = 0;
+    const size_t pairs = (size_t)composition_pairs(composition);
+    uint32_t counts[MOST_PAIRS * BINS + 1] = {0};
+    double histogram[MOST_PAIRS * BINS] = {0}, energy = 0, virial = 0, differences = 0;
     struct pair_sums sums;
-    rdf_count_pairs(&bins, &metropolis->particles, &metropolis->neighbours, histogram);
+    rdf_count_pairs_of(&bins, composition, &metropolis->particles, &metropolis->neighbours,
+                       histogram);
     for (size_t k = 0; k < COUNT; k++) {
         double at[3] = {0};
         for (int d = 0; d < metropolis->particles.box.dimensions; d++)
             at[d] = metropolis->particles.position[d][k];
         energy += 0.5 * energy_at(metropolis, k, at, &virial);
     }
-    metropolis_count(metropolis, &(struct pair_histogram){0, bins.width, BINS, 0, counts}, &sums);
+    metropolis_count(metropolis, &(struct pair_histogram){0, bins.width, BINS, pairs, counts},
+                     &sums);
     assert_close(sums.energy, energy, energy_tolerance * COUNT);
     assert_close(sums.virial, 0.5 * virial, 10 * energy_tolerance * COUNT);
     // The list is full, and distances at an edge are rounded to either side.
-    for (size_t a = 0; a < BINS; a++)
+    for (size_t a = 0; a < pairs * BINS; a++)
         differences += fabs(counts[a] - 0.5 * histogram[a]);
     assert_true(differences <= 4);
+}
+
+/// Without a place for each kind, a mixture's pairs are counted together.
+static void check_counts_together(const struct metropolis *metropolis) {
+    const double width = metropolis->law.potential->cutoff / BINS;
+    uint32_t apart[MOST_PAIRS * BINS + 1] = {0}, together[BINS + 1] = {0};
+    const size_t pairs = (size_t)composition_pairs(&metropolis->law.composition);
+    struct pair_sums sums;
+    metropolis_count(metropolis, &(struct pair_histogram){0, width, BINS, pairs, apart}, &sums);
+    metropolis_count(metropolis, &(struct pair_histogram){0, width, BINS, 0, together}, &sums);
+    for (size_t k = 0; k < BINS; k++) {
+        uint32_t sum = 0;
+        for (size_t pair = 0; pair < pairs; pair++)
+            sum += apart[pair * BINS + k];
+        assert_int_equal(sum, together[k]);
+    }
 }
 
 static void check_all_sets(const struct fluid *fluid) {
     static const char *const sets[] = {"portable", "avx2", "avx512"};
     const char *best = simd_name();
     struct metropolis metropolis;
-    assert_ok(metropolis_init(&metropolis, &fluid->setup.box,
-                              &(struct composition){.types = 1, .count = {COUNT}},
+    assert_ok(metropolis_init(&metropolis, &fluid->setup.box, &fluid->setup.composition,
                               &fluid->potential, fluid->setup.temperature, 3));
     assert_ok(metropolis_equilibrate(&metropolis, 60));
     for (int s = 0; s < 3; s++) {
@@ -94,6 +116,7 @@ static void check_all_sets(const struct fluid *fluid) {
             continue;
         check_changes(&metropolis);
         check_sums(&metropolis);
+        check_counts_together(&metropolis);
     }
     assert_true(simd_select(best));
     metropolis_clear(&metropolis);
@@ -126,11 +149,41 @@ static void test_move_is_right_when_there_are_many_neighbours(void **state) {
     fluid_clear(&fluid);
 }
 
+/// Six potentials of different cutoffs, where a bead's type follows from its id.
+static void test_move_is_right_when_the_beads_are_of_three_types(void **state) {
+    (void)state;
+    struct fluid fluid;
+    fluid_mixture(&fluid, COUNT, 0.01);
+    check_all_sets(&fluid);
+    fluid_clear(&fluid);
+}
+
+static void test_move_is_right_when_a_flat_scene_has_two_types(void **state) {
+    (void)state;
+    struct fluid fluid;
+    struct table parts[3];
+    fluid_soft_discs(&fluid, COUNT, 0.01);
+    for (int pair = 0; pair < 3; pair++) {
+        struct formula_soft_repulsion_parameters soft = {20 + 15 * pair, 0.8 + 0.1 * pair};
+        const struct curve curve = {&formula_soft_repulsion, &soft};
+        assert_ok(table_init_potential(&parts[pair], &curve));
+    }
+    table_clear(&fluid.potential);
+    assert_ok(table_stack(&fluid.potential, parts, 3));
+    fluid.setup.composition = (struct composition){.types = 2, .count = {150, COUNT - 150}};
+    check_all_sets(&fluid);
+    for (int pair = 0; pair < 3; pair++)
+        table_clear(&parts[pair]);
+    fluid_clear(&fluid);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_move_is_right_when_cores_are_hard),
         cmocka_unit_test(test_move_is_right_when_the_scene_is_flat),
         cmocka_unit_test(test_move_is_right_when_there_are_many_neighbours),
+        cmocka_unit_test(test_move_is_right_when_the_beads_are_of_three_types),
+        cmocka_unit_test(test_move_is_right_when_a_flat_scene_has_two_types),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

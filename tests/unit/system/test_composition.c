@@ -80,12 +80,49 @@ static void test_composition_is_name_refuses_what_no_file_could_be_called(void *
     assert_false(composition_is_name("Bead_number_0016"));
 }
 
+static void test_composition_scaled_keeps_the_shares(void **state) {
+    (void)state;
+    const struct composition large = composition_scaled(&three, 800);
+    assert_int_equal(large.types, 3);
+    assert_int_equal(large.count[0], 400);
+    assert_int_equal(large.count[1], 100);
+    assert_int_equal(large.count[2], 300);
+    assert_int_equal(composition_particles(&large), 800);
+    assert_string_equal(large.name[1], "water");
+    const struct composition back = composition_scaled(&large, 8);
+    assert_int_equal(composition_particles(&back), 9); // 4, 2, 3
+    assert_int_equal(
+        composition_scaled(&(struct composition){.types = 1, .count = {7}}, 21).count[0], 21);
+}
+
+/// A type whose like pairs were there keeps some: without them there is no g of them.
+static void test_composition_scaled_leaves_each_type_a_pair(void **state) {
+    (void)state;
+    const struct composition rare = {.types = 2, .count = {10, 990}};
+    const struct composition single = {.types = 2, .count = {1, 999}};
+    const struct composition small = composition_scaled(&rare, 50);
+    assert_int_equal(small.count[0], 2);
+    assert_int_equal(small.count[1], 50);
+    assert_int_equal(composition_scaled(&single, 50).count[0], 1);
+}
+
+static void test_composition_particles_are_those_of_all_types(void **state) {
+    (void)state;
+    const struct composition none = {0}, one = composition_of_one(7);
+    assert_int_equal(composition_particles(&three), 8);
+    assert_int_equal(composition_particles(&one), 7);
+    assert_int_equal(composition_particles(&none), 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_composition_type_follows_from_the_id),
         cmocka_unit_test(test_composition_pairs_come_in_order_whatever_the_number_of_types),
         cmocka_unit_test(test_composition_counts_pairs_by_kind),
         cmocka_unit_test(test_composition_finds_pairs_by_name_in_either_order),
+        cmocka_unit_test(test_composition_scaled_keeps_the_shares),
+        cmocka_unit_test(test_composition_scaled_leaves_each_type_a_pair),
+        cmocka_unit_test(test_composition_particles_are_those_of_all_types),
         cmocka_unit_test(test_composition_has_one_kind_of_pairs_when_beads_are_alike),
         cmocka_unit_test(test_composition_is_name_refuses_what_no_file_could_be_called),
     };
