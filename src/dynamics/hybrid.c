@@ -23,16 +23,26 @@ static double longest_step(const struct table *potential, double temperature) {
     return longest_flight * potential->cutoff / sqrt(temperature);
 }
 
-static double first_step(const struct table *potential, double temperature) {
-    double lowest = 0, fastest = 0;
-    for (int k = 0; k < TABLE_INTERVALS; k++)
-        lowest = fmin(lowest, potential->precise[k][0]);
+/// 2 Φ'' where the curve of a kind of pairs bends most, as far up as ten k_B T reach.
+static double fastest_of(const struct table *potential, int pair, double temperature) {
+    const double spacing = 1 / table_inverse_spacing(potential, pair);
+    double lowest = 0, fastest = 0, value, curvature;
     for (int k = 0; k < TABLE_INTERVALS; k++) {
-        double value, curvature;
-        table_evaluate(potential, (k + 0.5) / potential->inverse_spacing, &value, NULL, &curvature);
+        table_evaluate_pair(potential, pair, k * spacing, &value, NULL, NULL);
+        lowest = fmin(lowest, value);
+    }
+    for (int k = 0; k < TABLE_INTERVALS; k++) {
+        table_evaluate_pair(potential, pair, (k + 0.5) * spacing, &value, NULL, &curvature);
         if (value < lowest + highest * temperature)
             fastest = fmax(fastest, 2 * curvature);
     }
+    return fastest;
+}
+
+static double first_step(const struct table *potential, double temperature) {
+    double fastest = 0;
+    for (int curve = 0; curve < potential->curves; curve++)
+        fastest = fmax(fastest, fastest_of(potential, curve, temperature));
     return fmin(first_share / sqrt(fastest), longest_step(potential, temperature));
 }
 
