@@ -161,6 +161,8 @@ done:
 /// g(r), or in a mixture that of each kind of pairs: {"A-A": {"file": …}, …}.
 static enum status read_rdf(struct targets *targets, struct json_object *object,
                             const struct units *units) {
+    if (targets->composition.types == 0)
+        return STATUS_OK; // a fault of the types is told, those of their pairs would mislead
     if (!composition_is_mixed(&targets->composition)) {
         TRY(target_read(&targets->rdf[0], object, units));
         return collect_rdf(targets);
