@@ -48,7 +48,7 @@ enum status sampler_equilibrate(struct sampler *sampler, uint64_t sweeps) MUST_U
 /// Sweeps, then a sample: S of each bin of each kind of pairs, and behind them the virial Σ r·F
 /// [k_B T_0].
 /// @param[out] sample  shape [pairs · bins + 1]
-/// Fails: NO_MEMORY, INTERRUPTED. Tested: test_sampler.
+/// Fails: NO_MEMORY, INTERRUPTED. Tested: test_monte_carlo_mixture.
 enum status sampler_sample(struct sampler *sampler, uint64_t sweeps, double *sample) MUST_USE;
 
 /// What a checkpoint keeps between runs; returns the number of spans.

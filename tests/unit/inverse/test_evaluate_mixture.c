@@ -72,7 +72,7 @@ static void count_g(const struct slabs *slabs, double *g) {
 static void test_evaluate_keeps_types_and_places_when_it_begins_where_another_ended(void **state) {
     (void)state;
     struct slabs slabs;
-    double expected[PAIRS * BINS], features[PAIRS * BINS], memory[3][COUNT];
+    double expected[PAIRS * BINS], features[PAIRS * BINS], memory[3][COUNT] = {{0}};
     struct evaluate_result result;
     begin(&slabs);
     count_g(&slabs, expected);

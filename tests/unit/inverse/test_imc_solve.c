@@ -277,7 +277,7 @@ static void test_imc_solve_stays_bounded_when_the_excess_lies_in_an_unseen_direc
 static void test_imc_solve_leaves_the_ramp_free_when_it_is_smooth(void **state) {
     (void)state;
     gsl_matrix *prior = gsl_matrix_alloc(2 * SIZE - 1, SIZE);
-    imc_solve_prior(spacing, NULL, 0, prior);
+    imc_solve_prior(spacing, (const size_t[]){SIZE}, 1, prior);
     for (size_t row = 0; row < SIZE - 1; row++) {
         double sum = 0;
         for (size_t k = 0; k < SIZE; k++)
