@@ -36,6 +36,9 @@ enum status hybrid_init(struct hybrid *hybrid, const struct box *box,
                         uint64_t seed) MUST_USE;
 void hybrid_clear(struct hybrid *hybrid);
 
+/// Place the particles anew, without order. Fails: NO_MEMORY.
+enum status hybrid_scatter(struct hybrid *hybrid) MUST_USE;
+
 /// Begin with the potential as it is now, from positions, velocities and ids alone, so that a run
 /// that continues and one that was reloaded here go on with the same bits. Fails: NO_MEMORY.
 enum status hybrid_refresh(struct hybrid *hybrid) MUST_USE;

@@ -25,6 +25,9 @@ enum status metropolis_init(struct metropolis *metropolis, const struct box *box
                             double temperature, uint64_t seed) MUST_USE;
 void metropolis_clear(struct metropolis *metropolis);
 
+/// Place the particles anew, without order. Fails: NO_MEMORY.
+enum status metropolis_scatter(struct metropolis *metropolis) MUST_USE;
+
 /// Sweeps whose step size is tuned towards 40 % accepted. Fails: NO_MEMORY, INTERRUPTED.
 enum status metropolis_equilibrate(struct metropolis *metropolis, uint32_t sweeps) MUST_USE;
 

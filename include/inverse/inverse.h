@@ -55,7 +55,7 @@ struct inverse_problem {
 enum { INVERSE_FLAT = 2 };
 
 /// Numbers of a method's own in a row of the history, and characters of its reason.
-enum { INVERSE_EXTRA = 8, INVERSE_REASON_SIZE = 256 };
+enum { INVERSE_EXTRA = 9, INVERSE_REASON_SIZE = 256 };
 
 /// What g(r) leaves open of a potential: the ramp A (1 − r/r_c).
 struct inverse_ramp {

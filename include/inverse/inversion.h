@@ -9,8 +9,10 @@
 /// converged when all errors are within their noise.
 ///
 /// It starts from the hypernetted-chain inversion (hnc_closure): for water the error of g is then a
-/// quarter of that of −k_B T ln g. Where the first step from there makes it worse, as with a target
-/// that ends before its oscillations do, it starts again from −k_B T ln g.
+/// quarter of that of −k_B T ln g. Where it is large, as with a target that ends before its
+/// oscillations do, −k_B T ln g is sampled as well, and the better one goes on. Replicas begin from
+/// disorder, and again after a potential that made it worse: a poor one freezes a liquid, or tears
+/// it apart, and what is left of that would be taken for the next potential's structure.
 #pragma once
 
 #include "inverse/inversion_band.h"
@@ -53,6 +55,7 @@ struct inversion {
     double *excess, *variance;            ///< of S in the known bins, shape [known]
     double *covariance;                   ///< C of S in the known bins, shape [known, known]
     double inefficiency;                  ///< samples that count as one independent
+    double disagreement;                  ///< of the replicas, replicas_disagreement
     struct goal_distance distance[GOALS]; ///< of the samples from what is asked for
     double own_noise;                     ///< of g by the samples alone, rms
     struct inversion_pressure pressure;
@@ -64,6 +67,8 @@ struct inversion {
     // What a checkpoint keeps besides phi, best, … and the samplers:
     struct inversion_progress {
         uint32_t iteration;
+        bool start; ///< the present potential is a start, not a step
+        bool anew;  ///< its replicas are placed anew
         uint64_t evaluations, sweeps;
         double damping;
         struct goal_distance best[GOALS]; ///< rms of g infinite: there is none yet
@@ -86,8 +91,9 @@ enum status inversion_iterate(void *inversion, struct inverse_step *step,
 size_t inversion_spans(void *inversion, struct memory_span *span);
 
 /// The first of a method's columns; the others may be its own.
-#define INVERSION_COLUMNS "damping[1]", "own_noise[1]", "rdf_rms[1]", "pressure", "pressure_error"
-enum { INVERSION_SHARED_COLUMNS = 5, INVERSION_OWN_COLUMNS = INVERSE_EXTRA - 5 };
+#define INVERSION_COLUMNS                                                                          \
+    "damping[1]", "own_noise[1]", "disagreement[1]", "rdf_rms[1]", "pressure", "pressure_error"
+enum { INVERSION_SHARED_COLUMNS = 6, INVERSION_OWN_COLUMNS = INVERSE_EXTRA - 6 };
 
 /// g of the samples in a bin, and of the target in the same system.
 double inversion_g(const struct inversion *inversion, size_t bin);
@@ -95,6 +101,17 @@ double inversion_target_g(const struct inversion *inversion, size_t bin);
 
 /// The linear equations of the present samples, for g(r) alone.
 struct imc_system inversion_system(const struct inversion *inversion);
+
+/// Fill phi with the start of the fit: the problem's own, the hypernetted chain's, or −k_B T ln g;
+/// what is made of the target is as smooth as its errors allow (imc_solve), since noise of bins
+/// beside one another is a force. Fails: NO_MEMORY. Tested: test_inversion_start.
+enum status inversion_start(struct inversion *inversion) MUST_USE;
+
+/// Whether phi is the hypernetted chain's start and its samples say that −k_B T ln g may be better.
+bool inversion_start_is_poor(const struct inversion *inversion);
+
+/// Fill phi with −k_B T ln g. As inversion_start.
+enum status inversion_start_again(struct inversion *inversion) MUST_USE;
 
 /// Why a fit that has finished did not converge, in words.
 void inversion_reason_tell(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]);

@@ -24,6 +24,7 @@ struct replicas {
 };
 
 struct replicas_plan {
+    bool scatter;          ///< first: the particles are placed anew, without order
     int64_t equilibration; ///< sweeps before the samples
     int64_t block_samples; ///< of each of the REPLICAS_BLOCKS of each sampler
     int64_t every;         ///< sweeps between them
@@ -52,6 +53,13 @@ enum status replicas_double(struct replicas *replicas, struct replicas_plan *pla
 /// `count` bins, the numbers of which are in `seen`, because that of one bin is noisy.
 /// @param[in] ideal  shape [bins]: S if g were 1
 double replicas_inefficiency(const struct replicas *replicas, const double *ideal,
+                             const size_t *seen, size_t count);
+
+/// Variance of the replicas' means over what the scatter of the blocks within them makes of it:
+/// near 1 if all sample the same, and large if they are frozen in structures of their own. A.
+/// Gelman and D. B. Rubin, Stat. Sci. 7, 457 (1992). Parameters as replicas_inefficiency. Tested:
+/// test_replicas.
+double replicas_disagreement(const struct replicas *replicas, const double *ideal,
                              const size_t *seen, size_t count);
 
 /// What a checkpoint keeps; returns the number of spans.

@@ -37,6 +37,10 @@ enum status sampler_init(struct sampler *sampler, enum sampler_kind kind,
                          const struct sampler_system *system) MUST_USE;
 void sampler_clear(struct sampler *sampler);
 
+/// Forget the configuration: the particles are placed anew, without order. From a lattice, a
+/// potential that favours a crystal would keep one. Fails: NO_MEMORY.
+enum status sampler_scatter(struct sampler *sampler) MUST_USE;
+
 /// Begin with the potential as it is now: a run that continues and one that was reloaded go on with
 /// the same bits. Fails: NO_MEMORY.
 enum status sampler_begin(struct sampler *sampler) MUST_USE;

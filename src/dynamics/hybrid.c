@@ -124,6 +124,12 @@ enum status hybrid_refresh(struct hybrid *hybrid) {
     return STATUS_OK;
 }
 
+enum status hybrid_scatter(struct hybrid *hybrid) {
+    struct simulation *simulation = &hybrid->simulation;
+    TRY(placement_disordered(&simulation->particles, simulation->setup.seed));
+    return hybrid_refresh(hybrid);
+}
+
 /// New velocities for the particles whose turn it is, by their ids.
 static void collide(struct hybrid *hybrid) {
     struct particles *particles = &hybrid->simulation.particles;

@@ -63,6 +63,11 @@ enum status metropolis_refresh(struct metropolis *metropolis) {
     return neighbours_sort_and_build(&metropolis->neighbours, &metropolis->particles);
 }
 
+enum status metropolis_scatter(struct metropolis *metropolis) {
+    TRY(placement_disordered(&metropolis->particles, metropolis->seed));
+    return metropolis_refresh(metropolis);
+}
+
 /// Try to move particle k once.
 static void try_move(struct metropolis *metropolis, size_t k) {
     struct particles *particles = &metropolis->particles;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inverse/inversion.h"
 
-#include "inverse/hnc_closure.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -24,7 +22,7 @@ static const double noise_share = 1.0 / 3;
 /// Samples of an iteration double at most so often.
 enum { MOST_DOUBLINGS = 7 };
 
-/// The first equilibration of a start is longer: it begins from a lattice.
+/// Replicas that are placed anew are equilibrated so many times as long.
 enum { FIRST_EQUILIBRATION = 5 };
 
 static const char *const starts[] = {"auto", "mean-force", NULL};
@@ -58,8 +56,8 @@ const struct field inversion_fields[] = {
      .maximum = 1, .unit = "", .help = "share of a method's step taken at first; adapts"},
     {"start", FIELD_CHOICE, MEMBER(start), .choices = starts, .initial = INVERSION_FROM_HNC,
      .unit = "",
-     .help = "without unknowns.potential.start: the hypernetted-chain inversion, and -k_B T ln g "
-             "where that leads nowhere or in two dimensions; mean-force: -k_B T ln g"},
+     .help = "without unknowns.potential.start: the hypernetted-chain inversion, or -k_B T ln g "
+             "where that is poor and this better, and in two dimensions; mean-force: -k_B T ln g"},
     FIELD_END,
 };
 
@@ -111,42 +109,6 @@ done:
     return status;
 }
 
-static bool starts_from_hnc(const struct inversion *inversion) {
-    return inversion->problem->unknown[UNKNOWN_POTENTIAL].start[0] == NULL &&
-           inversion->box.dimensions == 3 && inversion->settings.common.start == INVERSION_FROM_HNC;
-}
-
-/// The potential of the first iteration.
-static enum status start(struct inversion *inversion) {
-    enum status status = STATUS_OK;
-    const struct inverse_problem *problem = inversion->problem;
-    const struct potential_grid *grid = &inversion->grid;
-    double *g = NULL, *indirect = NULL;
-    potential_grid_start(grid, problem, inversion->phi);
-    if (!starts_from_hnc(inversion))
-        return STATUS_OK;
-    NEW_ARRAY(g, inversion->bins);
-    NEW_ARRAY(indirect, inversion->bins);
-    for (size_t k = 0; k < inversion->bins; k++)
-        g[k] = inversion_target_g(inversion, k);
-    CHECK(hnc_closure(&problem->goals.bins, &inversion->box, &inversion->composition, g, indirect));
-    for (size_t n = 0; n < grid->known; n++)
-        inversion->phi[grid->known_point[n]] +=
-            problem->scene.temperature * indirect[grid->known_bin[n]];
-    potential_grid_complete(grid, inversion->phi);
-done:
-    memory_free(g);
-    memory_free(indirect);
-    return status;
-}
-
-/// The first step from the hypernetted chain made it worse: begin with the mean force.
-static void start_again(struct inversion *inversion) {
-    potential_grid_start(&inversion->grid, inversion->problem, inversion->phi);
-    inversion->progress.best[GOAL_RDF].rms = INFINITY;
-    inversion->progress.damping = inversion->settings.common.damping;
-}
-
 /// As many particles as are asked for, at the densities of the scene.
 static void choose_size(struct inversion *inversion) {
     const struct simulation_setup *scene = &inversion->problem->scene;
@@ -185,7 +147,7 @@ enum status inversion_create(void *memory, const struct inverse_method *method,
     TRY(potential_grid_init(&inversion->grid, problem));
     TRY(allocate(inversion));
     count_target(inversion);
-    TRY(start(inversion));
+    TRY(inversion_start(inversion));
     TRY(potential_grid_table(&inversion->grid, inversion->phi, &inversion->table));
     TRY(replicas_init(&inversion->replicas, (size_t)p->replicas, (enum sampler_kind)p->sampler,
                       &(struct sampler_system){.box = &inversion->box,
@@ -196,8 +158,8 @@ enum status inversion_create(void *memory, const struct inverse_method *method,
                                                .width = bins->width,
                                                .bins = bins->count,
                                                .seed = problem->seed}));
-    inversion->progress =
-        (struct inversion_progress){.damping = p->damping, .best[GOAL_RDF].rms = INFINITY};
+    inversion->progress = (struct inversion_progress){
+        .start = true, .anew = true, .damping = p->damping, .best[GOAL_RDF].rms = INFINITY};
     return STATUS_OK;
 }
 
@@ -215,6 +177,8 @@ static void assess_rdf(struct inversion *inversion) {
     const struct comoments *counts = &inversion->replicas.counts;
     inversion->inefficiency =
         replicas_inefficiency(&inversion->replicas, inversion->ideal, grid->known_bin, grid->known);
+    inversion->disagreement =
+        replicas_disagreement(&inversion->replicas, inversion->ideal, grid->known_bin, grid->known);
     const double independent = counts->count / inversion->inefficiency;
     double sum = 0, own = 0, both = 0;
     for (size_t n = 0; n < inversion->bins; n++)
@@ -297,9 +261,10 @@ static enum status keep(struct inversion *inversion) {
 /// The sweeps and least samples of this iteration.
 static struct replicas_plan plan(const struct inversion *inversion) {
     const struct inversion_parameters *p = &inversion->settings.common;
-    const bool first = isinf(inversion->progress.best[GOAL_RDF].rms);
-    return (struct replicas_plan){.equilibration =
-                                      p->equilibration * (first ? FIRST_EQUILIBRATION : 1),
+    const bool anew = inversion->progress.anew;
+    return (struct replicas_plan){.scatter = anew,
+                                  .equilibration =
+                                      p->equilibration * (anew ? FIRST_EQUILIBRATION : 1),
                                   .block_samples = (p->samples - 1) / REPLICAS_BLOCKS + 1,
                                   .every = p->every};
 }
@@ -361,23 +326,38 @@ static void go_back(struct inversion *inversion) {
     progress->damping = inversion->settings.common.damping;
 }
 
-/// Keep the present potential, or go back if it is worse than the best by more than chance.
+/// Keep the present potential, or go back if it is worse than the best by more than chance. A
+/// start that is worse says nothing of the best's step. Replicas that a worse potential may have
+/// frozen or torn apart are not gone on with.
 static enum status judge(struct inversion *inversion, bool *kept) {
     struct inversion_progress *progress = &inversion->progress;
     const double error = inversion->distance[GOAL_RDF].rms;
     *kept =
         count_noises(inversion, inversion->distance) <= count_noises(inversion, progress->best) + 2;
-    if (isinf(progress->best[GOAL_RDF].rms))
+    progress->anew = !*kept;
+    if (progress->start && *kept)
         progress->first_error = progress->second_error = error;
-    else if (progress->second_error == progress->first_error)
+    else if (!progress->start && progress->second_error == progress->first_error)
         progress->second_error = error;
-    if (!*kept) {
-        go_back(inversion);
-        return STATUS_OK;
-    }
-    if (progress->iteration > 0)
+    if (*kept && !progress->start)
         progress->damping = fmin(1, 1.5 * progress->damping);
-    return keep(inversion);
+    if (*kept)
+        return keep(inversion);
+    if (!progress->start)
+        go_back(inversion);
+    return STATUS_OK;
+}
+
+/// The next potential to be sampled: the other start, or a step from the best.
+static enum status go_on(struct inversion *inversion) {
+    struct inversion_progress *progress = &inversion->progress;
+    progress->start = inversion_start_is_poor(inversion);
+    if (progress->start) {
+        progress->anew = true;
+        return inversion_start_again(inversion);
+    }
+    take_step(inversion);
+    return STATUS_OK;
 }
 
 /// Whether the present potential meets all targets as far as their noise lets see.
@@ -401,8 +381,9 @@ static void describe(const struct inversion *inversion, const double *own, bool 
         .engine_steps = progress->sweeps,
         .error = goals_error(&inversion->problem->goals, progress->best),
         .noise = goals_noise(&inversion->problem->goals, progress->best),
-        .extra = {progress->damping, inversion->own_noise, inversion->distance[GOAL_RDF].rms,
-                  inversion->pressure.value, inversion->pressure.error},
+        .extra = {progress->damping, inversion->own_noise, inversion->disagreement,
+                  inversion->distance[GOAL_RDF].rms, inversion->pressure.value,
+                  inversion->pressure.error},
         .curve = {inversion->best},
         .curve_error = {inversion->band.error},
         .curve_flat = {inversion->band.flat},
@@ -429,13 +410,9 @@ enum status inversion_iterate(void *memory, struct inverse_step *step,
     TRY(judge(inversion, &kept));
     const bool precise = inversion->own_noise <= inversion->settings.common.precision;
     describe(inversion, own, kept && precise && meets_targets(inversion), step);
-    const bool leads_nowhere =
-        !step->finished && !kept && progress->iteration == 1 && starts_from_hnc(inversion);
+    if (!step->finished)
+        TRY(go_on(inversion));
     progress->iteration++;
-    if (leads_nowhere)
-        start_again(inversion);
-    else if (!step->finished)
-        take_step(inversion);
     return STATUS_OK;
 }
 

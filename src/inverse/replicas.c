@@ -58,6 +58,8 @@ static enum status fill_blocks(struct replica *replica, size_t bins, size_t firs
 /// Equilibrate one sampler, then take its samples.
 static enum status run_one(struct replica *replica, size_t bins, const struct replicas_plan *plan) {
     comoments_reset(&replica->counts);
+    if (plan->scatter)
+        TRY(sampler_scatter(&replica->sampler));
     TRY(sampler_begin(&replica->sampler));
     TRY(sampler_equilibrate(&replica->sampler, (uint64_t)plan->equilibration));
     return fill_blocks(replica, bins, 0, REPLICAS_BLOCKS, plan);
@@ -135,6 +137,25 @@ double replicas_inefficiency(const struct replicas *replicas, const double *idea
     const double block_samples =
         replicas->counts.count / (double)(replicas->count * REPLICAS_BLOCKS);
     return variance > 0 ? fmax(1, scatter / variance * block_samples) : 1;
+}
+
+double replicas_disagreement(const struct replicas *replicas, const double *ideal,
+                             const size_t *seen, size_t count) {
+    double between = 0, within = 0;
+    for (size_t n = 0; n < count; n++) {
+        const size_t a = seen[n];
+        const double weight = 1 / (ideal[a] * ideal[a]);
+        struct running_mean means = {0};
+        for (size_t k = 0; k < replicas->count; k++) {
+            struct running_mean blocks = {0};
+            for (size_t b = 0; b < REPLICAS_BLOCKS; b++)
+                statistics_add(&blocks, replicas->member[k].block[b * replicas->bins + a]);
+            statistics_add(&means, blocks.mean);
+            within += weight * blocks.squares / (blocks.count - 1) / (double)replicas->count;
+        }
+        between += weight * means.squares / (means.count - 1);
+    }
+    return within > 0 ? REPLICAS_BLOCKS * between / within : 1;
 }
 
 size_t replicas_spans(struct replicas *replicas, struct memory_span *span) {

@@ -33,6 +33,11 @@ void sampler_clear(struct sampler *sampler) {
     *sampler = (struct sampler){0};
 }
 
+enum status sampler_scatter(struct sampler *sampler) {
+    return sampler->kind == SAMPLER_DYNAMICS ? hybrid_scatter(&sampler->hybrid)
+                                             : metropolis_scatter(&sampler->chain);
+}
+
 enum status sampler_begin(struct sampler *sampler) {
     if (sampler->kind == SAMPLER_DYNAMICS)
         return hybrid_refresh(&sampler->hybrid);
