@@ -72,7 +72,7 @@ struct inversion {
         uint64_t evaluations, sweeps;
         double damping;
         struct goal_distance best[GOALS]; ///< rms of g infinite: there is none yet
-        double best_own_noise;
+        double best_own_noise, best_disagreement;
         double first_error, second_error; ///< of g, in the first two iterations from a start
     } progress;
 };

@@ -134,6 +134,27 @@ static void count_target(struct inversion *inversion) {
     }
 }
 
+/// No potential of pairs empties a shell in the midst of a liquid: an empty bin beyond one that is
+/// well known is a fault of the target, and what would be made of it a barrier without an end.
+static enum status refuse_holes(const struct inversion *inversion) {
+    const struct inverse_problem *problem = inversion->problem;
+    const struct potential_grid *grid = &inversion->grid;
+    for (size_t n = 0; n < grid->known; n++) {
+        const size_t bin = grid->known_bin[n], next = grid->known_bin[n] + 1;
+        if (next % grid->bins == 0 || !potential_grid_well_known(problem, bin) ||
+            problem->goals.goal[GOAL_RDF].value[next] > problem->core_threshold)
+            continue;
+        const double r = rdf_bins_centre(&problem->goals.bins, next % grid->bins);
+        return status_fail(
+            STATUS_BAD_INPUT,
+            "the target is empty at r = %g, where the bin before it has g = %.3g: no "
+            "potential of pairs makes such a hole; mend the target there, or end "
+            "it before by \"cutoff\"",
+            r, problem->goals.goal[GOAL_RDF].value[bin]);
+    }
+    return STATUS_OK;
+}
+
 enum status inversion_create(void *memory, const struct inverse_method *method,
                              const struct inverse_problem *problem, const void *parameters) {
     struct inversion *inversion = memory;
@@ -145,6 +166,7 @@ enum status inversion_create(void *memory, const struct inverse_method *method,
     const struct inversion_parameters *p = &inversion->settings.common;
     choose_size(inversion);
     TRY(potential_grid_init(&inversion->grid, problem));
+    TRY(refuse_holes(inversion));
     TRY(allocate(inversion));
     count_target(inversion);
     TRY(inversion_start(inversion));
@@ -255,6 +277,7 @@ static enum status keep(struct inversion *inversion) {
            inversion->bins * sizeof(double));
     memcpy(progress->best, inversion->distance, sizeof progress->best);
     progress->best_own_noise = inversion->own_noise;
+    progress->best_disagreement = inversion->disagreement;
     return inversion_band_find(inversion);
 }
 
