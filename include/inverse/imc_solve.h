@@ -75,9 +75,7 @@ void imc_solve_meet(const struct imc_system *system, const double *u, double *x)
 double imc_solve_discrepancy(double least);
 
 /// Rows of the smoothness prior in `rows`, shape [2 size − 1, size]: D, the second difference over
-/// a tenth of λ, and sqrt(ρ), `ridge` ρ. The curve ends at 0 half a spacing beyond its last bin, at
-/// the cutoff, so that D of the ramp 1 − r/r_c is 0 and the ramp is free but for ρ; below its first
-/// bin it is free: no row reaches there. Each of several curves, `block` as in the system, has its
-/// own.
-void imc_solve_prior(double spacing, const size_t *block, size_t blocks, double ridge,
-                     gsl_matrix *rows);
+/// a tenth of λ, and sqrt(ρ). The curve ends at 0 half a spacing beyond its last bin, at the
+/// cutoff, so that D of the ramp 1 − r/r_c is 0 and the ramp is free but for ρ; below its first bin
+/// it is free: no row reaches there. Each of several curves, `block` as in the system, has its own.
+void imc_solve_prior(double spacing, const size_t *block, size_t blocks, gsl_matrix *rows);

@@ -6,9 +6,6 @@
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 
-/// ρ of what may be true, which is wider than what a step should try: ten k_B T in all.
-static const double ridge = 0.01;
-
 enum status inversion_band_init(struct inversion_band *band, size_t known, size_t points) {
     enum status status = STATUS_OK;
     *band = (struct inversion_band){0};
@@ -55,7 +52,7 @@ enum status inversion_band_covariance(const struct imc_system *system, double *c
     gsl_matrix_view to = gsl_matrix_view_array(covariance, size, size);
     CHECK(prior && response && known ? STATUS_OK : STATUS_NO_MEMORY);
     fill_response(system, response);
-    imc_solve_prior(system->spacing, system->block, system->blocks, ridge, prior);
+    imc_solve_prior(system->spacing, system->block, system->blocks, prior);
     gsl_blas_dsyrk(CblasLower, CblasTrans, 1, response, 0, known);
     gsl_matrix_memcpy(&to.matrix, known);
     gsl_blas_dsyrk(CblasLower, CblasTrans, unit, prior, 1, &to.matrix);

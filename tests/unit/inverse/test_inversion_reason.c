@@ -68,11 +68,22 @@ static void test_inversion_reason_is_the_pressure_when_only_that_is_off(void **s
     assert_says(&inversion, "\"precision\"");
 }
 
+static void test_inversion_reason_is_frozen_replicas_when_they_disagree(void **state) {
+    (void)state;
+    struct inverse_problem problem;
+    struct inversion inversion = make_inversion(&problem, 0.3, false);
+    inversion.progress.best_disagreement = 9;
+    assert_says(&inversion, "the replicas do not agree on it: their means scatter 3.0 times");
+    inversion.progress.best_disagreement = 3;
+    assert_says(&inversion, "after 30 iterations");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_inversion_reason_is_the_start_when_no_step_from_it_helped),
         cmocka_unit_test(test_inversion_reason_is_not_the_start_when_shorter_steps_helped),
         cmocka_unit_test(test_inversion_reason_is_the_precision_when_the_curves_agree),
+        cmocka_unit_test(test_inversion_reason_is_frozen_replicas_when_they_disagree),
         cmocka_unit_test(test_inversion_reason_is_the_pressure_when_only_that_is_off),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -176,6 +176,29 @@ static void test_placement_random_fails_when_the_density_is_too_high(void **stat
     particles_clear(&particles);
 }
 
+/// Order shows in S(q) = |Σ exp(iqx)|²/N at the waves of a lattice's planes; without it S is below
+/// 1, but for chance 12 = −ln(6e-6) of points at random.
+static void test_placement_disordered_has_no_planes_when_the_count_is_a_cube(void **state) {
+    (void)state;
+    enum { EDGE = 8, COUNT = EDGE * EDGE * EDGE };
+    struct particles particles;
+    const struct box box = {3, {9, 9, 9}};
+    assert_ok(particles_init(&particles, &box, COUNT));
+    assert_ok(placement_disordered(&particles, 5));
+    check_in_box(&particles);
+    assert_true(least_distance(&particles) >= 0.7 * 9 / EDGE);
+    for (int d = 0; d < 3; d++) {
+        double real = 0, imaginary = 0;
+        for (size_t k = 0; k < COUNT; k++) {
+            const double angle = 2 * acos(-1.0) * EDGE / 9 * particles.position[d][k];
+            real += cos(angle);
+            imaginary += sin(angle);
+        }
+        assert_true((real * real + imaginary * imaginary) / COUNT < 12);
+    }
+    particles_clear(&particles);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_placement_lattice_is_simple_cubic_when_count_is_a_cube),
@@ -185,6 +208,7 @@ int main(void) {
         cmocka_unit_test(test_placement_mix_exchanges_ids_when_asked),
         cmocka_unit_test(test_placement_random_keeps_the_separation_when_there_is_room),
         cmocka_unit_test(test_placement_random_is_uniform_when_there_is_no_separation),
+        cmocka_unit_test(test_placement_disordered_has_no_planes_when_the_count_is_a_cube),
         cmocka_unit_test(test_placement_random_fails_when_the_density_is_too_high),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
