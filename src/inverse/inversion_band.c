@@ -162,14 +162,26 @@ done:
     return status;
 }
 
+/// Variances of the excess, as large as what is left of it shows them to be: χ² by bin, if above 1.
+/// R. T. Birge, Phys. Rev. 40, 207 (1932).
+static void find_variance(const struct imc_system *system, const double *nothing,
+                          double *variance) {
+    const double chi2 = fmax(1, imc_solve_misfit(system, nothing));
+    for (size_t a = 0; a < system->size; a++)
+        variance[a] = chi2 * system->variance[a];
+}
+
 enum status inversion_band_find(struct inversion *inversion) {
     enum status status = STATUS_OK;
     const struct potential_grid *grid = &inversion->grid;
     struct inversion_band *band = &inversion->band;
-    double *weight = NULL, *scratch = NULL;
+    double *weight = NULL, *scratch = NULL, *variance = NULL;
     NEW_ARRAY(weight, grid->known);
     NEW_ARRAY(scratch, grid->known);
-    const struct imc_system system = inversion_system(inversion);
+    NEW_ARRAY(variance, grid->known);
+    struct imc_system system = inversion_system(inversion);
+    find_variance(&system, scratch, variance);
+    system.variance = variance;
     CHECK(inversion_band_covariance(&system, band->covariance, &band->ramp.directions));
     add_pressure(inversion, scratch);
     weigh_ramp(inversion, weight);
@@ -178,5 +190,6 @@ enum status inversion_band_find(struct inversion *inversion) {
 done:
     memory_free(weight);
     memory_free(scratch);
+    memory_free(variance);
     return status;
 }

@@ -73,16 +73,18 @@ rows | awk '
             add("without", r[k], off[k] - above[n[k]] / below[n[k]] * (1 - r[k] / 2.5), without[k])
         }
         for (key in sum) {
-            split(key, kind, " ")
+            split(key, part, " ")
             mean = sum[key] / count[key]
             scatter = (squares[key] - count[key] * mean * mean) / (count[key] - 1)
-            ratio[kind[1]] += scatter / (variance[key] / count[key]); bins[kind[1]]++
-            spread[kind[1]] += scatter; bias[kind[1]] += mean * mean
+            kind = part[1]
+            ratio[kind] += scatter / (variance[key] / count[key]); bins[kind]++
+            spread[kind] += scatter; bias[kind] += mean * mean
         }
         for (kind in ratio)
-            printf "%-7s the ramp: scatter %.4f, bias %.4f; scatter over stated error, rms of %d " \
-                "bins: %.2f; off the truth by %.2f stated errors (rms), within 1 %.0f %%, " \
-                "2 %.0f %%\n", kind, sqrt(spread[kind] / bins[kind]), \
-                sqrt(bias[kind] / bins[kind]), bins[kind], sqrt(ratio[kind] / bins[kind]), \
-                sqrt(chi[kind] / all[kind]), 100 * one[kind] / all[kind], 100 * two[kind] / all[kind]
+            printf "%-7s the ramp: scatter %.4f, bias %.4f, scatter over stated error, rms of " \
+                "%d bins, %.2f; off the truth by %.2f stated errors (rms), within 1 %.0f %%, " \
+                "2 %.0f %%\n", kind, sqrt(spread[kind] / bins[kind]),
+                sqrt(bias[kind] / bins[kind]), bins[kind], sqrt(ratio[kind] / bins[kind]),
+                sqrt(chi[kind] / all[kind]), 100 * one[kind] / all[kind],
+                100 * two[kind] / all[kind]
     }'

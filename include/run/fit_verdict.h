@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Whether the verification bears out a fit that took itself for converged.
+///
+/// The samples of an inversion are of another size, and by moves that know no time step: they can
+/// agree with g(r) where a simulation does not. A liquid under tension holds in a small box and
+/// tears in a large one; a rough potential heats a simulation of too long a step.
+#pragma once
+
+#include "inverse/verify.h"
+
+/// Why the verified g(r) is not what the fit says it is, into `reason`.
+/// @param[in] noise_margin  g may be off by this many times its statistical error
+/// Returns whether there is something to say. Tested: test_fit_verdict.
+bool fit_verdict_contradicts(const struct verification *verification, double temperature,
+                             double noise_margin, char reason[INVERSE_REASON_SIZE]);

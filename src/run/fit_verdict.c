@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/fit_verdict.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/// A kinetic temperature farther off than this is the time step's doing.
+static const double hot = 0.05;
+
+/// What is the likely cause.
+static const char *find_cause(const struct thermodynamics_summary *found, double temperature) {
+    if (fabs(found->temperature / temperature - 1) > hot)
+        return "the potential is too rough for this time step: set a shorter "
+               "\"verification.time_step\"";
+    if (found->pressure < 0)
+        return "a liquid under tension tears: g(r) leaves the pressure open, so give it as a "
+               "second target";
+    return "longer \"equilibration\" of either, or more \"particles\", may tell why";
+}
+
+bool fit_verdict_contradicts(const struct verification *verification, double temperature,
+                             double noise_margin, char reason[INVERSE_REASON_SIZE]) {
+    const struct goal_distance *rdf = &verification->distance[GOAL_RDF];
+    const struct thermodynamics_summary *found = &verification->thermodynamics;
+    if (!(rdf->rms > noise_margin * rdf->noise))
+        return false;
+    snprintf(reason, INVERSE_REASON_SIZE,
+             "the fit's samples agree with g(r), its verification is off by %.2g (%.2g by "
+             "statistics) at T = %.3g, pressure %.3g: %s",
+             rdf->rms, rdf->noise, found->temperature, found->pressure,
+             find_cause(found, temperature));
+    return true;
+}
