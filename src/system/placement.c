@@ -175,7 +175,6 @@ done:
 enum status placement_disordered(struct particles *particles, uint64_t seed) {
     static const double share = 0.7;
     const struct box *box = &particles->box;
-    const double distance =
-        pow(box_volume(box) / (double)particles->count, 1.0 / box->dimensions);
+    const double distance = pow(box_volume(box) / (double)particles->count, 1.0 / box->dimensions);
     return placement_random(particles, share * distance, seed);
 }
