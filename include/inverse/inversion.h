@@ -9,10 +9,11 @@
 /// converged when all errors are within their noise.
 ///
 /// It starts from the hypernetted-chain inversion (hnc_closure): for water the error of g is then a
-/// quarter of that of −k_B T ln g. Where it is large, as with a target that ends before its
-/// oscillations do, −k_B T ln g is sampled as well, and the better one goes on. Replicas begin from
-/// disorder, and again after a potential that made it worse: a poor one freezes a liquid, or tears
-/// it apart, and what is left of that would be taken for the next potential's structure.
+/// quarter of that of −k_B T ln g. Where it is large and the liquid under tension, as with a
+/// target that ends before its oscillations do, −k_B T ln g is sampled as well, and the better one
+/// goes on. Replicas begin from disorder, and again after a potential that made it worse: a poor
+/// one freezes a liquid, or tears it apart, and what is left of that would be taken for the next
+/// potential's structure.
 #pragma once
 
 #include "inverse/inversion_band.h"

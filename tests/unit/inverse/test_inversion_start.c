@@ -96,12 +96,15 @@ static void test_inversion_start_is_the_target_as_it_stands_without_errors(void 
     clear(&made);
 }
 
-static void test_inversion_start_is_poor_when_g_is_far_off_and_was_hnc(void **state) {
+static void test_inversion_start_is_poor_when_g_is_far_off_under_tension(void **state) {
     (void)state;
     struct made made;
     make(&made, INVERSION_FROM_HNC);
     assert_ok(inversion_create(&made.inversion, &imc, &made.problem, &made.settings));
     made.inversion.distance[GOAL_RDF].rms = 0.5;
+    made.inversion.pressure.value = 0.1;
+    assert_false(inversion_start_is_poor(&made.inversion));
+    made.inversion.pressure.value = -4;
     assert_true(inversion_start_is_poor(&made.inversion));
     made.inversion.distance[GOAL_RDF].rms = 0.01;
     assert_false(inversion_start_is_poor(&made.inversion));
@@ -128,7 +131,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_inversion_start_is_smooth_within_the_errors_of_the_target),
         cmocka_unit_test(test_inversion_start_is_the_target_as_it_stands_without_errors),
-        cmocka_unit_test(test_inversion_start_is_poor_when_g_is_far_off_and_was_hnc),
+        cmocka_unit_test(test_inversion_start_is_poor_when_g_is_far_off_under_tension),
         cmocka_unit_test(test_inversion_create_refuses_a_hole_beyond_the_core),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
