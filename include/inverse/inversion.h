@@ -9,11 +9,11 @@
 /// converged when all errors are within their noise.
 ///
 /// It starts from the hypernetted-chain inversion (hnc_closure): for water the error of g is then a
-/// quarter of that of −k_B T ln g. Where it is large and the liquid under tension, as with a
-/// target that ends before its oscillations do, −k_B T ln g is sampled as well, and the better one
-/// goes on. Replicas begin from disorder, and again after a potential that made it worse: a poor
-/// one freezes a liquid, or tears it apart, and what is left of that would be taken for the next
-/// potential's structure.
+/// quarter of that of −k_B T ln g. Where that is far off and puts the liquid under tension, or the
+/// first step from there makes it worse, as with targets that end before their oscillations do, it
+/// starts again from −k_B T ln g. Replicas begin from disorder, and again after a potential that
+/// made it worse: a poor one freezes a liquid, or tears it apart, and what is left of that would be
+/// taken for the next potential's structure.
 #pragma once
 
 #include "inverse/inversion_band.h"
@@ -68,8 +68,7 @@ struct inversion {
     // What a checkpoint keeps besides phi, best, … and the samplers:
     struct inversion_progress {
         uint32_t iteration;
-        bool start; ///< the present potential is a start, not a step
-        bool anew;  ///< its replicas are placed anew
+        bool anew; ///< the replicas are placed anew
         uint64_t evaluations, sweeps;
         double damping;
         struct goal_distance best[GOALS]; ///< rms of g infinite: there is none yet
@@ -108,8 +107,9 @@ struct imc_system inversion_system(const struct inversion *inversion);
 /// beside one another is a force. Fails: NO_MEMORY. Tested: test_inversion_start.
 enum status inversion_start(struct inversion *inversion) MUST_USE;
 
-/// Whether phi is the hypernetted chain's start and its samples say that −k_B T ln g may be better.
-bool inversion_start_is_poor(const struct inversion *inversion);
+/// Whether the start was the hypernetted chain's and leads nowhere, after an iteration whose
+/// potential was kept or not.
+bool inversion_start_is_poor(const struct inversion *inversion, bool kept);
 
 /// Fill phi with −k_B T ln g. As inversion_start.
 enum status inversion_start_again(struct inversion *inversion) MUST_USE;

@@ -56,8 +56,8 @@ const struct field inversion_fields[] = {
      .maximum = 1, .unit = "", .help = "share of a method's step taken at first; adapts"},
     {"start", FIELD_CHOICE, MEMBER(start), .choices = starts, .initial = INVERSION_FROM_HNC,
      .unit = "",
-     .help = "without unknowns.potential.start: the hypernetted-chain inversion, or -k_B T ln g "
-             "where that is poor and this better, and in two dimensions; mean-force: -k_B T ln g"},
+     .help = "without unknowns.potential.start: the hypernetted-chain inversion, and -k_B T ln g "
+             "where that leads nowhere or in two dimensions; mean-force: -k_B T ln g"},
     FIELD_END,
 };
 
@@ -181,7 +181,7 @@ enum status inversion_create(void *memory, const struct inverse_method *method,
                                                .bins = bins->count,
                                                .seed = problem->seed}));
     inversion->progress = (struct inversion_progress){
-        .start = true, .anew = true, .damping = p->damping, .best[GOAL_RDF].rms = INFINITY};
+        .anew = true, .damping = p->damping, .best[GOAL_RDF].rms = INFINITY};
     return STATUS_OK;
 }
 
@@ -349,38 +349,39 @@ static void go_back(struct inversion *inversion) {
     progress->damping = inversion->settings.common.damping;
 }
 
-/// Keep the present potential, or go back if it is worse than the best by more than chance. A
-/// start that is worse says nothing of the best's step. Replicas that a worse potential may have
-/// frozen or torn apart are not gone on with.
+/// Keep the present potential, or go back if it is worse than the best by more than chance.
+/// Replicas that a worse potential may have frozen or torn apart are not gone on with.
 static enum status judge(struct inversion *inversion, bool *kept) {
     struct inversion_progress *progress = &inversion->progress;
     const double error = inversion->distance[GOAL_RDF].rms;
+    const bool start = isinf(progress->best[GOAL_RDF].rms);
     *kept =
         count_noises(inversion, inversion->distance) <= count_noises(inversion, progress->best) + 2;
     progress->anew = !*kept;
-    if (progress->start && *kept)
+    if (start)
         progress->first_error = progress->second_error = error;
-    else if (!progress->start && progress->second_error == progress->first_error)
+    else if (progress->second_error == progress->first_error)
         progress->second_error = error;
-    if (*kept && !progress->start)
-        progress->damping = fmin(1, 1.5 * progress->damping);
-    if (*kept)
-        return keep(inversion);
-    if (!progress->start)
+    if (!*kept) {
         go_back(inversion);
-    return STATUS_OK;
+        return STATUS_OK;
+    }
+    if (!start)
+        progress->damping = fmin(1, 1.5 * progress->damping);
+    return keep(inversion);
 }
 
 /// The next potential to be sampled: the other start, or a step from the best.
-static enum status go_on(struct inversion *inversion) {
+static enum status go_on(struct inversion *inversion, bool kept) {
     struct inversion_progress *progress = &inversion->progress;
-    progress->start = inversion_start_is_poor(inversion);
-    if (progress->start) {
-        progress->anew = true;
-        return inversion_start_again(inversion);
+    if (!inversion_start_is_poor(inversion, kept)) {
+        take_step(inversion);
+        return STATUS_OK;
     }
-    take_step(inversion);
-    return STATUS_OK;
+    progress->best[GOAL_RDF].rms = INFINITY;
+    progress->damping = inversion->settings.common.damping;
+    progress->anew = true;
+    return inversion_start_again(inversion);
 }
 
 /// Whether the present potential meets all targets as far as their noise lets see.
@@ -434,7 +435,7 @@ enum status inversion_iterate(void *memory, struct inverse_step *step,
     const bool precise = inversion->own_noise <= inversion->settings.common.precision;
     describe(inversion, own, kept && precise && meets_targets(inversion), step);
     if (!step->finished)
-        TRY(go_on(inversion));
+        TRY(go_on(inversion, kept));
     progress->iteration++;
     return STATUS_OK;
 }

@@ -97,13 +97,22 @@ enum status inversion_start(struct inversion *inversion) {
     return smooth(inversion);
 }
 
-bool inversion_start_is_poor(const struct inversion *inversion) {
-    double structure = 0;
+/// rms of g* − 1.
+static double find_structure(const struct inversion *inversion) {
+    double sum = 0;
     for (size_t n = 0; n < inversion->bins; n++)
-        structure += pow(inversion_target_g(inversion, n) - 1, 2);
-    structure = sqrt(structure / (double)inversion->bins);
-    return inversion->progress.iteration == 0 && is_from_hnc(inversion) &&
-           inversion->distance[GOAL_RDF].rms > poor * structure && inversion->pressure.value < 0;
+        sum += pow(inversion_target_g(inversion, n) - 1, 2);
+    return sqrt(sum / (double)inversion->bins);
+}
+
+bool inversion_start_is_poor(const struct inversion *inversion, bool kept) {
+    const uint32_t iteration = inversion->progress.iteration;
+    if (!is_from_hnc(inversion) || iteration > 1)
+        return false;
+    if (iteration == 1)
+        return !kept;
+    return inversion->distance[GOAL_RDF].rms > poor * find_structure(inversion) &&
+           inversion->pressure.value < 0;
 }
 
 enum status inversion_start_again(struct inversion *inversion) {

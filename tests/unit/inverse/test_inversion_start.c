@@ -103,17 +103,20 @@ static void test_inversion_start_is_poor_when_g_is_far_off_under_tension(void **
     assert_ok(inversion_create(&made.inversion, &imc, &made.problem, &made.settings));
     made.inversion.distance[GOAL_RDF].rms = 0.5;
     made.inversion.pressure.value = 0.1;
-    assert_false(inversion_start_is_poor(&made.inversion));
+    assert_false(inversion_start_is_poor(&made.inversion, true));
     made.inversion.pressure.value = -4;
-    assert_true(inversion_start_is_poor(&made.inversion));
+    assert_true(inversion_start_is_poor(&made.inversion, true));
     made.inversion.distance[GOAL_RDF].rms = 0.01;
-    assert_false(inversion_start_is_poor(&made.inversion));
+    assert_false(inversion_start_is_poor(&made.inversion, true));
     made.inversion.distance[GOAL_RDF].rms = 0.5;
     made.inversion.progress.iteration = 1;
-    assert_false(inversion_start_is_poor(&made.inversion));
+    assert_false(inversion_start_is_poor(&made.inversion, true));
+    assert_true(inversion_start_is_poor(&made.inversion, false));
+    made.inversion.progress.iteration = 2;
+    assert_false(inversion_start_is_poor(&made.inversion, false));
     made.inversion.progress.iteration = 0;
     made.inversion.settings.common.start = INVERSION_FROM_MEAN_FORCE;
-    assert_false(inversion_start_is_poor(&made.inversion));
+    assert_false(inversion_start_is_poor(&made.inversion, true));
     clear(&made);
 }
 
