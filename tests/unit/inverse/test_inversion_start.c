@@ -130,11 +130,37 @@ static void test_inversion_create_refuses_a_hole_beyond_the_core(void **state) {
     clear(&made);
 }
 
+static void ignore(void *context, const struct inverse_progress *progress) {
+    (void)context, (void)progress;
+}
+
+/// Without a prior the errors would be as many times larger as sqrt(χ²), here 3.
+static void test_inversion_band_widens_when_more_than_noise_is_left(void **state) {
+    (void)state;
+    struct made made;
+    struct inverse_step step;
+    const struct inverse_listener listener = {ignore, NULL};
+    double error[2];
+    make(&made, INVERSION_FROM_MEAN_FORCE);
+    assert_ok(inversion_create(&made.inversion, &imc, &made.problem, &made.settings));
+    struct inversion *inversion = &made.inversion;
+    assert_ok(inversion_iterate(inversion, &step, &listener));
+    for (int left = 0; left < 2; left++) {
+        for (size_t a = 0; a < inversion->grid.known; a++)
+            inversion->excess[a] = (left ? 3 : 0.5) * sqrt(inversion->variance[a]);
+        assert_ok(inversion_band_find(inversion));
+        error[left] = inversion->band.error[inversion->grid.known_point[30]];
+    }
+    assert_true(error[1] > 1.2 * error[0] && error[1] < 3.01 * error[0]);
+    clear(&made);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_inversion_start_is_smooth_within_the_errors_of_the_target),
         cmocka_unit_test(test_inversion_start_is_the_target_as_it_stands_without_errors),
         cmocka_unit_test(test_inversion_start_is_poor_when_g_is_far_off_under_tension),
+        cmocka_unit_test(test_inversion_band_widens_when_more_than_noise_is_left),
         cmocka_unit_test(test_inversion_create_refuses_a_hole_beyond_the_core),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
