@@ -7,8 +7,8 @@
 /// prior there with the weight 1/(k_B T)²: a bend by k_B T within a tenth of λ, or ten k_B T in
 /// all, is as wide as one standard error. The covariance of Φ is (F + prior)⁻¹.
 ///
-/// Where more of the excess is left than these say, χ² by bin above 1, the σ_a² are that much larger:
-/// a fit stops within 1.7 times the noise, and what it leaves is an error of Φ too.
+/// Where more of the excess is left than these say, χ² by bin above 1, the σ_a² are that much
+/// larger: a fit stops within 1.7 times the noise, and what it leaves is an error of Φ too.
 ///
 /// Errors of bins count as independent. Those by sampling are correlated as S is, and with that
 /// F = n C/(k_B T)² (n independent configurations; the canonical ensemble is an exponential family)
