@@ -134,7 +134,7 @@ static void test_imc_of_a_mixture_writes_a_potential_for_each_kind_of_pairs(void
     check_tables(6, 4);
     check_truth();
     check_summary();
-    results_assert_table("out/history.tsv", 13, 4);
+    results_assert_table("out/history.tsv", 14, 4);
     assert_true(temporary_folder_exists("out/potential_A-B_flat.tsv"));
     assert_true(results_number("out/summary.json", "directions_of") > 40);
     // The target stands in the table of its own kind, whichever name the run file calls it by.
