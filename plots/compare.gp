@@ -143,7 +143,7 @@ do for [kind in kinds] {
         panel = panel + 1
         eval next_panel(panel)
         set yrange [0:G_max > 0 ? 1.08 * G_max : 1]
-        eval name_axis(g_label, 0.02)
+        eval name_axis(g_label, 0.012)
         plot for [i = 1:count] "rdf_compare.tsv" index (i - 1) using 1:4 with lines linestyle i, \
             for [i = 1:count] "" index (i - 1) using 1:2 with points pointtype 7 pointsize 0.32 \
                 linecolor rgb ink
@@ -152,7 +152,7 @@ do for [kind in kinds] {
         panel = panel + 1
         eval next_panel(panel)
         set yrange [bottom - 0.1 * (top - bottom):top]
-        eval name_axis(phi_label, 0.02)
+        eval name_axis(phi_label, 0.012)
         plot 0 linewidth 0.8 linecolor rgb ink, \
             for [i = 1:count] "potential_compare.tsv" index (i - 1) \
                 using 1:(band_low(2, 3)):(band_high(2, 3)) with filledcurves @band \
@@ -164,7 +164,7 @@ do for [kind in kinds] {
         panel = panel + 1
         eval next_panel(panel)
         set yrange [0:V_max > 0 || W_max > 0 ? 1.08 * high(V_max, W_max) : 1]
-        eval name_axis(omega_label, 0.02)
+        eval name_axis(omega_label, 0.012)
         plot for [i = 1:count] "omega_compare.tsv" index (i - 1) \
                 using 1:(band_low(2, 3)):(band_high(2, 3)) with filledcurves @band \
                 linecolor rgb colour_of(i - 1), \
@@ -179,7 +179,7 @@ do for [kind in kinds] {
         eval log_range("y", L_min, E_max)
         eval error_panel(0) . narrow(M_min, N_max)
         set xlabel "simulations"
-        eval name_axis(y_label, 0.02)
+        eval name_axis(y_label, 0.012)
         plot for [i = 1:count] "error_compare.tsv" index (i - 1) using 2:6 with lines \
                 linewidth 1.2 dashtype 3 linecolor rgb colour_of(i - 1), \
             for [i = 1:count] "" index (i - 1) using 2:5 with linespoints linestyle i pointtype 7 pointsize 0.45
