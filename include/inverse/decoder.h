@@ -22,6 +22,9 @@ struct decoder {
 enum status decoder_init(struct decoder *decoder, const struct inverse_problem *problem) MUST_USE;
 void decoder_clear(struct decoder *decoder);
 
+/// Genes of an unknown; 0 if it is known.
+size_t decoder_genes(const struct decoder *decoder, enum unknown_kind kind);
+
 /// Points of an unknown's curve; 0 if it is known. And where they are [λ].
 size_t decoder_points(const struct decoder *decoder, enum unknown_kind kind);
 const double *decoder_r(const struct decoder *decoder, enum unknown_kind kind);

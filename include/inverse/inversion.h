@@ -90,6 +90,13 @@ enum status inversion_iterate(void *inversion, struct inverse_step *step,
                               const struct inverse_listener *listener) MUST_USE;
 size_t inversion_spans(void *inversion, struct memory_span *span);
 
+/// What the records of the inversions have in common.
+#define INVERSION_RECORD                                                                           \
+    .parameters_size = sizeof(struct inversion_settings), .state_size = sizeof(struct inversion),  \
+    .fits = {[UNKNOWN_POTENTIAL] = true}, .most_iterations = inversion_most_iterations,            \
+    .sampling = inversion_sampling, .destroy = inversion_destroy, .iterate = inversion_iterate,    \
+    .spans = inversion_spans
+
 /// The first of a method's columns; the others may be its own.
 #define INVERSION_COLUMNS                                                                          \
     "damping[1]", "own_noise[1]", "disagreement[1]", "rdf_rms[1]", "pressure", "pressure_error"

@@ -81,15 +81,8 @@ const struct inverse_method automatic = {
                "al. 2003) until their linear response holds, then inverse Monte Carlo (Lyubartsev "
                "and Laaksonen 1995)",
     .tables = (const struct field *const[]){inversion_fields, NULL},
-    .parameters_size = sizeof(struct inversion_settings),
-    .state_size = sizeof(struct inversion),
-    .fits = {[UNKNOWN_POTENTIAL] = true},
-    .most_iterations = inversion_most_iterations,
-    .sampling = inversion_sampling,
     .columns = columns,
     .update = update,
     .create = inversion_create,
-    .destroy = inversion_destroy,
-    .iterate = inversion_iterate,
-    .spans = inversion_spans,
+    INVERSION_RECORD,
 };

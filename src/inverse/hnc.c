@@ -70,15 +70,8 @@ const struct inverse_method hnc = {
     .summary = "Newton steps by the hypernetted chain; F. Delbary, M. Hanke and D. Ivanizki, J. "
                "Inverse Ill-Posed Probl. 28 (2020)",
     .tables = (const struct field *const[]){inversion_fields, own_fields, NULL},
-    .parameters_size = sizeof(struct inversion_settings),
-    .state_size = sizeof(struct inversion),
-    .fits = {[UNKNOWN_POTENTIAL] = true},
-    .most_iterations = inversion_most_iterations,
-    .sampling = inversion_sampling,
     .columns = columns,
     .update = update,
     .create = create,
-    .destroy = inversion_destroy,
-    .iterate = inversion_iterate,
-    .spans = inversion_spans,
+    INVERSION_RECORD,
 };

@@ -37,15 +37,8 @@ const struct inverse_method ibi = {
         "iterative Boltzmann inversion; D. Reith, M. Puetz and F. Mueller-Plathe, J. Comput. "
         "Chem. 24, 1624 (2003)",
     .tables = (const struct field *const[]){inversion_fields, NULL},
-    .parameters_size = sizeof(struct inversion_settings),
-    .state_size = sizeof(struct inversion),
-    .fits = {[UNKNOWN_POTENTIAL] = true},
-    .most_iterations = inversion_most_iterations,
-    .sampling = inversion_sampling,
     .columns = columns,
     .update = update,
     .create = inversion_create,
-    .destroy = inversion_destroy,
-    .iterate = inversion_iterate,
-    .spans = inversion_spans,
+    INVERSION_RECORD,
 };

@@ -67,15 +67,8 @@ const struct inverse_method imc = {
     .summary = "inverse Monte Carlo; A. P. Lyubartsev and A. Laaksonen, Phys. Rev. E 52, 3730 "
                "(1995)",
     .tables = (const struct field *const[]){inversion_fields, own_fields, NULL},
-    .parameters_size = sizeof(struct inversion_settings),
-    .state_size = sizeof(struct inversion),
-    .fits = {[UNKNOWN_POTENTIAL] = true},
-    .most_iterations = inversion_most_iterations,
-    .sampling = inversion_sampling,
     .columns = columns,
     .update = update,
     .create = inversion_create,
-    .destroy = inversion_destroy,
-    .iterate = inversion_iterate,
-    .spans = inversion_spans,
+    INVERSION_RECORD,
 };
