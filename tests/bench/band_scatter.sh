@@ -7,13 +7,15 @@
 # as they are and without the best ramp A (1 − r/r_c) of each (docs/hard-targets.md).
 #
 # tests/bench/band_scatter.sh [PROGRAM] [FOLDER] [REPETITIONS]
-# METHOD=hnc picks another method. What FOLDER holds already is not run again.
+# METHOD=hnc picks another method, FIRST=21 other seeds. What FOLDER holds already is not run again.
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 program=$(realpath "${1:-$root/build/mesofit}")
 folder=${2:-$(mktemp -d)}
 repetitions=${3:-20}
 method=${METHOD:-imc}
+first=${FIRST:-1}
+numbers=$(seq "$first" $((first + repetitions - 1)))
 export OMP_WAIT_POLICY=passive
 mkdir -p "$folder"
 
@@ -44,13 +46,13 @@ EOF_FIT
 
 # g of the target, then Φ, its error, that without the ramp, and the truth: one row a bin.
 rows() {
-    for n in $(seq "$repetitions"); do
+    for n in $numbers; do
         paste "$folder/$method-$n/rdf.tsv" "$folder/$method-$n/potential.tsv" |
             awk -v n="$n" '!/^#/ && $2 > 0.1 { print n, $1, $7, $9, $10, $11 }'
     done
 }
 
-for n in $(seq "$repetitions"); do
+for n in $numbers; do
     repeat "$n"
 done
 rows | awk '
