@@ -48,7 +48,8 @@ static void print_simulations(const struct fit_file *fit, const struct decoder_l
         printf("An evaluation of the method \"%s\", one a thread:\n", fit->method->name);
         print_simulation(&measured, &problem->goals, &setup);
     } else {
-        printf("The method \"%s\" samples by Monte Carlo: no velocities, no forces.\n",
+        printf("The method \"%s\" samples by a Monte Carlo of its own, not by the dynamics of the "
+               "scene.\n",
                fit->method->name);
     }
     if (fit->verification.time_step > 0)

@@ -243,7 +243,7 @@ static void test_explain_tells_how_an_evaluation_measures_the_rdf(void **state) 
     write_fit(*state, IMC);
     RUN_PROGRAM(&result, "fit", "run.json", "--explain");
     run_program_assert_code(&result, 0);
-    assert_contains(result.out, "The method \"imc\" samples by Monte Carlo");
+    assert_contains(result.out, "The method \"imc\" samples by a Monte Carlo of its own");
 }
 
 static void test_interrupted_genetic_goes_on_with_the_same_bits(void **state) {
