@@ -8,8 +8,10 @@
 
 #include "inverse/verify.h"
 
-/// Why the verified g(r) is not what the fit says it is, into `reason`.
-/// @param[in] noise_margin  g may be off by this many times its statistical error
+/// Why the verified g(r), or the pressure if it was fitted, is not what the fit says it is, into
+/// `reason`.
+/// @param[in] noise_margin  either may be off by this many times its statistical error
 /// Returns whether there is something to say. Tested: test_fit_verdict.
-bool fit_verdict_contradicts(const struct verification *verification, double temperature,
-                             double noise_margin, char reason[INVERSE_REASON_SIZE]);
+bool fit_verdict_contradicts(const struct verification *verification, bool pressure_is_fitted,
+                             double temperature, double noise_margin,
+                             char reason[INVERSE_REASON_SIZE]);

@@ -56,8 +56,10 @@ enum status inversion_band_covariance(const struct imc_system *system, double *c
     gsl_blas_dsyrk(CblasLower, CblasTrans, 1, response, 0, known);
     gsl_matrix_memcpy(&to.matrix, known);
     gsl_blas_dsyrk(CblasLower, CblasTrans, unit, prior, 1, &to.matrix);
-    gsl_linalg_cholesky_decomp1(&to.matrix);
-    gsl_linalg_cholesky_invert(&to.matrix);
+    // Rounding may leave it not positive: then there is no band.
+    if (gsl_linalg_cholesky_decomp1(&to.matrix) != GSL_SUCCESS ||
+        gsl_linalg_cholesky_invert(&to.matrix) != GSL_SUCCESS)
+        gsl_matrix_set_all(&to.matrix, GSL_NAN);
     // trace of F (F + prior)⁻¹; F has its lower triangle alone.
     *directions = 0;
     for (size_t a = 0; a < size; a++)
@@ -119,7 +121,7 @@ static void find_errors(struct inversion *inversion, const double *weight, doubl
     const double ramp_variance = spread(inversion, weight, scratch);
     for (size_t a = 0; a < n; a++) {
         const double variance = band->covariance[a * n + a];
-        band->error[grid->known_point[a]] = sqrt(variance);
+        band->error[grid->known_point[a]] = variance >= 0 ? sqrt(variance) : NAN;
         band->without_ramp[grid->known_point[a]] =
             sqrt(fmax(0, variance - scratch[a] * scratch[a] / ramp_variance));
     }
@@ -186,7 +188,8 @@ enum status inversion_band_find(struct inversion *inversion) {
     add_pressure(inversion, scratch);
     weigh_ramp(inversion, weight);
     find_errors(inversion, weight, scratch);
-    CHECK(find_flat(inversion));
+    if (!isnan(band->covariance[0]))
+        CHECK(find_flat(inversion));
 done:
     memory_free(weight);
     memory_free(scratch);

@@ -17,9 +17,8 @@ const struct field inversion_fields[] = {
     {"replicas", FIELD_INTEGER, MEMBER(replicas), .initial = 8, .minimum = 2,
      .maximum = REPLICAS_MOST, .unit = "", .help = "independent samplers"},
     {"equilibration", FIELD_INTEGER, MEMBER(equilibration), .initial = 200, .minimum = 0,
-     .maximum = 1e9, .unit = "sweeps",
-     .help = "before each iteration's samples; five times as "
-             "many before the first"},
+     .maximum = 8e8, .unit = "sweeps",
+     .help = "before each iteration's samples; five times as many where replicas begin anew"},
     {"samples", FIELD_INTEGER, MEMBER(samples), .initial = 200, .minimum = 2 * REPLICAS_BLOCKS,
      .maximum = 1e9, .unit = "",
      .help = "of each replica, at least; doubled until the noise is a third of the error, or as "

@@ -13,8 +13,13 @@
 /// 40 iterations, its ramp being off by 5 k_B T.
 static const double poor = 0.1;
 
+/// Whether the run file gives a start, of a mixture for any of its kinds of pairs: the others then
+/// begin with −k_B T ln g.
 static bool has_own(const struct inversion *inversion) {
-    return inversion->problem->unknown[UNKNOWN_POTENTIAL].start[0] != NULL;
+    for (size_t pair = 0; pair < inversion->grid.pairs; pair++)
+        if (inversion->problem->unknown[UNKNOWN_POTENTIAL].start[pair])
+            return true;
+    return false;
 }
 
 static bool is_from_hnc(const struct inversion *inversion) {

@@ -5,6 +5,7 @@
 #include "base/statistics.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 enum status replicas_init(struct replicas *replicas, size_t count, enum sampler_kind kind,
@@ -82,24 +83,26 @@ run_all(struct replicas *replicas, const struct replicas_plan *plan, int threads
         const struct inverse_progress *progress, const struct inverse_listener *listener,
         enum status (*one)(struct replica *, size_t, const struct replicas_plan *)) {
     enum status worst = STATUS_OK;
+    char message[256] = "";
     uint64_t done = 0;
 #pragma omp parallel for schedule(dynamic) num_threads(threads)
     for (size_t k = 0; k < replicas->count; k++) {
         const enum status status = one(&replicas->member[k], replicas->bins, plan);
 #pragma omp critical
         {
-            if (status != STATUS_OK)
+            // Messages belong to threads.
+            if (status != STATUS_OK && worst != STATUS_INTERRUPTED) {
                 worst = status;
+                snprintf(message, sizeof message, "%s", status_message());
+            }
             struct inverse_progress now = *progress;
             now.done = ++done;
             now.total = replicas->count;
             listener->tell(listener->context, &now);
         }
     }
-    if (worst == STATUS_INTERRUPTED)
-        return status_fail(worst, "interrupted");
     if (worst != STATUS_OK)
-        return status_fail(worst, "no memory for the replicas");
+        return status_fail(worst, "%s", message);
     comoments_reset(&replicas->counts);
     for (size_t k = 0; k < replicas->count; k++)
         comoments_merge(&replicas->counts, &replicas->member[k].counts);
@@ -155,7 +158,9 @@ double replicas_disagreement(const struct replicas *replicas, const double *idea
         }
         between += weight * means.squares / (means.count - 1);
     }
-    return within > 0 ? REPLICAS_BLOCKS * between / within : 1;
+    if (!(within > 0))
+        return between > 0 ? INFINITY : 1;
+    return REPLICAS_BLOCKS * between / within;
 }
 
 size_t replicas_spans(struct replicas *replicas, struct memory_span *span) {

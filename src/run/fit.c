@@ -305,8 +305,8 @@ static void doubt(struct run *run, const struct verification *verification) {
     static const double margin = 3;
     struct standing *standing = &run->standing;
     if (standing->converged && run->fit.method->update &&
-        fit_verdict_contradicts(verification, run->fit.problem.scene.temperature, margin,
-                                standing->reason))
+        fit_verdict_contradicts(verification, goals_ask(&run->fit.problem.goals, GOAL_PRESSURE),
+                                run->fit.problem.scene.temperature, margin, standing->reason))
         standing->converged = false;
 }
 

@@ -44,7 +44,8 @@ static void print_simulations(const struct fit_file *fit, const struct decoder_l
     if (sampling.every > 0) {
         struct measured measured = measured_of(&problem->goals, &setup, sampling.every);
         measured.explain.rdf_force = measured.explain.rdf_force_alone =
-            sampling.rdf_force && goals_ask(&problem->goals, GOAL_RDF);
+            sampling.rdf_force && goals_ask(&problem->goals, GOAL_RDF) &&
+            !composition_is_mixed(&setup.composition);
         printf("An evaluation of the method \"%s\", one a thread:\n", fit->method->name);
         print_simulation(&measured, &problem->goals, &setup);
     } else {

@@ -102,7 +102,7 @@ done:
     return status;
 }
 
-/// The weight that the scene says.
+/// The weight that the scene says for all pairs.
 static enum status write_known_omega(const struct fit_file *fit, const struct run_folder *folder) {
     double r[OMEGA_POINTS + 1], omega[OMEGA_POINTS + 1];
     char path[OUTPUT_PATH_SIZE];
@@ -170,7 +170,7 @@ enum status fit_output_curves(const struct fit_file *fit, const struct decoder *
         TRY(write_potentials(fit, decoder, result, folder));
     if (result->curve[UNKNOWN_WEIGHT])
         return write_fitted_omega(fit, decoder, result, folder);
-    return fit->scene.weight.curves ? write_known_omega(fit, folder) : STATUS_OK;
+    return fit->scene.weight.curves == 1 ? write_known_omega(fit, folder) : STATUS_OK;
 }
 
 /// g(r) of a kind of pairs: rdf.tsv, or rdf_A-B.tsv in a mixture.

@@ -117,11 +117,11 @@ static void put_flat(struct json_writer *writer, enum unknown_kind kind,
 static void put_ramp(struct json_writer *writer, const struct inverse_ramp *ramp) {
     if (!(ramp->error > 0))
         return;
-    json_put_number(writer, "ramp_error", ramp->error);
-    json_put_number(writer, "ramp_pressure", ramp->pressure);
-    json_put_number(writer, "pressure_left_open", ramp->pressure_open);
-    json_put_number(writer, "directions", ramp->directions);
-    json_put_number(writer, "directions_of", ramp->bins);
+    put_known(writer, "ramp_error", ramp->error);
+    put_known(writer, "ramp_pressure", ramp->pressure);
+    put_known(writer, "pressure_left_open", ramp->pressure_open);
+    put_known(writer, "directions", ramp->directions);
+    put_known(writer, "directions_of", ramp->bins);
 }
 
 /// "truth_rms" and so on, in a mixture "truth_rms_A-B".
@@ -134,7 +134,7 @@ static void put_potential_truth(struct json_writer *writer, const struct fit_fil
     composition_pair_name(&fit->scene.setup.composition, (int)pair, kind);
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         snprintf(key, sizeof key, "%s%s%s", names[k], kind[0] ? "_" : "", kind);
-        json_put_number(writer, key, values[k]);
+        put_known(writer, key, values[k]);
     }
 }
 
@@ -161,14 +161,14 @@ static void put_kirkwood_buff(struct json_writer *writer, const struct fit_file 
         kirkwood_buff_integrate(bins, fit->targets.rdf_g, fit->targets.rdf_error, box, count);
     const struct kirkwood_buff found = kirkwood_buff_integrate(
         bins, v->observed.value[GOAL_RDF], v->observed.error[GOAL_RDF], box, count);
-    json_put_number(writer, "target_kirkwood_buff", target.integral);
-    json_put_number(writer, "target_kirkwood_buff_error", target.integral_error);
-    json_put_number(writer, "kirkwood_buff", found.integral);
-    json_put_number(writer, "kirkwood_buff_error", found.integral_error);
-    json_put_number(writer, "target_compressibility", target.compressibility);
-    json_put_number(writer, "target_compressibility_error", target.compressibility_error);
-    json_put_number(writer, "compressibility", found.compressibility);
-    json_put_number(writer, "compressibility_error", found.compressibility_error);
+    put_known(writer, "target_kirkwood_buff", target.integral);
+    put_known(writer, "target_kirkwood_buff_error", target.integral_error);
+    put_known(writer, "kirkwood_buff", found.integral);
+    put_known(writer, "kirkwood_buff_error", found.integral_error);
+    put_known(writer, "target_compressibility", target.compressibility);
+    put_known(writer, "target_compressibility_error", target.compressibility_error);
+    put_known(writer, "compressibility", found.compressibility);
+    put_known(writer, "compressibility_error", found.compressibility_error);
 }
 
 static void put_verification(struct json_writer *writer, const struct fit_file *fit,

@@ -18,10 +18,19 @@ static const char *find_cause(const struct thermodynamics_summary *found, double
     return "longer \"equilibration\" of either, or more \"particles\", may tell why";
 }
 
-bool fit_verdict_contradicts(const struct verification *verification, double temperature,
-                             double noise_margin, char reason[INVERSE_REASON_SIZE]) {
+bool fit_verdict_contradicts(const struct verification *verification, bool pressure_is_fitted,
+                             double temperature, double noise_margin,
+                             char reason[INVERSE_REASON_SIZE]) {
     const struct goal_distance *rdf = &verification->distance[GOAL_RDF];
     const struct thermodynamics_summary *found = &verification->thermodynamics;
+    const struct goal_distance *pressure = &verification->distance[GOAL_PRESSURE];
+    if (pressure_is_fitted && pressure->rms > noise_margin * pressure->noise) {
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "the verification's pressure, %.4g, is off by %.2g (%.2g by statistics): its time "
+                 "step may be too long",
+                 found->pressure, pressure->rms, pressure->noise);
+        return true;
+    }
     if (!(rdf->rms > noise_margin * rdf->noise))
         return false;
     snprintf(reason, INVERSE_REASON_SIZE,

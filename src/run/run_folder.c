@@ -61,13 +61,20 @@ static enum status remove_results(const struct run_folder *folder) {
     enum status status = STATUS_OK;
     for (size_t k = 0; k < sizeof results / sizeof *results; k++)
         TRY(remove_result(folder, results[k]));
+    // Names like these are a run's where a run has been, and somebody's elsewhere.
+    char used[OUTPUT_PATH_SIZE];
+    run_folder_file(folder, "used.json", used);
+    if (access(used, F_OK) != 0)
+        return STATUS_OK;
     struct dirent **entries;
     const int count = scandir(folder->path, &entries, is_partial_result, alphasort);
     if (count < 0)
         return status_fail(STATUS_IO, "%s: %s", folder->path, strerror(errno));
     for (int k = 0; k < count; k++) {
+        char name[64]; // longer than any that a run gives
+        snprintf(name, sizeof name, "%.63s", entries[k]->d_name);
         if (status == STATUS_OK)
-            status = remove_result(folder, entries[k]->d_name);
+            status = remove_result(folder, name);
         free(entries[k]);
     }
     free(entries);

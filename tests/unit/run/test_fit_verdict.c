@@ -13,7 +13,7 @@ static struct verification make(double rms, double temperature, double pressure)
 
 static void assert_says(const struct verification *verification, const char *words) {
     char reason[INVERSE_REASON_SIZE];
-    assert_true(fit_verdict_contradicts(verification, 1.5, 3, reason));
+    assert_true(fit_verdict_contradicts(verification, false, 1.5, 3, reason));
     assert_contains(reason, words);
     assert_true(strlen(reason) + 1 < INVERSE_REASON_SIZE);
 }
@@ -22,7 +22,7 @@ static void test_fit_verdict_is_silent_when_g_is_off_by_noise(void **state) {
     (void)state;
     char reason[INVERSE_REASON_SIZE];
     const struct verification good = make(0.0059, 1.8, -3);
-    assert_false(fit_verdict_contradicts(&good, 1.5, 3, reason));
+    assert_false(fit_verdict_contradicts(&good, true, 1.5, 3, reason));
 }
 
 static void test_fit_verdict_names_the_cause_when_g_is_off(void **state) {
@@ -35,10 +35,23 @@ static void test_fit_verdict_names_the_cause_when_g_is_off(void **state) {
     assert_says(&other, "longer \"equilibration\"");
 }
 
+static void test_fit_verdict_names_the_pressure_when_it_was_fitted_and_is_off(void **state) {
+    (void)state;
+    char reason[INVERSE_REASON_SIZE];
+    struct verification found = make(0.0021, 1.5, 1.9);
+    found.distance[GOAL_PRESSURE] = (struct goal_distance){.rms = 0.4, .noise = 0.1};
+    assert_false(fit_verdict_contradicts(&found, false, 1.5, 3, reason));
+    assert_true(fit_verdict_contradicts(&found, true, 1.5, 3, reason));
+    assert_contains(reason, "pressure, 1.9, is off by 0.4 (0.1 by statistics)");
+    found.distance[GOAL_PRESSURE].rms = 0.29;
+    assert_false(fit_verdict_contradicts(&found, true, 1.5, 3, reason));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_fit_verdict_is_silent_when_g_is_off_by_noise),
         cmocka_unit_test(test_fit_verdict_names_the_cause_when_g_is_off),
+        cmocka_unit_test(test_fit_verdict_names_the_pressure_when_it_was_fitted_and_is_off),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
