@@ -71,8 +71,8 @@ static enum status remove_results(const struct run_folder *folder) {
     if (count < 0)
         return status_fail(STATUS_IO, "%s: %s", folder->path, strerror(errno));
     for (int k = 0; k < count; k++) {
-        char name[64]; // longer than any that a run gives
-        snprintf(name, sizeof name, "%.63s", entries[k]->d_name);
+        char name[63]; // longer than any that a run gives
+        snprintf(name, sizeof name, "%.62s", entries[k]->d_name);
         if (status == STATUS_OK)
             status = remove_result(folder, name);
         free(entries[k]);
