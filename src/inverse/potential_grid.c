@@ -57,6 +57,8 @@ enum status potential_grid_init(struct potential_grid *grid,
         r[bins->count] = rdf_bins_range(bins);
     }
 done:
+    if (status != STATUS_OK)
+        potential_grid_clear(grid);
     return status;
 }
 

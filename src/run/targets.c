@@ -167,10 +167,11 @@ static enum status read_rdf(struct targets *targets, struct json_object *object,
         TRY(target_read(&targets->rdf[0], object, units));
         return collect_rdf(targets);
     }
+    // The object remembers what it was asked for until it is finished.
+    char name[COMPOSITION_MOST_PAIRS][COMPOSITION_PAIR_NAME_SIZE];
     for (size_t pair = 0; pair < targets->pairs; pair++) {
-        char name[COMPOSITION_PAIR_NAME_SIZE];
-        struct json_object child =
-            json_child(object, pair_key(&targets->composition, (int)pair, object, name), true);
+        struct json_object child = json_child(
+            object, pair_key(&targets->composition, (int)pair, object, name[pair]), true);
         if (child.item)
             TRY(target_read(&targets->rdf[pair], &child, units));
     }

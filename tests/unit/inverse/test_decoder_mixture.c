@@ -51,7 +51,7 @@ static void begin(struct mixture *mixture) {
 static void test_decoder_start_gives_back_each_potential_of_a_mixture(void **state) {
     (void)state;
     struct mixture m;
-    double curve[PAIRS * EACH];
+    double curve[PAIRS * EACH], weight[WEIGHT_POINTS];
     begin(&m);
     assert_int_equal(m.decoder.genes, ALL);
     assert_int_equal(m.decoder.first[UNKNOWN_WEIGHT], PAIRS * GENES);
@@ -66,8 +66,8 @@ static void test_decoder_start_gives_back_each_potential_of_a_mixture(void **sta
         if (k >= cores[pair])
             assert_close(curve[n], curve_value(&m.potential[pair], m.decoder.potential.r[n]), 0.1);
     }
-    decoder_curve(&m.decoder, UNKNOWN_WEIGHT, m.genes, curve);
-    assert_close(curve[WEIGHT_POINTS / 2],
+    decoder_curve(&m.decoder, UNKNOWN_WEIGHT, m.genes, weight);
+    assert_close(weight[WEIGHT_POINTS / 2],
                  curve_value(&m.weight, m.decoder.weight.r[WEIGHT_POINTS / 2]), 0.02);
     decoder_clear(&m.decoder);
 }
