@@ -62,6 +62,9 @@ enum status imc_votca(const struct imc_system *system, double strength, double *
 enum status imc_truncated(const struct imc_system *system, double strength, double *x,
                           struct imc_solution *solution) MUST_USE;
 
+/// The whitened response B_ab = C_ab/(k_B T σ_a), shape [size, size].
+void imc_solve_response(const struct imc_system *system, gsl_matrix *response);
+
 /// χ² by bin of what x leaves.
 double imc_solve_misfit(const struct imc_system *system, const double *x);
 

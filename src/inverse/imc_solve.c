@@ -58,13 +58,20 @@ static enum status workspace_allocate(struct workspace *w, const struct imc_syst
     return status_fail(STATUS_NO_MEMORY, "no memory for %zu linear equations", n);
 }
 
-static void fill_equations(struct workspace *w, const struct imc_system *s) {
+void imc_solve_response(const struct imc_system *s, gsl_matrix *response) {
     for (size_t a = 0; a < s->size; a++) {
         const double weight = 1 / sqrt(s->variance[a]);
-        gsl_vector_set(w->rhs, a, weight * s->excess[a]);
         for (size_t b = 0; b < s->size; b++)
-            gsl_matrix_set(w->rows, a, b, weight * s->covariance[a * s->size + b] / s->temperature);
+            gsl_matrix_set(response, a, b,
+                           weight * s->covariance[a * s->size + b] / s->temperature);
     }
+}
+
+static void fill_equations(struct workspace *w, const struct imc_system *s) {
+    gsl_matrix_view response = gsl_matrix_submatrix(w->rows, 0, 0, s->size, s->size);
+    imc_solve_response(s, &response.matrix);
+    for (size_t a = 0; a < s->size; a++)
+        gsl_vector_set(w->rhs, a, 1 / sqrt(s->variance[a]) * s->excess[a]);
 }
 
 /// Row k of D is (x_{k−1} − 2 x_k + x_{k+1}) (ℓ/h)². In the last the neighbour is the cutoff, half

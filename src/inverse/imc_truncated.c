@@ -38,11 +38,7 @@ done:
 }
 
 static void decompose(struct workspace *w, const struct imc_system *s) {
-    for (size_t a = 0; a < s->size; a++)
-        for (size_t b = 0; b < s->size; b++)
-            gsl_matrix_set(w->u, a, b,
-                           s->covariance[a * s->size + b] /
-                               (s->temperature * sqrt(s->variance[a])));
+    imc_solve_response(s, w->u);
     gsl_linalg_SV_decomp(w->u, w->v, w->values, w->weight);
     for (size_t k = 0; k < s->size; k++) {
         double product = 0;

@@ -23,7 +23,7 @@ static const double noise_share = 1.0 / 3;
 enum { MOST_DOUBLINGS = 7 };
 
 /// Replicas that are placed anew are equilibrated so many times as long.
-enum { FIRST_EQUILIBRATION = 5 };
+enum { ANEW_EQUILIBRATION = 5 };
 
 double inversion_g(const struct inversion *inversion, size_t bin) {
     return inversion->replicas.counts.mean[bin] / inversion->ideal[bin];
@@ -127,7 +127,7 @@ static struct replicas_plan plan(const struct inversion *inversion) {
     const bool anew = inversion->progress.anew;
     return (struct replicas_plan){.scatter = anew,
                                   .equilibration =
-                                      p->equilibration * (anew ? FIRST_EQUILIBRATION : 1),
+                                      p->equilibration * (anew ? ANEW_EQUILIBRATION : 1),
                                   .block_samples = (p->samples - 1) / REPLICAS_BLOCKS + 1,
                                   .every = p->every};
 }

@@ -33,15 +33,6 @@ size_t inversion_band_spans(struct inversion_band *band, size_t points, struct m
     return INVERSION_BAND_SPANS;
 }
 
-/// B, shape [size, size].
-static void fill_response(const struct imc_system *s, gsl_matrix *response) {
-    for (size_t a = 0; a < s->size; a++)
-        for (size_t b = 0; b < s->size; b++)
-            gsl_matrix_set(response, a, b,
-                           s->covariance[a * s->size + b] /
-                               (s->temperature * sqrt(s->variance[a])));
-}
-
 enum status inversion_band_covariance(const struct imc_system *system, double *covariance,
                                       double *directions) {
     enum status status = STATUS_OK;
@@ -51,7 +42,7 @@ enum status inversion_band_covariance(const struct imc_system *system, double *c
     gsl_matrix *response = gsl_matrix_alloc(size, size), *known = gsl_matrix_calloc(size, size);
     gsl_matrix_view to = gsl_matrix_view_array(covariance, size, size);
     CHECK(prior && response && known ? STATUS_OK : STATUS_NO_MEMORY);
-    fill_response(system, response);
+    imc_solve_response(system, response);
     imc_solve_prior(system->spacing, system->block, system->blocks, prior);
     gsl_blas_dsyrk(CblasLower, CblasTrans, 1, response, 0, known);
     gsl_matrix_memcpy(&to.matrix, known);

@@ -124,12 +124,14 @@ static enum status refuse_holes(const struct inversion *inversion) {
             problem->goals.goal[GOAL_RDF].value[next] > problem->core_threshold)
             continue;
         const double r = rdf_bins_centre(&problem->goals.bins, next % grid->bins);
+        char kind[COMPOSITION_PAIR_NAME_SIZE];
+        composition_pair_name(&problem->scene.composition, (int)(bin / grid->bins), kind);
         return status_fail(
             STATUS_BAD_INPUT,
-            "the target is empty at r = %g, where the bin before it has g = %.3g: no "
+            "%s%sthe target is empty at r = %g, where the bin before it has g = %.3g: no "
             "potential of pairs makes such a hole; mend the target there, or end "
             "it before by \"cutoff\"",
-            r, problem->goals.goal[GOAL_RDF].value[bin]);
+            kind, kind[0] ? ": " : "", r, problem->goals.goal[GOAL_RDF].value[bin]);
     }
     return STATUS_OK;
 }

@@ -94,11 +94,10 @@ done:
 }
 
 enum status inversion_start(struct inversion *inversion) {
+    if (!is_from_hnc(inversion))
+        return inversion_start_again(inversion);
     potential_grid_start(&inversion->grid, inversion->problem, inversion->phi);
-    if (has_own(inversion))
-        return STATUS_OK;
-    if (is_from_hnc(inversion))
-        TRY(add_indirect(inversion));
+    TRY(add_indirect(inversion));
     return smooth(inversion);
 }
 
@@ -122,5 +121,5 @@ bool inversion_start_is_poor(const struct inversion *inversion, bool kept) {
 
 enum status inversion_start_again(struct inversion *inversion) {
     potential_grid_start(&inversion->grid, inversion->problem, inversion->phi);
-    return smooth(inversion);
+    return has_own(inversion) ? STATUS_OK : smooth(inversion);
 }
