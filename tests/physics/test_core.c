@@ -5,11 +5,9 @@
 // finds gives the same g(r), within the noise of the fits.
 #include "curves/formula.h"
 #include "dynamics/metropolis.h"
-#include "inverse/inversion.h"
 #include "shared/fluids.h"
+#include "shared/inversions.h"
 #include "shared/testing.h"
-
-#include <stdlib.h>
 
 enum { PARTICLES = 250, BINS = 36, BLOCKS = 24, SAMPLES = 120 };
 
@@ -46,40 +44,11 @@ static void sample_g(const struct table *potential, const struct fluid *fluid, u
     metropolis_clear(&metropolis);
 }
 
-static void ignore(void *context, const struct inverse_progress *progress) {
-    (void)context, (void)progress;
-}
-
-/// Set a parameter of the method.
-static void set(void *parameters, const char *name, double value) {
-    for (const struct field *field = inversion_fields; field->name; field++) {
-        const int64_t whole = (int64_t)value;
-        if (strcmp(field->name, name) == 0)
-            memcpy((char *)parameters + field->offset,
-                   field->type == FIELD_INTEGER ? (const void *)&whole : (const void *)&value,
-                   sizeof value);
-    }
-}
-
 /// Find the potential of the target by inverse Monte Carlo; returns the noise of the fit.
 static double invert(const struct inverse_problem *problem, double *phi) {
-    const struct inverse_listener listener = {ignore, NULL};
     struct inverse_step step;
-    void *state = calloc(1, imc.state_size), *parameters = calloc(1, imc.parameters_size);
-    assert_true(state && parameters);
-    for (size_t k = 0; imc.tables[k]; k++)
-        fields_set_defaults(imc.tables[k], parameters);
-    set(parameters, "replicas", 4);
-    set(parameters, "precision", precision);
-    assert_ok(imc.create(state, &imc, problem, parameters));
-    do
-        assert_ok(imc.iterate(state, &step, &listener));
-    while (!step.finished);
+    inversions_run(&imc, problem, precision, phi, &step);
     assert_true(step.converged);
-    memcpy(phi, step.curve[UNKNOWN_POTENTIAL], (BINS + 1) * sizeof *phi);
-    imc.destroy(state);
-    free(state);
-    free(parameters);
     return step.noise;
 }
 

@@ -4,12 +4,10 @@
 // own g(r), but for the direction that g(r) hardly sees: the ramp A (1 − r/r_c).
 #include "curves/formula.h"
 #include "dynamics/metropolis.h"
-#include "inverse/inversion.h"
 #include "shared/fluids.h"
+#include "shared/inversions.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
-
-#include <stdlib.h>
 
 enum { PARTICLES = 200, MOST_BINS = 30 };
 
@@ -92,45 +90,6 @@ static void compare_with_truth(const struct inverse_problem *problem, const doub
     *rms = sqrt(sum / count);
 }
 
-static void ignore(void *context, const struct inverse_progress *progress) {
-    (void)context, (void)progress;
-}
-
-/// Set an integer parameter of the method by its name.
-static void set_parameter(void *parameters, const char *name, int64_t value) {
-    for (const struct field *field = inversion_fields; field->name; field++)
-        if (strcmp(field->name, name) == 0) {
-            memcpy((char *)parameters + field->offset, &value, sizeof value);
-            return;
-        }
-    fail_msg("there is no parameter \"%s\"", name);
-}
-
-/// Invert until the method says that it is done, or `iterations`; returns phi of the best.
-static void invert(const struct inverse_method *method, const struct inverse_problem *problem,
-                   double *phi, struct inverse_step *step) {
-    const struct inverse_listener listener = {ignore, NULL};
-    void *state = calloc(1, method->state_size), *parameters = calloc(1, method->parameters_size);
-    assert_non_null(state);
-    assert_non_null(parameters);
-    for (size_t k = 0; method->tables[k]; k++)
-        fields_set_defaults(method->tables[k], parameters);
-    set_parameter(parameters, "replicas", 4);
-    set_parameter(parameters, "samples", 250);
-    set_parameter(parameters, "equilibration", 100);
-    set_parameter(parameters, "iterations", 40);
-    assert_ok(method->create(state, method, problem, parameters));
-    do {
-        assert_ok(method->iterate(state, step, &listener));
-        print_message("%s, iteration %u: rms of g %.5f, noise %.5f\n", method->name,
-                      step->iteration, step->error, step->noise);
-    } while (!step->finished);
-    memcpy(phi, step->curve[UNKNOWN_POTENTIAL], (problem->goals.bins.count + 1) * sizeof *phi);
-    method->destroy(state);
-    free(state);
-    free(parameters);
-}
-
 static void assert_truth_is_found(const struct inverse_method *method, const struct fluid *fluid,
                                   const struct rdf_bins *bins, bool with_pressure) {
     static const double pressure_error = 0.05;
@@ -153,7 +112,7 @@ static void assert_truth_is_found(const struct inverse_method *method, const str
     compare_with_truth(&problem, start, &ramp, &rms);
     print_message("-ln g: rms without the ramp %.3f, ramp %.3f\n", rms, ramp);
     assert_true(rms > least_start_error);
-    invert(method, &problem, phi, &step);
+    inversions_run(method, &problem, 0, phi, &step);
     compare_with_truth(&problem, phi, &ramp, &rms);
     print_message("found: rms without the ramp %.4f, ramp %.3f(%.3f), dP/dA %.2f\n", rms, ramp,
                   step.ramp.error, step.ramp.pressure);

@@ -3,13 +3,11 @@
 // Inversions of a mixture find its three potentials from its partial g(r), each but for the ramp A
 // (1 − r/r_c).
 #include "curves/formula.h"
-#include "inverse/inversion.h"
 #include "shared/fluids.h"
+#include "shared/inversions.h"
 #include "shared/testing.h"
 
 #include <math.h>
-#include <stdlib.h>
-
 enum { PARTICLES = 300, BINS = 20, PAIRS = 3 };
 
 static const struct rdf_bins bins = {0, 0.05, BINS};
@@ -77,46 +75,6 @@ static struct inverse_problem problem_of(const struct mixture *mixture) {
         .threads = 2};
 }
 
-static void ignore(void *context, const struct inverse_progress *progress) {
-    (void)context, (void)progress;
-}
-
-/// Set an integer parameter of the method by its name.
-static void set_parameter(void *parameters, const char *name, int64_t value) {
-    for (const struct field *field = inversion_fields; field->name; field++)
-        if (strcmp(field->name, name) == 0) {
-            memcpy((char *)parameters + field->offset, &value, sizeof value);
-            return;
-        }
-    fail_msg("there is no parameter \"%s\"", name);
-}
-
-/// Invert until the method says that it is done; phi of the best, shape [pairs, BINS + 1].
-static void invert(const struct inverse_method *method, const struct inverse_problem *problem,
-                   double *phi, struct inverse_step *step) {
-    const struct inverse_listener listener = {ignore, NULL};
-    const size_t pairs = (size_t)composition_pairs(&problem->scene.composition);
-    void *state = calloc(1, method->state_size), *parameters = calloc(1, method->parameters_size);
-    assert_non_null(state);
-    assert_non_null(parameters);
-    for (size_t k = 0; method->tables[k]; k++)
-        fields_set_defaults(method->tables[k], parameters);
-    set_parameter(parameters, "replicas", 4);
-    set_parameter(parameters, "samples", 250);
-    set_parameter(parameters, "equilibration", 100);
-    set_parameter(parameters, "iterations", 40);
-    assert_ok(method->create(state, method, problem, parameters));
-    do {
-        assert_ok(method->iterate(state, step, &listener));
-        print_message("%s, iteration %u: rms of g %.5f, noise %.5f\n", method->name,
-                      step->iteration, step->error, step->noise);
-    } while (!step->finished);
-    memcpy(phi, step->curve[UNKNOWN_POTENTIAL], pairs * (BINS + 1) * sizeof *phi);
-    method->destroy(state);
-    free(state);
-    free(parameters);
-}
-
 /// Best A of phi − other = A (1 − r/r_c) over the bins where g is well known, and the rms of what
 /// it leaves; all shape [BINS].
 static void compare(const double *g, const double *phi, const double *other, double *ramp,
@@ -173,7 +131,7 @@ static void check_truth(const struct inverse_method *method) {
         print_message("-ln g: rms without the ramp %.3f, ramp %.3f\n", rms[pair], ramp[pair]);
         assert_true(pair == 0 || rms[pair] > least_start_error);
     }
-    invert(method, &problem, phi, &step);
+    inversions_run(method, &problem, 0, phi, &step);
     compare_with_truth(&mixture, phi, BINS + 1, ramp, rms);
     for (int pair = 0; pair < PAIRS; pair++)
         print_message("found: rms without the ramp %.4f, ramp %.3f (%.3f)\n", rms[pair], ramp[pair],
@@ -215,11 +173,11 @@ static void test_imc_finds_equal_potentials_when_the_types_are_alike(void **stat
     double phi[PAIRS * (BINS + 1)], alone[BINS + 1], ramp, rms;
     measure(&mixture, equal, 78);
     struct inverse_problem problem = problem_of(&mixture);
-    invert(&imc, &problem, phi, &step);
+    inversions_run(&imc, &problem, 0, phi, &step);
     assert_true(step.converged);
     problem.scene.composition = composition_of_one(PARTICLES);
     problem.goals.goal[GOAL_RDF] = (struct goal){BINS, mixture.all, mixture.all_error, 0};
-    invert(&imc, &problem, alone, &step);
+    inversions_run(&imc, &problem, 0, alone, &step);
     assert_true(step.converged);
     for (size_t pair = 0; pair < PAIRS; pair++) {
         compare(mixture.all, phi + pair * (BINS + 1), alone, &ramp, &rms);

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shared/inversions.h"
+
+#include "shared/testing.h"
+
+#include <stdlib.h>
+
+static void ignore(void *context, const struct inverse_progress *progress) {
+    (void)context, (void)progress;
+}
+
+void inversions_run(const struct inverse_method *method, const struct inverse_problem *problem,
+                    double precision, double *phi, struct inverse_step *step) {
+    const struct inverse_listener listener = {ignore, NULL};
+    const size_t pairs = (size_t)composition_pairs(&problem->scene.composition);
+    const size_t points = pairs * (problem->goals.bins.count + 1);
+    void *state = calloc(1, method->state_size);
+    struct inversion_settings *settings = calloc(1, method->parameters_size);
+    assert_non_null(state);
+    assert_non_null(settings);
+    for (size_t k = 0; method->tables[k]; k++)
+        fields_set_defaults(method->tables[k], settings);
+    settings->common.replicas = 4;
+    settings->common.samples = 250;
+    settings->common.equilibration = 100;
+    settings->common.iterations = 40;
+    if (precision > 0)
+        settings->common.precision = precision;
+    assert_ok(method->create(state, method, problem, settings));
+    do {
+        assert_ok(method->iterate(state, step, &listener));
+        print_message("%s, iteration %u: rms of g %.5f, noise %.5f\n", method->name,
+                      step->iteration, step->error, step->noise);
+    } while (!step->finished);
+    memcpy(phi, step->curve[UNKNOWN_POTENTIAL], points * sizeof *phi);
+    method->destroy(state);
+    free(state);
+    free(settings);
+}
