@@ -16,6 +16,7 @@ struct target_parameters {
     double cutoff;                            ///< bins beyond are left out; 0: none [λ]
     int64_t r_column, g_column, error_column; ///< from 1; error_column 0: no errors given
     int64_t particles; ///< of the system it was measured in; 0: as many as the scene has
+    double normalisation, normalisation_error; ///< of g; 0: found, with this width about 1
 };
 
 extern const struct field target_fields[];

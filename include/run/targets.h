@@ -3,6 +3,7 @@
 #pragma once
 
 #include "inverse/goals.h"
+#include "inverse/normalisation.h"
 #include "io/json_write.h"
 #include "run/target.h"
 #include "run/target_etd.h"
@@ -31,7 +32,8 @@ struct targets {
     struct target rdf[COMPOSITION_MOST_PAIRS]; ///< of each kind of pairs
     struct composition composition;            ///< of the scene
     size_t pairs;                              ///< kinds of its pairs
-    double *rdf_g, *rdf_error; ///< of all, one behind the other: shape [pairs, bins]
+    double *rdf_g, *rdf_error;          ///< of all, one behind the other: shape [pairs, bins]
+    struct normalisation normalisation; ///< by which those that do not say theirs are divided
     struct target_etd etd;
     struct target_curve vacf, msd;
     struct target_number diffusion, pressure;
@@ -50,6 +52,11 @@ void targets_write(const struct targets *targets, struct json_writer *writer);
 
 /// Add what was read from files to the digest of a checkpoint.
 void targets_digest(const struct targets *targets, uint64_t *digest);
+
+/// Divide g(r) by its normalisation: what the file says, else what normalisation_find makes of the
+/// target in this box. Only after targets_goals, which converts it to the scene's numbers. Fails:
+/// NO_MEMORY.
+enum status targets_normalise(struct targets *targets, const struct box *box) MUST_USE;
 
 /// The goals of the scene: those to be fitted, and all. With `moves`, D is among
 /// those to be compared even if no value is given, so that a result knows its own, if another

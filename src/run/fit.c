@@ -133,6 +133,16 @@ done:
     return status;
 }
 
+/// What was made of the targets' normalisation.
+static void say_normalisation(struct run *run) {
+    const struct normalisation *n = &run->fit.targets.normalisation;
+    if (n->found)
+        progress_say(&run->progress,
+                     "target.rdf: g is too %s as a whole, by a factor of %.4f(%.0f): it is divided "
+                     "by that (\"normalisation\")",
+                     n->factor > 1 ? "large" : "small", n->factor, ceil(n->error * 1e4));
+}
+
 static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
     TRY(fit_file_read(&run->fit, file, options));
     TRY(run_folder_open(&run->folder, file, options));
@@ -142,6 +152,7 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
         progress_say(&run->progress,
                      "target.etd: %zu of %zu cells of the target are not known and left out",
                      etd->left_out, (size_t)(etd->grid.times * etd->grid.bins));
+    say_normalisation(run);
     const enum status status = create(run);
     if (status != STATUS_OK)
         return status_prefix(status, "%s", file);

@@ -275,6 +275,7 @@ enum status fit_file_read(struct fit_file *fit, const char *file,
     if (options->has_seed)
         fit->heading.seed = options->seed;
     state_problem(fit, options);
+    TRY(targets_normalise(&fit->targets, &fit->scene.setup.box));
     return check(fit, file);
 }
 

@@ -148,6 +148,17 @@ static void put_truth(struct json_writer *writer, const struct fit_file *fit,
         put_known(writer, "truth_error", weight_truth(fit, decoder, omega));
 }
 
+/// What the targets g(r) were divided by. In a mixture those that the file states are left out.
+static void put_normalisation(struct json_writer *writer, const struct fit_file *fit) {
+    const struct normalisation *found = &fit->targets.normalisation;
+    const double given = fit->targets.rdf[0].parameters.normalisation;
+    const bool mixed = composition_is_mixed(&fit->scene.setup.composition);
+    if (!fit->targets.given[GOAL_RDF])
+        return;
+    json_put_number(writer, "normalisation", !mixed && given > 0 ? given : found->factor);
+    json_put_number(writer, "normalisation_error", !mixed && given > 0 ? 0 : found->error);
+}
+
 /// S(0) of the target and of the result, in three dimensions and of beads that are alike.
 static void put_kirkwood_buff(struct json_writer *writer, const struct fit_file *fit,
                               const struct verification *v) {
@@ -208,6 +219,7 @@ enum status fit_output_summary(const struct fit_file *fit, const struct decoder 
     json_put_number(writer, "engine_steps", (double)result->engine_steps);
     if (result->verification)
         put_verification(writer, fit, result->verification);
+    put_normalisation(writer, fit);
     put_truth(writer, fit, decoder, result);
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (result->curve[kind])

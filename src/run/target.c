@@ -29,6 +29,15 @@ const struct field target_fields[] = {
      .unit = "",
      .help = "of the system where it was measured, to correct for another number in "
              "the scene; 0 means the same"},
+    {"normalisation", FIELD_NUMBER, MEMBER(normalisation), .initial = 0, .minimum = 0,
+     .maximum = 100, .unit = "",
+     .help = "factor by which g of the file is too large as a whole, as by N - 1 for N or by a "
+             "wrong density; 0: found from g itself, and 1 where nothing speaks against it"},
+    {"normalisation_error", FIELD_NUMBER, MEMBER(normalisation_error), .initial = 0.01,
+     .minimum = FIELD_ABOVE_ZERO, .maximum = 1, .unit = "",
+     .help =
+         "how far from 1 a normalisation that is to be found may well be: its standard deviation "
+         "before any measurement"},
     FIELD_END,
 };
 

@@ -314,6 +314,36 @@ static void set_motion(const struct targets *targets, struct goals *goals) {
     }
 }
 
+/// Divide g of a kind of pairs.
+static void divide(struct targets *targets, size_t pair, double factor) {
+    const size_t bins = targets->rdf[0].bins.count;
+    for (size_t n = pair * bins; n < (pair + 1) * bins; n++) {
+        targets->rdf_g[n] /= factor;
+        targets->rdf_error[n] /= factor;
+    }
+}
+
+enum status targets_normalise(struct targets *targets, const struct box *box) {
+    bool open = false;
+    double width = 0;
+    targets->normalisation = (struct normalisation){.factor = 1};
+    for (size_t pair = 0; pair < targets->pairs && targets->given[GOAL_RDF]; pair++) {
+        const struct target_parameters *p = &targets->rdf[pair].parameters;
+        if (p->normalisation > 0)
+            divide(targets, pair, p->normalisation);
+        open = open || !(p->normalisation > 0);
+        width = fmax(width, p->normalisation_error);
+    }
+    if (!open)
+        return STATUS_OK;
+    TRY(normalisation_find(&targets->rdf[0].bins, box, &targets->composition, targets->rdf_g, width,
+                           &targets->normalisation));
+    for (size_t pair = 0; pair < targets->pairs; pair++)
+        if (!(targets->rdf[pair].parameters.normalisation > 0))
+            divide(targets, pair, targets->normalisation.factor);
+    return STATUS_OK;
+}
+
 /// Beads that `pair` is made of if they are alike, else 0.
 static size_t alike(const struct composition *composition, int pair) {
     int type[2];
