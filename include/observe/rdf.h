@@ -30,21 +30,6 @@ double rdf_ideal_pairs(const struct rdf_bins *bins, size_t k, const struct box *
 double rdf_ideal_pairs_of(const struct rdf_bins *bins, size_t k, const struct box *box,
                           const struct composition *composition, int pair);
 
-/// What g of a system of `from` particles is to be multiplied by to compare with one of `to`
-/// particles at the same density: (1 − 1/from) / (1 − 1/to).
-///
-/// Normalised by N (N − 1), g integrates to the volume, so that its tail lies (1 − S(0))/N above 1
-/// (J. L. Lebowitz and J. K. Percus, Phys. Rev. 122, 1675 (1961)); normalised by N² the tail is off
-/// by S(0)/N only, which is small for a liquid. Left out, an inversion with 729 particles of a
-/// target from 2744 sees 0.001 too many pairs everywhere, and makes a pressure of it: measured for
-/// SPC water, 35 instead of 22 k_B T/λ³.
-double rdf_finite_size_factor(size_t from, size_t to);
-
-/// The same of one kind of pairs: with the numbers of its type, and 1 if they are unlike, which
-/// N_a N_b counts right.
-double rdf_finite_size_factor_of(const struct composition *from, const struct composition *to,
-                                 int pair);
-
 /// Add the pairs of one configuration to `histogram`, shape [bins], uncleared, whatever their
 /// types. The list must be a half list complete for the range of the bins.
 void rdf_count_pairs(const struct rdf_bins *bins, const struct particles *particles,

@@ -31,7 +31,8 @@ struct targets {
     struct target rdf[COMPOSITION_MOST_PAIRS]; ///< of each kind of pairs
     struct composition composition;            ///< of the scene
     size_t pairs;                              ///< kinds of its pairs
-    double *rdf_g, *rdf_error; ///< of all, one behind the other: shape [pairs, bins]
+    /// Of all, one behind the other, in the numbers of the scene: shape [pairs, bins].
+    double *rdf_g, *rdf_error;
     struct target_etd etd;
     struct target_curve vacf, msd;
     struct target_number diffusion, pressure;
@@ -41,9 +42,9 @@ struct targets {
     } goal[GOALS];
 };
 
-/// Read the object "target" of a scene of this composition; `units` convert VOTCA's tables. Faults
-/// go to the document. Fails: NO_MEMORY.
-enum status targets_read(struct targets *targets, struct json_object *root,
+/// Read the object "target" of a scene of this box and composition; `units` convert VOTCA's tables.
+/// Faults go to the document. Fails: NO_MEMORY.
+enum status targets_read(struct targets *targets, struct json_object *root, const struct box *box,
                          const struct composition *composition, const struct units *units) MUST_USE;
 void targets_clear(struct targets *targets);
 void targets_write(const struct targets *targets, struct json_writer *writer);

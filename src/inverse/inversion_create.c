@@ -3,6 +3,8 @@
 // What an inversion is made of: its parameters, its system, its memory.
 #include "inverse/inversion.h"
 
+#include "observe/finite_size.h"
+
 #include <math.h>
 
 static const char *const starts[] = {"auto", "mean-force", NULL};
@@ -102,14 +104,22 @@ static void choose_size(struct inversion *inversion) {
 /// S if g were 1, and of the target.
 static void count_target(struct inversion *inversion) {
     const struct inverse_problem *problem = inversion->problem;
+    const struct simulation_setup *scene = &problem->scene;
     const struct rdf_bins *bins = &problem->goals.bins;
-    for (size_t n = 0; n < inversion->bins; n++) {
-        const int pair = (int)(n / bins->count);
-        inversion->ideal[n] = rdf_ideal_pairs_of(bins, n % bins->count, &inversion->box,
-                                                 &inversion->composition, pair);
-        inversion->target_counts[n] =
-            inversion->ideal[n] * problem->goals.goal[GOAL_RDF].value[n] *
-            rdf_finite_size_factor_of(&problem->scene.composition, &inversion->composition, pair);
+    const struct goal *goal = &problem->goals.goal[GOAL_RDF];
+    const double from = (double)composition_particles(&scene->composition);
+    const double to = (double)composition_particles(&inversion->composition);
+    for (size_t first = 0; first < inversion->bins; first += bins->count) {
+        const int pair = (int)(first / bins->count);
+        const double factor =
+            finite_size_factor_of(bins, goal->value + first, goal->error + first, &scene->box,
+                                  &scene->composition, pair, from, to);
+        for (size_t k = 0; k < bins->count; k++) {
+            inversion->ideal[first + k] =
+                rdf_ideal_pairs_of(bins, k, &inversion->box, &inversion->composition, pair);
+            inversion->target_counts[first + k] =
+                inversion->ideal[first + k] * goal->value[first + k] * factor;
+        }
     }
 }
 

@@ -34,19 +34,6 @@ double rdf_ideal_pairs_of(const struct rdf_bins *bins, size_t k, const struct bo
            box_volume(box);
 }
 
-double rdf_finite_size_factor(size_t from, size_t to) {
-    return (1 - 1 / (double)from) / (1 - 1 / (double)to);
-}
-
-double rdf_finite_size_factor_of(const struct composition *from, const struct composition *to,
-                                 int pair) {
-    int type[2];
-    composition_pair_types(from, pair, type);
-    return type[0] == type[1]
-               ? rdf_finite_size_factor((size_t)from->count[type[0]], (size_t)to->count[type[0]])
-               : 1;
-}
-
 struct counting {
     const struct rdf_bins *bins;
     const struct composition *composition; ///< of a mixture

@@ -46,30 +46,18 @@ static void test_rdf_ideal_pairs_fill_the_range_when_added(void **state) {
     }
 }
 
-static void test_rdf_finite_size_factor_is_one_when_sizes_are_equal(void **state) {
-    (void)state;
-    assert_close(rdf_finite_size_factor(500, 500), 1, rounding);
-    assert_close(rdf_finite_size_factor(2, 4), 0.5 / 0.75, rounding);
-}
-
 static void test_rdf_ideal_pairs_are_of_the_kind_when_types_differ(void **state) {
     (void)state;
     const struct rdf_bins bins = {0.5, 0.25, 6};
-    const struct composition from = {.types = 2, .count = {10, 30}},
-                             to = {.types = 2, .count = {20, 60}};
+    const struct composition binary = {.types = 2, .count = {10, 30}};
     const double whole = rdf_ideal_pairs(&bins, 3, &cube, 40);
     double sum = 0;
     for (int pair = 0; pair < 3; pair++)
-        sum += rdf_ideal_pairs_of(&bins, 3, &cube, &from, pair);
+        sum += rdf_ideal_pairs_of(&bins, 3, &cube, &binary, pair);
     assert_close(sum, whole, rounding);
-    assert_close(rdf_ideal_pairs_of(&bins, 3, &cube, &from, 1), whole * 300 / 780, rounding);
-    assert_close(rdf_ideal_pairs_of(&bins, 3, &cube, &from, 2),
+    assert_close(rdf_ideal_pairs_of(&bins, 3, &cube, &binary, 1), whole * 300 / 780, rounding);
+    assert_close(rdf_ideal_pairs_of(&bins, 3, &cube, &binary, 2),
                  rdf_ideal_pairs(&bins, 3, &cube, 30), rounding);
-    assert_close(rdf_finite_size_factor_of(&from, &to, 0), rdf_finite_size_factor(10, 20),
-                 rounding);
-    assert_identical(rdf_finite_size_factor_of(&from, &to, 1), 1);
-    assert_close(rdf_finite_size_factor_of(&from, &to, 2), rdf_finite_size_factor(30, 60),
-                 rounding);
 }
 
 /// Particles at given x, the other coordinates 1, with the list of a box of `dimensions`.
@@ -274,7 +262,6 @@ int main(void) {
         cmocka_unit_test(test_rdf_bins_are_equal_when_they_begin_above_zero),
         cmocka_unit_test(test_rdf_ideal_pairs_are_exact_when_a_bin_is_wide),
         cmocka_unit_test(test_rdf_ideal_pairs_fill_the_range_when_added),
-        cmocka_unit_test(test_rdf_finite_size_factor_is_one_when_sizes_are_equal),
         cmocka_unit_test(test_rdf_ideal_pairs_are_of_the_kind_when_types_differ),
         cmocka_unit_test(test_rdf_result_is_of_the_kind_when_types_differ),
         cmocka_unit_test(test_rdf_result_is_normalised_when_pairs_are_known),
