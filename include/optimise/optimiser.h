@@ -39,6 +39,7 @@ struct optimiser {
     const struct field *const *tables; ///< of the parameter struct, NULL-terminated
     size_t parameters_size;
     size_t state_size;
+    const char *budget; ///< the parameter that ends it if nothing else does
     /// Upper bound of rounds.
     uint32_t (*most_rounds)(const void *parameters, size_t genes);
     /// Begin in zeroed memory of `state_size`; nothing of `space` or `parameters` is kept.
@@ -58,6 +59,9 @@ struct optimiser {
     /// Error beyond which a candidate hardly changes what happens next, by the round told last;
     /// HUGE_VAL if that is not known. The same before and after `ask`.
     double (*hopeless)(const void *state);
+    /// Whether it ended since it could do no better, before its budget was used up. NULL: it never
+    /// does.
+    bool (*settled)(const void *state);
     /// The state of a checkpoint, between tell and tell: what is written there and read into a new
     /// state of the same space and parameters goes on with the same bits. Returns their number, at
     /// most OPTIMISER_MAX_SPANS.

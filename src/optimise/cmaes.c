@@ -74,7 +74,7 @@ struct state {
         double record_error;    ///< of the best candidate, or, with noise, of the best descent
         double median;          ///< of the last round
         double hopeless;
-        int64_t noisy, over, known;
+        int64_t noisy, over, settled, known;
     } progress;
 };
 
@@ -303,8 +303,8 @@ static void go_on(struct state *state) {
     const bool ended = stands_still(state) || is_degenerate(state);
     if (ended)
         keep_descent(state);
-    p->over = ++p->rounds >= (uint64_t)state->parameters.rounds ||
-              (ended && p->descents >= (uint64_t)state->parameters.restarts);
+    p->settled = ended && p->descents >= (uint64_t)state->parameters.restarts;
+    p->over = ++p->rounds >= (uint64_t)state->parameters.rounds || p->settled;
     if (p->over)
         return;
     if (ended)
@@ -362,6 +362,10 @@ static double hopeless(const void *memory) {
     return ((const struct state *)memory)->progress.hopeless;
 }
 
+static bool settled(const void *memory) {
+    return ((const struct state *)memory)->progress.settled != 0;
+}
+
 static size_t spans(void *memory, struct memory_span *span) {
     struct state *state = memory;
     struct cmaes_distribution *d = &state->distribution;
@@ -388,6 +392,7 @@ const struct optimiser cmaes_optimiser = {
     .tables = (const struct field *const[]){cmaes_fields, NULL},
     .parameters_size = sizeof(struct parameters),
     .state_size = sizeof(struct state),
+    .budget = "rounds",
     .most_rounds = most_rounds,
     .create = create,
     .destroy = destroy,
@@ -396,5 +401,6 @@ const struct optimiser cmaes_optimiser = {
     .favourite = favourite,
     .spread = spread,
     .hopeless = hopeless,
+    .settled = settled,
     .spans = spans,
 };

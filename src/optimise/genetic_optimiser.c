@@ -201,6 +201,7 @@ const struct optimiser genetic_optimiser = {
     .tables = (const struct field *const[]){genetic_fields, NULL},
     .parameters_size = sizeof(struct genetic_parameters),
     .state_size = sizeof(struct state),
+    .budget = "generations",
     .most_rounds = most_rounds,
     .create = create,
     .destroy = destroy,

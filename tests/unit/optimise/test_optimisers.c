@@ -255,6 +255,29 @@ static void test_every_optimiser_is_a_function_of_its_seed(void **state) {
     }
 }
 
+/// An optimiser that has used its budget up has not settled, whatever it believes.
+static void test_only_what_ended_by_itself_has_settled(void **state) {
+    struct landscape_drive drive = {.landscape = &landscape_sphere, .genes = GENES, .seed = 7};
+    (void)state;
+    for (const struct variant *v = variants; v < variants + VARIANTS; v++) {
+        const bool local = v->optimiser == &nlopt_optimiser && v->settings[0].value >= 4;
+        const bool may_settle = local || v->optimiser == &cmaes_optimiser;
+        for (int ample = 0; ample < 2; ample++) {
+            void *parameters = parameters_of(v);
+            struct landscape_result result = {.least = HUGE_VAL};
+            landscape_set(v->optimiser, parameters, v->optimiser->budget, ample ? 5000 : 10);
+            struct landscape_run run = landscape_begin(v->optimiser, parameters, &drive);
+            while ((!ample || may_settle) && landscape_step(&run, &drive, &result))
+                assert_false(v->optimiser->settled && v->optimiser->settled(run.state) &&
+                             result.rounds < 5);
+            if (v->optimiser->settled)
+                assert_int_equal(v->optimiser->settled(run.state), ample && may_settle);
+            landscape_end(&run);
+            memory_free(parameters);
+        }
+    }
+}
+
 // Space -------------------------------------------------------------------------------------------
 
 static void test_every_optimiser_begins_near_its_start(void **state) {
@@ -356,6 +379,7 @@ int main(void) {
         cmocka_unit_test(test_every_optimiser_goes_on_with_the_same_bits_when_restarted),
         cmocka_unit_test(test_cmaes_goes_on_with_the_same_bits_when_it_began_again),
         cmocka_unit_test(test_every_optimiser_is_a_function_of_its_seed),
+        cmocka_unit_test(test_only_what_ended_by_itself_has_settled),
         cmocka_unit_test(test_every_optimiser_begins_near_its_start),
         cmocka_unit_test(test_every_optimiser_refuses_a_space_without_room),
         cmocka_unit_test(test_hopeless_is_unknown_before_a_round_is_told),
