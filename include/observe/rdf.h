@@ -80,13 +80,17 @@ void rdf_sample_counted(struct rdf *rdf);
 enum status rdf_sample(struct rdf *rdf, const struct particles *particles,
                        const struct neighbours *neighbours) MUST_USE;
 
-/// g and its standard error over the blocks of all replicas.
+/// g and its standard error over the blocks of all replicas, whose correlation the bins of a kind
+/// of pairs tell together (statistics_inefficiency): of close samples even the means of blocks are
+/// correlated.
 /// @param[in]  replicas  shape [count], same bins, box and composition
 /// @param[out] g, error  shape [pairs, bins.count]; error may be NULL
-void rdf_result(const struct rdf *replicas, size_t count, double *g, double *error);
+/// Fails: NO_MEMORY, with an error asked for. Tested: test_rdf, test_errors.
+enum status rdf_result(const struct rdf *replicas, size_t count, double *g, double *error) MUST_USE;
 
 /// Root mean square of g − g* over all bins of all kinds of pairs, with its standard error by
-/// leaving out blocks (jackknife); `error` may be NULL. Fails: NO_MEMORY.
+/// leaving out blocks (jackknife), whose correlation is that of the bins; `error` may be NULL.
+/// Fails: NO_MEMORY.
 enum status rdf_distance(const struct rdf *replicas, size_t count, const double *target,
                          double *rmse, double *error) MUST_USE;
 

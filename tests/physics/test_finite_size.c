@@ -65,7 +65,7 @@ static struct means measure(int64_t particles, const struct table *potential, in
         fluid.setup.potential = potential;
         fluid.setup.seed = seed;
         sample(&fluid, samples, &rdf);
-        rdf_result(&rdf, 1, g, error);
+        assert_ok(rdf_result(&rdf, 1, g, error));
         for (int pair = 0; pair < PAIRS; pair++)
             statistics_add(&sum[pair], convert(&rdf, g + pair * BINS, error + pair * BINS, pair));
         rdf_clear(&rdf);
