@@ -94,7 +94,8 @@ static enum status create_optimiser(struct state *state) {
                                           .minimum = 0,
                                           .maximum = 1,
                                           .start = start,
-                                          .seed = state->problem->seed};
+                                          .seed = state->problem->seed,
+                                          .most = CANDIDATES_MOST};
     state->optimiser_state = memory_zeroed(1, state->optimiser->state_size);
     CHECK(state->optimiser_state ? STATUS_OK : STATUS_NO_MEMORY);
     CHECK(state->optimiser->create(state->optimiser_state, &space, &state->parameters));

@@ -58,7 +58,7 @@ struct state {
     struct optimiser_space space;
     struct cmaes_distribution distribution;
     struct cmaes_strategy strategy;
-    size_t most;      ///< room for candidates
+    size_t most;      ///< candidates of a round, at most; there is room for them
     double *steps;    ///< of the candidates, shape [most, genes]
     double *genes;    ///< the candidates, shape [most, genes]
     double *errors;   ///< shape [most]: scratch
@@ -108,8 +108,15 @@ static void destroy(void *memory) {
     *state = (struct state){0};
 }
 
+/// Of a number of candidates, as many as a round may have.
+static size_t limit(const struct state *state, size_t candidates) {
+    const size_t most = state->space.most;
+    return most > 0 && candidates > most ? most : candidates;
+}
+
 static size_t descent_population(const struct state *state) {
-    return usual_population(&state->parameters, state->space.genes) << state->progress.descents;
+    return limit(state, usual_population(&state->parameters, state->space.genes)
+                            << state->progress.descents);
 }
 
 /// Numbers of the strategy, which no checkpoint keeps since they follow from the population.
@@ -160,8 +167,9 @@ static enum status create(void *memory, const struct optimiser_space *space,
                           (int)state->parameters.population));
     state->space = *space;
     state->space.start = NULL;
-    state->most = MOST_GROWTH * (usual_population(&state->parameters, space->genes)
-                                 << state->parameters.restarts);
+    const size_t usual = usual_population(&state->parameters, space->genes);
+    CHECK(optimiser_check_round(space, usual));
+    state->most = limit(state, MOST_GROWTH * (usual << state->parameters.restarts));
     NEW_ARRAY(state->strategy.weights, state->most);
     NEW_ARRAY(state->steps, state->most * space->genes);
     NEW_ARRAY(state->genes, state->most * space->genes);
@@ -213,7 +221,8 @@ static void react_to_noise(struct state *state) {
     struct progress *p = &state->progress;
     const double usual = (double)descent_population(state);
     if (p->noise > noise_grows)
-        p->population = fmin(p->population * growth, MOST_GROWTH * usual);
+        p->population =
+            fmin(p->population * growth, fmin(MOST_GROWTH * usual, (double)state->most));
     else if (p->noise < noise_shrinks)
         p->population = fmax(p->population / growth, usual);
 }

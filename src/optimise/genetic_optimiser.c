@@ -37,6 +37,7 @@ static enum status create(void *memory, const struct optimiser_space *space,
     struct state *state = memory;
     struct genetic_parameters p = *(const struct genetic_parameters *)parameters;
     CHECK(optimiser_check_space(space));
+    CHECK(optimiser_check_round(space, (size_t)(p.population + p.remeasurements)));
     p.genes = (int64_t)space->genes;
     p.gene_minimum = space->minimum;
     p.gene_maximum = space->maximum;

@@ -330,6 +330,33 @@ static void test_every_optimiser_refuses_a_space_without_room(void **state) {
         }
 }
 
+/// The genetic algorithm's largest round has the measurements of a challenger, too.
+static void test_populations_larger_than_a_round_are_refused(void **state) {
+    static const struct {
+        const struct optimiser *optimiser;
+        size_t most; ///< for a population of 60
+    } populations[] = {{&genetic_optimiser, 62}, {&cmaes_optimiser, 60}};
+    (void)state;
+    for (int k = 0; k < 2; k++)
+        for (size_t less = 0; less < 2; less++) {
+            const struct optimiser *optimiser = populations[k].optimiser;
+            const struct optimiser_space space = {
+                .genes = GENES, .maximum = 1, .most = populations[k].most - less};
+            void *parameters = landscape_parameters(optimiser),
+                 *memory = memory_zeroed(1, optimiser->state_size);
+            assert_non_null(memory);
+            landscape_set(optimiser, parameters, "population", 60);
+            if (less)
+                assert_fails(optimiser->create(memory, &space, parameters), STATUS_BAD_INPUT,
+                             "\"population\" makes rounds of");
+            else
+                assert_ok(optimiser->create(memory, &space, parameters));
+            optimiser->destroy(memory);
+            memory_free(memory);
+            memory_free(parameters);
+        }
+}
+
 static void test_hopeless_is_unknown_before_a_round_is_told(void **state) {
     const struct landscape_drive drive = {
         .landscape = &landscape_sphere, .genes = GENES, .seed = 3};
@@ -382,6 +409,7 @@ int main(void) {
         cmocka_unit_test(test_only_what_ended_by_itself_has_settled),
         cmocka_unit_test(test_every_optimiser_begins_near_its_start),
         cmocka_unit_test(test_every_optimiser_refuses_a_space_without_room),
+        cmocka_unit_test(test_populations_larger_than_a_round_are_refused),
         cmocka_unit_test(test_hopeless_is_unknown_before_a_round_is_told),
         cmocka_unit_test(test_optimiser_find_knows_every_optimiser_when_named),
         cmocka_unit_test(test_optimiser_reflect_folds_at_both_ends),
