@@ -90,8 +90,12 @@ done:
     return status;
 }
 
+/// By which the share of a type may change with the number of particles: rare types are rounded,
+/// and keep two beads.
+static const double most_distortion = 0.2;
+
 /// As many particles as are asked for, at the densities of the scene.
-static void choose_size(struct inversion *inversion) {
+static enum status choose_size(struct inversion *inversion) {
     const struct simulation_setup *scene = &inversion->problem->scene;
     const int64_t wanted = inversion->settings.common.particles;
     inversion->composition =
@@ -99,6 +103,15 @@ static void choose_size(struct inversion *inversion) {
     inversion->box =
         box_scaled(&scene->box, (double)composition_particles(&inversion->composition) /
                                     (double)composition_particles(&scene->composition));
+    const double distortion = composition_distortion(&scene->composition, &inversion->composition);
+    if (distortion <= most_distortion)
+        return STATUS_OK;
+    return status_fail(
+        STATUS_BAD_INPUT,
+        "method.particles: %lld change the share of a type by %.0f %%; %lld are the "
+        "next that keep all shares",
+        (long long)wanted, 100 * distortion,
+        (long long)composition_least_particles(&scene->composition, wanted, most_distortion));
 }
 
 /// S if g were 1, and of the target.
@@ -155,7 +168,7 @@ enum status inversion_create(void *memory, const struct inverse_method *method,
     inversion->problem = problem;
     inversion->bins = problem->goals.goal[GOAL_RDF].count;
     const struct inversion_parameters *p = &inversion->settings.common;
-    choose_size(inversion);
+    TRY(choose_size(inversion));
     TRY(potential_grid_init(&inversion->grid, problem));
     TRY(refuse_holes(inversion));
     TRY(allocate(inversion));
