@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The population of a genetic algorithm: its errors and its diversity, generation by generation.
-# Reads history.tsv: iteration, evaluations, engine_steps, error, noise, best, mean, diversity,
+# Reads history.tsv: iteration, evaluations, engine_steps, error, noise, least, mean, diversity,
 # failures.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
@@ -30,7 +30,7 @@ do for [kind in kinds] {
             linewidth 1.4 dashtype 2 linecolor rgb faint, \
         "" using 1:7 with linespoints title "mean" \
             linewidth 1.6 pointtype 7 pointsize dots linecolor rgb orange, \
-        "" using 1:6 with linespoints title "best" \
+        "" using 1:6 with linespoints title "least" \
             linewidth 1.6 pointtype 7 pointsize dots linecolor rgb sky, \
         "" using 1:4 with linespoints title "elite" \
             linewidth 2.6 pointtype 7 pointsize dots linecolor rgb blue

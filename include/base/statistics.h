@@ -15,21 +15,31 @@ void statistics_add(struct running_mean *running, double value);
 /// Standard error of the mean if the values are independent; 0 for fewer than two.
 double statistics_standard_error(const struct running_mean *running);
 
-/// Standard error of the mean of a stationary series whose neighbours are correlated, or of several
-/// independent ones of the same length; 0 for fewer than two values.
+/// How many times the variance of the mean of a stationary series, whose neighbours are correlated,
+/// is Γ(0)/n: of several independent series (chains) of the same length, and of several numbers
+/// that are measured together and taken to be correlated alike, as the bins of a g(r) are, whose
+/// errors then do not scatter as much as if each told its own correlation. 1 for fewer than two
+/// values.
 ///
-///   error² = C / (n − 2W − 1),   C = Γ(0) + 2 Σ_{t=1…W} Γ(t),
+///   C n/(n − 2W − 1),   C = 1 + 2 Σ_{t=1…W} ρ(t),
 ///
-/// with the autocovariances Γ about the common mean over n values in all. W ends at the first
-/// negative sum of Γ(2k) + Γ(2k+1), which are not allowed to rise: C. J. Geyer, Stat. Sci. 7, 473
-/// (1992), "initial monotone sequence". C is never taken below Γ(0): what looks like
-/// anticorrelation is mostly noise, so that the error of a truly anticorrelated series is too
-/// large. The denominator, exact for independent values, makes up for the mean that was taken from
-/// them.
+/// with the mean ρ over all numbers of Γ(t)/Γ(0), the autocovariances about a number's common mean
+/// over its n values in all. W ends at the first negative sum of ρ(2k) + ρ(2k+1), which are not
+/// allowed to rise: C. J. Geyer, Stat. Sci. 7, 473 (1992), "initial monotone sequence". It is never
+/// taken below n/(n − 1), of independent values: what looks like anticorrelation is mostly noise,
+/// so that the error of a truly anticorrelated series is too large. The denominator, exact for
+/// independent values, makes up for the mean that was taken from them. Costs n (W + 1) of each
+/// number.
+/// @param[in] values  shape [numbers, chains, length]
+/// Tested: test_statistics.
+double statistics_inefficiency(const double *values, size_t length, size_t chains, size_t numbers);
+
+/// Standard error of the mean of one such number; 0 for fewer than two values:
+///   error² = Γ(0)/n times the inefficiency.
 ///
 /// The truth lies within two errors in 95 % of the series when they are 60 times as long as their
 /// correlation, 1 + 2 Σ Γ(t)/Γ(0), in 93 % at 20 times, and in 88 % at 8 times: no estimate can
-/// tell what a short series does not show. Costs n (W + 1).
+/// tell what a short series does not show.
 /// @param[in] values  shape [chains, length]
 /// Tested: test_statistics, test_errors.
 double statistics_correlated_error(const double *values, size_t length, size_t chains);

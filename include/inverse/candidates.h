@@ -36,7 +36,7 @@ struct inverse_sampling candidates_sampling(const void *settings);
 /// What was measured since candidates_forget_survey.
 struct candidates_survey {
     size_t evaluations;
-    double best; ///< error; infinite if there is none
+    double least; ///< error; infinite if there is none
     struct running_mean alive;
     uint64_t failures;
 };
@@ -53,6 +53,7 @@ struct candidates {
     double *position;                ///< shape [dimensions, particles]: where simulations begin
     double *best_position;           ///< where the best of this round ended
     uint32_t iteration, iterations;  ///< for progress: of the method, at most
+    double best;                     ///< for progress: the method's error so far, or NaN
     struct candidates_survey survey;
     struct candidates_totals {
         uint64_t rounds, evaluations, steps;
@@ -85,6 +86,10 @@ enum status candidates_remeasure(struct candidates *candidates, const double *ge
                                  struct goal_distance *distance) MUST_USE;
 
 void candidates_forget_survey(struct candidates *candidates);
+
+/// Say into `reason` that simulations succeeded, but `why` there is no result; nothing if none did.
+void candidates_tell_failure(const struct candidates *candidates, const char *why,
+                             char reason[INVERSE_REASON_SIZE]);
 
 enum { CANDIDATES_SPANS = 9 + SURROGATE_SPANS };
 size_t candidates_spans(struct candidates *candidates, struct memory_span *spans);

@@ -73,6 +73,7 @@ struct inverse_step {
     uint64_t engine_steps; ///< time steps or Monte Carlo sweeps so far, over all replicas
     double error;          ///< goals_error of the best curves so far, as the method measured it
     double noise;          ///< what the statistical errors alone would give
+    double variance;       ///< of error by the noise of what was measured; 0: not known
     double extra[INVERSE_EXTRA];         ///< columns of the method's own
     const double *curve[UNKNOWNS];       ///< on the unknown's points, best so far; NULL: not fitted
     const double *curve_error[UNKNOWNS]; ///< standard errors; NULL where the method has none
@@ -84,16 +85,23 @@ struct inverse_step {
     const double *without_ramp;
     struct inverse_ramp ramp;
     bool finished;
-    bool converged;
+    bool converged; ///< it has settled: by its own measure it can do no better
+    bool used_up;   ///< it finished since all was used that it was to use, as populations do
     char reason[INVERSE_REASON_SIZE]; ///< why it finished without having converged; or ""
 };
+
+/// Finish a step of a method that uses up what "parameter" gives it: `used_up`, and a reason that
+/// says whether the error still fell.
+/// @param[in] last_better  iteration in which it fell last
+void inverse_use_up(struct inverse_step *step, const char *parameter, uint32_t last_better);
 
 /// Told from time to time inside an iteration, from one thread at a time.
 struct inverse_progress {
     uint32_t iteration;
     uint32_t iterations;  ///< at most
     uint64_t done, total; ///< parts of this iteration
-    double best, mean;    ///< error; not finite if not known yet
+    double best;          ///< error of the best so far; not finite if not known yet
+    double least, mean;   ///< of this iteration's candidates; not finite without
     uint64_t failures;    ///< simulations that left their temperature or blew up
 };
 

@@ -15,7 +15,7 @@ struct kirkwood_buff {
 /// P. Krüger and T. J. H. Vlugt, Phys. Rev. E 97, 051301 (2018), whose u makes of the integrals
 /// over finite spheres (P. Krüger et al., J. Phys. Chem. Lett. 4, 235 (2013)) what converges as
 /// 1/L³. The integral over each bin is exact for constant g in it; below the first g is 0. Of N
-/// particles g normalised by N (N − 1) has a tail of −ρG/N (rdf_finite_size_factor), which is taken
+/// particles g normalised by N (N − 1) has a tail of −ρG/N (observe/finite_size.h), which is taken
 /// out:
 ///   ρG = I/(1 − ∫ 4π r² u dr/V),   I the integral times ρ.
 /// Errors of bins count as independent; those by sampling compensate each other in a liquid, which

@@ -30,21 +30,6 @@ double rdf_ideal_pairs(const struct rdf_bins *bins, size_t k, const struct box *
 double rdf_ideal_pairs_of(const struct rdf_bins *bins, size_t k, const struct box *box,
                           const struct composition *composition, int pair);
 
-/// What g of a system of `from` particles is to be multiplied by to compare with one of `to`
-/// particles at the same density: (1 − 1/from) / (1 − 1/to).
-///
-/// Normalised by N (N − 1), g integrates to the volume, so that its tail lies (1 − S(0))/N above 1
-/// (J. L. Lebowitz and J. K. Percus, Phys. Rev. 122, 1675 (1961)); normalised by N² the tail is off
-/// by S(0)/N only, which is small for a liquid. Left out, an inversion with 729 particles of a
-/// target from 2744 sees 0.001 too many pairs everywhere, and makes a pressure of it: measured for
-/// SPC water, 35 instead of 22 k_B T/λ³.
-double rdf_finite_size_factor(size_t from, size_t to);
-
-/// The same of one kind of pairs: with the numbers of its type, and 1 if they are unlike, which
-/// N_a N_b counts right.
-double rdf_finite_size_factor_of(const struct composition *from, const struct composition *to,
-                                 int pair);
-
 /// Add the pairs of one configuration to `histogram`, shape [bins], uncleared, whatever their
 /// types. The list must be a half list complete for the range of the bins.
 void rdf_count_pairs(const struct rdf_bins *bins, const struct particles *particles,
@@ -95,13 +80,17 @@ void rdf_sample_counted(struct rdf *rdf);
 enum status rdf_sample(struct rdf *rdf, const struct particles *particles,
                        const struct neighbours *neighbours) MUST_USE;
 
-/// g and its standard error over the blocks of all replicas.
+/// g and its standard error over the blocks of all replicas, whose correlation the bins of a kind
+/// of pairs tell together (statistics_inefficiency): of close samples even the means of blocks are
+/// correlated.
 /// @param[in]  replicas  shape [count], same bins, box and composition
 /// @param[out] g, error  shape [pairs, bins.count]; error may be NULL
-void rdf_result(const struct rdf *replicas, size_t count, double *g, double *error);
+/// Fails: NO_MEMORY, with an error asked for. Tested: test_rdf, test_errors.
+enum status rdf_result(const struct rdf *replicas, size_t count, double *g, double *error) MUST_USE;
 
 /// Root mean square of g − g* over all bins of all kinds of pairs, with its standard error by
-/// leaving out blocks (jackknife); `error` may be NULL. Fails: NO_MEMORY.
+/// leaving out blocks (jackknife), whose correlation is that of the bins; `error` may be NULL.
+/// Fails: NO_MEMORY.
 enum status rdf_distance(const struct rdf *replicas, size_t count, const double *target,
                          double *rmse, double *error) MUST_USE;
 

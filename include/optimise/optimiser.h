@@ -23,6 +23,7 @@ struct optimiser_space {
     double minimum, maximum; ///< of every gene: no candidate is ever beyond
     const double *start;     ///< shape [genes]: where to begin, or NULL for the optimiser's choice
     uint64_t seed;
+    size_t most; ///< candidates that a round may have; 0: any number
 };
 
 /// Candidates to be measured.
@@ -39,10 +40,12 @@ struct optimiser {
     const struct field *const *tables; ///< of the parameter struct, NULL-terminated
     size_t parameters_size;
     size_t state_size;
+    const char *budget; ///< the parameter that ends it if nothing else does
     /// Upper bound of rounds.
     uint32_t (*most_rounds)(const void *parameters, size_t genes);
     /// Begin in zeroed memory of `state_size`; nothing of `space` or `parameters` is kept.
-    /// Fails: BAD_INPUT for an empty box, NO_MEMORY; `destroy` must follow all the same.
+    /// Fails: BAD_INPUT for an empty box, or a population beyond space.most; NO_MEMORY; `destroy`
+    /// must follow all the same.
     enum status (*create)(void *state, const struct optimiser_space *space, const void *parameters);
     void (*destroy)(void *state);
     /// Asking again before telling gives the same.
@@ -58,6 +61,9 @@ struct optimiser {
     /// Error beyond which a candidate hardly changes what happens next, by the round told last;
     /// HUGE_VAL if that is not known. The same before and after `ask`.
     double (*hopeless)(const void *state);
+    /// Whether it ended since it could do no better, before its budget was used up. NULL: it never
+    /// does.
+    bool (*settled)(const void *state);
     /// The state of a checkpoint, between tell and tell: what is written there and read into a new
     /// state of the same space and parameters goes on with the same bits. Returns their number, at
     /// most OPTIMISER_MAX_SPANS.
@@ -77,6 +83,9 @@ extern const struct optimiser genetic_optimiser, cmaes_optimiser, nlopt_optimise
 /// Fails with BAD_INPUT unless there are genes and a box of finite, positive size, and the start,
 /// if there is one, is finite.
 enum status optimiser_check_space(const struct optimiser_space *space) MUST_USE;
+
+/// Fails with BAD_INPUT if a round of `count` candidates is more than there may be.
+enum status optimiser_check_round(const struct optimiser_space *space, size_t count) MUST_USE;
 
 /// An error as it was told, or OPTIMISER_FAILED if it is not finite or beyond that.
 static inline double optimiser_error(double told) {

@@ -7,7 +7,8 @@
 
 /// The result of a fit so far.
 struct fit_result {
-    enum status status; ///< OK: converged; UNCONVERGED; INTERRUPTED
+    enum status status; ///< OK: converged, or finished; UNCONVERGED; INTERRUPTED
+    bool settled;       ///< whether OK says that it has converged
     uint64_t iterations, evaluations, engine_steps;
     double seconds;                          ///< of the fit, without its verification
     const double *curve[UNKNOWNS];           ///< on the unknown's points; NULL: not fitted
@@ -15,7 +16,7 @@ struct fit_result {
     const double *curve_flat[UNKNOWNS];      ///< shape [INVERSE_FLAT, points]; may hold NaN
     const double *without_ramp;              ///< inverse_step.without_ramp; may hold NaN
     struct inverse_ramp ramp;                ///< error 0: not known
-    const char *reason;                      ///< why it has not converged, or ""
+    const char *reason;                      ///< why it has not converged, or settled, or ""
     const struct verification *verification; ///< NULL if there was none
 };
 

@@ -15,7 +15,7 @@ struct target_parameters {
     int format;                               ///< TARGET_…
     double cutoff;                            ///< bins beyond are left out; 0: none [λ]
     int64_t r_column, g_column, error_column; ///< from 1; error_column 0: no errors given
-    int64_t particles; ///< of the system it was measured in; 0: as many as the scene has
+    int64_t particles; ///< of all types where it was measured; 0: as many as the scene has
     double normalisation, normalisation_error; ///< of g; 0: found, with this width about 1
 };
 
@@ -32,10 +32,13 @@ struct target {
 enum status target_read(struct target *target, struct json_object *object,
                         const struct units *units) MUST_USE;
 
-/// Convert g and its errors to a system of `count` particles (rdf_finite_size_factor). VOTCA's are
-/// normalised by N², so that their tail does not depend on N: their factor is 1/(1 − 1/count).
-/// Pairs of unlike types, `count` 0, stay as they are.
-/// @param[in,out] g, error  shape [bins.count]
-void target_convert(const struct target *target, size_t count, double *g, double *error);
+/// g and its errors in the numbers of the scene, by finite_size_factor_of. VOTCA's g of like pairs
+/// is normalised by N_a², and needs 1/(1 − 1/N_a) with the N_a that was measured.
+/// @param[in]  box, composition  of the scene
+/// @param[in]  pair              the kind of pairs of this target
+/// @param[out] g, error          shape [bins.count]
+/// Tested: test_target, test_targets_mixture.
+void target_convert(const struct target *target, const struct box *box,
+                    const struct composition *composition, int pair, double *g, double *error);
 
 void target_clear(struct target *target);

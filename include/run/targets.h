@@ -32,7 +32,8 @@ struct targets {
     struct target rdf[COMPOSITION_MOST_PAIRS]; ///< of each kind of pairs
     struct composition composition;            ///< of the scene
     size_t pairs;                              ///< kinds of its pairs
-    double *rdf_g, *rdf_error;          ///< of all, one behind the other: shape [pairs, bins]
+    /// Of all, one behind the other, in the numbers of the scene: shape [pairs, bins].
+    double *rdf_g, *rdf_error;
     struct normalisation normalisation; ///< by which those that do not say theirs are divided
     struct target_etd etd;
     struct target_curve vacf, msd;
@@ -43,9 +44,9 @@ struct targets {
     } goal[GOALS];
 };
 
-/// Read the object "target" of a scene of this composition; `units` convert VOTCA's tables. Faults
-/// go to the document. Fails: NO_MEMORY.
-enum status targets_read(struct targets *targets, struct json_object *root,
+/// Read the object "target" of a scene of this box and composition; `units` convert VOTCA's tables.
+/// Faults go to the document. Fails: NO_MEMORY.
+enum status targets_read(struct targets *targets, struct json_object *root, const struct box *box,
                          const struct composition *composition, const struct units *units) MUST_USE;
 void targets_clear(struct targets *targets);
 void targets_write(const struct targets *targets, struct json_writer *writer);
@@ -54,8 +55,7 @@ void targets_write(const struct targets *targets, struct json_writer *writer);
 void targets_digest(const struct targets *targets, uint64_t *digest);
 
 /// Divide g(r) by its normalisation: what the file says, else what normalisation_find makes of the
-/// target in this box. Only after targets_goals, which converts it to the scene's numbers. Fails:
-/// NO_MEMORY.
+/// target in this box. Fails: NO_MEMORY.
 enum status targets_normalise(struct targets *targets, const struct box *box) MUST_USE;
 
 /// The goals of the scene: those to be fitted, and all. With `moves`, D is among

@@ -33,6 +33,14 @@ int64_t composition_particles(const struct composition *composition);
 /// pairs of it.
 struct composition composition_scaled(const struct composition *composition, int64_t particles);
 
+/// Largest relative change of a type's share of all beads from one mixture to another.
+double composition_distortion(const struct composition *from, const struct composition *to);
+
+/// The smallest number of beads from `particles` on for which composition_scaled changes no share
+/// by more than `distortion`.
+int64_t composition_least_particles(const struct composition *composition, int64_t particles,
+                                    double distortion);
+
 static inline bool composition_is_mixed(const struct composition *composition) {
     return composition->types > 1;
 }

@@ -16,11 +16,11 @@ double statistics_standard_error(const struct running_mean *running) {
     return sqrt(running->squares / (running->count - 1) / running->count);
 }
 
-/// The chains with the mean of all their values.
+/// Chains of one number, with the mean and the variance of all their values.
 struct chains {
     const double *values;
     size_t length, count;
-    double mean;
+    double mean, variance;
 };
 
 static double autocovariance(const struct chains *chains, size_t lag) {
@@ -33,26 +33,41 @@ static double autocovariance(const struct chains *chains, size_t lag) {
     return sum / (double)((chains->length - lag) * chains->count);
 }
 
-static double find_mean(const double *values, size_t count) {
+static struct chains describe(const double *values, size_t length, size_t count) {
+    struct chains chains = {values, length, count, 0, 0};
     struct running_mean mean = {0};
-    for (size_t k = 0; k < count; k++)
+    for (size_t k = 0; k < length * count; k++)
         statistics_add(&mean, values[k]);
-    return mean.mean;
+    chains.mean = mean.mean;
+    chains.variance = autocovariance(&chains, 0);
+    return chains;
 }
 
-double statistics_correlated_error(const double *values, size_t length, size_t chains) {
-    const size_t n = length * chains;
-    if (n < 2)
+/// Mean autocorrelation of the numbers that scatter at all; 0 if none does.
+static double autocorrelation(const double *values, size_t length, size_t chains, size_t numbers,
+                              size_t lag) {
+    double sum = 0, count = 0;
+    if (lag >= length)
         return 0;
-    const struct chains all = {values, length, chains, find_mean(values, n)};
-    const double variance = autocovariance(&all, 0);
-    if (!(variance > 0))
-        return variance;
-    double sum = -variance, last = INFINITY;
+    for (size_t n = 0; n < numbers; n++) {
+        const struct chains one = describe(values + n * length * chains, length, chains);
+        if (!(one.variance > 0))
+            continue;
+        sum += autocovariance(&one, lag) / one.variance;
+        count += 1;
+    }
+    return count > 0 ? sum / count : 0;
+}
+
+double statistics_inefficiency(const double *values, size_t length, size_t chains, size_t numbers) {
+    const double n = (double)(length * chains);
+    double sum = -1, last = INFINITY;
     size_t window = 0;
+    if (length * chains < 2)
+        return 1;
     for (size_t t = 0; t == 0 || t + 1 < length / 2; t += 2) {
-        const double pair =
-            autocovariance(&all, t) + (t + 1 < length ? autocovariance(&all, t + 1) : 0);
+        const double pair = autocorrelation(values, length, chains, numbers, t) +
+                            autocorrelation(values, length, chains, numbers, t + 1);
         if (!(pair > 0))
             break;
         last = fmin(last, pair);
@@ -60,6 +75,16 @@ double statistics_correlated_error(const double *values, size_t length, size_t c
         window = t + 1 < length ? t + 1 : 0;
     }
     // With a window that is most of the series there is no honest error, only a large one.
-    const double left = fmax((double)n - 2 * (double)window - 1, 0.1 * (double)n);
-    return sqrt(fmax(sum, variance) / left);
+    const double left = fmax(n - 2 * (double)window - 1, 0.1 * n);
+    return fmax(sum / left, 1 / (n - 1)) * n;
+}
+
+double statistics_correlated_error(const double *values, size_t length, size_t chains) {
+    const size_t n = length * chains;
+    if (n < 2)
+        return 0;
+    const double variance = describe(values, length, chains).variance;
+    if (!(variance > 0))
+        return variance;
+    return sqrt(variance * statistics_inefficiency(values, length, chains, 1) / (double)n);
 }

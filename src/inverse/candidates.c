@@ -56,7 +56,7 @@ static size_t coordinates(const struct candidates *candidates) {
 enum status candidates_init(struct candidates *candidates, const struct decoder *decoder,
                             const struct candidates_parameters *parameters) {
     enum status status = STATUS_OK;
-    *candidates = (struct candidates){.decoder = decoder, .parameters = *parameters};
+    *candidates = (struct candidates){.decoder = decoder, .parameters = *parameters, .best = NAN};
     NEW_ARRAY(candidates->errors, CANDIDATES_MOST);
     NEW_ARRAY(candidates->variances, CANDIDATES_MOST);
     NEW_ARRAY(candidates->distances, CANDIDATES_MOST * GOALS);
@@ -106,7 +106,15 @@ void candidates_next_round(struct candidates *candidates) {
 }
 
 void candidates_forget_survey(struct candidates *candidates) {
-    candidates->survey = (struct candidates_survey){.best = INFINITY};
+    candidates->survey = (struct candidates_survey){.least = INFINITY};
+}
+
+void candidates_tell_failure(const struct candidates *candidates, const char *why,
+                             char reason[INVERSE_REASON_SIZE]) {
+    if (candidates->surrogate.rows.added > 0)
+        snprintf(reason, INVERSE_REASON_SIZE, "%llu of %llu simulations succeeded, %s",
+                 (unsigned long long)candidates->surrogate.rows.added,
+                 (unsigned long long)candidates->totals.evaluations, why);
 }
 
 /// Columns of positions, one a dimension.
@@ -153,7 +161,7 @@ static void add(struct candidates_survey *survey, double error) {
     else
         statistics_add(&survey->alive, error);
     if (error < OPTIMISER_FAILED)
-        survey->best = fmin(survey->best, error);
+        survey->least = fmin(survey->least, error);
 }
 
 static void report(const struct candidates *candidates, size_t count,
@@ -167,7 +175,8 @@ static void report(const struct candidates *candidates, size_t count,
         .iterations = candidates->iterations,
         .done = survey.evaluations - candidates->survey.evaluations,
         .total = count,
-        .best = survey.best,
+        .best = candidates->best,
+        .least = survey.least,
         .mean = survey.alive.count > 0 ? survey.alive.mean : NAN,
         .failures = survey.failures,
     };

@@ -13,11 +13,18 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /// The region's radius is multiplied by these after a step that helped and one that did harm, and
 /// never gets wider than the last [gene].
 static const double widen = 1.4, narrow = 0.7, widest = 0.3;
+
+/// The error is at its noise up to this multiple of it, which is known to a tenth or two. What is
+/// there for so many iterations, or has not fallen by more than chance for so many, has settled: a
+/// D whose error went below its noise in iteration 6 wandered about in it for 13 more.
+static const double noise_margin = 1.1;
+enum { SETTLED_AT_NOISE = 2, SETTLED_IDLE = 10 };
 
 /// Candidates are spread by this part of the radius, so that the model is asked for little beyond.
 static const double spread_part = 0.7;
@@ -40,18 +47,22 @@ struct state {
     double *proposal;             ///< shape [genes]
     double *best;                 ///< shape [genes]: the centre of the region
     struct decoder_curves curves; ///< of the best
+    bool has_model;               ///< whether the last iteration had one
     struct progress {
         uint32_t iteration;
         bool known;                    ///< whether the best has been measured
         double reach;                  ///< radius of the region [gene]
         double error, variance, noise; ///< of the best
+        uint32_t at_noise;             ///< iterations since the error is no more than noise
+        uint32_t idle;                 ///< since it fell by more than chance,
+        double reference;              ///< from this
     } progress;
 };
 
 #define OWN(name) .offset = offsetof(struct own, name)
 static const struct field own_fields[] = {
     {"iterations", FIELD_INTEGER, OWN(iterations), .initial = 20, .minimum = 1, .maximum = 10000,
-     .unit = "", .help = "at most"},
+     .unit = "", .help = "at most; a fit that has not settled by then has not converged"},
     {"spread", FIELD_INTEGER, OWN(spread), .initial = 0, .minimum = 0, .maximum = CANDIDATES_MOST,
      .unit = "", .help = "candidates about the best in an iteration; 0: 1.5 for each gene"},
     {"reach", FIELD_NUMBER, OWN(reach), .initial = 0.15, .minimum = FIELD_ABOVE_ZERO, .maximum = 1,
@@ -68,7 +79,7 @@ static const struct field own_fields[] = {
 
 static_assert(sizeof(struct own) <= sizeof((struct candidates_settings){0}.method), "no room");
 
-static const char *const columns[] = {"best[1]", "mean[1]", "reach[1]", "failures", NULL};
+static const char *const columns[] = {"least[1]", "mean[1]", "reach[1]", "failures", NULL};
 
 static uint32_t most_iterations(const struct inverse_method *method,
                                 const struct inverse_problem *problem, const void *parameters) {
@@ -118,7 +129,8 @@ static enum status create(void *memory, const struct inverse_method *method,
     const struct candidates_settings *settings = parameters;
     memcpy(&state->own, &settings->method, sizeof state->own);
     state->problem = problem;
-    state->progress = (struct progress){.reach = state->own.reach, .error = NAN, .noise = NAN};
+    state->progress = (struct progress){
+        .reach = state->own.reach, .error = NAN, .noise = NAN, .reference = INFINITY};
     CHECK(decoder_init(&state->decoder, problem));
     if (most_candidates(state) > CANDIDATES_MOST) {
         status = status_fail(
@@ -183,6 +195,17 @@ static void judge(struct state *state, double error, double noise, double varian
     }
 }
 
+/// Count the iterations at the noise, and those without progress.
+static void watch(struct progress *progress) {
+    progress->at_noise =
+        progress->error <= noise_margin * progress->noise ? progress->at_noise + 1 : 0;
+    progress->idle++;
+    if (!(progress->error > progress->reference - sqrt(2 * progress->variance))) {
+        progress->reference = progress->error;
+        progress->idle = 0;
+    }
+}
+
 /// Measure what the model says, if enough simulations succeeded to have one.
 static enum status propose(struct state *state) {
     enum status status = STATUS_OK;
@@ -196,7 +219,10 @@ static enum status propose(struct state *state) {
         CHECK(candidates_remeasure(&state->candidates, state->proposal, (size_t)state->own.checks,
                                    &error, &noise, &variance, NULL));
         judge(state, error, noise, variance);
+        if (state->progress.known)
+            watch(&state->progress);
     }
+    state->has_model = known;
     CHECK(decoder_curves_bands(&state->decoder, state->best, known ? model.covariance : NULL,
                                &state->curves));
 done:
@@ -204,10 +230,34 @@ done:
     return status;
 }
 
+/// Why there is no result, or why it is not the last word.
+static void tell_reason(const struct state *state, char reason[INVERSE_REASON_SIZE]) {
+    const struct progress *progress = &state->progress;
+    char why[128];
+    if (progress->known) {
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "stopped at the limit of %lld iterations: the error is %.2g (%.2g by statistics), "
+                 "and the region %.2g wide, where \"tolerance\" asks for %.2g",
+                 (long long)state->own.iterations, progress->error, progress->noise,
+                 progress->reach, state->own.tolerance * state->own.reach);
+        return;
+    }
+    if (state->has_model)
+        snprintf(why, sizeof why, "but none of what the linear model thought best");
+    else
+        snprintf(why, sizeof why,
+                 "too few for a linear model of %zu genes, which needs %zu: more \"iterations\" or "
+                 "\"spread\" would do",
+                 state->decoder.genes, surrogate_least_rows(state->decoder.genes));
+    candidates_tell_failure(&state->candidates, why, reason);
+}
+
 static void describe(struct state *state, struct inverse_step *step) {
     const struct candidates_survey *survey = &state->candidates.survey;
     const struct progress *progress = &state->progress;
     const bool narrowed = progress->reach < state->own.tolerance * state->own.reach;
+    const bool settled = progress->known && (narrowed || progress->at_noise >= SETTLED_AT_NOISE ||
+                                             progress->idle >= SETTLED_IDLE);
     const bool last = progress->iteration + 1 >= (uint32_t)state->own.iterations;
     *step = (struct inverse_step){
         .iteration = progress->iteration,
@@ -215,11 +265,14 @@ static void describe(struct state *state, struct inverse_step *step) {
         .engine_steps = state->candidates.totals.steps,
         .error = progress->error,
         .noise = progress->noise,
-        .extra = {survey->best, survey->alive.count > 0 ? survey->alive.mean : NAN, progress->reach,
-                  (double)survey->failures},
-        .finished = last || narrowed,
-        .converged = progress->known && (last || narrowed),
+        .variance = progress->variance,
+        .extra = {survey->least, survey->alive.count > 0 ? survey->alive.mean : NAN,
+                  progress->reach, (double)survey->failures},
+        .finished = last || narrowed || settled,
+        .converged = settled,
     };
+    if (step->finished && !settled)
+        tell_reason(state, step->reason);
     decoder_curves_show(&state->decoder, state->best, &state->curves, step);
 }
 
@@ -229,6 +282,7 @@ static enum status iterate(void *memory, struct inverse_step *step,
     struct candidates *candidates = &state->candidates;
     const struct optimiser_round round = {state->round, round_size(state)};
     candidates->iteration = state->progress.iteration;
+    candidates->best = state->progress.error;
     if (candidates->survey.evaluations == 0) {
         spread(state, round.count);
         TRY(candidates_measure(candidates, &round, HUGE_VAL, listener));

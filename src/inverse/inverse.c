@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inverse/inverse.h"
 
+#include <stdio.h>
+
 const char *const inverse_unknown_names[UNKNOWNS] = {"potential", "weight"};
 
 static const char *const potential_curves[] = {"bezier", "bspline", NULL};
@@ -41,3 +43,20 @@ const struct field inverse_weight_fields[] = {
 const struct inverse_method *const inverse_methods[] = {
     &automatic,      &imc,          &ibi,    &hnc, &matching_genetic, &matching_cmaes,
     &matching_nlopt, &gauss_newton, &pareto, NULL};
+
+/// An error that has fallen in this last part of the iterations still falls.
+static const double recent = 0.25;
+
+void inverse_use_up(struct inverse_step *step, const char *parameter, uint32_t last_better) {
+    const uint32_t iterations = step->iteration + 1, since = step->iteration - last_better;
+    step->used_up = true;
+    if (since <= recent * iterations)
+        snprintf(step->reason, sizeof step->reason,
+                 "its \"%s\" are used up; the error still fell, to %.2g (%.2g by statistics)",
+                 parameter, step->error, step->noise);
+    else
+        snprintf(step->reason, sizeof step->reason,
+                 "its \"%s\" are used up; the error, %.2g (%.2g by statistics), has not fallen in "
+                 "the last %u of %u iterations",
+                 parameter, step->error, step->noise, since, iterations);
+}

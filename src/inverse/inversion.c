@@ -150,6 +150,7 @@ static enum status sample(struct inversion *inversion, const struct inverse_list
         .iteration = state->iteration,
         .iterations = (uint32_t)inversion->settings.common.iterations,
         .best = goals_error(&inversion->problem->goals, state->best),
+        .least = NAN,
         .mean = NAN,
     };
     table_clear(&inversion->table);

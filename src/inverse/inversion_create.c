@@ -3,6 +3,8 @@
 // What an inversion is made of: its parameters, its system, its memory.
 #include "inverse/inversion.h"
 
+#include "observe/finite_size.h"
+
 #include <math.h>
 
 static const char *const starts[] = {"auto", "mean-force", NULL};
@@ -88,8 +90,12 @@ done:
     return status;
 }
 
+/// By which the share of a type may change with the number of particles: rare types are rounded,
+/// and keep two beads.
+static const double most_distortion = 0.2;
+
 /// As many particles as are asked for, at the densities of the scene.
-static void choose_size(struct inversion *inversion) {
+static enum status choose_size(struct inversion *inversion) {
     const struct simulation_setup *scene = &inversion->problem->scene;
     const int64_t wanted = inversion->settings.common.particles;
     inversion->composition =
@@ -97,19 +103,36 @@ static void choose_size(struct inversion *inversion) {
     inversion->box =
         box_scaled(&scene->box, (double)composition_particles(&inversion->composition) /
                                     (double)composition_particles(&scene->composition));
+    const double distortion = composition_distortion(&scene->composition, &inversion->composition);
+    if (distortion <= most_distortion)
+        return STATUS_OK;
+    return status_fail(
+        STATUS_BAD_INPUT,
+        "method.particles: %lld change the share of a type by %.0f %%; %lld are the "
+        "next that keep all shares",
+        (long long)wanted, 100 * distortion,
+        (long long)composition_least_particles(&scene->composition, wanted, most_distortion));
 }
 
 /// S if g were 1, and of the target.
 static void count_target(struct inversion *inversion) {
     const struct inverse_problem *problem = inversion->problem;
+    const struct simulation_setup *scene = &problem->scene;
     const struct rdf_bins *bins = &problem->goals.bins;
-    for (size_t n = 0; n < inversion->bins; n++) {
-        const int pair = (int)(n / bins->count);
-        inversion->ideal[n] = rdf_ideal_pairs_of(bins, n % bins->count, &inversion->box,
-                                                 &inversion->composition, pair);
-        inversion->target_counts[n] =
-            inversion->ideal[n] * problem->goals.goal[GOAL_RDF].value[n] *
-            rdf_finite_size_factor_of(&problem->scene.composition, &inversion->composition, pair);
+    const struct goal *goal = &problem->goals.goal[GOAL_RDF];
+    const double from = (double)composition_particles(&scene->composition);
+    const double to = (double)composition_particles(&inversion->composition);
+    for (size_t first = 0; first < inversion->bins; first += bins->count) {
+        const int pair = (int)(first / bins->count);
+        const double factor =
+            finite_size_factor_of(bins, goal->value + first, goal->error + first, &scene->box,
+                                  &scene->composition, pair, from, to);
+        for (size_t k = 0; k < bins->count; k++) {
+            inversion->ideal[first + k] =
+                rdf_ideal_pairs_of(bins, k, &inversion->box, &inversion->composition, pair);
+            inversion->target_counts[first + k] =
+                inversion->ideal[first + k] * goal->value[first + k] * factor;
+        }
     }
 }
 
@@ -145,7 +168,7 @@ enum status inversion_create(void *memory, const struct inverse_method *method,
     inversion->problem = problem;
     inversion->bins = problem->goals.goal[GOAL_RDF].count;
     const struct inversion_parameters *p = &inversion->settings.common;
-    choose_size(inversion);
+    TRY(choose_size(inversion));
     TRY(potential_grid_init(&inversion->grid, problem));
     TRY(refuse_holes(inversion));
     TRY(allocate(inversion));

@@ -34,10 +34,12 @@ struct state {
     struct decoder_curves curves; ///< of the best, with errors by the linear model
     struct progress {
         uint32_t iteration;
-        int stage;           ///< of `check`
-        uint64_t checked;    ///< evaluations when a favourite was last measured
-        bool known;          ///< whether there is a best
-        double error, noise; ///< of the best: the mean of its fresh measurements
+        int stage;            ///< of `check`
+        uint64_t checked;     ///< evaluations when a favourite was last measured
+        uint32_t last_better; ///< iteration in which the error fell last
+        bool known;           ///< whether there is a best
+        double error, noise;  ///< of the best: the mean of its fresh measurements
+        double variance;      ///< of that mean
     } progress;
 };
 
@@ -53,7 +55,7 @@ static const struct field own_fields[] = {
 
 static_assert(offsetof(struct parameters, settings) == 0, "candidates_fields need it first");
 
-static const char *const columns[] = {"best[1]", "mean[1]", "diversity[1]", "failures", NULL};
+static const char *const columns[] = {"least[1]", "mean[1]", "diversity[1]", "failures", NULL};
 
 /// Evaluations of an iteration whose rounds are of one candidate, so that a history stays readable.
 static const size_t least_evaluations = 10;
@@ -92,7 +94,8 @@ static enum status create_optimiser(struct state *state) {
                                           .minimum = 0,
                                           .maximum = 1,
                                           .start = start,
-                                          .seed = state->problem->seed};
+                                          .seed = state->problem->seed,
+                                          .most = CANDIDATES_MOST};
     state->optimiser_state = memory_zeroed(1, state->optimiser->state_size);
     CHECK(state->optimiser_state ? STATUS_OK : STATUS_NO_MEMORY);
     CHECK(state->optimiser->create(state->optimiser_state, &space, &state->parameters));
@@ -158,9 +161,12 @@ static enum status check_favourite(struct state *state, double slack) {
         (state->progress.known && error > state->progress.error + slack * sqrt(variance)))
         return STATUS_OK;
     memcpy(state->best, state->favourite, state->decoder.genes * sizeof(double));
+    if (!state->progress.known || error < state->progress.error)
+        state->progress.last_better = state->progress.iteration;
     state->progress.known = true;
     state->progress.error = error;
     state->progress.noise = noise;
+    state->progress.variance = variance;
     return STATUS_OK;
 }
 
@@ -183,6 +189,20 @@ done:
     return status;
 }
 
+/// An optimiser has converged if it ended by itself; what has used its budget up has just ended.
+static void conclude(const struct state *state, struct inverse_step *step) {
+    const struct optimiser *optimiser = state->optimiser;
+    step->finished = true;
+    if (!state->progress.known)
+        candidates_tell_failure(&state->candidates,
+                                "but what seemed best failed when it was measured again",
+                                step->reason);
+    else if (optimiser->settled && optimiser->settled(state->optimiser_state))
+        step->converged = true;
+    else
+        inverse_use_up(step, optimiser->budget, state->progress.last_better);
+}
+
 static void describe(struct state *state, struct inverse_step *step, bool finished) {
     const struct candidates_survey *survey = &state->candidates.survey;
     *step = (struct inverse_step){
@@ -191,11 +211,12 @@ static void describe(struct state *state, struct inverse_step *step, bool finish
         .engine_steps = state->candidates.totals.steps,
         .error = state->progress.error,
         .noise = state->progress.noise,
-        .extra = {survey->best, survey->alive.count > 0 ? survey->alive.mean : NAN,
+        .variance = state->progress.variance,
+        .extra = {survey->least, survey->alive.count > 0 ? survey->alive.mean : NAN,
                   state->optimiser->spread(state->optimiser_state), (double)survey->failures},
-        .finished = finished,
-        .converged = finished && state->progress.known,
     };
+    if (finished)
+        conclude(state, step);
     decoder_curves_show(&state->decoder,
                         state->progress.known ? state->best : state->candidates.first,
                         &state->curves, step);
@@ -226,6 +247,7 @@ static enum status iterate(void *memory, struct inverse_step *step,
                            const struct inverse_listener *listener) {
     struct state *state = memory;
     state->candidates.iteration = state->progress.iteration;
+    state->candidates.best = state->progress.error;
     struct optimiser_round round;
     TRY(state->optimiser->ask(state->optimiser_state, &round));
     while (round.count > 0 && !is_full(&state->candidates.survey, round.count)) {

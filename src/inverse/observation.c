@@ -153,7 +153,7 @@ static enum status result_rdf(const struct observation *replicas, size_t count,
         CHECK(rdf_force_result(force, count, RDF_FORCE_COUNTED, observed->value[GOAL_RDF],
                                observed->error[GOAL_RDF]));
     else
-        rdf_result(rdf, count, observed->value[GOAL_RDF], observed->error[GOAL_RDF]);
+        CHECK(rdf_result(rdf, count, observed->value[GOAL_RDF], observed->error[GOAL_RDF]));
 done:
     memory_free(rdf);
     memory_free(force);

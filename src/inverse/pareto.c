@@ -25,7 +25,7 @@ static_assert(sizeof(struct pareto_own) <= sizeof((struct candidates_settings){0
               "no room");
 static_assert(offsetof(struct pareto_own, nsga2) == 0, "nsga2_fields need it first");
 
-static const char *const columns[] = {"best[1]", "mean[1]", "diversity[1]", "failures", NULL};
+static const char *const columns[] = {"least[1]", "mean[1]", "diversity[1]", "failures", NULL};
 
 /// How far the linear model may go from the chosen, as a part of a gene's range: the first child so
 /// far, each of the others half as far as the one before.
@@ -91,6 +91,7 @@ static enum status create(void *memory, const struct inverse_method *method,
     CHECK(decoder_curves_init(&state->decoder, &state->curves));
     CHECK(candidates_init(&state->candidates, &state->decoder, &settings->candidates));
     state->candidates.iterations = most_iterations(method, problem, parameters);
+    state->progress.least = OPTIMISER_FAILED;
 done:
     return status;
 }
@@ -172,6 +173,8 @@ static enum status check_one(struct pareto_state *state, size_t parent) {
     take_distances(state, error, distance, value);
     for (size_t m = 0; m < state->objectives && error < OPTIMISER_FAILED; m++)
         state->progress.noise[m] = distance[state->goal[m]].noise;
+    if (error < OPTIMISER_FAILED)
+        state->progress.variance = variance;
     // The mean of some measurements counts as many times.
     for (int64_t k = 0; k < state->own.checks; k++)
         TRY(nsga2_add_measurement(&state->nsga2, parent, value));
@@ -184,8 +187,13 @@ static enum status choose(struct pareto_state *state) {
     size_t best = 0;
     while (find_best(state, &best) && !is_checked(state, best))
         TRY(check_one(state, best));
-    state->progress.known = find_best(state, &best);
-    state->progress.chosen = best;
+    struct progress *progress = &state->progress;
+    progress->known = find_best(state, &best);
+    progress->chosen = best;
+    if (progress->known && pareto_error(state, pareto_value(state, best)) < progress->least) {
+        progress->least = pareto_error(state, pareto_value(state, best));
+        progress->last_better = progress->iteration;
+    }
     return STATUS_OK;
 }
 
@@ -213,18 +221,23 @@ done:
 static void describe(struct pareto_state *state, struct inverse_step *step) {
     const struct candidates_survey *survey = &state->candidates.survey;
     const struct progress *progress = &state->progress;
-    const bool finished = nsga2_is_over(&state->nsga2);
     *step = (struct inverse_step){
         .iteration = progress->iteration,
         .evaluations = state->candidates.totals.evaluations,
         .engine_steps = state->candidates.totals.steps,
         .error = progress->known ? pareto_error(state, pareto_value(state, progress->chosen)) : NAN,
         .noise = progress->known ? pareto_error(state, progress->noise) : NAN,
-        .extra = {survey->best, survey->alive.count > 0 ? survey->alive.mean : NAN,
+        .variance = progress->variance,
+        .extra = {survey->least, survey->alive.count > 0 ? survey->alive.mean : NAN,
                   nsga2_diversity(&state->nsga2), (double)survey->failures},
-        .finished = finished,
-        .converged = finished && progress->known,
+        .finished = nsga2_is_over(&state->nsga2),
     };
+    if (step->finished && progress->known)
+        inverse_use_up(step, "generations", progress->last_better);
+    else if (step->finished)
+        candidates_tell_failure(&state->candidates,
+                                "but what seemed best failed when it was measured again",
+                                step->reason);
     decoder_curves_show(&state->decoder,
                         progress->known ? nsga2_parent(&state->nsga2, progress->chosen)
                                         : state->candidates.first,
@@ -246,6 +259,7 @@ static enum status iterate(void *memory, struct inverse_step *step,
     enum { ROUND, CHOICE };
     struct pareto_state *state = memory;
     state->candidates.iteration = state->progress.iteration;
+    state->candidates.best = state->progress.least < OPTIMISER_FAILED ? state->progress.least : NAN;
     if (state->progress.stage == ROUND) {
         TRY(take_round(state, listener));
         state->progress.stage = CHOICE;

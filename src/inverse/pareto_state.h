@@ -30,10 +30,13 @@ struct pareto_state {
     struct decoder_curves curves; ///< of the chosen
     struct progress {
         uint32_t iteration, stage;
-        uint64_t rows;       ///< of the log
-        uint64_t chosen;     ///< parent
-        bool known;          ///< whether there is a chosen one
-        double noise[GOALS]; ///< of one simulation's distances, by objective
+        uint64_t rows;        ///< of the log
+        uint64_t chosen;      ///< parent
+        bool known;           ///< whether there is a chosen one
+        double noise[GOALS];  ///< of one simulation's distances, by objective
+        double variance;      ///< of the error of what was checked last
+        uint32_t last_better; ///< iteration in which the least error fell last
+        double least;         ///< chosen so far
     } progress;
 };
 

@@ -65,7 +65,7 @@ static enum status run_replicas(const struct inverse_problem *problem,
             }
             done++;
             const struct inverse_progress progress = {
-                .done = done, .total = count, .best = NAN, .mean = NAN};
+                .done = done, .total = count, .best = NAN, .least = NAN, .mean = NAN};
             listener->tell(listener->context, &progress);
         }
     }

@@ -34,19 +34,6 @@ double rdf_ideal_pairs_of(const struct rdf_bins *bins, size_t k, const struct bo
            box_volume(box);
 }
 
-double rdf_finite_size_factor(size_t from, size_t to) {
-    return (1 - 1 / (double)from) / (1 - 1 / (double)to);
-}
-
-double rdf_finite_size_factor_of(const struct composition *from, const struct composition *to,
-                                 int pair) {
-    int type[2];
-    composition_pair_types(from, pair, type);
-    return type[0] == type[1]
-               ? rdf_finite_size_factor((size_t)from->count[type[0]], (size_t)to->count[type[0]])
-               : 1;
-}
-
 struct counting {
     const struct rdf_bins *bins;
     const struct composition *composition; ///< of a mixture
@@ -211,25 +198,67 @@ static double ideal_at(const struct rdf *rdf, size_t k) {
                               (int)(k / rdf->bins.count));
 }
 
-void rdf_result(const struct rdf *replicas, size_t count, double *g, double *error) {
+/// Blocks with samples, of the replica that has fewest.
+static size_t filled_blocks(const struct rdf *replicas, size_t count) {
+    size_t least = replicas->blocks;
+    for (size_t r = 0; r < count; r++)
+        for (size_t b = 0; b < least; b++)
+            if (replicas[r].block_samples[b] == 0)
+                least = b;
+    return least;
+}
+
+/// g of every block, shape [pairs, bins, count, blocks]. Fails: NO_MEMORY.
+static enum status find_series(const struct rdf *replicas, size_t count, size_t blocks,
+                               double **series) {
+    enum status status = STATUS_OK;
     const size_t all = all_bins(replicas);
+    NEW_ARRAY(*series, all * count * blocks + 1);
     for (size_t k = 0; k < all; k++) {
         const double ideal = ideal_at(replicas, k);
-        struct running_mean blocks = {0};
+        for (size_t r = 0; r < count; r++)
+            for (size_t b = 0; b < blocks; b++)
+                (*series)[(k * count + r) * blocks + b] =
+                    replicas[r].histogram[b * all + k] / replicas[r].block_samples[b] / ideal;
+    }
+done:
+    return status;
+}
+
+static enum status find_errors(const struct rdf *replicas, size_t count, double *error) {
+    enum status status = STATUS_OK;
+    const size_t bins = replicas->bins.count, blocks = filled_blocks(replicas, count);
+    const size_t values = count * blocks;
+    double *series = NULL;
+    CHECK(find_series(replicas, count, blocks, &series));
+    for (size_t pair = 0; pair < replicas->pairs; pair++) {
+        const double *first = series + pair * bins * values;
+        const double inefficiency = statistics_inefficiency(first, blocks, count, bins);
+        for (size_t k = 0; k < bins; k++) {
+            struct running_mean mean = {0};
+            for (size_t n = 0; n < values; n++)
+                statistics_add(&mean, first[k * values + n]);
+            error[pair * bins + k] =
+                values < 2 ? 0 : sqrt(mean.squares * inefficiency) / (double)values;
+        }
+    }
+done:
+    memory_free(series);
+    return status;
+}
+
+enum status rdf_result(const struct rdf *replicas, size_t count, double *g, double *error) {
+    const size_t all = all_bins(replicas);
+    for (size_t k = 0; k < all; k++) {
         double pairs = 0, samples = 0;
         for (size_t r = 0; r < count; r++)
             for (size_t b = 0; b < replicas[r].blocks; b++) {
-                const double here = replicas[r].histogram[b * all + k];
-                if (replicas[r].block_samples[b] == 0)
-                    continue;
-                pairs += here;
+                pairs += replicas[r].histogram[b * all + k];
                 samples += replicas[r].block_samples[b];
-                statistics_add(&blocks, here / replicas[r].block_samples[b] / ideal);
             }
-        g[k] = samples > 0 ? pairs / samples / ideal : 0;
-        if (error)
-            error[k] = statistics_standard_error(&blocks);
+        g[k] = samples > 0 ? pairs / samples / ideal_at(replicas, k) : 0;
     }
+    return error ? find_errors(replicas, count, error) : STATUS_OK;
 }
 
 double rdf_rmse(const double *g, const double *target, size_t count) {
@@ -239,19 +268,15 @@ double rdf_rmse(const double *g, const double *target, size_t count) {
     return sqrt(sum / (double)count);
 }
 
-enum status rdf_distance(const struct rdf *replicas, size_t count, const double *target,
-                         double *rmse, double *error) {
-    enum status status = STATUS_OK;
+/// Standard error of the rms if blocks were independent: by leaving out each in turn.
+static double jackknife(const struct rdf *replicas, size_t count, const double *g,
+                        const double *target, double *without) {
     const size_t all = all_bins(replicas);
-    double *g = NULL, *without = NULL, samples = 0;
-    struct running_mean jackknife = {0};
-    NEW_ARRAY(g, all);
-    NEW_ARRAY(without, all);
-    rdf_result(replicas, count, g, NULL);
-    *rmse = rdf_rmse(g, target, all);
+    struct running_mean rms = {0};
+    double samples = 0;
     for (size_t r = 0; r < count; r++)
         samples += (double)replicas[r].samples;
-    for (size_t r = 0; error && r < count; r++)
+    for (size_t r = 0; r < count; r++)
         for (size_t b = 0; b < replicas[r].blocks; b++) {
             const double here = replicas[r].block_samples[b];
             if (here == 0 || samples == here)
@@ -260,14 +285,31 @@ enum status rdf_distance(const struct rdf *replicas, size_t count, const double 
                 without[k] =
                     (g[k] * samples - replicas[r].histogram[b * all + k] / ideal_at(replicas, k)) /
                     (samples - here);
-            statistics_add(&jackknife, rdf_rmse(without, target, all));
+            statistics_add(&rms, rdf_rmse(without, target, all));
         }
-    if (error)
-        *error = jackknife.count < 2
-                     ? 0
-                     : sqrt(jackknife.squares * (jackknife.count - 1) / jackknife.count);
+    return rms.count < 2 ? 0 : sqrt(rms.squares * (rms.count - 1) / rms.count);
+}
+
+enum status rdf_distance(const struct rdf *replicas, size_t count, const double *target,
+                         double *rmse, double *error) {
+    enum status status = STATUS_OK;
+    const size_t all = all_bins(replicas), blocks = filled_blocks(replicas, count);
+    const double values = (double)(count * blocks);
+    double *g = NULL, *without = NULL, *series = NULL;
+    NEW_ARRAY(g, all);
+    NEW_ARRAY(without, all);
+    CHECK(rdf_result(replicas, count, g, NULL));
+    *rmse = rdf_rmse(g, target, all);
+    if (error == NULL)
+        goto done;
+    CHECK(find_series(replicas, count, blocks, &series));
+    // The jackknife of independent values has n/(n − 1) already.
+    *error = jackknife(replicas, count, g, target, without) *
+             sqrt(statistics_inefficiency(series, blocks, count, all) * fmax(values - 1, 0) /
+                  fmax(values, 1));
 done:
     memory_free(g);
     memory_free(without);
+    memory_free(series);
     return status;
 }

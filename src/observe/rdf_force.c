@@ -306,35 +306,58 @@ static double estimate(const struct pool *pool, enum rdf_force_version version, 
     return h + histogram_weight(pool, k, scale, ball_mean) * (scale * z - h);
 }
 
+/// Blocks with samples, of the replica that has fewest.
+static size_t filled_blocks(const struct rdf_force *replicas, size_t count) {
+    size_t least = replicas->blocks;
+    for (size_t r = 0; r < count; r++)
+        for (size_t b = 0; b < least; b++)
+            if (replicas[r].totals[b].samples == 0)
+                least = b;
+    return least;
+}
+
+/// Errors by leaving out each block in turn (jackknife), with the correlation of blocks that all
+/// bins show together.
+static enum status find_errors(const struct rdf_force *replicas, size_t count,
+                               enum rdf_force_version version, struct pool *pool, double *error) {
+    enum status status = STATUS_OK;
+    const size_t blocks = filled_blocks(replicas, count), values = count * blocks;
+    double *without = NULL; // shape [bins, count, blocks]
+    NEW_ARRAY(without, pool->bins * values + 1);
+    for (size_t n = 0; n < values && values > 1; n++) {
+        pool_add(pool, &replicas[n / blocks], n % blocks, -1);
+        for (size_t k = 0; k < pool->bins; k++)
+            without[k * values + n] = estimate(pool, version, k);
+        pool_add(pool, &replicas[n / blocks], n % blocks, 1);
+    }
+    const double inefficiency = statistics_inefficiency(without, blocks, count, pool->bins);
+    for (size_t k = 0; k < pool->bins; k++) {
+        struct running_mean mean = {0};
+        for (size_t n = 0; n < values; n++)
+            statistics_add(&mean, without[k * values + n]);
+        error[k] = values < 2
+                       ? 0
+                       : ((double)values - 1) / (double)values * sqrt(mean.squares * inefficiency);
+    }
+done:
+    memory_free(without);
+    return status;
+}
+
 enum status rdf_force_result(const struct rdf_force *replicas, size_t count,
                              enum rdf_force_version version, double *g, double *error) {
     enum status status = STATUS_OK;
     struct pool pool = {.bins = replicas->bins.count};
-    struct running_mean *without = NULL;
     NEW_ARRAY(pool.sums, RDF_FORCE_SUMS * pool.bins);
-    NEW_ARRAY(without, pool.bins);
     for (size_t r = 0; r < count; r++)
         for (size_t b = 0; b < replicas[r].blocks; b++)
             pool_add(&pool, &replicas[r], b, 1);
     for (size_t k = 0; k < pool.bins; k++)
         g[k] = pool.totals.samples > 0 ? estimate(&pool, version, k) : 0;
-    for (size_t r = 0; error && r < count; r++)
-        for (size_t b = 0; b < replicas[r].blocks; b++) {
-            const double here = replicas[r].totals[b].samples;
-            if (here == 0 || here == pool.totals.samples)
-                continue;
-            pool_add(&pool, &replicas[r], b, -1);
-            for (size_t k = 0; k < pool.bins; k++)
-                statistics_add(&without[k], estimate(&pool, version, k));
-            pool_add(&pool, &replicas[r], b, 1);
-        }
-    for (size_t k = 0; error && k < pool.bins; k++)
-        error[k] = without[k].count < 2
-                       ? 0
-                       : sqrt(without[k].squares * (without[k].count - 1) / without[k].count);
+    if (error)
+        CHECK(find_errors(replicas, count, version, &pool, error));
 done:
     memory_free(pool.sums);
-    memory_free(without);
     return status;
 }
 

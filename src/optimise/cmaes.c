@@ -58,7 +58,7 @@ struct state {
     struct optimiser_space space;
     struct cmaes_distribution distribution;
     struct cmaes_strategy strategy;
-    size_t most;      ///< room for candidates
+    size_t most;      ///< candidates of a round, at most; there is room for them
     double *steps;    ///< of the candidates, shape [most, genes]
     double *genes;    ///< the candidates, shape [most, genes]
     double *errors;   ///< shape [most]: scratch
@@ -74,7 +74,7 @@ struct state {
         double record_error;    ///< of the best candidate, or, with noise, of the best descent
         double median;          ///< of the last round
         double hopeless;
-        int64_t noisy, over, known;
+        int64_t noisy, over, settled, known;
     } progress;
 };
 
@@ -108,8 +108,15 @@ static void destroy(void *memory) {
     *state = (struct state){0};
 }
 
+/// Of a number of candidates, as many as a round may have.
+static size_t limit(const struct state *state, size_t candidates) {
+    const size_t most = state->space.most;
+    return most > 0 && candidates > most ? most : candidates;
+}
+
 static size_t descent_population(const struct state *state) {
-    return usual_population(&state->parameters, state->space.genes) << state->progress.descents;
+    return limit(state, usual_population(&state->parameters, state->space.genes)
+                            << state->progress.descents);
 }
 
 /// Numbers of the strategy, which no checkpoint keeps since they follow from the population.
@@ -160,8 +167,9 @@ static enum status create(void *memory, const struct optimiser_space *space,
                           (int)state->parameters.population));
     state->space = *space;
     state->space.start = NULL;
-    state->most = MOST_GROWTH * (usual_population(&state->parameters, space->genes)
-                                 << state->parameters.restarts);
+    const size_t usual = usual_population(&state->parameters, space->genes);
+    CHECK(optimiser_check_round(space, usual));
+    state->most = limit(state, MOST_GROWTH * (usual << state->parameters.restarts));
     NEW_ARRAY(state->strategy.weights, state->most);
     NEW_ARRAY(state->steps, state->most * space->genes);
     NEW_ARRAY(state->genes, state->most * space->genes);
@@ -213,7 +221,8 @@ static void react_to_noise(struct state *state) {
     struct progress *p = &state->progress;
     const double usual = (double)descent_population(state);
     if (p->noise > noise_grows)
-        p->population = fmin(p->population * growth, MOST_GROWTH * usual);
+        p->population =
+            fmin(p->population * growth, fmin(MOST_GROWTH * usual, (double)state->most));
     else if (p->noise < noise_shrinks)
         p->population = fmax(p->population / growth, usual);
 }
@@ -303,8 +312,8 @@ static void go_on(struct state *state) {
     const bool ended = stands_still(state) || is_degenerate(state);
     if (ended)
         keep_descent(state);
-    p->over = ++p->rounds >= (uint64_t)state->parameters.rounds ||
-              (ended && p->descents >= (uint64_t)state->parameters.restarts);
+    p->settled = ended && p->descents >= (uint64_t)state->parameters.restarts;
+    p->over = ++p->rounds >= (uint64_t)state->parameters.rounds || p->settled;
     if (p->over)
         return;
     if (ended)
@@ -362,6 +371,10 @@ static double hopeless(const void *memory) {
     return ((const struct state *)memory)->progress.hopeless;
 }
 
+static bool settled(const void *memory) {
+    return ((const struct state *)memory)->progress.settled != 0;
+}
+
 static size_t spans(void *memory, struct memory_span *span) {
     struct state *state = memory;
     struct cmaes_distribution *d = &state->distribution;
@@ -388,6 +401,7 @@ const struct optimiser cmaes_optimiser = {
     .tables = (const struct field *const[]){cmaes_fields, NULL},
     .parameters_size = sizeof(struct parameters),
     .state_size = sizeof(struct state),
+    .budget = "rounds",
     .most_rounds = most_rounds,
     .create = create,
     .destroy = destroy,
@@ -396,5 +410,6 @@ const struct optimiser cmaes_optimiser = {
     .favourite = favourite,
     .spread = spread,
     .hopeless = hopeless,
+    .settled = settled,
     .spans = spans,
 };

@@ -37,6 +37,7 @@ static enum status create(void *memory, const struct optimiser_space *space,
     struct state *state = memory;
     struct genetic_parameters p = *(const struct genetic_parameters *)parameters;
     CHECK(optimiser_check_space(space));
+    CHECK(optimiser_check_round(space, (size_t)(p.population + p.remeasurements)));
     p.genes = (int64_t)space->genes;
     p.gene_minimum = space->minimum;
     p.gene_maximum = space->maximum;
@@ -201,6 +202,7 @@ const struct optimiser genetic_optimiser = {
     .tables = (const struct field *const[]){genetic_fields, NULL},
     .parameters_size = sizeof(struct genetic_parameters),
     .state_size = sizeof(struct state),
+    .budget = "generations",
     .most_rounds = most_rounds,
     .create = create,
     .destroy = destroy,

@@ -68,6 +68,7 @@ struct state {
     } progress;
     struct coroutine *loop; ///< the algorithm, or NULL
     uint64_t played;        ///< told errors that it knows
+    bool is_over;           ///< whether it had no question when it was asked last
 };
 
 // Inside the coroutine ----------------------------------------------------------------------------
@@ -205,6 +206,7 @@ static enum status ask(void *memory, struct optimiser_round *round) {
     for (size_t k = 0; question && k < state->space.genes; k++)
         state->genes[k] = optimiser_gene(&state->space, question[k]);
     round->count = question != NULL;
+    state->is_over = question == NULL;
     return STATUS_OK;
 }
 
@@ -259,6 +261,12 @@ static double hopeless(const void *memory) {
     return HUGE_VAL;
 }
 
+/// It asks for nothing any more although it might: steps below the tolerance, or below rounding.
+static bool settled(const void *memory) {
+    const struct state *state = memory;
+    return state->is_over && state->progress.told < (uint64_t)state->parameters.evaluations;
+}
+
 static size_t spans(void *memory, struct memory_span *span) {
     struct state *state = memory;
     const size_t row = state->space.genes * sizeof(double);
@@ -277,6 +285,7 @@ const struct optimiser nlopt_optimiser = {
     .tables = (const struct field *const[]){nlopt_fields, NULL},
     .parameters_size = sizeof(struct parameters),
     .state_size = sizeof(struct state),
+    .budget = "evaluations",
     .most_rounds = most_rounds,
     .create = create,
     .destroy = destroy,
@@ -285,5 +294,6 @@ const struct optimiser nlopt_optimiser = {
     .favourite = favourite,
     .spread = spread,
     .hopeless = hopeless,
+    .settled = settled,
     .spans = spans,
 };

@@ -26,6 +26,14 @@ enum status optimiser_check_space(const struct optimiser_space *space) {
     return STATUS_OK;
 }
 
+enum status optimiser_check_round(const struct optimiser_space *space, size_t count) {
+    if (space->most == 0 || count <= space->most)
+        return STATUS_OK;
+    return status_fail(STATUS_BAD_INPUT,
+                       "\"population\" makes rounds of %zu candidates, and %zu are the most", count,
+                       space->most);
+}
+
 double optimiser_reflect(double x) {
     if (!isfinite(x))
         return 0;

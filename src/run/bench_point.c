@@ -223,7 +223,7 @@ static enum status find_results(const struct bench_common *common, struct measur
     double *g = NULL, *error = NULL;
     NEW_ARRAY(g, bins->fine.count);
     NEW_ARRAY(error, bins->fine.count);
-    rdf_result(rdf, 1, g, error);
+    CHECK(rdf_result(rdf, 1, g, error));
     join_bins(bins, rdf, g, error, point->g);
     struct bench_number *quantity = point->quantity;
     quantity[BENCH_TEMPERATURE] = (struct bench_number){s.temperature, s.temperature_error};

@@ -29,9 +29,9 @@ struct run {
     double *curve_flat[UNKNOWNS];                    ///< shape [INVERSE_FLAT, decoder_points]
     double *without_ramp;                            ///< shape [decoder_points of Φ]
     struct standing {
-        bool finished, converged;
+        bool finished, converged, used_up; ///< as in struct inverse_step
         uint64_t iterations, evaluations, engine_steps;
-        double error, seconds;
+        double error, variance, seconds;
         struct inverse_ramp ramp;
         char reason[INVERSE_REASON_SIZE];
     } standing;
@@ -163,14 +163,16 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
 /// Progress inside an iteration, and a checkpoint now and then.
 static void tell(void *context, const struct inverse_progress *p) {
     struct run *run = context;
-    char text[160], best[48] = "", mean[96] = "";
+    char text[160], best[48] = "", least[48] = "", mean[64] = "";
     const uint64_t done = p->iteration * p->total + p->done, total = p->iterations * p->total;
     if (isfinite(p->best))
         snprintf(best, sizeof best, "  best %.4f", p->best);
+    if (isfinite(p->least))
+        snprintf(least, sizeof least, "  now least %.4f", p->least);
     if (isfinite(p->mean))
         snprintf(mean, sizeof mean, "  mean %.4f  failed %llu", p->mean,
                  (unsigned long long)p->failures);
-    snprintf(text, sizeof text, "iteration %u%s%s", p->iteration, best, mean);
+    snprintf(text, sizeof text, "iteration %u%s%s%s", p->iteration, best, least, mean);
     if (run->progress.done_before == 0)
         run->progress.done_before = done - 1;
     progress_tell(&run->progress, done, total, "evaluations", text);
@@ -194,6 +196,7 @@ static struct fit_result result_so_far(const struct run *run, enum status status
                                 .seconds = s->seconds,
                                 .without_ramp = run->without_ramp,
                                 .ramp = s->ramp,
+                                .settled = s->converged,
                                 .reason = s->reason};
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         result.curve[kind] = run->curve[kind];
@@ -231,10 +234,12 @@ static enum status record(struct run *run, const struct inverse_step *step) {
     keep_curves(run, step);
     run->standing = (struct standing){.finished = step->finished,
                                       .converged = step->converged,
+                                      .used_up = step->used_up,
                                       .iterations = step->iteration + 1,
                                       .evaluations = step->evaluations,
                                       .engine_steps = step->engine_steps,
                                       .error = step->error,
+                                      .variance = step->variance,
                                       .seconds = seconds(run),
                                       .ramp = step->ramp};
     memcpy(run->standing.reason, step->reason, sizeof run->standing.reason);
@@ -265,12 +270,16 @@ static enum status iterate(struct run *run) {
     return STATUS_OK;
 }
 
-/// A method without an error has not measured anything.
+/// A method without an error and without a reason has not measured anything.
 static void tell_unconverged(const struct run *run) {
-    const char *folder = run->folder.path;
+    const char *folder = run->folder.path, *reason = run->standing.reason;
     if (isfinite(run->standing.error))
         status_fail(STATUS_UNCONVERGED, "the fit has not converged%s%s; its best curves are in %s",
-                    run->standing.reason[0] ? ": " : "", run->standing.reason, folder);
+                    reason[0] ? ": " : "", reason, folder);
+    else if (reason[0])
+        status_fail(STATUS_UNCONVERGED,
+                    "the fit has no result: %s; the failures are counted in %s/history.tsv", reason,
+                    folder);
     else
         status_fail(STATUS_UNCONVERGED,
                     "not one simulation of the fit succeeded; the failures are counted in "
@@ -283,6 +292,7 @@ static enum status write_unstable(struct run *run) {
     const struct fit_result result = result_so_far(run, STATUS_UNSTABLE);
     status_prefix(STATUS_UNSTABLE, "the verification of what was fitted%s",
                   isfinite(run->standing.error) ? ""
+                  : run->standing.reason[0]     ? " (the fit has no result)"
                                                 : " (not one simulation of the fit succeeded)");
     char reason[512];
     snprintf(reason, sizeof reason, "%s", status_message());
@@ -293,9 +303,13 @@ static enum status write_unstable(struct run *run) {
 
 static void say_verified(struct run *run, const struct verification *v) {
     struct progress *to = &run->progress;
-    progress_say(to, "%s after %llu iterations, %.1f s",
-                 run->standing.converged ? "converged" : "not converged",
-                 (unsigned long long)run->standing.iterations, run->standing.seconds);
+    const struct standing *standing = &run->standing;
+    progress_say(to, "%s after %llu iterations, %.1f s%s%s",
+                 standing->converged ? "converged"
+                 : standing->used_up ? "finished"
+                                     : "not converged",
+                 (unsigned long long)standing->iterations, standing->seconds,
+                 standing->used_up ? ": " : "", standing->used_up ? standing->reason : "");
     for (int kind = 0; kind < GOALS; kind++)
         if (run->fit.targets.given[kind])
             progress_say(to, "verified: rms of %s - target = %.4f(%.0f), statistics alone %.4f",
@@ -309,16 +323,23 @@ static void say_verified(struct run *run, const struct verification *v) {
                  v->thermodynamics.pressure, run->folder.path);
 }
 
-/// An inversion has converged only if the verification bears it out. Others say that they can do no
-/// better, not that they agree. Measured: inversions of water, Lennard-Jones and the Gaussian core
-/// are verified within 0.8 to 2.3 times the statistical error.
+/// The verification has the last word. An inversion has converged only if the result agrees with
+/// the target; measured, inversions of water, Lennard-Jones and the Gaussian core are verified
+/// within 0.8 to 2.3 times the statistical error. Other methods do not say that they agree, but how
+/// far they are off: that is what must be borne out.
 static void doubt(struct run *run, const struct verification *verification) {
-    static const double margin = 3;
+    static const double noise_margin = 3;
     struct standing *standing = &run->standing;
-    if (standing->converged && run->fit.method->update &&
-        fit_verdict_contradicts(verification, goals_ask(&run->fit.problem.goals, GOAL_PRESSURE),
-                                run->fit.problem.scene.temperature, margin, standing->reason))
-        standing->converged = false;
+    const struct goals *goals = &run->fit.problem.goals;
+    if (!standing->converged && !standing->used_up)
+        return;
+    if (run->fit.method->update
+            ? fit_verdict_contradicts(verification, goals_ask(goals, GOAL_PRESSURE),
+                                      run->fit.problem.scene.temperature, noise_margin,
+                                      standing->reason)
+            : fit_verdict_is_worse(verification, goals, standing->error, standing->variance,
+                                   standing->reason))
+        standing->converged = standing->used_up = false;
 }
 
 /// The independent verification of the result, and everything that rests on it.
@@ -341,8 +362,8 @@ static enum status verify_and_write(struct run *run) {
         status = write_unstable(run);
     CHECK(status);
     doubt(run, &verification);
-    struct fit_result result =
-        result_so_far(run, run->standing.converged ? STATUS_OK : STATUS_UNCONVERGED);
+    const bool accepted = run->standing.converged || run->standing.used_up;
+    struct fit_result result = result_so_far(run, accepted ? STATUS_OK : STATUS_UNCONVERGED);
     result.verification = &verification;
     CHECK(fit_output_observables(&run->fit, &result, &run->folder));
     CHECK(fit_output_summary(&run->fit, &run->decoder, &result, &run->folder));

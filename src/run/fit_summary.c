@@ -207,7 +207,9 @@ enum status fit_output_summary(const struct fit_file *fit, const struct decoder 
     struct json_writer *writer = json_writer_create();
     char path[OUTPUT_PATH_SIZE];
     json_put_text(writer, "status",
-                  result->status == STATUS_OK ? "converged" : status_name(result->status));
+                  result->status != STATUS_OK ? status_name(result->status)
+                  : result->settled           ? "converged"
+                                              : "finished");
     if (result->reason[0])
         json_put_text(writer, "reason", result->reason);
     json_put_text(writer, "method", fit->method->name);

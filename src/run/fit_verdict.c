@@ -40,3 +40,20 @@ bool fit_verdict_contradicts(const struct verification *verification, bool press
              find_cause(found, temperature));
     return true;
 }
+
+bool fit_verdict_is_worse(const struct verification *verification, const struct goals *goals,
+                          double error, double variance, char reason[INVERSE_REASON_SIZE]) {
+    static const double deviations = 5, part = 0.25;
+    const double verified = goals_error(goals, verification->distance);
+    const double own = goals_variance(goals, verification->distance);
+    if (!(verified > error + deviations * sqrt(variance + own) && verified > (1 + part) * error))
+        return false;
+    snprintf(
+        reason, INVERSE_REASON_SIZE,
+        "the fit's own error is %.2g +- %.1g, that of its verification %.2g +- %.1g: its "
+        "simulations "
+        "were too short, or too coarse in time: longer \"equilibration\", more \"samples\" or a "
+        "shorter time step may tell why",
+        error, sqrt(variance), verified, sqrt(own));
+    return true;
+}

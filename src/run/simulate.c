@@ -193,7 +193,7 @@ static enum status write_rdf(const struct run *run) {
     NEW_ARRAY(counted_error, all);
     for (size_t k = 0; k < bins->count; k++)
         r[k] = rdf_bins_centre(bins, k);
-    rdf_result(&run->rdf, 1, counted, counted_error);
+    CHECK(rdf_result(&run->rdf, 1, counted, counted_error));
     if (uses_force(run))
         CHECK(rdf_force_result(&run->rdf_force, 1, RDF_FORCE_COUNTED, g, error));
     for (size_t pair = 0; pair < run->rdf.pairs; pair++) {

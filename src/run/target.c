@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "io/data_table.h"
 #include "io/votca.h"
+#include "observe/finite_size.h"
 
 #include <math.h>
 
@@ -27,7 +28,7 @@ const struct field target_fields[] = {
      .help = "number of the column with the standard error of g; 0 if there is none"},
     {"particles", FIELD_INTEGER, MEMBER(particles), .initial = 0, .minimum = 0, .maximum = 1e9,
      .unit = "",
-     .help = "of the system where it was measured, to correct for another number in "
+     .help = "of all types in the system where it was measured, to correct for another number in "
              "the scene; 0 means the same"},
     {"normalisation", FIELD_NUMBER, MEMBER(normalisation), .initial = 0, .minimum = 0,
      .maximum = 100, .unit = "",
@@ -206,13 +207,27 @@ enum status target_read(struct target *target, struct json_object *object,
     return STATUS_OK;
 }
 
-void target_convert(const struct target *target, size_t count, double *g, double *error) {
-    const bool votca = target->parameters.format == TARGET_VOTCA;
-    if ((target->parameters.particles == 0 && !votca) || count == 0)
-        return;
-    const double factor = votca
-                              ? 1 / (1 - 1 / (double)count)
-                              : rdf_finite_size_factor((size_t)target->parameters.particles, count);
+/// Of N_a (N_a − 1) in N_a², in the system that was measured.
+static double possible_share(const struct composition *composition, int pair, double particles) {
+    int type[2];
+    composition_pair_types(composition, pair, type);
+    const double share = particles / (double)composition_particles(composition);
+    return type[0] == type[1] ? 1 - 1 / (share * (double)composition->count[type[0]]) : 1;
+}
+
+void target_convert(const struct target *target, const struct box *box,
+                    const struct composition *composition, int pair, double *g, double *error) {
+    const struct target_parameters *p = &target->parameters;
+    const double to = (double)composition_particles(composition);
+    const double from = p->particles > 0 ? (double)p->particles : to;
+    const double votca =
+        p->format == TARGET_VOTCA ? 1 / possible_share(composition, pair, from) : 1;
+    for (size_t k = 0; k < target->bins.count; k++) {
+        g[k] = votca * target->g[k];
+        error[k] = votca * target->error[k];
+    }
+    const double factor =
+        finite_size_factor_of(&target->bins, g, error, box, composition, pair, from, to);
     for (size_t k = 0; k < target->bins.count; k++) {
         g[k] *= factor;
         error[k] *= factor;

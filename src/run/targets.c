@@ -141,8 +141,9 @@ static const char *pair_key(const struct composition *composition, int pair,
     return name;
 }
 
-/// g and errors of all kinds of pairs, one behind the other, if all could be read.
-static enum status collect_rdf(struct targets *targets) {
+/// g and errors of all kinds of pairs in the numbers of the scene, one behind the other, if all
+/// could be read.
+static enum status collect_rdf(struct targets *targets, const struct box *box) {
     enum status status = STATUS_OK;
     const size_t bins = targets->rdf[0].bins.count;
     for (size_t pair = 0; pair < targets->pairs; pair++)
@@ -150,22 +151,21 @@ static enum status collect_rdf(struct targets *targets) {
             return STATUS_OK;
     NEW_ARRAY(targets->rdf_g, targets->pairs * bins);
     NEW_ARRAY(targets->rdf_error, targets->pairs * bins);
-    for (size_t n = 0; n < targets->pairs * bins; n++) {
-        targets->rdf_g[n] = targets->rdf[n / bins].g[n % bins];
-        targets->rdf_error[n] = targets->rdf[n / bins].error[n % bins];
-    }
+    for (size_t pair = 0; pair < targets->pairs; pair++)
+        target_convert(&targets->rdf[pair], box, &targets->composition, (int)pair,
+                       targets->rdf_g + pair * bins, targets->rdf_error + pair * bins);
 done:
     return status;
 }
 
 /// g(r), or in a mixture that of each kind of pairs: {"A-A": {"file": …}, …}.
 static enum status read_rdf(struct targets *targets, struct json_object *object,
-                            const struct units *units) {
+                            const struct box *box, const struct units *units) {
     if (targets->composition.types == 0)
         return STATUS_OK; // a fault of the types is told, those of their pairs would mislead
     if (!composition_is_mixed(&targets->composition)) {
         TRY(target_read(&targets->rdf[0], object, units));
-        return collect_rdf(targets);
+        return collect_rdf(targets, box);
     }
     // The object remembers what it was asked for until it is finished.
     char name[COMPOSITION_MOST_PAIRS][COMPOSITION_PAIR_NAME_SIZE];
@@ -177,15 +177,16 @@ static enum status read_rdf(struct targets *targets, struct json_object *object,
     }
     json_finish(object);
     check_bins(targets, object);
-    return collect_rdf(targets);
+    return collect_rdf(targets, box);
 }
 
 /// What belongs to one kind alone.
 static enum status read_kind(struct targets *targets, enum goal_kind kind,
-                             struct json_object *object, const struct units *units) {
+                             struct json_object *object, const struct box *box,
+                             const struct units *units) {
     switch (kind) {
     case GOAL_RDF:
-        return read_rdf(targets, object, units);
+        return read_rdf(targets, object, box, units);
     case GOAL_ETD:
         return target_etd_read(&targets->etd, object);
     case GOAL_VACF:
@@ -210,7 +211,7 @@ static void check_motion(const struct targets *targets, struct json_object *obje
         json_fault(object, "msd", "must have the times of \"vacf\"");
 }
 
-enum status targets_read(struct targets *targets, struct json_object *root,
+enum status targets_read(struct targets *targets, struct json_object *root, const struct box *box,
                          const struct composition *composition, const struct units *units) {
     *targets = (struct targets){.composition = *composition,
                                 .pairs = (size_t)composition_pairs(composition)};
@@ -223,7 +224,7 @@ enum status targets_read(struct targets *targets, struct json_object *root,
         json_fields(&child, targets_goal_fields, &targets->goal[kind]);
         if (!targets->given[kind])
             continue;
-        TRY(read_kind(targets, kind, &child, units));
+        TRY(read_kind(targets, kind, &child, box, units));
     }
     json_finish(&object);
     check_motion(targets, &object);
@@ -344,26 +345,10 @@ enum status targets_normalise(struct targets *targets, const struct box *box) {
     return STATUS_OK;
 }
 
-/// Beads that `pair` is made of if they are alike, else 0.
-static size_t alike(const struct composition *composition, int pair) {
-    int type[2];
-    composition_pair_types(composition, pair, type);
-    return type[0] == type[1] ? (size_t)composition->count[type[0]] : 0;
-}
-
-/// To the numbers of the scene.
-static void convert_rdf(struct targets *targets) {
-    const size_t bins = targets->rdf[0].bins.count;
-    for (size_t pair = 0; pair < targets->pairs; pair++)
-        target_convert(&targets->rdf[pair], alike(&targets->composition, (int)pair),
-                       targets->rdf_g + pair * bins, targets->rdf_error + pair * bins);
-}
-
 void targets_goals(struct targets *targets, bool moves, struct goals *fitted,
                    struct goals *compared) {
     static const double unknown = NAN;
     const struct target_etd *etd = &targets->etd;
-    convert_rdf(targets);
     *compared = (struct goals){.bins = targets->rdf[0].bins,
                                .etd = etd->grid,
                                .etd_interval = etd->interval,

@@ -27,6 +27,25 @@ struct composition composition_scaled(const struct composition *composition, int
     return scaled;
 }
 
+double composition_distortion(const struct composition *from, const struct composition *to) {
+    const double scale = (double)composition_particles(from) / (double)composition_particles(to);
+    double largest = 0;
+    for (int type = 0; type < from->types; type++)
+        if (from->count[type] > 0)
+            largest = fmax(largest,
+                           fabs(scale * (double)to->count[type] / (double)from->count[type] - 1));
+    return largest;
+}
+
+int64_t composition_least_particles(const struct composition *composition, int64_t particles,
+                                    double distortion) {
+    for (;; particles++) { // a multiple of the whole is exact
+        const struct composition scaled = composition_scaled(composition, particles);
+        if (composition_distortion(composition, &scaled) <= distortion)
+            return particles;
+    }
+}
+
 int composition_pairs(const struct composition *composition) {
     const int types = composition->types;
     return types > 1 ? types * (types + 1) / 2 : 1;

@@ -160,7 +160,7 @@ static void test_cma_es_of_a_mixture_writes_a_potential_for_each_kind_of_pairs(v
 
 static void test_gauss_newton_of_a_mixture_tells_its_bands(void **state) {
     write_fit(*state, GAUSS_NEWTON);
-    run_fit("out", "2", CONVERGED);
+    run_fit("out", "2", UNCONVERGED); // two iterations
     check_tables(5, 2);
     assert_true(temporary_folder_exists("out/potential_B-B_flat.tsv"));
     check_summary();
@@ -254,6 +254,24 @@ static void test_fit_of_a_mixture_is_refused_in_a_line_when_a_pair_is_wrong(void
            (const char *[]){"run.json: scene.particles.types.A: 1 is out of range", NULL});
 }
 
+/// Of 4 A in 81 beads 20 have 1, which becomes 2.
+static void test_imc_of_a_mixture_refuses_particles_that_change_its_shares(void **state) {
+    static struct run_program_result result;
+    write_fit(*state, INVERSION("imc"));
+    char *text = temporary_folder_read("run.json");
+    small_inputs_write(*state, "run.json", text, "\"A\": 40, \"B\": 41", "\"A\": 4, \"B\": 77");
+    free(text);
+    text = temporary_folder_read("run.json");
+    small_inputs_write(*state, "run.json", text, "\"iterations\"",
+                       "\"particles\": 20, \"iterations\"");
+    free(text);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--quiet");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err,
+                    "run.json: method.particles: 20 change the share of a type by 93 %; "
+                    "34 are the next that keep all shares");
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -270,6 +288,7 @@ int main(void) {
         TEST(test_interrupted_cma_es_of_a_mixture_goes_on_with_the_same_bits),
         TEST(test_fit_of_a_mixture_gives_the_same_bits_from_its_used_settings),
         TEST(test_fit_of_a_mixture_is_refused_in_a_line_when_a_pair_is_wrong),
+        TEST(test_imc_of_a_mixture_refuses_particles_that_change_its_shares),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

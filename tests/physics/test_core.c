@@ -37,7 +37,7 @@ static void sample_g(const struct table *potential, const struct fluid *fluid, u
             assert_ok(metropolis_run(&metropolis, 8));
             assert_ok(rdf_sample(&rdf, &metropolis.particles, &metropolis.neighbours));
         }
-        rdf_result(&rdf, 1, mean, NULL);
+        assert_ok(rdf_result(&rdf, 1, mean, NULL));
         comoments_add(blocks, mean);
         rdf_clear(&rdf);
     }

@@ -98,7 +98,7 @@ static void test_standard_fluid_has_the_published_state_when_the_time_step_is_sm
     // Kinetic: LAMMPS at this time step. Configurational: a quarter of the excess at twice it.
     assert_temperatures(&s, 1.0039, 1.0036);
     read_reference(&rdf, reference);
-    rdf_result(&rdf, 1, g, error);
+    assert_ok(rdf_result(&rdf, 1, g, error));
     for (int k = 0; k < BINS; k++) {
         assert_close(g[k], reference[k], rdf_tolerance);
         largest = fmax(largest, fabs(g[k] - reference[k]));

@@ -42,7 +42,7 @@ static void sample_dynamics(const struct simulation_setup *setup, uint64_t every
         assert_ok(simulation_run(&simulation, every));
         assert_ok(rdf_sample(&rdf, &simulation.particles, &simulation.neighbours));
     }
-    rdf_result(&rdf, 1, g, NULL);
+    assert_ok(rdf_result(&rdf, 1, g, NULL));
     rdf_clear(&rdf);
     simulation_clear(&simulation);
 }
@@ -111,7 +111,7 @@ static void sample_monte_carlo(const struct box *box, const struct table *nothin
         assert_ok(rdf_sample(&rdf, &metropolis.particles, &metropolis.neighbours));
     }
     assert_int_equal(metropolis.accepted, metropolis.tried);
-    rdf_result(&rdf, 1, g, NULL);
+    assert_ok(rdf_result(&rdf, 1, g, NULL));
     rdf_clear(&rdf);
     metropolis_clear(&metropolis);
 }

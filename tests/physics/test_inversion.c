@@ -59,7 +59,7 @@ static void measure_target(const struct fluid *fluid, const struct rdf_bins *bin
     for (int d = 0; d < box->dimensions; d++)
         volume *= box->length[d];
     *pressure = (PARTICLES * fluid->setup.temperature + virial / box->dimensions) / volume;
-    rdf_result(&rdf, 1, g, error);
+    assert_ok(rdf_result(&rdf, 1, g, error));
     rdf_clear(&rdf);
     metropolis_clear(&metropolis);
 }

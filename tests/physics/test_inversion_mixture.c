@@ -57,8 +57,8 @@ static void measure(struct mixture *mixture, const double *a, uint64_t seed) {
         assert_ok(rdf_sample(&rdf, &metropolis.particles, &metropolis.neighbours));
         assert_ok(rdf_sample(&all, &metropolis.particles, &metropolis.neighbours));
     }
-    rdf_result(&rdf, 1, mixture->g, mixture->error);
-    rdf_result(&all, 1, mixture->all, mixture->all_error);
+    assert_ok(rdf_result(&rdf, 1, mixture->g, mixture->error));
+    assert_ok(rdf_result(&all, 1, mixture->all, mixture->all_error));
     rdf_clear(&rdf);
     rdf_clear(&all);
     metropolis_clear(&metropolis);

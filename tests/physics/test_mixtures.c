@@ -41,7 +41,7 @@ static void measure(const struct simulation_setup *setup, int64_t equilibration,
     const struct measure_targets targets = {.rdf = &rdf, .thermodynamics = &thermodynamics};
     assert_ok(measure_sample(&simulation, &plan, targets, NULL));
     measured->summary = thermodynamics_result(&thermodynamics, 1);
-    rdf_result(&rdf, 1, measured->g, measured->error);
+    assert_ok(rdf_result(&rdf, 1, measured->g, measured->error));
     print_message("%d types: configurational %.4f(%.4f), pressure %.4f(%.4f)\n",
                   setup->composition.types, measured->summary.temperature_configurational,
                   measured->summary.temperature_configurational_error, measured->summary.pressure,

@@ -44,7 +44,7 @@ static void measurement_clear(struct measurement *measurement) {
 /// End a block: `energy` [total, summed over samples] and the RDF that saw its samples.
 static void add_block(struct measurement *measurement, double energy, const struct rdf *rdf) {
     double g[BINS];
-    rdf_result(rdf, 1, g, NULL);
+    assert_ok(rdf_result(rdf, 1, g, NULL));
     comoments_add(&measurement->g, g);
     energy /= SAMPLES * (double)rdf->particle_count;
     comoments_add(&measurement->energy, &energy);

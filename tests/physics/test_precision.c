@@ -214,7 +214,7 @@ static void measure(const struct simulation_setup *setup, struct measured *measu
     const struct measure_targets targets = {.rdf = &rdf, .thermodynamics = &thermodynamics};
     assert_ok(measure_sample(&simulation, &plan, targets, NULL));
     measured->thermodynamics = thermodynamics_result(&thermodynamics, 1);
-    rdf_result(&rdf, 1, measured->g, measured->g_error);
+    assert_ok(rdf_result(&rdf, 1, measured->g, measured->g_error));
     rdf_clear(&rdf);
     thermodynamics_clear(&thermodynamics);
     simulation_clear(&simulation);

@@ -60,7 +60,7 @@ static double largest_deviation(const struct both *both, enum rdf_force_version 
     const struct rdf_bins *bins = &both->rdf.bins;
     double h[MOST_BINS], h_error[MOST_BINS], g[MOST_BINS], error[MOST_BINS], largest = 0;
     double mean_h = 0, mean_g = 0;
-    rdf_result(&both->rdf, 1, h, h_error);
+    assert_ok(rdf_result(&both->rdf, 1, h, h_error));
     assert_ok(rdf_force_result(&both->force, 1, version, g, error));
     for (size_t k = 0; k < bins->count; k++) {
         mean_h += h_error[k] * h_error[k];
@@ -160,7 +160,7 @@ static void test_force_rdf_errors_cover_the_mean_when_seeds_differ(void **state)
 static double distance(const struct rdf *rdf, const struct rdf_force *force,
                        enum rdf_force_version version) {
     double h[MOST_BINS], g[MOST_BINS];
-    rdf_result(rdf, 1, h, NULL);
+    assert_ok(rdf_result(rdf, 1, h, NULL));
     assert_ok(rdf_force_result(force, 1, version, g, NULL));
     return rdf_rmse(g, h, rdf->bins.count);
 }

@@ -67,8 +67,12 @@ void landscape_set(const struct optimiser *optimiser, void *parameters, const ch
 
 struct landscape_run landscape_begin(const struct optimiser *optimiser, void *parameters,
                                      const struct landscape_drive *drive) {
-    const struct optimiser_space space = {drive->genes, drive->landscape->minimum,
-                                          drive->landscape->maximum, drive->start, drive->seed};
+    const struct optimiser_space space = {drive->genes,
+                                          drive->landscape->minimum,
+                                          drive->landscape->maximum,
+                                          drive->start,
+                                          drive->seed,
+                                          drive->most};
     struct landscape_run run = {optimiser, parameters, memory_zeroed(1, optimiser->state_size)};
     assert_non_null(run.state);
     assert_ok(optimiser->create(run.state, &space, parameters));

@@ -26,6 +26,7 @@ struct landscape_drive {
     double failing;       ///< share of candidates that fail, by turns with 1e9, NaN and ±infinity
     double target;        ///< stop once a candidate is below it
     uint64_t evaluations; ///< stop after so many; 0: never
+    size_t most;          ///< candidates that a round may have; 0: any number
 };
 
 /// What came of it.

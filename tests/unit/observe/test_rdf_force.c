@@ -41,7 +41,7 @@ static void test_rdf_force_from_infinity_is_flat_when_the_gas_is_ideal(void **st
         double g[BINS], error[BINS], h[BINS], pairs = 0, ideal = 0;
         measure_ideal_gas(dimensions, &rdf, &force);
         assert_ok(rdf_force_result(&force, 1, RDF_FORCE_FROM_INFINITY, g, error));
-        rdf_result(&rdf, 1, h, NULL);
+        assert_ok(rdf_result(&rdf, 1, h, NULL));
         for (size_t k = 0; k < BINS; k++) {
             assert_identical(g[k], g[0]);
             assert_identical(error[k], error[0]);
@@ -63,7 +63,7 @@ static void test_rdf_force_counted_is_the_histogram_when_there_are_no_forces(voi
     struct rdf_force force;
     double g[BINS], error[BINS], h[BINS], h_error[BINS], zero[BINS];
     measure_ideal_gas(3, &rdf, &force);
-    rdf_result(&rdf, 1, h, h_error);
+    assert_ok(rdf_result(&rdf, 1, h, h_error));
     assert_ok(rdf_force_result(&force, 1, RDF_FORCE_COUNTED, g, error));
     assert_ok(rdf_force_result(&force, 1, RDF_FORCE_FROM_ZERO, zero, NULL));
     for (size_t k = 0; k < BINS; k++) {

@@ -127,6 +127,29 @@ static void test_cmaes_population_grows_only_when_there_is_noise(void **state) {
     assert_int_equal(population_after(100, 1), 160);
 }
 
+/// Noise, and restarts with twice the population each, end where a round is full.
+static void test_cmaes_population_stays_within_the_largest_round(void **state) {
+    (void)state;
+    const struct landscape_drive drive = {
+        .landscape = &landscape_sphere, .genes = GENES, .seed = 2, .noise = 1, .most = 100};
+    void *parameters = landscape_parameters(&cmaes_optimiser);
+    landscape_set(&cmaes_optimiser, parameters, "population", 70);
+    landscape_set(&cmaes_optimiser, parameters, "restarts", 6);
+    landscape_set(&cmaes_optimiser, parameters, "tolerance", 1e9); // every descent is short
+    struct landscape_result result = {.least = HUGE_VAL};
+    struct landscape_run run = landscape_begin(&cmaes_optimiser, parameters, &drive);
+    struct optimiser_round round;
+    size_t largest = 0;
+    do {
+        assert_ok(cmaes_optimiser.ask(run.state, &round));
+        assert_true(round.count <= drive.most);
+        largest = round.count > largest ? round.count : largest;
+    } while (landscape_step(&run, &drive, &result));
+    assert_int_equal(largest, drive.most);
+    landscape_end(&run);
+    memory_free(parameters);
+}
+
 static void test_cmaes_refuses_a_population_below_4(void **state) {
     void *parameters = landscape_parameters(&cmaes_optimiser);
     void *memory = memory_zeroed(1, cmaes_optimiser.state_size);
@@ -216,6 +239,7 @@ int main(void) {
         cmocka_unit_test(test_cmaes_sees_below_the_noise_of_a_measurement),
         cmocka_unit_test(test_cmaes_finds_a_minimum_beside_a_cliff),
         cmocka_unit_test(test_cmaes_population_grows_only_when_there_is_noise),
+        cmocka_unit_test(test_cmaes_population_stays_within_the_largest_round),
         cmocka_unit_test(test_cmaes_refuses_a_population_below_4),
         cmocka_unit_test(test_cmaes_strategy_has_the_numbers_of_the_tutorial),
         cmocka_unit_test(test_cmaes_sample_has_the_covariance_of_its_axes),

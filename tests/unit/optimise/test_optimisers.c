@@ -255,6 +255,29 @@ static void test_every_optimiser_is_a_function_of_its_seed(void **state) {
     }
 }
 
+/// An optimiser that has used its budget up has not settled, whatever it believes.
+static void test_only_what_ended_by_itself_has_settled(void **state) {
+    struct landscape_drive drive = {.landscape = &landscape_sphere, .genes = GENES, .seed = 7};
+    (void)state;
+    for (const struct variant *v = variants; v < variants + VARIANTS; v++) {
+        const bool local = v->optimiser == &nlopt_optimiser && v->settings[0].value >= 4;
+        const bool may_settle = local || v->optimiser == &cmaes_optimiser;
+        for (int ample = 0; ample < 2; ample++) {
+            void *parameters = parameters_of(v);
+            struct landscape_result result = {.least = HUGE_VAL};
+            landscape_set(v->optimiser, parameters, v->optimiser->budget, ample ? 5000 : 10);
+            struct landscape_run run = landscape_begin(v->optimiser, parameters, &drive);
+            while ((!ample || may_settle) && landscape_step(&run, &drive, &result))
+                assert_false(v->optimiser->settled && v->optimiser->settled(run.state) &&
+                             result.rounds < 5);
+            if (v->optimiser->settled)
+                assert_int_equal(v->optimiser->settled(run.state), ample && may_settle);
+            landscape_end(&run);
+            memory_free(parameters);
+        }
+    }
+}
+
 // Space -------------------------------------------------------------------------------------------
 
 static void test_every_optimiser_begins_near_its_start(void **state) {
@@ -302,6 +325,33 @@ static void test_every_optimiser_refuses_a_space_without_room(void **state) {
             assert_non_null(memory);
             assert_int_equal(v->optimiser->create(memory, &bad[k], parameters), STATUS_BAD_INPUT);
             v->optimiser->destroy(memory);
+            memory_free(memory);
+            memory_free(parameters);
+        }
+}
+
+/// The genetic algorithm's largest round has the measurements of a challenger, too.
+static void test_populations_larger_than_a_round_are_refused(void **state) {
+    static const struct {
+        const struct optimiser *optimiser;
+        size_t most; ///< for a population of 60
+    } populations[] = {{&genetic_optimiser, 62}, {&cmaes_optimiser, 60}};
+    (void)state;
+    for (int k = 0; k < 2; k++)
+        for (size_t less = 0; less < 2; less++) {
+            const struct optimiser *optimiser = populations[k].optimiser;
+            const struct optimiser_space space = {
+                .genes = GENES, .maximum = 1, .most = populations[k].most - less};
+            void *parameters = landscape_parameters(optimiser),
+                 *memory = memory_zeroed(1, optimiser->state_size);
+            assert_non_null(memory);
+            landscape_set(optimiser, parameters, "population", 60);
+            if (less)
+                assert_fails(optimiser->create(memory, &space, parameters), STATUS_BAD_INPUT,
+                             "\"population\" makes rounds of");
+            else
+                assert_ok(optimiser->create(memory, &space, parameters));
+            optimiser->destroy(memory);
             memory_free(memory);
             memory_free(parameters);
         }
@@ -356,8 +406,10 @@ int main(void) {
         cmocka_unit_test(test_every_optimiser_goes_on_with_the_same_bits_when_restarted),
         cmocka_unit_test(test_cmaes_goes_on_with_the_same_bits_when_it_began_again),
         cmocka_unit_test(test_every_optimiser_is_a_function_of_its_seed),
+        cmocka_unit_test(test_only_what_ended_by_itself_has_settled),
         cmocka_unit_test(test_every_optimiser_begins_near_its_start),
         cmocka_unit_test(test_every_optimiser_refuses_a_space_without_room),
+        cmocka_unit_test(test_populations_larger_than_a_round_are_refused),
         cmocka_unit_test(test_hopeless_is_unknown_before_a_round_is_told),
         cmocka_unit_test(test_optimiser_find_knows_every_optimiser_when_named),
         cmocka_unit_test(test_optimiser_reflect_folds_at_both_ends),

@@ -115,9 +115,34 @@ static void test_target_read_takes_votca_in_nanometres(void **state) {
     assert_close(target.bins.width, 0.2, 1e-15);
     assert_identical(target.g[2], 1.5);
     assert_identical(target.error[2], 0);
-    // Normalised by N².
-    target_convert(&target, 11, target.g, target.error);
-    assert_close(target.g[2], 1.65, 1e-15);
+    target_clear(&target);
+}
+
+/// Normalised by N_a² for alike pairs, of the system that was measured.
+static void test_target_convert_takes_votca_to_possible_pairs(void **state) {
+    static const struct box square = {2, {10, 10, 1}};
+    static const struct composition one = {.types = 1, .count = {11}},
+                                    binary = {.types = 2, .count = {20, 80}};
+    static const char table[] = "0.1 0 i\n0.2 0.5 i\n0.3 1.5 i\n0.4 1 i\n0.5 1 i\n";
+    struct target target;
+    double g[5], error[5];
+    assert_ok(read(state, table, VOTCA, &target));
+    target_convert(&target, &square, &one, 0, g, error);
+    assert_close(g[2], 1.65, 1e-15);
+    target_convert(&target, &square, &binary, 0, g, error);
+    assert_close(g[2], 1.5 * 20 / 19, 1e-15);
+    target_convert(&target, &square, &binary, 1, g, error);
+    assert_close(g[2], 1.5, 0);
+    target_clear(&target);
+    // Of an incompressible liquid, the tail of a g that is normalised by N² knows no N.
+    assert_ok(read(state, table, VOTCA ", \"particles\": 1000", &target));
+    target_convert(&target, &square, &one, 0, g, error);
+    assert_close(g[2], 1.65, 1e-14);
+    // 200 A of 1000: measured 1 − 1/200 below the possible pairs.
+    target_convert(&target, &square, &binary, 0, g, error);
+    assert_close(g[2], 1.5 * 200 / 199 * (1 - 1e-3) / (1 - 1e-2), 1e-14);
+    target_convert(&target, &square, &binary, 1, g, error);
+    assert_close(g[2], 1.5 * (1 - 1e-3) / (1 - 1e-2), 1e-14);
     target_clear(&target);
 }
 
@@ -133,6 +158,7 @@ static void test_target_read_refuses_what_votca_does_not_write(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_target_read_takes_votca_in_nanometres),
+        TEST(test_target_convert_takes_votca_to_possible_pairs),
         TEST(test_target_read_refuses_what_votca_does_not_write),
         TEST(test_target_read_takes_the_bins_from_their_centres),
         TEST(test_target_read_lets_the_first_bin_begin_above_0),

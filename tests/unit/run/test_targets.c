@@ -22,6 +22,7 @@ static const char msd[] = "# t msd e\n0 0 0\n0.1 0.02 0.001\n0.2 0.06 0.002\n";
     "\"pressure\": {\"value\": -3, \"fitted\": \"no\"}"
 
 /// λ is half a nanometre, k_B T_0 2.5 kJ/mol.
+static const struct box box = {3, {5, 5, 5}};
 static const struct units units = {.length = 0.5, .temperature = 300.68, .mass = 1e-26};
 
 static void put(void **state, const char *name, const char *text) {
@@ -36,8 +37,8 @@ static enum status read(void **state, const char *members, struct targets *targe
     assert_in_range(length, 1, sizeof text - 1);
     assert_ok(json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
     struct json_object root = json_root(document);
-    assert_ok(
-        targets_read(targets, &root, &(struct composition){.types = 1, .count = {100}}, &units));
+    assert_ok(targets_read(targets, &root, &box, &(struct composition){.types = 1, .count = {100}},
+                           &units));
     json_finish(&root);
     return json_close(document);
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "shared/is_close.h"
 #include "shared/testing.h"
 #include "system/composition.h"
 
@@ -106,6 +107,20 @@ static void test_composition_scaled_leaves_each_type_a_pair(void **state) {
     assert_int_equal(composition_scaled(&single, 50).count[0], 1);
 }
 
+static void test_composition_distortion_is_of_the_share_that_changes_most(void **state) {
+    (void)state;
+    const struct composition rare = {.types = 2, .count = {990, 10}};
+    const struct composition small = composition_scaled(&rare, 100);
+    assert_int_equal(small.count[1], 2);
+    // 2 of 101 instead of 1 of 100.
+    assert_close(composition_distortion(&rare, &small), 200.0 / 101 - 1, 1e-12);
+    assert_close(composition_distortion(&rare, &rare), 0, 0);
+    // 2 of 167 are 1.198 of 1 in 100.
+    assert_int_equal(composition_least_particles(&rare, 100, 0.2), 167);
+    assert_int_equal(composition_least_particles(&rare, 180, 0.2), 180);
+    assert_int_equal(composition_least_particles(&rare, 100, 0), 200);
+}
+
 static void test_composition_particles_are_those_of_all_types(void **state) {
     (void)state;
     const struct composition none = {0}, one = composition_of_one(7);
@@ -122,6 +137,7 @@ int main(void) {
         cmocka_unit_test(test_composition_finds_pairs_by_name_in_either_order),
         cmocka_unit_test(test_composition_scaled_keeps_the_shares),
         cmocka_unit_test(test_composition_scaled_leaves_each_type_a_pair),
+        cmocka_unit_test(test_composition_distortion_is_of_the_share_that_changes_most),
         cmocka_unit_test(test_composition_particles_are_those_of_all_types),
         cmocka_unit_test(test_composition_has_one_kind_of_pairs_when_beads_are_alike),
         cmocka_unit_test(test_composition_is_name_refuses_what_no_file_could_be_called),

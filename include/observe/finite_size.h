@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What g(r) of N particles differs by from g(r) of another number at the same densities.
+///
+/// In a closed system every g_ab, normalised by the possible pairs as observe/rdf.h does,
+/// integrates to the volume, whereas that of the infinite system integrates to V + G_ab, G_ab being
+/// its integral of Kirkwood and Buff. Hence
+///   g_ab(r; N) ≈ g_ab(r; ∞) / (1 + G_ab/V),
+/// whose tail 1 − G_ab/V is that of J. L. Lebowitz and J. K. Percus, Phys. Rev. 122, 1675 (1961),
+/// for alike and unlike pairs; their terms in dg/dρ, which vanish where g is 1, and the next order
+/// in 1/N are left out. With s_ab = 1 + ρ G_ab and the densities and numbers of *all* particles,
+/// G_ab/V = (s_ab − 1)/N. One type has s = S(0), ρ k_B T times the compressibility: 0 of a liquid
+/// that yields no more, 1 of an ideal gas, whose g needs no correction. Isotopes have the s of
+/// the whole for every kind of pairs, since each g_ab is then the g of the whole.
+///
+/// Left out, an inversion with 729 particles of a target from 2744 sees 0.001 too many pairs
+/// everywhere, and makes a pressure of it: measured for SPC water, 35 instead of 22 k_B T/λ³.
+#pragma once
+
+#include "observe/rdf.h"
+
+/// What g_ab of a system of `from` particles of all types is to be multiplied by to compare with
+/// one of `to` particles: (1 + (s − 1)/from) / (1 + (s − 1)/to).
+/// Tested against the exact g of N hard rods: test_finite_size.
+double finite_size_factor(double s, double from, double to);
+
+/// The same with the s that g itself shows: 1 + ρG by kirkwood_buff_integrate, drawn towards 0, the
+/// value of a liquid, by the share that its error has in it: s (1 − error²/s²), or 0. The error is
+/// that by statistics and the scatter of s with the range of the integral, since the last
+/// oscillations may be cut off. An s beyond N/20 is one of types that have parted, for which the
+/// box is no part of a larger one: it counts as 0, and so does that in two dimensions.
+/// @param[in] g, error    shape [bins.count], of this kind of pairs in a system of `from` particles
+/// @param[in] box, composition  densities and shares of both systems
+/// @param[in] pair        kind of pairs
+double finite_size_factor_of(const struct rdf_bins *bins, const double *g, const double *error,
+                             const struct box *box, const struct composition *composition, int pair,
+                             double from, double to);

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What `mesofit fit` says of its result: converged, finished or unconverged, with the reason and
+// the exit code.
+#include "shared/results.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#define PLAN "\"equilibration\": 300, \"samples\": 200, \"every\": 10"
+#define SHORT_PLAN "\"equilibration\": 10, \"samples\": 20, \"every\": 2"
+
+static const char soft_fluid[] =
+    "{\"seed\": 5, \"box\": [4, 4, 4], \"particles\": {\"count\": 192}, \"time_step\": 0.02,\n"
+    "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25},\n"
+    "\"dissipative\": {\"law\": \"power\", \"sigma\": 3},\n"
+    "\"measure\": {" PLAN "}, \"rdf\": {\"range\": 1, \"bins\": 20}}\n";
+
+static const char fit[] =
+    "{\"seed\": 3, \"target\": {\"rdf\": {\"file\": \"target/rdf.tsv\"}},\n"
+    "\"unknowns\": {\"potential\": {\"curve\": \"bspline\", \"genes\": 6, \"maximum\": 30}},\n"
+    "\"scene\": {\"box\": [4, 4, 4], \"particles\": {\"count\": 192}, \"time_step\": 0.02,\n"
+    "\"dissipative\": {\"law\": \"power\", \"sigma\": 3}},\n"
+    "\"method\": {METHOD, \"temperature_tolerance\": 0.5},\n"
+    "\"verification\": {\"replicas\": 4, \"equilibration\": 300, \"samples\": 50, \"every\": "
+    "10}}\n";
+
+#define GAUSS_NEWTON(more)                                                                         \
+    "\"name\": \"gauss-newton\", \"equilibration\": 100, \"samples\": 10, \"every\": 10" more
+
+/// Fit to the target that `plan` makes; its last words go to `result`.
+static void run_fit(struct temporary_folder *folder, const char *plan, const char *method,
+                    struct run_program_result *result) {
+    static struct run_program_result simulated;
+    small_inputs_write(folder, "scene.json", soft_fluid, PLAN, plan);
+    RUN_PROGRAM(&simulated, "simulate", "scene.json", "-o", "target", "--quiet");
+    run_program_assert_code(&simulated, 0);
+    small_inputs_write(folder, "run.json", fit, "METHOD", method);
+    RUN_PROGRAM(result, "fit", "run.json", "-o", "out");
+}
+
+static void assert_summary(const char *status, const char *reason) {
+    char *summary = temporary_folder_read("out/summary.json");
+    results_assert_text("out/summary.json", "status", status);
+    if (reason)
+        assert_contains(summary, reason);
+    else
+        assert_null(strstr(summary, "\"reason\""));
+    free(summary);
+}
+
+static void test_gauss_newton_has_not_converged_at_the_limit_of_iterations(void **state) {
+    static struct run_program_result result;
+    run_fit(*state, PLAN, GAUSS_NEWTON(", \"iterations\": 1, \"spread\": 60"), &result);
+    run_program_assert_code(&result, 1);
+    assert_contains(result.err, "not converged after 1 iterations");
+    assert_contains(result.err, "the fit has not converged: stopped at the limit of 1 iterations");
+    assert_summary("unconverged", "stopped at the limit of 1 iterations");
+}
+
+/// It has many iterations more, and stops once its error is that of its statistics.
+static void test_gauss_newton_stops_at_its_noise(void **state) {
+    static struct run_program_result result;
+    run_fit(*state, PLAN, GAUSS_NEWTON(", \"iterations\": 200, \"reach\": 0.05"), &result);
+    run_program_assert_code(&result, 0);
+    assert_contains(result.err, "converged after ");
+    assert_summary("converged", NULL);
+    assert_true(results_number("out/summary.json", "iterations") < 60);
+    // Twice what statistics make: what own measurements of ten samples cannot tell from none.
+    assert_true(results_number("out/summary.json", "rdf_rmse") <
+                4 * results_number("out/summary.json", "rdf_noise"));
+}
+
+static void test_gauss_newton_says_when_too_few_succeeded_for_a_model(void **state) {
+    static struct run_program_result result;
+    run_fit(*state, PLAN, GAUSS_NEWTON(", \"iterations\": 1, \"reach\": 0.4"), &result);
+    run_program_assert_code(&result, 1);
+    assert_contains(result.err, "of 30 simulations succeeded, too few for a linear model of 6 "
+                                "genes, which needs 28");
+    assert_null(strstr(result.err, "not one simulation"));
+    assert_summary("unconverged", "too few for a linear model");
+}
+
+static void test_populations_have_finished_when_their_budget_is_used_up(void **state) {
+    static const char *const methods[] = {
+        "\"name\": \"genetic\", \"generations\": 3, \"population\": 12, ",
+        "\"name\": \"cma-es\", \"rounds\": 4, ",
+        "\"name\": \"nlopt\", \"evaluations\": 30, ",
+    };
+    static const char *const budgets[] = {"generations", "rounds", "evaluations"};
+    static struct run_program_result result;
+    for (int k = 0; k < 3; k++) {
+        char method[256], reason[64];
+        snprintf(method, sizeof method, "%s\"equilibration\": 50, \"samples\": 10, \"every\": 10",
+                 methods[k]);
+        snprintf(reason, sizeof reason, "its \\\"%s\\\" are used up", budgets[k]);
+        run_fit(*state, PLAN, method, &result);
+        run_program_assert_code(&result, 0);
+        assert_contains(result.err, "finished after ");
+        assert_summary("finished", reason);
+        RUN_PROGRAM(&result, "compare", "out", "out", "-o", "both");
+        run_program_assert_code(&result, 0);
+        assert_contains(result.out, "finished");
+    }
+}
+
+/// Candidates too short to leave the lattice agree with a target that was as short, whatever their
+/// potential is; the verification does not.
+static void test_cmaes_has_not_converged_when_its_verification_is_worse(void **state) {
+    static struct run_program_result result;
+    run_fit(*state, SHORT_PLAN, "\"name\": \"cma-es\", \"rounds\": 25, " SHORT_PLAN, &result);
+    run_program_assert_code(&result, 1);
+    assert_contains(result.err, "the fit has not converged: the fit's own error is ");
+    assert_summary("unconverged", "that of its verification ");
+}
+
+/// Its steps become shorter than its tolerance.
+static void test_nlopt_has_converged_when_its_steps_are_short(void **state) {
+    static struct run_program_result result;
+    run_fit(*state, PLAN,
+            "\"name\": \"nlopt\", \"algorithm\": \"LN_COBYLA\", \"tolerance\": 0.1, "
+            "\"equilibration\": 50, \"samples\": 10, \"every\": 10",
+            &result);
+    run_program_assert_code(&result, 0);
+    assert_summary("converged", NULL);
+}
+
+#define TEST_WITHOUT_FIGURES(name)                                                                 \
+    cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        TEST_WITHOUT_FIGURES(test_gauss_newton_has_not_converged_at_the_limit_of_iterations),
+        TEST_WITHOUT_FIGURES(test_gauss_newton_stops_at_its_noise),
+        TEST_WITHOUT_FIGURES(test_gauss_newton_says_when_too_few_succeeded_for_a_model),
+        TEST_WITHOUT_FIGURES(test_populations_have_finished_when_their_budget_is_used_up),
+        TEST_WITHOUT_FIGURES(test_cmaes_has_not_converged_when_its_verification_is_worse),
+        TEST_WITHOUT_FIGURES(test_nlopt_has_converged_when_its_steps_are_short),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

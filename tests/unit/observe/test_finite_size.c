@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "observe/finite_size.h"
+
+#include "base/rng.h"
+#include "shared/is_close.h"
+#include "shared/testing.h"
+
+#include <math.h>
+
+enum { BINS = 200 };
+
+static const struct box cube = {3, {10, 10, 10}};
+static const struct rdf_bins bins = {0, 4.0 / BINS, BINS};
+static const struct composition one = {.types = 1, .count = {1000}};
+
+/// g of N hard rods of length 1 on a ring of length N/ρ, normalised by N (N − 1): the chances that
+/// the m-th neighbour is there, each gap being one of N parts of N/ρ − N (L. Tonks, Phys. Rev. 50,
+/// 955 (1936)).
+static double rods(int particles, double density, double r) {
+    const double ring = particles / density, room = ring - particles;
+    double chance = 0;
+    for (int m = 1; m < particles && r > m; m++) {
+        const double ahead = r - m, behind = room - ahead;
+        if (behind > 0)
+            chance += exp(lgamma(particles) - lgamma(m) - lgamma(particles - m) +
+                          (m - 1) * log(ahead / room) + (particles - m - 1) * log(behind / room)) /
+                      room;
+    }
+    return chance * ring / (particles - 1);
+}
+
+/// Where their oscillations are over: S(0) = (1 − ρ)². Terms of the next order in 1/N are left out.
+static void test_finite_size_factor_is_that_of_hard_rods(void **state) {
+    (void)state;
+    static const double densities[] = {0.05, 0.2, 0.4};
+    for (int k = 0; k < 3; k++) {
+        const double density = densities[k], s = pow(1 - density, 2);
+        const double r = 12.4, exact = rods(400, density, r) / rods(40, density, r);
+        const double factor = finite_size_factor(s, 40, 400);
+        print_message("density %.2f: g(400)/g(40) exact %.6f, by S(0) %.6f, by S = 0 %.6f\n",
+                      density, exact, factor, finite_size_factor(0, 40, 400));
+        assert_close(factor, exact, 0.02 * (1 - finite_size_factor(0, 40, 400)));
+    }
+}
+
+static void test_finite_size_factor_is_one_for_an_ideal_gas(void **state) {
+    (void)state;
+    assert_identical(finite_size_factor(1, 20, 1000), 1.0);
+    assert_close(finite_size_factor(0, 2, 4), 0.5 / 0.75, 1e-12);
+    assert_close(finite_size_factor(0.3, 70, 900) * finite_size_factor(0.3, 900, 70), 1, 1e-12);
+}
+
+/// A hole of radius 1 whose outside is `outside`, with noise, and the factor to ten times as many.
+static double factor_of(double hole, double outside, double noise, const struct composition *of,
+                        int pair, uint32_t seed) {
+    double g[BINS], error[BINS];
+    for (uint32_t k = 0; k < BINS; k++) {
+        double normal[4];
+        rng_normal4(rng_philox(seed, RNG_INITIAL, k, 0, 0), normal);
+        g[k] = (rdf_bins_centre(&bins, k) < 1 ? hole : 1) * outside + noise * normal[0];
+        error[k] = noise;
+    }
+    const double all = (double)composition_particles(of);
+    return finite_size_factor_of(&bins, g, error, &cube, of, pair, all, 10 * all);
+}
+
+/// s = 1 − 4π/3 · ρ (1 − hole) of a g that is flat outside of the hole. The integral ends at 4
+/// times its radius and is 2 % off (as the cube of the range): 0.05 of s at most here.
+static const double integral = 0.05 * 9e-4;
+
+static void test_finite_size_factor_of_finds_s_in_g(void **state) {
+    (void)state;
+    const double densities = 1000 / 1e3, depth = 0.15;
+    const double s = 1 - 4 * M_PI / 3 * densities * depth;
+    // In a closed system the outside lies by −G/V above 1.
+    const double outside = 1 + 4 * M_PI / 3 * depth / 1e3;
+    assert_close(factor_of(1 - depth, outside, 1e-6, &one, 0, 1), finite_size_factor(s, 1e3, 1e4),
+                 integral);
+    assert_close(factor_of(1, 1, 1e-6, &one, 0, 1), 1, 1e-6);
+}
+
+/// A hole that makes the liquid incompressible: s comes out as 0 within 3 errors, of 0.1 each.
+static void test_finite_size_factor_of_believes_no_noise(void **state) {
+    (void)state;
+    const double depth = 3 / (4 * M_PI);
+    for (uint32_t seed = 1; seed <= 10; seed++)
+        assert_close(factor_of(1 - depth, 1 + 1e-3, 0.03, &one, 0, seed),
+                     finite_size_factor(0, 1e3, 1e4), 0.3 * 9e-4);
+    // Types that have parted: A-A inside a domain, as large as the box.
+    const struct composition binary = {.types = 2, .count = {500, 500}};
+    assert_identical(factor_of(2, 2, 0, &binary, 0, 1), finite_size_factor(0, 1e3, 1e4));
+}
+
+/// Two gases that do not see each other: A-A as if alone, A-B ideal.
+static void test_finite_size_factor_of_tells_kinds_of_pairs_apart(void **state) {
+    (void)state;
+    const struct composition binary = {.types = 2, .count = {200, 800}};
+    const double depth = 0.5, own = 1 - 4 * M_PI / 3 * 0.2 * depth;
+    const double outside = 1 + 4 * M_PI / 3 * depth / 1e3;
+    assert_close(factor_of(1 - depth, outside, 1e-6, &binary, 0, 1),
+                 finite_size_factor(own, 200, 2000), integral);
+    assert_close(factor_of(1, 1, 1e-6, &binary, 1, 1), 1, 1e-6);
+    // No number fluctuates less than not at all: 1 + ρ_A G_AA is bounded by 0.
+    assert_true(factor_of(0, 0.9, 1e-6, &binary, 0, 1) >= finite_size_factor(0, 200, 2000));
+}
+
+static void test_finite_size_factor_of_is_of_a_liquid_in_the_plane(void **state) {
+    (void)state;
+    const struct box square = {2, {30, 30, 1}};
+    const double g[] = {1, 1, 1}, error[] = {0, 0, 0};
+    const struct rdf_bins few = {0, 1, 3};
+    assert_close(finite_size_factor_of(&few, g, error, &square, &one, 0, 100, 50),
+                 finite_size_factor(0, 100, 50), 0);
+    assert_identical(finite_size_factor_of(&few, g, error, &square, &one, 0, 100, 100), 1.0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_finite_size_factor_is_that_of_hard_rods),
+        cmocka_unit_test(test_finite_size_factor_is_one_for_an_ideal_gas),
+        cmocka_unit_test(test_finite_size_factor_of_finds_s_in_g),
+        cmocka_unit_test(test_finite_size_factor_of_believes_no_noise),
+        cmocka_unit_test(test_finite_size_factor_of_tells_kinds_of_pairs_apart),
+        cmocka_unit_test(test_finite_size_factor_of_is_of_a_liquid_in_the_plane),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
