@@ -9,14 +9,15 @@
 struct fit_result {
     enum status status; ///< OK: converged; UNCONVERGED; INTERRUPTED
     uint64_t iterations, evaluations, engine_steps;
-    double seconds;                          ///< of the fit, without its verification
-    const double *curve[UNKNOWNS];           ///< on the unknown's points; NULL: not fitted
-    const double *curve_error[UNKNOWNS];     ///< may hold NaN: not known
-    const double *curve_flat[UNKNOWNS];      ///< shape [INVERSE_FLAT, points]; may hold NaN
-    const double *without_ramp;              ///< inverse_step.without_ramp; may hold NaN
-    struct inverse_ramp ramp;                ///< error 0: not known
-    const char *reason;                      ///< why it has not converged, or ""
-    const struct verification *verification; ///< NULL if there was none
+    double seconds;                            ///< of the fit, without its verification
+    const double *curve[UNKNOWNS];             ///< on the unknown's points; NULL: not fitted
+    const double *curve_error[UNKNOWNS];       ///< may hold NaN: not known
+    const double *curve_flat[UNKNOWNS];        ///< shape [INVERSE_FLAT, points]; may hold NaN
+    const double *without_ramp;                ///< inverse_step.without_ramp; may hold NaN
+    struct inverse_ramp ramp;                  ///< error 0: not known
+    const struct inverse_parameter *parameter; ///< shape [INVERSE_PARAMETERS], of a formula
+    const char *reason;                        ///< why it has not converged, or ""
+    const struct verification *verification;   ///< NULL if there was none
 };
 
 /// potential.tsv and omega.tsv: what was fitted, and what the scene says of the other.

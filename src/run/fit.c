@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "run/checkpoint.h"
 #include "run/fit_output.h"
+#include "run/fit_report.h"
 #include "run/fit_verdict.h"
 #include "run/history.h"
 #include "run/progress.h"
@@ -33,6 +34,7 @@ struct run {
         uint64_t iterations, evaluations, engine_steps;
         double error, seconds;
         struct inverse_ramp ramp;
+        struct inverse_parameter parameter[INVERSE_PARAMETERS];
         char reason[INVERSE_REASON_SIZE];
     } standing;
 };
@@ -183,6 +185,7 @@ static struct fit_result result_so_far(const struct run *run, enum status status
                                 .seconds = s->seconds,
                                 .without_ramp = run->without_ramp,
                                 .ramp = s->ramp,
+                                .parameter = s->parameter,
                                 .reason = s->reason};
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         result.curve[kind] = run->curve[kind];
@@ -226,6 +229,7 @@ static enum status record(struct run *run, const struct inverse_step *step) {
                                       .error = step->error,
                                       .seconds = seconds(run),
                                       .ramp = step->ramp};
+    memcpy(run->standing.parameter, step->parameter, sizeof run->standing.parameter);
     memcpy(run->standing.reason, step->reason, sizeof run->standing.reason);
     history_add(&run->history, step, run->standing.seconds);
     TRY(history_write(&run->history, run->fit.method, &run->decoder, &run->folder));
@@ -280,22 +284,13 @@ static enum status write_unstable(struct run *run) {
     return status_fail(STATUS_UNSTABLE, "%s", reason);
 }
 
-static void say_verified(struct run *run, const struct verification *v) {
+static void say_verified(struct run *run, const struct fit_result *result) {
     struct progress *to = &run->progress;
     progress_say(to, "%s after %llu iterations, %.1f s",
                  run->standing.converged ? "converged" : "not converged",
                  (unsigned long long)run->standing.iterations, run->standing.seconds);
-    for (int kind = 0; kind < GOALS; kind++)
-        if (run->fit.targets.given[kind])
-            progress_say(to, "verified: rms of %s - target = %.4f(%.0f), statistics alone %.4f",
-                         goals_names[kind], v->distance[kind].rms,
-                         ceil(v->distance_error[kind] * 1e4), v->distance[kind].noise);
-    if (goals_ask(&run->fit.problem.compared, GOAL_DIFFUSION))
-        progress_say(to, "D = %.4f(%.0f)", *v->observed.value[GOAL_DIFFUSION],
-                     ceil(*v->observed.error[GOAL_DIFFUSION] * 1e4));
-    progress_say(to, "T = %.4f, configurational %.4f, pressure %.3f\nresults in %s",
-                 v->thermodynamics.temperature, v->thermodynamics.temperature_configurational,
-                 v->thermodynamics.pressure, run->folder.path);
+    fit_report_say(to, &run->fit, result);
+    progress_say(to, "results in %s", run->folder.path);
 }
 
 /// An inversion has converged only if the verification bears it out. Others say that they can do no
@@ -336,7 +331,7 @@ static enum status verify_and_write(struct run *run) {
     CHECK(fit_output_observables(&run->fit, &result, &run->folder));
     CHECK(fit_output_summary(&run->fit, &run->decoder, &result, &run->folder));
     run_folder_draw(&run->folder);
-    say_verified(run, &verification);
+    say_verified(run, &result);
     if (verification.warning[0])
         progress_say(&run->progress, "mesofit: warning: %s", verification.warning);
     status = result.status;

@@ -124,6 +124,28 @@ static void put_ramp(struct json_writer *writer, const struct inverse_ramp *ramp
     put_known(writer, "directions_of", ramp->bins);
 }
 
+/// "parameters": {"weight": {"sigma": {"value": 3.0, "error": 0.1}, …}} of a weight that is a
+/// formula.
+static void put_parameters(struct json_writer *writer, const struct fit_file *fit,
+                           const struct inverse_parameter *parameter) {
+    const struct unknown_parameters *p = &fit->unknown[UNKNOWN_WEIGHT].parameters;
+    if (!fit->unknown[UNKNOWN_WEIGHT].wanted || p->shape != INVERSE_CURVE_POWER)
+        return;
+    json_begin(writer, "parameters");
+    json_begin(writer, inverse_unknown_names[UNKNOWN_WEIGHT]);
+    for (int k = 0; k < INVERSE_PARAMETERS; k++) {
+        json_begin(writer, inverse_fixed_fields[k].name);
+        put_known(writer, "value", parameter[k].value);
+        if (isnan(p->fixed[k]))
+            put_known(writer, "error", parameter[k].error);
+        else
+            json_put_text(writer, "fixed", "yes");
+        json_end(writer);
+    }
+    json_end(writer);
+    json_end(writer);
+}
+
 /// "truth_rms" and so on, in a mixture "truth_rms_A-B".
 static void put_potential_truth(struct json_writer *writer, const struct fit_file *fit,
                                 const struct decoder *decoder, const double *phi, size_t pair) {
@@ -213,6 +235,7 @@ enum status fit_output_summary(const struct fit_file *fit, const struct decoder 
         if (result->curve[kind])
             put_flat(writer, kind, decoder, result);
     put_ramp(writer, &result->ramp);
+    put_parameters(writer, fit, result->parameter);
     if (fit->targets.given[GOAL_ETD])
         json_put_number(writer, "etd_cells_left_out", (double)fit->targets.etd.left_out);
     json_put_number(writer, "seed", (double)fit->heading.seed);

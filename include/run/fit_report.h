@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What a finished fit says on the terminal.
+#pragma once
+
+#include "run/fit_output.h"
+#include "run/progress.h"
+
+/// The parameters of a formula, and what the verification found.
+void fit_report_say(struct progress *to, const struct fit_file *fit,
+                    const struct fit_result *result);

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/fit_report.h"
+
+#include "run/number_text.h"
+
+#include <math.h>
+
+/// "weight: sigma = 2.98(4), exponent = 1 (fixed), inner_cutoff = 0.02(1)".
+static void say_parameters(struct progress *to, const struct fit_file *fit,
+                           const struct inverse_parameter *parameter) {
+    const struct unknown_parameters *p = &fit->unknown[UNKNOWN_WEIGHT].parameters;
+    char line[256];
+    int length = snprintf(line, sizeof line, "%s:", inverse_unknown_names[UNKNOWN_WEIGHT]);
+    if (!fit->unknown[UNKNOWN_WEIGHT].wanted || p->shape != INVERSE_CURVE_POWER)
+        return;
+    for (int k = 0; k < INVERSE_PARAMETERS; k++) {
+        char text[NUMBER_TEXT_SIZE];
+        number_text(parameter[k].value, parameter[k].error, text);
+        length +=
+            snprintf(line + length, sizeof line - (size_t)length, "%s %s = %s%s", k > 0 ? "," : "",
+                     inverse_fixed_fields[k].name, text, isnan(p->fixed[k]) ? "" : " (fixed)");
+    }
+    progress_say(to, "%s", line);
+}
+
+static void say_distances(struct progress *to, const struct fit_file *fit,
+                          const struct verification *v) {
+    for (int kind = 0; kind < GOALS; kind++) {
+        char rms[NUMBER_TEXT_SIZE];
+        if (!fit->targets.given[kind])
+            continue;
+        number_text(v->distance[kind].rms, v->distance_error[kind], rms);
+        progress_say(to, "verified: rms of %s - target = %s, statistics alone %.2g",
+                     goals_names[kind], rms, v->distance[kind].noise);
+    }
+}
+
+void fit_report_say(struct progress *to, const struct fit_file *fit,
+                    const struct fit_result *result) {
+    const struct verification *v = result->verification;
+    say_parameters(to, fit, result->parameter);
+    say_distances(to, fit, v);
+    if (goals_ask(&fit->problem.compared, GOAL_DIFFUSION)) {
+        char diffusion[NUMBER_TEXT_SIZE];
+        number_text(*v->observed.value[GOAL_DIFFUSION], *v->observed.error[GOAL_DIFFUSION],
+                    diffusion);
+        progress_say(to, "D = %s", diffusion);
+    }
+    progress_say(to, "T = %.4f, configurational %.4f, pressure %.3f", v->thermodynamics.temperature,
+                 v->thermodynamics.temperature_configurational, v->thermodynamics.pressure);
+}
