@@ -303,7 +303,9 @@ enum status fit_file_read(struct fit_file *fit, const char *file,
     struct json_document *document;
     TRY(json_open(&document, file));
     struct json_object root = json_root(document);
-    const enum status status = read_root(fit, &root);
+    enum status status = heading_check_run(&root, file);
+    if (status == STATUS_OK)
+        status = read_root(fit, &root);
     TRY(json_close(document));
     TRY(status);
     if (options->has_seed)

@@ -68,8 +68,13 @@ static enum status read_file(struct run *run, const char *file, const struct run
     struct json_document *document;
     TRY(json_open(&document, file));
     struct json_object root = json_root(document);
+    enum status status = heading_check_scene(&root, file);
+    if (status != STATUS_OK) {
+        TRY(json_close(document));
+        return status;
+    }
     json_fields(&root, heading_fields, &run->heading);
-    const enum status status = scene_read(&run->scene, &root, SCENE_FITS_NOTHING);
+    status = scene_read(&run->scene, &root, SCENE_FITS_NOTHING);
     struct json_object measure = json_child(&root, "measure", false);
     json_fields(&measure, measure_plan_fields, &run->plan);
     if (measure.item)
