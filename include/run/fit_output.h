@@ -20,7 +20,7 @@ struct fit_result {
     const struct verification *verification;   ///< NULL if there was none
 };
 
-/// potential.tsv and omega.tsv: what was fitted, and what the scene says of the other.
+/// potential.tsv and omega.tsv, what of them was fitted.
 enum status fit_output_curves(const struct fit_file *fit, const struct decoder *decoder,
                               const struct fit_result *result,
                               const struct run_folder *folder) MUST_USE;

@@ -7,9 +7,6 @@
 
 #include <math.h>
 
-/// Points of omega.tsv.
-enum { OMEGA_POINTS = 200 };
-
 /// Column `factor` · values, for physical units; the caller frees it.
 static double *scaled(const double *values, size_t count, double factor) {
     double *copy = memory_zeroed(count, sizeof *copy);
@@ -102,24 +99,8 @@ done:
     return status;
 }
 
-/// The weight that the scene says for all pairs.
-static enum status write_known_omega(const struct fit_file *fit, const struct run_folder *folder) {
-    double r[OMEGA_POINTS + 1], omega[OMEGA_POINTS + 1];
-    char path[OUTPUT_PATH_SIZE];
-    const double cutoff = curve_cutoff(&fit->scene.weight.curve[0]);
-    for (int k = 0; k <= OMEGA_POINTS; k++) {
-        r[k] = cutoff * k / OMEGA_POINTS;
-        omega[k] = curve_value(&fit->scene.weight.curve[0], r[k]);
-    }
-    const struct data_column columns[] = {{"r[lambda]", r, NULL},
-                                          {"omega[sqrt(mu/tau)]", omega, NULL}};
-    run_folder_file(folder, "omega.tsv", path);
-    return data_table_write(path, NULL, columns, 2, OMEGA_POINTS + 1);
-}
-
-static enum status write_fitted_omega(const struct fit_file *fit, const struct decoder *decoder,
-                                      const struct fit_result *result,
-                                      const struct run_folder *folder) {
+static enum status write_omega(const struct fit_file *fit, const struct decoder *decoder,
+                               const struct fit_result *result, const struct run_folder *folder) {
     const bool truth_known = fit->unknown[UNKNOWN_WEIGHT].truth.curves > 0;
     double *truth = truth_at(fit, UNKNOWN_WEIGHT, 0, decoder->weight.r, WEIGHT_POINTS);
     if (truth == NULL)
@@ -168,9 +149,7 @@ enum status fit_output_curves(const struct fit_file *fit, const struct decoder *
             TRY(write_flat(kind, n, decoder, result, folder));
     if (result->curve[UNKNOWN_POTENTIAL])
         TRY(write_potentials(fit, decoder, result, folder));
-    if (result->curve[UNKNOWN_WEIGHT])
-        return write_fitted_omega(fit, decoder, result, folder);
-    return fit->scene.weight.curves == 1 ? write_known_omega(fit, folder) : STATUS_OK;
+    return result->curve[UNKNOWN_WEIGHT] ? write_omega(fit, decoder, result, folder) : STATUS_OK;
 }
 
 /// g(r) of a kind of pairs: rdf.tsv, or rdf_A-B.tsv in a mixture.
