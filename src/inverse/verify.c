@@ -138,7 +138,7 @@ static enum status summarise(struct observation *replicas, size_t count,
         verification->engine_steps += replicas[k].simulation.step;
     }
     verification->thermodynamics = thermodynamics_result(thermodynamics, count);
-    if (thermodynamics_judge(&verification->thermodynamics, &replicas->simulation.setup) !=
+    if (thermodynamics_judge_fit(&verification->thermodynamics, &replicas->simulation.setup) !=
         STATUS_OK)
         snprintf(verification->warning, sizeof verification->warning, "%s", status_message());
     CHECK(observation_values_init(&verification->observed, goals));
