@@ -35,7 +35,7 @@ size_t simulate_motion_spans(struct simulate_motion *motion, struct memory_span 
 
 /// Write motion.tsv: time, MSD, VACF, each with its standard error. Fails: IO, NO_MEMORY.
 enum status simulate_motion_write_table(const struct simulate_motion *motion,
-                                        const char *file) MUST_USE;
+                                        const struct units *units, const char *file) MUST_USE;
 
 /// Add the object "motion" to summary.json: diffusion coefficients with errors, in cm²/s too when
 /// the units are known, and the test of the velocities; nothing if it is off.

@@ -41,10 +41,13 @@ size_t simulate_motion_spans(struct simulate_motion *motion, struct memory_span 
     return motion->on ? motion_spans(&motion->motion, spans) : 0;
 }
 
-enum status simulate_motion_write_table(const struct simulate_motion *motion, const char *file) {
+enum status simulate_motion_write_table(const struct simulate_motion *motion,
+                                        const struct units *units, const char *file) {
     enum status status = STATUS_OK;
     const size_t rows = (size_t)motion->plan.lags + 1;
-    double *time = NULL, *values = NULL;
+    const bool known = units_known(units);
+    const double ps = known ? units_time_ps(units) : 1, nm2 = units->length * units->length;
+    double *time = NULL, *values = NULL, *picoseconds = NULL, *physical = NULL;
     if (!motion->on)
         return STATUS_OK;
     NEW_ARRAY(time, rows);
@@ -54,15 +57,26 @@ enum status simulate_motion_write_table(const struct simulate_motion *motion, co
     motion_result(&motion->motion, &curves);
     for (size_t k = 0; k < rows; k++)
         time[k] = (double)k * (double)motion->plan.every * motion->motion.time_step;
-    const struct data_column columns[] = {
-        {"time[tau]", time, NULL},
-        {"msd[lambda^2]", curves.msd, "%.8g"},
-        {"msd_error[lambda^2]", curves.msd_error, "%.3g"},
-        {"vacf[lambda^2/tau^2]", curves.vacf, "%.8g"},
-        {"vacf_error[lambda^2/tau^2]", curves.vacf_error, "%.3g"}};
-    CHECK(data_table_write(file, NULL, columns, 5, rows));
+    picoseconds = units_column(time, rows, ps);
+    physical = units_column(values, 4 * rows, nm2);
+    CHECK(picoseconds && physical ? STATUS_OK : STATUS_NO_MEMORY);
+    for (size_t k = 2 * rows; k < 4 * rows; k++)
+        physical[k] /= ps * ps;
+    const struct data_column columns[] = {{"time[tau]", time, NULL},
+                                          {"msd[lambda^2]", curves.msd, "%.8g"},
+                                          {"msd_error[lambda^2]", curves.msd_error, "%.3g"},
+                                          {"vacf[lambda^2/tau^2]", curves.vacf, "%.8g"},
+                                          {"vacf_error[lambda^2/tau^2]", curves.vacf_error, "%.3g"},
+                                          {"time[ps]", picoseconds, NULL},
+                                          {"msd[nm^2]", physical, "%.8g"},
+                                          {"msd_error[nm^2]", physical + rows, "%.3g"},
+                                          {"vacf[nm^2/ps^2]", physical + 2 * rows, "%.8g"},
+                                          {"vacf_error[nm^2/ps^2]", physical + 3 * rows, "%.3g"}};
+    CHECK(data_table_write(file, NULL, columns, known ? 10 : 5, rows));
 done:
     memory_free(time);
+    memory_free(picoseconds);
+    memory_free(physical);
     memory_free(values);
     return status;
 }
