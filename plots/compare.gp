@@ -38,11 +38,10 @@ if (with_rdf) {
 }
 if (with_phi) {
     stats "potential_compare.tsv" using 1 name "R" nooutput
-    stats "potential_compare.tsv" using 2 name "P" nooutput
-    bottom = low(0, P_min)
-    top = potential_top(bottom, P_max)
-    stats "potential_compare.tsv" using ($2 < top ? $1 : NaN) name "B" nooutput
-    begin = is_soft(P_max) ? 0 : floor(10 * (B_min - 0.06)) / 10.0
+    view = potential_view("potential_compare.tsv", 3)
+    top = real(word(view, 1))
+    bottom = low(0, real(word(view, 3)))
+    begin = floor(10 * real(word(view, 2))) / 10.0
     reach = high(reach, R_max)
 }
 begin = high(0, begin)
@@ -118,7 +117,7 @@ do for [kind in kinds] {
     unset xlabel
     set xrange [0:1]
     set yrange [0:1]
-    set key on at screen 0.105, screen 1 - 8.0 / height left top vertical maxrows rows Left reverse
+    set key on at screen 0.105, screen 1 - 8.0 / height left top vertical maxrows rows Left reverse noautotitle
     eval "plot " . \
         (with_rdf ? "NaN with points title 'target' " . \
             "pointtype 7 pointsize 0.5 linecolor rgb ink, " : "") . \

@@ -10,9 +10,6 @@ load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 goals = int(system("head -n 1 pareto.tsv | grep -o _rmse | wc -l"))
 goal(n) = system(sprintf("awk -F '\t' '{ sub(/_.*/, \"\", $%d); print $%d; exit }' pareto.tsv", \
     5 + n, 5 + n))
-label_of(goal) = "rmse of " . (goal eq "rdf" ? g_label : goal eq "etd" ? \
-    "{/:Italic E}({/:Italic t}, {/:Italic r}_0)" : goal eq "vacf" ? "VACF({/:Italic t})" : \
-    goal eq "msd" ? "MSD({/:Italic t})" : goal eq "diffusion" ? "{/:Italic D}" : "{/:Italic p}")
 noise_x = 6 + goals
 noise_y = 7 + goals
 
@@ -39,8 +36,8 @@ do for [kind in kinds] {
     set bmargin at screen 0.125
     eval log_range("x", left, right)
     eval log_range("y", bottom, top)
-    set xlabel label_of(goal(1))
-    eval name_axis(label_of(goal(2)), 0.024)
+    set xlabel rmse_of(goal(1))
+    eval name_axis(rmse_of(goal(2)), 0.024)
     set key at screen 0.97, screen 0.985 right top vertical maxrows 1
     if (P_max > 0) {
         set arrow 1 from first P_max, graph 0 to first P_max, graph 1 nohead back \
