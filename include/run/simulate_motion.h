@@ -5,6 +5,7 @@
 #include "io/json.h"
 #include "io/json_write.h"
 #include "observe/measure.h"
+#include "run/progress.h"
 #include "run/units.h"
 
 /// A scene without "motion" has this off, and it costs nothing.
@@ -41,3 +42,6 @@ enum status simulate_motion_write_table(const struct simulate_motion *motion,
 /// the units are known, and the test of the velocities; nothing if it is off.
 void simulate_motion_write_summary(const struct simulate_motion *motion, const struct units *units,
                                    struct json_writer *writer);
+
+/// Say both diffusion coefficients, and a warning where they are not to be trusted.
+void simulate_motion_say(const struct simulate_motion *motion, struct progress *to);

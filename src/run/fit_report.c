@@ -44,7 +44,8 @@ void fit_report_say(struct progress *to, const struct fit_file *fit,
         char diffusion[NUMBER_TEXT_SIZE];
         number_text(*v->observed.value[GOAL_DIFFUSION], *v->observed.error[GOAL_DIFFUSION],
                     diffusion);
-        progress_say(to, "D = %s", diffusion);
+        progress_say(to, "D = %s, the slope of the MSD from %.4g to %.4g tau", diffusion,
+                     v->diffusion_begin, v->diffusion_end);
     }
     progress_say(to, "T = %.4f, configurational %.4f, pressure %.3f", v->thermodynamics.temperature,
                  v->thermodynamics.temperature_configurational, v->thermodynamics.pressure);

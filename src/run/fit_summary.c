@@ -80,11 +80,15 @@ static void put_diffusion(struct json_writer *writer, const struct fit_file *fit
     const double value = *v->observed.value[GOAL_DIFFUSION];
     const double error = *v->observed.error[GOAL_DIFFUSION];
     put_known(writer, "diffusion", value);
-    put_known(writer, "diffusion_error", error);
+    if (error > 0) // one replica of one window has none
+        put_known(writer, "diffusion_error", error);
+    json_put_number(writer, "diffusion_fit_begin", v->diffusion_begin);
+    json_put_number(writer, "diffusion_fit_end", v->diffusion_end);
     if (units_known(units)) {
         const double unit = units_diffusion_cm2_per_s(units);
         json_put_number(writer, "diffusion_cm2_per_s", value * unit);
-        put_known(writer, "diffusion_error_cm2_per_s", error * unit);
+        if (error > 0)
+            put_known(writer, "diffusion_error_cm2_per_s", error * unit);
     }
 }
 

@@ -379,6 +379,7 @@ static enum status write_results(struct run *run) {
     const struct thermodynamics_summary s = thermodynamics_result(&run->thermodynamics, 1);
     if (thermodynamics_judge(&s, &run->simulation.setup) != STATUS_OK)
         progress_say(&run->progress, "mesofit: warning: %s", status_message());
+    simulate_motion_say(&run->motion, &run->progress);
     progress_say(&run->progress, "%llu steps in %.3g s; results in %s",
                  (unsigned long long)run->simulation.step, seconds, run->folder.path);
     return STATUS_OK;

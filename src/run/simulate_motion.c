@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "io/data_table.h"
+#include "run/number_text.h"
 
 void simulate_motion_read(struct simulate_motion *motion, struct json_object *root) {
     struct json_object object = json_child(root, "motion", false);
@@ -87,16 +88,21 @@ void simulate_motion_write_summary(const struct simulate_motion *motion, const s
         return;
     const struct motion_summary s = motion_result(&motion->motion, NULL);
     json_begin(writer, "motion");
+    if (motion_judge(&s) != STATUS_OK)
+        json_put_text(writer, "warning", status_message());
     json_put_number(writer, "diffusion_msd", s.msd);
     json_put_number(writer, "diffusion_msd_error", s.msd_error);
     json_put_number(writer, "diffusion_green_kubo", s.green_kubo);
-    json_put_number(writer, "diffusion_green_kubo_error", s.green_kubo_error);
+    const double error = motion_green_kubo_uncertainty(&s);
+    json_put_number(writer, "diffusion_green_kubo_error", error);
+    json_put_number(writer, "diffusion_green_kubo_sampling", s.green_kubo_sampling);
+    json_put_number(writer, "diffusion_green_kubo_truncation", s.green_kubo_truncation);
     if (units_known(units)) {
         const double unit = units_diffusion_cm2_per_s(units);
         json_put_number(writer, "diffusion_msd_cm2_per_s", s.msd * unit);
         json_put_number(writer, "diffusion_msd_error_cm2_per_s", s.msd_error * unit);
         json_put_number(writer, "diffusion_green_kubo_cm2_per_s", s.green_kubo * unit);
-        json_put_number(writer, "diffusion_green_kubo_error_cm2_per_s", s.green_kubo_error * unit);
+        json_put_number(writer, "diffusion_green_kubo_error_cm2_per_s", error * unit);
     }
     json_put_number(writer, "fit_begin", s.fit_begin);
     json_put_number(writer, "fit_end", s.fit_end);
@@ -106,4 +112,17 @@ void simulate_motion_write_summary(const struct simulate_motion *motion, const s
         json_put_number(writer, "velocities_p_value", s.maxwell.probability);
     }
     json_end(writer);
+}
+
+void simulate_motion_say(const struct simulate_motion *motion, struct progress *to) {
+    if (!motion->on)
+        return;
+    char msd[NUMBER_TEXT_SIZE], green_kubo[NUMBER_TEXT_SIZE];
+    const struct motion_summary s = motion_result(&motion->motion, NULL);
+    number_text(s.msd, s.msd_error, msd);
+    number_text(s.green_kubo, motion_green_kubo_uncertainty(&s), green_kubo);
+    progress_say(to, "D = %s by the MSD from %.4g to %.4g tau, %s by Green and Kubo", msd,
+                 s.fit_begin, s.fit_end, green_kubo);
+    if (motion_judge(&s) != STATUS_OK)
+        progress_say(to, "mesofit: warning: %s", status_message());
 }

@@ -91,6 +91,19 @@ test_fit_with_fixed_parameters_gives_the_same_bits_from_used_and_in_pieces(void 
                      parameter("1/summary.json", "sigma", keys[k]), 0);
 }
 
+/// Each replica of the verification is one window long: only their scatter tells of the error.
+static void test_diffusion_of_a_verification_has_an_error(void **state) {
+    write_target(*state);
+    small_inputs_write(*state, "run.json", fit, "\"samples\": 100", "\"samples\": 8");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    const double error = results_number("out/summary.json", "diffusion_error");
+    assert_true(error > 1e-5 && error < 0.1);
+    assert_contains(result.err, ", the slope of the MSD from 0.8 to 1.6 tau");
+    results_assert_number("out/summary.json", "diffusion_fit_begin", 0.8);
+    results_assert_number("out/summary.json", "diffusion_fit_end", 1.6);
+}
+
 static void test_every_method_fits_sigma_alone(void **state) {
     static const char *const methods[] = {
         "\"name\": \"cma-es\", \"rounds\": 3",
@@ -144,6 +157,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_fit_finds_a_known_sigma_within_its_error),
         TEST_WITHOUT_FIGURES(
             test_fit_with_fixed_parameters_gives_the_same_bits_from_used_and_in_pieces),
+        TEST_WITHOUT_FIGURES(test_diffusion_of_a_verification_has_an_error),
         TEST_WITHOUT_FIGURES(test_every_method_fits_sigma_alone),
         TEST_WITHOUT_FIGURES(test_fit_refuses_what_cannot_be_fixed),
     };
