@@ -13,6 +13,8 @@ struct fit_result {
     const double *curve[UNKNOWNS];             ///< on the unknown's points; NULL: not fitted
     const double *curve_error[UNKNOWNS];       ///< may hold NaN: not known
     const double *curve_flat[UNKNOWNS];        ///< shape [INVERSE_FLAT, points]; may hold NaN
+    const double *first[UNKNOWNS];             ///< the curve of the first iteration; NULL: none yet
+    double first_error, error;                 ///< of the fit, as its method measured them
     const double *without_ramp;                ///< inverse_step.without_ramp; may hold NaN
     struct inverse_ramp ramp;                  ///< error 0: not known
     const struct inverse_parameter *parameter; ///< shape [INVERSE_PARAMETERS], of a formula

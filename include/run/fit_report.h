@@ -5,6 +5,7 @@
 #include "run/fit_output.h"
 #include "run/progress.h"
 
-/// The parameters of a formula, and what the verification found.
-void fit_report_say(struct progress *to, const struct fit_file *fit,
+/// How far the fit came from its first iteration, the parameters of a formula, and what the
+/// verification found.
+void fit_report_say(struct progress *to, const struct fit_file *fit, const struct decoder *decoder,
                     const struct fit_result *result);

@@ -186,11 +186,14 @@ static struct fit_result result_so_far(const struct run *run, enum status status
                                 .without_ramp = run->without_ramp,
                                 .ramp = s->ramp,
                                 .parameter = s->parameter,
+                                .error = s->error,
+                                .first_error = history_first_error(&run->history),
                                 .reason = s->reason};
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         result.curve[kind] = run->curve[kind];
         result.curve_error[kind] = run->curve_error[kind];
         result.curve_flat[kind] = run->curve_flat[kind];
+        result.first[kind] = run->history.iterations > 0 ? run->history.curve[kind] : NULL;
     }
     return result;
 }
@@ -289,7 +292,7 @@ static void say_verified(struct run *run, const struct fit_result *result) {
     progress_say(to, "%s after %llu iterations, %.1f s",
                  run->standing.converged ? "converged" : "not converged",
                  (unsigned long long)run->standing.iterations, run->standing.seconds);
-    fit_report_say(to, &run->fit, result);
+    fit_report_say(to, &run->fit, &run->decoder, result);
     progress_say(to, "results in %s", run->folder.path);
 }
 

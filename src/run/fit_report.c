@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/fit_report.h"
 
+#include "run/fit_change.h"
 #include "run/number_text.h"
 
 #include <math.h>
@@ -23,6 +24,25 @@ static void say_parameters(struct progress *to, const struct fit_file *fit,
     progress_say(to, "%s", line);
 }
 
+/// "potential: well -0.354 k_B T_0 at 0.99 lambda (-0.451 at 0.99 at first), changed by 0.05 rms".
+static void say_changes(struct progress *to, const struct decoder *decoder,
+                        const struct fit_result *result) {
+    progress_say(to, "error of the fit: %.4g at first, %.4g at the end", result->first_error,
+                 result->error);
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        for (size_t n = 0; result->first[kind] && n < decoder_curve_count(decoder, kind); n++) {
+            char name[DECODER_NAME_SIZE], well[128] = "";
+            const struct fit_change change =
+                fit_change_find(decoder, kind, n, result->first[kind], result->curve[kind]);
+            decoder_curve_name(decoder, kind, n, name);
+            if (kind == UNKNOWN_POTENTIAL && change.well < 0)
+                snprintf(well, sizeof well,
+                         " well %.3f k_B T_0 at %.3g lambda (%.3f at %.3g at first),", change.well,
+                         change.well_at, change.first_well, change.first_well_at);
+            progress_say(to, "%s:%s changed by %.2g rms", name, well, change.rms);
+        }
+}
+
 static void say_distances(struct progress *to, const struct fit_file *fit,
                           const struct verification *v) {
     for (int kind = 0; kind < GOALS; kind++) {
@@ -35,9 +55,10 @@ static void say_distances(struct progress *to, const struct fit_file *fit,
     }
 }
 
-void fit_report_say(struct progress *to, const struct fit_file *fit,
+void fit_report_say(struct progress *to, const struct fit_file *fit, const struct decoder *decoder,
                     const struct fit_result *result) {
     const struct verification *v = result->verification;
+    say_changes(to, decoder, result);
     say_parameters(to, fit, result->parameter);
     say_distances(to, fit, v);
     if (goals_ask(&fit->problem.compared, GOAL_DIFFUSION)) {

@@ -3,6 +3,7 @@
 
 #include "mesofit.h"
 #include "observe/kirkwood_buff.h"
+#include "run/fit_change.h"
 
 #include <math.h>
 
@@ -150,6 +151,31 @@ static void put_parameters(struct json_writer *writer, const struct fit_file *fi
     json_end(writer);
 }
 
+/// "start": {"error": 0.11, "potential": {"change": 0.05, "well": -0.45, "well_at": 0.99}, …}, the
+/// first iteration, and what the fit changed by since.
+static void put_start(struct json_writer *writer, const struct decoder *decoder,
+                      const struct fit_result *result) {
+    char name[DECODER_NAME_SIZE];
+    json_begin(writer, "start");
+    put_known(writer, "error", result->first_error);
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        for (size_t n = 0; result->first[kind] && n < decoder_curve_count(decoder, kind); n++) {
+            const struct fit_change change =
+                fit_change_find(decoder, kind, n, result->first[kind], result->curve[kind]);
+            decoder_curve_name(decoder, kind, n, name);
+            json_begin(writer, name);
+            put_known(writer, "change", change.rms);
+            if (kind == UNKNOWN_POTENTIAL) {
+                put_known(writer, "well", change.first_well);
+                put_known(writer, "well_at", change.first_well_at);
+                put_known(writer, "well_now", change.well);
+                put_known(writer, "well_now_at", change.well_at);
+            }
+            json_end(writer);
+        }
+    json_end(writer);
+}
+
 /// "truth_rms" and so on, in a mixture "truth_rms_A-B".
 static void put_potential_truth(struct json_writer *writer, const struct fit_file *fit,
                                 const struct decoder *decoder, const double *phi, size_t pair) {
@@ -232,6 +258,7 @@ enum status fit_output_summary(const struct fit_file *fit, const struct decoder 
     json_put_number(writer, "iterations", (double)result->iterations);
     json_put_number(writer, "evaluations", (double)result->evaluations);
     json_put_number(writer, "engine_steps", (double)result->engine_steps);
+    put_known(writer, "error", result->error);
     if (result->verification)
         put_verification(writer, fit, result->verification);
     put_truth(writer, fit, decoder, result);
@@ -240,6 +267,7 @@ enum status fit_output_summary(const struct fit_file *fit, const struct decoder 
             put_flat(writer, kind, decoder, result);
     put_ramp(writer, &result->ramp);
     put_parameters(writer, fit, result->parameter);
+    put_start(writer, decoder, result);
     if (fit->targets.given[GOAL_ETD])
         json_put_number(writer, "etd_cells_left_out", (double)fit->targets.etd.left_out);
     json_put_number(writer, "seed", (double)fit->heading.seed);

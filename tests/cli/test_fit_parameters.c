@@ -61,7 +61,11 @@ static void test_fit_finds_a_known_sigma_within_its_error(void **state) {
     small_inputs_write(*state, "run.json", fit, NULL, NULL);
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out");
     run_program_assert_code(&result, 0);
+    assert_contains(result.err, "error of the fit: ");
+    assert_contains(result.err, "weight: changed by ");
     assert_contains(result.err, "weight: sigma = ");
+    assert_true(results_number("out/summary.json", "start.error") > 0);
+    assert_true(results_number("out/summary.json", "error") > 0);
     assert_contains(result.err, "exponent = 1 (fixed)");
     const double sigma = parameter("out/summary.json", "sigma", "value");
     const double error = parameter("out/summary.json", "sigma", "error");
