@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Several fits: their radial distribution functions, potentials and weights with 95 % bands, as far
+# Several fits and simulations: their radial distribution functions, potentials and weights with 95 % bands, as far
 # as any of them has one, and what the error cost each. A fit keeps its colour in every panel.
 # Reads compare.tsv (numbers and names of the fits, in its comment lines) and, one block a fit and
 # a row of nan for a fit that has none,
@@ -20,6 +20,7 @@ truth_in(file) = !has(file) ? -1 : int(system(sprintf("awk -F '\t' 'BEGIN { foun
     /^# [0-9]+\t/ { block = substr($1, 3) } !/^#/ && found < 0 && $4 ~ /[0-9]/ { found = block } \
     END { print found }' %s", file)))
 with_rdf = has("rdf_compare.tsv")
+with_target = 0
 with_phi = has("potential_compare.tsv")
 with_omega = has("omega_compare.tsv")
 with_error = has_numbers("error_compare.tsv", 5)
@@ -31,8 +32,9 @@ begin = 0
 reach = 0
 if (with_rdf) {
     stats "rdf_compare.tsv" using 1 name "R" nooutput
-    stats "rdf_compare.tsv" using (high($2, $4)) name "G" nooutput
-    stats "rdf_compare.tsv" using (high($2, $4) > 1e-3 ? $1 : NaN) name "B" nooutput
+    stats "rdf_compare.tsv" using (high(known(2), known(4))) name "G" nooutput
+    stats "rdf_compare.tsv" using (high(known(2), known(4)) > 1e-3 ? $1 : NaN) name "B" nooutput
+    with_target = has_numbers("rdf_compare.tsv", 2)
     begin = B_records > 0 ? floor(10 * (B_min - 0.06)) / 10.0 : 0
     reach = R_max
 }
@@ -68,7 +70,7 @@ if (with_error) {
 with_truth = phi_truth >= 0 || omega_truth >= 0
 with_band = (with_phi ? has_numbers("potential_compare.tsv", 3) : 0) + \
     (with_omega ? has_numbers("omega_compare.tsv", 3) : 0)
-extra = with_rdf + with_truth + (with_band > 0) + with_error
+extra = with_target + with_truth + (with_band > 0) + with_error
 rows = (count + extra + 1) / 2
 legend = 24 + 21 * rows
 panels = with_rdf + with_phi + with_omega
@@ -119,7 +121,7 @@ do for [kind in kinds] {
     set yrange [0:1]
     set key on at screen 0.105, screen 1 - 8.0 / height left top vertical maxrows rows Left reverse noautotitle
     eval "plot " . \
-        (with_rdf ? "NaN with points title 'target' " . \
+        (with_target ? "NaN with points title 'target' " . \
             "pointtype 7 pointsize 0.5 linecolor rgb ink, " : "") . \
         (with_truth ? "NaN title 'truth' @true_line, " : "") . \
         (with_band ? "NaN with filledcurves y=0 title '95 % band' @band linecolor rgb faint, " \

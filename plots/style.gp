@@ -69,7 +69,7 @@ has(file) = int(system("test -r " . file . " && echo 1 || echo 0"))
 column_of(file, name) = !has(file) ? 0 : int(system(sprintf("awk -F '\t' '/^#/ { sub(/^# */, \"\"); \
     for (k = 1; k <= NF; k++) { sub(/\\[.*/, \"\", $k); if ($k == \"%s\" && !found) found = k } } \
     END { print found + 0 }' %s", name, file)))
-has_numbers(file, column) = int(system(sprintf("awk -F '\t' '!/^#/ && $%d ~ /[1-9]/ { found = 1 } \
+has_numbers(file, column) = !has(file) ? 0 : int(system(sprintf("awk -F '\t' '!/^#/ && $%d ~ /[1-9]/ { found = 1 } \
     END { print found + 0 }' %s", column, file)))
 
 # What one of the column called `name`, with a physical unit as in "r[nm]", is in units of column n;
