@@ -43,7 +43,8 @@ if (with_phi) {
     view = potential_view("potential_compare.tsv", 3)
     top = real(word(view, 1))
     bottom = low(0, real(word(view, 3)))
-    begin = floor(10 * real(word(view, 2))) / 10.0
+    first = floor(10 * real(word(view, 2))) / 10.0
+    begin = with_rdf ? low(begin, first) : first
     reach = high(reach, R_max)
 }
 begin = high(0, begin)
