@@ -88,20 +88,22 @@ static void check_columns(const char *path) {
 }
 
 static void check_folder(const char *folder) {
-    DIR *stream = opendir(folder);
-    assert_non_null(stream);
-    for (struct dirent *entry; (entry = readdir(stream));) {
+    struct dirent **entries;
+    const int count = scandir(folder, &entries, NULL, alphasort);
+    assert_true(count > 2);
+    for (int k = 0; k < count; k++) {
         char path[512];
-        if (entry->d_name[0] == '.')
-            continue;
-        assert_told(entry->d_name, folder);
-        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-        if (strstr(entry->d_name, ".tsv"))
+        const char *name = entries[k]->d_name;
+        snprintf(path, sizeof path, "%s/%s", folder, name);
+        if (name[0] != '.')
+            assert_told(name, folder);
+        if (strstr(name, ".tsv"))
             check_columns(path);
-        if (strcmp(entry->d_name, "summary.json") == 0)
+        if (strcmp(name, "summary.json") == 0)
             check_keys(path);
+        free(entries[k]);
     }
-    closedir(stream);
+    free(entries);
 }
 
 static void test_doc_tells_of_all_that_runs_leave(void **state) {

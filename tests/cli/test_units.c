@@ -33,8 +33,8 @@ static const char fit[] =
 /// The last number of a table's column of that name and unit.
 static double last_in_column(const char *file, const char *name) {
     char *text = temporary_folder_read(file);
-    char *names = strtok(text + 2, "\n"), *last = NULL, *rest, *word;
-    for (char *line; (line = strtok(NULL, "\n"));)
+    char *lines, *rest, *word, *last = NULL, *names = strtok_r(text + 2, "\n", &lines);
+    for (char *line; (line = strtok_r(NULL, "\n", &lines));)
         last = line;
     size_t place = 0;
     for (word = strtok_r(names, "\t", &rest); word && strcmp(word, name) != 0;

@@ -80,21 +80,6 @@ static void make_weight_fit(const char *folder, const char *names, const char *c
     write_file(folder, "timing.tsv", "# iteration\tseconds[s]\n0\t1.5\n");
 }
 
-/// A simulation of its own D and g(r), whose peak is `peak`.
-static void make_simulation(const char *folder, double peak) {
-    char path[PATH], rdf[256];
-    snprintf(path, sizeof path, "%s/%s", root, folder);
-    assert_int_equal(output_make_folder(path), STATUS_OK);
-    snprintf(rdf, sizeof rdf,
-             "# r[lambda]\tg[1]\tg_error[1]\tr[nm]\n0.5\t0\t0\t0.2\n1\t%g\t0.02\t0.4\n", peak);
-    write_file(folder, "rdf.tsv", rdf);
-    write_file(
-        folder, "summary.json",
-        "{\"status\": \"ok\", \"method\": \"simulate\", \"seconds\": 3, \"engine_steps\": 500,"
-        " \"temperature\": 1.01, \"pressure\": 4.5, \"motion\": {\"diffusion_msd\": 0.31,"
-        " \"diffusion_msd_error\": 0.02, \"fit_end\": 2}}");
-}
-
 /// Text of a file, to be freed.
 static char *read_text(const char *path) {
     FILE *stream = fopen(path, "r");
@@ -406,39 +391,6 @@ static int remove_all(void **state) {
     return system(command);
 }
 
-static void test_compare_takes_simulations(void **state) {
-    (void)state;
-    make_simulation("hot", 1.81);
-    make_simulation("cold", 1.83);
-    assert_int_equal(compare("hot", "cold", true), STATUS_OK);
-    char *text = compare_text("rdf_compare.tsv");
-    assert_contains(text, "# 0\thot\n");
-    assert_contains(text, "1\tnan\tnan\t1.81\t0.02\n");
-    assert_contains(text, "# 1\tcold\n");
-    assert_contains(text, "1\tnan\tnan\t1.83\t0.02\n");
-    free(text);
-    text = compare_text("compare.tsv");
-    assert_contains(text, "diffusion[lambda^2/tau]");
-    assert_contains(text, "0.31\t0.02");
-    free(text);
-    char path[PATH];
-    snprintf(path, sizeof path, "%s/cmp/error_compare.tsv", root);
-    assert_int_not_equal(access(path, F_OK), 0);
-    if (system("gnuplot --version >/dev/null 2>&1") == 0) {
-        text = compare_text("figures/compare.svg");
-        assert_contains(text, "cold");
-        assert_null(strstr(text, "target"));
-        free(text);
-    }
-    // Beside a fit, whose target is drawn.
-    make_fit("a_fit", good_summary, -0.5);
-    assert_int_equal(compare("hot", "a_fit", true), STATUS_OK);
-    text = compare_text("rdf_compare.tsv");
-    assert_contains(text, "1\tnan\tnan\t1.81\t0.02\n");
-    assert_contains(text, "1\t1.5\t0.01\t1.48\t0.02\n");
-    free(text);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_numbers_are_those_of_the_summary),
@@ -446,7 +398,6 @@ int main(void) {
         cmocka_unit_test(test_blocks_hold_each_fit_once),
         cmocka_unit_test(test_fits_without_a_table_keep_their_block),
         cmocka_unit_test(test_tables_that_no_fit_has_are_not_written),
-        cmocka_unit_test(test_compare_takes_simulations),
         cmocka_unit_test(test_figure_has_the_panels_that_there_are_data_for),
         cmocka_unit_test(test_figure_is_drawn),
         cmocka_unit_test(test_names_tell_fits_apart),
