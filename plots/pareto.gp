@@ -27,6 +27,8 @@ right = low(X_max, upper(A_max, X_up_quartile, X_median))
 top = low(Y_max, upper(B_max, Y_up_quartile, Y_median))
 
 light = "#b5d3e7"
+# The front of two goals is a line; that of more is a surface, seen from the side.
+front_style = goals > 2 ? "points" : "linespoints"
 
 do for [kind in kinds] {
     eval open(kind, "pareto", 720, 560)
@@ -51,8 +53,8 @@ do for [kind in kinds] {
         NaN with points title "simulations" pointtype 7 pointsize 0.7 linecolor rgb light, \
         "pareto_history.tsv" using ($2 == 0 ? $4 : NaN):5 with points \
             pointtype 7 pointsize 0.3 linecolor rgb light, \
-        "pareto.tsv" using ($2 == 1 ? $6 : NaN):7 with linespoints title "front" \
-            linewidth 2 pointtype 7 pointsize 0.6 linecolor rgb blue, \
+        "pareto.tsv" using ($2 == 1 ? $6 : NaN):7 with @front_style title "front" \
+            linewidth 2 pointtype 7 pointsize 0.7 linecolor rgb blue, \
         "" using ($3 == 1 ? $6 : NaN):7 with points title "chosen" \
             pointtype 6 pointsize 1.5 linewidth 2.4 linecolor rgb vermillion
     eval close
