@@ -15,7 +15,7 @@ r0_axis = strlen(distances) ? in_units(distances, "r[nm]", "{/:Italic r}_0 / nm"
     "{/:Italic r}_0 / {/:Italic λ}") : "{/:Italic r}_0 / {/:Italic λ}"
 
 stats "etd.tsv" using (ps * $1) name "T" nooutput
-stats "etd.tsv" name "F" nooutput
+stats "etd.tsv" using 1 name "F" nooutput
 stats "etd_bins.tsv" using ($2 > 0 ? $0 : 1/0) name "B" nooutput
 first = B_records > 0 ? int(B_min) : 0
 last = B_records > 0 ? int(B_max) : 0
