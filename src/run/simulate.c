@@ -246,7 +246,8 @@ static enum status write_thermodynamics(const struct run *run) {
         configurational[k] = thermodynamics_series(t, THERMODYNAMICS_FORCE_SQUARES)[k] /
                              thermodynamics_series(t, THERMODYNAMICS_LAPLACIAN)[k];
     }
-    const bool known = units_known(units);
+    // bar is a force on an area.
+    const bool known = units_known(units), in_space = run->scene.setup.box.dimensions == 3;
     physical[0] = units_column(time, t->samples, known ? units_time_ps(units) : 0);
     physical[1] = units_column(energy, t->samples, known ? units_energy_kj_per_mol(units) : 0);
     physical[2] = units_column(pressure, t->samples, known ? units_pressure_bar(units) : 0);
@@ -262,7 +263,7 @@ static enum status write_thermodynamics(const struct run *run) {
         {"potential_energy[kJ/mol]", physical[1], "%.8g"},
         {"pressure[bar]", physical[2], "%.8g"}};
     run_folder_file(&run->folder, "thermodynamics.tsv", path);
-    CHECK(data_table_write(path, NULL, columns, known ? 9 : 6, t->samples));
+    CHECK(data_table_write(path, NULL, columns, !known ? 6 : in_space ? 9 : 8, t->samples));
 done:
     for (int k = 0; k < 3; k++)
         memory_free(physical[k]);

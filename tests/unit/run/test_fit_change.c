@@ -7,10 +7,11 @@
 
 enum { BINS = 40, CORE = 8 };
 
-/// g(r) = 0 in the core, and 1; a potential and a weight of B-splines.
+/// g(r) = 0 in the core, 0.05 in the next bin, of too few pairs to tell, and 1; a potential and a
+/// weight of B-splines.
 static void begin(struct decoder *decoder, struct inverse_problem *problem, double g[BINS]) {
     for (int k = 0; k < BINS; k++)
-        g[k] = k < CORE ? 0 : 1;
+        g[k] = k < CORE ? 0 : k == CORE ? 0.05 : 1;
     *problem = (struct inverse_problem){
         .goals = {.bins = {0, 0.1, BINS}, .goal[GOAL_RDF] = {.count = BINS, .value = g}},
         .unknown = {{true, {INVERSE_CURVE_BSPLINE, 12, -20, 80, 0, 0}, {NULL}},
@@ -31,6 +32,7 @@ static void test_change_of_a_potential_is_that_beyond_its_core(void **state) {
     assert_close(decoder_r(&decoder, UNKNOWN_POTENTIAL)[20], 2.05, 1e-12);
     first[20] = -1;
     last[25] = -0.5;
+    last[CORE] = -50;
     first[CORE - 3] = 1000;
     last[CORE - 3] = -1000;
     const struct fit_change change = fit_change_find(&decoder, UNKNOWN_POTENTIAL, 0, first, last);
@@ -38,7 +40,7 @@ static void test_change_of_a_potential_is_that_beyond_its_core(void **state) {
     assert_close(change.first_well_at, 2.05, 1e-12);
     assert_close(change.well, -0.5, 0);
     assert_close(change.well_at, 2.55, 1e-12);
-    assert_close(change.rms, sqrt(1.25 / (BINS - CORE)), 1e-12);
+    assert_close(change.rms, sqrt(1.25 / (BINS - CORE - 1)), 1e-12);
     decoder_clear(&decoder);
 }
 
