@@ -322,7 +322,8 @@ enum status motion_judge(const struct motion_summary *summary) {
                            "D by Green and Kubo, %.3g, may be off by %.2g: the VACF falls by %.0f "
                            "%% from one sample to the next; lower \"motion.every\"",
                            s->green_kubo, s->green_kubo_sampling, 100 * s->vacf_drop);
-    if (fabs(s->msd - s->green_kubo) > deviations * hypot(s->msd_error, error))
+    // An error of 0 is not known: there was one window.
+    if (s->msd_error > 0 && fabs(s->msd - s->green_kubo) > deviations * hypot(s->msd_error, error))
         return status_fail(STATUS_UNCONVERGED,
                            "D is %.3g by the MSD and %.3g by Green and Kubo, with errors of %.1g "
                            "and %.1g: a longer window (\"motion.lags\") may bring them together",
