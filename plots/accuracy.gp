@@ -45,7 +45,7 @@ do for [kind in kinds] {
     set rmargin at screen 0.485
     eval log_axis("y", bottom, 1.4 * top)
     eval name_axis("largest {/:Italic Δg}", 0.012)
-    set key on at screen 0.095, screen 1 - 8.0 / height left top vertical maxrows rows Left reverse \
+    set key on at screen 0.095, screen 1 - 8.0 / height left top vertical maxrows rows Left reverse noautotitle \
         width -3.5
     plot wanted linewidth 1.2 dashtype 2 linecolor rgb ink, \
         for [i = 1:count] table index (i - 1) \

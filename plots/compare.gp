@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Several fits: their radial distribution functions, potentials and weights with 95 % bands, as far
+# Several fits and simulations: their radial distribution functions, potentials and weights with 95 % bands, as far
 # as any of them has one, and what the error cost each. A fit keeps its colour in every panel.
 # Reads compare.tsv (numbers and names of the fits, in its comment lines) and, one block a fit and
 # a row of nan for a fit that has none,
@@ -20,6 +20,7 @@ truth_in(file) = !has(file) ? -1 : int(system(sprintf("awk -F '\t' 'BEGIN { foun
     /^# [0-9]+\t/ { block = substr($1, 3) } !/^#/ && found < 0 && $4 ~ /[0-9]/ { found = block } \
     END { print found }' %s", file)))
 with_rdf = has("rdf_compare.tsv")
+with_target = 0
 with_phi = has("potential_compare.tsv")
 with_omega = has("omega_compare.tsv")
 with_error = has_numbers("error_compare.tsv", 5)
@@ -31,18 +32,19 @@ begin = 0
 reach = 0
 if (with_rdf) {
     stats "rdf_compare.tsv" using 1 name "R" nooutput
-    stats "rdf_compare.tsv" using (high($2, $4)) name "G" nooutput
-    stats "rdf_compare.tsv" using (high($2, $4) > 1e-3 ? $1 : NaN) name "B" nooutput
+    stats "rdf_compare.tsv" using (high(known(2), known(4))) name "G" nooutput
+    stats "rdf_compare.tsv" using (high(known(2), known(4)) > 1e-3 ? $1 : NaN) name "B" nooutput
+    with_target = has_numbers("rdf_compare.tsv", 2)
     begin = B_records > 0 ? floor(10 * (B_min - 0.06)) / 10.0 : 0
     reach = R_max
 }
 if (with_phi) {
     stats "potential_compare.tsv" using 1 name "R" nooutput
-    stats "potential_compare.tsv" using 2 name "P" nooutput
-    bottom = low(0, P_min)
-    top = potential_top(bottom, P_max)
-    stats "potential_compare.tsv" using ($2 < top ? $1 : NaN) name "B" nooutput
-    begin = is_soft(P_max) ? 0 : floor(10 * (B_min - 0.06)) / 10.0
+    view = potential_view("potential_compare.tsv", 3)
+    top = real(word(view, 1))
+    bottom = low(0, real(word(view, 3)))
+    first = floor(10 * real(word(view, 2))) / 10.0
+    begin = with_rdf ? low(begin, first) : first
     reach = high(reach, R_max)
 }
 begin = high(0, begin)
@@ -69,7 +71,7 @@ if (with_error) {
 with_truth = phi_truth >= 0 || omega_truth >= 0
 with_band = (with_phi ? has_numbers("potential_compare.tsv", 3) : 0) + \
     (with_omega ? has_numbers("omega_compare.tsv", 3) : 0)
-extra = with_rdf + with_truth + (with_band > 0) + with_error
+extra = with_target + with_truth + (with_band > 0) + with_error
 rows = (count + extra + 1) / 2
 legend = 24 + 21 * rows
 panels = with_rdf + with_phi + with_omega
@@ -118,9 +120,9 @@ do for [kind in kinds] {
     unset xlabel
     set xrange [0:1]
     set yrange [0:1]
-    set key on at screen 0.105, screen 1 - 8.0 / height left top vertical maxrows rows Left reverse
+    set key on at screen 0.105, screen 1 - 8.0 / height left top vertical maxrows rows Left reverse noautotitle
     eval "plot " . \
-        (with_rdf ? "NaN with points title 'target' " . \
+        (with_target ? "NaN with points title 'target' " . \
             "pointtype 7 pointsize 0.5 linecolor rgb ink, " : "") . \
         (with_truth ? "NaN title 'truth' @true_line, " : "") . \
         (with_band ? "NaN with filledcurves y=0 title '95 % band' @band linecolor rgb faint, " \

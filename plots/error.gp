@@ -22,20 +22,20 @@ do for [kind in kinds] {
     set bmargin at screen 0.165
     eval log_range("y", L_min, E_max)
     set format y "%h"
-    set key on at screen 0.975, screen 0.985 right top vertical maxrows 1
+    set key on at screen 0.975, screen 0.985 right top vertical maxrows 1 noautotitle
 
-    set lmargin at screen 0.105
-    set rmargin at screen 0.535
+    set lmargin at screen 0.135
+    set rmargin at screen 0.55
     set xrange [0:end_of(N_max)]
     set xtics step_of(N_max / 3)
     set xlabel "simulations"
-    eval name_axis(error_label, 0.02)
+    eval name_axis(error_label, 0.018)
     plot "history.tsv" using 2:5 with lines title "statistical noise" \
             linewidth 1.4 dashtype 2 linecolor rgb faint, \
         "" using 2:4 with linespoints title "error" \
             linewidth 2.2 pointtype 7 pointsize dots linecolor rgb blue
 
-    set lmargin at screen 0.57
+    set lmargin at screen 0.585
     set rmargin at screen 0.975
     set xrange [0:end_of(S_max)]
     set xtics step_of(S_max / 3)

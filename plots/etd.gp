@@ -4,7 +4,18 @@
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
-stats "etd.tsv" using 1 name "T" nooutput
+# Its tables are targets of fits, in reduced units alone: others of the folder know the physical ones.
+times = "thermodynamics.tsv"
+rdfs = system("ls rdf.tsv rdf_*-*.tsv 2> /dev/null")
+distances = words(rdfs) > 0 ? word(rdfs, 1) : ""
+ps = has(times) ? factor_of(times, "time[ps]", 2) : 1
+nm = strlen(distances) ? factor_of(distances, "r[nm]", 1) : 1
+t_axis = has(times) ? t_axis_of(times) : t_label
+r0_axis = strlen(distances) ? in_units(distances, "r[nm]", "{/:Italic r}_0 / nm", \
+    "{/:Italic r}_0 / {/:Italic λ}") : "{/:Italic r}_0 / {/:Italic λ}"
+
+stats "etd.tsv" using (ps * $1) name "T" nooutput
+stats "etd.tsv" using 1 name "F" nooutput
 stats "etd_bins.tsv" using ($2 > 0 ? $0 : 1/0) name "B" nooutput
 first = B_records > 0 ? int(B_min) : 0
 last = B_records > 0 ? int(B_max) : 0
@@ -25,15 +36,15 @@ do for [kind in kinds] {
     set xrange [0:T_max]
     set yrange [0:1.04]
     set ytics 0.2
-    set xlabel "{/:Italic t} / {/:Italic τ}"
+    set xlabel t_axis
     eval name_axis("{/:Italic E}({/:Italic t}, {/:Italic r}_0)", 0.024)
-    set key outside right top title "{/:Italic r}_0 / {/:Italic λ}" enhanced
+    set key outside right top title r0_axis enhanced
     # The columns of the errors follow those of the values.
     both = "< paste etd.tsv etd_error.tsv"
-    plot for [i = 0:curves - 1] both using 1:(column(bin(i) + 2) - column(bin(i) + 2 + T_columns)): \
-            (column(bin(i) + 2) + column(bin(i) + 2 + T_columns)) with filledcurves @band \
+    plot for [i = 0:curves - 1] both using (ps * $1):(column(bin(i) + 2) - column(bin(i) + 2 + F_columns)): \
+            (column(bin(i) + 2) + column(bin(i) + 2 + F_columns)) with filledcurves @band \
             linecolor rgb colour_of(i), \
-        for [i = 0:curves - 1] "etd.tsv" using 1:(column(bin(i) + 2)) with lines linewidth 2.2 \
-            linecolor rgb colour_of(i) title sprintf("%.3f", r0(i))
+        for [i = 0:curves - 1] "etd.tsv" using (ps * $1):(column(bin(i) + 2)) with lines linewidth 2.2 \
+            linecolor rgb colour_of(i) title sprintf("%.3f", nm * r0(i))
     eval close
 }

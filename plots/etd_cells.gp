@@ -19,8 +19,11 @@ pick(i) = curves > 1 ? int((known_bins - 1) * i / (curves - 1.0) + 0.5) : 0
 bin(i) = int(word(found, 2 + 2 * pick(i)))
 r0(i) = real(word(found, 3 + 2 * pick(i)))
 
-stats "etd_cells.tsv" using 1 name "T" nooutput
-stats "etd_cells.tsv" using 2 name "R" nooutput
+ps = factor_of("etd_cells.tsv", "time[ps]", 1)
+nm = factor_of("etd_cells.tsv", "r0[nm]", 2)
+r0_label = in_units("etd_cells.tsv", "r0[nm]", "{/:Italic r}_0 / nm", "{/:Italic r}_0 / {/:Italic λ}")
+stats "etd_cells.tsv" using (ps * $1) name "T" nooutput
+stats "etd_cells.tsv" using (nm * $2) name "R" nooutput
 stats "etd_cells.tsv" using (valid(3) && valid(5) ? abs($5 - $3) : 0) name "D" nooutput
 reach = D_max > 0 ? D_max : 1
 half = bins > 1 ? 0.5 * (R_max - R_min) / (bins - 1) : 0.5
@@ -41,10 +44,10 @@ do for [kind in kinds] {
     set ytics 0.2
     set format x ""
     eval name_axis(E_label, 0.024)
-    set key at screen 0.985, graph 1 right top title "{/:Italic r}_0 / {/:Italic λ}" enhanced
-    plot for [i = 0:curves - 1] "etd_cells.tsv" every bins::bin(i) using 1:5 with lines \
-            linewidth 2.4 linecolor rgb colour_of(i) title sprintf("%.3f", r0(i)), \
-        for [i = 0:curves - 1] "" every (dots * bins)::bin(i) using 1:3 with points \
+    set key at screen 0.985, graph 1 right top title r0_label enhanced
+    plot for [i = 0:curves - 1] "etd_cells.tsv" every bins::bin(i) using (ps * $1):5 with lines \
+            linewidth 2.4 linecolor rgb colour_of(i) title sprintf("%.3f", nm * r0(i)), \
+        for [i = 0:curves - 1] "" every (dots * bins)::bin(i) using (ps * $1):3 with points \
             pointtype 6 pointsize 0.42 linewidth 0.8 linecolor rgb colour_of(i), \
         NaN with points title "target" pointtype 6 pointsize 0.42 linewidth 0.8 linecolor rgb ink
 
@@ -55,15 +58,15 @@ do for [kind in kinds] {
     set yrange [R_min - half:R_max + half]
     set ytics step_of((R_max - R_min) / 3)
     set format x "%h"
-    set xlabel t_label
-    eval name_axis("{/:Italic r}_0 / {/:Italic λ}", 0.024)
+    set xlabel t_axis_of("etd_cells.tsv")
+    eval name_axis(r0_label, 0.024)
     set palette defined (-1 blue, -0.5 "#8fbfdd", 0 "#f7f7f7", 0.5 "#eeb48c", 1 vermillion)
     set cbrange [-reach:reach]
     set cbtics step_of(reach / 1.5) scale 0.5
     set colorbox vertical user origin screen 0.82, screen 0.11 size screen 0.025, screen 0.34 \
         noborder
     set label 2 "{/:Italic E} − {/:Italic E}_{target}" at screen 0.97, screen 0.28 center rotate
-    plot "etd_cells.tsv" using 1:2:($5 - $3) with image
+    plot "etd_cells.tsv" using (ps * $1):(nm * $2):($5 - $3) with image
     unset label 2
     unset xlabel
     unset multiplot

@@ -14,7 +14,7 @@ dots = I_records > 50 ? 0 : 0.5
 do for [kind in kinds] {
     eval open(kind, "generations", 720, 560)
     set multiplot
-    set lmargin at screen 0.13
+    set lmargin at screen 0.155
     set rmargin at screen 0.97
     set xrange [I_min:high(I_max, I_min + 1)]
 
@@ -25,7 +25,7 @@ do for [kind in kinds] {
     set format y "%h"
     eval log_range("y", L_min, E_max)
     eval name_axis(error_label, 0.024)
-    set key on at screen 0.97, screen 0.985 right top vertical maxrows 1
+    set key on at screen 0.97, screen 0.985 right top vertical maxrows 1 noautotitle
     plot "history.tsv" using 1:5 with lines title "noise" \
             linewidth 1.4 dashtype 2 linecolor rgb faint, \
         "" using 1:7 with linespoints title "mean" \

@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # How far particles go, and how long they remember their velocity.
-# Reads motion.tsv: time, msd, msd_error, vacf, vacf_error. The first row is that of time 0.
+# Reads motion.tsv: time, msd, msd_error, vacf, vacf_error, and perhaps the same in ps and nm. The first row is that of time 0.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
-stats "motion.tsv" using 1 name "T" nooutput
-stats "motion.tsv" using (positive(1)) name "E" nooutput
-stats "motion.tsv" using 2 name "M" nooutput
-stats "motion.tsv" using (positive(2)) name "L" nooutput
+ps = factor_of("motion.tsv", "time[ps]", 1)
+nm2 = factor_of("motion.tsv", "msd[nm^2]", 2)
+msd_axis = in_units("motion.tsv", "msd[nm^2]", "MSD / nm^2", "MSD / {/:Italic λ}^2")
+stats "motion.tsv" using (ps * $1) name "T" nooutput
+stats "motion.tsv" using (ps * positive(1)) name "E" nooutput
+stats "motion.tsv" using (nm2 * $2) name "M" nooutput
+stats "motion.tsv" using (nm2 * positive(2)) name "L" nooutput
 stats "motion.tsv" using ($4 - $5) name "V" nooutput
 stats "motion.tsv" using 4 name "W" nooutput
 first = W_max > 0 ? W_max : 1
@@ -25,10 +28,10 @@ do for [kind in kinds] {
     set key off
     eval log_range("x", E_min, T_max)
     eval log_range("y", L_min, M_max)
-    eval name_axis("MSD / {/:Italic λ}^2", 0.024)
-    plot "motion.tsv" every ::1 using 1:($2 - $3):($2 + $3) with filledcurves @band \
+    eval name_axis(msd_axis, 0.024)
+    plot "motion.tsv" every ::1 using (ps * $1):(nm2 * ($2 - $3)):(nm2 * ($2 + $3)) with filledcurves @band \
             linecolor rgb blue, \
-        "" every ::1 using 1:2 with lines linewidth 2.2 linecolor rgb blue
+        "" every ::1 using (ps * $1):(nm2 * $2) with lines linewidth 2.2 linecolor rgb blue
 
     set tmargin at screen 0.50
     set bmargin at screen 0.125
@@ -37,12 +40,12 @@ do for [kind in kinds] {
     set xtics autofreq
     set yrange [low(-0.05, V_min / first):1.05]
     set ytics 0.2
-    set xlabel "{/:Italic t} / {/:Italic τ}"
+    set xlabel t_axis_of("motion.tsv")
     eval name_axis("VACF({/:Italic t}) / VACF(0)", 0.024)
     plot 0 linewidth 0.8 linecolor rgb ink, \
-        "motion.tsv" using 1:(($4 - $5) / first):(($4 + $5) / first) with filledcurves @band \
+        "motion.tsv" using (ps * $1):(($4 - $5) / first):(($4 + $5) / first) with filledcurves @band \
             linecolor rgb vermillion, \
-        "" using 1:($4 / first) with lines linewidth 2.2 linecolor rgb vermillion
+        "" using (ps * $1):($4 / first) with lines linewidth 2.2 linecolor rgb vermillion
     unset xlabel
     unset multiplot
     eval close

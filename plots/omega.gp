@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The dissipative weight that was found with its 95 % band, and the true one if it is known.
-# Reads omega.tsv: r, omega, omega_error (nan where not known), and perhaps truth; and weight_flat.tsv
+# Reads omega.tsv: r, omega, omega_error (nan where not known), and perhaps truth, r[nm]; and weight_flat.tsv
 # if it is there: the change that the data say least of, on the same r.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
 truth = column_of("omega.tsv", "truth")
-stats "omega.tsv" using 1 name "R" nooutput
+nm = factor_of("omega.tsv", "r[nm]", 1)
+stats "omega.tsv" using ($1 * nm) name "R" nooutput
 stats "omega.tsv" using 2 name "W" nooutput
 if (truth) {
     stats "omega.tsv" using truth name "T" nooutput
@@ -17,16 +18,17 @@ stats "omega.tsv" using ($2 + low(1.96 * known(3), 0.3 * W_max)) name "B" nooutp
 top = high(W_max, B_max)
 # An empty loop would keep its place in the legend; so would nan.
 show_band = !has_numbers("omega.tsv", 3) ? "" : "'omega.tsv' " . \
-    "using 1:(band_low(2, 3)):(band_high(2, 3)) " . \
+    "using ($1 * nm):(band_low(2, 3)):(band_high(2, 3)) " . \
     "with filledcurves @band linecolor rgb vermillion title '95 % band', "
-show_truth = !truth ? "" : ", 'omega.tsv' using 1:(column(truth)) " . \
+show_truth = !truth ? "" : ", 'omega.tsv' using ($1 * nm):(column(truth)) " . \
     "with lines title 'truth' @true_line"
 
-both = '"< paste omega.tsv weight_flat.tsv" using 1:'
-offset = truth ? 6 : 5
-show_flat = !has("weight_flat.tsv") ? "" : sprintf(", for [s = -1:1:2] %s($2 + 1.96 * s * $%d) " . \
-    "with lines linewidth 1.2 dashtype 3 linecolor rgb ink title s < 0 ? 'flattest direction' : ''", \
-    both, offset)
+both = '"< paste omega.tsv weight_flat.tsv" using ($1 * nm):'
+offset = 2 + int(system("awk -F '\t' '/^#/ { print NF; exit }' omega.tsv"))
+flat(sign) = sprintf(", %s($2 %s 1.96 * $%d) with lines linewidth 1.2 dashtype 3 " . \
+    "linecolor rgb ink", both, sign, offset)
+show_flat = !has("weight_flat.tsv") ? "" : \
+    flat("-") . " title 'flattest'" . flat("+") . " notitle"
 
 do for [kind in kinds] {
     eval open(kind, "omega", 720, 480)
@@ -36,10 +38,10 @@ do for [kind in kinds] {
     set bmargin at screen 0.14
     set xrange [0:R_max]
     set yrange [0:top > 0 ? 1.08 * top : 1]
-    set xlabel r_label
+    set xlabel r_axis_of("omega.tsv")
     eval name_axis(omega_label, 0.024)
     set key at screen 0.97, screen 0.985 right top vertical maxrows 1
-    plot @show_band "omega.tsv" using 1:2 with lines title "result" \
+    plot @show_band "omega.tsv" using ($1 * nm):2 with lines title "result" \
             linewidth 2.6 linecolor rgb vermillion @show_truth @show_flat
     eval close
 }

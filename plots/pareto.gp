@@ -10,9 +10,6 @@ load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 goals = int(system("head -n 1 pareto.tsv | grep -o _rmse | wc -l"))
 goal(n) = system(sprintf("awk -F '\t' '{ sub(/_.*/, \"\", $%d); print $%d; exit }' pareto.tsv", \
     5 + n, 5 + n))
-label_of(goal) = "rmse of " . (goal eq "rdf" ? g_label : goal eq "etd" ? \
-    "{/:Italic E}({/:Italic t}, {/:Italic r}_0)" : goal eq "vacf" ? "VACF({/:Italic t})" : \
-    goal eq "msd" ? "MSD({/:Italic t})" : goal eq "diffusion" ? "{/:Italic D}" : "{/:Italic p}")
 noise_x = 6 + goals
 noise_y = 7 + goals
 
@@ -30,6 +27,8 @@ right = low(X_max, upper(A_max, X_up_quartile, X_median))
 top = low(Y_max, upper(B_max, Y_up_quartile, Y_median))
 
 light = "#b5d3e7"
+# The front of two goals is a line; that of more is a surface, seen from the side.
+front_style = goals > 2 ? "points" : "linespoints"
 
 do for [kind in kinds] {
     eval open(kind, "pareto", 720, 560)
@@ -39,8 +38,8 @@ do for [kind in kinds] {
     set bmargin at screen 0.125
     eval log_range("x", left, right)
     eval log_range("y", bottom, top)
-    set xlabel label_of(goal(1))
-    eval name_axis(label_of(goal(2)), 0.024)
+    set xlabel rmse_of(goal(1))
+    eval name_axis(rmse_of(goal(2)), 0.024)
     set key at screen 0.97, screen 0.985 right top vertical maxrows 1
     if (P_max > 0) {
         set arrow 1 from first P_max, graph 0 to first P_max, graph 1 nohead back \
@@ -54,8 +53,8 @@ do for [kind in kinds] {
         NaN with points title "simulations" pointtype 7 pointsize 0.7 linecolor rgb light, \
         "pareto_history.tsv" using ($2 == 0 ? $4 : NaN):5 with points \
             pointtype 7 pointsize 0.3 linecolor rgb light, \
-        "pareto.tsv" using ($2 == 1 ? $6 : NaN):7 with linespoints title "front" \
-            linewidth 2 pointtype 7 pointsize 0.6 linecolor rgb blue, \
+        "pareto.tsv" using ($2 == 1 ? $6 : NaN):7 with @front_style title "front" \
+            linewidth 2 pointtype 7 pointsize 0.7 linecolor rgb blue, \
         "" using ($3 == 1 ? $6 : NaN):7 with points title "chosen" \
             pointtype 6 pointsize 1.5 linewidth 2.4 linecolor rgb vermillion
     eval close

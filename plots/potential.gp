@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The potential that was found, on the potentials of the iterations before it, light to dark.
-# Reads potential.tsv: r, phi, force, phi_error (nan where not known), perhaps truth, …
+# Reads potential.tsv: r, phi, force, phi_error (nan where not known), perhaps truth, r[nm], phi[kJ/mol]
 # and, if it is there, potential_history.tsv: r, then one column an iteration.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
@@ -25,13 +25,18 @@ if (has(history)) {
 every = high(1, ceil((columns - 1) / real(most_lines)))
 iteration_of(column) = first + (last - first) * (column - 2.0) / high(1, columns - 2)
 
+# In nm and kJ/mol where the table has them.
+nm = factor_of(table, "r[nm]", 1)
+kJ = factor_of(table, "phi[kJ/mol]", 2)
+phi_axis = in_units(table, "phi[kJ/mol]", "{/:Italic Φ}({/:Italic r}) / (kJ/mol)", phi_label)
+
 # The iterations may go a little lower than the result.
-stats table using 2 name "P" nooutput
-bottom = low(0, P_min)
-top = potential_top(bottom, P_max)
-stats table using ($2 < top ? $1 : NaN) name "R" nooutput
-begin = is_soft(P_max) ? 0 : floor(10 * (R_min - 0.06)) / 10.0
-lowest = 2 * bottom - 0.2
+stats table using 1 name "R" nooutput
+view = potential_view(table, 4)
+top = real(word(view, 1))
+begin = real(word(view, 2))
+bottom = low(0, real(word(view, 3)))
+lowest = 2 * bottom - 0.05 * top
 do for [k = columns:2:-every] {
     stats history using k name "H" nooutput
     bottom = low(bottom, high(lowest, H_min))
@@ -42,9 +47,9 @@ truth = column_of(table, "truth")
 lower = truth ? 0.065 : 0
 # An empty loop would keep its place in the legend; so would nan.
 show_band = !has_numbers(table, 4) ? "" : "'" . table . "' " . \
-    "using 1:(band_low(2, 4)):(band_high(2, 4)) " . \
+    "using ($1 * nm):(kJ * band_low(2, 4)):(kJ * band_high(2, 4)) " . \
     "with filledcurves @band linecolor rgb blue title '95 % band', "
-show_truth = !truth ? "" : ", '" . table . "' using 1:(column(truth)) " . \
+show_truth = !truth ? "" : ", '" . table . "' using ($1 * nm):(kJ * column(truth)) " . \
     "with lines title 'truth' @true_line"
 
 do for [kind in kinds] {
@@ -53,10 +58,10 @@ do for [kind in kinds] {
     set rmargin at screen 0.97
     set tmargin at screen 0.97
     set bmargin at screen 0.14
-    set xrange [begin:R_max]
-    set yrange [bottom:top]
-    set xlabel r_label
-    eval name_axis(phi_label, 0.024)
+    set xrange [nm * begin:nm * R_max]
+    set yrange [kJ * bottom:kJ * top]
+    set xlabel r_axis_of(table)
+    eval name_axis(phi_axis, 0.024)
     set key at graph 0.985, graph 0.97 right top
     if (columns > 1) {
         set palette defined (0 "#d9e0e6", 1 "#41749c")
@@ -67,9 +72,9 @@ do for [kind in kinds] {
         set label 2 "iteration" at graph 0.865, graph 0.785 - lower center
     }
     plot for [k = 2 + (columns - 2) % every:columns:every] history \
-            using 1:k:(iteration_of(k)) with lines linewidth 0.9 linecolor palette, \
+            using ($1 * nm):(kJ * column(k)):(iteration_of(k)) with lines linewidth 0.9 linecolor palette, \
         0 linewidth 0.8 linecolor rgb ink, \
-        @show_band table using 1:2 with lines title "result" \
+        @show_band table using ($1 * nm):(kJ * $2) with lines title "result" \
             linewidth 2.6 linecolor rgb blue @show_truth
     eval close
 }

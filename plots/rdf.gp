@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Radial distribution function of the result on that of the target, and their difference.
-# Reads rdf.tsv: r, target, target_error, result, result_error.
+# Reads rdf.tsv: r, target, target_error, result, result_error, and perhaps r[nm].
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
@@ -10,7 +10,8 @@ table = "rdf" . pair . ".tsv"
 
 combined(a, b) = sqrt(known(a)**2 + known(b)**2)
 
-stats table using 1 name "R" nooutput
+nm = factor_of(table, "r[nm]", 1)
+stats table using ($1 * nm) name "R" nooutput
 stats table using (high($2, $4)) name "G" nooutput
 stats table using (high(abs($4 - $2), combined(3, 5))) name "D" nooutput
 reach = D_max > 0 ? 1.15 * D_max : 1
@@ -29,22 +30,22 @@ do for [kind in kinds] {
     set format x ""
     eval name_axis(g_label, 0.024)
     set key at screen 0.97, screen 0.985 right top vertical maxrows 1
-    plot table using 1:($4 - $5):($4 + $5) with filledcurves @band linecolor rgb blue, \
-        table using 1:4 with lines title "result" linewidth 2.6 linecolor rgb blue, \
-        table using 1:2 with points title "target" pointtype 7 pointsize 0.38 linecolor rgb ink
+    plot table using ($1 * nm):($4 - $5):($4 + $5) with filledcurves @band linecolor rgb blue, \
+        table using ($1 * nm):4 with lines title "result" linewidth 2.6 linecolor rgb blue, \
+        table using ($1 * nm):2 with points title "target" pointtype 7 pointsize 0.38 linecolor rgb ink
 
     set tmargin at screen 0.34
     set bmargin at screen 0.125
     set yrange [-reach:reach]
     set ytics step_of(reach / 1.5)
     set format x "%h"
-    set xlabel r_label
+    set xlabel r_axis_of(table)
     eval name_axis("{/:Italic g} − {/:Italic g}_{target}", 0.024)
     set key at graph 0.99, graph 1.18 right top vertical maxrows 1
-    plot table using 1:(-combined(3, 5)):(combined(3, 5)) with filledcurves @band \
+    plot table using ($1 * nm):(-combined(3, 5)):(combined(3, 5)) with filledcurves @band \
             title "± 1 standard error" linecolor rgb faint, \
         0 linewidth 0.8 linecolor rgb ink, \
-        table using 1:($4 - $2) with lines linewidth 1.3 linecolor rgb blue
+        table using ($1 * nm):($4 - $2) with lines linewidth 1.3 linecolor rgb blue
     unset xlabel
     unset multiplot
     eval close

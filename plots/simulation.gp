@@ -1,26 +1,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # One simulation: its radial distribution function, and how it came to equilibrium.
 # Reads thermodynamics.tsv: step, time, temperature, potential_energy, pressure,
-# temperature_configurational (nan on steps where it was not measured),
+# temperature_configurational (nan on steps where it was not measured), perhaps the same in ps, kJ/mol, bar,
 # and, if they are there, rdf.tsv or, in a mixture, rdf_A-A.tsv, rdf_A-B.tsv, …: r, g, g_error.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
+ps = factor_of("thermodynamics.tsv", "time[ps]", 2)
+kJ = factor_of("thermodynamics.tsv", "potential_energy[kJ/mol]", 4)
+bar = factor_of("thermodynamics.tsv", "pressure[bar]", 5)
 rdfs = system("ls rdf.tsv rdf_*-*.tsv 2> /dev/null")
 with_rdf = words(rdfs) > 0
+nm = with_rdf ? factor_of(word(rdfs, 1), "r[nm]", 1) : 1
 g_top = 0
 do for [file in rdfs] {
-    stats file using 1 name "R" nooutput
+    stats file using (nm * $1) name "R" nooutput
     stats file using ($2 + known(3)) name "G" nooutput
     g_top = high(g_top, G_max)
 }
 # The kind of pairs that a table is of: nothing, or A-B.
 kind_of(file) = strlen(file) > 7 ? file[5:strlen(file) - 4] : ""
-stats "thermodynamics.tsv" using 2 name "T" nooutput
+stats "thermodynamics.tsv" using (ps * $2) name "T" nooutput
 stats "thermodynamics.tsv" using (valid(6) ? low($3, $6) : $3) name "L" nooutput
 stats "thermodynamics.tsv" using (valid(6) ? high($3, $6) : $3) name "H" nooutput
-stats "thermodynamics.tsv" using 4 name "U" nooutput
-stats "thermodynamics.tsv" using 5 name "P" nooutput
+stats "thermodynamics.tsv" using (kJ * $4) name "U" nooutput
+stats "thermodynamics.tsv" using (bar * $5) name "P" nooutput
 configurational = int(system("awk '!/^#/ && $6 ~ /[0-9]/ { found = 1 } END { print found + 0 }' \
     thermodynamics.tsv"))
 
@@ -46,12 +50,12 @@ do for [kind in kinds] {
         set ytics autofreq
         set yrange [0:g_top > 0 ? 1.08 * g_top : 1]
         set format x "%h"
-        set xlabel r_label
+        set xlabel r_axis_of(word(rdfs, 1))
         eval name_axis(g_label, 0.018)
-        set key on inside left top vertical maxrows auto
-        plot for [i = 1:words(rdfs)] word(rdfs, i) using 1:($2 - $3):($2 + $3) \
+        set key on inside right bottom vertical maxrows auto noautotitle
+        plot for [i = 1:words(rdfs)] word(rdfs, i) using (nm * $1):($2 - $3):($2 + $3) \
                 with filledcurves @band linecolor rgb colour_of(i - 1), \
-            for [i = 1:words(rdfs)] word(rdfs, i) using 1:2 with lines title kind_of(word(rdfs, i)) \
+            for [i = 1:words(rdfs)] word(rdfs, i) using (nm * $1):2 with lines title kind_of(word(rdfs, i)) \
                 linewidth 2.2 linecolor rgb colour_of(i - 1)
     }
     set lmargin at screen left
@@ -62,22 +66,24 @@ do for [kind in kinds] {
 
     eval begin_panel(0) . value_range(L_min, H_max)
     eval name_axis("{/:Italic T} / {/:Italic T}_0", label)
-    set key on at graph 1, graph 1.22 right top vertical maxrows 1
-    plot "thermodynamics.tsv" using 2:3 with lines title "kinetic" \
+    set key on at graph 1, graph 1.22 right top vertical maxrows 1 noautotitle
+    plot "thermodynamics.tsv" using (ps * $2):3 with lines title "kinetic" \
             linewidth 1.2 linecolor rgb blue, \
-        for [i = 1:configurational] "" using 2:6 with points title "configurational" \
+        for [i = 1:configurational] "" using (ps * $2):6 with points title "configurational" \
             pointtype 7 pointsize 0.5 linecolor rgb vermillion
 
     eval begin_panel(1) . value_range(U_min, U_max)
-    eval name_axis("{/:Italic U} / {/:Italic k}_B{/:Italic T}_0", label)
+    eval name_axis(in_units("thermodynamics.tsv", "potential_energy[kJ/mol]", \
+        "{/:Italic U} / (kJ/mol)", "{/:Italic U} / {/:Italic k}_B{/:Italic T}_0"), label)
     set key off
-    plot "thermodynamics.tsv" using 2:4 with lines linewidth 1.2 linecolor rgb green
+    plot "thermodynamics.tsv" using (ps * $2):(kJ * $4) with lines linewidth 1.2 linecolor rgb green
 
     eval begin_panel(2) . value_range(P_min, P_max)
-    eval name_axis("{/:Italic p λ}^3 / {/:Italic k}_B{/:Italic T}_0", label)
+    eval name_axis(in_units("thermodynamics.tsv", "pressure[bar]", \
+        "{/:Italic p} / bar", "{/:Italic p λ}^3 / {/:Italic k}_B{/:Italic T}_0"), label)
     set format x "%h"
-    set xlabel "{/:Italic t} / {/:Italic τ}"
-    plot "thermodynamics.tsv" using 2:5 with lines linewidth 1.2 linecolor rgb purple
+    set xlabel t_axis_of("thermodynamics.tsv")
+    plot "thermodynamics.tsv" using (ps * $2):(bar * $5) with lines linewidth 1.2 linecolor rgb purple
     unset multiplot
     eval close
 }

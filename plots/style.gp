@@ -44,6 +44,8 @@ omega_label = "{/:Italic ω}({/:Italic r}) / ({/:Italic μ}/{/:Italic τ})^{1/2}
 t_label   = "{/:Italic t} / {/:Italic τ}"
 E_label   = "{/:Italic E}({/:Italic t}, {/:Italic r}_0)"
 
+# "set key on" forgets noautotitle, so it says so again wherever it stands.
+
 # Command that names the vertical axis of a panel, x from the figure's edge: the names of all
 # panels stand in one line.
 name_axis(text, x) = sprintf("set label 1 '%s' at screen %g, graph 0.5 center rotate", text, x)
@@ -67,15 +69,34 @@ has(file) = int(system("test -r " . file . " && echo 1 || echo 0"))
 column_of(file, name) = !has(file) ? 0 : int(system(sprintf("awk -F '\t' '/^#/ { sub(/^# */, \"\"); \
     for (k = 1; k <= NF; k++) { sub(/\\[.*/, \"\", $k); if ($k == \"%s\" && !found) found = k } } \
     END { print found + 0 }' %s", name, file)))
-has_numbers(file, column) = int(system(sprintf("awk -F '\t' '!/^#/ && $%d ~ /[1-9]/ { found = 1 } \
+has_numbers(file, column) = !has(file) ? 0 : int(system(sprintf("awk -F '\t' '!/^#/ && $%d ~ /[1-9]/ { found = 1 } \
     END { print found + 0 }' %s", column, file)))
+
+# What one of the column called `name`, with a physical unit as in "r[nm]", is in units of column n;
+# 1 where the table has no such column. in_units(…) chooses the axis's text by the same.
+factor_of(file, name, n) = real(system(sprintf("awk -F '\t' '/^#/ { sub(/^# */, \"\"); \
+    for (k = 1; k <= NF; k++) if ($k == \"%s\") found = k; next } \
+    found && $%d + 0 != 0 { factor = $found / $%d } \
+    END { printf \"%%.10g\", factor ? factor : 1 }' %s", name, n, n, file)))
+in_units(file, name, physical, reduced) = \
+    int(system(sprintf("grep '^#' %s | grep -cF '%s' || true", file, name))) ? physical : reduced
+r_axis_of(file) = in_units(file, "r[nm]", "{/:Italic r} / nm", r_label)
+t_axis_of(file) = in_units(file, "time[ps]", "{/:Italic t} / ps", t_label)
+
+# What a target is called, and the unit of its error.
+goal_label(goal) = goal eq "rdf" ? "{/:Italic g}" : goal eq "etd" ? "{/:Italic E}" : \
+    goal eq "vacf" ? "VACF" : goal eq "msd" ? "MSD" : \
+    goal eq "diffusion" ? "{/:Italic D}" : "{/:Italic p}"
+goal_unit(goal) = goal eq "vacf" ? " / ({/:Italic λ}^2/{/:Italic τ}^2)" : \
+    goal eq "msd" ? " / {/:Italic λ}^2" : goal eq "diffusion" ? " / ({/:Italic λ}^2/{/:Italic τ})" : \
+    goal eq "pressure" ? " / ({/:Italic k}_B{/:Italic T}_0/{/:Italic λ}^3)" : ""
+rmse_of(goal) = "rmse of " . goal_label(goal) . goal_unit(goal)
 
 # What the column "error" of a fit is, from the targets that used.json says are fitted.
 fitted = !has("used.json") ? "" : system("awk '/\"(rdf|etd|vacf|msd|diffusion|pressure)\":/ { \
     split($0, part, /\"/); kind = part[2] } /\"fitted\":.*\"yes\"/ { printf \" %s\", kind }' used.json")
-error_label = words(fitted) > 1 ? "weighted error" : "rmse of " . ( \
-    fitted eq " etd" ? "{/:Italic E}" : fitted eq " vacf" ? "VACF" : fitted eq " msd" ? "MSD" : \
-    fitted eq " diffusion" ? "{/:Italic D}" : fitted eq " pressure" ? "{/:Italic p}" : "{/:Italic g}")
+error_label = words(fitted) > 1 ? "weighted error" : \
+    rmse_of(words(fitted) == 1 ? word(fitted, 1) : "rdf")
 
 # The largest of 1, 2 or 5 times a power of ten that is not above x: a distance of tics.
 power(x) = 10**floor(log10(x))
@@ -94,7 +115,31 @@ log_axis(axis, a, b) = sprintf("set logscale %s; set %srange [%g:%g]; ", axis, a
     log_tics(axis, a, b)
 log_range(axis, a, b) = a > b ? log_axis(axis, 0.1, 1) : log_axis(axis, a / 1.4, b * 1.4)
 
-# Upper end of a potential's axis. A core that no particle enters would squeeze everything else into
-# a line: it is cut off at three depths of the well. A soft core is shown whole.
-is_soft(highest) = highest <= 20
-potential_top(lowest, highest) = is_soft(highest) ? highest : low(4, high(1, -3 * lowest))
+# Where a potential's axes begin and end: "top begin lowest" in the table's own units, of all blocks
+# of a file with r and Φ in columns 1 and 2 and Φ's errors in column `errors`. A soft core, up to
+# 20 k_B T_0, is shown whole. A core that no particle enters would squeeze everything else into a line:
+# it is cut off above the highest barrier behind it, and at three depths of the well; but not so low
+# that less than 85 % of the way from 20 k_B T_0 to the cutoff were to be seen.
+potential_view(file, errors) = system(sprintf("awk -F '\t' -v e=%d -v n=0 '\
+    function high(a, b) { return a > b ? a : b } function low(a, b) { return a < b ? a : b } \
+    /^#/ || NF < 2 || $2 !~ /[0-9]/ { next } \
+    { r[n] = $1 + 0; p[n] = $2 + 0 } \
+    n == 0 { end = r[0]; lowest = p[0]; highest = p[0] } \
+    n == 0 || r[n] <= r[n - 1] { entered = 0; inside = 0 } \
+    { end = high(end, r[n]); lowest = low(lowest, p[n]); highest = high(highest, p[n]) } \
+    p[n] <= 20 { \
+        if (!entered && (!known || r[n] < core)) { core = r[n]; known = 1 } \
+        least = entered ? low(least, p[n]) : p[n]; entered = 1; \
+        margin = $e ~ /[0-9]/ ? low(1.96 * $e, 0.5 * p[n]) : 0; \
+        if (p[n] > 0 && p[n] - least > 0.1 * p[n]) barrier = high(barrier, p[n] + margin) } \
+    { n++ } \
+    END { \
+        top = highest; begin = 0; \
+        if (highest > 20) { \
+            top = high(high(1, 1.1 * barrier), low(4, -3 * lowest)); \
+            limit = core + 0.15 * (end - core); \
+            for (k = 1; k < n; k++) if (r[k] >= limit && r[k - 1] < limit) top = high(top, p[k]); \
+            top = low(top, 20); begin = end; \
+            for (k = 0; k < n; k++) if (p[k] < top) begin = low(begin, r[k]); \
+            begin = high(0, begin - 0.05 * (end - begin)) } \
+        print top, begin, lowest }' %s", errors, file))

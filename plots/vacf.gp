@@ -12,7 +12,8 @@ result = B_max > 0 ? B_max : 1
 combined(a, b) = sqrt((known(a) / target)**2 + (known(b) / result)**2)
 difference(a, b) = column(b) / result - column(a) / target
 
-stats "vacf.tsv" using 1 name "T" nooutput
+ps = factor_of("vacf.tsv", "time[ps]", 1)
+stats "vacf.tsv" using (ps * $1) name "T" nooutput
 stats "vacf.tsv" using (low($2 / target, $4 / result)) name "L" nooutput
 stats "vacf.tsv" using (high(abs(difference(2, 4)), 1.96 * combined(3, 5))) name "D" nooutput
 reach = D_max > 0 ? 1.15 * D_max : 1
@@ -32,10 +33,10 @@ do for [kind in kinds] {
     eval name_axis("VACF({/:Italic t}) / VACF(0)", 0.024)
     set key at screen 0.97, screen 0.985 right top vertical maxrows 1
     plot 0 linewidth 0.8 linecolor rgb ink, \
-        "vacf.tsv" using 1:(band_low(4, 5) / result):(band_high(4, 5) / result) \
+        "vacf.tsv" using (ps * $1):(band_low(4, 5) / result):(band_high(4, 5) / result) \
             with filledcurves @band linecolor rgb blue, \
-        "" using 1:($4 / result) with lines title "result" linewidth 2.6 linecolor rgb blue, \
-        "" using 1:($2 / target) with points title "target" \
+        "" using (ps * $1):($4 / result) with lines title "result" linewidth 2.6 linecolor rgb blue, \
+        "" using (ps * $1):($2 / target) with points title "target" \
             pointtype 7 pointsize 0.38 linecolor rgb ink
 
     set tmargin at screen 0.34
@@ -43,13 +44,13 @@ do for [kind in kinds] {
     set yrange [-reach:reach]
     set ytics step_of(reach / 1.5)
     set format x "%h"
-    set xlabel t_label
+    set xlabel t_axis_of("vacf.tsv")
     eval name_axis("result − target", 0.024)
     set key at graph 0.99, graph 1.18 right top vertical maxrows 1
-    plot "vacf.tsv" using 1:(-1.96 * combined(3, 5)):(1.96 * combined(3, 5)) \
+    plot "vacf.tsv" using (ps * $1):(-1.96 * combined(3, 5)):(1.96 * combined(3, 5)) \
             with filledcurves @band title "95 % band" linecolor rgb faint, \
         0 linewidth 0.8 linecolor rgb ink, \
-        "" using 1:(difference(2, 4)) with lines linewidth 1.3 linecolor rgb blue
+        "" using (ps * $1):(difference(2, 4)) with lines linewidth 1.3 linecolor rgb blue
     unset xlabel
     unset multiplot
     eval close

@@ -44,6 +44,12 @@ void decoder_curve_name(const struct decoder *decoder, enum unknown_kind kind, s
 void decoder_curve(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
                    double *curve);
 
+/// Parameters of a weight that is a formula, and their standard errors from the covariance of the
+/// genes as in decoder_band; that may be NULL. Tested: test_decoder.
+void decoder_parameters(const struct decoder *decoder, const double *genes,
+                        const double *covariance,
+                        struct inverse_parameter parameter[INVERSE_PARAMETERS]);
+
 /// Standard errors of the curve of some genes, shape [points], from the covariance of the genes,
 /// shape [genes, genes] of all unknowns; NaN if that is NULL, and in the core, which is set.
 /// @param[out] flat  as curve_flat of an inverse_step: principal components of the curve's errors,
@@ -75,6 +81,7 @@ enum status decoder_start(const struct decoder *decoder, double *genes) MUST_USE
 struct decoder_curves {
     double *value[UNKNOWNS], *error[UNKNOWNS]; ///< shape [points]; NULL for what is known
     double *flat[UNKNOWNS];                    ///< as curve_flat of an inverse_step
+    struct inverse_parameter parameter[INVERSE_PARAMETERS];
 };
 enum status decoder_curves_init(const struct decoder *decoder,
                                 struct decoder_curves *curves) MUST_USE;
@@ -84,7 +91,7 @@ void decoder_curves_clear(struct decoder_curves *curves);
 void decoder_curves_show(const struct decoder *decoder, const double *genes,
                          struct decoder_curves *curves, struct inverse_step *step);
 
-/// Standard errors of all curves, as decoder_band. Fails: NO_MEMORY.
+/// Standard errors of all curves and parameters, as decoder_band. Fails: NO_MEMORY.
 enum status decoder_curves_bands(const struct decoder *decoder, const double *genes,
                                  const double *covariance, struct decoder_curves *curves) MUST_USE;
 

@@ -19,17 +19,34 @@ extern const char *const inverse_unknown_names[UNKNOWNS];
 /// What genes make: the shapes of curves/shape.h in their order, or the formula of a weight,
 /// ω = σ(1 − r/r_c)^s beyond r_0, of which the genes are σ in [minimum, maximum], s in [0, 4] and
 /// r_0 from the inner cutoff to half-way to the cutoff.
-enum { INVERSE_CURVE_BEZIER, INVERSE_CURVE_BSPLINE, INVERSE_CURVE_POWER, INVERSE_POWER_GENES = 3 };
+enum { INVERSE_CURVE_BEZIER, INVERSE_CURVE_BSPLINE, INVERSE_CURVE_POWER };
+
+/// Parameters of the formula, in this order everywhere: σ [sqrt(mass/time)], s, r_0 [λ]. Each is a
+/// gene unless it is held fixed.
+enum { INVERSE_SIGMA, INVERSE_EXPONENT, INVERSE_INNER_CUTOFF, INVERSE_PARAMETERS };
 
 /// How an optimiser writes an unknown as a curve of some genes.
 struct unknown_parameters {
-    int shape;                   ///< INVERSE_CURVE_…
-    int64_t genes;               ///< of the curve
-    double minimum, maximum;     ///< of a gene [k_B T_0] or [sqrt(mass/time)]
-    double inner_cutoff, cutoff; ///< of a weight [λ]
+    int shape;                        ///< INVERSE_CURVE_…
+    int64_t genes;                    ///< of the curve
+    double minimum, maximum;          ///< of a gene [k_B T_0] or [sqrt(mass/time)]
+    double inner_cutoff, cutoff;      ///< of a weight [λ]
+    double fixed[INVERSE_PARAMETERS]; ///< of the formula; NaN: to be found
 };
 
 extern const struct field inverse_potential_fields[], inverse_weight_fields[];
+
+/// The parameters of the formula, of an array shape [INVERSE_PARAMETERS]; the default is NaN.
+extern const struct field inverse_fixed_fields[];
+
+/// Parameters of the formula that are to be found.
+int inverse_free_parameters(const double fixed[INVERSE_PARAMETERS]);
+
+/// A parameter of a formula as it was found.
+struct inverse_parameter {
+    double value; ///< NaN: the unknown is no formula
+    double error; ///< standard error; 0: held fixed, NaN: not known
+};
 
 /// A function of the distance, to be found or known. Borrowed.
 struct unknown {
@@ -84,6 +101,7 @@ struct inverse_step {
     /// none.
     const double *without_ramp;
     struct inverse_ramp ramp;
+    struct inverse_parameter parameter[INVERSE_PARAMETERS]; ///< of a weight that is a formula
     bool finished;
     bool converged; ///< it has settled: by its own measure it can do no better
     bool used_up;   ///< it finished since all was used that it was to use, as populations do

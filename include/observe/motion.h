@@ -68,8 +68,12 @@ struct motion_curves {
 struct motion_summary {
     double msd, msd_error;               ///< D of the MSD: least squares, unweighted      [λ²/τ]
     double green_kubo, green_kubo_error; ///< D of the VACF: trapezoids to the window's end [λ²/τ]
-    double fit_begin, fit_end;           ///< the window of the least squares               [τ]
-    struct maxwell_summary maxwell;      ///< NaN without friction: no thermostat
+    double green_kubo_sampling; ///< what trapezoids of this width may be off               [λ²/τ]
+    double green_kubo_truncation; ///< what may follow the window's end                       [λ²/τ]
+    double vacf_drop;             ///< 1 − VACF(one interval)/VACF(0)
+    double blocks;                ///< of time, complete: what errors rest on
+    double fit_begin, fit_end;    ///< the window of the least squares               [τ]
+    struct maxwell_summary maxwell; ///< NaN without friction: no thermostat
 };
 
 /// Results of all windows that are complete; `curves` may be NULL.
@@ -83,5 +87,17 @@ struct motion_summary {
 /// mean of D(t) over the fitted times, that of the VACF is D(t) at the window's end; whether D(t)
 /// has come to its plateau by then is for the eye.
 /// Tested: test_motion, test_motion_brute_force, test_diffusion, test_errors.
+///
+/// `green_kubo_sampling` is that of Richardson's extrapolation, a third of what trapezoids of twice
+/// the width differ by; `green_kubo_truncation` what the second half of the window adds beyond its
+/// statistical error: a VACF that has decayed adds nothing there.
 struct motion_summary motion_result(const struct motion *motion,
                                     const struct motion_curves *curves);
+
+/// The error of D of the VACF with sampling and truncation [λ²/τ].
+double motion_green_kubo_uncertainty(const struct motion_summary *summary);
+
+/// Whether D of the VACF can be trusted: its sampling is off by less than 3 % or its statistical
+/// error, and it agrees with D of the MSD within four combined errors. Fails: UNCONVERGED with the
+/// numbers in the message. Tested: test_motion.
+enum status motion_judge(const struct motion_summary *summary) MUST_USE;

@@ -52,3 +52,10 @@ struct thermodynamics_summary thermodynamics_result(const struct thermodynamics 
 /// test_thermodynamics.
 enum status thermodynamics_judge(const struct thermodynamics_summary *summary,
                                  const struct simulation_setup *setup) MUST_USE;
+
+/// A stricter look at what was fitted: the configurational temperature off by more than 2.5 % and
+/// three standard errors says that the potential and its time step do not belong together, though
+/// the velocities look right. Fails: UNSTABLE with the numbers in the message. Tested:
+/// test_thermodynamics.
+enum status thermodynamics_judge_fit(const struct thermodynamics_summary *summary,
+                                     const struct simulation_setup *setup) MUST_USE;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Several finished fits side by side.
+/// @file Several finished fits and simulations side by side.
 #pragma once
 
 #include "base/status.h"
@@ -17,7 +17,7 @@
 ///   figures/compare.svg and .png
 /// The tables but the first hold one block a fit, two empty lines apart (gnuplot's `index`), with
 /// one row of nan for a fit that has no such table; one that no fit has is not written.
-/// Potentials and weights are those that were fitted.
+/// Potentials and weights are those that were fitted. A simulation has a g(r) without a target.
 /// A fit is called after the last part of its path that is not "out", with as many parts before
 /// it as are needed to tell the fits apart; the same folder again gets a number.
 /// Fails: BAD_INPUT or IO with one line that names the file. A figure that fails is a warning on

@@ -10,17 +10,20 @@ struct fit_result {
     enum status status; ///< OK: converged, or finished; UNCONVERGED; INTERRUPTED
     bool settled;       ///< whether OK says that it has converged
     uint64_t iterations, evaluations, engine_steps;
-    double seconds;                          ///< of the fit, without its verification
-    const double *curve[UNKNOWNS];           ///< on the unknown's points; NULL: not fitted
-    const double *curve_error[UNKNOWNS];     ///< may hold NaN: not known
-    const double *curve_flat[UNKNOWNS];      ///< shape [INVERSE_FLAT, points]; may hold NaN
-    const double *without_ramp;              ///< inverse_step.without_ramp; may hold NaN
-    struct inverse_ramp ramp;                ///< error 0: not known
-    const char *reason;                      ///< why it has not converged, or settled, or ""
-    const struct verification *verification; ///< NULL if there was none
+    double seconds;                            ///< of the fit, without its verification
+    const double *curve[UNKNOWNS];             ///< on the unknown's points; NULL: not fitted
+    const double *curve_error[UNKNOWNS];       ///< may hold NaN: not known
+    const double *curve_flat[UNKNOWNS];        ///< shape [INVERSE_FLAT, points]; may hold NaN
+    const double *first[UNKNOWNS];             ///< the curve of the first iteration; NULL: none yet
+    double first_error, error;                 ///< of the fit, as its method measured them
+    const double *without_ramp;                ///< inverse_step.without_ramp; may hold NaN
+    struct inverse_ramp ramp;                  ///< error 0: not known
+    const struct inverse_parameter *parameter; ///< shape [INVERSE_PARAMETERS], of a formula
+    const char *reason;                        ///< why it has not converged, or settled, or ""
+    const struct verification *verification;   ///< NULL if there was none
 };
 
-/// potential.tsv and omega.tsv: what was fitted, and what the scene says of the other.
+/// potential.tsv and omega.tsv, what of them was fitted.
 enum status fit_output_curves(const struct fit_file *fit, const struct decoder *decoder,
                               const struct fit_result *result,
                               const struct run_folder *folder) MUST_USE;

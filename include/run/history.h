@@ -21,6 +21,9 @@ struct history {
 /// Room for `capacity` iterations of a method. Fails: NO_MEMORY.
 enum status history_init(struct history *history, const struct inverse_method *method,
                          const size_t points[UNKNOWNS], size_t capacity) MUST_USE;
+/// Error of the first iteration; NaN before it.
+double history_first_error(const struct history *history);
+
 void history_clear(struct history *history);
 
 /// Append an iteration.

@@ -47,9 +47,9 @@ struct result {
 };
 
 /// Read summary.json, history.tsv and timing.tsv of a fit's folder, and as far as they are there
-/// rdf.tsv, potential.tsv and omega.tsv.
-/// BAD_INPUT or IO with one line that names the file; *result is then empty.
-/// Tested: test_compare.
+/// rdf.tsv, potential.tsv and omega.tsv. Of a simulation's folder, summary.json and rdf.tsv, if it
+/// is there: its g(r) is a result without a target. BAD_INPUT or IO with one line that names the
+/// file; *result is then empty. Tested: test_compare.
 enum status result_read(struct result *result, const char *folder) MUST_USE;
 
 void result_clear(struct result *result);

@@ -5,6 +5,7 @@
 #include "io/json.h"
 #include "io/json_write.h"
 #include "observe/measure.h"
+#include "run/progress.h"
 #include "run/units.h"
 
 /// A scene without "motion" has this off, and it costs nothing.
@@ -35,9 +36,12 @@ size_t simulate_motion_spans(struct simulate_motion *motion, struct memory_span 
 
 /// Write motion.tsv: time, MSD, VACF, each with its standard error. Fails: IO, NO_MEMORY.
 enum status simulate_motion_write_table(const struct simulate_motion *motion,
-                                        const char *file) MUST_USE;
+                                        const struct units *units, const char *file) MUST_USE;
 
 /// Add the object "motion" to summary.json: diffusion coefficients with errors, in cm²/s too when
 /// the units are known, and the test of the velocities; nothing if it is off.
 void simulate_motion_write_summary(const struct simulate_motion *motion, const struct units *units,
                                    struct json_writer *writer);
+
+/// Say both diffusion coefficients, and a warning where they are not to be trusted.
+void simulate_motion_say(const struct simulate_motion *motion, struct progress *to);

@@ -24,6 +24,9 @@ double units_time_ps(const struct units *units);             ///< λ sqrt(μ / k
 double units_pressure_bar(const struct units *units);        ///< k_B T_0 / λ³ [bar]
 double units_diffusion_cm2_per_s(const struct units *units); ///< λ²/τ [cm²/s]
 
+/// A column of a table in another unit: factor · values; the caller frees it. NULL: no memory.
+double *units_column(const double *values, size_t count, double factor);
+
 /// Add an object "physical" with the units and the given results in them; nothing if not known.
 /// @param[in] energy    of a particle [k_B T_0]
 /// @param[in] pressure  [k_B T_0/λ³]

@@ -6,18 +6,87 @@
 
 #include <string.h>
 
+/// An object inside another, and the topic or group that says what stands in it.
+struct inner {
+    const char *key, *help, *topic;
+};
+
 /// A thing that `mesofit describe` knows: its name and a list of field tables.
 struct topic {
     const char *group, *name, *summary;
     const struct field *tables[4]; ///< NULL-terminated
 };
 
+static const struct inner run_objects[] = {
+    {"scene", "what is simulated, without what is to be found", "scene"},
+    {"target", "what was measured, at least one", "target"},
+    {"unknowns", "what is to be found; without it the potential", "unknowns"},
+    {"method", "its \"name\" and numbers", "method"},
+    {"core", "where the target is 0", "core"},
+    {"verification", "independent simulations of the result", "verification"},
+    {NULL, NULL, NULL},
+};
+
+static const struct inner target_objects[] = {
+    {"rdf", "g(r); in a mixture one for each kind of pairs, as \"A-B\"", "rdf-target"},
+    {"etd", "escape times of pairs", "etd-target"},
+    {"vacf", "velocity autocorrelation", "curve-target"},
+    {"msd", "mean-square displacement", "curve-target"},
+    {"diffusion", "D", "number-target"},
+    {"pressure", "P", "number-target"},
+    {NULL, NULL, NULL},
+};
+
+static const struct inner unknowns_objects[] = {
+    {"potential", "Phi(r)", "potential"},
+    {"weight", "omega(r)", "weight"},
+    {NULL, NULL, NULL},
+};
+
+static const struct inner potential_objects[] = {
+    {"start", "a law to begin with, in a mixture one for each kind of pairs", "conservative"},
+    {"truth", "the law that is known to be true, to be compared with", "conservative"},
+    {NULL, NULL, NULL},
+};
+
+static const struct inner weight_objects[] = {
+    {"fixed", "parameters of the curve \"power\" that are not to be found", "fixed"},
+    {"start", "a law to begin with", "dissipative"},
+    {"truth", "the law that is known to be true, to be compared with", "dissipative"},
+    {NULL, NULL, NULL},
+};
+
+static const struct inner scene_objects[] = {
+    {"particles", "how many, and where", "particles"},
+    {"conservative", "{\"law\": …}, the potential; in a mixture one for each kind of pairs",
+     "conservative"},
+    {"dissipative", "{\"law\": …}, the weight; likewise", "dissipative"},
+    {"dynamics", "{\"integrator\": …} and its numbers", "dynamics"},
+    {"units", "physical units for the results", "units"},
+    {"measure", "when to sample; this and the rest in a scene file only", "measure"},
+    {"rdf", "g(r)", "rdf"},
+    {"motion", "diffusion; measured if it is there", "motion"},
+    {"etd", "escape times; measured if it is there", "etd"},
+    {"force_covariance", "friction from forces; measured if it is there", "force_covariance"},
+    {NULL, NULL, NULL},
+};
+
+/// The objects in what a topic is about.
+static const struct {
+    const char *topic;
+    const struct inner *objects;
+} contents[] = {
+    {"run", run_objects},           {"scene", scene_objects},         {"target", target_objects},
+    {"unknowns", unknowns_objects}, {"potential", potential_objects}, {"weight", weight_objects},
+};
+
 enum { MAX_TOPICS = 64 };
 
 static const struct topic fixed_topics[] = {
+    {"files", "run", "the top of a run file, for `mesofit fit`", {heading_fields}},
     {"files",
      "scene",
-     "the top of a scene file, and \"scene\" of a run file",
+     "the top of a scene file, and \"scene\" of a run file, which has no title and seed",
      {heading_fields, scene_fields}},
     {"files",
      "particles",
@@ -44,6 +113,7 @@ static const struct topic fixed_topics[] = {
      "verification",
      "\"verification\" of a run file: independent simulations of the result",
      {verify_fields}},
+    {"target", "target", "\"target\" of a run file", {NULL}},
     {"target",
      "rdf-target",
      "\"rdf\" of a run file's \"target\": g(r)",
@@ -60,14 +130,13 @@ static const struct topic fixed_topics[] = {
      "number-target",
      "\"diffusion\" and \"pressure\"",
      {targets_number_fields, targets_goal_fields}},
+    {"unknowns", "unknowns", "\"unknowns\" of a run file", {NULL}},
+    {"unknowns", "potential", "Phi(r), to be found", {inverse_potential_fields}},
+    {"unknowns", "weight", "omega(r), to be found", {inverse_weight_fields}},
     {"unknowns",
-     "potential",
-     "Phi(r), to be found; \"start\" and \"truth\" are laws as in \"conservative\"",
-     {inverse_potential_fields}},
-    {"unknowns",
-     "weight",
-     "omega(r), to be found; \"start\" and \"truth\" are laws as in \"dissipative\"",
-     {inverse_weight_fields}},
+     "fixed",
+     "\"fixed\" of a weight: parameters of the curve \"power\" that are not to be found",
+     {inverse_fixed_fields}},
 };
 
 static size_t add_curves(struct topic *topics, size_t n, const char *group,
@@ -106,13 +175,35 @@ static void print_index(const struct topic *topics, size_t count) {
         group = topics[k].group;
         printf("  %-16s %s\n", topics[k].name, topics[k].summary);
     }
-    printf("\n`mesofit describe NAME` lists the numbers of one of them.\n");
+    printf("\n`mesofit describe NAME` lists the numbers of one of them, or of a whole group.\n");
+}
+
+static void print_objects(const struct inner *objects) {
+    for (; objects->key; objects++) {
+        printf("  %-24s %s\n", objects->key, objects->help);
+        printf("  %-24s   object, see `mesofit describe %s`\n", "", objects->topic);
+    }
 }
 
 static void print_topic(const struct topic *topic) {
     printf("%s (%s): %s\n", topic->name, topic->group, topic->summary);
     for (size_t t = 0; topic->tables[t]; t++)
         fields_describe(topic->tables[t], stdout);
+    for (size_t k = 0; k < sizeof contents / sizeof *contents; k++)
+        if (strcmp(contents[k].topic, topic->name) == 0)
+            print_objects(contents[k].objects);
+}
+
+/// The topics of that name, and all of a group of that name; false if there is none.
+static bool print_named(const struct topic *topics, size_t count, const char *name) {
+    bool found = false;
+    for (size_t k = 0; k < count; k++)
+        if (strcmp(topics[k].group, name) == 0 || strcmp(topics[k].name, name) == 0) {
+            printf("%s", found ? "\n" : "");
+            print_topic(&topics[k]);
+            found = true;
+        }
+    return found;
 }
 
 static enum status run(const struct command_line *line) {
@@ -123,16 +214,10 @@ static enum status run(const struct command_line *line) {
         print_index(topics, count);
         return STATUS_OK;
     }
-    bool found = false;
-    for (size_t k = 0; k < count; k++) {
-        names[k] = topics[k].name;
-        if (strcmp(topics[k].name, line->files[0]) != 0)
-            continue;
-        print_topic(&topics[k]);
-        found = true;
-    }
-    if (found)
+    if (print_named(topics, count, line->files[0]))
         return STATUS_OK;
+    for (size_t k = 0; k < count; k++)
+        names[k] = topics[k].name;
     char hint[512];
     nearest_hint(line->files[0], names, count, hint, sizeof hint);
     return status_fail(STATUS_BAD_INPUT, "describe: \"%s\" is not known; %s", line->files[0], hint);

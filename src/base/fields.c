@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/fields.h"
 
+#include <math.h>
 #include <string.h>
 
 void fields_set_defaults(const struct field *fields, void *parameters) {
@@ -87,6 +88,8 @@ static void describe_default(const struct field *field, char *text, size_t size)
     else if (field->type == FIELD_CHOICE)
         snprintf(text, size, "%s", field->choices[(int)field->initial]);
     else if (field->type == FIELD_TEXT || field->type == FIELD_FILE || field->type == FIELD_LENGTHS)
+        snprintf(text, size, "none");
+    else if (isnan(field->initial))
         snprintf(text, size, "none");
     else
         snprintf(text, size, "%.12g", field->initial);

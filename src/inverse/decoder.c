@@ -145,13 +145,50 @@ static void linear_curve(const struct decoder *decoder, enum unknown_kind kind, 
 /// Largest exponent of the formula, and how much of the way to the cutoff r_0 may go.
 static const double largest_exponent = 4, inner_part = 0.5;
 
-static void power_curve(const struct decoder *decoder, const double *x, double *curve) {
+/// What a parameter of the formula is where its gene is 0, and how much more where it is 1.
+struct span {
+    double least, range;
+};
+
+static struct span parameter_span(const struct unknown_parameters *p, int parameter) {
+    const struct span spans[INVERSE_PARAMETERS] = {
+        [INVERSE_SIGMA] = {p->minimum, p->maximum - p->minimum},
+        [INVERSE_EXPONENT] = {0, largest_exponent},
+        [INVERSE_INNER_CUTOFF] = {p->inner_cutoff, inner_part * (p->cutoff - p->inner_cutoff)}};
+    return spans[parameter];
+}
+
+void decoder_parameters(const struct decoder *decoder, const double *genes,
+                        const double *covariance,
+                        struct inverse_parameter parameter[INVERSE_PARAMETERS]) {
     const struct unknown_parameters *p = &unknown_of(decoder, UNKNOWN_WEIGHT)->parameters;
+    const bool formula =
+        unknown_of(decoder, UNKNOWN_WEIGHT)->wanted && is_formula(decoder, UNKNOWN_WEIGHT);
+    size_t gene = decoder->first[UNKNOWN_WEIGHT];
+    for (int k = 0; k < INVERSE_PARAMETERS; k++) {
+        const struct span span = parameter_span(p, k);
+        parameter[k] = (struct inverse_parameter){NAN, NAN};
+        if (!formula)
+            continue;
+        if (!isnan(p->fixed[k])) {
+            parameter[k] = (struct inverse_parameter){p->fixed[k], 0};
+            continue;
+        }
+        parameter[k].value = span.least + span.range * genes[gene];
+        if (covariance)
+            parameter[k].error = span.range * sqrt(covariance[gene * (decoder->genes + 1)]);
+        gene++;
+    }
+}
+
+static void power_curve(const struct decoder *decoder, const double *genes, double *curve) {
+    struct inverse_parameter found[INVERSE_PARAMETERS];
+    decoder_parameters(decoder, genes, NULL, found);
     struct formula_power_weight_parameters formula = {
-        .sigma = p->minimum + x[0] * (p->maximum - p->minimum),
-        .exponent = largest_exponent * x[1],
-        .inner_cutoff = p->inner_cutoff + inner_part * x[2] * (p->cutoff - p->inner_cutoff),
-        .cutoff = p->cutoff};
+        .sigma = found[INVERSE_SIGMA].value,
+        .exponent = found[INVERSE_EXPONENT].value,
+        .inner_cutoff = found[INVERSE_INNER_CUTOFF].value,
+        .cutoff = unknown_of(decoder, UNKNOWN_WEIGHT)->parameters.cutoff};
     const struct curve power = {&formula_power_weight, &formula};
     for (size_t k = 0; k < WEIGHT_POINTS; k++)
         curve[k] = fmax(0, curve_value(&power, decoder->weight.r[k]));
@@ -159,11 +196,10 @@ static void power_curve(const struct decoder *decoder, const double *x, double *
 
 void decoder_curve(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
                    double *curve) {
-    const double *x = genes + decoder->first[kind];
     if (is_formula(decoder, kind))
-        power_curve(decoder, x, curve);
+        power_curve(decoder, genes, curve);
     else
-        linear_curve(decoder, kind, x, curve);
+        linear_curve(decoder, kind, genes + decoder->first[kind], curve);
     if (kind == UNKNOWN_POTENTIAL)
         potential_grid_complete(&decoder->potential, curve);
 }
@@ -213,20 +249,25 @@ static void start_curve(const struct decoder *decoder, enum unknown_kind kind, d
                                      : middle * (1 - grid->r[k] / grid->cutoff);
 }
 
-/// Genes of a formula in the middle of its range, or those of the start if it is the same formula.
+/// Genes of a formula with sigma in the middle of its range, or those of the start if it is the
+/// same formula.
 static void start_power(const struct decoder *decoder, double *genes) {
     const struct unknown *unknown = unknown_of(decoder, UNKNOWN_WEIGHT);
     const struct unknown_parameters *p = &unknown->parameters;
-    genes[0] = 0.5;
-    genes[1] = 1 / largest_exponent;
-    genes[2] = 0;
-    if (unknown->start[0] == NULL || unknown->start[0]->family != &formula_power_weight)
-        return;
-    const struct formula_power_weight_parameters *start = unknown->start[0]->parameters;
-    const double room = inner_part * (p->cutoff - p->inner_cutoff);
-    genes[0] = fmin(1, fmax(0, (start->sigma - p->minimum) / (p->maximum - p->minimum)));
-    genes[1] = fmin(1, fmax(0, start->exponent / largest_exponent));
-    genes[2] = fmin(1, fmax(0, (start->inner_cutoff - p->inner_cutoff) / room));
+    double value[INVERSE_PARAMETERS] = {[INVERSE_SIGMA] = 0.5 * (p->minimum + p->maximum),
+                                        [INVERSE_EXPONENT] = 1,
+                                        [INVERSE_INNER_CUTOFF] = p->inner_cutoff};
+    if (unknown->start[0] && unknown->start[0]->family == &formula_power_weight) {
+        const struct formula_power_weight_parameters *start = unknown->start[0]->parameters;
+        value[INVERSE_SIGMA] = start->sigma;
+        value[INVERSE_EXPONENT] = start->exponent;
+        value[INVERSE_INNER_CUTOFF] = start->inner_cutoff;
+    }
+    for (int k = 0; k < INVERSE_PARAMETERS; k++) {
+        const struct span span = parameter_span(p, k);
+        if (isnan(p->fixed[k]))
+            *genes++ = fmin(1, fmax(0, (value[k] - span.least) / span.range));
+    }
 }
 
 /// Genes of one curve nearest to `curve`, shape [points of it], which is changed.

@@ -3,9 +3,13 @@
 
 #include "base/memory.h"
 
+#include <math.h>
+
 enum status decoder_curves_init(const struct decoder *decoder, struct decoder_curves *curves) {
     enum status status = STATUS_OK;
     *curves = (struct decoder_curves){0};
+    for (int k = 0; k < INVERSE_PARAMETERS; k++)
+        curves->parameter[k].error = NAN;
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         const size_t points = decoder_points(decoder, kind);
         if (points == 0)
@@ -37,6 +41,9 @@ void decoder_curves_show(const struct decoder *decoder, const double *genes,
         step->curve_error[kind] = curves->error[kind];
         step->curve_flat[kind] = curves->flat[kind];
     }
+    decoder_parameters(decoder, genes, NULL, step->parameter);
+    for (int k = 0; k < INVERSE_PARAMETERS; k++)
+        step->parameter[k].error = curves->parameter[k].error;
 }
 
 enum status decoder_curves_bands(const struct decoder *decoder, const double *genes,
@@ -45,12 +52,14 @@ enum status decoder_curves_bands(const struct decoder *decoder, const double *ge
         if (curves->error[kind])
             TRY(decoder_band(decoder, kind, genes, covariance, curves->error[kind],
                              curves->flat[kind]));
+    decoder_parameters(decoder, genes, covariance, curves->parameter);
     return STATUS_OK;
 }
 
 size_t decoder_curves_spans(const struct decoder *decoder, struct decoder_curves *curves,
                             struct memory_span *spans) {
     size_t n = 0;
+    spans[n++] = (struct memory_span){curves->parameter, sizeof curves->parameter};
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         const size_t bytes = decoder_points(decoder, kind) * sizeof(double);
         if (bytes == 0)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inverse/inverse.h"
 
+#include <math.h>
 #include <stdio.h>
 
 const char *const inverse_unknown_names[UNKNOWNS] = {"potential", "weight"};
@@ -17,10 +18,15 @@ static const char *const weight_curves[] = {"bezier", "bspline", "power", NULL};
      .initial = 0,                                                                                 \
      .unit = "",                                                                                   \
      .help = "that genes make: Bezier-smoothed random walk, cubic B-splines, or a formula"},       \
-        {"genes",       FIELD_INTEGER,                                                             \
-         MEMBER(genes), .initial = 0,                                                              \
-         .minimum = 0,  .maximum = 1000,                                                           \
-         .unit = "",    .help = "of the curve; 0: 100 of bezier, 12 of bspline, 3 of power"},      \
+        {"genes",                                                                                  \
+         FIELD_INTEGER,                                                                            \
+         MEMBER(genes),                                                                            \
+         .initial = 0,                                                                             \
+         .minimum = 0,                                                                             \
+         .maximum = 1000,                                                                          \
+         .unit = "",                                                                               \
+         .help = "of the curve; 0: 100 of bezier, 12 of bspline, of power 3 less those that are "  \
+                 "fixed"},                                                                         \
         {"minimum",           FIELD_NUMBER,       MEMBER(minimum),  .initial = 0,                  \
          .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = its_unit, .help = "least gene"},         \
         {"maximum",           FIELD_NUMBER,       MEMBER(maximum),  .initial = its_maximum,        \
@@ -39,6 +45,23 @@ const struct field inverse_weight_fields[] = {
      .maximum = DBL_MAX, .unit = "lambda", .help = "where omega ends"},
     FIELD_END,
 };
+
+const struct field inverse_fixed_fields[] = {
+    {"sigma", FIELD_NUMBER, INVERSE_SIGMA * sizeof(double), .initial = NAN, .minimum = 0,
+     .maximum = DBL_MAX, .unit = "sqrt(mu/tau)", .help = "omega extrapolated to r = 0"},
+    {"exponent", FIELD_NUMBER, INVERSE_EXPONENT * sizeof(double), .initial = NAN, .minimum = 0,
+     .maximum = DBL_MAX, .unit = "", .help = "s in omega = sigma (1 - r/r_c)^s"},
+    {"inner_cutoff", FIELD_NUMBER, INVERSE_INNER_CUTOFF * sizeof(double), .initial = NAN,
+     .minimum = 0, .maximum = DBL_MAX, .unit = "lambda", .help = "r_0: omega is 0 at and below it"},
+    FIELD_END,
+};
+
+int inverse_free_parameters(const double fixed[INVERSE_PARAMETERS]) {
+    int count = 0;
+    for (int k = 0; k < INVERSE_PARAMETERS; k++)
+        count += isnan(fixed[k]);
+    return count;
+}
 
 const struct inverse_method *const inverse_methods[] = {
     &automatic,      &imc,          &ibi,    &hnc, &matching_genetic, &matching_cmaes,

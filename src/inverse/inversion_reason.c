@@ -42,8 +42,12 @@ void inversion_reason_tell(const struct inversion *inversion, char reason[INVERS
     else if (stuck)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "the step has shrunk to 1/%.0f without progress: the error of g is %.2g, its "
-                 "statistical error %.2g",
-                 1 / p->damping, rdf->rms, rdf->noise);
+                 "statistical error %.2g%s",
+                 1 / p->damping, rdf->rms, rdf->noise,
+                 composition_is_mixed(&inversion->problem->scene.composition)
+                     ? "; potentials of so many kinds of pairs may want targets with a shorter "
+                       "\"cutoff\""
+                     : "");
     else
         snprintf(
             reason, INVERSE_REASON_SIZE,

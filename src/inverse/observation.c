@@ -193,21 +193,68 @@ static void clear_values(struct observed *observed, const struct goals *goals) {
             observed->value[kind][k] = observed->error[kind][k] = 0;
 }
 
+/// A replica's results of one kind of goal, and how many blocks of time its errors rest on.
+struct replica_curve {
+    const double *value, *error;
+    double blocks;
+};
+
+/// Make the errors inside the replicas, squared and added up by add_mean, the standard errors of
+/// the mean over `count` of them: the variance by blocks of time, of which each replica has B, with
+/// count (B − 1) degrees of freedom, and that by the scatter of the replicas, with count − 1,
+/// count as much as they know. A replica of one window alone has B = 1, and no error of its own.
+static void join_scatter(struct observed *observed, enum goal_kind kind, size_t values,
+                         const struct replica_curve *replicas, size_t count) {
+    if (observed->value[kind] == NULL || count < 2)
+        return;
+    const double inside = (double)count * fmax(0, replicas->blocks - 1),
+                 between = (double)count - 1;
+    for (size_t k = 0; k < values; k++) {
+        double *error = &observed->error[kind][k], squares = 0;
+        for (size_t n = 0; n < count; n++)
+            squares += pow(replicas[n].value[k] - observed->value[kind][k], 2);
+        const double scatter = squares / ((double)count * between);
+        *error = sqrt((inside * *error * *error + between * scatter) / (inside + between));
+    }
+}
+
+/// Mean and errors of one kind of goal over the replicas.
+static void combine(struct observed *observed, enum goal_kind kind, size_t values,
+                    const struct replica_curve *replicas, size_t count) {
+    for (size_t k = 0; k < count; k++)
+        add_mean(observed, kind, values, replicas[k].value, replicas[k].error, (double)count);
+    join_scatter(observed, kind, values, replicas, count);
+}
+
 static enum status result_motion(const struct observation *replicas, size_t count,
                                  struct observed *observed) {
     enum status status = STATUS_OK;
     const size_t values = replicas->goals->motion_lags + 1;
     double *memory = NULL;
-    NEW_ARRAY(memory, 4 * values);
-    const struct motion_curves curves = {memory, memory + values, memory + 2 * values,
-                                         memory + 3 * values};
+    struct motion_summary *summary = NULL;
+    struct replica_curve *vacf = NULL, *msd = NULL, *diffusion = NULL;
+    NEW_ARRAY(memory, 4 * values * count);
+    NEW_ARRAY(summary, count);
+    NEW_ARRAY(vacf, count);
+    NEW_ARRAY(msd, count);
+    NEW_ARRAY(diffusion, count);
     for (size_t k = 0; k < count; k++) {
-        const struct motion_summary summary = motion_result(&replicas[k].motion, &curves);
-        add_mean(observed, GOAL_VACF, values, curves.vacf, curves.vacf_error, (double)count);
-        add_mean(observed, GOAL_MSD, values, curves.msd, curves.msd_error, (double)count);
-        add_mean(observed, GOAL_DIFFUSION, 1, &summary.msd, &summary.msd_error, (double)count);
+        double *own = memory + 4 * values * k;
+        const struct motion_curves curves = {own, own + values, own + 2 * values, own + 3 * values};
+        summary[k] = motion_result(&replicas[k].motion, &curves);
+        const double blocks = summary[k].blocks;
+        vacf[k] = (struct replica_curve){curves.vacf, curves.vacf_error, blocks};
+        msd[k] = (struct replica_curve){curves.msd, curves.msd_error, blocks};
+        diffusion[k] = (struct replica_curve){&summary[k].msd, &summary[k].msd_error, blocks};
     }
+    combine(observed, GOAL_VACF, values, vacf, count);
+    combine(observed, GOAL_MSD, values, msd, count);
+    combine(observed, GOAL_DIFFUSION, 1, diffusion, count);
 done:
+    memory_free(summary);
+    memory_free(vacf);
+    memory_free(msd);
+    memory_free(diffusion);
     memory_free(memory);
     return status;
 }

@@ -138,9 +138,14 @@ static enum status summarise(struct observation *replicas, size_t count,
         verification->engine_steps += replicas[k].simulation.step;
     }
     verification->thermodynamics = thermodynamics_result(thermodynamics, count);
-    if (thermodynamics_judge(&verification->thermodynamics, &replicas->simulation.setup) !=
+    if (thermodynamics_judge_fit(&verification->thermodynamics, &replicas->simulation.setup) !=
         STATUS_OK)
         snprintf(verification->warning, sizeof verification->warning, "%s", status_message());
+    if (observation_moves(goals)) {
+        const struct motion_summary motion = motion_result(&replicas->motion, NULL);
+        verification->diffusion_begin = motion.fit_begin;
+        verification->diffusion_end = motion.fit_end;
+    }
     CHECK(observation_values_init(&verification->observed, goals));
     CHECK(observation_result(replicas, count, &verification->observed));
     observation_distance(&verification->observed, goals, verification->distance);

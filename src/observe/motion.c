@@ -235,6 +235,28 @@ static double read_integral(const struct motion *motion, const double *curve, si
     return sum * lag_time(motion, 1) / motion->dimensions;
 }
 
+/// Trapezoids between two lags, each over `every` intervals, over d.
+static double integrate(const struct motion *motion, const double *curve, size_t from, size_t to,
+                        size_t every) {
+    double sum = 0;
+    for (size_t lag = from; lag + every <= to; lag += every)
+        sum += 0.5 * (curve[lag] + curve[lag + every]);
+    return sum * lag_time(motion, every) / motion->dimensions;
+}
+
+/// What trapezoids of twice the width differ by.
+static double read_coarser(const struct motion *motion, const double *curve, size_t unused) {
+    (void)unused;
+    const size_t even = (size_t)motion->plan.lags / 2 * 2;
+    return integrate(motion, curve, 0, even, 2) - integrate(motion, curve, 0, even, 1);
+}
+
+static double read_second_half(const struct motion *motion, const double *curve, size_t unused) {
+    (void)unused;
+    const size_t last = (size_t)motion->plan.lags;
+    return integrate(motion, curve, last / 2, last, 1);
+}
+
 static size_t complete_blocks(const struct motion *motion) {
     const size_t taken = motion->samples;
     const size_t blocks = taken ? complete_origins(&motion->plan, taken - 1) / motion->each : 0;
@@ -255,6 +277,18 @@ static void average(const struct motion *motion, const double *sums,
     *error = statistics_correlated_error(values, blocks, 1);
 }
 
+/// What D of the VACF may be off besides its statistical error.
+static void find_systematic(const struct motion *motion, struct motion_summary *s) {
+    double coarser, half, error, start, next;
+    average(motion, motion->products, read_coarser, 0, &coarser, &error);
+    s->green_kubo_sampling = fabs(coarser) / 3;
+    average(motion, motion->products, read_second_half, 0, &half, &error);
+    s->green_kubo_truncation = isnan(half) ? NAN : fmax(0, fabs(half) - error);
+    average(motion, motion->products, read_lag, 0, &start, &error);
+    average(motion, motion->products, read_lag, 1, &next, &error);
+    s->vacf_drop = 1 - next / start;
+}
+
 struct motion_summary motion_result(const struct motion *motion,
                                     const struct motion_curves *curves) {
     struct motion_summary s = {0};
@@ -266,8 +300,33 @@ struct motion_summary motion_result(const struct motion *motion,
     }
     average(motion, motion->squares, read_slope, 0, &s.msd, &s.msd_error);
     average(motion, motion->products, read_integral, 0, &s.green_kubo, &s.green_kubo_error);
+    find_systematic(motion, &s);
+    s.blocks = (double)complete_blocks(motion);
     s.fit_begin = lag_time(motion, fit_first(&motion->plan));
     s.fit_end = lag_time(motion, lags);
     s.maxwell = maxwell_result(&motion->maxwell);
     return s;
+}
+
+double motion_green_kubo_uncertainty(const struct motion_summary *summary) {
+    return hypot(hypot(summary->green_kubo_error, summary->green_kubo_sampling),
+                 summary->green_kubo_truncation);
+}
+
+enum status motion_judge(const struct motion_summary *summary) {
+    static const double coarse = 0.03, deviations = 4;
+    const struct motion_summary *s = summary;
+    const double error = motion_green_kubo_uncertainty(s);
+    if (s->green_kubo_sampling > fmax(coarse * fabs(s->green_kubo), s->green_kubo_error))
+        return status_fail(STATUS_UNCONVERGED,
+                           "D by Green and Kubo, %.3g, may be off by %.2g: the VACF falls by %.0f "
+                           "%% from one sample to the next; lower \"motion.every\"",
+                           s->green_kubo, s->green_kubo_sampling, 100 * s->vacf_drop);
+    // An error of 0 is not known: there was one window.
+    if (s->msd_error > 0 && fabs(s->msd - s->green_kubo) > deviations * hypot(s->msd_error, error))
+        return status_fail(STATUS_UNCONVERGED,
+                           "D is %.3g by the MSD and %.3g by Green and Kubo, with errors of %.1g "
+                           "and %.1g: a longer window (\"motion.lags\") may bring them together",
+                           s->msd, s->green_kubo, s->msd_error, error);
+    return STATUS_OK;
 }

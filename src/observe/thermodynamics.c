@@ -110,13 +110,15 @@ struct thermodynamics_summary thermodynamics_result(const struct thermodynamics 
 static const double band = 0.1;
 static const double deviations = 4;
 
+/// Blocks to know a temperature by.
+enum { LEAST_BLOCKS = 5 };
+
 static bool agrees(double temperature, double error, double wanted) {
     return fabs(temperature - wanted) <= band * wanted + deviations * error;
 }
 
 enum status thermodynamics_judge(const struct thermodynamics_summary *summary,
                                  const struct simulation_setup *setup) {
-    enum { LEAST_BLOCKS = 5 };
     const struct thermodynamics_summary *s = summary;
     const double wanted = setup->weight ? setup->temperature : s->temperature;
     if (s->blocks < LEAST_BLOCKS)
@@ -129,4 +131,22 @@ enum status thermodynamics_judge(const struct thermodynamics_summary *summary,
                        "the temperature is %.3g by the velocities and %.3g by the positions, not "
                        "%.3g: lower \"time_step\", or equilibrate for longer",
                        s->temperature, s->temperature_configurational, wanted);
+}
+
+enum status thermodynamics_judge_fit(const struct thermodynamics_summary *summary,
+                                     const struct simulation_setup *setup) {
+    static const double least = 0.025, errors = 3;
+    const struct thermodynamics_summary *s = summary;
+    TRY(thermodynamics_judge(summary, setup));
+    const double wanted = setup->weight ? setup->temperature : s->temperature;
+    const double off = s->temperature_configurational - wanted;
+    if (s->blocks < LEAST_BLOCKS ||
+        !(fabs(off) > fmax(least * wanted, errors * s->temperature_configurational_error)))
+        return STATUS_OK;
+    return status_fail(STATUS_UNSTABLE,
+                       "the temperature by the positions is %.3f(%.0f), %.1f %% off: the time step "
+                       "is coarse for this potential, or its force ends abruptly; a shorter "
+                       "\"verification.time_step\" tells which",
+                       s->temperature_configurational,
+                       ceil(1e3 * s->temperature_configurational_error), 100 * off / wanted);
 }

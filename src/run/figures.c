@@ -31,6 +31,7 @@ static const struct figure figures[] = {
     {"omega", {"omega.tsv"}, "omega_error", false},
     {"etd_cells", {"etd_cells.tsv"}, "target", false},
     {"vacf", {"vacf.tsv"}, "target", false},
+    {"msd", {"msd.tsv"}, "target", false},
     {"error", {"history.tsv", "timing.tsv"}, NULL, false},
     {"generations", {"history.tsv"}, "diversity", false},
     {"pareto", {"pareto.tsv", "pareto_history.tsv"}, NULL, false},

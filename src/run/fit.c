@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "run/checkpoint.h"
 #include "run/fit_output.h"
+#include "run/fit_report.h"
 #include "run/fit_verdict.h"
 #include "run/history.h"
 #include "run/progress.h"
@@ -33,6 +34,7 @@ struct run {
         uint64_t iterations, evaluations, engine_steps;
         double error, variance, seconds;
         struct inverse_ramp ramp;
+        struct inverse_parameter parameter[INVERSE_PARAMETERS];
         char reason[INVERSE_REASON_SIZE];
     } standing;
 };
@@ -197,11 +199,15 @@ static struct fit_result result_so_far(const struct run *run, enum status status
                                 .without_ramp = run->without_ramp,
                                 .ramp = s->ramp,
                                 .settled = s->converged,
+                                .parameter = s->parameter,
+                                .error = s->error,
+                                .first_error = history_first_error(&run->history),
                                 .reason = s->reason};
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         result.curve[kind] = run->curve[kind];
         result.curve_error[kind] = run->curve_error[kind];
         result.curve_flat[kind] = run->curve_flat[kind];
+        result.first[kind] = run->history.iterations > 0 ? run->history.curve[kind] : NULL;
     }
     return result;
 }
@@ -242,6 +248,7 @@ static enum status record(struct run *run, const struct inverse_step *step) {
                                       .variance = step->variance,
                                       .seconds = seconds(run),
                                       .ramp = step->ramp};
+    memcpy(run->standing.parameter, step->parameter, sizeof run->standing.parameter);
     memcpy(run->standing.reason, step->reason, sizeof run->standing.reason);
     history_add(&run->history, step, run->standing.seconds);
     TRY(history_write(&run->history, run->fit.method, &run->decoder, &run->folder));
@@ -301,7 +308,7 @@ static enum status write_unstable(struct run *run) {
     return status_fail(STATUS_UNSTABLE, "%s", reason);
 }
 
-static void say_verified(struct run *run, const struct verification *v) {
+static void say_verified(struct run *run, const struct fit_result *result) {
     struct progress *to = &run->progress;
     const struct standing *standing = &run->standing;
     progress_say(to, "%s after %llu iterations, %.1f s%s%s",
@@ -310,17 +317,8 @@ static void say_verified(struct run *run, const struct verification *v) {
                                      : "not converged",
                  (unsigned long long)standing->iterations, standing->seconds,
                  standing->used_up ? ": " : "", standing->used_up ? standing->reason : "");
-    for (int kind = 0; kind < GOALS; kind++)
-        if (run->fit.targets.given[kind])
-            progress_say(to, "verified: rms of %s - target = %.4f(%.0f), statistics alone %.4f",
-                         goals_names[kind], v->distance[kind].rms,
-                         ceil(v->distance_error[kind] * 1e4), v->distance[kind].noise);
-    if (goals_ask(&run->fit.problem.compared, GOAL_DIFFUSION))
-        progress_say(to, "D = %.4f(%.0f)", *v->observed.value[GOAL_DIFFUSION],
-                     ceil(*v->observed.error[GOAL_DIFFUSION] * 1e4));
-    progress_say(to, "T = %.4f, configurational %.4f, pressure %.3f\nresults in %s",
-                 v->thermodynamics.temperature, v->thermodynamics.temperature_configurational,
-                 v->thermodynamics.pressure, run->folder.path);
+    fit_report_say(to, &run->fit, &run->decoder, result);
+    progress_say(to, "results in %s", run->folder.path);
 }
 
 /// The verification has the last word. An inversion has converged only if the result agrees with
@@ -368,7 +366,7 @@ static enum status verify_and_write(struct run *run) {
     CHECK(fit_output_observables(&run->fit, &result, &run->folder));
     CHECK(fit_output_summary(&run->fit, &run->decoder, &result, &run->folder));
     run_folder_draw(&run->folder);
-    say_verified(run, &verification);
+    say_verified(run, &result);
     if (verification.warning[0])
         progress_say(&run->progress, "mesofit: warning: %s", verification.warning);
     status = result.status;

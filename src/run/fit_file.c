@@ -4,6 +4,8 @@
 #include "base/memory.h"
 #include "inverse/decoder.h"
 
+#include <math.h>
+
 #define MEMBER(name) .offset = offsetof(struct fit_core, name)
 const struct field fit_core_fields[] = {
     {"threshold", FIELD_NUMBER, MEMBER(threshold), .initial = 1e-3, .minimum = 0, .maximum = 1,
@@ -44,7 +46,38 @@ static const struct field *unknown_fields(enum unknown_kind kind) {
 /// Genes of a curve if the file does not say how many.
 static const int64_t genes_of_curve[] = {[INVERSE_CURVE_BEZIER] = 100,
                                          [INVERSE_CURVE_BSPLINE] = 12,
-                                         [INVERSE_CURVE_POWER] = INVERSE_POWER_GENES};
+                                         [INVERSE_CURVE_POWER] = INVERSE_PARAMETERS};
+
+/// "fixed": {"exponent": 1}, what is not to be found of a formula.
+static void read_fixed(struct unknown_parameters *p, struct json_object *object) {
+    struct json_object fixed = json_child(object, "fixed", false);
+    json_fields(&fixed, inverse_fixed_fields, p->fixed);
+    if (fixed.item == NULL)
+        return;
+    json_finish(&fixed);
+    if (p->shape != INVERSE_CURVE_POWER)
+        json_fault(object, "fixed", "only \"curve\": \"power\" has parameters to hold fixed");
+    else if (inverse_free_parameters(p->fixed) == 0)
+        json_fault(object, "fixed", "with all of its parameters fixed nothing is left to be found");
+    const double inner = p->fixed[INVERSE_INNER_CUTOFF];
+    if (inner < p->inner_cutoff || inner >= p->cutoff)
+        json_fault(&fixed, "inner_cutoff", "%g is not between the weight's cutoffs, %g and %g",
+                   inner, p->inner_cutoff, p->cutoff);
+}
+
+/// Genes of a formula are its parameters that are not fixed.
+static void check_genes(struct unknown_parameters *p, struct json_object *object) {
+    const int parameters = inverse_free_parameters(p->fixed);
+    if (p->shape != INVERSE_CURVE_POWER || parameters == 0)
+        return;
+    if (p->genes == 0)
+        p->genes = parameters;
+    else if (p->genes != parameters)
+        json_fault(object, "genes",
+                   "the curve \"power\" has %d: sigma, exponent, inner cutoff, less those that "
+                   "\"fixed\" holds",
+                   parameters);
+}
 
 static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind kind,
                                 struct json_object *object, const struct composition *composition,
@@ -53,13 +86,14 @@ static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind k
         kind == UNKNOWN_POTENTIAL ? curve_potentials : curve_weights;
     json_fields(object, unknown_fields(kind), &unknown->parameters);
     struct unknown_parameters *p = &unknown->parameters;
+    fields_set_defaults(inverse_fixed_fields, p->fixed);
+    if (kind == UNKNOWN_WEIGHT)
+        read_fixed(p, object);
+    check_genes(p, object);
     if (p->genes == 0)
         p->genes = genes_of_curve[p->shape];
     if (object->item == NULL)
         return STATUS_OK;
-    if (p->shape == INVERSE_CURVE_POWER && p->genes != INVERSE_POWER_GENES)
-        json_fault(object, "genes", "the curve \"power\" has %d: sigma, exponent, inner cutoff",
-                   INVERSE_POWER_GENES);
     if (p->maximum <= p->minimum)
         json_fault(object, "maximum", "%g is not above the minimum %g", p->maximum, p->minimum);
     if (kind == UNKNOWN_WEIGHT && p->cutoff <= p->inner_cutoff)
@@ -270,7 +304,9 @@ enum status fit_file_read(struct fit_file *fit, const char *file,
     struct json_document *document;
     TRY(json_open(&document, file));
     struct json_object root = json_root(document);
-    const enum status status = read_root(fit, &root);
+    enum status status = heading_check_run(&root, file);
+    if (status == STATUS_OK)
+        status = read_root(fit, &root);
     TRY(json_close(document));
     TRY(status);
     if (options->has_seed)
@@ -291,6 +327,16 @@ void fit_file_clear(struct fit_file *fit) {
     *fit = (struct fit_file){0};
 }
 
+static void write_fixed(const struct unknown_parameters *p, struct json_writer *writer) {
+    if (inverse_free_parameters(p->fixed) == INVERSE_PARAMETERS)
+        return;
+    json_begin(writer, "fixed");
+    for (int k = 0; k < INVERSE_PARAMETERS; k++)
+        if (!isnan(p->fixed[k]))
+            json_put_number(writer, inverse_fixed_fields[k].name, p->fixed[k]);
+    json_end(writer);
+}
+
 static void write_unknowns(const struct fit_file *fit, struct json_writer *writer) {
     json_begin(writer, "unknowns");
     for (int kind = 0; kind < UNKNOWNS; kind++) {
@@ -299,6 +345,7 @@ static void write_unknowns(const struct fit_file *fit, struct json_writer *write
             continue;
         json_begin(writer, inverse_unknown_names[kind]);
         json_put_fields(writer, unknown_fields(kind), &unknown->parameters);
+        write_fixed(&unknown->parameters, writer);
         scene_law_write(&unknown->start, &fit->scene.setup.composition, writer, "start");
         scene_law_write(&unknown->truth, &fit->scene.setup.composition, writer, "truth");
         json_end(writer);

@@ -7,17 +7,6 @@
 
 #include <math.h>
 
-/// Points of omega.tsv.
-enum { OMEGA_POINTS = 200 };
-
-/// Column `factor` · values, for physical units; the caller frees it.
-static double *scaled(const double *values, size_t count, double factor) {
-    double *copy = memory_zeroed(count, sizeof *copy);
-    for (size_t k = 0; copy && k < count; k++)
-        copy[k] = factor * values[k];
-    return copy;
-}
-
 /// The true curve number `curve` of an unknown at `r`, where the run file names it; the caller
 /// frees it.
 static double *truth_at(const struct fit_file *fit, enum unknown_kind kind, size_t curve,
@@ -56,8 +45,8 @@ static enum status write_potential(const struct fit_file *fit, const struct deco
         table_evaluate_pair(table, (int)pair, r[k], NULL, &force[k], NULL);
         force[k] = -force[k];
     }
-    nanometres = scaled(r, points, units->length);
-    energy = scaled(phi, points, units_known(units) ? units_energy_kj_per_mol(units) : 0);
+    nanometres = units_column(r, points, units->length);
+    energy = units_column(phi, points, units_known(units) ? units_energy_kj_per_mol(units) : 0);
     truth = truth_at(fit, UNKNOWN_POTENTIAL, pair, r, points);
     CHECK(nanometres && energy && truth ? STATUS_OK : STATUS_NO_MEMORY);
     struct data_column columns[8] = {
@@ -102,38 +91,28 @@ done:
     return status;
 }
 
-/// The weight that the scene says for all pairs.
-static enum status write_known_omega(const struct fit_file *fit, const struct run_folder *folder) {
-    double r[OMEGA_POINTS + 1], omega[OMEGA_POINTS + 1];
-    char path[OUTPUT_PATH_SIZE];
-    const double cutoff = curve_cutoff(&fit->scene.weight.curve[0]);
-    for (int k = 0; k <= OMEGA_POINTS; k++) {
-        r[k] = cutoff * k / OMEGA_POINTS;
-        omega[k] = curve_value(&fit->scene.weight.curve[0], r[k]);
-    }
-    const struct data_column columns[] = {{"r[lambda]", r, NULL},
-                                          {"omega[sqrt(mu/tau)]", omega, NULL}};
-    run_folder_file(folder, "omega.tsv", path);
-    return data_table_write(path, NULL, columns, 2, OMEGA_POINTS + 1);
-}
-
-static enum status write_fitted_omega(const struct fit_file *fit, const struct decoder *decoder,
-                                      const struct fit_result *result,
-                                      const struct run_folder *folder) {
+static enum status write_omega(const struct fit_file *fit, const struct decoder *decoder,
+                               const struct fit_result *result, const struct run_folder *folder) {
     const bool truth_known = fit->unknown[UNKNOWN_WEIGHT].truth.curves > 0;
+    const struct units *units = &fit->scene.units;
+    enum status status = STATUS_NO_MEMORY;
     double *truth = truth_at(fit, UNKNOWN_WEIGHT, 0, decoder->weight.r, WEIGHT_POINTS);
-    if (truth == NULL)
-        return STATUS_NO_MEMORY;
+    double *nanometres = units_column(decoder->weight.r, WEIGHT_POINTS, units->length);
     char path[OUTPUT_PATH_SIZE];
-    const struct data_column columns[] = {
+    struct data_column columns[5] = {
         {"r[lambda]", decoder->weight.r, "%.17g"},
         {"omega[sqrt(mu/tau)]", result->curve[UNKNOWN_WEIGHT], "%.17g"},
-        {"omega_error[sqrt(mu/tau)]", result->curve_error[UNKNOWN_WEIGHT], "%.3g"},
-        {"truth[sqrt(mu/tau)]", truth, "%.8g"}};
+        {"omega_error[sqrt(mu/tau)]", result->curve_error[UNKNOWN_WEIGHT], "%.3g"}};
+    size_t count = 3;
+    if (truth_known)
+        columns[count++] = (struct data_column){"truth[sqrt(mu/tau)]", truth, "%.8g"};
+    if (units_known(units))
+        columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
     run_folder_file(folder, "omega.tsv", path);
-    const enum status status =
-        data_table_write(path, NULL, columns, truth_known ? 4 : 3, WEIGHT_POINTS);
+    if (truth && nanometres)
+        status = data_table_write(path, NULL, columns, count, WEIGHT_POINTS);
     memory_free(truth);
+    memory_free(nanometres);
     return status;
 }
 
@@ -168,9 +147,7 @@ enum status fit_output_curves(const struct fit_file *fit, const struct decoder *
             TRY(write_flat(kind, n, decoder, result, folder));
     if (result->curve[UNKNOWN_POTENTIAL])
         TRY(write_potentials(fit, decoder, result, folder));
-    if (result->curve[UNKNOWN_WEIGHT])
-        return write_fitted_omega(fit, decoder, result, folder);
-    return fit->scene.weight.curves == 1 ? write_known_omega(fit, folder) : STATUS_OK;
+    return result->curve[UNKNOWN_WEIGHT] ? write_omega(fit, decoder, result, folder) : STATUS_OK;
 }
 
 /// g(r) of a kind of pairs: rdf.tsv, or rdf_A-B.tsv in a mixture.
@@ -186,7 +163,7 @@ static enum status write_rdf(const struct fit_file *fit, const struct observed *
     NEW_ARRAY(r, bins->count);
     for (size_t k = 0; k < bins->count; k++)
         r[k] = rdf_bins_centre(bins, k);
-    nanometres = scaled(r, bins->count, units->length);
+    nanometres = units_column(r, bins->count, units->length);
     CHECK(nanometres ? STATUS_OK : STATUS_NO_MEMORY);
     const struct data_column columns[] = {
         {"r[lambda]", r, NULL},
@@ -210,7 +187,8 @@ static enum status write_etd(const struct fit_file *fit, const struct observed *
     const struct target_etd *target = &fit->targets.etd;
     const size_t bins = (size_t)target->grid.bins, cells = (size_t)target->grid.times * bins;
     const double width = (target->grid.r_maximum - target->grid.r_minimum) / (double)bins;
-    double *time = NULL, *r = NULL;
+    const struct units *units = &fit->scene.units;
+    double *time = NULL, *r = NULL, *picoseconds = NULL, *nanometres = NULL;
     char path[OUTPUT_PATH_SIZE];
     NEW_ARRAY(time, cells);
     NEW_ARRAY(r, cells);
@@ -218,39 +196,84 @@ static enum status write_etd(const struct fit_file *fit, const struct observed *
         time[k] = (double)(k / bins) * target->interval;
         r[k] = target->grid.r_minimum + ((double)(k % bins) + 0.5) * width;
     }
+    const bool known = units_known(units);
+    picoseconds = units_column(time, cells, known ? units_time_ps(units) : 0);
+    nanometres = units_column(r, cells, units->length);
+    CHECK(picoseconds && nanometres ? STATUS_OK : STATUS_NO_MEMORY);
     const struct data_column columns[] = {{"time[tau]", time, "%.6f"},
                                           {"r0[lambda]", r, "%.6f"},
                                           {"target[1]", target->survival, "%.6f"},
                                           {"target_error[1]", target->error, "%.3g"},
                                           {"result[1]", observed->value[GOAL_ETD], "%.6f"},
-                                          {"result_error[1]", observed->error[GOAL_ETD], "%.3g"}};
+                                          {"result_error[1]", observed->error[GOAL_ETD], "%.3g"},
+                                          {"time[ps]", picoseconds, "%.6g"},
+                                          {"r0[nm]", nanometres, "%.6g"}};
     run_folder_file(folder, "etd_cells.tsv", path);
-    CHECK(data_table_write(path, NULL, columns, 6, cells));
+    CHECK(data_table_write(path, NULL, columns, known ? 8 : 6, cells));
 done:
     memory_free(time);
     memory_free(r);
+    memory_free(picoseconds);
+    memory_free(nanometres);
     return status;
 }
 
+/// What a table of VACF or MSD calls its columns, and the same in nm and ps.
+struct motion_names {
+    const char *columns[4], *physical[4];
+    double unit; ///< of VACF or MSD in nm and ps
+};
+
+static struct motion_names motion_names(enum goal_kind kind, const struct units *units) {
+    const double nm2 = units->length * units->length;
+    if (kind == GOAL_MSD)
+        return (struct motion_names){
+            {"target[lambda^2]", "target_error[lambda^2]", "result[lambda^2]",
+             "result_error[lambda^2]"},
+            {"target[nm^2]", "target_error[nm^2]", "result[nm^2]", "result_error[nm^2]"},
+            nm2};
+    const double ps = units_known(units) ? units_time_ps(units) : 1;
+    return (struct motion_names){{"target[lambda^2/tau^2]", "target_error[lambda^2/tau^2]",
+                                  "result[lambda^2/tau^2]", "result_error[lambda^2/tau^2]"},
+                                 {"target[nm^2/ps^2]", "target_error[nm^2/ps^2]",
+                                  "result[nm^2/ps^2]", "result_error[nm^2/ps^2]"},
+                                 nm2 / (ps * ps)};
+}
+
 /// VACF or MSD beside its target.
-static enum status write_motion(const struct target_curve *target, const struct observed *observed,
-                                enum goal_kind kind, const struct run_folder *folder) {
+static enum status write_motion(const struct fit_file *fit, const struct target_curve *target,
+                                const struct observed *observed, enum goal_kind kind,
+                                const struct run_folder *folder) {
     enum status status = STATUS_OK;
-    double *time = NULL;
+    const struct units *units = &fit->scene.units;
+    const struct motion_names names = motion_names(kind, units);
+    const double *const values[4] = {target->value, target->error, observed->value[kind],
+                                     observed->error[kind]};
+    double *time = NULL, *picoseconds = NULL, *physical[4] = {NULL};
     char path[OUTPUT_PATH_SIZE], name[64];
+    struct data_column columns[10];
     NEW_ARRAY(time, target->times);
     for (size_t k = 0; k < target->times; k++)
         time[k] = (double)k * target->interval;
-    const struct data_column columns[] = {{"time[tau]", time, NULL},
-                                          {"target", target->value, "%.8g"},
-                                          {"target_error", target->error, "%.3g"},
-                                          {"result", observed->value[kind], "%.8g"},
-                                          {"result_error", observed->error[kind], "%.3g"}};
+    picoseconds = units_column(time, target->times, units_known(units) ? units_time_ps(units) : 0);
+    CHECK(picoseconds ? STATUS_OK : STATUS_NO_MEMORY);
+    columns[0] = (struct data_column){"time[tau]", time, NULL};
+    columns[5] = (struct data_column){"time[ps]", picoseconds, NULL};
+    for (int k = 0; k < 4; k++) {
+        const char *format = k % 2 ? "%.3g" : "%.8g";
+        physical[k] = units_column(values[k], target->times, names.unit);
+        CHECK(physical[k] ? STATUS_OK : STATUS_NO_MEMORY);
+        columns[1 + k] = (struct data_column){names.columns[k], values[k], format};
+        columns[6 + k] = (struct data_column){names.physical[k], physical[k], format};
+    }
     snprintf(name, sizeof name, "%s.tsv", goals_names[kind]);
     run_folder_file(folder, name, path);
-    CHECK(data_table_write(path, NULL, columns, 5, target->times));
+    CHECK(data_table_write(path, NULL, columns, units_known(units) ? 10 : 5, target->times));
 done:
     memory_free(time);
+    memory_free(picoseconds);
+    for (int k = 0; k < 4; k++)
+        memory_free(physical[k]);
     return status;
 }
 
@@ -263,8 +286,8 @@ enum status fit_output_observables(const struct fit_file *fit, const struct fit_
     if (targets->given[GOAL_ETD])
         TRY(write_etd(fit, observed, folder));
     if (targets->given[GOAL_VACF])
-        TRY(write_motion(&targets->vacf, observed, GOAL_VACF, folder));
+        TRY(write_motion(fit, &targets->vacf, observed, GOAL_VACF, folder));
     if (targets->given[GOAL_MSD])
-        TRY(write_motion(&targets->msd, observed, GOAL_MSD, folder));
+        TRY(write_motion(fit, &targets->msd, observed, GOAL_MSD, folder));
     return STATUS_OK;
 }

@@ -3,6 +3,7 @@
 
 #include "mesofit.h"
 #include "observe/kirkwood_buff.h"
+#include "run/fit_change.h"
 
 #include <math.h>
 
@@ -80,11 +81,15 @@ static void put_diffusion(struct json_writer *writer, const struct fit_file *fit
     const double value = *v->observed.value[GOAL_DIFFUSION];
     const double error = *v->observed.error[GOAL_DIFFUSION];
     put_known(writer, "diffusion", value);
-    put_known(writer, "diffusion_error", error);
+    if (error > 0) // one replica of one window has none
+        put_known(writer, "diffusion_error", error);
+    json_put_number(writer, "diffusion_fit_begin", v->diffusion_begin);
+    json_put_number(writer, "diffusion_fit_end", v->diffusion_end);
     if (units_known(units)) {
         const double unit = units_diffusion_cm2_per_s(units);
         json_put_number(writer, "diffusion_cm2_per_s", value * unit);
-        put_known(writer, "diffusion_error_cm2_per_s", error * unit);
+        if (error > 0)
+            put_known(writer, "diffusion_error_cm2_per_s", error * unit);
     }
 }
 
@@ -122,6 +127,53 @@ static void put_ramp(struct json_writer *writer, const struct inverse_ramp *ramp
     put_known(writer, "pressure_left_open", ramp->pressure_open);
     put_known(writer, "directions", ramp->directions);
     put_known(writer, "directions_of", ramp->bins);
+}
+
+/// "parameters": {"weight": {"sigma": {"value": 3.0, "error": 0.1}, …}} of a weight that is a
+/// formula.
+static void put_parameters(struct json_writer *writer, const struct fit_file *fit,
+                           const struct inverse_parameter *parameter) {
+    const struct unknown_parameters *p = &fit->unknown[UNKNOWN_WEIGHT].parameters;
+    if (!fit->unknown[UNKNOWN_WEIGHT].wanted || p->shape != INVERSE_CURVE_POWER)
+        return;
+    json_begin(writer, "parameters");
+    json_begin(writer, inverse_unknown_names[UNKNOWN_WEIGHT]);
+    for (int k = 0; k < INVERSE_PARAMETERS; k++) {
+        json_begin(writer, inverse_fixed_fields[k].name);
+        put_known(writer, "value", parameter[k].value);
+        if (isnan(p->fixed[k]))
+            put_known(writer, "error", parameter[k].error);
+        else
+            json_put_text(writer, "fixed", "yes");
+        json_end(writer);
+    }
+    json_end(writer);
+    json_end(writer);
+}
+
+/// "start": {"error": 0.11, "potential": {"change": 0.05, "well": -0.45, "well_at": 0.99}, …}, the
+/// first iteration, and what the fit changed by since.
+static void put_start(struct json_writer *writer, const struct decoder *decoder,
+                      const struct fit_result *result) {
+    char name[DECODER_NAME_SIZE];
+    json_begin(writer, "start");
+    put_known(writer, "error", result->first_error);
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        for (size_t n = 0; result->first[kind] && n < decoder_curve_count(decoder, kind); n++) {
+            const struct fit_change change =
+                fit_change_find(decoder, kind, n, result->first[kind], result->curve[kind]);
+            decoder_curve_name(decoder, kind, n, name);
+            json_begin(writer, name);
+            put_known(writer, "change", change.rms);
+            if (kind == UNKNOWN_POTENTIAL) {
+                put_known(writer, "well", change.first_well);
+                put_known(writer, "well_at", change.first_well_at);
+                put_known(writer, "well_now", change.well);
+                put_known(writer, "well_now_at", change.well_at);
+            }
+            json_end(writer);
+        }
+    json_end(writer);
 }
 
 /// "truth_rms" and so on, in a mixture "truth_rms_A-B".
@@ -219,6 +271,7 @@ enum status fit_output_summary(const struct fit_file *fit, const struct decoder 
     json_put_number(writer, "iterations", (double)result->iterations);
     json_put_number(writer, "evaluations", (double)result->evaluations);
     json_put_number(writer, "engine_steps", (double)result->engine_steps);
+    put_known(writer, "error", result->error);
     if (result->verification)
         put_verification(writer, fit, result->verification);
     put_normalisation(writer, fit);
@@ -227,6 +280,8 @@ enum status fit_output_summary(const struct fit_file *fit, const struct decoder 
         if (result->curve[kind])
             put_flat(writer, kind, decoder, result);
     put_ramp(writer, &result->ramp);
+    put_parameters(writer, fit, result->parameter);
+    put_start(writer, decoder, result);
     if (fit->targets.given[GOAL_ETD])
         json_put_number(writer, "etd_cells_left_out", (double)fit->targets.etd.left_out);
     json_put_number(writer, "seed", (double)fit->heading.seed);

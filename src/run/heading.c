@@ -8,3 +8,24 @@ const struct field heading_fields[] = {
      .unit = "", .help = "of all random numbers"},
     FIELD_END,
 };
+
+/// Without the reader learning of the key.
+static bool has(struct json_object root, const char *key) {
+    return json_has(&root, key);
+}
+
+enum status heading_check_scene(const struct json_object *root, const char *file) {
+    if (!has(*root, "scene") || !has(*root, "target"))
+        return STATUS_OK;
+    return status_fail(STATUS_BAD_INPUT,
+                       "%s: this is a run file, with a scene and a target; use: mesofit fit %s",
+                       file, file);
+}
+
+enum status heading_check_run(const struct json_object *root, const char *file) {
+    if (has(*root, "scene") || has(*root, "target") || !has(*root, "box"))
+        return STATUS_OK;
+    return status_fail(STATUS_BAD_INPUT,
+                       "%s: this is a scene file, without a target; use: mesofit simulate %s", file,
+                       file);
+}

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "io/data_table.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { COMMON = 5, MOST_COLUMNS = COMMON + INVERSE_EXTRA };
@@ -23,6 +24,10 @@ enum status history_init(struct history *history, const struct inverse_method *m
     }
 done:
     return status;
+}
+
+double history_first_error(const struct history *history) {
+    return history->iterations > 0 ? history->rows[3] : NAN;
 }
 
 void history_clear(struct history *history) {

@@ -91,13 +91,42 @@ static bool has_distance(struct json_object *root) {
     return found;
 }
 
+static bool is_simulation(const struct result_summary *summary) {
+    return strcmp(summary->method, "simulate") == 0;
+}
+
+/// D of a simulation stands in an object of its own.
+static void read_simulated_diffusion(struct json_object *root, struct result_summary *summary) {
+    static const struct field fields[] = {
+        {.name = "diffusion_msd",
+         .type = FIELD_NUMBER,
+         .offset = offsetof(struct result_summary, diffusion),
+         .initial = NAN,
+         .minimum = -DBL_MAX,
+         .maximum = DBL_MAX,
+         .unit = ""},
+        {.name = "diffusion_msd_error",
+         .type = FIELD_NUMBER,
+         .offset = offsetof(struct result_summary, diffusion_error),
+         .initial = NAN,
+         .minimum = -DBL_MAX,
+         .maximum = DBL_MAX,
+         .unit = ""},
+        FIELD_END,
+    };
+    struct json_object motion = json_child(root, "motion", false);
+    json_fields(&motion, fields, summary);
+}
+
 /// Keys that are not in the table are left alone: a later version may write more.
 static enum status read_summary(struct result_summary *summary, const char *file) {
     struct json_document *document;
     TRY(json_open(&document, file));
     struct json_object root = json_root(document);
     json_fields(&root, result_summary_fields, summary);
-    if (root.item && !has_distance(&root))
+    if (is_simulation(summary))
+        read_simulated_diffusion(&root, summary);
+    else if (root.item && !has_distance(&root))
         json_fault(&root, NULL, "not the result of a fit: there is no rdf_rmse or other rmse");
     return json_close(document);
 }
@@ -195,10 +224,13 @@ static bool is_there(const char *folder, const char *name) {
     return access(file, F_OK) == 0;
 }
 
-static enum status read_rdf(struct result_table *table, const char *folder) {
-    struct wish wishes[] = {{NULL, 1}, {NULL, 2}, {NULL, 3}, {NULL, 4}, {NULL, 5}};
-    return is_there(folder, "rdf.tsv") ? read_table(table, folder, "rdf.tsv", wishes, 5)
-                                       : STATUS_OK;
+/// That of a simulation is r, g, g_error: a result without a target.
+static enum status read_rdf(struct result_table *table, const char *folder, bool simulated) {
+    struct wish fitted[] = {{NULL, 1}, {NULL, 2}, {NULL, 3}, {NULL, 4}, {NULL, 5}};
+    struct wish counted[] = {{NULL, 1}, {NULL, 0}, {NULL, 0}, {NULL, 2}, {NULL, 3}};
+    return is_there(folder, "rdf.tsv")
+               ? read_table(table, folder, "rdf.tsv", simulated ? counted : fitted, 5)
+               : STATUS_OK;
 }
 
 static enum status read_potential(struct result_table *table, const char *folder) {
@@ -252,10 +284,12 @@ enum status result_read(struct result *result, const char *folder) {
     *result = (struct result){0};
     CHECK(check_folder(folder, summary));
     CHECK(read_summary(&result->summary, summary));
-    CHECK(read_rdf(&result->rdf, folder));
+    const bool simulated = is_simulation(&result->summary);
+    CHECK(read_rdf(&result->rdf, folder, simulated));
     CHECK(read_potential(&result->potential, folder));
     CHECK(read_omega(&result->omega, folder));
-    CHECK(read_course(&result->course, folder));
+    if (!simulated)
+        CHECK(read_course(&result->course, folder));
 done:
     if (status != STATUS_OK)
         result_clear(result);

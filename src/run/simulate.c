@@ -68,8 +68,13 @@ static enum status read_file(struct run *run, const char *file, const struct run
     struct json_document *document;
     TRY(json_open(&document, file));
     struct json_object root = json_root(document);
+    enum status status = heading_check_scene(&root, file);
+    if (status != STATUS_OK) {
+        TRY(json_close(document));
+        return status;
+    }
     json_fields(&root, heading_fields, &run->heading);
-    const enum status status = scene_read(&run->scene, &root, SCENE_FITS_NOTHING);
+    status = scene_read(&run->scene, &root, SCENE_FITS_NOTHING);
     struct json_object measure = json_child(&root, "measure", false);
     json_fields(&measure, measure_plan_fields, &run->plan);
     if (measure.item)
@@ -185,7 +190,9 @@ static enum status write_rdf(const struct run *run) {
     const struct rdf_bins *bins = &run->rdf.bins;
     const size_t all = run->rdf.pairs * bins->count;
     char path[OUTPUT_PATH_SIZE];
+    const struct units *units = &run->scene.units;
     double *r = NULL, *g = NULL, *error = NULL, *counted = NULL, *counted_error = NULL;
+    double *nanometres = NULL;
     NEW_ARRAY(r, bins->count);
     NEW_ARRAY(g, bins->count);
     NEW_ARRAY(error, bins->count);
@@ -193,22 +200,28 @@ static enum status write_rdf(const struct run *run) {
     NEW_ARRAY(counted_error, all);
     for (size_t k = 0; k < bins->count; k++)
         r[k] = rdf_bins_centre(bins, k);
+    nanometres = units_column(r, bins->count, units->length);
+    CHECK(nanometres ? STATUS_OK : STATUS_NO_MEMORY);
     CHECK(rdf_result(&run->rdf, 1, counted, counted_error));
     if (uses_force(run))
         CHECK(rdf_force_result(&run->rdf_force, 1, RDF_FORCE_COUNTED, g, error));
     for (size_t pair = 0; pair < run->rdf.pairs; pair++) {
         const size_t first = pair * bins->count;
-        const struct data_column columns[] = {
+        size_t count = uses_force(run) ? 5 : 3;
+        struct data_column columns[6] = {
             {"r[lambda]", r, NULL},
             {"g[1]", uses_force(run) ? g : counted + first, "%.8g"},
             {"g_error[1]", uses_force(run) ? error : counted_error + first, "%.3g"},
             {"g_histogram[1]", counted + first, "%.8g"},
             {"g_histogram_error[1]", counted_error + first, "%.3g"}};
+        if (units_known(units))
+            columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
         run_folder_rdf(&run->folder, &run->scene.setup.composition, (int)pair, path);
-        CHECK(data_table_write(path, NULL, columns, uses_force(run) ? 5 : 3, bins->count));
+        CHECK(data_table_write(path, NULL, columns, count, bins->count));
     }
 done:
     memory_free(r);
+    memory_free(nanometres);
     memory_free(g);
     memory_free(error);
     memory_free(counted);
@@ -220,7 +233,10 @@ static enum status write_thermodynamics(const struct run *run) {
     enum status status = STATUS_OK;
     const struct thermodynamics *t = &run->thermodynamics;
     char path[OUTPUT_PATH_SIZE];
-    double *step = NULL, *time = NULL, *configurational = NULL;
+    const struct units *units = &run->scene.units;
+    const double *energy = thermodynamics_series(t, THERMODYNAMICS_POTENTIAL_ENERGY);
+    const double *pressure = thermodynamics_series(t, THERMODYNAMICS_PRESSURE);
+    double *step = NULL, *time = NULL, *configurational = NULL, *physical[3] = {NULL};
     NEW_ARRAY(step, t->samples);
     NEW_ARRAY(time, t->samples);
     NEW_ARRAY(configurational, t->samples);
@@ -230,17 +246,27 @@ static enum status write_thermodynamics(const struct run *run) {
         configurational[k] = thermodynamics_series(t, THERMODYNAMICS_FORCE_SQUARES)[k] /
                              thermodynamics_series(t, THERMODYNAMICS_LAPLACIAN)[k];
     }
+    // bar is a force on an area.
+    const bool known = units_known(units), in_space = run->scene.setup.box.dimensions == 3;
+    physical[0] = units_column(time, t->samples, known ? units_time_ps(units) : 0);
+    physical[1] = units_column(energy, t->samples, known ? units_energy_kj_per_mol(units) : 0);
+    physical[2] = units_column(pressure, t->samples, known ? units_pressure_bar(units) : 0);
+    CHECK(physical[0] && physical[1] && physical[2] ? STATUS_OK : STATUS_NO_MEMORY);
     const struct data_column columns[] = {
         {"step", step, NULL},
         {"time[tau]", time, NULL},
         {"temperature[T_0]", thermodynamics_series(t, THERMODYNAMICS_TEMPERATURE), "%.8g"},
-        {"potential_energy[k_B.T_0]", thermodynamics_series(t, THERMODYNAMICS_POTENTIAL_ENERGY),
-         "%.12g"},
-        {"pressure[k_B.T_0/lambda^d]", thermodynamics_series(t, THERMODYNAMICS_PRESSURE), "%.8g"},
-        {"temperature_configurational[T_0]", configurational, "%.8g"}};
+        {"potential_energy[k_B.T_0]", energy, "%.12g"},
+        {"pressure[k_B.T_0/lambda^d]", pressure, "%.8g"},
+        {"temperature_configurational[T_0]", configurational, "%.8g"},
+        {"time[ps]", physical[0], NULL},
+        {"potential_energy[kJ/mol]", physical[1], "%.8g"},
+        {"pressure[bar]", physical[2], "%.8g"}};
     run_folder_file(&run->folder, "thermodynamics.tsv", path);
-    CHECK(data_table_write(path, NULL, columns, 6, t->samples));
+    CHECK(data_table_write(path, NULL, columns, !known ? 6 : in_space ? 9 : 8, t->samples));
 done:
+    for (int k = 0; k < 3; k++)
+        memory_free(physical[k]);
     memory_free(step);
     memory_free(time);
     memory_free(configurational);
@@ -345,7 +371,7 @@ static enum status write_results(struct run *run) {
     TRY(write_thermodynamics(run));
     char path[OUTPUT_PATH_SIZE];
     run_folder_file(&run->folder, "motion.tsv", path);
-    TRY(simulate_motion_write_table(&run->motion, path));
+    TRY(simulate_motion_write_table(&run->motion, &run->scene.units, path));
     TRY(simulate_etd_write_tables(&run->etd, run->folder.path));
     run_folder_file(&run->folder, "force_covariance.tsv", path);
     TRY(simulate_force_covariance_write_table(&run->force_covariance, path));
@@ -354,6 +380,7 @@ static enum status write_results(struct run *run) {
     const struct thermodynamics_summary s = thermodynamics_result(&run->thermodynamics, 1);
     if (thermodynamics_judge(&s, &run->simulation.setup) != STATUS_OK)
         progress_say(&run->progress, "mesofit: warning: %s", status_message());
+    simulate_motion_say(&run->motion, &run->progress);
     progress_say(&run->progress, "%llu steps in %.3g s; results in %s",
                  (unsigned long long)run->simulation.step, seconds, run->folder.path);
     return STATUS_OK;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/units.h"
 
+#include "base/memory.h"
+
 #include <math.h>
 
 #define MEMBER(name) .offset = offsetof(struct units, name)
@@ -35,6 +37,13 @@ double units_pressure_bar(const struct units *units) {
 double units_diffusion_cm2_per_s(const struct units *units) {
     const double centimetres = units->length * 1e-7;
     return centimetres * centimetres / (units_time_ps(units) * 1e-12);
+}
+
+double *units_column(const double *values, size_t count, double factor) {
+    double *column = memory_zeroed(count, sizeof *column);
+    for (size_t k = 0; column && k < count; k++)
+        column[k] = factor * values[k];
+    return column;
 }
 
 void units_put(const struct units *units, struct json_writer *writer, double energy,

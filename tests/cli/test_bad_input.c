@@ -211,6 +211,19 @@ static void test_fit_tells_of_all_faults_at_once(void **state) {
 }
 
 /// The good files are good: the faults above are what is refused.
+static void test_file_for_another_command_is_refused_in_one_line(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
+    small_inputs_write(*state, "run.json", small_inputs_run, NULL, NULL);
+    small_inputs_write(*state, "scene.json", small_inputs_scene, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "run.json", "-o", "out");
+    run_program_assert_refused(&result, ".", "run file", 1,
+                               (const char *const[]){"use: mesofit fit run.json", NULL});
+    RUN_PROGRAM(&result, "fit", "scene.json", "-o", "out");
+    run_program_assert_refused(&result, ".", "scene file", 1,
+                               (const char *const[]){"use: mesofit simulate scene.json", NULL});
+}
+
 static void test_good_files_are_accepted(void **state) {
     static struct run_program_result result;
     small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
@@ -233,6 +246,7 @@ int main(void) {
         TEST(test_simulate_refuses_with_a_line_for_each_fault),
         TEST(test_fit_refuses_with_a_line_for_each_fault),
         TEST(test_fit_tells_of_all_faults_at_once),
+        TEST(test_file_for_another_command_is_refused_in_one_line),
         TEST(test_good_files_are_accepted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -48,7 +48,6 @@ static const char fit[] =
 #define GAUSS_NEWTON "\"name\": \"gauss-newton\", \"reach\": 0.05, \"iterations\": 2, " EVALUATION
 
 static const char *const tables[] = {"history.tsv",
-                                     "omega.tsv",
                                      "rdf_A-A.tsv",
                                      "rdf_A-B.tsv",
                                      "rdf_B-B.tsv",

@@ -54,8 +54,8 @@ static void test_simulate_leaves_all_files_of_a_run(void **state) {
     RUN_PROGRAM(&result, "simulate", "scene.json");
     run_program_assert_code(&result, 0);
     assert_string_equal(result.out, "");
-    results_assert_table("out/rdf.tsv", 3, 100);
-    results_assert_table("out/thermodynamics.tsv", 6, 20);
+    results_assert_table("out/rdf.tsv", 4, 100);
+    results_assert_table("out/thermodynamics.tsv", 9, 20);
     assert_true(temporary_folder_exists("out/used.json"));
     static const char *const numbers[] = {"seconds",
                                           "engine_steps",
@@ -134,7 +134,7 @@ static void test_simulate_measures_diffusion_when_asked(void **state) {
     write_scene(*state, groot_warren, "\"units\"", MOTION "\"units\"");
     simulate(&result, "with");
     results_assert_same("without", "with", tables);
-    results_assert_table("with/motion.tsv", 5, 9);
+    results_assert_table("with/motion.tsv", 10, 9);
     static const char *const numbers[] = {"motion.diffusion_msd",
                                           "motion.diffusion_msd_error",
                                           "motion.diffusion_green_kubo",
@@ -334,7 +334,7 @@ static void test_force_rdf_leaves_the_steps_alone(void **state) {
     simulate(&result, "one");
     write_scene(*state, groot_warren, "\"measure\"", FORCE_RDF "\"measure\"");
     simulate(&result, "two");
-    results_assert_table("two/rdf.tsv", 5, 100);
+    results_assert_table("two/rdf.tsv", 6, 100);
     results_assert_same("one", "two", (const char *const[]){"thermodynamics.tsv", NULL});
 }
 
@@ -432,7 +432,7 @@ static void test_one_sample_is_enough(void **state) {
     static struct run_program_result result;
     write_scene(*state, groot_warren, "\"samples\": 20", "\"samples\": 1");
     simulate(&result, "out");
-    results_assert_table("out/thermodynamics.tsv", 6, 1);
+    results_assert_table("out/thermodynamics.tsv", 9, 1);
     results_assert_number("out/summary.json", "engine_steps", 110);
 }
 

@@ -205,22 +205,67 @@ static void test_decoder_laws_are_those_of_the_scene_when_they_are_known(void **
     decoder_clear(&both.decoder);
 }
 
-/// A weight of three genes beside nothing else.
-static void begin_power(struct both *both) {
+/// A formula beside nothing else: of three genes, or of those that are not fixed.
+static void begin_power_with(struct both *both, int64_t genes, double sigma, double exponent,
+                             double inner_cutoff) {
     *both = (struct both){.power = {2.5, 1.5, 0.4, 1.6}};
     both->weight = (struct curve){&formula_power_weight, &both->power};
-    both->problem.unknown[UNKNOWN_WEIGHT] =
-        (struct unknown){true, {INVERSE_CURVE_POWER, 3, 0, 5, 0.1, 1.6}, {&both->weight}};
+    both->problem.unknown[UNKNOWN_WEIGHT] = (struct unknown){
+        true,
+        {INVERSE_CURVE_POWER, genes, 0, 5, 0.1, 1.6, {sigma, exponent, inner_cutoff}},
+        {&both->weight}};
     assert_ok(decoder_init(&both->decoder, &both->problem));
     assert_ok(decoder_start(&both->decoder, both->genes));
+}
+
+static void begin_power(struct both *both) {
+    begin_power_with(both, INVERSE_PARAMETERS, NAN, NAN, NAN);
 }
 
 static void test_decoder_power_is_the_formula_and_starts_at_it(void **state) {
     (void)state;
     struct both both;
     begin_power(&both);
-    assert_int_equal(both.decoder.genes, INVERSE_POWER_GENES);
+    assert_int_equal(both.decoder.genes, INVERSE_PARAMETERS);
     check_curve(&both, UNKNOWN_WEIGHT, &both.weight, 0, 1e-12);
+    decoder_clear(&both.decoder);
+}
+
+/// The curve is the formula with what is fixed, whatever the genes of the rest are.
+static void test_decoder_power_holds_what_is_fixed(void **state) {
+    (void)state;
+    struct both both;
+    double curve[WEIGHT_POINTS];
+    begin_power_with(&both, 1, NAN, 1.5, 0.4);
+    assert_int_equal(both.decoder.genes, 1);
+    check_curve(&both, UNKNOWN_WEIGHT, &both.weight, 0, 1e-12);
+    both.genes[0] = 0.8; // σ = 4
+    decoder_curve(&both.decoder, UNKNOWN_WEIGHT, both.genes, curve);
+    for (size_t k = 0; k < WEIGHT_POINTS; k++)
+        assert_close(curve[k], 4 / 2.5 * curve_value(&both.weight, both.decoder.weight.r[k]), 1e-9);
+    decoder_clear(&both.decoder);
+    begin_power_with(&both, 2, 2.5, NAN, NAN);
+    assert_int_equal(both.decoder.genes, 2);
+    check_curve(&both, UNKNOWN_WEIGHT, &both.weight, 0, 1e-12);
+    decoder_clear(&both.decoder);
+}
+
+static void test_decoder_parameters_have_the_errors_of_their_genes(void **state) {
+    (void)state;
+    struct both both;
+    struct inverse_parameter found[INVERSE_PARAMETERS];
+    const double covariance[4] = {0.01 * 0.01, 0, 0, 0.02 * 0.02};
+    begin_power_with(&both, 2, NAN, 1.5, NAN);
+    decoder_parameters(&both.decoder, both.genes, covariance, found);
+    assert_close(found[INVERSE_SIGMA].value, 2.5, 1e-12);
+    assert_close(found[INVERSE_SIGMA].error, 5 * 0.01, 1e-12);
+    assert_close(found[INVERSE_EXPONENT].value, 1.5, 0);
+    assert_close(found[INVERSE_EXPONENT].error, 0, 0);
+    // Half of the way from 0.1 to 1.6 is one gene's range.
+    assert_close(found[INVERSE_INNER_CUTOFF].value, 0.4, 1e-12);
+    assert_close(found[INVERSE_INNER_CUTOFF].error, 0.75 * 0.02, 1e-12);
+    decoder_parameters(&both.decoder, both.genes, NULL, found);
+    assert_true(isnan(found[INVERSE_SIGMA].error));
     decoder_clear(&both.decoder);
 }
 
@@ -271,6 +316,8 @@ int main(void) {
         cmocka_unit_test(test_decoder_curve_of_a_weight_is_never_negative),
         cmocka_unit_test(test_decoder_band_is_the_error_that_the_covariance_gives_the_curve),
         cmocka_unit_test(test_decoder_power_is_the_formula_and_starts_at_it),
+        cmocka_unit_test(test_decoder_power_holds_what_is_fixed),
+        cmocka_unit_test(test_decoder_parameters_have_the_errors_of_their_genes),
         cmocka_unit_test(test_decoder_band_of_the_formula_follows_its_genes),
         cmocka_unit_test(test_decoder_flat_directions_are_principal_components),
         cmocka_unit_test(test_decoder_laws_are_those_of_the_scene_when_they_are_known),

@@ -51,6 +51,17 @@ static void test_inversion_reason_is_not_the_start_when_shorter_steps_helped(voi
                             "statistical error 0.003");
 }
 
+static void test_inversion_reason_of_a_stuck_mixture_advises_a_shorter_cutoff(void **state) {
+    (void)state;
+    struct inverse_problem problem;
+    struct inversion inversion = make_inversion(&problem, 0.265, false);
+    inversion.progress.damping = 1.0 / 128;
+    problem.scene.composition = composition_of_one(100);
+    assert_says(&inversion, "without progress");
+    problem.scene.composition.types = 2;
+    assert_says(&inversion, "a shorter \"cutoff\"");
+}
+
 static void test_inversion_reason_is_the_precision_when_the_curves_agree(void **state) {
     (void)state;
     struct inverse_problem problem;
@@ -82,6 +93,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_inversion_reason_is_the_start_when_no_step_from_it_helped),
         cmocka_unit_test(test_inversion_reason_is_not_the_start_when_shorter_steps_helped),
+        cmocka_unit_test(test_inversion_reason_of_a_stuck_mixture_advises_a_shorter_cutoff),
         cmocka_unit_test(test_inversion_reason_is_the_precision_when_the_curves_agree),
         cmocka_unit_test(test_inversion_reason_is_frozen_replicas_when_they_disagree),
         cmocka_unit_test(test_inversion_reason_is_the_pressure_when_only_that_is_off),

@@ -142,12 +142,72 @@ static void test_motion_init_refuses_when_there_is_no_time_for_a_window(void **s
     fluid_clear(&fluid);
 }
 
+enum { MADE_LAGS = 60 };
+
+/// A VACF exp(−t/τ_c) of one window, sampled every τ_c h, and an MSD whose slope is that of D =
+/// τ_c.
+static struct motion_summary of_decay(double h, double msd_slope) {
+    double squares[MADE_LAGS + 1], products[MADE_LAGS + 1];
+    struct motion motion = {
+        .plan = {.every = 1, .lags = MADE_LAGS, .origin_every = 1, .fit_from = 0.5},
+        .dimensions = 1,
+        .time_step = h,
+        .blocks = 1,
+        .each = 1,
+        .samples = MADE_LAGS + 1,
+        .squares = squares,
+        .products = products};
+    for (int k = 0; k <= MADE_LAGS; k++) {
+        products[k] = exp(-h * k);
+        squares[k] = 2 * msd_slope * h * k;
+    }
+    assert_ok(maxwell_init(&motion.maxwell));
+    const struct motion_summary s = motion_result(&motion, NULL);
+    maxwell_clear(&motion.maxwell);
+    return s;
+}
+
+/// D = ∫ exp(−t) dt = 1: what trapezoids are off is known, h²/12 for small h.
+static void test_green_kubo_knows_what_its_sampling_costs(void **state) {
+    (void)state;
+    struct motion_summary fine = of_decay(0.2, 1), coarse = of_decay(2, 1);
+    assert_close_relative(fine.green_kubo_sampling, fabs(fine.green_kubo - 1), 0.05);
+    assert_ok(motion_judge(&fine));
+    assert_true(coarse.green_kubo > 1.3);
+    assert_close_relative(coarse.green_kubo_sampling, fabs(coarse.green_kubo - 1), 0.3);
+    assert_true(motion_green_kubo_uncertainty(&coarse) > 0.25);
+    assert_fails(motion_judge(&coarse), STATUS_UNCONVERGED, "the VACF falls by 86 %");
+}
+
+/// A window that ends at 1.2 relaxation times leaves out exp(−1.2) of D.
+static void test_green_kubo_knows_what_its_window_leaves_out(void **state) {
+    (void)state;
+    const struct motion_summary s = of_decay(0.02, 1);
+    assert_close(1 - s.green_kubo, exp(-1.2), 1e-3);
+    assert_true(s.green_kubo_truncation > 0.5 * exp(-1.2));
+    assert_true(motion_green_kubo_uncertainty(&s) < 2 * exp(-1.2));
+}
+
+static void test_judge_tells_when_both_diffusion_coefficients_disagree(void **state) {
+    (void)state;
+    struct motion_summary s = of_decay(0.2, 1.5);
+    assert_ok(motion_judge(&s)); // one window: the errors are not known
+    s.msd_error = s.green_kubo_error = 0.01;
+    assert_close(s.msd, 1.5, 1e-9);
+    assert_fails(motion_judge(&s), STATUS_UNCONVERGED, "1.5 by the MSD and 1 by Green and Kubo");
+    s.msd_error = 0.2;
+    assert_ok(motion_judge(&s));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_motion_is_exact_when_particles_fly_freely),
         cmocka_unit_test(test_motion_removes_the_drift_when_all_move_together),
         cmocka_unit_test(test_motion_takes_only_samples_of_whole_windows),
         cmocka_unit_test(test_motion_has_no_result_before_a_window_is_complete),
+        cmocka_unit_test(test_green_kubo_knows_what_its_sampling_costs),
+        cmocka_unit_test(test_green_kubo_knows_what_its_window_leaves_out),
+        cmocka_unit_test(test_judge_tells_when_both_diffusion_coefficients_disagree),
         cmocka_unit_test(test_motion_init_refuses_when_there_is_no_time_for_a_window),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -202,6 +202,27 @@ static void test_judge_tells_when_a_temperature_is_off(void **state) {
     fluid_clear(&fluid);
 }
 
+static void test_judge_of_a_fit_sees_a_few_percent_of_the_positions(void **state) {
+    (void)state;
+    struct fluid fluid;
+    fluid_groot_warren(&fluid, 100, 0.01);
+    struct thermodynamics_summary s = {.blocks = 20,
+                                       .temperature = 1.007,
+                                       .temperature_error = 0.002,
+                                       .temperature_configurational = 0.965,
+                                       .temperature_configurational_error = 0.005};
+    assert_ok(thermodynamics_judge(&s, &fluid.setup));
+    assert_fails(thermodynamics_judge_fit(&s, &fluid.setup), STATUS_UNSTABLE, "-3.5 % off");
+    s.temperature_configurational_error = 0.013; // it may be chance
+    assert_ok(thermodynamics_judge_fit(&s, &fluid.setup));
+    s.temperature_configurational = 1.02;
+    s.temperature_configurational_error = 0.001; // sure, and little
+    assert_ok(thermodynamics_judge_fit(&s, &fluid.setup));
+    s.temperature_configurational = NAN;
+    assert_ok(thermodynamics_judge_fit(&s, &fluid.setup));
+    fluid_clear(&fluid);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_thermodynamics_sample_is_exact_when_there_are_two_particles),
@@ -213,6 +234,7 @@ int main(void) {
         cmocka_unit_test(test_thermodynamics_errors_cover_the_truth_when_samples_are_independent),
         cmocka_unit_test(test_thermodynamics_errors_grow_when_samples_are_correlated),
         cmocka_unit_test(test_judge_tells_when_a_temperature_is_off),
+        cmocka_unit_test(test_judge_of_a_fit_sees_a_few_percent_of_the_positions),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

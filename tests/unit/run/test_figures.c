@@ -35,12 +35,32 @@ static void make_folder(char path[PATH], const char *name) {
     assert_int_equal(output_make_folder(path), STATUS_OK);
 }
 
+/// True if the figure has that word: a legend, say.
+static bool says(const char *folder, const char *name, const char *word) {
+    char path[PATH + 64], line[4096];
+    bool found = false;
+    snprintf(path, sizeof path, "%s/figures/%s.svg", folder, name);
+    FILE *stream = fopen(path, "r");
+    assert_non_null(stream);
+    while (!found && fgets(line, sizeof line, stream))
+        found = strstr(line, word) != NULL;
+    fclose(stream);
+    return found;
+}
+
+/// Both files of a figure are there, and no text of it is a piece of its script.
 static bool is_drawn(const char *folder, const char *name) {
     char svg[PATH + 64], png[PATH + 64];
     snprintf(svg, sizeof svg, "%s/figures/%s.svg", folder, name);
     snprintf(png, sizeof png, "%s/figures/%s.png", folder, name);
     assert_int_equal(access(svg, F_OK), access(png, F_OK));
-    return access(svg, F_OK) == 0;
+    if (access(svg, F_OK) != 0)
+        return false;
+    static const char *const code[] = {"using", "word(", "column(", "every ", "title "};
+    for (size_t k = 0; k < sizeof code / sizeof *code; k++)
+        if (says(folder, name, code[k]))
+            fail_msg("%s says \"%s\"", svg, code[k]);
+    return true;
 }
 
 static void skip_without_gnuplot(void) {
@@ -59,6 +79,11 @@ static const char imc_history[] =
     "# iteration[1]\tevaluations[1]\tengine_steps[1]\terror[1]\tnoise[1]\tdamping[1]\t"
     "regularisation[1]\n0\t1\t100\t0.5\t0.01\t1\t0\n";
 static const char timing[] = "# iteration[1]\tseconds[s]\n0\t0\n1\t2\n";
+
+static void assert_draws(const char *folder) {
+    if (figures_draw(folder) != STATUS_OK)
+        fail_msg("%s", status_message());
+}
 
 static void test_draws_what_the_tables_allow(void **state) {
     (void)state;
@@ -137,6 +162,71 @@ static void test_draws_simulation_and_no_fit(void **state) {
     assert_false(is_drawn(folder, "rdf"));
 }
 
+/// Of a mixture: g(r) of every kind of pairs, and its name. In units that the tables know.
+static void test_draws_simulation_of_a_mixture_in_its_units(void **state) {
+    (void)state;
+    skip_without_gnuplot();
+    char folder[PATH];
+    make_folder(folder, "mixture");
+    static const char rdf[] = "# r[lambda]\tg[1]\tg_error[1]\tr[nm]\n0.5\t0\t0\t2\n1\t1\t0.1\t4\n";
+    write_table(folder, "rdf_A-A.tsv", rdf);
+    write_table(folder, "rdf_A-B.tsv", rdf);
+    write_table(folder, "rdf_B-B.tsv", rdf);
+    write_table(folder, "thermodynamics.tsv",
+                "# step\ttime[tau]\ttemperature[T_0]\tpotential_energy[k_B.T_0]\t"
+                "pressure[k_B.T_0/lambda^d]\ttemperature_configurational[T_0]\ttime[ps]\t"
+                "potential_energy[kJ/mol]\tpressure[bar]\n"
+                "0\t0\t1\t1\t3\tnan\t0\t2.5\t900\n1\t0.1\t1\t2\t3\tnan\t70\t5\t900\n");
+    assert_draws(folder);
+    assert_true(is_drawn(folder, "simulation"));
+    assert_true(says(folder, "simulation", "A-B"));
+    assert_true(says(folder, "simulation", "nm") && says(folder, "simulation", "ps"));
+    assert_true(says(folder, "simulation", "kJ/mol") && says(folder, "simulation", "bar"));
+    assert_true(says(folder, "simulation", ">3.5<")); // a distance in nm
+    assert_true(says(folder, "simulation", ">60<"));  // a time in ps
+    assert_true(says(folder, "simulation", ">900<"));
+}
+
+/// A barrier of 1.33 behind a core of 50, and a well of 0.3: all of it is seen.
+static void test_potential_is_shown_up_to_its_barrier(void **state) {
+    (void)state;
+    skip_without_gnuplot();
+    char folder[PATH];
+    make_folder(folder, "barrier");
+    write_table(folder, "potential.tsv",
+                "# r[lambda]\tphi[k_B.T_0]\tforce[k_B.T_0/lambda]\tphi_error[k_B.T_0]\n"
+                "0.2\t50\t0\tnan\n0.25\t0.2\t0\tnan\n0.3\t0.1\t0\tnan\n"
+                "0.375\t1.33\t0\tnan\n0.5\t-0.3\t0\tnan\n1\t0\t0\tnan\n");
+    assert_draws(folder);
+    assert_true(is_drawn(folder, "potential"));
+    assert_true(says(folder, "potential", ">1.4<"));
+    assert_false(says(folder, "potential", ">2<"));
+}
+
+/// A soft repulsion whose core goes on steeply where no pair was seen, in nm and kJ/mol.
+static void test_soft_potential_is_shown_almost_whole(void **state) {
+    (void)state;
+    skip_without_gnuplot();
+    char folder[PATH], table[2048];
+    int length = snprintf(table, sizeof table,
+                          "# r[lambda]\tphi[k_B.T_0]\tforce[k_B.T_0/lambda]\t"
+                          "phi_error[k_B.T_0]\tr[nm]\tphi[kJ/mol]\n");
+    make_folder(folder, "soft");
+    for (int k = 0; k <= 20; k++) {
+        const double r = 0.05 * k, core = r < 0.2 ? 1000 * (0.2 - r) : 0;
+        const double phi = 16 * (1 - r) * (1 - r) + core;
+        length += snprintf(table + length, sizeof table - (size_t)length,
+                           "%g\t%g\t0\t0.1\t%g\t%g\n", r, phi, 2 * r, 10 * phi);
+    }
+    write_table(folder, "potential.tsv", table);
+    assert_draws(folder);
+    assert_true(is_drawn(folder, "potential"));
+    assert_true(says(folder, "potential", "nm") && says(folder, "potential", "kJ/mol"));
+    assert_true(says(folder, "potential", ">0.8<")); // nm: 0.4 lambda
+    assert_true(says(folder, "potential", ">40<"));
+    assert_false(says(folder, "potential", ">300<"));
+}
+
 /// Two times, three bins; no result at time 0, nothing known of the last bin.
 static const char fit_cells[] =
     "# time[tau]\tr0[lambda]\ttarget[1]\ttarget_error[1]\tresult[1]\tresult_error[1]\n"
@@ -144,24 +234,6 @@ static const char fit_cells[] =
     "0.1\t0.6\t0.9\t0.01\t0.8\t0.01\n0.1\t0.7\t0.7\t0.01\t0.75\t0.01\n"
     "0.1\t0.8\t0.4\t0.01\tnan\tnan\n0.2\t0.6\t0.8\t0.01\t0.7\t0.01\n"
     "0.2\t0.7\t0.6\t0.01\t0.65\t0.01\n0.2\t0.8\t0.3\t0.01\tnan\tnan\n";
-
-static void assert_draws(const char *folder) {
-    if (figures_draw(folder) != STATUS_OK)
-        fail_msg("%s", status_message());
-}
-
-/// True if the figure has that word: a legend, say.
-static bool says(const char *folder, const char *name, const char *word) {
-    char path[PATH + 64], line[4096];
-    bool found = false;
-    snprintf(path, sizeof path, "%s/figures/%s.svg", folder, name);
-    FILE *stream = fopen(path, "r");
-    assert_non_null(stream);
-    while (!found && fgets(line, sizeof line, stream))
-        found = strstr(line, word) != NULL;
-    fclose(stream);
-    return found;
-}
 
 static void test_draws_dynamics_of_a_fit(void **state) {
     (void)state;
@@ -178,6 +250,13 @@ static void test_draws_dynamics_of_a_fit(void **state) {
     assert_false(says(folder, "etd_cells", "0.800"));
     assert_true(is_drawn(folder, "vacf"));
     assert_false(is_drawn(folder, "etd"));
+    assert_false(is_drawn(folder, "msd"));
+    write_table(folder, "msd.tsv",
+                "# time[tau]\ttarget[lambda^2]\ttarget_error[lambda^2]\tresult[lambda^2]\t"
+                "result_error[lambda^2]\n"
+                "0\t0\t0\t0\t0\n0.1\t1\t0.01\t1.2\tnan\n0.2\t3\t0.01\t2.9\tnan\n");
+    assert_draws(folder);
+    assert_true(is_drawn(folder, "msd"));
 }
 
 static void test_draws_etd_of_no_known_result(void **state) {
@@ -216,6 +295,7 @@ static void test_draws_bands_and_truth_where_they_are_known(void **state) {
                 "0.5\t1000\t0\tnan\t900\t0.2\n1\t-0.5\t0\t0.1\t-0.4\t0.4\n"
                 "1.5\t0\t0\tnan\t0\t0.6\n");
     assert_draws(folder);
+    assert_true(is_drawn(folder, "omega"));
     assert_true(says(folder, "omega", "95 % band") && says(folder, "omega", "truth"));
     assert_true(says(folder, "potential", "95 % band") && says(folder, "potential", "truth"));
 }
@@ -233,6 +313,12 @@ static void test_error_is_named_after_what_was_fitted(void **state) {
                 "\t\t\"vacf\":\t{\n\t\t\t\"fitted\":\t\"yes\"\n\t\t}\n\t}\n}\n");
     assert_draws(folder);
     assert_true(says(folder, "error", "weighted error"));
+    write_table(folder, "used.json",
+                "{\n\t\"target\":\t{\n\t\t\"diffusion\":\t{\n\t\t\t\"fitted\":\t\"yes\"\n"
+                "\t\t}\n\t}\n}\n");
+    assert_draws(folder);
+    assert_true(says(folder, "error", "rmse of"));
+    assert_true(says(folder, "error", "τ")); // its unit
 }
 
 static void test_draws_nothing_without_tables(void **state) {
@@ -302,6 +388,9 @@ int main(void) {
         cmocka_unit_test(test_draws_the_front_of_several_goals),
         cmocka_unit_test(test_draws_no_generations_without_diversity),
         cmocka_unit_test(test_draws_simulation_and_no_fit),
+        cmocka_unit_test(test_draws_simulation_of_a_mixture_in_its_units),
+        cmocka_unit_test(test_potential_is_shown_up_to_its_barrier),
+        cmocka_unit_test(test_soft_potential_is_shown_almost_whole),
         cmocka_unit_test(test_draws_dynamics_of_a_fit),
         cmocka_unit_test(test_draws_etd_of_no_known_result),
         cmocka_unit_test(test_draws_bands_and_truth_where_they_are_known),

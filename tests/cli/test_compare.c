@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// `mesofit compare` of simulations, alone and beside a fit.
+#include "shared/results.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static struct run_program_result result;
+
+static void simulate(struct temporary_folder *folder, const char *out, const char *temperature) {
+    small_inputs_write(
+        folder, "scene.json",
+        "{\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, \"time_step\": 0.02,\n"
+        "\"conservative\": {\"law\": \"soft-repulsion\"}, \"temperature\": 1.5,\n"
+        "\"dissipative\": {\"law\": \"power\", \"sigma\": 3}, \"motion\": {\"lags\": 10},\n"
+        "\"rdf\": {\"range\": 1, \"bins\": 20},\n"
+        "\"measure\": {\"equilibration\": 100, \"samples\": 40, \"every\": 10}}",
+        "1.5", temperature);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", out, "--quiet");
+    run_program_assert_code(&result, 0);
+}
+
+/// The last row of a simulation's g(r) is a row of the comparison without a target.
+static void assert_has_last_row(const char *table, const char *comparison) {
+    double r, g, error;
+    char row[160], *text = temporary_folder_read(table), *end = text + strlen(text) - 1;
+    *end = '\0';
+    assert_int_equal(sscanf(strrchr(text, '\n') + 1, "%lf %lf %lf", &r, &g, &error), 3);
+    snprintf(row, sizeof row, "%.10g\tnan\tnan\t%.10g\t%.10g\n", r, g, error);
+    assert_contains(comparison, row);
+    free(text);
+}
+
+static void test_compare_puts_simulations_side_by_side(void **state) {
+    small_inputs_need_gnuplot();
+    simulate(*state, "cold", "1");
+    simulate(*state, "hot", "1.5");
+    RUN_PROGRAM(&result, "compare", "cold", "hot", "-o", "both");
+    run_program_assert_code(&result, 0);
+    assert_string_equal(result.err, "");
+    assert_contains(result.out, " D ");
+    assert_contains(result.out, "simulate");
+    assert_false(temporary_folder_exists("both/error_compare.tsv"));
+    char *text = temporary_folder_read("both/rdf_compare.tsv");
+    assert_has_last_row("cold/rdf.tsv", text);
+    assert_has_last_row("hot/rdf.tsv", text);
+    free(text);
+    char diffusion[64];
+    text = temporary_folder_read("both/compare.tsv");
+    snprintf(diffusion, sizeof diffusion, "\t%.16g\t",
+             results_number("hot/summary.json", "motion.diffusion_msd"));
+    assert_contains(text, diffusion);
+    free(text);
+    text = temporary_folder_read("both/figures/compare.svg");
+    assert_contains(text, "cold");
+    assert_null(strstr(text, "target"));
+    free(text);
+}
+
+static void test_compare_takes_a_simulation_beside_a_fit(void **state) {
+    small_inputs_need_gnuplot();
+    simulate(*state, "cold", "1");
+    small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
+    small_inputs_write(*state, "run.json", small_inputs_run, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit", "--quiet");
+    assert_in_range(result.code, 0, 1);
+    RUN_PROGRAM(&result, "compare", "cold", "fit", "-o", "both");
+    run_program_assert_code(&result, 0);
+    assert_string_equal(result.err, "");
+    char *text = temporary_folder_read("both/figures/compare.svg");
+    assert_contains(text, "target");
+    free(text);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_compare_puts_simulations_side_by_side,
+                                        small_inputs_enter, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_compare_takes_a_simulation_beside_a_fit,
+                                        small_inputs_enter, small_inputs_leave),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

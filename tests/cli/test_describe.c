@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// `mesofit describe`: it tells of every key that the readers of files know.
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static struct run_program_result result;
+
+/// A file with one key that nobody knows at `path`: the reader then lists those that it knows.
+static const struct {
+    const char *command, *text, *topic;
+} readers[] = {
+    {"fit", "{\"x\": 1}", "run"},
+    {"fit", "{\"target\": {\"x\": 1}}", "target"},
+    {"fit", "{\"unknowns\": {\"x\": 1}}", "unknowns"},
+    {"fit", "{\"unknowns\": {\"weight\": {\"x\": 1}}}", "weight"},
+    {"fit", "{\"unknowns\": {\"potential\": {\"x\": 1}}}", "potential"},
+    {"fit", "{\"unknowns\": {\"weight\": {\"fixed\": {\"x\": 1}}}}", "fixed"},
+    {"fit", "{\"core\": {\"x\": 1}}", "core"},
+    {"fit", "{\"verification\": {\"x\": 1}}", "verification"},
+    {"simulate", "{\"x\": 1}", "scene"},
+    {"simulate", "{\"measure\": {\"x\": 1}}", "measure"},
+    {"simulate", "{\"rdf\": {\"x\": 1}}", "rdf"},
+    {"simulate", "{\"motion\": {\"x\": 1}}", "motion"},
+    {"simulate", "{\"units\": {\"x\": 1}}", "units"},
+};
+
+static void test_describe_tells_of_every_key_that_a_reader_knows(void **state) {
+    for (size_t k = 0; k < sizeof readers / sizeof *readers; k++) {
+        size_t keys = 0;
+        small_inputs_write(*state, "file.json", readers[k].text, NULL, NULL);
+        RUN_PROGRAM(&result, readers[k].command, "file.json", "-o", "out");
+        run_program_assert_code(&result, 2);
+        char *known = strstr(result.err, "x: unknown key; known: ");
+        if (known == NULL)
+            fail_msg("no list of keys: %s", result.err);
+        known += strlen("x: unknown key; known: ");
+        char list[1024];
+        snprintf(list, sizeof list, "%.*s", (int)strcspn(known, "\n"), known);
+        RUN_PROGRAM(&result, "describe", readers[k].topic);
+        run_program_assert_code(&result, 0);
+        for (char *rest, *key = strtok_r(list, ", ", &rest); key;
+             key = strtok_r(NULL, ", ", &rest), keys++) {
+            char line[128];
+            snprintf(line, sizeof line, "\n  %s ", key);
+            if (strstr(result.out, line) == NULL)
+                fail_msg("describe %s does not tell of %s", readers[k].topic, key);
+        }
+        assert_true(keys > 0);
+    }
+}
+
+/// What an object is said to be described by is described.
+static void test_describe_knows_every_topic_that_it_names(void **state) {
+    static const char *const topics[] = {"run", "scene", "target", "unknowns", "weight"};
+    static const char words[] = "see `mesofit describe ";
+    (void)state;
+    for (size_t k = 0; k < sizeof topics / sizeof *topics; k++) {
+        static char text[sizeof result.out];
+        RUN_PROGRAM(&result, "describe", topics[k]);
+        run_program_assert_code(&result, 0);
+        snprintf(text, sizeof text, "%s", result.out);
+        assert_contains(text, words);
+        for (char *at = text; (at = strstr(at, words)); at++) {
+            char name[64];
+            snprintf(name, sizeof name, "%.*s", (int)strcspn(at + strlen(words), "`"),
+                     at + strlen(words));
+            RUN_PROGRAM(&result, "describe", name);
+            run_program_assert_code(&result, 0);
+        }
+    }
+}
+
+static void test_describe_of_a_group_is_all_that_it_holds(void **state) {
+    static const char *const methods[] = {"imc (method)", "gauss-newton (method)",
+                                          "cma-es (method)", "pareto (method)"};
+    (void)state;
+    RUN_PROGRAM(&result, "describe", "method");
+    run_program_assert_code(&result, 0);
+    for (size_t k = 0; k < sizeof methods / sizeof *methods; k++)
+        assert_contains(result.out, methods[k]);
+    assert_null(strstr(result.out, "(target)"));
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        TEST(test_describe_tells_of_every_key_that_a_reader_knows),
+        TEST(test_describe_knows_every_topic_that_it_names),
+        TEST(test_describe_of_a_group_is_all_that_it_holds),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
