@@ -12,7 +12,7 @@ struct target_curve {
     struct target_curve_parameters {
         char file[FIELD_TEXT_SIZE];
         int64_t time_column, value_column,
-            error_column; ///< from 1; error_column 0: no errors given
+            error_column; ///< from 1; error_column 0: none, −1: 3 or none
     } parameters;
     size_t times;          ///< 0: not given
     double interval;       ///< [τ]
@@ -41,10 +41,11 @@ struct targets {
     } goal[GOALS];
 };
 
-/// Read the object "target" of a scene of this composition; `units` convert VOTCA's tables. Faults
-/// go to the document. Fails: NO_MEMORY.
+/// Read the object "target" of a scene of this composition; `units` convert VOTCA's tables;
+/// `dimensions` are those of space. Faults go to the document. Fails: NO_MEMORY.
 enum status targets_read(struct targets *targets, struct json_object *root,
-                         const struct composition *composition, const struct units *units) MUST_USE;
+                         const struct composition *composition, const struct units *units,
+                         int dimensions) MUST_USE;
 void targets_clear(struct targets *targets);
 void targets_write(const struct targets *targets, struct json_writer *writer);
 

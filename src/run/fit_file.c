@@ -113,7 +113,8 @@ static enum status read_root(struct fit_file *fit, struct json_object *root) {
     json_fields(root, heading_fields, &fit->heading);
     // Before what its units convert.
     TRY(read_scene(fit, root));
-    TRY(targets_read(&fit->targets, root, &fit->scene.setup.composition, &fit->scene.units));
+    TRY(targets_read(&fit->targets, root, &fit->scene.setup.composition, &fit->scene.units,
+                     fit->scene.setup.box.dimensions));
     TRY(read_unknowns(fit, root));
     TRY(read_method(fit, root));
     struct json_object core = json_child(root, "core", false);

@@ -34,7 +34,7 @@ static enum status read(void **state, const char *members, struct targets *targe
     assert_in_range(length, 1, sizeof text - 1);
     assert_ok(json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
     struct json_object root = json_root(document);
-    assert_ok(targets_read(targets, &root, &binary, &units));
+    assert_ok(targets_read(targets, &root, &binary, &units, 3));
     json_finish(&root);
     return json_close(document);
 }
@@ -110,7 +110,7 @@ static void test_targets_write_gives_a_mixture_back(void **state) {
     json_writer_free(writer);
     assert_ok(json_open(&document, path));
     struct json_object root = json_root(document);
-    assert_ok(targets_read(&again, &root, &binary, &units));
+    assert_ok(targets_read(&again, &root, &binary, &units, 3));
     json_finish(&root);
     assert_ok(json_close(document));
     targets_goals(&again, false, &fitted, &compared);
