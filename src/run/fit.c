@@ -7,6 +7,7 @@
 #include "run/fit_verdict.h"
 #include "run/history.h"
 #include "run/progress.h"
+#include "run/target_sanity.h"
 
 #include <math.h>
 #include <string.h>
@@ -133,20 +134,31 @@ done:
     return status;
 }
 
-static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
-    TRY(fit_file_read(&run->fit, file, options));
-    TRY(run_folder_open(&run->folder, file, options));
-    TRY(write_used(run, options->resume));
+static void say_line(void *progress, const char *line) {
+    progress_say(progress, "%s", line);
+}
+
+/// What is to be fitted, so that a wrong column or unit is seen before the work.
+static enum status tell_targets(struct run *run) {
     const struct target_etd *etd = &run->fit.targets.etd;
     if (etd->left_out > 0)
         progress_say(&run->progress,
                      "target.etd: %zu of %zu cells of the target are not known and left out",
                      etd->left_out, (size_t)(etd->grid.times * etd->grid.bins));
+    return target_sanity_tell(&run->fit.targets, &run->fit.scene,
+                              &(struct target_sanity_listener){say_line, &run->progress});
+}
+
+static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
+    TRY(fit_file_read(&run->fit, file, options));
+    TRY(run_folder_open(&run->folder, file, options));
+    TRY(write_used(run, options->resume));
     const enum status status = create(run);
     if (status != STATUS_OK)
         return status_prefix(status, "%s", file);
     // Saved now, so that a run interrupted in its first iteration can be resumed like any other.
-    return options->resume ? load(run) : save(run);
+    TRY(options->resume ? load(run) : save(run));
+    return tell_targets(run);
 }
 
 /// Progress inside an iteration, and a checkpoint now and then.

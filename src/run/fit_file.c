@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "inverse/decoder.h"
+#include "run/target_sanity.h"
 
 #define MEMBER(name) .offset = offsetof(struct fit_core, name)
 const struct field fit_core_fields[] = {
@@ -240,7 +241,9 @@ static enum status check(const struct fit_file *fit, const char *file) {
                            "or at random",
                            file);
     const enum status status = try_scene(&fit->problem);
-    return status == STATUS_OK ? STATUS_OK : status_prefix(status, "%s: scene", file);
+    if (status != STATUS_OK)
+        return status_prefix(status, "%s: scene", file);
+    return target_sanity_check(targets, &fit->scene, file);
 }
 
 static void state_problem(struct fit_file *fit, const struct run_options *options) {

@@ -202,10 +202,15 @@ static enum status find_bins(const struct target_rows *rows, const char *file,
 }
 
 static enum status check_values(const struct target_rows *rows, const char *file) {
-    for (size_t k = 0; k < rows->count; k++)
-        if (rows->g[k] < 0 || rows->error[k] < 0)
-            return status_fail(STATUS_BAD_INPUT, "%s:%zu: a negative g or error", file,
-                               rows->line[k]);
+    for (size_t k = 0; k < rows->count; k++) {
+        if (rows->g[k] < 0)
+            return status_fail(STATUS_BAD_INPUT,
+                               "%s:%zu: a negative g, %g: a potential, or another column than g?",
+                               file, rows->line[k], rows->g[k]);
+        if (rows->error[k] < 0)
+            return status_fail(STATUS_BAD_INPUT, "%s:%zu: a negative error of g, %g", file,
+                               rows->line[k], rows->error[k]);
+    }
     return STATUS_OK;
 }
 

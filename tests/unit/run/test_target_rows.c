@@ -52,7 +52,7 @@ static double quoted(const struct target_rows *rows) {
 }
 
 /// What the scatter of neighbouring bins says agrees with errors from blocks of time:
-/// measured 1.29, 1.23, 0.80, 0.98 and 0.93 of them. Water's are known to be a fifth too small (its
+/// measured 1.23, 1.08, 0.79, 0.91 and 0.91 of them. Water's are known to be a fifth too small (its
 /// README).
 static void test_target_rows_scatter_is_near_the_errors_from_blocks(void **state) {
     (void)state;
