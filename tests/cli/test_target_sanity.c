@@ -200,6 +200,21 @@ static void test_fit_has_nothing_against_the_targets_of_the_repository(void **st
     }
 }
 
+/// A cutoff in the middle of the first peak, behind it or in the first minimum leaves too little to
+/// judge what the whole file shows to be right.
+static void test_fit_has_nothing_against_short_cutoffs(void **state) {
+    static const char *const cutoffs[] = {"0.28", "0.3", "0.35", "0.5", "0.7"};
+    static struct run_program_result result;
+    for (size_t k = 0; k < sizeof cutoffs / sizeof *cutoffs; k++) {
+        char members[128];
+        snprintf(members, sizeof members, ERRORS ", \"cutoff\": %s", cutoffs[k]);
+        small_inputs_write(*state, "run.json", water, ERRORS, members);
+        RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+        run_program_assert_code(&result, 0);
+        assert_null(strstr(result.out, "warning"));
+    }
+}
+
 /// g(r) of soft fluids and gases as the programs' own simulations give it: none has a core, a
 /// density of liquids or layers, and none is refused or doubted.
 static void test_fit_has_nothing_against_soft_fluids_and_gases(void **state) {
@@ -250,6 +265,7 @@ int main(void) {
         TEST(test_fit_tells_its_target_in_a_line_unless_quiet),
         TEST(test_fit_tells_where_errors_and_bins_come_from),
         TEST(test_fit_has_nothing_against_the_targets_of_the_repository),
+        TEST(test_fit_has_nothing_against_short_cutoffs),
         TEST(test_fit_has_nothing_against_soft_fluids_and_gases),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
