@@ -31,7 +31,8 @@ extern const struct field scene_fields[];
 enum status scene_read(struct scene *scene, struct json_object *object, int unknown) MUST_USE;
 void scene_clear(struct scene *scene);
 
-/// Mass of the beads over the volume of the box [g/cm³], for a scene of three dimensions with units.
+/// Mass of the beads over the volume of the box [g/cm³], for a scene of three dimensions with
+/// units.
 double scene_mass_density(const struct scene *scene);
 
 /// Write everything that scene_read reads, defaults filled in.
