@@ -118,6 +118,11 @@ static enum status check_packing(const struct view *view, const char *file) {
                        file, view->name, apart, density, box->dimensions, filled, closest);
 }
 
+/// Bins from one range of an integral to the next shorter one: some fifty ranges are enough.
+static size_t step_of_ranges(const struct view *view) {
+    return 1 + view->bins->count / 100;
+}
+
 /// The largest 1 + ρG that `factor` g allows, by three standard errors and by any range from half
 /// of what is known on; +∞ where it is not defined.
 static enum status largest_compressibility(const struct view *view, double factor,
@@ -131,7 +136,8 @@ static enum status largest_compressibility(const struct view *view, double facto
     for (size_t k = 0; k < view->bins->count; k++)
         g[k] = factor * view->g[k];
     *largest = -INFINITY;
-    for (struct rdf_bins part = *view->bins; 2 * part.count >= view->bins->count; part.count--) {
+    for (struct rdf_bins part = *view->bins; 2 * part.count >= view->bins->count;
+         part.count -= step_of_ranges(view)) {
         const struct kirkwood_buff kb =
             kirkwood_buff_integrate(&part, g, view->error, &view->scene->setup.box, view->like);
         *largest = fmax(*largest, kb.compressibility + standard_errors * kb.compressibility_error);
@@ -147,7 +153,7 @@ static void print_compressibility(const struct view *view, char *text, size_t si
     struct rdf_bins part = *view->bins;
     struct kirkwood_buff whole = {0};
     double least = INFINITY, largest = -INFINITY;
-    for (; 4 * part.count >= 3 * view->bins->count; part.count--) {
+    for (; 4 * part.count >= 3 * view->bins->count; part.count -= step_of_ranges(view)) {
         const struct kirkwood_buff kb = kirkwood_buff_integrate(
             &part, view->g, view->error, &view->scene->setup.box, view->like);
         if (part.count == view->bins->count)
@@ -207,30 +213,39 @@ static size_t highest_bin(const struct view *view) {
     return highest;
 }
 
+/// What lengths are told in.
+static const char *unit_of(const struct view *view, double *length) {
+    const struct units *units = &view->scene->units;
+    *length = units_known(units) ? units->length : 1;
+    return units_known(units) ? "nm" : "lambda";
+}
+
 /// "target rdf: g from 0.005 to 0.995 nm, peak 2.79 at 0.275 nm, tail 0.998(6); density …".
 static void tell_view(const struct view *view, const struct target_sanity_listener *listener) {
-    const struct units *units = &view->scene->units;
-    const char *unit = units_known(units) ? "nm" : "lambda";
-    const double length = units_known(units) ? units->length : 1;
+    const struct rdf_bins *bins = view->bins;
     const struct target_tail *tail = &view->target->tail;
     const size_t peak = highest_bin(view);
+    double length;
+    const char *unit = unit_of(view, &length);
     char density[80], compressibility[80] = "";
     print_density(view, density, sizeof density);
     if (view->like > 1 && view->scene->setup.box.dimensions == 3)
         print_compressibility(view, compressibility, sizeof compressibility);
     say(listener,
         "target %s: g from %.4g to %.4g %s, peak %.3g at %.4g %s, tail %.3f(%.0f); density %s%s%s",
-        view->name, rdf_bins_centre(view->bins, 0) * length,
-        rdf_bins_centre(view->bins, view->bins->count - 1) * length, unit, view->g[peak],
-        rdf_bins_centre(view->bins, peak) * length, unit, tail->mean, ceil(1e3 * tail->scatter),
-        density, compressibility[0] ? ", " : "", compressibility);
+        view->name, rdf_bins_centre(bins, 0) * length,
+        rdf_bins_centre(bins, bins->count - 1) * length, unit, view->g[peak],
+        rdf_bins_centre(bins, peak) * length, unit, tail->mean, ceil(1e3 * tail->scatter), density,
+        compressibility[0] ? ", " : "", compressibility);
 }
 
 static void tell_origin(const struct view *view, const struct target_sanity_listener *listener) {
     const struct target *target = view->target;
+    double length;
+    const char *unit = unit_of(view, &length);
     if (target->joined > 1)
-        say(listener, "target %s: %zu rows of the file make a bin of %.4g lambda", view->name,
-            target->joined, view->bins->width);
+        say(listener, "target %s: %zu rows of the file make a bin of %.4g %s", view->name,
+            target->joined, view->bins->width * length, unit);
     if (target->assumed)
         say(listener,
             "target %s: no errors given, and no scatter tells them: %.2g at g = 1 in the last row "

@@ -107,6 +107,16 @@ static void test_fit_refuses_targets_and_scenes_that_cannot_be(void **state) {
     }
 }
 
+static void test_simulate_refuses_units_that_cannot_be(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "scene.json", small_inputs_scene, "\"time_step\"",
+                       "\"units\": {\"length\": 0.7, \"temperature\": 300, \"mass\": 32.042},\n"
+                       "  \"time_step\"");
+    RUN_PROGRAM(&result, "simulate", "scene.json");
+    run_program_assert_refused(&result, ".", "a mass in u", 1,
+                               (const char *[]){"scene.json: units.mass: ", "in kg", NULL});
+}
+
 static void test_fit_warns_of_targets_that_hardly_can_be(void **state) {
     static struct run_program_result result;
     for (size_t k = 0; k < sizeof doubted / sizeof *doubted; k++) {
@@ -174,7 +184,7 @@ static void test_fit_tells_where_errors_and_bins_come_from(void **state) {
                     "target rdf: no errors given: 0.00041 at g = 1 in the last row, from");
     small_inputs_write(*state, "run.json", water, ERRORS, ERRORS ", \"bin_width\": 0.02");
     RUN_PROGRAM(&result, "fit", "run.json", "--explain");
-    assert_contains(result.out, "target rdf: 2 rows of the file make a bin of 0.02 lambda");
+    assert_contains(result.out, "target rdf: 2 rows of the file make a bin of 0.02 nm");
     small_inputs_write(*state, "target.tsv", "r,g\n0.1,0.3\n0.3,0.6\n0.5,0.8\n0.7,1.1\n0.9,1.0\n",
                        NULL, NULL);
     small_inputs_write(*state, "run.json", small_inputs_run, NULL, NULL);
@@ -260,6 +270,7 @@ int main(void) {
         return 1;
     const struct CMUnitTest tests[] = {
         TEST(test_fit_refuses_targets_and_scenes_that_cannot_be),
+        TEST(test_simulate_refuses_units_that_cannot_be),
         TEST(test_fit_warns_of_targets_that_hardly_can_be),
         TEST(test_fit_looks_at_densities_of_fluids_without_layers),
         TEST(test_fit_tells_its_target_in_a_line_unless_quiet),
