@@ -28,7 +28,7 @@ struct target {
     struct rdf_bins bins;
     double *g, *error;       ///< shape [bins.count]
     size_t joined;           ///< rows of the file that make a bin
-    double estimated_error;  ///< of g = 1 in the last row if the file has no errors, else 0
+    double estimated_error;  ///< of g = 1 in the last bin if the file has no errors, else 0
     bool assumed;            ///< and not even the scatter of the rows tells it
     struct target_tail tail; ///< of the whole file, whatever the cutoff
 };

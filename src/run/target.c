@@ -214,13 +214,22 @@ static enum status check_values(const struct target_rows *rows, const char *file
     return STATUS_OK;
 }
 
-/// Errors from the scatter, or, where that cannot be told, as they are assumed.
-static enum status estimate_errors(struct target *target, struct target_rows *rows) {
-    TRY(target_rows_scatter(rows, &target->estimated_error));
-    target->assumed = isnan(target->estimated_error);
+/// Join the rows to bins; errors that the file does not give come from the scatter of the rows, or,
+/// where that cannot be told, are those that are assumed of the bins.
+static enum status join(struct target *target, struct target_rows *rows, bool has_errors) {
+    double scatter = NAN;
+    if (!has_errors)
+        TRY(target_rows_scatter(rows, &scatter));
+    if (!isnan(scatter))
+        target_rows_set_errors(rows, scatter);
+    if (target->joined > 1)
+        target_rows_join(rows, target->joined);
+    target->assumed = !has_errors && isnan(scatter);
     if (target->assumed)
-        target->estimated_error = assumed_error;
-    target_rows_set_errors(rows, target->estimated_error);
+        target_rows_set_errors(rows, assumed_error);
+    if (!has_errors)
+        target->estimated_error =
+            target->assumed ? assumed_error : scatter / sqrt((double)target->joined);
     return STATUS_OK;
 }
 
@@ -244,14 +253,9 @@ static enum status load(struct target *target, const struct units *units, int di
     cut(p, &rows);
     CHECK(find_bins(&rows, p->file, &bins));
     CHECK(check_values(&rows, p->file));
-    if (!has_errors)
-        CHECK(estimate_errors(target, &rows));
     target->joined = rows_of_a_bin(p, &bins);
-    if (target->joined > 1) {
-        target_rows_join(&rows, target->joined);
-        CHECK(find_bins(&rows, p->file, &bins));
-    }
-    target->bins = bins;
+    CHECK(join(target, &rows, has_errors));
+    CHECK(find_bins(&rows, p->file, &target->bins));
     target->g = rows.g;
     target->error = rows.error;
     rows.g = rows.error = NULL;

@@ -248,12 +248,12 @@ static void tell_origin(const struct view *view, const struct target_sanity_list
             target->joined, view->bins->width * length, unit);
     if (target->assumed)
         say(listener,
-            "target %s: no errors given, and no scatter tells them: %.2g at g = 1 in the last row "
+            "target %s: no errors given, and no scatter tells them: %.2g at g = 1 in the last bin "
             "is assumed",
             view->name, target->estimated_error);
     else if (target->estimated_error > 0)
         say(listener,
-            "target %s: no errors given: %.2g at g = 1 in the last row, from the scatter of the "
+            "target %s: no errors given: %.2g at g = 1 in the last bin, from the scatter of the "
             "rows",
             view->name, target->estimated_error);
 }

@@ -181,7 +181,7 @@ static void test_fit_tells_where_errors_and_bins_come_from(void **state) {
     RUN_PROGRAM(&result, "fit", "run.json", "--explain");
     run_program_assert_code(&result, 0);
     assert_contains(result.out,
-                    "target rdf: no errors given: 0.00041 at g = 1 in the last row, from");
+                    "target rdf: no errors given: 0.00041 at g = 1 in the last bin, from");
     small_inputs_write(*state, "run.json", water, ERRORS, ERRORS ", \"bin_width\": 0.02");
     RUN_PROGRAM(&result, "fit", "run.json", "--explain");
     assert_contains(result.out, "target rdf: 2 rows of the file make a bin of 0.02 nm");

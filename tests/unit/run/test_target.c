@@ -171,6 +171,9 @@ static void test_target_read_joins_rows_by_itself_when_there_are_too_many(void *
     assert_int_equal(target.bins.count, 333);
     assert_close(target.bins.low, 0.001, 1e-9);
     assert_close(target.bins.width, 0.006, 1e-9);
+    // A step has no scatter; what is assumed is assumed of the bins.
+    assert_true(target.assumed);
+    assert_close(target.error[332], 0.002, 1e-9);
     target_clear(&target);
     assert_ok(read(state, table, ", \"cutoff\": 0.7", &target));
     assert_int_equal(target.joined, 1);
