@@ -20,8 +20,10 @@ static const double normalisation = 1.03;
 
 static const double standard_errors = 3;
 
-/// Layers, and the neighbours that they take.
-static const double deep = 0.95, few_neighbours = 2;
+/// Layers, and the neighbours that they take up to the second maximum: measured 12 in water, 29 in
+/// the Lennard-Jones liquid, 33 in the Gaussian core, and 5 in a model of methanol, whose first
+/// layer has only two. With a tenth of the density there are 3.3 at most.
+static const double deep = 0.95, few_neighbours = 4;
 
 /// ρ d³ of a gas.
 static const double dilute = 0.01;
@@ -258,23 +260,25 @@ static void tell_origin(const struct view *view, const struct target_sanity_list
             view->name, target->estimated_error);
 }
 
-/// Neighbours of a bead, of any type, up to the first minimum of g, if there are layers; else +∞.
-static double neighbours_in_first_layer(const struct view *view) {
+/// Neighbours of a bead, of any type, up to the second maximum of g, if there are layers; else +∞.
+static double neighbours_in_layers(const struct view *view) {
     const struct rdf_bins *bins = view->bins;
-    const struct box *box = &view->scene->setup.box;
-    size_t k = highest_bin(view), lowest;
+    size_t k = highest_bin(view), lowest, second;
     while (k < bins->count && view->g[k] >= 1)
         k++;
     for (lowest = k; k < bins->count && view->g[k] < 1; k++)
         if (view->g[k] < view->g[lowest])
             lowest = k;
-    const double own_error = lowest < bins->count ? view->error[lowest] : 0;
-    if (k >= bins->count || view->g[lowest] + standard_errors * own_error > deep)
+    if (k == bins->count || view->g[lowest] + standard_errors * view->error[lowest] > deep)
         return INFINITY;
+    for (second = k; k < bins->count && view->g[k] >= 1; k++)
+        if (view->g[k] > view->g[second])
+            second = k;
     double sum = 0;
-    for (size_t n = 0; n <= lowest; n++)
+    for (size_t n = 0; n <= second; n++)
         sum += view->density * view->g[n] *
-               box_shell_volume(box, rdf_bins_edge(bins, n), rdf_bins_edge(bins, n + 1));
+               box_shell_volume(&view->scene->setup.box, rdf_bins_edge(bins, n),
+                                rdf_bins_edge(bins, n + 1));
     return sum;
 }
 
@@ -296,7 +300,7 @@ static enum status warn_of_normalisation(const struct view *view,
 
 static void warn_of_density(const struct view *view,
                             const struct target_sanity_listener *listener) {
-    const double neighbours = neighbours_in_first_layer(view);
+    const double neighbours = neighbours_in_layers(view);
     const double core = view->g[0] <= 0.5 ? reach_below(view, 0.5) : INFINITY;
     const double filled = view->density * pow(core, view->scene->setup.box.dimensions);
     char density[80];
@@ -304,9 +308,9 @@ static void warn_of_density(const struct view *view,
     if (neighbours < few_neighbours)
         say(listener,
             "mesofit: warning: target.%s: it has the layers of a liquid, but at the density of the "
-            "scene, %s, a bead has only %.2g neighbours in the first: is the unit of length, "
-            "scene.box "
-            "or the number of particles wrong? (solutes in an implicit solvent look so, too)",
+            "scene, %s, a bead has only %.2g neighbours up to the second one: is the unit of "
+            "length, scene.box or the number of particles wrong? (solutes in an implicit solvent "
+            "look so, too)",
             view->name, density, neighbours);
     else if (filled < dilute)
         say(listener,

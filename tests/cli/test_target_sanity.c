@@ -7,6 +7,7 @@
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <unistd.h>
 
@@ -84,7 +85,8 @@ static const struct mistake refused[] = {
 
 static const struct mistake doubted[] = {
     MISTAKE("a tenth of the beads", BEADS, "274", "mesofit: warning: target.rdf: it has the layers",
-            "3.252 nm^-3 = 0.0973 g/cm^3", "0.51 neighbours", "the number of particles"),
+            "3.252 nm^-3 = 0.0973 g/cm^3", "neighbours up to the second one",
+            "the number of particles"),
     MISTAKE("nm taken for the unit of length of 0.465 nm", BOX ", " BOX ", " BOX,
             "9.428, 9.428, 9.428", "mesofit: warning: target.rdf: it has the layers",
             "the unit of length"),
@@ -149,6 +151,30 @@ static void test_fit_looks_at_densities_of_fluids_without_layers(void **state) {
     assert_contains(result.out,
                     "mesofit: warning: target.rdf: a dilute gas: the density of the scene is "
                     "0.081 lambda^-3, and the beads are 0.4 lambda wide");
+}
+
+/// In a mixture the kind of pairs is named: ten times the beads of one type leave no room for them.
+static void test_fit_names_the_pairs_of_a_mixture_that_cannot_be(void **state) {
+    static struct run_program_result result;
+    static const char mixture[] =
+        "{\"seed\": 3, \"target\": {\"rdf\": {\"A-A\": {\"file\": \"AA\"}, \"A-B\": {\"file\": "
+        "\"AB\"}, "
+        "\"B-B\": {\"file\": \"BB\"}}}, \"scene\": {\"box\": [11.8, 11.8, 11.8], \"particles\": "
+        "{\"types\": {\"A\": 700, \"B\": 7000}}, \"dissipative\": {\"law\": \"power\"}}, "
+        "\"method\": {\"name\": \"imc\"}}";
+    link_to("targets/lennard-jones-mixture/rdf_A-A.tsv", "AA");
+    link_to("targets/lennard-jones-mixture/rdf_A-B.tsv", "AB");
+    link_to("targets/lennard-jones-mixture/rdf_B-B.tsv", "BB");
+    small_inputs_write(*state, "run.json", mixture, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_refused(
+        &result, ".", "mixture", 1,
+        (const char *[]){"run.json: target.rdf.B-B: ", "closest packing", NULL});
+    small_inputs_write(*state, "run.json", mixture, "7000", "700");
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out,
+                    "target rdf.A-B: g from 0.0125 to 2.487 lambda, peak 2.63 at 1.037");
 }
 
 /// 32.57 molecules in a cubic nanometre and 0.974 g/cm³, as the target's own head says; the first
@@ -225,6 +251,19 @@ static void test_fit_has_nothing_against_short_cutoffs(void **state) {
     }
 }
 
+/// Beads that bind two neighbours each and keep the others off by a barrier, as molecules of
+/// methanol do.
+static void write_bonds(struct temporary_folder *folder) {
+    char text[4096] = "";
+    for (int k = 0; k < 150; k++) {
+        const double r = 0.5 + 0.01 * k;
+        snprintf(text + strlen(text), sizeof text - strlen(text), "%.2f %.5f\n", r,
+                 pow(0.75 / r, 12) + 1.5 * exp(-pow((r - 0.9625) / 0.075, 2)) -
+                     0.45 * exp(-pow((r - 1.2) / 0.15, 2)));
+    }
+    temporary_folder_write(folder, "bonds.tsv", text, strlen(text));
+}
+
 /// g(r) of soft fluids and gases as the programs' own simulations give it: none has a core, a
 /// density of liquids or layers, and none is refused or doubted.
 static void test_fit_has_nothing_against_soft_fluids_and_gases(void **state) {
@@ -237,8 +276,10 @@ static void test_fit_has_nothing_against_soft_fluids_and_gases(void **state) {
         {"{\"law\": \"gaussian\", \"epsilon\": 2, \"sigma\": 1, \"cutoff\": 2.2}", 5.061}, // 5
         {"{\"law\": \"gaussian\", \"epsilon\": 0.01, \"sigma\": 1, \"cutoff\": 2.2}", 9},  // ideal
         {"{\"law\": \"lennard-jones\", \"epsilon\": 0.5, \"sigma\": 1}", 18.64}, // gas of 0.1
+        {"{\"law\": \"table\", \"file\": \"bonds.tsv\"}", 8.84},
     };
     static struct run_program_result result;
+    write_bonds(*state);
     for (size_t k = 0; k < sizeof fluids / sizeof *fluids; k++) {
         char text[2048], edge[128];
         snprintf(edge, sizeof edge, "[%g, %g, %g]", fluids[k].edge, fluids[k].edge, fluids[k].edge);
@@ -273,6 +314,7 @@ int main(void) {
         TEST(test_simulate_refuses_units_that_cannot_be),
         TEST(test_fit_warns_of_targets_that_hardly_can_be),
         TEST(test_fit_looks_at_densities_of_fluids_without_layers),
+        TEST(test_fit_names_the_pairs_of_a_mixture_that_cannot_be),
         TEST(test_fit_tells_its_target_in_a_line_unless_quiet),
         TEST(test_fit_tells_where_errors_and_bins_come_from),
         TEST(test_fit_has_nothing_against_the_targets_of_the_repository),
