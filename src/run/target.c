@@ -194,8 +194,9 @@ static enum status find_bins(const struct target_rows *rows, const char *file,
     const double low = first - 0.5 * width;
     if (low < -0.01 * width)
         return status_fail(STATUS_BAD_INPUT,
-                           "%s:%zu: r = %g is not the centre of a bin of width %g", file,
-                           rows->line[0], first, width);
+                           "%s:%zu: r = %g is not the centre of a bin of width %g%s", file,
+                           rows->line[0], first, width,
+                           first == 0 ? ": half a bin that is not empty; leave the row out" : "");
     *bins = (struct rdf_bins){
         .low = fabs(low) < 0.01 * width ? 0 : low, .width = width, .count = rows->count};
     return STATUS_OK;

@@ -95,8 +95,9 @@ static void test_target_read_refuses_what_is_no_g_of_r(void **state) {
     assert_refused(state, "0.1 1 0\n0.3 1 0\n0.2 1 0\n0.4 1 0\n", "", "g.tsv:3: column 1");
     assert_refused(state, "0.1 1 0\n0.1 1 0\n0.2 1 0\n0.4 1 0\n", "", "g.tsv:2: column 1");
     assert_refused(state, "-0.1 1 0\n0 1 0\n0.1 1 0\n0.2 1 0\n", "", "-0.1 is below 0");
-    assert_refused(state, "0 1 0\n0.1 1 0\n0.2 1 0\n0.3 1 0\n", "",
-                   "g.tsv:1: r = 0 is not the centre");
+    assert_refused(
+        state, "0 1 0\n0.1 1 0\n0.2 1 0\n0.3 1 0\n", "",
+        "g.tsv:1: r = 0 is not the centre of a bin of width 0.1: half a bin that is not");
     assert_refused(state, "0.1 1 0\n0.2 1 0\n0.3 1 0\n", "", "only 3 bins");
     assert_refused(state, "0.1 1 0\n0.2 -1 0\n0.3 1 0\n0.4 1 0\n", "", "g.tsv:2: a negative");
     assert_refused(state, "0.1 1 0\n0.2 1 -1\n0.3 1 0\n0.4 1 0\n", "", "g.tsv:2: a negative");
