@@ -3,7 +3,11 @@
 ///
 /// Written: tab-separated, one `#` header line with column names and units, %.17g or fewer digits
 /// where asked; numpy.loadtxt and gnuplot read them as they are.
-/// Read: columns separated by blanks or tabs; `#` and `@` start comment lines; empty lines pass.
+/// Read: columns separated by blanks and tabs, by commas or by semicolons, as the first row has
+/// them;
+/// `#`, `@` and `%` start comment lines; empty lines pass, and so does a line of names before the
+/// rows, without a number in it. A line `&` ends the first set of data, and what follows is
+/// another. Decimals begin with a point: a decimal comma is a fault.
 #pragma once
 
 #include "base/status.h"

@@ -26,9 +26,14 @@ struct scene {
 extern const struct field scene_fields[];
 
 /// Read the objects of a scene from `object`, but for what `unknown`, a sum of scene_unknown, says.
+/// With units, a mass density or a temperature that no matter has is a fault.
 /// Faults go to its document; *scene may then be incomplete but is safe to clear. Fails: NO_MEMORY.
 enum status scene_read(struct scene *scene, struct json_object *object, int unknown) MUST_USE;
 void scene_clear(struct scene *scene);
+
+/// Mass of the beads over the volume of the box [g/cm³], for a scene of three dimensions with
+/// units.
+double scene_mass_density(const struct scene *scene);
 
 /// Write everything that scene_read reads, defaults filled in.
 void scene_write(const struct scene *scene, struct json_writer *writer);

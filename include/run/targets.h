@@ -13,7 +13,7 @@ struct target_curve {
     struct target_curve_parameters {
         char file[FIELD_TEXT_SIZE];
         int64_t time_column, value_column,
-            error_column; ///< from 1; error_column 0: no errors given
+            error_column; ///< from 1; error_column 0: none, −1: 3 or none
     } parameters;
     size_t times;          ///< 0: not given
     double interval;       ///< [τ]

@@ -37,31 +37,123 @@ static const char *first_word(const struct line *line) {
 
 static bool is_comment(const struct line *line) {
     const char *word = first_word(line);
-    return *word == '#' || *word == '@';
+    return word < line->end && strchr("#@%", *word) != NULL;
 }
 
 static bool is_data(const struct line *line) {
     return first_word(line) < line->end && !is_comment(line);
 }
 
-static size_t word_length(const char *word) {
-    return strcspn(word, " \t\r\f\v\n");
+/// What is between two words: a comma, a semicolon, or blanks alone (' '). Where blanks part words
+/// that no comma parts, the commas are those of decimals, which read_number refuses.
+static char separator_of(const struct line *line) {
+    const size_t length = (size_t)(line->end - line->begin);
+    if (memchr(line->begin, ';', length))
+        return ';';
+    if (memchr(line->begin, ',', length) == NULL)
+        return ' ';
+    for (const char *at = first_word(line); at < line->end; at++) {
+        const char *after = at + strspn(at, blanks);
+        if (after > at && after < line->end && at[-1] != ',' && *after != ',')
+            return ' ';
+    }
+    return ',';
 }
 
-static size_t count_words(const struct line *line) {
-    size_t count = 0;
-    for (const char *word = first_word(line); word < line->end; count++) {
-        word += word_length(word);
-        word += strspn(word, blanks);
-    }
+/// A word of a line, without blanks around it.
+struct word {
+    const char *begin;
+    size_t length;
+    char separator; ///< of the line
+};
+
+static struct word take_word(const struct line *line, char separator, const char *begin) {
+    const char stop[] = {separator, '\n', '\0'};
+    size_t length = strcspn(begin, separator == ' ' ? " \t\r\f\v\n" : stop);
+    if (begin + length > line->end)
+        length = (size_t)(line->end - begin);
+    while (length > 0 && strchr(blanks, begin[length - 1]))
+        length--;
+    return (struct word){begin, length, separator};
+}
+
+static struct word line_word(const struct line *line, char separator) {
+    return take_word(line, separator, first_word(line));
+}
+
+/// Step to the next word; false behind the last. A separator at the end begins no further word.
+static bool next_word(const struct line *line, struct word *word) {
+    const char *at = word->begin + word->length;
+    at += strspn(at, blanks);
+    if (word->separator != ' ' && *at == word->separator)
+        at += 1 + strspn(at + 1, blanks);
+    *word = take_word(line, word->separator, at);
+    return at < line->end;
+}
+
+static size_t count_words(const struct line *line, char separator) {
+    struct word word = line_word(line, separator);
+    size_t count = 1;
+    while (next_word(line, &word))
+        count++;
     return count;
 }
 
-/// What is asked of a file.
+/// Whether the word is a finite number and nothing else. strtod alone would take inf and 0x10.
+static bool is_number(const struct word *word, double *value) {
+    char *end;
+    *value = strtod(word->begin, &end);
+    return word->length > 0 && end == word->begin + word->length && isfinite(*value) &&
+           strspn(word->begin, "0123456789+-.eE") >= word->length;
+}
+
+/// Whether these are names of columns that no comment mark begins: no word is "nan" or begins as a
+/// number does.
+static bool is_names(const struct line *line) {
+    const char separator = separator_of(line);
+    struct word word = line_word(line, separator);
+    do {
+        char *end;
+        strtod(word.begin, &end);
+        if (word.length == 0 || strspn(word.begin, "0123456789+-.,") > 0 ||
+            end == word.begin + word.length)
+            return false;
+    } while (next_word(line, &word));
+    return true;
+}
+
+/// What is asked of a file, and what its text turns out to be.
 struct demand {
-    size_t columns; ///< at least, and strictly numbers
-    bool flagged;   ///< a letter ends each row
+    size_t columns;    ///< at least, and strictly numbers
+    bool flagged;      ///< a letter ends each row
+    char separator;    ///< of the first row
+    const char *names; ///< the line of names before it, or NULL
 };
+
+static bool is_row(const struct demand *demand, const struct line *line) {
+    return is_data(line) && line->begin != demand->names;
+}
+
+/// Find the names of columns and the separator, and end the text where its first set of data ends,
+/// by a line "&" as xmgrace has it.
+static void recognise(struct demand *demand, char *text) {
+    struct line line = first_line(text);
+    bool first = true;
+    do {
+        if (!is_data(&line))
+            continue;
+        if (*first_word(&line) == '&' && !first) {
+            text[line.begin - text] = '\0';
+            return;
+        }
+        if (first && demand->names == NULL && is_names(&line)) {
+            demand->names = line.begin;
+        } else if (first) {
+            demand->separator = separator_of(&line);
+            first = false;
+        }
+    } while (next_line(&line));
+}
 
 /// Count the rows and take the number of columns from the first one.
 static enum status measure(struct data_table *table, const char *file, const char *text,
@@ -69,12 +161,14 @@ static enum status measure(struct data_table *table, const char *file, const cha
     const size_t least = demand->columns + demand->flagged;
     struct line line = first_line(text);
     do {
-        if (!is_data(&line))
+        if (!is_row(demand, &line))
             continue;
         if (table->rows++ == 0)
-            table->columns = count_words(&line);
+            table->columns = count_words(&line, demand->separator);
         if (table->columns < least)
-            return status_fail(STATUS_BAD_INPUT, "%s:%zu: %zu columns, at least %zu are needed",
+            return status_fail(STATUS_BAD_INPUT,
+                               "%s:%zu: %zu columns, at least %zu are needed (blanks, commas or "
+                               "semicolons separate columns)",
                                file, line.number, table->columns, least);
     } while (next_line(&line));
     if (table->rows == 0)
@@ -84,27 +178,25 @@ static enum status measure(struct data_table *table, const char *file, const cha
     return STATUS_OK;
 }
 
-/// Read the number that is exactly the word at `word`. strtod alone would take nan, inf and 0x10.
+/// Read the number that is exactly `word`; "nan" where it is allowed.
 static enum status read_number(const char *file, size_t line, size_t column, size_t strict,
-                               const char *word, double *value) {
-    const size_t length = word_length(word);
-    char *end;
-    *value = strtod(word, &end);
-    if (column >= strict && length == 3 && isnan(*value))
+                               const struct word *word, double *value) {
+    if (is_number(word, value) || (column >= strict && word->length == 3 && isnan(*value)))
         return STATUS_OK;
-    const bool plain = strspn(word, "0123456789+-.eE") >= length;
-    if (end != word + length || !plain || !isfinite(*value))
-        return status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: \"%.*s\" is not a finite number",
-                           file, line, column + 1, length > 40 ? 40 : (int)length, word);
-    return STATUS_OK;
+    const bool comma = word->length > 0 && memchr(word->begin, ',', word->length) &&
+                       strspn(word->begin, "0123456789+-.,eE") >= word->length;
+    return status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: \"%.*s\" is not a finite number%s",
+                       file, line, column + 1, word->length > 40 ? 40 : (int)word->length,
+                       word->begin,
+                       comma ? ": a decimal comma? decimals begin with a point here" : "");
 }
 
-/// The letter that is exactly the word at `word`.
-static enum status read_flag(const char *file, const struct line *line, const char *word,
+/// The letter that is exactly `word`.
+static enum status read_flag(const char *file, const struct line *line, const struct word *of,
                              char *flag) {
+    const char *word = of->begin;
     *flag = *word;
-    if (word_length(word) == 1 &&
-        ((*word >= 'a' && *word <= 'z') || (*word >= 'A' && *word <= 'Z')))
+    if (of->length == 1 && ((*word >= 'a' && *word <= 'z') || (*word >= 'A' && *word <= 'Z')))
         return STATUS_OK;
     return status_fail(STATUS_BAD_INPUT, "%s:%zu: the row does not end with a letter", file,
                        line->number);
@@ -112,16 +204,16 @@ static enum status read_flag(const char *file, const struct line *line, const ch
 
 static enum status read_row(const struct data_table *table, const char *file,
                             const struct demand *demand, const struct line *line, size_t row) {
-    const size_t words = count_words(line), wanted = table->columns + demand->flagged;
-    const char *word = first_word(line);
+    const size_t words = count_words(line, demand->separator);
+    const size_t wanted = table->columns + demand->flagged;
+    struct word word = line_word(line, demand->separator);
     for (size_t column = 0; column < words && column < wanted; column++) {
         if (column < table->columns)
-            TRY(read_number(file, line->number, column, demand->columns, word,
+            TRY(read_number(file, line->number, column, demand->columns, &word,
                             &table->values[row * table->columns + column]));
         else
-            TRY(read_flag(file, line, word, &table->flags[row]));
-        word += word_length(word);
-        word += strspn(word, blanks);
+            TRY(read_flag(file, line, &word, &table->flags[row]));
+        next_word(line, &word);
     }
     if (words != wanted)
         return status_fail(STATUS_BAD_INPUT, "%s:%zu: %zu columns, the first row has %zu", file,
@@ -134,7 +226,7 @@ static enum status read_rows(struct data_table *table, const char *file,
     struct line line = first_line(text);
     size_t row = 0;
     do {
-        if (!is_data(&line))
+        if (!is_row(demand, &line))
             continue;
         table->line[row] = line.number;
         TRY(read_row(table, file, demand, &line, row));
@@ -168,13 +260,13 @@ static void read_comments(struct data_table *table, const char *text) {
     } while (next_line(&line));
 }
 
-static enum status read_table(struct data_table *table, const char *file,
-                              const struct demand *demand) {
+static enum status read_table(struct data_table *table, const char *file, struct demand *demand) {
     enum status status = STATUS_OK;
     char *text = NULL;
     size_t length = 0;
     *table = (struct data_table){0};
     CHECK(text_file_read(file, &text, &length));
+    recognise(demand, text);
     CHECK(measure(table, file, text, demand));
     NEW_ARRAY(table->values, table->rows * table->columns);
     NEW_ARRAY(table->line, table->rows);

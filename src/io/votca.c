@@ -43,12 +43,25 @@ static enum status find_range(const struct data_table *table, const char *file, 
     return STATUS_OK;
 }
 
+/// A table of two columns without flags is in range from end to end.
+static enum status read_table(struct data_table *table, const char *file) {
+    enum status status = data_table_read(table, file, 2);
+    if (status != STATUS_OK || table->columns != 2) {
+        data_table_clear(table);
+        return data_table_read_flagged(table, file, 1);
+    }
+    NEW_ARRAY(table->flags, table->rows);
+    memset(table->flags, 'i', table->rows);
+done:
+    return status;
+}
+
 enum status votca_read(struct votca_table *votca, const char *file) {
     enum status status = STATUS_OK;
     struct data_table table = {0};
     size_t begin, end;
     *votca = (struct votca_table){0};
-    CHECK(data_table_read_flagged(&table, file, 1));
+    CHECK(read_table(&table, file));
     if (table.columns != 2 && table.columns != 3) {
         status = status_fail(STATUS_BAD_INPUT,
                              "%s:%zu: not \"x y flag\" or \"x y error flag\" as VOTCA writes it",

@@ -8,6 +8,7 @@
 #include "run/fit_verdict.h"
 #include "run/history.h"
 #include "run/progress.h"
+#include "run/target_sanity.h"
 
 #include <math.h>
 #include <string.h>
@@ -135,26 +136,30 @@ done:
     return status;
 }
 
-/// What was made of the targets' normalisation.
-static void say_normalisation(struct run *run) {
-    const struct normalisation *n = &run->fit.targets.normalisation;
-    if (n->found)
+static void say_line(void *progress, const char *line) {
+    progress_say(progress, "%s", line);
+}
+
+/// Tell what is to be fitted, so that a wrong column or unit is seen before the work, and find its
+/// normalisation.
+static enum status look_at_targets(struct run *run) {
+    const struct target_etd *etd = &run->fit.targets.etd;
+    if (etd->left_out > 0)
         progress_say(&run->progress,
-                     "target.rdf: g is too %s as a whole, by a factor of %.4f(%.0f): it is divided "
-                     "by that (\"normalisation\")",
-                     n->factor > 1 ? "large" : "small", n->factor, ceil(n->error * 1e4));
+                     "target.etd: %zu of %zu cells of the target are not known and left out",
+                     etd->left_out, (size_t)(etd->grid.times * etd->grid.bins));
+    const struct target_sanity_listener listener = {say_line, &run->progress};
+    TRY(target_sanity_tell(&run->fit.targets, &run->fit.scene, &listener));
+    TRY(targets_normalise(&run->fit.targets, &run->fit.scene.setup.box));
+    target_sanity_tell_normalisation(&run->fit.targets.normalisation, &listener);
+    return STATUS_OK;
 }
 
 static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
     TRY(fit_file_read(&run->fit, file, options));
     TRY(run_folder_open(&run->folder, file, options));
     TRY(write_used(run, options->resume));
-    const struct target_etd *etd = &run->fit.targets.etd;
-    if (etd->left_out > 0)
-        progress_say(&run->progress,
-                     "target.etd: %zu of %zu cells of the target are not known and left out",
-                     etd->left_out, (size_t)(etd->grid.times * etd->grid.bins));
-    say_normalisation(run);
+    TRY(look_at_targets(run));
     const enum status status = create(run);
     if (status != STATUS_OK)
         return status_prefix(status, "%s", file);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inverse/decoder.h"
 #include "run/explain.h"
+#include "run/target_sanity.h"
 #include "run/fit.h"
 #include "run/fit_file.h"
 
@@ -62,17 +63,25 @@ static void print_simulations(const struct fit_file *fit, const struct decoder_l
     print_simulation(&measured, &problem->compared, &setup);
 }
 
+static void print_line(void *stream, const char *line) {
+    fprintf(stream, "%s\n", line);
+}
+
 enum status fit_explain(const char *file, const struct run_options *options) {
     enum status status = STATUS_OK;
     struct fit_file fit;
     struct decoder decoder = {0};
     struct decoder_laws laws = {0};
+    const struct target_sanity_listener listener = {print_line, stdout};
     double *genes = NULL;
     CHECK(fit_file_read(&fit, file, options));
     CHECK(decoder_init(&decoder, &fit.problem));
     NEW_ARRAY(genes, decoder.genes);
     CHECK(decoder_start(&decoder, genes));
     CHECK(decoder_laws(&decoder, genes, &laws));
+    CHECK(target_sanity_tell(&fit.targets, &fit.scene, &listener));
+    CHECK(targets_normalise(&fit.targets, &fit.scene.setup.box));
+    target_sanity_tell_normalisation(&fit.targets.normalisation, &listener);
     print_simulations(&fit, &laws);
 done:
     decoder_laws_clear(&laws);

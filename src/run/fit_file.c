@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "inverse/decoder.h"
+#include "run/target_sanity.h"
 
 #include <math.h>
 
@@ -274,7 +275,9 @@ static enum status check(const struct fit_file *fit, const char *file) {
                            "or at random",
                            file);
     const enum status status = try_scene(&fit->problem);
-    return status == STATUS_OK ? STATUS_OK : status_prefix(status, "%s: scene", file);
+    if (status != STATUS_OK)
+        return status_prefix(status, "%s: scene", file);
+    return target_sanity_check(targets, &fit->scene, file);
 }
 
 static void state_problem(struct fit_file *fit, const struct run_options *options) {
@@ -312,7 +315,6 @@ enum status fit_file_read(struct fit_file *fit, const char *file,
     if (options->has_seed)
         fit->heading.seed = options->seed;
     state_problem(fit, options);
-    TRY(targets_normalise(&fit->targets, &fit->scene.setup.box));
     return check(fit, file);
 }
 

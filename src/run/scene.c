@@ -5,6 +5,8 @@
 #include "io/data_table.h"
 #include "run/checkpoint.h"
 
+#include <math.h>
+
 /// The members of a scene that stand at its top.
 struct top {
     int64_t dimensions;
@@ -182,6 +184,37 @@ static enum status read_particles(struct scene *scene, struct json_object *objec
     return read_positions(scene, &particles);
 }
 
+double scene_mass_density(const struct scene *scene) {
+    const double metres = scene->units.length * 1e-9;
+    const double kilograms = scene->units.mass * (double)scene->setup.placement.count;
+    return 1e-3 * kilograms / (box_volume(&scene->setup.box) * pow(metres, 3));
+}
+
+/// Masses that are not in kg and temperatures that are in K.
+static void check_units(const struct scene *scene, struct json_object *object,
+                        struct json_object *units) {
+    static const double densest = 30; // g/cm³: no matter is denser
+    static const double hottest = 50, atomic_mass = 1e-3 / UNITS_AVOGADRO;
+    const struct simulation_setup *setup = &scene->setup;
+    const double mass = scene->units.mass;
+    if (!units_known(&scene->units) || json_fault_count(object->document) > 0)
+        return;
+    if (setup->temperature > hottest)
+        json_fault(object, "temperature",
+                   "%g is in units of T_0, %g K in \"units\": it would be %g K; 1 is T_0",
+                   setup->temperature, scene->units.temperature,
+                   setup->temperature * scene->units.temperature);
+    const double density = setup->box.dimensions == 3 ? scene_mass_density(scene) : 0;
+    if (density > densest && mass >= 1)
+        json_fault(units, "mass", "it is in kg: %g u would be %.6g", mass, mass * atomic_mass);
+    else if (density > densest)
+        json_fault(
+            units, "mass",
+            "%g kg a bead, 1 u being %.6g, make %.3g g/cm^3: the mass, the unit of length, the "
+            "box or the number of particles is wrong",
+            mass, atomic_mass, density);
+}
+
 enum status scene_read(struct scene *scene, struct json_object *object, int unknown) {
     *scene = (struct scene){.unknown = unknown};
     struct json_object units = json_child(object, "units", false);
@@ -190,6 +223,7 @@ enum status scene_read(struct scene *scene, struct json_object *object, int unkn
         json_finish(&units);
     read_top(scene, object);
     TRY(read_particles(scene, object));
+    check_units(scene, object, &units);
     if (unknown == SCENE_FITS_WEIGHT) // between what particles, a fit would ask in vain
         json_child(object, "conservative", true);
     if (!(unknown & SCENE_FITS_POTENTIAL)) {

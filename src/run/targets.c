@@ -23,8 +23,9 @@ const struct field targets_curve_fields[] = {
      .help = "number of the column with the times, from 1"},
     {"value_column", FIELD_INTEGER, CURVE(value_column), .initial = 2, .minimum = 1, COLUMN,
      .help = "number of the column with the values"},
-    {"error_column", FIELD_INTEGER, CURVE(error_column), .initial = 3, .minimum = 0, COLUMN,
-     .help = "number of the column with their standard errors; 0 if there is none"},
+    {"error_column", FIELD_INTEGER, CURVE(error_column), .initial = -1, .minimum = -1, COLUMN,
+     .help = "number of the column with their standard errors; 0: none; -1: 3 if there are so many "
+             "columns, else none"},
     FIELD_END,
 };
 
@@ -66,9 +67,12 @@ static enum status check_times(const struct target_curve *curve, const struct da
 static enum status load_curve(struct target_curve *curve, struct data_table *table) {
     enum status status = STATUS_OK;
     const struct target_curve_parameters *p = &curve->parameters;
-    const int64_t most = p->time_column > p->value_column ? p->time_column : p->value_column;
-    CHECK(
-        data_table_read(table, p->file, (size_t)(p->error_column > most ? p->error_column : most)));
+    CHECK(data_table_read(
+        table, p->file,
+        (size_t)(p->time_column > p->value_column ? p->time_column : p->value_column)));
+    int64_t error_column;
+    CHECK(target_error_column(p->error_column, p->time_column, p->value_column, table, p->file,
+                              &error_column));
     if (table->rows < 3)
         return status_fail(STATUS_BAD_INPUT, "%s: only %zu times", p->file, table->rows);
     CHECK(data_table_check_increasing(table, p->file, (size_t)p->time_column - 1, 0));
@@ -79,11 +83,11 @@ static enum status load_curve(struct target_curve *curve, struct data_table *tab
     curve->times = table->rows;
     for (size_t k = 0; k < table->rows; k++) {
         curve->value[k] = cell(table, k, p->value_column);
-        curve->error[k] = p->error_column ? cell(table, k, p->error_column) : 0;
-        if (curve->error[k] < 0) {
+        curve->error[k] = error_column ? cell(table, k, error_column) : 0;
+        if (!(curve->error[k] >= 0)) {
             status =
                 status_fail(STATUS_BAD_INPUT, "%s:%zu: column %lld: %g is not a standard error",
-                            p->file, table->line[k], (long long)p->error_column, curve->error[k]);
+                            p->file, table->line[k], (long long)error_column, curve->error[k]);
             goto done;
         }
     }
@@ -164,7 +168,7 @@ static enum status read_rdf(struct targets *targets, struct json_object *object,
     if (targets->composition.types == 0)
         return STATUS_OK; // a fault of the types is told, those of their pairs would mislead
     if (!composition_is_mixed(&targets->composition)) {
-        TRY(target_read(&targets->rdf[0], object, units));
+        TRY(target_read(&targets->rdf[0], object, units, box->dimensions));
         return collect_rdf(targets, box);
     }
     // The object remembers what it was asked for until it is finished.
@@ -173,7 +177,7 @@ static enum status read_rdf(struct targets *targets, struct json_object *object,
         struct json_object child = json_child(
             object, pair_key(&targets->composition, (int)pair, object, name[pair]), true);
         if (child.item)
-            TRY(target_read(&targets->rdf[pair], &child, units));
+            TRY(target_read(&targets->rdf[pair], &child, units, box->dimensions));
     }
     json_finish(object);
     check_bins(targets, object);

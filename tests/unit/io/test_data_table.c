@@ -64,6 +64,52 @@ static void test_data_table_read_has_an_empty_header_when_there_is_no_comment(vo
     data_table_clear(&table);
 }
 
+/// Read `text`, which must hold the rows 0.5 1.5 0.1 and 1 2 0.2, the first in line `first`.
+static void assert_same_rows(void **state, const char *text, size_t first) {
+    static const double expected[] = {0.5, 1.5, 0.1, 1, 2, 0.2};
+    struct data_table table;
+    assert_ok(data_table_read(&table, write_text(state, text), 3));
+    assert_int_equal(table.rows, 2);
+    assert_int_equal(table.columns, 3);
+    assert_memory_equal(table.values, expected, sizeof expected);
+    assert_int_equal(table.line[0], first);
+    data_table_clear(&table);
+}
+
+static void
+test_data_table_read_takes_commas_and_semicolons_when_the_first_row_has_them(void **state) {
+    assert_same_rows(state, "0.5,1.5,0.1\n1,2,0.2\n", 1);
+    assert_same_rows(state, "0.5 , 1.5,\t0.1 \r\n 1,2 ,0.2,\r\n", 1);
+    assert_same_rows(state, "0.5;1.5;0.1\n1 ; 2; 0.2;\n", 1);
+    assert_refused(state, "0.5,,0.1\n", ":1: column 2: \"\" is not a finite number");
+    assert_refused(state, "1,2,3\n4 5 6\n", ":2: column 1: \"4 5 6\"");
+}
+
+static void test_data_table_read_skips_names_of_columns_and_percent_comments(void **state) {
+    assert_same_rows(state, "r,g,err\n0.5,1.5,0.1\n1,2,0.2\n", 2);
+    assert_same_rows(state, "\"r\";\"g\";\"err\"\n0.5;1.5;0.1\n1;2;0.2\n", 2);
+    assert_same_rows(state, "% made by hand\nr g err\n0.5 1.5 0.1\n% more\n1 2 0.2\n", 3);
+    assert_refused(state, "r g\nr g\n1 2\n", ":2: column 1: \"r\"");
+    assert_refused(state, "1 2\nr g\n", ":2: column 1: \"r\"");
+    assert_refused(state, "r 2\n1 2\n", ":1: column 1: \"r\"");
+    assert_refused(state, "nan nan\n1 2\n", ":1: column 1: \"nan\"");
+    assert_refused(state, "r g\n", ":2: the file ends without a row of numbers");
+}
+
+static void test_data_table_read_takes_the_first_set_when_a_line_ends_it(void **state) {
+    assert_same_rows(state, "@TYPE xy\n0.5 1.5 0.1\n1 2 0.2\n&\n", 2);
+    assert_same_rows(state, "@TYPE xy\n0.5 1.5 0.1\n1 2 0.2\n&\n@TYPE xy\n0.5 x\n&\n", 2);
+}
+
+static void test_data_table_read_says_so_when_decimals_have_a_comma(void **state) {
+    assert_refused(state, "0,5;1,5\n",
+                   ":1: column 1: \"0,5\" is not a finite number: a decimal comma");
+    assert_refused(state, "0.5;1.5\n1;1,25\n",
+                   ":2: column 2: \"1,25\" is not a finite number: a dec");
+    assert_refused(state, "0,5 1,5\n",
+                   ":1: column 1: \"0,5\" is not a finite number: a decimal comma");
+}
+
 static void test_data_table_read_takes_nan_when_it_stands_beyond_the_wanted_columns(void **state) {
     struct data_table table;
     assert_ok(data_table_read(&table, write_text(state, "1 2 nan\n3 4 5\n"), 2));
@@ -87,7 +133,8 @@ static void test_data_table_read_names_the_line_when_a_word_is_not_a_finite_numb
 static void test_data_table_read_names_the_line_when_a_row_has_another_length(void **state) {
     assert_refused(state, "1 2\n3 4\n5\n", "t.dat:3: 1 columns, the first row has 2");
     assert_refused(state, "1 2\n3 4 5\n", "t.dat:2: 3 columns, the first row has 2");
-    assert_refused(state, "# r\n1\n2\n", "t.dat:2: 1 columns, at least 2 are needed");
+    assert_refused(state, "# r\n1\n2\n",
+                   "t.dat:2: 1 columns, at least 2 are needed (blanks, commas or semi");
 }
 
 static void test_data_table_read_says_so_when_there_is_nothing_to_read(void **state) {
@@ -168,6 +215,10 @@ int main(void) {
         IN_FOLDER(test_data_table_read_takes_windows_line_ends_when_present),
         IN_FOLDER(test_data_table_read_has_an_empty_header_when_there_is_no_comment),
         IN_FOLDER(test_data_table_read_takes_nan_when_it_stands_beyond_the_wanted_columns),
+        IN_FOLDER(test_data_table_read_takes_commas_and_semicolons_when_the_first_row_has_them),
+        IN_FOLDER(test_data_table_read_skips_names_of_columns_and_percent_comments),
+        IN_FOLDER(test_data_table_read_takes_the_first_set_when_a_line_ends_it),
+        IN_FOLDER(test_data_table_read_says_so_when_decimals_have_a_comma),
         IN_FOLDER(test_data_table_read_names_the_line_when_a_word_is_not_a_finite_number),
         IN_FOLDER(test_data_table_read_names_the_line_when_a_row_has_another_length),
         IN_FOLDER(test_data_table_read_says_so_when_there_is_nothing_to_read),

@@ -38,6 +38,17 @@ static void test_votca_read_takes_errors_when_there_are_four_columns(void **stat
     votca_clear(&table);
 }
 
+static void test_votca_read_takes_two_columns_without_flags(void **state) {
+    struct votca_table table;
+    assert_ok(votca_read(&table, put(state, "0 0\n0.1 0.5\n0.2 1.5\n")));
+    assert_int_equal(table.rows, 3);
+    assert_false(table.has_error);
+    assert_identical(table.x[1], 0.1);
+    assert_identical(table.y[2], 1.5);
+    assert_int_equal(table.line[2], 3);
+    votca_clear(&table);
+}
+
 static void test_votca_read_refuses_what_is_no_table_of_votca(void **state) {
     assert_refused(state, "0.1 1 i\n0.2 1 u\n0.3 1 i\n", "a.pot:2: flagged u between");
     assert_refused(state, "0.1 1 i\n0.2 1 x\n", "a.pot:2: the flag \"x\" is none of i, o, u");
@@ -70,6 +81,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_votca_read_takes_the_rows_in_range),
         TEST(test_votca_read_takes_errors_when_there_are_four_columns),
+        TEST(test_votca_read_takes_two_columns_without_flags),
         TEST(test_votca_read_refuses_what_is_no_table_of_votca),
         TEST(test_votca_write_is_read_again_without_what_it_continued),
     };

@@ -143,8 +143,21 @@ static void test_targets_read_refuses_what_is_no_function_of_time(void **state) 
     refuse_curve(state, "0 3 0\n0.1 2 0\n", ".tsv: only 2 times");
     refuse_curve(state, "0 3 0\n0.1 nan 0\n0.2 1 0\n", ".tsv:2: column 2: \"nan\"");
     refuse_curve(state, "0 3 0\n0.1 2 -1\n0.2 1 0\n", ".tsv:2: column 3: -1 is not");
-    refuse_curve(state, "0 3\n0.1 2\n0.2 1\n", ".tsv:1: 2 columns, at least 3");
+    refuse_curve(state, "0\n0.1\n0.2\n", ".tsv:1: 1 columns, at least 2");
+    refuse_curve(state, "0 3 0\n0.1 2 nan\n0.2 1 0\n", ".tsv:2: column 3: nan is not");
     refuse_curve(state, "0 3 0\n0.1 2\n0.2 1 0\n", ".tsv:2: 2 columns");
+}
+
+static void test_targets_read_takes_curves_without_errors(void **state) {
+    struct targets t;
+    put(state, "v.tsv", "t,vacf\n0,3\n0.1,2\n0.2,1\n");
+    assert_ok(read(state, VACF, &t));
+    assert_int_equal(t.vacf.times, 3);
+    assert_close(t.vacf.value[1], 2, 0);
+    assert_close(t.vacf.error[1], 0, 0);
+    targets_clear(&t);
+    assert_refused(state, "\"vacf\": {\"file\": \"v.tsv\", \"error_column\": 3}",
+                   "v.tsv:2: 2 columns, at least 3", "\"error_column\"; 0 if");
 }
 
 static void test_targets_read_tells_what_is_wrong_and_where(void **state) {
@@ -211,6 +224,7 @@ int main(void) {
         TEST(test_targets_read_takes_the_columns_of_a_curve),
         TEST(test_targets_goals_measure_motion_as_the_targets_do),
         TEST(test_targets_read_refuses_what_is_no_function_of_time),
+        TEST(test_targets_read_takes_curves_without_errors),
         TEST(test_targets_read_tells_what_is_wrong_and_where),
         TEST(test_targets_check_steps_tells_the_time_step_that_would_do),
         TEST(test_targets_digest_knows_every_number),
