@@ -42,6 +42,7 @@
 typedef REAL lanes_real __attribute__((vector_size(sizeof(REAL) * LANES)));
 typedef int32_t lanes_int __attribute__((vector_size(4 * LANES)));
 typedef uint32_t lanes_uint __attribute__((vector_size(4 * LANES)));
+typedef float lanes_float __attribute__((vector_size(4 * LANES)));     ///< whatever REAL is
 typedef uint64_t lanes_wide __attribute__((vector_size(LANES_BYTES))); ///< a register, always
 typedef double lanes_double4 __attribute__((vector_size(32)));
 
@@ -95,6 +96,10 @@ LANES_INLINE void lanes_store_wide(int32_t *to, lanes_wide a) {
 
 LANES_INLINE lanes_real lanes_to_real(lanes_int a) {
     return __builtin_convertvector(a, lanes_real);
+}
+
+LANES_INLINE lanes_float lanes_to_float(lanes_int a) {
+    return __builtin_convertvector(a, lanes_float);
 }
 
 /// Rounded towards 0.

@@ -16,7 +16,7 @@ struct integrator {
     const struct field *fields; ///< of struct integrator_parameters
     bool dissipative;           ///< understands ω(r)
     /// What it makes of ω, if it splits friction and noise off the forces; NULL: they are forces.
-    friction_method *friction;
+    const struct friction_method *friction;
     /// A step begins with the friction of the pairs that the last one kept.
     bool friction_first;
     /// Forces are computed in the middle of the step: those at its end take a pass of their own.

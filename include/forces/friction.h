@@ -4,11 +4,16 @@
 /// The force pass keeps the pairs within the cutoff of ω instead of adding their friction. What
 /// becomes of the velocities is the integrator's: with u = e·(v_i − v_j) along the unit vector e of
 /// a pair, they make
-///   v_i += (kick − damping·u) e,   v_j −= the same,
-/// with a damping and a standard deviation of the kick that depend on ω, and so on r, alone. ω² is
-/// the friction, so that u obeys du = −2 ω² u dt + 2 sqrt(2 k_B T) ω dW, with variance 2 k_B T.
+///   v_i += (kick − damping·u) e,   v_j −= the same,   kick = amplitude ζ,
+/// with a damping d and an amplitude that depend on ω, and so on r, alone. ω² is the friction, so
+/// that u obeys du = −2 ω² u dt + 2 sqrt(2 k_B T) ω dW, with variance 2 k_B T. ζ is normal
+/// (base/normal.h): where friction is thin and strong a pair gets one or two kicks on its way
+/// through, and a uniform ζ leaves it too little energy, by a fifth of the temperature. The
+/// amplitude is made of the damping, amplitude² = A d (1 − B d), so that the two agree at every r,
+/// also in the interval where ω jumps. Tested: test_friction, physics/test_shell.
 #pragma once
 
+#include "base/normal.h"
 #include "curves/table.h"
 #include "system/neighbours.h"
 
@@ -18,19 +23,30 @@ struct friction_pair {
 };
 
 /// What a method makes of ω at a time step.
+struct friction_method {
+    double (*damping)(double omega, double time_step);
+    double (*square)(double time_step, double temperature); ///< A [λ²/τ²]; NULL: the kick is ζ
+    double bound;                                           ///< B
+    bool uniform;                                           ///< ζ is, with variance 1, not normal
+};
 struct friction_factors {
     double damping;
     double amplitude; ///< standard deviation of the kick [λ/τ]
 };
-typedef struct friction_factors friction_method(double omega, double time_step, double temperature);
+struct friction_factors friction_factors_of(const struct friction_method *method, double omega,
+                                            double time_step, double temperature);
 
 enum { FRICTION_WORK = 4 };
 
 struct friction {
-    /// Shape [curves, TABLE_INTERVALS + 1], over the intervals of the table of ω: damping at the
-    /// start of an interval, its change over it, and the same of the amplitude.
+    const struct friction_method *method;
+    double kick, bound; ///< sqrt(A), or 0 if the kick is ζ; B
+    /// Shape [curves, TABLE_INTERVALS + 1], over the intervals of the table of ω: sqrt(damping),
+    /// which is straight where ω is, at the start of an interval and its change over it. The other
+    /// two are 0: kernels read records of four.
     double (*precise)[4];
-    float (*single)[4];    ///< the same rounded
+    float (*single)[4]; ///< the same rounded
+    struct normal_table normal;
     float (*direction)[4]; ///< e of each pair, from j to i; the last is 0
     struct friction_pair *pair;
     size_t capacity;
@@ -41,7 +57,7 @@ struct friction {
 
 /// Tabulate a method for a weight. Fails: NO_MEMORY.
 enum status friction_init(struct friction *friction, const struct table *weight, double time_step,
-                          double temperature, friction_method *method) MUST_USE;
+                          double temperature, const struct friction_method *method) MUST_USE;
 void friction_clear(struct friction *friction);
 
 /// Make room for all pairs of a list, and forget those kept. Fails: NO_MEMORY.

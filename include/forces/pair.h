@@ -5,6 +5,7 @@
 ///   F_C = −Φ'(r) r̂,  F_D = −ω(r)² (r̂·v_ij) r̂,  F_R = sqrt(2 k_B T / Δt) ω(r) ζ_ij r̂
 /// with ζ_ij = ζ_ji of mean 0 and variance 1. R. D. Groot and P. B. Warren, J. Chem. Phys. 107,
 /// 4423 (1997), eqs. 4 to 8; ω² here is γ w_D there, and ζ is uniform as in their section II.
+/// Where friction is kept apart (forces/friction.h) ζ is normal.
 #pragma once
 
 #include "curves/table.h"

@@ -19,6 +19,13 @@ struct placement {
 /// The number alone, which a mixture gives for each of its types, and all the rest.
 extern const struct field placement_count_fields[], placement_fields[];
 
+/// The site of particle k of `count` on a lattice of `sites` ≥ count, whose empty sites are spread
+/// evenly: no site twice. In whole numbers, since the product exceeds the 53 bits of a double from
+/// 10⁸ particles on.
+static inline size_t placement_site(size_t k, size_t count, size_t sites) {
+    return (size_t)((uint64_t)k * sites / count);
+}
+
 /// Simple cubic (square) lattice of the smallest size that holds all particles, filled evenly,
 /// each particle shifted by a uniform random amount.
 void placement_lattice(struct particles *particles, double jitter, uint64_t seed);

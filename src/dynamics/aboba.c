@@ -1,18 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/simulation.h"
 
-/// Exact for one pair: u decays by exp(−2 ω² Δt), and keeps its variance 2 k_B T.
-static struct friction_factors exact(double omega, double time_step, double temperature) {
-    const double exponent = -2 * omega * omega * time_step;
-    return (struct friction_factors){-0.5 * expm1(exponent),
-                                     0.5 * sqrt(-2 * temperature * expm1(2 * exponent))};
+static double exact_damping(double omega, double time_step) {
+    return -0.5 * expm1(-2 * omega * omega * time_step);
+}
+
+static double exact_square(double time_step, double temperature) {
+    (void)time_step;
+    return 2 * temperature;
+}
+
+/// Exact for one pair: u is normal, decays by exp(−2 ω² Δt), and keeps its variance 2 k_B T.
+static const struct friction_method exact = {
+    .damping = exact_damping, .square = exact_square, .bound = 1};
+
+static double midpoint_damping(double omega, double time_step) {
+    return 0.5 * time_step * omega * omega;
+}
+
+static double midpoint_square(double time_step, double temperature) {
+    (void)time_step;
+    return 4 * temperature;
 }
 
 /// The implicit midpoint rule (1 + G) v' = (1 − G) v + kicks with G v = ½ Δt Σ ω² u e.
-static struct friction_factors midpoint(double omega, double time_step, double temperature) {
-    return (struct friction_factors){0.5 * time_step * omega * omega,
-                                     sqrt(2 * temperature * time_step) * omega};
-}
+static const struct friction_method midpoint = {.damping = midpoint_damping,
+                                                .square = midpoint_square};
 
 /// What friction does to the velocities.
 typedef enum status friction_change(struct simulation *simulation);
@@ -59,7 +72,7 @@ const struct integrator aboba = {
                "Commun. 262, 107834 (2021)",
     .fields = no_fields,
     .dissipative = true,
-    .friction = exact,
+    .friction = &exact,
     .forces_midway = true,
     .step = step_exact,
 };
@@ -76,7 +89,7 @@ const struct integrator aboba_implicit = {
     .summary = "the same with friction of all pairs at once by the implicit midpoint rule",
     .fields = implicit_fields,
     .dissipative = true,
-    .friction = midpoint,
+    .friction = &midpoint,
     .forces_midway = true,
     .step = step_implicit,
 };

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/simulation.h"
 
-/// Friction and noise as forces.
-static struct friction_factors factors(double omega, double time_step, double temperature) {
-    const double amplitude = sqrt(2 * temperature / time_step) * omega;
-    return (struct friction_factors){omega * omega, amplitude};
+static double damping(double omega, double time_step) {
+    (void)time_step;
+    return omega * omega;
 }
+
+static double square(double time_step, double temperature) {
+    return 2 * temperature / time_step;
+}
+
+/// Friction and noise as forces.
+static const struct friction_method forces = {.damping = damping, .square = square};
 
 /// Velocity Verlet whose friction is computed once more from the velocities at the end of the step.
 static enum status step(struct simulation *simulation) {
@@ -31,6 +37,6 @@ const struct integrator dpd_vv = {
                "(2000)",
     .fields = fields,
     .dissipative = true,
-    .friction = factors,
+    .friction = &forces,
     .step = step,
 };

@@ -4,11 +4,13 @@
 #include <gsl/gsl_cdf.h>
 
 /// Pairs collide with the heat bath with the probability that makes u decay, on average, as the
-/// friction ω² does: exp(−2 ω² Δt). The kick is the bare number ζ until draw_collisions.
-static struct friction_factors factors(double omega, double time_step, double temperature) {
-    (void)temperature;
-    return (struct friction_factors){-expm1(-2 * omega * omega * time_step), omega > 0 ? 1 : 0};
+/// friction ω² does: exp(−2 ω² Δt).
+static double probability(double omega, double time_step) {
+    return -expm1(-2 * omega * omega * time_step);
 }
+
+/// The kick is the bare number ζ until draw_collisions.
+static const struct friction_method collisions = {.damping = probability, .uniform = true};
 
 /// Decide who collides: a uniform number below the probability p says so, and divided by p it is a
 /// uniform number again, which becomes the normal one of the new u.
@@ -16,11 +18,11 @@ static void draw_collisions(struct friction *friction, double temperature) {
     for (int part = 0; part < friction->parts; part++)
         for (size_t k = friction->begin[part]; k < friction->end[part]; k++) {
             struct friction_pair *pair = &friction->pair[k];
-            const double probability = pair->damping, uniform = pair->kick / sqrt(12) + 0.5;
-            const bool collides = 0 < uniform && uniform < probability;
+            const double chance = pair->damping, uniform = pair->kick / sqrt(12) + 0.5;
+            const bool collides = 0 < uniform && uniform < chance;
             pair->damping = collides ? 0.5F : 0;
             pair->kick = collides ? (float)(0.5 * sqrt(2 * temperature) *
-                                            gsl_cdf_ugaussian_Pinv(uniform / probability))
+                                            gsl_cdf_ugaussian_Pinv(uniform / chance))
                                   : 0;
         }
 }
@@ -44,6 +46,6 @@ const struct integrator lowe_andersen = {
                "Lett. 47, 145 (1999)",
     .fields = fields,
     .dissipative = true,
-    .friction = factors,
+    .friction = &collisions,
     .step = step,
 };

@@ -3,10 +3,18 @@
 
 /// Half a step explicit, half implicit, pair by pair: with a = ω² Δt,
 ///   u' = ((1 − a) u + 2 sqrt(2 k_B T a) ζ) / (1 + a).
-static struct friction_factors factors(double omega, double time_step, double temperature) {
+static double damping(double omega, double time_step) {
     const double a = omega * omega * time_step;
-    return (struct friction_factors){a / (1 + a), sqrt(2 * temperature * a) / (1 + a)};
+    return a / (1 + a);
 }
+
+static double square(double time_step, double temperature) {
+    (void)time_step;
+    return 2 * temperature;
+}
+
+/// u' = (1 − 2d) u + 2 kick keeps the variance 2 k_B T if amplitude² = 2 k_B T d (1 − d).
+static const struct friction_method halves = {.damping = damping, .square = square, .bound = 1};
 
 /// S1: friction for a whole step, then velocity Verlet. The pairs are those of the forces at the
 /// end of the last step.
@@ -26,7 +34,7 @@ const struct integrator shardlow = {
     .summary = "S1 splitting; T. Shardlow, SIAM J. Sci. Comput. 24, 1267 (2003)",
     .fields = fields,
     .dissipative = true,
-    .friction = factors,
+    .friction = &halves,
     .friction_first = true,
     .step = step,
 };

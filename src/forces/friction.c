@@ -6,10 +6,22 @@
 #include "base/parallel.h"
 #include "base/simd.h"
 
+struct friction_factors friction_factors_of(const struct friction_method *method, double omega,
+                                            double time_step, double temperature) {
+    const double d = method->damping(omega, time_step);
+    const double square =
+        method->square ? method->square(time_step, temperature) * d * (1 - method->bound * d) : 1;
+    return (struct friction_factors){d, sqrt(square)};
+}
+
 enum status friction_init(struct friction *friction, const struct table *weight, double time_step,
-                          double temperature, friction_method *method) {
+                          double temperature, const struct friction_method *method) {
     enum status status = STATUS_OK;
-    *friction = (struct friction){0};
+    *friction =
+        (struct friction){.method = method,
+                          .kick = method->square ? sqrt(method->square(time_step, temperature)) : 0,
+                          .bound = method->bound};
+    normal_table_init(&friction->normal);
     const int rows = (TABLE_INTERVALS + 1) * weight->curves;
     NEW_ARRAY(friction->precise, rows);
     NEW_ARRAY(friction->single, rows);
@@ -17,14 +29,12 @@ enum status friction_init(struct friction *friction, const struct table *weight,
         if (k % (TABLE_INTERVALS + 1) == TABLE_INTERVALS) // beyond the cutoff is nothing
             continue;
         const double *omega = weight->coefficient + 2 * k;
-        const struct friction_factors low = method(omega[0], time_step, temperature),
-                                      high = method(omega[0] + omega[1], time_step, temperature);
-        const double row[4] = {low.damping, high.damping - low.damping, low.amplitude,
-                               high.amplitude - low.amplitude};
-        for (int n = 0; n < 4; n++) {
-            friction->precise[k][n] = row[n];
-            friction->single[k][n] = (float)row[n];
-        }
+        const double root = sqrt(method->damping(omega[0], time_step));
+        const double next = sqrt(method->damping(omega[0] + omega[1], time_step));
+        friction->precise[k][0] = root;
+        friction->precise[k][1] = next - root;
+        for (int n = 0; n < 2; n++)
+            friction->single[k][n] = (float)friction->precise[k][n];
     }
 done:
     return status;

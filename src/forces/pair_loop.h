@@ -44,6 +44,10 @@ INLINE void pair_evaluate(struct pair_batch *batch, int count, const struct pair
     if (friction == PAIR_KEEPS_FRICTION) {
         pair_ids(&columns, batch, count);
         pair_noise(&columns, count, law->seed, scene->step);
+        if (law->friction->method->uniform)
+            pair_uniform(&columns, count);
+        else
+            pair_normal(&columns, count, &law->friction->normal);
         pair_keep(&columns, batch, count, law->friction, *scene->kept, dim);
         *scene->kept += (size_t)count;
     }

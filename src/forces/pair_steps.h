@@ -18,6 +18,7 @@ struct pair_columns {
     REAL force_over_r[PAIR_BATCH];
     REAL r_dot_v[PAIR_BATCH];
     int32_t low_id[PAIR_BATCH], high_id[PAIR_BATCH], noise[PAIR_BATCH];
+    REAL zeta[PAIR_BATCH]; ///< of friction that is kept
     REAL force[PAIR_BATCH][4];
 };
 
@@ -229,23 +230,47 @@ INLINE void pair_ids(struct pair_columns *columns, const struct pair_batch *batc
     }
 }
 
+/// ζ of the words: normal_of_word of each.
+INLINE void pair_normal(struct pair_columns *columns, int count, const struct normal_table *table) {
+    for (int k = 0; k < count; k += LANES) {
+        const lanes_int word = lanes_load_int(columns->noise + k), sign = word >> 31;
+        const lanes_int bits = (lanes_int)(lanes_to_float(word ^ sign) + 0.5F);
+        const lanes_int place = bits & ((1 << NORMAL_BITS) - 1);
+        int32_t row[LANES];
+        lanes_store_int(row, (bits >> NORMAL_BITS) - NORMAL_FIRST);
+        const struct lanes_record c = lanes_load_records(table->PAIR_ROWS, row);
+        const lanes_real f = (REAL)(1.0 / (1 << NORMAL_BITS)) * lanes_to_real(place);
+        const lanes_real zeta = c.word[0] + f * (c.word[1] + f * (c.word[2] + f * c.word[3]));
+        lanes_store(columns->zeta + k, zeta * lanes_to_real(sign | 1));
+    }
+}
+
+/// Uniform ζ of the words, as in pair_dissipative.
+INLINE void pair_uniform(struct pair_columns *columns, int count) {
+    for (int k = 0; k < count; k += LANES)
+        lanes_store(columns->zeta + k,
+                    (REAL)(sqrt(12) * 0x1p-32) * lanes_to_real(lanes_load_int(columns->noise + k)));
+}
+
 /// Keep the pairs for the integrator, in whole vectors: the list has room for more.
 INLINE void pair_keep(const struct pair_columns *columns, const struct pair_batch *batch, int count,
                       struct friction *friction, size_t place, const int dim) {
-    const REAL unit = (REAL)(sqrt(12) * 0x1p-32); // as in pair_dissipative
+    const REAL scale = (REAL)friction->kick, bound = (REAL)friction->bound;
     for (int k = 0; k < count; k += LANES) {
         const lanes_real inverse_r = lanes_load(columns->inverse_r + k);
         const struct lanes_record c =
             lanes_load_records(friction->PAIR_ROWS, columns->weight.interval + k);
         const lanes_real f = lanes_load(columns->weight.fraction + k);
-        const lanes_real zeta = unit * lanes_to_real(lanes_load_int(columns->noise + k));
+        const lanes_real root = c.word[0] + f * c.word[1], damping = root * root;
+        lanes_real kick = lanes_load(columns->zeta + k);
+        if (scale > 0) // of the damping, so that the two agree wherever r is
+            kick *= scale * root * lanes_sqrt(1 - lanes_least(bound * damping, lanes_all(1)));
         pair_store_directions(friction->direction + place + k,
                               inverse_r * lanes_load(batch->dx + k),
                               inverse_r * lanes_load(batch->dy + k),
                               dim == 3 ? inverse_r * lanes_load(batch->dz + k) : lanes_all(0));
-        pair_store_frictions(friction->pair + place + k, c.word[0] + f * c.word[1],
-                             (c.word[2] + f * c.word[3]) * zeta, lanes_load_int(batch->i + k),
-                             lanes_load_int(batch->j + k));
+        pair_store_frictions(friction->pair + place + k, damping, kick,
+                             lanes_load_int(batch->i + k), lanes_load_int(batch->j + k));
     }
 }
 

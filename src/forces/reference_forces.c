@@ -15,12 +15,14 @@ static double separation(const struct particles *particles, size_t i, size_t j, 
     return sqrt(square);
 }
 
+/// ζ: normal if friction is kept apart, uniform if it is added to the forces.
 static double pair_noise(const struct pair_law *law, uint32_t a, uint32_t b, uint64_t step) {
     const uint32_t low = a < b ? a : b, high = a < b ? b : a;
     const uint32_t word =
         rng_philox_lane((uint32_t)law->seed, (uint32_t)(law->seed >> 32), (uint32_t)step, low, high,
                         rng_stream_word(RNG_PAIR_NOISE, (uint32_t)(step >> 32)));
-    return sqrt(12) * (double)(int32_t)word * 0x1p-32;
+    return law->friction ? normal_of_word(&law->friction->normal, word)
+                         : sqrt(12) * (double)(int32_t)word * 0x1p-32;
 }
 
 /// (F_D + F_R) · r̂ on particle i.

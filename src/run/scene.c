@@ -97,6 +97,28 @@ static void read_dynamics(struct scene *scene, struct json_object *object, int u
                    integrator->name);
 }
 
+/// Coordinates may be unwrapped, but so far outside they are in other units, as nm and pm.
+static const double most_boxes = 100;
+
+/// Whether all coordinates of a file are within most_boxes of the box; tells of the first that is
+/// not.
+static bool are_near(const struct scene *scene, const struct data_table *table,
+                     struct json_object *particles) {
+    const struct box *box = &scene->setup.box;
+    for (size_t k = 0; k < table->rows; k++)
+        for (int d = 0; d < box->dimensions; d++) {
+            const double x = table->values[k * table->columns + (size_t)d];
+            if (fabs(x) <= most_boxes * box->length[d])
+                continue;
+            json_fault(particles, "file",
+                       "%s:%zu: the coordinate %g is more than %g boxes of %g away; are the units "
+                       "those of \"box\"?",
+                       scene->setup.placement.file, table->line[k], x, most_boxes, box->length[d]);
+            return false;
+        }
+    return true;
+}
+
 /// Columns x, y (, z) and, if there are as many again, the velocities.
 static enum status read_positions(struct scene *scene, struct json_object *particles) {
     const struct placement *placement = &scene->setup.placement;
@@ -114,6 +136,8 @@ static enum status read_positions(struct scene *scene, struct json_object *parti
                    dimensions, 2 * dimensions);
         goto done;
     }
+    if (!are_near(scene, &table, particles))
+        goto done;
     NEW_ARRAY(scene->start_values, table.rows * table.columns);
     for (size_t column = 0; column < table.columns; column++) {
         double *values = scene->start_values + column * table.rows;

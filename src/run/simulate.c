@@ -28,7 +28,7 @@ struct rdf_parameters {
 #define MEMBER(name) .offset = offsetof(struct rdf_parameters, name)
 const struct field simulate_rdf_fields[] = {
     {"range", FIELD_NUMBER, MEMBER(range), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "lambda", .help = "of g(r); 0 means the cutoff of the forces"},
+     .unit = "lambda", .help = "of g(r); 0 means the cutoff of the forces, if there are any"},
     {"bins", FIELD_INTEGER, MEMBER(bins), .initial = 100, .minimum = 1, .maximum = 100000,
      .unit = "", .help = "of g(r)"},
     {"estimator", FIELD_CHOICE, MEMBER(estimator), .choices = rdf_force_estimators,
@@ -64,6 +64,19 @@ static int find_threads(const struct simulation_setup *setup, int wanted) {
     return most < 1 ? 1 : wanted < most ? wanted : most;
 }
 
+/// g(r) ends with the forces, unless the file says where.
+static enum status check_range(const struct run *run, const char *file) {
+    const struct simulation_setup *setup = &run->scene.setup;
+    const struct pair_law law = {.potential = setup->potential, .weight = setup->weight};
+    if (pair_cutoff(&law) > 0 || run->rdf_parameters.range > 0)
+        return STATUS_OK;
+    return status_fail(
+        STATUS_BAD_INPUT,
+        "%s: rdf: the scene has no forces whose cutoff is the range of g(r): say how "
+        "far, as in {\"range\": 2}",
+        file);
+}
+
 static enum status read_file(struct run *run, const char *file, const struct run_options *options) {
     struct json_document *document;
     TRY(json_open(&document, file));
@@ -89,6 +102,7 @@ static enum status read_file(struct run *run, const char *file, const struct run
     json_finish(&root);
     TRY(json_close(document));
     TRY(status);
+    TRY(check_range(run, file));
     if (options->has_seed)
         run->heading.seed = options->seed;
     run->scene.setup.seed = run->heading.seed;

@@ -19,6 +19,11 @@ struct close_search {
     float range2;
 };
 
+/// Places of the list that the rows of a particle may reach beyond its neighbours: a vector of
+/// entries, the rest of a row, and a vector of owners, each of a whole row. All of them must be
+/// before the next part, which another thread may have filled already.
+enum { CLOSE_BEYOND = 2 * PARTICLES_PADDING + LANES * NEIGHBOURS_ROW };
+
 /// Write those of a run that are within range of a place to `list`. Whole vectors are read, also
 /// beyond the end, where nothing is in range (or belongs to the run as well), and written; one at
 /// least, since runs are rarely empty.
@@ -125,7 +130,7 @@ LANES_INLINE size_t close_loop(struct neighbours *neighbours, const struct parti
     for (int cell = 0; cell < rows->cells; cell++) {
         close_find_runs(&runs, rows, cell, half);
         for (size_t self = start[cell]; self < start[cell + 1]; self++, k++) {
-            if (used + runs.places + 2 * PARTICLES_PADDING > limit)
+            if (used + runs.places + CLOSE_BEYOND > limit)
                 return SIZE_MAX;
             neighbours->start[k] = used;
             const int32_t *end =

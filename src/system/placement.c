@@ -49,10 +49,9 @@ void placement_lattice(struct particles *particles, double jitter, uint64_t seed
     const struct box *box = &particles->box;
     size_t cells[3];
     lattice_shape(particles, cells);
-    const double sites = (double)(cells[0] * cells[1] * cells[2]);
+    const size_t sites = cells[0] * cells[1] * cells[2];
     for (size_t k = 0; k < particles->count; k++) {
-        // Spread the empty sites evenly over the lattice.
-        size_t site = (size_t)floor((double)k * sites / (double)particles->count);
+        size_t site = placement_site(k, particles->count, sites);
         const struct rng_block block = rng_philox(seed, RNG_PLACEMENT, (uint32_t)k, 0, 0);
         for (int d = box->dimensions - 1; d >= 0; d--) {
             const double spacing = box->length[d] / (double)cells[d];

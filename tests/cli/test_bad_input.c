@@ -39,6 +39,10 @@ static void check_fault(struct temporary_folder *folder, const char *verb, const
 
 #define PARTICLES "\"particles\": {\"count\": 81}"
 #define DISSIPATIVE "{\"law\": \"power\", \"sigma\": 2}"
+#define FROM_FILE "\"particles\": {\"count\": 2, \"placement\": \"file\", \"file\": \"table.tsv\"}"
+#define FORCES                                                                                     \
+    "  \"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25},\n"                              \
+    "  \"dissipative\": {\"law\": \"power\", \"sigma\": 2},\n"
 #define STEP "\"time_step\": 0.02"
 #define TABLE_WEIGHT "{\"law\": \"table\", \"file\": \"table.tsv\"}"
 
@@ -94,6 +98,11 @@ static const struct fault scene_faults[] = {
     FAULT("a soft potential for the RDF from forces", "{\"law\": \"soft-repulsion\", \"a\": 25}",
           "{\"law\": \"soft-repulsion\", \"a\": 19}, \"rdf\": {\"estimator\": \"force\"}",
           "input.json", "rdf", "force", "10 k_B T"),
+    WITH_TABLE("coordinates in other units", PARTICLES, FROM_FILE, "299 -299 1\n2 301 2\n",
+               "particles.file", "table.tsv:2", "301", "100 boxes of 3"),
+    WITH_TABLE("coordinates beyond whole numbers", PARTICLES, FROM_FILE, "-1.7e308 1 1\n2 2 2\n",
+               "particles.file", "table.tsv:1", "-1.7e+308"),
+    FAULT("no forces and no range", FORCES, "", "input.json: rdf", "no forces", "range"),
     FAULT("no samples", "\"samples\": 4", "\"samples\": 0", "measure.samples: 0 is out of range"),
     FAULT("short table of a potential", "{\"law\": \"soft-repulsion\", \"a\": 25}",
           "{\"law\": \"table\", \"file\": \"table.tsv\", \"cutoff\": 2}", "conservative.file",

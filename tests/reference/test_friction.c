@@ -54,13 +54,14 @@ static int clear_tables(void **state) {
     return 0;
 }
 
-/// With DPD-VV's factors, the kept pairs add up to the friction and noise of all pairs. Not so in
-/// an interval where ω jumps: ω² is straight there if kept, and ω if added.
+/// With DPD-VV's factors, the kept pairs add up to the friction and noise of all pairs.
 static void check_law(const struct box *box, size_t count, const struct pair_law *law) {
     struct kept_pairs kept = {.law = *law};
     const uint64_t step = 0x100000007;
     kept_pairs_init(&kept, box, count, 0.02);
     struct particles *particles = &kept.particles;
+    kept_pairs_use(&kept, &dpd_vv);
+    kept.law.friction = &kept.friction;
     reference_forces(&kept.law, particles, step, NULL);
     double *expected[3] = {NULL};
     for (int d = 0; d < box->dimensions; d++) {
@@ -69,7 +70,6 @@ static void check_law(const struct box *box, size_t count, const struct pair_law
         memcpy(expected[d], particles->force[d], count * sizeof *expected[d]);
     }
     struct pair_scales scales = pair_scales_find(&kept.law, particles);
-    kept_pairs_use(&kept, &dpd_vv);
     for (int v = 0; v < variant_count; v++) {
         variants_select(&variants[v]);
         kept.law.precision = variants[v].precision;
@@ -138,7 +138,7 @@ static double noise(const struct kept_pairs *kept, uint64_t step) {
     const uint32_t seed = (uint32_t)kept->law.seed, high = (uint32_t)(kept->law.seed >> 32);
     const uint32_t word = rng_philox_lane(seed, high, (uint32_t)step, 0, 1,
                                           rng_stream_word(RNG_PAIR_NOISE, (uint32_t)(step >> 32)));
-    return sqrt(12) * (double)(int32_t)word * 0x1p-32;
+    return normal_of_word(&kept->friction.normal, word);
 }
 
 /// Velocity of approach along the first axis, of the particle with the larger x relative to the
@@ -199,9 +199,9 @@ static void test_sweep_follows_the_formula_when_there_are_two_particles(void **s
         }
 }
 
-/// Mean and variance of u after one step from the same u, over many steps' noise; ζ² has a
-/// variance of 0.8.
-static void test_exact_friction_has_its_mean_and_variance_when_drawn_often(void **state) {
+/// Moments of u after one step from the same u, over many steps' noise. Those of a normal number z:
+/// z² has a variance of 2, z⁴ a mean of 3 and a variance of 96. A uniform one has 1.8 for the 3.
+static void test_exact_friction_leaves_a_normal_number_when_drawn_often(void **state) {
     (void)state;
     enum { DRAWS = 20000 };
     struct kept_pairs kept = {.law = kept_pairs_law(NULL, &weight, 0.1)};
@@ -210,7 +210,7 @@ static void test_exact_friction_has_its_mean_and_variance_when_drawn_often(void 
     struct particles *particles = &kept.particles;
     const struct law_of_u law = exact_law(sqrt(4.5) * 0.6, 0.1, kept.law.temperature);
     const double variance = law.kick * law.kick;
-    double sum = 0, squares = 0;
+    double sum = 0, squares = 0, fourths = 0;
     for (uint64_t step = 1; step <= DRAWS; step++) {
         const int far = particles->position[0][1] > particles->position[0][0];
         particles->velocity[0][far] = 0.9;
@@ -220,9 +220,11 @@ static void test_exact_friction_has_its_mean_and_variance_when_drawn_often(void 
         const double change = relative(particles) - 1.5 * law.decay;
         sum += change;
         squares += change * change;
+        fourths += change * change * change * change;
     }
     assert_close(sum / DRAWS, 0, deviations * sqrt(variance / DRAWS));
-    assert_close(squares / DRAWS, variance, deviations * variance * sqrt(0.8 / DRAWS));
+    assert_close(squares / DRAWS, variance, deviations * variance * sqrt(2.0 / DRAWS));
+    assert_close(fourths / DRAWS / variance / variance, 3, deviations * sqrt(96.0 / DRAWS));
     kept_pairs_clear(&kept);
 }
 
@@ -234,11 +236,13 @@ static void test_factors_keep_the_temperature_when_the_time_step_is_anything(voi
     const double temperature = 1.3, omega[] = {0, 1e-9, 1e-3, 1, 10, 30};
     for (double time_step = 1e-9; time_step < 1e9; time_step *= 10)
         for (int n = 0; n < 6; n++) {
-            const struct friction_factors exact = aboba.friction(omega[n], time_step, temperature),
-                                          split =
-                                              shardlow.friction(omega[n], time_step, temperature),
-                                          implicit = aboba_implicit.friction(omega[n], time_step,
-                                                                             temperature);
+            const struct friction_factors exact = friction_factors_of(aboba.friction, omega[n],
+                                                                      time_step, temperature),
+                                          split = friction_factors_of(shardlow.friction, omega[n],
+                                                                      time_step, temperature),
+                                          implicit =
+                                              friction_factors_of(aboba_implicit.friction, omega[n],
+                                                                  time_step, temperature);
             assert_close_relative(exact.amplitude * exact.amplitude,
                                   2 * temperature * exact.damping * (1 - exact.damping), 1e-12);
             assert_close_relative(implicit.amplitude * implicit.amplitude,
@@ -247,6 +251,62 @@ static void test_factors_keep_the_temperature_when_the_time_step_is_anything(voi
             assert_close(split.amplitude * split.amplitude,
                          2 * temperature * split.damping * (1 - split.damping), 1e-14);
         }
+}
+
+/// amplitude² = A d (1 − B d) of what a kernel keeps, which leaves u the variance 2 k_B T: (1 −
+/// 2d)² 2 k_B T + 4 amplitude² = 2 k_B T of the sweeps, amplitude² = 4 k_B T d of the midpoint rule
+/// and 2 k_B T d/Δt of a force.
+static double balanced_square(const struct integrator *integrator, double d,
+                              const struct pair_law *law) {
+    if (integrator == &dpd_vv)
+        return 2 * law->temperature * d / law->time_step;
+    return integrator == &aboba_implicit ? 4 * law->temperature * d
+                                         : 2 * law->temperature * d * (1 - d);
+}
+
+/// Rounding of d, and of 1 − d where it is near 1, in single precision.
+static const double balance_tolerance = 3e-6;
+
+static void check_balance(const struct integrator *integrator, const struct table *omega,
+                          double time_step, double r) {
+    struct kept_pairs kept = {.law = kept_pairs_law(NULL, omega, time_step)};
+    make_pair(&kept, r);
+    kept_pairs_use(&kept, integrator);
+    for (int v = 0; v < variant_count; v++) {
+        variants_select(&variants[v]);
+        kept.law.precision = variants[v].precision;
+        kept_pairs_keep(&kept, 3);
+        if (kept_pairs_count(&kept.friction) == 0) // r is rounded to the cutoff
+            continue;
+        int part = 0;
+        while (kept.friction.end[part] == kept.friction.begin[part])
+            part++;
+        const struct friction_pair *pair = &kept.friction.pair[kept.friction.begin[part]];
+        const double amplitude = pair->kick / noise(&kept, 3), d = pair->damping;
+        assert_close_relative(amplitude * amplitude, balanced_square(integrator, d, &kept.law),
+                              balance_tolerance);
+    }
+    kept_pairs_clear(&kept);
+}
+
+/// Friction that jumps to 10 at r = 0.97 and to 0 at 1, and friction that rises to 8: at thousands
+/// of r, a third of them in the intervals of the table in which it jumps.
+static void test_kick_balances_the_damping_when_friction_jumps(void **state) {
+    (void)state;
+    static const struct integrator *const with[] = {&aboba, &shardlow, &aboba_implicit, &dpd_vv};
+    struct table shell, steep;
+    make_weight(&shell, (struct formula_power_weight_parameters){10, 1e-6, 0.97, 1});
+    make_weight(&steep, (struct formula_power_weight_parameters){8, 2, 0, 1});
+    for (int n = 0; n < 300; n++)
+        for (int k = 0; k < 4; k++) {
+            const double interval = 1.0 / TABLE_INTERVALS, part = (n + 0.5) / 300;
+            check_balance(with[k], &shell, 0.005, 0.97 + (2 * part - 1) * interval);
+            check_balance(with[k], &shell, 0.005, 1 - 0.999 * part * interval);
+            check_balance(with[k], &shell, 0.005, 0.971 + 0.029 * part);
+            check_balance(with[k], &steep, 0.1, 0.01 + 0.98 * part);
+        }
+    table_clear(&shell);
+    table_clear(&steep);
 }
 
 static void test_sweep_conserves_momentum_when_particles_are_many(void **state) {
@@ -269,8 +329,9 @@ int main(void) {
         cmocka_unit_test(test_kept_pairs_add_up_to_friction_and_noise_when_they_are_forces),
         cmocka_unit_test(test_kept_pairs_add_up_to_friction_and_noise_when_types_differ),
         cmocka_unit_test(test_sweep_follows_the_formula_when_there_are_two_particles),
-        cmocka_unit_test(test_exact_friction_has_its_mean_and_variance_when_drawn_often),
+        cmocka_unit_test(test_exact_friction_leaves_a_normal_number_when_drawn_often),
         cmocka_unit_test(test_factors_keep_the_temperature_when_the_time_step_is_anything),
+        cmocka_unit_test(test_kick_balances_the_damping_when_friction_jumps),
         cmocka_unit_test(test_sweep_conserves_momentum_when_particles_are_many),
     };
     return cmocka_run_group_tests(tests, make_tables, clear_tables);

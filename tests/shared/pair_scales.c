@@ -32,7 +32,8 @@ static double dissipative_scale(const struct pair_law *law, int pair, double r) 
         omega = fmax(omega, fabs(value));
         slope = fmax(slope, fabs(steepness));
     }
-    const double noise = sqrt(2 * law->temperature / law->time_step) * sqrt(3);
+    const double zeta = law->friction ? 6.4 : sqrt(3);
+    const double noise = sqrt(2 * law->temperature / law->time_step) * zeta;
     return noise * (omega + r * slope) + 4 * omega * (omega + 2 * r * slope);
 }
 

@@ -41,6 +41,23 @@ static void test_placement_lattice_is_simple_cubic_when_count_is_a_cube(void **s
     particles_clear(&particles);
 }
 
+/// 463³ particles, near the most that a scene may have, of which a full lattice has one each; and a
+/// lattice that has a site more along each axis.
+static void test_placement_site_is_used_once_when_particles_are_a_hundred_million(void **state) {
+    (void)state;
+    const size_t count = (size_t)463 * 463 * 463, sites = (size_t)464 * 464 * 464;
+    size_t wrong = 0, shared = 0, before = 0;
+    for (size_t k = 0; k < count; k++) {
+        const size_t site = placement_site(k, count, sites);
+        wrong += placement_site(k, count, count) != k;
+        shared += k > 0 && site <= before;
+        before = site;
+    }
+    assert_int_equal(wrong, 0);
+    assert_int_equal(shared, 0);
+    assert_true(before < sites);
+}
+
 static void test_placement_lattice_is_square_when_in_two_dimensions(void **state) {
     (void)state;
     struct particles particles;
@@ -202,6 +219,7 @@ static void test_placement_disordered_has_no_planes_when_the_count_is_a_cube(voi
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_placement_lattice_is_simple_cubic_when_count_is_a_cube),
+        cmocka_unit_test(test_placement_site_is_used_once_when_particles_are_a_hundred_million),
         cmocka_unit_test(test_placement_lattice_is_square_when_in_two_dimensions),
         cmocka_unit_test(test_placement_lattice_keeps_particles_apart_when_count_is_odd),
         cmocka_unit_test(test_placement_lattice_shifts_within_the_jitter_when_asked),

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file A standard normal number from one random word, by the inverse of the normal law.
+///
+/// The word, folded at its middle, is a number n = 0 … 2³¹ − 1 from the tail: |ζ| is the quantile
+/// that is exceeded with the probability p = (n + ½) 2⁻³², and the sign is the word's. So ζ is
+/// symmetric, and reaches 6.3. The quantile is a cubic in p in each of 8 pieces of an octave
+/// of p, good to 3e-7. Vector kernels compute the same (forces/pair_steps.h). Tested: test_normal.
+#pragma once
+
+#include <stdint.h>
+
+enum {
+    NORMAL_PIECES = 8,                  ///< of an octave
+    NORMAL_BITS = 20,                   ///< of a float's 23 that are left for the place in a piece
+    NORMAL_FIRST = 126 * NORMAL_PIECES, ///< upper bits of the float ½
+    NORMAL_ROWS = (158 - 126) * NORMAL_PIECES + 1 ///< up to the float 2³¹, where ζ is 0
+};
+
+struct normal_table {
+    double precise[NORMAL_ROWS][4]; ///< coefficients of a cubic in the place 0 … 1 in a piece
+    float single[NORMAL_ROWS][4];   ///< the same rounded
+};
+
+void normal_table_init(struct normal_table *table);
+
+/// ζ of a word.
+double normal_of_word(const struct normal_table *table, uint32_t word);
