@@ -21,6 +21,10 @@
 #include "inverse/potential_grid.h"
 #include "inverse/replicas.h"
 
+/// Bins of all kinds of pairs. There are some 20 matrices of bins by bins: 2.5 GB with so many, and
+/// minutes to solve.
+enum { INVERSION_MOST_BINS = 4000 };
+
 struct inversion_parameters {
     int64_t particles, replicas;
     int64_t equilibration, samples, every;

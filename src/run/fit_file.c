@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "inverse/decoder.h"
+#include "inverse/inversion.h"
 #include "run/target_sanity.h"
 
 #include <math.h>
@@ -220,6 +221,17 @@ static enum status check_unknowns(const struct fit_file *fit, const char *file) 
     return STATUS_OK;
 }
 
+static enum status check_bins(const struct fit_file *fit, const char *file) {
+    const size_t bins = fit->problem.goals.goal[GOAL_RDF].count;
+    if (fit->method->update == NULL || bins <= INVERSION_MOST_BINS)
+        return STATUS_OK;
+    return status_fail(
+        STATUS_BAD_INPUT,
+        "%s: target.rdf: an inversion takes %d bins at most, of all pairs, and there "
+        "are %zu: join bins, or end the target by \"cutoff\"",
+        file, INVERSION_MOST_BINS, bins);
+}
+
 static enum status check_steps(const struct fit_file *fit, const char *file) {
     enum status status = targets_check_steps(&fit->targets, fit->scene.setup.time_step);
     if (status != STATUS_OK)
@@ -267,6 +279,7 @@ static enum status check(const struct fit_file *fit, const char *file) {
         TRY(check_range(fit, file, "etd", targets->etd.grid.r_maximum));
     if (goals_count(&fit->problem.goals) == 0)
         return status_fail(STATUS_BAD_INPUT, "%s: target: nothing is to be fitted", file);
+    TRY(check_bins(fit, file));
     TRY(check_steps(fit, file));
     TRY(check_windows(fit, file));
     if (fit->scene.setup.placement.kind == PLACEMENT_FILE)

@@ -122,6 +122,25 @@ static void test_imc_refuses_to_fit_more_than_rdf_and_pressure(void **state) {
     results_number("out/summary.json", "pressure_rmse");
 }
 
+/// As many bins as there is no memory for, at bins² numbers a matrix: refused before it is asked
+/// for.
+static void test_imc_refuses_more_bins_than_it_can_solve_for(void **state) {
+    enum { ROWS = 100000 };
+    static struct run_program_result result;
+    char *table = malloc(ROWS * 32), *end = table;
+    assert_non_null(table);
+    for (int k = 0; k < ROWS; k++)
+        end += sprintf(end, "%.7f 1 0.01\n", (k + 0.5) * 1e-5);
+    temporary_folder_write(*state, "target.tsv", table, (size_t)(end - table));
+    free(table);
+    small_inputs_write(*state, "run.json", small_inputs_run, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json");
+    run_program_assert_refused(
+        &result, ".", "too many bins", 1,
+        (const char *[]){"run.json: target.rdf: an inversion takes 4000 bins",
+                         "there are 100000: join bins", NULL});
+}
+
 static void test_fit_of_a_weight_refuses_more_genes_than_a_round_can_hold(void **state) {
     static struct run_program_result result;
     char *text;
@@ -219,6 +238,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_fit_of_a_weight_refuses_with_a_line_for_each_fault),
         TEST(test_imc_refuses_to_fit_more_than_rdf_and_pressure),
+        TEST(test_imc_refuses_more_bins_than_it_can_solve_for),
         TEST(test_fit_of_a_weight_refuses_more_genes_than_a_round_can_hold),
         TEST(test_fit_of_a_weight_tells_how_many_cells_are_left_out),
         TEST(test_fit_of_a_weight_leaves_out_what_it_does_not_know),
