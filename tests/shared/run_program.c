@@ -156,12 +156,22 @@ void run_program_assert_code(const struct run_program_result *result, int expect
                  result->err);
 }
 
-static int refuse_results(const char *path, const struct stat *about, int type, struct FTW *place) {
-    (void)about, (void)type;
+static int refuse_partial(const char *path, const struct stat *about, int type, struct FTW *place) {
+    (void)about, (void)type, (void)place;
     const char *dot = strrchr(path, '.');
-    if ((dot && strcmp(dot, ".partial") == 0) || strcmp(path + place->base, "summary.json") == 0)
+    if (dot && strcmp(dot, ".partial") == 0)
         fail_msg("%s was left behind", path);
     return 0;
+}
+
+void run_program_assert_no_partial(const char *folder) {
+    assert_int_equal(nftw(folder, refuse_partial, 16, FTW_PHYS), 0);
+}
+
+static int refuse_results(const char *path, const struct stat *about, int type, struct FTW *place) {
+    if (strcmp(path + place->base, "summary.json") == 0)
+        fail_msg("%s was left behind", path);
+    return refuse_partial(path, about, type, place);
 }
 
 void run_program_assert_refused(const struct run_program_result *result, const char *folder,

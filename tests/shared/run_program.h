@@ -32,6 +32,9 @@ void run_program(struct run_program_result *result, const struct run_program_how
 /// The program ended with `expected`; its words are shown if not.
 void run_program_assert_code(const struct run_program_result *result, int expected);
 
+/// There is no *.partial in `folder` and its folders.
+void run_program_assert_no_partial(const char *folder);
+
 /// The program refused: exit code 2, nothing on stdout, `lines` lines on stderr that begin with
 /// "mesofit: " and contain each of `words`, and in `folder` no *.partial and no summary.json.
 /// @param[in] what  names the case when the check fails
