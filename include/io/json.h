@@ -10,6 +10,7 @@
 
 #include "base/fields.h"
 #include "base/status.h"
+#include "io/input.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -31,6 +32,10 @@ struct json_object {
 /// Parse `file`. Malformed text is BAD_INPUT with file:line:column.
 /// On success the caller owns *document (json_close).
 enum status json_open(struct json_document **document, const char *file) MUST_USE;
+
+/// Put the document's own file into `inputs`, and from now on every file that a FIELD_FILE names.
+/// Both live as long as the document. Fails: NO_MEMORY. Tested: test_json.
+enum status json_collect_files(struct json_document *document, struct input_files *inputs) MUST_USE;
 
 /// View of the document's root, which must be an object.
 struct json_object json_root(struct json_document *document);
@@ -69,5 +74,6 @@ void json_finish(struct json_object *object);
 /// Number of faults so far.
 size_t json_fault_count(const struct json_document *document);
 
-/// Free the document. BAD_INPUT with all faults, one a line, if there were any.
-enum status json_close(struct json_document *document) MUST_USE;
+/// Free the document. `status` is what became of reading it: returned if it is NO_MEMORY, and if
+/// there was no fault. Else BAD_INPUT with all faults, one a line.
+enum status json_close(struct json_document *document, enum status status) MUST_USE;

@@ -39,6 +39,7 @@ static void print_help(void) {
            "it\n"
            "  --seed N      seed, instead of the file's\n"
            "  --resume      go on with an interrupted run in its folder\n"
+           "  --force       replace the fit that the folder holds\n"
            "  --quiet       no progress\n"
            "  --help, --version\n");
     for (size_t k = 0; k < COMMANDS; k++)
@@ -95,9 +96,9 @@ static enum status parse_own_option(const struct command *command, const char *w
 }
 
 static enum status fail_unknown_option(const struct command *command, const char *word) {
-    const char *known[16 + COMMAND_MAX_OPTIONS] = {"-o",      "--threads", "--seed",   "--resume",
-                                                   "--quiet", "--help",    "--version"};
-    size_t count = 7;
+    const char *known[16 + COMMAND_MAX_OPTIONS] = {"-o",      "--threads", "--seed",    "--resume",
+                                                   "--quiet", "--help",    "--version", "--force"};
+    size_t count = 8;
     for (const struct command_option *own = command->options; own && own->name; own++)
         if (strcmp(own->name, "-o") != 0)
             known[count++] = own->name;
@@ -131,6 +132,8 @@ static enum status parse_option(const struct command *command, const char *word,
         *used = 1;
         if (strcmp(word, "--resume") == 0) {
             options->resume = true;
+        } else if (strcmp(word, "--force") == 0) {
+            options->force = true;
         } else if (strcmp(word, "--quiet") == 0) {
             options->quiet = true;
         } else {
@@ -177,6 +180,9 @@ static enum status run(int count, char **words) {
     TRY(parse_line(command, count - 1, words + 1, &line));
     if (line.file_count < command->least_files || line.file_count > command->most_files)
         return status_fail(STATUS_BAD_INPUT, "usage: mesofit %s %s", command->name, command->usage);
+    if (line.options.resume && line.options.force)
+        return status_fail(STATUS_BAD_INPUT,
+                           "--resume goes on with what --force would replace: give one of them");
     return command->run(&line);
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/input.h"
 
+#include "base/memory.h"
+
 #include <errno.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -30,4 +32,55 @@ enum status input_open(FILE **stream, const char *file) {
         fclose(*stream);
     *stream = NULL;
     return status_fail(STATUS_IO, "%s: is %s, not a file", file, kind);
+}
+
+static enum status make_room(struct input_files *inputs) {
+    enum status status = STATUS_OK;
+    struct input_file *larger = NULL;
+    const size_t room = inputs->room ? 2 * inputs->room : 16;
+    if (inputs->count < inputs->room)
+        return STATUS_OK;
+    NEW_ARRAY(larger, room);
+    if (inputs->count > 0)
+        memcpy(larger, inputs->file, inputs->count * sizeof *larger);
+    memory_free(inputs->file);
+    inputs->file = larger;
+    inputs->room = room;
+done:
+    return status;
+}
+
+enum status input_files_add(struct input_files *inputs, const char *name) {
+    struct stat about;
+    if (stat(name, &about) != 0)
+        return STATUS_OK;
+    TRY(make_room(inputs));
+    char *copy = memory_zeroed(strlen(name) + 1, 1);
+    if (copy == NULL)
+        return STATUS_NO_MEMORY;
+    strcpy(copy, name);
+    inputs->file[inputs->count++] = (struct input_file){about.st_dev, about.st_ino, copy};
+    return STATUS_OK;
+}
+
+enum status input_files_spare(const struct input_files *inputs, const char *path) {
+    struct stat about;
+    if (stat(path, &about) != 0)
+        return STATUS_OK;
+    for (size_t k = 0; k < inputs->count; k++) {
+        const struct input_file *input = &inputs->file[k];
+        if (input->device == about.st_dev && input->number == about.st_ino)
+            return status_fail(STATUS_BAD_INPUT,
+                               "%s would be replaced, but the run reads it as %s: write elsewhere "
+                               "with -o",
+                               path, input->name);
+    }
+    return STATUS_OK;
+}
+
+void input_files_clear(struct input_files *inputs) {
+    for (size_t k = 0; k < inputs->count; k++)
+        memory_free(inputs->file[k].name);
+    memory_free(inputs->file);
+    *inputs = (struct input_files){0};
 }

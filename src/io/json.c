@@ -21,6 +21,7 @@ enum { LINE_SIZE = 4096 };
 struct json_document {
     cJSON *root;
     char *file;
+    struct input_files *inputs; ///< files that it names, or NULL: nobody wants to know
     struct faults faults;
 };
 
@@ -134,6 +135,11 @@ done:
     return status;
 }
 
+enum status json_collect_files(struct json_document *document, struct input_files *inputs) {
+    document->inputs = inputs;
+    return input_files_add(inputs, document->file);
+}
+
 struct json_object json_root(struct json_document *document) {
     struct json_object root = view(document, document->root);
     if (!cJSON_IsObject(document->root)) {
@@ -202,10 +208,11 @@ size_t json_fault_count(const struct json_document *document) {
     return document->faults.count;
 }
 
-enum status json_close(struct json_document *document) {
+enum status json_close(struct json_document *document, enum status status) {
     if (document == NULL)
-        return STATUS_OK;
-    const enum status status = faults_status(&document->faults);
+        return status;
+    if (status != STATUS_NO_MEMORY && document->faults.count > 0)
+        status = faults_status(&document->faults);
     free_document(document);
     return status;
 }
@@ -311,6 +318,9 @@ static void read_text_field(struct json_object *object, const struct field *fiel
     }
     memcpy(member, file, folder);
     strcpy(member + folder, text);
+    if (field->type == FIELD_FILE && object->document->inputs &&
+        input_files_add(object->document->inputs, member) != STATUS_OK)
+        json_fault(object, field->name, "%s", status_message());
 }
 
 static void read_field(struct json_object *object, const struct field *field, const cJSON *item,

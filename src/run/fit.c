@@ -135,8 +135,7 @@ done:
 
 static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
     TRY(fit_file_read(&run->fit, file, options));
-    TRY(run_folder_open(&run->folder, file, options));
-    TRY(write_used(run, options->resume));
+    TRY(run_folder_open(&run->folder, file, &run->fit.inputs, options));
     const struct target_etd *etd = &run->fit.targets.etd;
     if (etd->left_out > 0)
         progress_say(&run->progress,
@@ -145,6 +144,10 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
     const enum status status = create(run);
     if (status != STATUS_OK)
         return status_prefix(status, "%s", file);
+    // What an earlier run left is touched once this one can begin.
+    if (!options->resume)
+        TRY(run_folder_begin(&run->folder));
+    TRY(write_used(run, options->resume));
     // Saved now, so that a run interrupted in its first iteration can be resumed like any other.
     return options->resume ? load(run) : save(run);
 }
@@ -386,6 +389,7 @@ done:
         }
         memory_free(run->without_ramp);
         fit_file_clear(&run->fit);
+        run_folder_close(&run->folder);
     }
     memory_free(run);
     return status;

@@ -155,6 +155,9 @@ static const struct {
     {{"bench", "accuracy", "small.json", "--integrators", "aboba,abobo"},
      {"--integrators: \"abobo\" does not suit the scene", "\"aboba\"?"}},
     {{"bench", "accuracy", "small.json", "-o", "no/such/file.tsv"}, {"cannot write no/such/file"}},
+    {{"bench", "accuracy", "small.json", "-o", "./small.json"},
+     {"./small.json would be replaced", "reads it as small.json"}},
+    {{"bench", "engine", "small.json", "-o", "./small.json"}, {"./small.json would be replaced"}},
     {{"bench", "accuracy", "small.json", "--skips"}, {"bench accuracy takes no --skips"}},
     {{"bench", "engine", "small.json", "--time", "2"}, {"bench engine takes no --time"}},
 };

@@ -56,7 +56,7 @@ static enum status read_sample(void **state, const char *text, struct sample *sa
     struct json_object root = json_root(document);
     json_fields(&root, fields, sample);
     json_finish(&root);
-    return json_close(document);
+    return json_close(document, STATUS_OK);
 }
 
 static void assert_fault(void **state, const char *text, const char *part) {
@@ -211,7 +211,7 @@ static void test_json_fields_demands_required_ones_when_the_object_is_there(void
     json_fields(&here, required_fields, &sample);
     assert_int_equal(json_fault_count(document), 1);
     json_finish(&root);
-    assert_fails(json_close(document), STATUS_BAD_INPUT,
+    assert_fails(json_close(document, STATUS_OK), STATUS_BAD_INPUT,
                  "run.json: here.strength: missing: a number is required (how strong)");
 }
 
@@ -229,7 +229,7 @@ static void test_json_open_records_a_fault_when_a_key_stands_twice(void **state)
     assert_fault(state, "{\"seed\": 1, \"seed\": 1}", "run.json: seed: the key stands here twice");
     struct json_document *document =
         open_text(state, "{\"a\": [{\"x\": 1}, {\"b\": {\"c\": 1, \"d\": 2, \"c\": 3}}]}");
-    assert_fails(json_close(document), STATUS_BAD_INPUT, "run.json: a[1].b.c: the key stands");
+    assert_fails(json_close(document, STATUS_OK), STATUS_BAD_INPUT, "run.json: a[1].b.c: the key stands");
 }
 
 static void test_json_child_reports_paths_when_objects_are_nested(void **state) {
@@ -256,7 +256,7 @@ static void test_json_child_reports_paths_when_objects_are_nested(void **state) 
              "%s: a.b: is odd\n"
              "%s: a.b.x: unknown key; none is known here",
              file, file, file, file, file);
-    assert_int_equal(json_close(document), STATUS_BAD_INPUT);
+    assert_int_equal(json_close(document, STATUS_OK), STATUS_BAD_INPUT);
     assert_string_equal(status_message(), expected);
 }
 
@@ -273,7 +273,7 @@ static void test_json_choice_returns_known_texts_when_given_or_falls_back(void *
     assert_null(json_choice(&root, "missing", kinds, NULL));
     json_finish(&root);
     assert_int_equal(json_fault_count(document), 3);
-    assert_fails(json_close(document), STATUS_BAD_INPUT, "did you mean \"hard\"?");
+    assert_fails(json_close(document, STATUS_OK), STATUS_BAD_INPUT, "did you mean \"hard\"?");
     assert_contains(status_message(), "number: expected a text, found the number 1");
     assert_contains(status_message(), "missing: missing: a text is required");
 }
@@ -284,7 +284,7 @@ static void test_json_close_counts_the_rest_when_faults_are_many(void **state) {
     for (int k = 0; k < 27; k++)
         json_fault(&root, NULL, "fault %d", k);
     assert_int_equal(json_fault_count(document), 27);
-    assert_fails(json_close(document), STATUS_BAD_INPUT, "fault 19\n… and 7 more faults");
+    assert_fails(json_close(document, STATUS_OK), STATUS_BAD_INPUT, "fault 19\n… and 7 more faults");
     assert_null(strstr(status_message(), "fault 20"));
 }
 
@@ -293,7 +293,7 @@ static void test_json_close_drops_whole_lines_when_faults_are_long(void **state)
     struct json_object root = json_root(document);
     for (int k = 0; k < 10; k++)
         json_fault(&root, NULL, "%01500d end", k);
-    assert_fails(json_close(document), STATUS_BAD_INPUT, "04 end\n… and 5 more faults");
+    assert_fails(json_close(document, STATUS_OK), STATUS_BAD_INPUT, "04 end\n… and 5 more faults");
 }
 
 // Writing -----------------------------------------------------------------------------------------
@@ -312,7 +312,7 @@ static void assert_round_trip(void **state, const struct sample *sample) {
     struct json_object root = json_root(document);
     json_fields(&root, fields, &again);
     json_finish(&root);
-    assert_ok(json_close(document));
+    assert_ok(json_close(document, STATUS_OK));
     assert_identical(again.strength, sample->strength);
     assert_int_equal(again.steps, sample->steps);
     assert_int_equal(again.seed, sample->seed);

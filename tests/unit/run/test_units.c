@@ -57,7 +57,7 @@ static void test_units_put_writes_nothing_when_there_are_none(void **state) {
     assert_ok(json_open(&document, file));
     struct json_object root = json_root(document);
     assert_false(json_has(&root, "physical"));
-    assert_ok(json_close(document));
+    assert_ok(json_close(document, STATUS_OK));
 }
 
 #define TEST(name)                                                                                 \
