@@ -6,7 +6,7 @@
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
-rdfs = system("ls rdf.tsv rdf_*-*.tsv 2> /dev/null")
+rdfs = system("ls | grep -E '^rdf(_[A-Za-z0-9_]+-[A-Za-z0-9_]+)?[.]tsv$'")
 with_rdf = words(rdfs) > 0
 g_top = 0
 do for [file in rdfs] {

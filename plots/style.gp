@@ -12,8 +12,9 @@ svg(width, height) = sprintf("set terminal svg size %d,%d font 'Helvetica,13' " 
     "background '#ffffff' round; ", width, height)
 png(width, height) = sprintf("set terminal pngcairo size %d,%d font 'Liberation Sans,13' " . \
     "fontscale 2 linewidth 2 pointscale 2 background '#ffffff' rounded; ", 2 * width, 2 * height)
-open(kind, name, width, height) = (kind eq "svg" ? svg(width, height) : png(width, height)) . \
-    sprintf("set output 'figures/%s.%s'", name, kind)
+# The name stays in a variable: as a part of the command it could be one itself.
+open(kind, name, width, height) = (figure_file = sprintf("figures/%s.%s", name, kind), \
+    (kind eq "svg" ? svg(width, height) : png(width, height)) . "set output figure_file")
 close = "set output"
 
 # Colours that stay apart for every common form of colour blindness, after M. Okabe and K. Ito,
@@ -46,7 +47,8 @@ E_label   = "{/:Italic E}({/:Italic t}, {/:Italic r}_0)"
 
 # Command that names the vertical axis of a panel, x from the figure's edge: the names of all
 # panels stand in one line.
-name_axis(text, x) = sprintf("set label 1 '%s' at screen %g, graph 0.5 center rotate", text, x)
+name_axis(text, x) = (axis_name = text, \
+    sprintf("set label 1 axis_name at screen %g, graph 0.5 center rotate", x))
 
 low(a, b)  = a < b ? a : b
 high(a, b) = a > b ? a : b
@@ -60,15 +62,20 @@ positive(n) = known(n) > 0 ? column(n) : 1e300
 band_low(n, m)  = column(n) - 1.96 * column(m)
 band_high(n, m) = column(n) + 1.96 * column(m)
 
-# 1 if a file is there. Names in commands are fixed and relative, so no quoting is needed.
-has(file) = int(system("test -r " . file . " && echo 1 || echo 0"))
+# Input of a command from a file, whatever its name: quoted, with each ' as '\\''.
+escape(text) = strstrt(text, "'") == 0 ? text : \
+    text[1:strstrt(text, "'") - 1] . "'\\''" . escape(text[strstrt(text, "'") + 1:strlen(text)])
+from(file) = " < '" . escape(file) . "'"
+
+# 1 if a file is there.
+has(file) = int(system("test -r '" . escape(file) . "' && echo 1 || echo 0"))
 
 # Number of the first column of that name, 0 if there is none; 1 if a column has a number but 0.
 column_of(file, name) = !has(file) ? 0 : int(system(sprintf("awk -F '\t' '/^#/ { sub(/^# */, \"\"); \
     for (k = 1; k <= NF; k++) { sub(/\\[.*/, \"\", $k); if ($k == \"%s\" && !found) found = k } } \
-    END { print found + 0 }' %s", name, file)))
+    END { print found + 0 }'", name) . from(file)))
 has_numbers(file, column) = int(system(sprintf("awk -F '\t' '!/^#/ && $%d ~ /[1-9]/ { found = 1 } \
-    END { print found + 0 }' %s", column, file)))
+    END { print found + 0 }'", column) . from(file)))
 
 # What the column "error" of a fit is, from the targets that used.json says are fitted.
 fitted = !has("used.json") ? "" : system("awk '/\"(rdf|etd|vacf|msd|diffusion|pressure)\":/ { \

@@ -3,19 +3,21 @@
 
 #include "io/output.h"
 #include "run/program.h"
+#include "system/composition.h"
 
 #include <dirent.h>
 #include <errno.h>
-#include <fnmatch.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum {
     PATH_SIZE = OUTPUT_PATH_SIZE + 64, ///< a folder's path and the name of a file in it
-    ERRORS_SIZE = 2048,                ///< the end of what gnuplot says; its error comes last
+    PAIR_SIZE = 2 * COMPOSITION_NAME_SIZE + 2,
+    ERRORS_SIZE = 2048, ///< the end of what gnuplot says; its error comes last
 };
 
 struct figure {
@@ -61,11 +63,17 @@ static bool has_column(const char *file, const char *column) {
     return found;
 }
 
+/// A file that can be read to its end, which a pipe or a device may not have.
+static bool is_table(const char *path) {
+    struct stat about;
+    return stat(path, &about) == 0 && S_ISREG(about.st_mode) && access(path, R_OK) == 0;
+}
+
 static bool has_tables(const char *folder, const struct figure *figure) {
     char path[PATH_SIZE];
     for (size_t k = 0; figure->tables[k]; k++) {
         snprintf(path, sizeof path, "%s/%s", folder, figure->tables[k]);
-        if (access(path, R_OK) != 0)
+        if (!is_table(path))
             return false;
     }
     snprintf(path, sizeof path, "%s/%s", folder, figure->tables[0]);
@@ -111,20 +119,35 @@ static enum status draw(const char *folder, const char *plots, const char *name,
     return status_prefix(status, "no figure %s/%s", path, drawn);
 }
 
+/// Take "_A-B" out of "rdf_A-B.tsv", if the name is made so, of the names of two types and no more:
+/// it comes from the folder, where it could be anything.
+static bool take_pair(const char *name, const char *table, char pair[PAIR_SIZE]) {
+    char first[PAIR_SIZE], second[PAIR_SIZE];
+    const size_t stem = strcspn(table, "."), length = strlen(name), end = strlen(".tsv");
+    if (length < stem + end || length - stem - end >= PAIR_SIZE ||
+        strncmp(name, table, stem) != 0 || strcmp(name + length - end, ".tsv") != 0 ||
+        name[stem] != '_')
+        return false;
+    snprintf(pair, PAIR_SIZE, "%.*s", (int)(length - stem - end), name + stem);
+    const size_t dash = strcspn(pair, "-");
+    if (pair[dash] == '\0')
+        return false;
+    snprintf(first, sizeof first, "%.*s", (int)dash - 1, pair + 1);
+    snprintf(second, sizeof second, "%s", pair + dash + 1);
+    return composition_is_name(first) && composition_is_name(second);
+}
+
 /// Draw a figure from a table of one kind of pairs, like rdf_A-B.tsv, if `name` is one.
 static enum status draw_pair(const char *folder, const char *plots, const struct figure *figure,
                              const char *name) {
-    const int stem = (int)strcspn(figure->tables[0], ".");
-    char pattern[128], path[PATH_SIZE], pair[256];
-    snprintf(pattern, sizeof pattern, "%.*s_*-*.tsv", stem, figure->tables[0]);
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    if (fnmatch(pattern, name, 0) != 0 || (figure->column && !has_column(path, figure->column)))
-        return STATUS_OK;
+    char path[PATH_SIZE], pair[PAIR_SIZE];
     // What follows the name of a kind of pairs, as "_history", makes another table.
-    const char *end = strchr(name, '-');
-    if (strstr(end, "_history.tsv") || strstr(end, "_flat.tsv"))
+    if (!take_pair(name, figure->tables[0], pair) || strstr(name, "_history.tsv") ||
+        strstr(name, "_flat.tsv"))
         return STATUS_OK;
-    snprintf(pair, sizeof pair, "%.*s", (int)(strlen(name) - strlen(".tsv")) - stem, name + stem);
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    if (!is_table(path) || (figure->column && !has_column(path, figure->column)))
+        return STATUS_OK;
     return draw(folder, plots, figure->name, pair);
 }
 
@@ -178,6 +201,8 @@ enum status figures_draw_accuracy(const char *table) {
     const char *slash = strrchr(table, '/');
     snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - table) : 1, slash ? table : ".");
     snprintf(name, sizeof name, "%s", slash ? slash + 1 : table);
+    if (strlen(slash ? slash + 1 : table) >= sizeof name || strlen(table) >= sizeof folder)
+        return status_fail(STATUS_IO, "no figure of %.60s…: its path is too long", table);
     const size_t length = strlen(name), cut = sizeof ending - 1;
     if (length > cut && strcmp(name + length - cut, ending) == 0)
         name[length - cut] = '\0';

@@ -21,7 +21,7 @@ enum { PATH = 512 };
 static char root[] = "/tmp/mesofit_figures_XXXXXX";
 
 static void write_table(const char *folder, const char *name, const char *text) {
-    char path[PATH + 64];
+    char path[2 * PATH];
     snprintf(path, sizeof path, "%s/%s", folder, name);
     FILE *stream = fopen(path, "w");
     assert_non_null(stream);
@@ -235,6 +235,104 @@ static void test_error_is_named_after_what_was_fitted(void **state) {
     assert_true(says(folder, "error", "weighted error"));
 }
 
+/// True if a file of that name has come into the folder or beside it.
+static bool has_come(const char *folder, const char *name) {
+    char path[PATH + 64];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return access(path, F_OK) == 0 || access(name, F_OK) == 0;
+}
+
+/// Names of tables that a shell or gnuplot would take for commands; "rdf_A_1-B.tsv" is a table of
+/// a mixture, and drawn.
+static void test_names_of_tables_are_no_commands(void **state) {
+    (void)state;
+    static const char *const endings[] = {"A-B$(touch pwned)",
+                                          "A-'; system('touch pwned'); a='",
+                                          "A-\"; system(\"touch pwned\"); a=\"",
+                                          "A-`touch pwned`",
+                                          "A-B' . system('touch pwned') . '",
+                                          "A-B\n; touch pwned",
+                                          "A-|touch pwned",
+                                          "A-%n%s",
+                                          "<touch pwned-B",
+                                          "A B-C",
+                                          "Φ-B",
+                                          "--",
+                                          "-B",
+                                          "A_1-B"};
+    enum { ENDINGS = sizeof endings / sizeof *endings };
+    skip_without_gnuplot();
+    char folder[PATH];
+    make_folder(folder, "hostile");
+    for (size_t k = 0; k < ENDINGS; k++) {
+        char name[128];
+        snprintf(name, sizeof name, "potential_%s.tsv", endings[k]);
+        write_table(folder, name, "# r phi force phi_error\n0.5 1 0 0.1\n1 0 0 nan\n");
+        snprintf(name, sizeof name, "potential_%s_history.tsv", endings[k]);
+        write_table(folder, name, "# r i0 i1\n0.5 1 0\n1 0 0\n");
+        snprintf(name, sizeof name, "rdf_%s.tsv", endings[k]);
+        write_table(folder, name, fit_rdf);
+    }
+    write_table(folder, "thermodynamics.tsv", "# s t T U P Tc\n0 0 1 0 3 1\n1 0.1 1 0 3 1\n");
+    write_table(folder, "omega.tsv", "# r omega omega_error\n0 2 1\n1 0 1\n");
+    if (figures_draw(folder) != STATUS_OK)
+        fail_msg("%s", status_message());
+    assert_false(has_come(folder, "pwned"));
+    assert_true(is_drawn(folder, "rdf_A_1-B") && is_drawn(folder, "potential_A_1-B"));
+    assert_true(is_drawn(folder, "simulation"));
+}
+
+/// What stands in a table is no command either: here the names of goals on the axes of a front.
+static void test_words_of_tables_are_no_commands(void **state) {
+    (void)state;
+    skip_without_gnuplot();
+    char folder[PATH];
+    make_folder(folder, "words");
+    write_table(folder, "pareto.tsv",
+                "# member\trank\tchosen\tmeasured\terror\tx'; system('touch pwned'); a='_rmse\t"
+                "`touch pwned`_rmse\trdf_noise\tetd_noise\n1\t1\t1\t3\t2\t0.1\t0.2\t0\t0\n");
+    write_table(folder, "pareto_history.tsv",
+                "# iteration\tfront\terror\trdf_rmse\tetd_rmse\n0\t0\t2\t0.1\t0.2\n");
+    write_table(folder, "used.json",
+                "{\"'; system('touch pwned'); '\": {\"rdf\":\n"
+                "\"fitted\": \"yes\"}}\n");
+    write_table(folder, "history.tsv", imc_history);
+    write_table(folder, "timing.tsv", timing);
+    if (figures_draw(folder) != STATUS_OK)
+        fail_msg("%s", status_message());
+    assert_false(has_come(folder, "pwned"));
+    assert_true(is_drawn(folder, "pareto"));
+}
+
+/// The table of a benchmark has the name that the user gave.
+static void test_names_of_a_benchmark_are_no_commands(void **state) {
+    static const char table[] =
+        "# wanted 0.005\n# integrator\ttime_step\tcpu\tcpu_error\tcpu_to_error\tg\tge\tn\tr\tre\t"
+        "t\tte\tc\tce\ttemperature_configurational[T_0]\n"
+        "aboba\t0.01\t1\t0.1\t1\t0.01\t0.001\t0.002\t0.01\t0.001\t0.1\t0.1\t0.01\t0.01\t1\n"
+        "aboba\t0.02\t0.5\t0.1\t1\t0.02\t0.001\t0.002\t0.01\t0.001\t0.1\t0.1\t0.01\t0.01\t1\n";
+    static const char *const names[] = {"a'; system('touch pwned'); b='",
+                                        "<touch pwned",
+                                        "|touch pwned",
+                                        "$(touch pwned)",
+                                        "a b",
+                                        "-",
+                                        "plain"};
+    (void)state;
+    skip_without_gnuplot();
+    char folder[PATH], path[2 * PATH], name[128];
+    make_folder(folder, "benchmark");
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        snprintf(name, sizeof name, "%s.tsv", names[k]);
+        write_table(folder, name, table);
+        snprintf(path, sizeof path, "%s/%s", folder, name);
+        if (figures_draw_accuracy(path) != STATUS_OK)
+            fail_msg("%s", status_message());
+        assert_false(has_come(folder, "pwned"));
+        assert_true(is_drawn(folder, names[k]));
+    }
+}
+
 static void test_draws_nothing_without_tables(void **state) {
     (void)state;
     char folder[PATH], figures[PATH + 64];
@@ -306,6 +404,9 @@ int main(void) {
         cmocka_unit_test(test_draws_etd_of_no_known_result),
         cmocka_unit_test(test_draws_bands_and_truth_where_they_are_known),
         cmocka_unit_test(test_error_is_named_after_what_was_fitted),
+        cmocka_unit_test(test_names_of_tables_are_no_commands),
+        cmocka_unit_test(test_words_of_tables_are_no_commands),
+        cmocka_unit_test(test_names_of_a_benchmark_are_no_commands),
         cmocka_unit_test(test_draws_nothing_without_tables),
         cmocka_unit_test(test_broken_tables_spoil_their_figures_only),
         cmocka_unit_test(test_missing_gnuplot_is_one_clear_line),
