@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/figures.h"
 
+#include "io/input.h"
 #include "io/output.h"
 #include "run/program.h"
 #include "system/composition.h"
@@ -19,6 +20,9 @@ enum {
     PAIR_SIZE = 2 * COMPOSITION_NAME_SIZE + 2,
     ERRORS_SIZE = 2048, ///< the end of what gnuplot says; its error comes last
 };
+
+/// A figure takes a second; one of a million rows takes some. What takes longer hangs [s].
+static const double drawing_time = 300;
 
 struct figure {
     const char *name;      ///< of the script and of the figure
@@ -91,7 +95,7 @@ static enum status run_gnuplot(const char *folder, const char *script) {
     // -d: the settings of the user's own gnuplot must not change the figures.
     const char *const words[] = {"gnuplot", "-d", script, NULL};
     char errors[ERRORS_SIZE];
-    return program_run(folder, words, PROGRAM_ERRORS, errors, sizeof errors);
+    return program_run(folder, words, PROGRAM_ERRORS, drawing_time, errors, sizeof errors);
 }
 
 /// A figure that was begun and not finished would look like one.
@@ -103,20 +107,59 @@ static void remove_figure(const char *folder, const char *name) {
     remove(path);
 }
 
-/// Draw a figure, of the kind of pairs `pair`, as "_A-B", or of all.
-static enum status draw(const char *folder, const char *plots, const char *name, const char *pair) {
-    char path[PATH_SIZE], script[PATH_SIZE + 64], drawn[512];
+/// Whether a file ends as it must, a blank or two behind not counted: gnuplot says nothing of a
+/// full disk.
+static bool ends_with(const char *path, const char *end, size_t length) {
+    char tail[64];
+    FILE *stream;
+    if (input_open(&stream, path) != STATUS_OK)
+        return false;
+    const bool long_enough = fseek(stream, -(long)sizeof tail, SEEK_END) == 0;
+    size_t bytes = long_enough ? fread(tail, 1, sizeof tail, stream) : 0;
+    fclose(stream);
+    while (bytes > 0 && tail[bytes - 1] == '\n')
+        bytes--;
+    return bytes >= length && memcmp(tail + bytes - length, end, length) == 0;
+}
+
+static enum status check_figure(const char *folder, const char *name) {
+    static const char svg_end[] = "</svg>", png_end[] = "IEND\xae\x42\x60\x82";
+    char path[PATH_SIZE];
+    snprintf(path, sizeof path, "%s/figures/%s.svg", folder, name);
+    bool whole = ends_with(path, svg_end, sizeof svg_end - 1);
+    snprintf(path, sizeof path, "%s/figures/%s.png", folder, name);
+    whole = whole && ends_with(path, png_end, sizeof png_end - 1);
+    return whole ? STATUS_OK
+                 : status_fail(STATUS_IO, "gnuplot left it unfinished; is the disk full?");
+}
+
+/// Draw a figure with a script; an earlier one of that name goes first, and with it a link that
+/// would be followed.
+static enum status draw_to(const char *folder, const char *plots, const char *name,
+                           const char *drawn) {
+    char path[PATH_SIZE], script[PATH_SIZE + 64];
     snprintf(path, sizeof path, "%s/figures", folder);
     TRY(output_make_folder(path));
     snprintf(script, sizeof script, "%s/%s.gp", plots, name);
-    if (setenv("MESOFIT_PLOTS", plots, 1) != 0 || setenv("MESOFIT_PAIR", pair, 1) != 0)
+    if (setenv("MESOFIT_PLOTS", plots, 1) != 0)
         return status_fail(STATUS_NO_MEMORY, "out of memory");
-    const enum status status = run_gnuplot(folder, script);
+    remove_figure(folder, drawn);
+    enum status status = run_gnuplot(folder, script);
+    if (status == STATUS_OK)
+        status = check_figure(folder, drawn);
     if (status == STATUS_OK)
         return STATUS_OK;
-    snprintf(drawn, sizeof drawn, "%s%s", name, pair);
     remove_figure(folder, drawn);
     return status_prefix(status, "no figure %s/%s", path, drawn);
+}
+
+/// Draw a figure, of the kind of pairs `pair`, as "_A-B", or of all.
+static enum status draw(const char *folder, const char *plots, const char *name, const char *pair) {
+    char drawn[128];
+    if (setenv("MESOFIT_PAIR", pair, 1) != 0)
+        return status_fail(STATUS_NO_MEMORY, "out of memory");
+    snprintf(drawn, sizeof drawn, "%s%s", name, pair);
+    return draw_to(folder, plots, name, drawn);
 }
 
 /// Take "_A-B" out of "rdf_A-B.tsv", if the name is made so, of the names of two types and no more:
@@ -210,8 +253,5 @@ enum status figures_draw_accuracy(const char *table) {
     if (setenv("MESOFIT_TABLE", slash ? slash + 1 : table, 1) != 0 ||
         setenv("MESOFIT_FIGURE", name, 1) != 0)
         return status_fail(STATUS_NO_MEMORY, "out of memory");
-    const enum status status = draw(folder, plots, "accuracy", "");
-    if (status != STATUS_OK)
-        remove_figure(folder, name);
-    return status;
+    return draw_to(folder, plots, "accuracy", name);
 }

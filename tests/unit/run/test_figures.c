@@ -14,6 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum { PATH = 512 };
@@ -362,6 +363,64 @@ static void test_broken_tables_spoil_their_figures_only(void **state) {
     assert_true(is_drawn(folder, "error"));
 }
 
+/// A program in the place of gnuplot that says all is well.
+static enum status draw_with(const char *gnuplot, const char *folder) {
+    char place[PATH], script[PATH + 64], path[2 * PATH], *before = strdup(getenv("PATH"));
+    make_folder(place, "bin");
+    write_table(place, "gnuplot", gnuplot);
+    snprintf(script, sizeof script, "%s/gnuplot", place);
+    assert_int_equal(chmod(script, 0755), 0);
+    snprintf(path, sizeof path, "%s:%s", place, before);
+    assert_int_equal(setenv("PATH", path, 1), 0);
+    const enum status status = figures_draw(folder);
+    assert_int_equal(setenv("PATH", before, 1), 0);
+    free(before);
+    return status;
+}
+
+/// Figures that are cut, as on a full disk, where gnuplot returns 0: none are left, and it is said.
+static void test_unfinished_figures_are_none(void **state) {
+    static const char *const gnuplots[] = {
+        "#!/bin/sh\nprintf '%1000s' x > figures/rdf.svg\nprintf '%1000s' x > figures/rdf.png\n",
+        "#!/bin/sh\nprintf '%1000s</svg>\\n' x > figures/rdf.svg\n: > figures/rdf.png\n",
+        "#!/bin/sh\nprintf '%1000s</svg>\\n' x > figures/rdf.svg\n", "#!/bin/sh\n"};
+    (void)state;
+    char folder[PATH];
+    make_folder(folder, "unfinished");
+    write_table(folder, "rdf.tsv", fit_rdf);
+    for (size_t k = 0; k < sizeof gnuplots / sizeof *gnuplots; k++) {
+        assert_int_equal(draw_with(gnuplots[k], folder), STATUS_IO);
+        assert_non_null(strstr(status_message(), "figures/rdf: gnuplot left it unfinished"));
+        assert_false(is_drawn(folder, "rdf"));
+    }
+    assert_int_equal(draw_with("#!/bin/sh\nprintf '%1000s</svg>\\n\\n' x > figures/rdf.svg\n"
+                               "printf '%100sIEND\\256\\102\\140\\202' x > figures/rdf.png\n",
+                               folder),
+                     STATUS_OK);
+}
+
+/// A link where a figure comes, to a file of somebody.
+static void test_figures_do_not_follow_links(void **state) {
+    (void)state;
+    skip_without_gnuplot();
+    char folder[PATH], figures[PATH + 64], link[2 * PATH], text[16] = "";
+    make_folder(folder, "links");
+    write_table(folder, "rdf.tsv", fit_rdf);
+    write_table(folder, "victim", "precious");
+    snprintf(figures, sizeof figures, "%s/figures", folder);
+    assert_int_equal(output_make_folder(figures), STATUS_OK);
+    snprintf(link, sizeof link, "%s/rdf.svg", figures);
+    assert_int_equal(symlink("../victim", link), 0);
+    assert_draws(folder);
+    assert_true(is_drawn(folder, "rdf"));
+    snprintf(link, sizeof link, "%s/victim", folder);
+    FILE *stream = fopen(link, "r");
+    assert_non_null(stream);
+    assert_non_null(fgets(text, sizeof text, stream));
+    fclose(stream);
+    assert_string_equal(text, "precious");
+}
+
 static void test_missing_gnuplot_is_one_clear_line(void **state) {
     (void)state;
     char folder[PATH], message[2 * PATH], *path = strdup(getenv("PATH"));
@@ -409,6 +468,8 @@ int main(void) {
         cmocka_unit_test(test_names_of_a_benchmark_are_no_commands),
         cmocka_unit_test(test_draws_nothing_without_tables),
         cmocka_unit_test(test_broken_tables_spoil_their_figures_only),
+        cmocka_unit_test(test_unfinished_figures_are_none),
+        cmocka_unit_test(test_figures_do_not_follow_links),
         cmocka_unit_test(test_missing_gnuplot_is_one_clear_line),
         cmocka_unit_test(test_comparison_needs_its_table),
     };
