@@ -18,7 +18,7 @@
 
 struct json_document;
 
-enum { JSON_PATH_SIZE = 256, JSON_MAX_KEYS = 64 };
+enum { JSON_PATH_SIZE = 256, JSON_MAX_KEYS = 64, JSON_MOST_MEMBERS = 1000 };
 
 /// One object of a document while it is read. Plain data; lives on the reader's stack.
 struct json_object {
@@ -29,7 +29,8 @@ struct json_object {
     size_t asked_count;
 };
 
-/// Parse `file`. Malformed text is BAD_INPUT with file:line:column.
+/// Parse `file`. Malformed text is BAD_INPUT with file:line:column, an object of more than
+/// JSON_MOST_MEMBERS keys is BAD_INPUT.
 /// On success the caller owns *document (json_close).
 enum status json_open(struct json_document **document, const char *file) MUST_USE;
 

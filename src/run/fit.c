@@ -2,6 +2,7 @@
 #include "run/fit.h"
 
 #include "base/memory.h"
+#include "base/visible.h"
 #include "run/checkpoint.h"
 #include "run/fit_output.h"
 #include "run/fit_verdict.h"
@@ -239,7 +240,7 @@ static enum status record(struct run *run, const struct inverse_step *step) {
         TRY(run->fit.method->write(run->state, &own));
     }
     progress_say(&run->progress, "iteration %u  error %.4f  noise %.4f  %.1f s", step->iteration,
-                 step->error, step->noise, run->standing.seconds);
+                 visible_number(step->error), visible_number(step->noise), run->standing.seconds);
     return save(run);
 }
 
@@ -291,8 +292,9 @@ static void say_verified(struct run *run, const struct verification *v) {
     for (int kind = 0; kind < GOALS; kind++)
         if (run->fit.targets.given[kind])
             progress_say(to, "verified: rms of %s - target = %.4f(%.0f), statistics alone %.4f",
-                         goals_names[kind], v->distance[kind].rms,
-                         ceil(v->distance_error[kind] * 1e4), v->distance[kind].noise);
+                         goals_names[kind], visible_number(v->distance[kind].rms),
+                         visible_number(ceil(v->distance_error[kind] * 1e4)),
+                         visible_number(v->distance[kind].noise));
     if (goals_ask(&run->fit.problem.compared, GOAL_DIFFUSION))
         progress_say(to, "D = %.4f(%.0f)", *v->observed.value[GOAL_DIFFUSION],
                      ceil(*v->observed.error[GOAL_DIFFUSION] * 1e4));

@@ -184,10 +184,7 @@ static enum status read_particles(struct scene *scene, struct json_object *objec
 
 enum status scene_read(struct scene *scene, struct json_object *object, int unknown) {
     *scene = (struct scene){.unknown = unknown};
-    struct json_object units = json_child(object, "units", false);
-    json_fields(&units, units_fields, &scene->units);
-    if (units.item)
-        json_finish(&units);
+    units_read(&scene->units, object);
     read_top(scene, object);
     TRY(read_particles(scene, object));
     if (unknown == SCENE_FITS_WEIGHT) // between what particles, a fit would ask in vain
