@@ -7,11 +7,13 @@
 #include "mesofit.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <gsl/gsl_errno.h>
 #include <omp.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const struct command *const commands[] = {&cmd_simulate, &cmd_fit,      &cmd_plot,
                                                  &cmd_compare,  &cmd_describe, &cmd_bench};
@@ -200,18 +202,51 @@ static void install_handlers(void) {
     interrupt_install();
 }
 
-int main(int count, char **words) {
-    if (count < 2 || asks_for(count, words, "--help")) {
+/// A file that is opened must not become what a closed stream was: what is said would go into it.
+static void occupy_streams(void) {
+    int file = STDIN_FILENO;
+    while (file >= STDIN_FILENO && file <= STDERR_FILENO)
+        file = open("/dev/null", O_RDONLY);
+    if (file > STDERR_FILENO)
+        close(file);
+}
+
+/// What was printed has arrived, or there is an error to tell of. A reader who has gone, such as
+/// `head`, ends this program without a word, as it ends others.
+static enum status finish_output(enum status status) {
+    errno = 0;
+    const int error = fflush(stdout) == 0 ? 0 : errno;
+    if (error == EPIPE) {
+        signal(SIGPIPE, SIG_DFL);
+        raise(SIGPIPE);
+    }
+    if (status != STATUS_OK || (error == 0 && !ferror(stdout)))
+        return status;
+    return status_fail(STATUS_IO, "cannot write to stdout: %s",
+                       error ? strerror(error) : "not all of it has arrived");
+}
+
+static enum status act(int count, char **words) {
+    if (asks_for(count, words, "--help")) {
         print_help();
-        return count < 2 ? 2 : 0;
+        return STATUS_OK;
     }
     if (asks_for(count, words, "--version")) {
         printf("mesofit " MESOFIT_VERSION "\n");
-        return 0;
+        return STATUS_OK;
     }
+    if (count < 2) {
+        print_help();
+        return status_fail(STATUS_BAD_INPUT, "give one of these commands");
+    }
+    return run(count - 1, words + 1);
+}
+
+int main(int count, char **words) {
+    occupy_streams();
     install_handlers();
     memory_keep();
-    const enum status status = run(count - 1, words + 1);
+    const enum status status = finish_output(act(count, words));
     if (status != STATUS_OK)
         fprintf(stderr, "mesofit: %s\n", status_message());
     return exit_code(status);

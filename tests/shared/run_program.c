@@ -52,8 +52,9 @@ static int spawn_limited(pid_t *process, long largest_file,
 static void init_attributes(posix_spawnattr_t *attributes) {
     sigset_t signals;
     sigemptyset(&signals);
-    sigaddset(&signals, SIGINT);
-    sigaddset(&signals, SIGXFSZ);
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ};
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
+        sigaddset(&signals, numbers[k]);
     posix_spawnattr_init(attributes);
     posix_spawnattr_setsigdefault(attributes, &signals);
     posix_spawnattr_setflags(attributes, POSIX_SPAWN_SETSIGDEF);
@@ -142,7 +143,7 @@ void run_program(struct run_program_result *result, const struct run_program_how
         if (interrupt_after > 0 && child.first_words > 0 &&
             clock_seconds() - child.first_words >= interrupt_after) {
             interrupt_after = 0;
-            kill(child.process, SIGINT);
+            kill(child.process, how->interrupt_with ? how->interrupt_with : SIGINT);
         }
     }
     assert_int_equal(waitpid(child.process, &status, 0), child.process);

@@ -11,6 +11,7 @@
 struct run_program_how {
     long largest_file;      ///< RLIMIT_FSIZE of the program [bytes]; 0: none
     double interrupt_after; ///< SIGINT so long after its first words on stderr [s]; 0: never
+    int interrupt_with;     ///< this signal instead of SIGINT; 0: SIGINT
     double time_limit;      ///< the test fails if it takes longer [s]; 0: two minutes
 };
 
