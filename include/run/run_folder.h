@@ -38,8 +38,9 @@ enum status run_folder_open(struct run_folder *folder, const char *input,
                             const struct input_files *inputs,
                             const struct run_options *options) MUST_USE;
 
-/// Remove the results of an earlier run, so that a folder never mixes two. Fails: IO.
-enum status run_folder_begin(const struct run_folder *folder) MUST_USE;
+/// Remove what killed processes had begun to write and, unless the run goes on with them, the
+/// results of an earlier run, so that a folder never mixes two. Fails: IO.
+enum status run_folder_begin(const struct run_folder *folder, bool resume) MUST_USE;
 
 /// Unlock it.
 void run_folder_close(struct run_folder *folder);

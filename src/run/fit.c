@@ -146,8 +146,7 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
     if (status != STATUS_OK)
         return status_prefix(status, "%s", file);
     // What an earlier run left is touched once this one can begin.
-    if (!options->resume)
-        TRY(run_folder_begin(&run->folder));
+    TRY(run_folder_begin(&run->folder, options->resume));
     TRY(write_used(run, options->resume));
     // Saved now, so that a run interrupted in its first iteration can be resumed like any other.
     return options->resume ? load(run) : save(run);

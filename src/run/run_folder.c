@@ -61,9 +61,11 @@ static int is_output(const struct dirent *entry) {
     return is_result(entry) || strcmp(entry->d_name, "used.json") == 0;
 }
 
-/// "rdf.tsv.123.partial": what a process that was killed had begun to write.
+/// "rdf.tsv.123.partial" and the like: what a process that was killed had begun to write.
 static int is_left_behind(const struct dirent *entry) {
     struct dirent whole = *entry;
+    if (strcmp(entry->d_name, "used.json.resumed") == 0)
+        return 1;
     char *end = strrchr(whole.d_name, '.');
     if (end == NULL || strcmp(end, OUTPUT_PARTIAL) != 0)
         return 0;
@@ -215,9 +217,9 @@ enum status run_folder_open(struct run_folder *folder, const char *input,
     return options->force ? STATUS_OK : check_replaced(folder);
 }
 
-enum status run_folder_begin(const struct run_folder *folder) {
+enum status run_folder_begin(const struct run_folder *folder, bool resume) {
     TRY(with_files(folder, is_left_behind, remove_file, NULL));
-    return with_files(folder, is_result, remove_file, NULL);
+    return resume ? STATUS_OK : with_files(folder, is_result, remove_file, NULL);
 }
 
 void run_folder_close(struct run_folder *folder) {

@@ -329,8 +329,7 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
     TRY(read_file(run, file, options));
     TRY(run_folder_open(&run->folder, file, &run->inputs, options));
     TRY(begin_measuring(run, file));
-    if (!options->resume)
-        TRY(run_folder_begin(&run->folder));
+    TRY(run_folder_begin(&run->folder, options->resume));
     TRY(write_used(run, options->resume));
     return options->resume ? load(run) : save(run);
 }

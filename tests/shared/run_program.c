@@ -140,8 +140,8 @@ void run_program(struct run_program_result *result, const struct run_program_how
     while (child.out >= 0 || child.err >= 0) {
         listen_to(&child, result);
         kill_if_late(&child, how, result);
-        if (interrupt_after > 0 && child.first_words > 0 &&
-            clock_seconds() - child.first_words >= interrupt_after) {
+        const double since = how->interrupt_from_start ? child.started : child.first_words;
+        if (interrupt_after > 0 && since > 0 && clock_seconds() - since >= interrupt_after) {
             interrupt_after = 0;
             kill(child.process, how->interrupt_with ? how->interrupt_with : SIGINT);
         }

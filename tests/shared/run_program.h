@@ -5,14 +5,16 @@
 /// pipes, so that a limit on the size of files does not reach them.
 #pragma once
 
+#include <stdbool.h>
 #include <stddef.h>
 
 /// How to run it; zeros are the plain way.
 struct run_program_how {
-    long largest_file;      ///< RLIMIT_FSIZE of the program [bytes]; 0: none
-    double interrupt_after; ///< SIGINT so long after its first words on stderr [s]; 0: never
-    int interrupt_with;     ///< this signal instead of SIGINT; 0: SIGINT
-    double time_limit;      ///< the test fails if it takes longer [s]; 0: two minutes
+    long largest_file;         ///< RLIMIT_FSIZE of the program [bytes]; 0: none
+    double interrupt_after;    ///< SIGINT so long after its first words on stderr [s]; 0: never
+    bool interrupt_from_start; ///< count that time from its start
+    int interrupt_with;        ///< this signal instead of SIGINT; 0: SIGINT
+    double time_limit;         ///< the test fails if it takes longer [s]; 0: two minutes
 };
 
 struct run_program_result {
