@@ -81,8 +81,15 @@ check: all $(UNIT) $(REFERENCE) $(CLI)
 check-physics: all $(PHYSICS)
 	MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(PHYSICS)
 
-check-stress: all $(STRESS)
-	MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(STRESS)
+# Kills a process at one of its renames: see tests/stress/test_kill.c.
+KILL_HOOK = $(BUILD)/tests/stress/hooks/kill_at.so
+$(KILL_HOOK): tests/stress/hooks/kill_at.c
+	@mkdir -p $(@D)
+	@echo "cc $<"
+	$(AT)$(CC) -std=c11 -O1 -fPIC -shared $(WARN) -o $@ $< -ldl
+
+check-stress: all $(STRESS) $(KILL_HOOK)
+	KILL_HOOK=$(abspath $(KILL_HOOK)) MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(STRESS)
 
 asan:
 	$(MAKE) BUILD=build/asan SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=all" \

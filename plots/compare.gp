@@ -16,9 +16,9 @@ array name[count]
 do for [i = 1:count] { name[i] = name_of(i - 1) }
 
 # The first block of a file with a true curve, or −1; 1 if there is a file with an error.
-truth_in(file) = !has(file) ? -1 : int(system(sprintf("awk -F '\t' 'BEGIN { found = -1 } \
+truth_in(file) = !has(file) ? -1 : int(system("awk -F '\t' 'BEGIN { found = -1 } \
     /^# [0-9]+\t/ { block = substr($1, 3) } !/^#/ && found < 0 && $4 ~ /[0-9]/ { found = block } \
-    END { print found }' %s", file)))
+    END { print found }'" . from(file)))
 with_rdf = has("rdf_compare.tsv")
 with_target = 0
 with_phi = has("potential_compare.tsv")

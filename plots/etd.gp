@@ -6,7 +6,7 @@ load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
 # Its tables are targets of fits, in reduced units alone: others of the folder know the physical ones.
 times = "thermodynamics.tsv"
-rdfs = system("ls rdf.tsv rdf_*-*.tsv 2> /dev/null")
+rdfs = system("ls | grep -E '^rdf(_[A-Za-z0-9_]+-[A-Za-z0-9_]+)?[.]tsv$'")
 distances = words(rdfs) > 0 ? word(rdfs, 1) : ""
 ps = has(times) ? factor_of(times, "time[ps]", 2) : 1
 nm = strlen(distances) ? factor_of(distances, "r[nm]", 1) : 1

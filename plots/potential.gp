@@ -17,7 +17,7 @@ columns = 1
 if (has(history)) {
     found = system("awk -F '\t' '/^#/ { count = split($0, name, FS) } END { \
         gsub(/\\[.*|[^0-9]/, \"\", name[2]); gsub(/\\[.*|[^0-9]/, \"\", name[count]); \
-        print count, name[2] + 0, name[count] + 0 }' " . history)
+        print count, name[2] + 0, name[count] + 0 }'" . from(history))
     columns = int(word(found, 1))
     first = real(word(found, 2))
     last = columns > 2 ? real(word(found, 3)) : first + 1
@@ -46,10 +46,10 @@ bottom = bottom - 0.06 * (top - bottom)
 truth = column_of(table, "truth")
 lower = truth ? 0.065 : 0
 # An empty loop would keep its place in the legend; so would nan.
-show_band = !has_numbers(table, 4) ? "" : "'" . table . "' " . \
+show_band = !has_numbers(table, 4) ? "" : "table " . \
     "using ($1 * nm):(kJ * band_low(2, 4)):(kJ * band_high(2, 4)) " . \
     "with filledcurves @band linecolor rgb blue title '95 % band', "
-show_truth = !truth ? "" : ", '" . table . "' using ($1 * nm):(kJ * column(truth)) " . \
+show_truth = !truth ? "" : ", table using ($1 * nm):(kJ * column(truth)) " . \
     "with lines title 'truth' @true_line"
 
 do for [kind in kinds] {

@@ -9,7 +9,7 @@ load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 ps = factor_of("thermodynamics.tsv", "time[ps]", 2)
 kJ = factor_of("thermodynamics.tsv", "potential_energy[kJ/mol]", 4)
 bar = factor_of("thermodynamics.tsv", "pressure[bar]", 5)
-rdfs = system("ls rdf.tsv rdf_*-*.tsv 2> /dev/null")
+rdfs = system("ls | grep -E '^rdf(_[A-Za-z0-9_]+-[A-Za-z0-9_]+)?[.]tsv$'")
 with_rdf = words(rdfs) > 0
 nm = with_rdf ? factor_of(word(rdfs, 1), "r[nm]", 1) : 1
 g_top = 0

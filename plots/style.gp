@@ -12,8 +12,9 @@ svg(width, height) = sprintf("set terminal svg size %d,%d font 'Helvetica,13' " 
     "background '#ffffff' round; ", width, height)
 png(width, height) = sprintf("set terminal pngcairo size %d,%d font 'Liberation Sans,13' " . \
     "fontscale 2 linewidth 2 pointscale 2 background '#ffffff' rounded; ", 2 * width, 2 * height)
-open(kind, name, width, height) = (kind eq "svg" ? svg(width, height) : png(width, height)) . \
-    sprintf("set output 'figures/%s.%s'", name, kind)
+# The name stays in a variable: as a part of the command it could be one itself.
+open(kind, name, width, height) = (figure_file = sprintf("figures/%s.%s", name, kind), \
+    (kind eq "svg" ? svg(width, height) : png(width, height)) . "set output figure_file")
 close = "set output"
 
 # Colours that stay apart for every common form of colour blindness, after M. Okabe and K. Ito,
@@ -48,7 +49,8 @@ E_label   = "{/:Italic E}({/:Italic t}, {/:Italic r}_0)"
 
 # Command that names the vertical axis of a panel, x from the figure's edge: the names of all
 # panels stand in one line.
-name_axis(text, x) = sprintf("set label 1 '%s' at screen %g, graph 0.5 center rotate", text, x)
+name_axis(text, x) = (axis_name = text, \
+    sprintf("set label 1 axis_name at screen %g, graph 0.5 center rotate", x))
 
 low(a, b)  = a < b ? a : b
 high(a, b) = a > b ? a : b
@@ -62,24 +64,29 @@ positive(n) = known(n) > 0 ? column(n) : 1e300
 band_low(n, m)  = column(n) - 1.96 * column(m)
 band_high(n, m) = column(n) + 1.96 * column(m)
 
-# 1 if a file is there. Names in commands are fixed and relative, so no quoting is needed.
-has(file) = int(system("test -r " . file . " && echo 1 || echo 0"))
+# Input of a command from a file, whatever its name: quoted, with each ' as '\\''.
+escape(text) = strstrt(text, "'") == 0 ? text : \
+    text[1:strstrt(text, "'") - 1] . "'\\''" . escape(text[strstrt(text, "'") + 1:strlen(text)])
+from(file) = " < '" . escape(file) . "'"
+
+# 1 if a file is there.
+has(file) = int(system("test -r '" . escape(file) . "' && echo 1 || echo 0"))
 
 # Number of the first column of that name, 0 if there is none; 1 if a column has a number but 0.
 column_of(file, name) = !has(file) ? 0 : int(system(sprintf("awk -F '\t' '/^#/ { sub(/^# */, \"\"); \
     for (k = 1; k <= NF; k++) { sub(/\\[.*/, \"\", $k); if ($k == \"%s\" && !found) found = k } } \
-    END { print found + 0 }' %s", name, file)))
+    END { print found + 0 }'", name) . from(file)))
 has_numbers(file, column) = !has(file) ? 0 : int(system(sprintf("awk -F '\t' '!/^#/ && $%d ~ /[1-9]/ { found = 1 } \
-    END { print found + 0 }' %s", column, file)))
+    END { print found + 0 }'", column) . from(file)))
 
 # What one of the column called `name`, with a physical unit as in "r[nm]", is in units of column n;
 # 1 where the table has no such column. in_units(…) chooses the axis's text by the same.
 factor_of(file, name, n) = real(system(sprintf("awk -F '\t' '/^#/ { sub(/^# */, \"\"); \
     for (k = 1; k <= NF; k++) if ($k == \"%s\") found = k; next } \
     found && $%d + 0 != 0 { factor = $found / $%d } \
-    END { printf \"%%.10g\", factor ? factor : 1 }' %s", name, n, n, file)))
+    END { printf \"%%.10g\", factor ? factor : 1 }'", name, n, n) . from(file)))
 in_units(file, name, physical, reduced) = \
-    int(system(sprintf("grep '^#' %s | grep -cF '%s' || true", file, name))) ? physical : reduced
+    int(system("cat" . from(file) . sprintf(" | grep '^#' | grep -cF '%s' || true", name))) ? physical : reduced
 r_axis_of(file) = in_units(file, "r[nm]", "{/:Italic r} / nm", r_label)
 t_axis_of(file) = in_units(file, "time[ps]", "{/:Italic t} / ps", t_label)
 
@@ -120,7 +127,7 @@ log_range(axis, a, b) = a > b ? log_axis(axis, 0.1, 1) : log_axis(axis, a / 1.4,
 # 20 k_B T_0, is shown whole. A core that no particle enters would squeeze everything else into a line:
 # it is cut off above the highest barrier behind it, and at three depths of the well; but not so low
 # that less than 85 % of the way from 20 k_B T_0 to the cutoff were to be seen.
-potential_view(file, errors) = system(sprintf("awk -F '\t' -v e=%d -v n=0 '\
+potential_view(file, errors) = system(sprintf("awk -v e=%d -v n=0 '\
     function high(a, b) { return a > b ? a : b } function low(a, b) { return a < b ? a : b } \
     /^#/ || NF < 2 || $2 !~ /[0-9]/ { next } \
     { r[n] = $1 + 0; p[n] = $2 + 0 } \
@@ -142,4 +149,4 @@ potential_view(file, errors) = system(sprintf("awk -F '\t' -v e=%d -v n=0 '\
             top = low(top, 20); begin = end; \
             for (k = 0; k < n; k++) if (p[k] < top) begin = low(begin, r[k]); \
             begin = high(0, begin - 0.05 * (end - begin)) } \
-        print top, begin, lowest }' %s", errors, file))
+        print top, begin, lowest }'", errors) . from(file))

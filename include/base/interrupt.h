@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The user's wish to stop (Ctrl-C), seen by every long loop.
+/// @file The wish to stop, seen by every long loop: of the user (Ctrl-C), of the system (SIGTERM),
+/// or since nobody listens any more (SIGHUP, SIGPIPE).
 #pragma once
 
 #include <stdbool.h>
 
-/// Catch SIGINT and SIGTERM from now on; a second one ends the program at once.
+/// Catch SIGINT and SIGTERM from now on, a second one of which ends the program at once, and SIGHUP
+/// and SIGPIPE unless they are ignored. Tested: test_signals.
 void interrupt_install(void);
 
 /// True once the user has asked to stop. Any thread may ask, as often as it likes.

@@ -10,6 +10,7 @@
 
 #include "base/fields.h"
 #include "base/status.h"
+#include "io/input.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -17,7 +18,7 @@
 
 struct json_document;
 
-enum { JSON_PATH_SIZE = 256, JSON_MAX_KEYS = 64 };
+enum { JSON_PATH_SIZE = 256, JSON_MAX_KEYS = 64, JSON_MOST_MEMBERS = 1000 };
 
 /// One object of a document while it is read. Plain data; lives on the reader's stack.
 struct json_object {
@@ -28,9 +29,14 @@ struct json_object {
     size_t asked_count;
 };
 
-/// Parse `file`. Malformed text is BAD_INPUT with file:line:column.
+/// Parse `file`. Malformed text is BAD_INPUT with file:line:column, an object of more than
+/// JSON_MOST_MEMBERS keys is BAD_INPUT.
 /// On success the caller owns *document (json_close).
 enum status json_open(struct json_document **document, const char *file) MUST_USE;
+
+/// Put the document's own file into `inputs`, and from now on every file that a FIELD_FILE names.
+/// Both live as long as the document. Fails: NO_MEMORY. Tested: test_json.
+enum status json_collect_files(struct json_document *document, struct input_files *inputs) MUST_USE;
 
 /// View of the document's root, which must be an object.
 struct json_object json_root(struct json_document *document);
@@ -69,5 +75,6 @@ void json_finish(struct json_object *object);
 /// Number of faults so far.
 size_t json_fault_count(const struct json_document *document);
 
-/// Free the document. BAD_INPUT with all faults, one a line, if there were any.
-enum status json_close(struct json_document *document) MUST_USE;
+/// Free the document. `status` is what became of reading it: returned if it is NO_MEMORY, and if
+/// there was no fault. Else BAD_INPUT with all faults, one a line.
+enum status json_close(struct json_document *document, enum status status) MUST_USE;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file Writing of JSON.
 ///
-/// A tree is built and then written whole. The first problem (no memory, a number that is not
-/// finite, a key given twice) is remembered and reported by json_write, so that building needs no
-/// checks. Numbers get the fewest digits of %.15g and %.17g that read back to the same bits.
+/// A tree is built and then written whole. The first problem (no memory, a key given twice) is
+/// remembered and reported by json_write, so that building needs no checks. A number that is not
+/// finite is written as null. Other numbers get the fewest digits of %.15g and %.17g that read back
+/// to the same bits.
 #pragma once
 
 #include "base/fields.h"

@@ -8,18 +8,26 @@
 
 enum { OUTPUT_PATH_SIZE = 4096 };
 
-/// A file being written under a temporary name beside its place.
+/// Ends the name of a file that is being written: path, number of the process and this.
+#define OUTPUT_PARTIAL ".partial"
+
+/// A file being written under a temporary name beside its place. The stream knows its address: it
+/// must not be copied.
 struct output {
     FILE *stream;
+    int file;  ///< that the stream writes to
+    int error; ///< number of the first write that failed, or 0
     char path[OUTPUT_PATH_SIZE];
-    char temporary[OUTPUT_PATH_SIZE + 8];
+    char temporary[OUTPUT_PATH_SIZE + 32];
 };
 
-/// Open "path.partial" for writing.
+/// Open "path.PROCESS.partial" for writing, a new file: one of that name is removed, and a link is
+/// not followed.
 enum status output_open(struct output *output, const char *path) MUST_USE;
 
-/// Flush, check every write, and rename to the final path; on any error (disk full, …) the
-/// temporary file is removed and the status is STATUS_IO.
+/// Flush, check every write, bring the bytes to the disk and rename to the final path, so that
+/// after a power cut the file is whole, or the old one is; on any error (disk full, …) the
+/// temporary file is removed and the status is STATUS_IO. Tested: test_output.
 enum status output_commit(struct output *output) MUST_USE;
 
 /// Give up: remove the temporary file. Allowed after a failed commit.

@@ -6,11 +6,14 @@
 
 #include <stddef.h>
 
+/// No text that this program is for comes near it, and a pipe may never end.
+#define TEXT_FILE_LARGEST ((size_t)1 << 30)
+
 /// Read `file` into a new NUL-terminated text; a byte order mark at its start is dropped.
 /// @param[out] text    to be freed with memory_free; NULL on failure
 /// @param[out] length  bytes without the terminating NUL
-/// IO if it cannot be read or is a folder; BAD_INPUT if it is empty or holds a NUL byte, so that
-/// the text ends where the file ends. Tested: test_data_table, test_json.
+/// Fails: IO as input_open; BAD_INPUT if it is larger than TEXT_FILE_LARGEST, empty or holds a NUL
+/// byte, so that the text ends where the file ends. Tested: test_data_table, test_json.
 enum status text_file_read(const char *file, char **text, size_t *length) MUST_USE;
 
 /// Where a byte of a text stands; both count from 1, columns in characters of UTF-8.

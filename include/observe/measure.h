@@ -31,7 +31,8 @@ struct measure_targets {
     struct etd *etd;       ///< the same
 };
 
-/// Told after each sample; `done` of `total` steps. NULL for none.
+/// Told after each sample, and every second or so between them; `done` of `total` steps. NULL for
+/// none.
 struct measure_listener {
     void (*tell)(void *context, const struct simulation *simulation, uint64_t done, uint64_t total);
     void *context;

@@ -20,9 +20,11 @@ struct bench_scene {
 };
 
 /// Read a scene; what its file says of measurements is ignored. Clear scene->scene in any case.
+/// @param[in] output   where results will go, or NULL
 /// @param[in] options  the seed counts, if there is one
-/// Fails: BAD_INPUT, IO, NO_MEMORY.
-enum status bench_scene_read(struct bench_scene *scene, const char *file,
+/// Fails: BAD_INPUT, also if the output would replace the scene or a file that it names; IO,
+/// NO_MEMORY. Tested: test_bench_accuracy.
+enum status bench_scene_read(struct bench_scene *scene, const char *file, const char *output,
                              const struct run_options *options) MUST_USE;
 
 /// How to run it.

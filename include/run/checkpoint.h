@@ -2,8 +2,8 @@
 /// @file State on disk, from which a run goes on with the same bits.
 ///
 /// One file, `checkpoint.bin` in the run's folder: a header, the digest of used.json, then the
-/// spans in order, each with its length. Only the program and processor kind that wrote it need to
-/// read it.
+/// spans in order, each with its length, and a checksum of it all (FNV-1a, 64 bits). Only the
+/// program and processor kind that wrote it need to read it.
 #pragma once
 
 #include "base/memory.h"
@@ -15,7 +15,7 @@ enum status checkpoint_save(const char *file, uint64_t digest, const struct memo
                             size_t count) MUST_USE;
 
 /// Load into the same spans. BAD_INPUT if the file is of other settings (digest), another version
-/// or shape; nothing is loaded then.
+/// or shape, or if its checksum is not that of its bytes; nothing is loaded then.
 enum status checkpoint_load(const char *file, uint64_t digest, const struct memory_span *spans,
                             size_t count) MUST_USE;
 

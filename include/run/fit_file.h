@@ -34,6 +34,7 @@ struct fit_file {
     void *method_parameters;
     struct verify_parameters verification;
     struct inverse_problem problem;
+    struct input_files inputs;
 };
 
 /// Read and check a run file. Fails: BAD_INPUT with all faults; IO; NO_MEMORY.

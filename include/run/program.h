@@ -13,12 +13,13 @@ enum program_says {
 };
 
 /// Run words[0], found in PATH, with `words`, NULL-terminated, in `folder`, without input.
+/// @param[in] seconds  it is stopped, with all that it has started, if it takes longer; 0: any time
 /// @param[out] text  the last size − 1 bytes of what it says
 /// @param[in]  size  above 512
-/// Fails: IO with one line that names the program: not installed, ended by a signal, or failed with
-/// the last line that it said. Tested: test_program.
+/// Fails: IO with one line that names the program: not installed, ended by a signal, stopped as
+/// too slow, or failed with the last line that it said. Tested: test_program.
 enum status program_run(const char *folder, const char *const *words, enum program_says says,
-                        char *text, size_t size) MUST_USE;
+                        double seconds, char *text, size_t size) MUST_USE;
 
 /// Find a folder that ships with this program, such as "plots", by a file that it must have.
 ///

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/status.h"
+#include "io/input.h"
 #include "io/output.h"
 #include "system/composition.h"
 
@@ -17,16 +18,32 @@ struct run_options {
     bool has_seed;
     uint64_t seed; ///< --seed, instead of the input file's
     bool quiet, resume;
+    bool force; ///< replace the results that are in the folder
 };
 
+/// A folder while a run writes it. Zeros are one that is not open.
 struct run_folder {
     char path[OUTPUT_PATH_SIZE];
+    bool locked;
+    int lock; ///< the folder, open
 };
 
-/// Choose and make the folder of a run of `input`. Results of an earlier run in it are removed
-/// unless it is resumed, so that a folder never mixes two runs. Fails: IO.
+/// Choose, make and lock the folder of a run of `input`, in which nothing changes before
+/// run_folder_begin. Where files cannot be locked, it goes on without.
+/// Fails: BAD_INPUT if the path is too long, another process runs in the folder, a file that the
+/// run reads has the name of a result, there is nothing to resume, or there are results that only
+/// --force may replace: those of an earlier fit, and files with such names that are of no run
+/// (there is no used.json); IO. Tested: test_folder.
 enum status run_folder_open(struct run_folder *folder, const char *input,
+                            const struct input_files *inputs,
                             const struct run_options *options) MUST_USE;
+
+/// Remove what killed processes had begun to write and, unless the run goes on with them, the
+/// results of an earlier run, so that a folder never mixes two. Fails: IO.
+enum status run_folder_begin(const struct run_folder *folder, bool resume) MUST_USE;
+
+/// Unlock it.
+void run_folder_close(struct run_folder *folder);
 
 /// Path of a file in the folder, into `path` of OUTPUT_PATH_SIZE bytes.
 void run_folder_file(const struct run_folder *folder, const char *name, char *path);

@@ -18,6 +18,10 @@ struct units {
 
 extern const struct field units_fields[];
 
+/// Read "units" of a scene; units whose time, energy, pressure or diffusion no number can hold are
+/// a fault. Tested: test_units.
+void units_read(struct units *units, struct json_object *scene);
+
 bool units_known(const struct units *units);
 double units_energy_kj_per_mol(const struct units *units);   ///< k_B T_0 [kJ/mol]
 double units_time_ps(const struct units *units);             ///< λ sqrt(μ / k_B T_0) [ps]

@@ -7,6 +7,7 @@
 #include "mesofit.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <gsl/gsl_errno.h>
 #include <omp.h>
 #include <signal.h>
@@ -40,6 +41,7 @@ static void print_help(void) {
            "it\n"
            "  --seed N      seed, instead of the file's\n"
            "  --resume      go on with an interrupted run in its folder\n"
+           "  --force       replace the fit that the folder holds\n"
            "  --quiet       no progress\n"
            "  --help, --version\n");
     for (size_t k = 0; k < COMMANDS; k++)
@@ -96,9 +98,9 @@ static enum status parse_own_option(const struct command *command, const char *w
 }
 
 static enum status fail_unknown_option(const struct command *command, const char *word) {
-    const char *known[16 + COMMAND_MAX_OPTIONS] = {"-o",      "--threads", "--seed",   "--resume",
-                                                   "--quiet", "--help",    "--version"};
-    size_t count = 7;
+    const char *known[16 + COMMAND_MAX_OPTIONS] = {"-o",      "--threads", "--seed",    "--resume",
+                                                   "--quiet", "--help",    "--version", "--force"};
+    size_t count = 8;
     for (const struct command_option *own = command->options; own && own->name; own++)
         if (strcmp(own->name, "-o") != 0)
             known[count++] = own->name;
@@ -132,6 +134,8 @@ static enum status parse_option(const struct command *command, const char *word,
         *used = 1;
         if (strcmp(word, "--resume") == 0) {
             options->resume = true;
+        } else if (strcmp(word, "--force") == 0) {
+            options->force = true;
         } else if (strcmp(word, "--quiet") == 0) {
             options->quiet = true;
         } else {
@@ -178,6 +182,9 @@ static enum status run(int count, char **words) {
     TRY(parse_line(command, count - 1, words + 1, &line));
     if (line.file_count < command->least_files || line.file_count > command->most_files)
         return status_fail(STATUS_BAD_INPUT, "usage: mesofit %s %s", command->name, command->usage);
+    if (line.options.resume && line.options.force)
+        return status_fail(STATUS_BAD_INPUT,
+                           "--resume goes on with what --force would replace: give one of them");
     return command->run(&line);
 }
 
@@ -207,19 +214,52 @@ static void wait_briefly(char **words) {
         execv("/proc/self/exe", words);
 }
 
-int main(int count, char **words) {
-    if (count < 2 || asks_for(count, words, "--help")) {
+/// A file that is opened must not become what a closed stream was: what is said would go into it.
+static void occupy_streams(void) {
+    int file = STDIN_FILENO;
+    while (file >= STDIN_FILENO && file <= STDERR_FILENO)
+        file = open("/dev/null", O_RDONLY);
+    if (file > STDERR_FILENO)
+        close(file);
+}
+
+/// What was printed has arrived, or there is an error to tell of. A reader who has gone, such as
+/// `head`, ends this program without a word, as it ends others.
+static enum status finish_output(enum status status) {
+    errno = 0;
+    const int error = fflush(stdout) == 0 ? 0 : errno;
+    if (error == EPIPE) {
+        signal(SIGPIPE, SIG_DFL);
+        raise(SIGPIPE);
+    }
+    if (status != STATUS_OK || (error == 0 && !ferror(stdout)))
+        return status;
+    return status_fail(STATUS_IO, "cannot write to stdout: %s",
+                       error ? strerror(error) : "not all of it has arrived");
+}
+
+static enum status act(int count, char **words) {
+    if (asks_for(count, words, "--help")) {
         print_help();
-        return count < 2 ? 2 : 0;
+        return STATUS_OK;
     }
     if (asks_for(count, words, "--version")) {
         printf("mesofit " MESOFIT_VERSION "\n");
-        return 0;
+        return STATUS_OK;
+    }
+    if (count < 2) {
+        print_help();
+        return status_fail(STATUS_BAD_INPUT, "give one of these commands");
     }
     wait_briefly(words);
+    return run(count - 1, words + 1);
+}
+
+int main(int count, char **words) {
+    occupy_streams();
     install_handlers();
     memory_keep();
-    const enum status status = run(count - 1, words + 1);
+    const enum status status = finish_output(act(count, words));
     if (status != STATUS_OK)
         fprintf(stderr, "mesofit: %s\n", status_message());
     return exit_code(status);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/status.h"
 
+#include "base/visible.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -8,11 +10,21 @@ enum { MESSAGE_SIZE = 8192 };
 
 static _Thread_local char message[MESSAGE_SIZE];
 
+/// Messages quote files, whose texts may be anything.
+static int print_visible(char *text, const char *format, va_list arguments) {
+    char raw[MESSAGE_SIZE];
+    vsnprintf(raw, sizeof raw, format, arguments);
+    visible_copy(text, MESSAGE_SIZE, raw, "\n");
+    return (int)strlen(text);
+}
+
 enum status status_fail(enum status status, const char *format, ...) {
+    char text[MESSAGE_SIZE]; // the arguments may be parts of the message before
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(message, sizeof message, format, arguments);
+    print_visible(text, format, arguments);
     va_end(arguments);
+    memcpy(message, text, sizeof message);
     return status;
 }
 
@@ -21,10 +33,10 @@ enum status status_prefix(enum status status, const char *format, ...) {
     memcpy(rest, message, sizeof rest);
     va_list arguments;
     va_start(arguments, format);
-    const int length = vsnprintf(message, sizeof message, format, arguments);
+    const int length = print_visible(message, format, arguments);
     va_end(arguments);
     const int room = MESSAGE_SIZE - length - (int)sizeof ": ";
-    if (length >= 0 && room > 0)
+    if (room > 0)
         snprintf(message + length, (size_t)(MESSAGE_SIZE - length), ": %.*s", room, rest);
     return status;
 }

@@ -5,6 +5,7 @@
 #include "base/interrupt.h"
 #include "base/parallel.h"
 #include "base/simd.h"
+#include "base/visible.h"
 #include "dynamics/relax.h"
 
 static enum status place(struct simulation *simulation, const struct simulation_start *start) {
@@ -156,19 +157,26 @@ static enum status fail_unstable(const struct simulation *simulation, double squ
     return status_fail(STATUS_UNSTABLE,
                        "unstable at step %llu: kinetic temperature %.3g (limit %g), largest force "
                        "%.3g; lower \"time_step\" or soften the potential",
-                       (unsigned long long)simulation->step, square_velocities / degrees,
+                       (unsigned long long)simulation->step,
+                       visible_number(square_velocities / degrees),
                        setup->temperature_limit * setup->temperature,
-                       particles_largest_force(particles));
+                       visible_number(particles_largest_force(particles)));
 }
 
 /// Before a list is built: particles flung beyond the reach of box_fraction would meet on a few
 /// spots, where the list is one of all pairs and takes minutes.
 static enum status watch_flight(const struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
-    const double squares = particles_square_velocities(particles);
-    if (simulation->setup.time_step * sqrt(squares) <= 0x1p18 * box_shortest(&particles->box))
+    const double flight = simulation->setup.time_step *
+                          sqrt(particles_square_velocities(particles)) /
+                          box_shortest(&particles->box);
+    if (flight <= 0x1p18)
         return STATUS_OK;
-    return fail_unstable(simulation, squares);
+    return status_fail(STATUS_UNSTABLE,
+                       "unstable at step %llu: particles fly %.3g times the edge of the box in a "
+                       "step, largest force %.3g; lower \"time_step\" or soften the potential",
+                       (unsigned long long)simulation->step, visible_number(flight),
+                       visible_number(particles_largest_force(particles)));
 }
 
 /// Count the time since `begin` to a phase; returns the present time.

@@ -4,6 +4,7 @@
 #include "base/faults.h"
 #include "base/memory.h"
 #include "base/nearest.h"
+#include "base/visible.h"
 #include "io/json_syntax.h"
 #include "io/output.h"
 #include "io/text_file.h"
@@ -21,6 +22,7 @@ enum { LINE_SIZE = 4096 };
 struct json_document {
     cJSON *root;
     char *file;
+    struct input_files *inputs; ///< files that it names, or NULL: nobody wants to know
     struct faults faults;
 };
 
@@ -34,7 +36,7 @@ static void join_path(char *text, size_t size, const char *path, const char *key
 }
 
 void json_fault(struct json_object *object, const char *key, const char *format, ...) {
-    char path[2 * JSON_PATH_SIZE], message[LINE_SIZE / 2], line[LINE_SIZE];
+    char path[2 * JSON_PATH_SIZE], message[LINE_SIZE / 2], line[LINE_SIZE], visible[LINE_SIZE];
     join_path(path, sizeof path, object->path, key ? key : "");
     va_list arguments;
     va_start(arguments, format);
@@ -42,7 +44,8 @@ void json_fault(struct json_object *object, const char *key, const char *format,
     va_end(arguments);
     snprintf(line, sizeof line, "%.1024s: %s%s%s", object->document->file, path,
              path[0] ? ": " : "", message);
-    faults_add(&object->document->faults, line);
+    visible_copy(visible, sizeof visible, line, ""); // one line a fault, whatever it quotes
+    faults_add(&object->document->faults, visible);
 }
 
 static void describe_item(const cJSON *item, char *text, size_t size) {
@@ -92,6 +95,22 @@ static void find_duplicates(struct json_object *object) {
     }
 }
 
+/// cJSON looks for a key from the first member on: what is read of an object, and the search for
+/// keys that stand twice, takes as long as the square of their number.
+static enum status check_members(const char *file, const cJSON *item) {
+    const cJSON *member;
+    int count = 0;
+    cJSON_ArrayForEach(member, item) {
+        count++;
+        if (member->child)
+            TRY(check_members(file, member));
+    }
+    if (cJSON_IsObject(item) && count > JSON_MOST_MEMBERS)
+        return status_fail(STATUS_BAD_INPUT, "%s: an object has %d keys; %d are the most", file,
+                           count, JSON_MOST_MEMBERS);
+    return STATUS_OK;
+}
+
 /// The syntax was checked, so what cJSON refuses is a \u escape without a meaning.
 static enum status parse(struct json_document *document, const char *text) {
     const char *end = text;
@@ -124,6 +143,7 @@ enum status json_open(struct json_document **document, const char *file) {
     CHECK(text_file_read(file, &text, &length));
     CHECK(json_syntax_check(file, text));
     CHECK(parse(opened, text));
+    CHECK(check_members(file, opened->root));
     struct json_object root = view(opened, opened->root);
     find_duplicates(&root);
     *document = opened;
@@ -132,6 +152,11 @@ done:
     if (status != STATUS_OK && opened)
         free_document(opened);
     return status;
+}
+
+enum status json_collect_files(struct json_document *document, struct input_files *inputs) {
+    document->inputs = inputs;
+    return input_files_add(inputs, document->file);
 }
 
 struct json_object json_root(struct json_document *document) {
@@ -202,10 +227,11 @@ size_t json_fault_count(const struct json_document *document) {
     return document->faults.count;
 }
 
-enum status json_close(struct json_document *document) {
+enum status json_close(struct json_document *document, enum status status) {
     if (document == NULL)
-        return STATUS_OK;
-    const enum status status = faults_status(&document->faults);
+        return status;
+    if (status != STATUS_NO_MEMORY && document->faults.count > 0)
+        status = faults_status(&document->faults);
     free_document(document);
     return status;
 }
@@ -311,6 +337,9 @@ static void read_text_field(struct json_object *object, const struct field *fiel
     }
     memcpy(member, file, folder);
     strcpy(member + folder, text);
+    if (field->type == FIELD_FILE && object->document->inputs &&
+        input_files_add(object->document->inputs, member) != STATUS_OK)
+        json_fault(object, field->name, "%s", status_message());
 }
 
 static void read_field(struct json_object *object, const struct field *field, const cJSON *item,

@@ -98,11 +98,12 @@ void json_end(struct json_writer *writer) {
         writer->depth--;
 }
 
-/// cJSON's own numbers are close to the value, not equal, and NaN becomes null.
-static cJSON *create_number(struct json_writer *writer, const char *key, double value) {
+/// cJSON's own numbers are close to the value, not equal. JSON has no NaN and no infinity: what is
+/// not known is null, and the rest of the file is worth having.
+static cJSON *create_number(double value) {
     char text[32];
     if (!isfinite(value))
-        note_problem(writer, key, "is not a finite number");
+        return cJSON_CreateNull();
     snprintf(text, sizeof text, "%.15g", value);
     if (strtod(text, NULL) != value)
         snprintf(text, sizeof text, "%.17g", value);
@@ -110,7 +111,7 @@ static cJSON *create_number(struct json_writer *writer, const char *key, double 
 }
 
 void json_put_number(struct json_writer *writer, const char *key, double value) {
-    put(writer, key, create_number(writer, key, value));
+    put(writer, key, create_number(value));
 }
 
 void json_put_integer(struct json_writer *writer, const char *key, int64_t value) {
@@ -133,7 +134,7 @@ void json_put_numbers(struct json_writer *writer, const char *key, const double 
                       size_t count) {
     cJSON *array = cJSON_CreateArray();
     for (size_t k = 0; array && k < count; k++) {
-        cJSON *item = create_number(writer, key, values[k]);
+        cJSON *item = create_number(values[k]);
         if (!cJSON_AddItemToArray(array, item))
             note_problem(writer, key, "does not fit into the memory");
     }

@@ -2,9 +2,9 @@
 #include "io/text_file.h"
 
 #include "base/memory.h"
+#include "io/input.h"
 
 #include <errno.h>
-#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -19,14 +19,22 @@ struct text_place text_file_place(const char *text, const char *at) {
     return place;
 }
 
+static enum status fail_large(const char *file) {
+    return status_fail(STATUS_BAD_INPUT, "%s: the file is larger than 1 GiB", file);
+}
+
 /// Read to the end of the stream rather than trust its size: pipes have none.
 static enum status read_all(FILE *stream, const char *file, char **text, size_t *length) {
     size_t capacity = 0, used = 0;
     char *bytes = NULL;
     while (!feof(stream)) {
+        if (used > TEXT_FILE_LARGEST) {
+            memory_free(bytes);
+            return fail_large(file);
+        }
         if (used + 1 >= capacity) {
             const size_t larger = capacity ? 2 * capacity : 65536;
-            char *grown = memory_zeroed(larger, 1);
+            char *grown = memory_uncleared(larger, 1);
             if (grown && used)
                 memcpy(grown, bytes, used);
             memory_free(bytes);
@@ -69,12 +77,11 @@ enum status text_file_read(const char *file, char **text, size_t *length) {
     enum status status = STATUS_OK;
     *text = NULL;
     *length = 0;
+    FILE *stream;
     struct stat about;
-    if (stat(file, &about) == 0 && S_ISDIR(about.st_mode))
-        return status_fail(STATUS_IO, "%s: is a folder, not a file", file);
-    FILE *stream = fopen(file, "rb");
-    if (stream == NULL)
-        return status_fail(STATUS_IO, "%s: %s", file, strerror(errno));
+    TRY(input_open(&stream, file));
+    if (fstat(fileno(stream), &about) == 0 && about.st_size > (off_t)TEXT_FILE_LARGEST)
+        CHECK(fail_large(file));
     CHECK(read_all(stream, file, text, length));
     drop_byte_order_mark(*text, length);
     CHECK(check_is_text(file, *text, *length));

@@ -22,10 +22,23 @@ static void tell(const struct measure_listener *listener, const struct simulatio
         listener->tell(listener->context, simulation, simulation->step, measure_steps(plan));
 }
 
+/// Bead-steps between two words to the listener: less than a second of one thread, whatever the
+/// scene. Who listens looks at the clock and saves now and then; a run of steps in pieces has the
+/// same bits.
+enum { STEPS_A_WORD = 1 << 21 };
+
 /// Run until `step`, which a restart may already have passed.
-static enum status run_until(struct simulation *simulation, int64_t step) {
-    const int64_t now = (int64_t)simulation->step;
-    return now < step ? simulation_run(simulation, (uint64_t)(step - now)) : STATUS_OK;
+static enum status run_until(struct simulation *simulation, int64_t step,
+                             const struct measure_plan *plan,
+                             const struct measure_listener *listener) {
+    const int64_t piece = 1 + STEPS_A_WORD / (int64_t)simulation->particles.count;
+    for (int64_t now; (now = (int64_t)simulation->step) < step;) {
+        const int64_t steps = step - now <= piece ? step - now : piece;
+        TRY(simulation_run(simulation, (uint64_t)steps));
+        if (now + steps < step)
+            tell(listener, simulation, plan);
+    }
+    return STATUS_OK;
 }
 
 enum status measure_equilibrate(struct simulation *simulation, const struct measure_plan *plan,
@@ -36,9 +49,9 @@ enum status measure_equilibrate(struct simulation *simulation, const struct meas
     for (int64_t piece = 1; piece <= PIECES; piece++) {
         const int64_t end = plan->equilibration * piece / PIECES;
         simulation->wants = PAIR_FORCES;
-        TRY(run_until(simulation, end - 1));
+        TRY(run_until(simulation, end - 1, plan, listener));
         simulation->wants = piece > PIECES - LAST ? PAIR_FORCES_AND_SUMS : PAIR_FORCES;
-        TRY(run_until(simulation, end));
+        TRY(run_until(simulation, end, plan, listener));
         if (piece > PIECES - LAST)
             sum += simulation_temperature(simulation);
         tell(listener, simulation, plan);
@@ -49,12 +62,14 @@ enum status measure_equilibrate(struct simulation *simulation, const struct meas
 
 /// Run until `step`, and sample what has an interval of its own whenever it is due.
 static enum status run_moving(struct simulation *simulation, int64_t step,
-                              const struct measure_targets *targets) {
+                              const struct measure_targets *targets,
+                              const struct measure_plan *plan,
+                              const struct measure_listener *listener) {
     for (;;) {
         const int64_t motion = targets->motion ? motion_due(targets->motion) : INT64_MAX;
         const int64_t etd = targets->etd ? etd_due(targets->etd) : INT64_MAX;
         const int64_t due = motion < etd ? motion : etd;
-        TRY(run_until(simulation, due < step ? due : step));
+        TRY(run_until(simulation, due < step ? due : step, plan, listener));
         if (due > step)
             return STATUS_OK;
         if (motion == due)
@@ -73,14 +88,15 @@ static bool potential_reaches(const struct pair_law *law) {
 /// The last step before a sample. The force pass counts and sums what the sample needs; if that
 /// belongs to the middle of the step, a pass of the potential at its end does.
 static enum status run_sampled_step(struct simulation *simulation, int64_t due,
-                                    struct measure_targets targets) {
+                                    struct measure_targets targets,
+                                    const struct measure_plan *plan) {
     struct pair_law *law = &simulation->law;
     const bool midway = simulation->setup.integrator->forces_midway;
     const bool counts = targets.rdf && (!midway || potential_reaches(law));
     const struct pair_histogram *histogram = counts ? rdf_histogram(targets.rdf) : NULL;
     simulation->wants = targets.thermodynamics ? PAIR_FORCES_AND_SUMS : PAIR_FORCES;
     law->histogram = midway ? NULL : histogram;
-    enum status status = run_moving(simulation, due, &targets);
+    enum status status = run_moving(simulation, due, &targets, plan, NULL);
     if (midway && status == STATUS_OK) {
         law->histogram = histogram;
         status = simulation_compute_potential(simulation);
@@ -101,8 +117,8 @@ enum status measure_sample(struct simulation *simulation, const struct measure_p
     for (int64_t sample = begun / plan->every; sample < plan->samples; sample++) {
         const int64_t due = plan->equilibration + (sample + 1) * plan->every;
         simulation->wants = PAIR_FORCES;
-        TRY(run_moving(simulation, due - 1, &targets));
-        TRY(run_sampled_step(simulation, due, targets));
+        TRY(run_moving(simulation, due - 1, &targets, plan, listener));
+        TRY(run_sampled_step(simulation, due, targets, plan));
         if (targets.force_covariance) // while the forces are still those of the step
             force_covariance_sample(targets.force_covariance, simulation);
         if (targets.rdf_force)

@@ -95,7 +95,7 @@ static enum status read_shipped(struct run *run) {
     TRY(program_find_folder(folder, sizeof folder, scenes_folder, "thesis.json"));
     for (size_t k = 0; k < SHIPPED; k++) {
         snprintf(file, sizeof file, "%s/%s.json", folder, shipped[k]);
-        TRY(bench_scene_read(&run->scenes[k], file, run->common));
+        TRY(bench_scene_read(&run->scenes[k], file, run->options->output, run->common));
     }
     return STATUS_OK;
 }
@@ -107,7 +107,7 @@ static enum status read_scenes(struct run *run, const char *const *files, size_t
     if (count == 0)
         CHECK(read_shipped(run));
     for (size_t k = 0; k < count; k++)
-        CHECK(bench_scene_read(&run->scenes[k], files[k], run->common));
+        CHECK(bench_scene_read(&run->scenes[k], files[k], run->options->output, run->common));
     NEW_ARRAY(run->results, run->scene_count * run->how_count);
 done:
     return status;

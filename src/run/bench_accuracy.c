@@ -314,7 +314,7 @@ static enum status report(struct run *run) {
 
 static enum status carry_out(struct run *run, const char *file) {
     struct output probe;
-    TRY(bench_scene_read(&run->scene, file, run->common));
+    TRY(bench_scene_read(&run->scene, file, run->options->output, run->common));
     if (composition_is_mixed(&run->scene.scene.setup.composition))
         return status_fail(STATUS_BAD_INPUT,
                            "%s: particles.types: bench accuracy wants beads that are alike", file);

@@ -43,7 +43,7 @@ struct variant {
 enum status bench_lammps_check(void) {
     static const char *const words[] = {"lmp", "-h", NULL};
     char text[TEXT_SIZE];
-    if (program_run("/", words, PROGRAM_EVERYTHING, text, sizeof text) == STATUS_OK)
+    if (program_run("/", words, PROGRAM_EVERYTHING, 0, text, sizeof text) == STATUS_OK)
         return STATUS_OK;
     return status_prefix(STATUS_BAD_INPUT, "--against-lammps needs Debian's package lammps");
 }
@@ -160,7 +160,7 @@ static enum status run_variant(const char *folder, const struct variant *variant
     snprintf(count, sizeof count, "%.0f", ceil(steps));
     for (size_t k = 0, used = 11; k < SUFFIX_WORDS && variant->suffix[k]; k++)
         words[used++] = variant->suffix[k];
-    const enum status status = program_run(folder, words, PROGRAM_EVERYTHING, text, sizeof text);
+    const enum status status = program_run(folder, words, PROGRAM_EVERYTHING, 0, text, sizeof text);
     if (interrupt_requested())
         return status_fail(STATUS_INTERRUPTED, "interrupted");
     TRY(status);

@@ -103,7 +103,7 @@ static enum status time_all(const struct simulation_setup *setup, int threads) {
 
 enum status bench_samplers(const char *file, const struct run_options *common) {
     struct bench_scene scene = {0};
-    enum status status = bench_scene_read(&scene, file, common);
+    enum status status = bench_scene_read(&scene, file, NULL, common);
     if (status == STATUS_OK)
         status = time_all(&scene.scene.setup, common->has_threads ? common->threads : 1);
     scene_clear(&scene.scene);

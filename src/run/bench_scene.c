@@ -16,18 +16,29 @@ static void name_scene(struct bench_scene *scene, const char *file) {
         scene->name[length - cut] = '\0';
 }
 
-enum status bench_scene_read(struct bench_scene *scene, const char *file,
-                             const struct run_options *options) {
+static enum status read_file(struct bench_scene *scene, const char *file, struct heading *heading,
+                             struct input_files *inputs) {
     struct json_document *document;
-    struct heading heading;
     TRY(json_open(&document, file));
     struct json_object root = json_root(document);
-    json_fields(&root, heading_fields, &heading);
-    const enum status status = scene_read(&scene->scene, &root, SCENE_FITS_NOTHING);
+    json_fields(&root, heading_fields, heading);
+    enum status status = json_collect_files(document, inputs);
+    if (status == STATUS_OK)
+        status = scene_read(&scene->scene, &root, SCENE_FITS_NOTHING);
     json_has(&root, "measure");
     json_has(&root, "rdf");
     json_finish(&root);
-    TRY(json_close(document));
+    return json_close(document, status);
+}
+
+enum status bench_scene_read(struct bench_scene *scene, const char *file, const char *output,
+                             const struct run_options *options) {
+    struct heading heading;
+    struct input_files inputs = {0};
+    enum status status = read_file(scene, file, &heading, &inputs);
+    if (status == STATUS_OK && output)
+        status = input_files_spare(&inputs, output);
+    input_files_clear(&inputs);
     TRY(status);
     scene->scene.setup.seed = options->has_seed ? options->seed : heading.seed;
     name_scene(scene, file);

@@ -2,6 +2,7 @@
 #include "run/compare_table.h"
 
 #include "base/memory.h"
+#include "base/visible.h"
 #include "io/data_table.h"
 
 #include <math.h>
@@ -41,7 +42,9 @@ static void print_number(char *cell, const char *format, double value) {
 }
 
 static void print_text(char *cell, const char *text) {
-    snprintf(cell, CELL_SIZE, "%.60s", text[0] ? text : "-");
+    char beginning[61];
+    snprintf(beginning, sizeof beginning, "%s", text[0] ? text : "-");
+    visible_copy(cell, CELL_SIZE, beginning, "");
 }
 
 /// One column: a text, or a number with its format or its error.

@@ -1,22 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/figures.h"
 
+#include "io/input.h"
 #include "io/output.h"
 #include "run/program.h"
+#include "system/composition.h"
 
 #include <dirent.h>
 #include <errno.h>
-#include <fnmatch.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum {
     PATH_SIZE = OUTPUT_PATH_SIZE + 64, ///< a folder's path and the name of a file in it
-    ERRORS_SIZE = 2048,                ///< the end of what gnuplot says; its error comes last
+    PAIR_SIZE = 2 * COMPOSITION_NAME_SIZE + 2,
+    ERRORS_SIZE = 2048, ///< the end of what gnuplot says; its error comes last
 };
+
+/// A figure takes a second; one of a million rows takes some. What takes longer hangs [s].
+static const double drawing_time = 300;
 
 struct figure {
     const char *name;      ///< of the script and of the figure
@@ -62,11 +68,17 @@ static bool has_column(const char *file, const char *column) {
     return found;
 }
 
+/// A file that can be read to its end, which a pipe or a device may not have.
+static bool is_table(const char *path) {
+    struct stat about;
+    return stat(path, &about) == 0 && S_ISREG(about.st_mode) && access(path, R_OK) == 0;
+}
+
 static bool has_tables(const char *folder, const struct figure *figure) {
     char path[PATH_SIZE];
     for (size_t k = 0; figure->tables[k]; k++) {
         snprintf(path, sizeof path, "%s/%s", folder, figure->tables[k]);
-        if (access(path, R_OK) != 0)
+        if (!is_table(path))
             return false;
     }
     snprintf(path, sizeof path, "%s/%s", folder, figure->tables[0]);
@@ -84,7 +96,7 @@ static enum status run_gnuplot(const char *folder, const char *script) {
     // -d: the settings of the user's own gnuplot must not change the figures.
     const char *const words[] = {"gnuplot", "-d", script, NULL};
     char errors[ERRORS_SIZE];
-    return program_run(folder, words, PROGRAM_ERRORS, errors, sizeof errors);
+    return program_run(folder, words, PROGRAM_ERRORS, drawing_time, errors, sizeof errors);
 }
 
 /// A figure that was begun and not finished would look like one.
@@ -96,36 +108,90 @@ static void remove_figure(const char *folder, const char *name) {
     remove(path);
 }
 
-/// Draw a figure, of the kind of pairs `pair`, as "_A-B", or of all.
-static enum status draw(const char *folder, const char *plots, const char *name, const char *pair) {
-    char path[PATH_SIZE], script[PATH_SIZE + 64], drawn[512];
+/// Whether a file ends as it must, a blank or two behind not counted: gnuplot says nothing of a
+/// full disk.
+static bool ends_with(const char *path, const char *end, size_t length) {
+    char tail[64];
+    FILE *stream;
+    if (input_open(&stream, path) != STATUS_OK)
+        return false;
+    const bool long_enough = fseek(stream, -(long)sizeof tail, SEEK_END) == 0;
+    size_t bytes = long_enough ? fread(tail, 1, sizeof tail, stream) : 0;
+    fclose(stream);
+    while (bytes > 0 && tail[bytes - 1] == '\n')
+        bytes--;
+    return bytes >= length && memcmp(tail + bytes - length, end, length) == 0;
+}
+
+static enum status check_figure(const char *folder, const char *name) {
+    static const char svg_end[] = "</svg>", png_end[] = "IEND\xae\x42\x60\x82";
+    char path[PATH_SIZE];
+    snprintf(path, sizeof path, "%s/figures/%s.svg", folder, name);
+    bool whole = ends_with(path, svg_end, sizeof svg_end - 1);
+    snprintf(path, sizeof path, "%s/figures/%s.png", folder, name);
+    whole = whole && ends_with(path, png_end, sizeof png_end - 1);
+    return whole ? STATUS_OK
+                 : status_fail(STATUS_IO, "gnuplot left it unfinished; is the disk full?");
+}
+
+/// Draw a figure with a script; an earlier one of that name goes first, and with it a link that
+/// would be followed.
+static enum status draw_to(const char *folder, const char *plots, const char *name,
+                           const char *drawn) {
+    char path[PATH_SIZE], script[PATH_SIZE + 64];
     snprintf(path, sizeof path, "%s/figures", folder);
     TRY(output_make_folder(path));
     snprintf(script, sizeof script, "%s/%s.gp", plots, name);
-    if (setenv("MESOFIT_PLOTS", plots, 1) != 0 || setenv("MESOFIT_PAIR", pair, 1) != 0)
+    if (setenv("MESOFIT_PLOTS", plots, 1) != 0)
         return status_fail(STATUS_NO_MEMORY, "out of memory");
-    const enum status status = run_gnuplot(folder, script);
+    remove_figure(folder, drawn);
+    enum status status = run_gnuplot(folder, script);
+    if (status == STATUS_OK)
+        status = check_figure(folder, drawn);
     if (status == STATUS_OK)
         return STATUS_OK;
-    snprintf(drawn, sizeof drawn, "%s%s", name, pair);
     remove_figure(folder, drawn);
     return status_prefix(status, "no figure %s/%s", path, drawn);
+}
+
+/// Draw a figure, of the kind of pairs `pair`, as "_A-B", or of all.
+static enum status draw(const char *folder, const char *plots, const char *name, const char *pair) {
+    char drawn[128];
+    if (setenv("MESOFIT_PAIR", pair, 1) != 0)
+        return status_fail(STATUS_NO_MEMORY, "out of memory");
+    snprintf(drawn, sizeof drawn, "%s%s", name, pair);
+    return draw_to(folder, plots, name, drawn);
+}
+
+/// Take "_A-B" out of "rdf_A-B.tsv", if the name is made so, of the names of two types and no more:
+/// it comes from the folder, where it could be anything.
+static bool take_pair(const char *name, const char *table, char pair[PAIR_SIZE]) {
+    char first[PAIR_SIZE], second[PAIR_SIZE];
+    const size_t stem = strcspn(table, "."), length = strlen(name), end = strlen(".tsv");
+    if (length < stem + end || length - stem - end >= PAIR_SIZE ||
+        strncmp(name, table, stem) != 0 || strcmp(name + length - end, ".tsv") != 0 ||
+        name[stem] != '_')
+        return false;
+    snprintf(pair, PAIR_SIZE, "%.*s", (int)(length - stem - end), name + stem);
+    const size_t dash = strcspn(pair, "-");
+    if (pair[dash] == '\0')
+        return false;
+    snprintf(first, sizeof first, "%.*s", (int)dash - 1, pair + 1);
+    snprintf(second, sizeof second, "%s", pair + dash + 1);
+    return composition_is_name(first) && composition_is_name(second);
 }
 
 /// Draw a figure from a table of one kind of pairs, like rdf_A-B.tsv, if `name` is one.
 static enum status draw_pair(const char *folder, const char *plots, const struct figure *figure,
                              const char *name) {
-    const int stem = (int)strcspn(figure->tables[0], ".");
-    char pattern[128], path[PATH_SIZE], pair[256];
-    snprintf(pattern, sizeof pattern, "%.*s_*-*.tsv", stem, figure->tables[0]);
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    if (fnmatch(pattern, name, 0) != 0 || (figure->column && !has_column(path, figure->column)))
-        return STATUS_OK;
+    char path[PATH_SIZE], pair[PAIR_SIZE];
     // What follows the name of a kind of pairs, as "_history", makes another table.
-    const char *end = strchr(name, '-');
-    if (strstr(end, "_history.tsv") || strstr(end, "_flat.tsv"))
+    if (!take_pair(name, figure->tables[0], pair) || strstr(name, "_history.tsv") ||
+        strstr(name, "_flat.tsv"))
         return STATUS_OK;
-    snprintf(pair, sizeof pair, "%.*s", (int)(strlen(name) - strlen(".tsv")) - stem, name + stem);
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    if (!is_table(path) || (figure->column && !has_column(path, figure->column)))
+        return STATUS_OK;
     return draw(folder, plots, figure->name, pair);
 }
 
@@ -179,6 +245,8 @@ enum status figures_draw_accuracy(const char *table) {
     const char *slash = strrchr(table, '/');
     snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - table) : 1, slash ? table : ".");
     snprintf(name, sizeof name, "%s", slash ? slash + 1 : table);
+    if (strlen(slash ? slash + 1 : table) >= sizeof name || strlen(table) >= sizeof folder)
+        return status_fail(STATUS_IO, "no figure of %.60s…: its path is too long", table);
     const size_t length = strlen(name), cut = sizeof ending - 1;
     if (length > cut && strcmp(name + length - cut, ending) == 0)
         name[length - cut] = '\0';
@@ -186,8 +254,5 @@ enum status figures_draw_accuracy(const char *table) {
     if (setenv("MESOFIT_TABLE", slash ? slash + 1 : table, 1) != 0 ||
         setenv("MESOFIT_FIGURE", name, 1) != 0)
         return status_fail(STATUS_NO_MEMORY, "out of memory");
-    const enum status status = draw(folder, plots, "accuracy", "");
-    if (status != STATUS_OK)
-        remove_figure(folder, name);
-    return status;
+    return draw_to(folder, plots, "accuracy", name);
 }

@@ -2,6 +2,7 @@
 #include "run/fit.h"
 
 #include "base/memory.h"
+#include "base/visible.h"
 #include "run/checkpoint.h"
 #include "run/fit_output.h"
 #include "run/fit_report.h"
@@ -157,12 +158,14 @@ static enum status look_at_targets(struct run *run) {
 
 static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
     TRY(fit_file_read(&run->fit, file, options));
-    TRY(run_folder_open(&run->folder, file, options));
-    TRY(write_used(run, options->resume));
+    TRY(run_folder_open(&run->folder, file, &run->fit.inputs, options));
     TRY(look_at_targets(run));
     const enum status status = create(run);
     if (status != STATUS_OK)
         return status_prefix(status, "%s", file);
+    // What an earlier run left is touched once this one can begin.
+    TRY(run_folder_begin(&run->folder, options->resume));
+    TRY(write_used(run, options->resume));
     // Saved now, so that a run interrupted in its first iteration can be resumed like any other.
     return options->resume ? load(run) : save(run);
 }
@@ -264,7 +267,7 @@ static enum status record(struct run *run, const struct inverse_step *step) {
         TRY(run->fit.method->write(run->state, &own));
     }
     progress_say(&run->progress, "iteration %u  error %.4f  noise %.4f  %.1f s", step->iteration,
-                 step->error, step->noise, run->standing.seconds);
+                 visible_number(step->error), visible_number(step->noise), run->standing.seconds);
     return save(run);
 }
 
@@ -421,6 +424,7 @@ done:
         }
         memory_free(run->without_ramp);
         fit_file_clear(&run->fit);
+        run_folder_close(&run->folder);
     }
     memory_free(run);
     return status;

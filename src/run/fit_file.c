@@ -322,9 +322,10 @@ enum status fit_file_read(struct fit_file *fit, const char *file,
     struct json_object root = json_root(document);
     enum status status = heading_check_run(&root, file);
     if (status == STATUS_OK)
+        status = json_collect_files(document, &fit->inputs);
+    if (status == STATUS_OK)
         status = read_root(fit, &root);
-    TRY(json_close(document));
-    TRY(status);
+    TRY(json_close(document, status));
     if (options->has_seed)
         fit->heading.seed = options->seed;
     state_problem(fit, options);
@@ -339,6 +340,7 @@ void fit_file_clear(struct fit_file *fit) {
         scene_law_clear(&fit->unknown[kind].truth);
     }
     memory_free(fit->method_parameters);
+    input_files_clear(&fit->inputs);
     *fit = (struct fit_file){0};
 }
 

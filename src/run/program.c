@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/program.h"
 
+#include "base/clock.h"
 #include "io/output.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
+#include <poll.h>
+#include <signal.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
@@ -21,6 +25,7 @@ enum {
 /// In the child: nothing but calls that are safe after a fork of a program with threads.
 static void become(const char *folder, const char *const *words, enum program_says says,
                    const int ends[2]) {
+    setpgid(0, 0); // a group of its own, so that it can be stopped as a whole
     const int nothing = open("/dev/null", O_RDWR);
     const int out = says == PROGRAM_EVERYTHING ? ends[1] : nothing;
     if (nothing >= 0 && dup2(nothing, STDIN_FILENO) >= 0 && dup2(out, STDOUT_FILENO) >= 0 &&
@@ -29,23 +34,35 @@ static void become(const char *folder, const char *const *words, enum program_sa
     _exit(errno == ENOENT ? EXIT_NOT_FOUND : EXIT_NOT_STARTED);
 }
 
-/// Read to the end and keep the last size − 1 bytes as a text.
-static void read_tail(int file, char *text, size_t size) {
+/// Milliseconds until the clock shows `end`; −1 if that is never.
+static int time_left(double end) {
+    const double seconds = end - clock_seconds();
+    return isinf(end) ? -1 : seconds > 0 ? (int)ceil(1e3 * seconds) : 0;
+}
+
+/// Read to the end and keep the last size − 1 bytes as a text; false if it does not end in time.
+static bool read_tail(int file, double end, char *text, size_t size) {
     char chunk[512];
     size_t used = 0;
+    struct pollfd ready = {.fd = file, .events = POLLIN};
     for (;;) {
+        const int events = poll(&ready, 1, time_left(end));
+        if (events < 0 && errno == EINTR)
+            continue;
+        if (events == 0)
+            return false;
         const ssize_t count = read(file, chunk, sizeof chunk);
         if (count < 0 && errno == EINTR)
             continue;
         if (count <= 0)
-            break;
+            return true;
         const size_t room = size - 1 - (size_t)count;
         const size_t kept = used < room ? used : room;
         memmove(text, text + used - kept, kept);
         memcpy(text + kept, chunk, (size_t)count);
         used = kept + (size_t)count;
+        text[used] = '\0';
     }
-    text[used] = '\0';
 }
 
 /// Cut `text` behind its last line that is not empty, and return that line.
@@ -65,30 +82,40 @@ static int wait_for(pid_t child) {
     return state;
 }
 
+/// What became of a program that has ended.
+static enum status judge(const char *name, int state, char *text) {
+    if (WIFEXITED(state) && WEXITSTATUS(state) == 0)
+        return STATUS_OK;
+    if (WIFSIGNALED(state))
+        return status_fail(STATUS_IO, "%s was ended by signal %d", name, WTERMSIG(state));
+    if (WEXITSTATUS(state) == EXIT_NOT_FOUND)
+        return status_fail(STATUS_IO, "%s is not installed", name);
+    return status_fail(STATUS_IO, "%s failed: %s", name, text[0] ? last_line(text) : "no reason");
+}
+
 enum status program_run(const char *folder, const char *const *words, enum program_says says,
-                        char *text, size_t size) {
+                        double seconds, char *text, size_t size) {
     int ends[2];
     text[0] = '\0';
     if (pipe(ends) != 0)
         return status_fail(STATUS_IO, "cannot run %s: %s", words[0], strerror(errno));
+    const double end = seconds > 0 ? clock_seconds() + seconds : INFINITY;
     const pid_t child = fork();
     if (child == 0)
         become(folder, words, says, ends);
+    const int error = errno;
     close(ends[1]);
-    if (child > 0)
-        read_tail(ends[0], text, size);
+    const bool ended = child > 0 && read_tail(ends[0], end, text, size);
     close(ends[0]);
     if (child < 0)
-        return status_fail(STATUS_IO, "cannot run %s: %s", words[0], strerror(errno));
+        return status_fail(STATUS_IO, "cannot run %s: %s", words[0], strerror(error));
+    if (!ended)
+        kill(-child, SIGKILL); // with the programs that it has started
     const int state = wait_for(child);
-    if (WIFEXITED(state) && WEXITSTATUS(state) == 0)
-        return STATUS_OK;
-    if (WIFSIGNALED(state))
-        return status_fail(STATUS_IO, "%s was ended by signal %d", words[0], WTERMSIG(state));
-    if (WEXITSTATUS(state) == EXIT_NOT_FOUND)
-        return status_fail(STATUS_IO, "%s is not installed", words[0]);
-    return status_fail(STATUS_IO, "%s failed: %s", words[0],
-                       text[0] ? last_line(text) : "no reason");
+    if (!ended)
+        return status_fail(STATUS_IO, "%s had not ended after %g s and was stopped", words[0],
+                           seconds);
+    return judge(words[0], state, text);
 }
 
 // Where this program's files are ------------------------------------------------------------------

@@ -128,7 +128,7 @@ static enum status read_summary(struct result_summary *summary, const char *file
         read_simulated_diffusion(&root, summary);
     else if (root.item && !has_distance(&root))
         json_fault(&root, NULL, "not the result of a fit: there is no rdf_rmse or other rmse");
-    return json_close(document);
+    return json_close(document, STATUS_OK);
 }
 
 /// Cut `*text` behind its first line and step over it; NULL at the end.

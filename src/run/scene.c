@@ -215,14 +215,14 @@ double scene_mass_density(const struct scene *scene) {
 }
 
 /// Masses that are not in kg and temperatures that are in K.
-static void check_units(const struct scene *scene, struct json_object *object,
-                        struct json_object *units) {
+static void check_units(const struct scene *scene, struct json_object *object) {
     static const double densest = 30; // g/cm³: no matter is denser
     static const double hottest = 50, atomic_mass = 1e-3 / UNITS_AVOGADRO;
     const struct simulation_setup *setup = &scene->setup;
     const double mass = scene->units.mass;
     if (!units_known(&scene->units) || json_fault_count(object->document) > 0)
         return;
+    struct json_object units = json_child(object, "units", false);
     if (setup->temperature > hottest)
         json_fault(object, "temperature",
                    "%g is in units of T_0, %g K in \"units\": it would be %g K; 1 is T_0",
@@ -230,10 +230,10 @@ static void check_units(const struct scene *scene, struct json_object *object,
                    setup->temperature * scene->units.temperature);
     const double density = setup->box.dimensions == 3 ? scene_mass_density(scene) : 0;
     if (density > densest && mass >= 1)
-        json_fault(units, "mass", "it is in kg: %g u would be %.6g", mass, mass * atomic_mass);
+        json_fault(&units, "mass", "it is in kg: %g u would be %.6g", mass, mass * atomic_mass);
     else if (density > densest)
         json_fault(
-            units, "mass",
+            &units, "mass",
             "%g kg a bead, 1 u being %.6g, make %.3g g/cm^3: the mass, the unit of length, the "
             "box or the number of particles is wrong",
             mass, atomic_mass, density);
@@ -241,13 +241,10 @@ static void check_units(const struct scene *scene, struct json_object *object,
 
 enum status scene_read(struct scene *scene, struct json_object *object, int unknown) {
     *scene = (struct scene){.unknown = unknown};
-    struct json_object units = json_child(object, "units", false);
-    json_fields(&units, units_fields, &scene->units);
-    if (units.item)
-        json_finish(&units);
+    units_read(&scene->units, object);
     read_top(scene, object);
     TRY(read_particles(scene, object));
-    check_units(scene, object, &units);
+    check_units(scene, object);
     if (unknown == SCENE_FITS_WEIGHT) // between what particles, a fit would ask in vain
         json_child(object, "conservative", true);
     if (!(unknown & SCENE_FITS_POTENTIAL)) {

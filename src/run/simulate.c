@@ -44,6 +44,7 @@ struct run {
     struct measure_plan plan;
     struct rdf_parameters rdf_parameters;
     struct heading heading;
+    struct input_files inputs;
     uint64_t digest; ///< of used.json
     double last_checkpoint;
     struct simulation simulation;
@@ -82,12 +83,12 @@ static enum status read_file(struct run *run, const char *file, const struct run
     TRY(json_open(&document, file));
     struct json_object root = json_root(document);
     enum status status = heading_check_scene(&root, file);
-    if (status != STATUS_OK) {
-        TRY(json_close(document));
-        return status;
-    }
+    if (status != STATUS_OK)
+        return json_close(document, status);
     json_fields(&root, heading_fields, &run->heading);
-    status = scene_read(&run->scene, &root, SCENE_FITS_NOTHING);
+    status = json_collect_files(document, &run->inputs);
+    if (status == STATUS_OK)
+        status = scene_read(&run->scene, &root, SCENE_FITS_NOTHING);
     struct json_object measure = json_child(&root, "measure", false);
     json_fields(&measure, measure_plan_fields, &run->plan);
     if (measure.item)
@@ -100,8 +101,7 @@ static enum status read_file(struct run *run, const char *file, const struct run
     simulate_etd_read(&run->etd, &root);
     simulate_force_covariance_read(&run->force_covariance, &root);
     json_finish(&root);
-    TRY(json_close(document));
-    TRY(status);
+    TRY(json_close(document, status));
     TRY(check_range(run, file));
     if (options->has_seed)
         run->heading.seed = options->seed;
@@ -335,10 +335,7 @@ static enum status prepare_force(struct run *run, const struct rdf_bins *bins) {
                           (size_t)run->plan.samples);
 }
 
-static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
-    TRY(read_file(run, file, options));
-    TRY(run_folder_open(&run->folder, file, options));
-    TRY(write_used(run, options->resume));
+static enum status begin_measuring(struct run *run, const char *file) {
     const struct simulation_setup *setup = &run->scene.setup;
     enum status status = simulation_init(&run->simulation, setup, &run->scene.start);
     if (status != STATUS_OK)
@@ -362,7 +359,17 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
             simulate_force_covariance_begin(&run->force_covariance, &run->simulation, &run->plan);
     if (status != STATUS_OK)
         return status_prefix(status, "%s", file);
-    return options->resume ? load(run) : STATUS_OK;
+    return STATUS_OK;
+}
+
+/// What an earlier run left is touched once this one can begin.
+static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
+    TRY(read_file(run, file, options));
+    TRY(run_folder_open(&run->folder, file, &run->inputs, options));
+    TRY(begin_measuring(run, file));
+    TRY(run_folder_begin(&run->folder, options->resume));
+    TRY(write_used(run, options->resume));
+    return options->resume ? load(run) : save(run);
 }
 
 static enum status carry_out(struct run *run) {
@@ -390,6 +397,8 @@ static enum status write_results(struct run *run) {
     run_folder_file(&run->folder, "force_covariance.tsv", path);
     TRY(simulate_force_covariance_write_table(&run->force_covariance, path));
     TRY(write_summary(run, seconds));
+    run_folder_file(&run->folder, "checkpoint.bin", path); // nothing is left to go on with
+    remove(path);
     run_folder_draw(&run->folder);
     const struct thermodynamics_summary s = thermodynamics_result(&run->thermodynamics, 1);
     if (thermodynamics_judge(&s, &run->simulation.setup) != STATUS_OK)
@@ -424,6 +433,8 @@ done:
         simulate_etd_clear(&run->etd);
         simulate_force_covariance_clear(&run->force_covariance);
         scene_clear(&run->scene);
+        input_files_clear(&run->inputs);
+        run_folder_close(&run->folder);
     }
     memory_free(run);
     return status;
@@ -450,8 +461,10 @@ enum status simulate_explain(const char *file, const struct run_options *options
         .etd_plan = &run->etd.plan};
     explain_scene(stdout, setup, &measured);
 done:
-    if (run)
+    if (run) {
         scene_clear(&run->scene);
+        input_files_clear(&run->inputs);
+    }
     memory_free(run);
     return status;
 }

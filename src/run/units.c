@@ -17,6 +17,22 @@ const struct field units_fields[] = {
     FIELD_END,
 };
 
+void units_read(struct units *units, struct json_object *scene) {
+    struct json_object object = json_child(scene, "units", false);
+    const size_t faults = json_fault_count(object.document);
+    json_fields(&object, units_fields, units);
+    if (object.item == NULL)
+        return;
+    json_finish(&object);
+    const double derived[] = {units_time_ps(units), units_energy_kj_per_mol(units),
+                              units_pressure_bar(units), units_diffusion_cm2_per_s(units)};
+    for (size_t k = 0; k < sizeof derived / sizeof *derived; k++)
+        if (json_fault_count(object.document) == faults && !isnormal(derived[k]))
+            json_fault(scene, "units",
+                       "no numbers can hold the units of time, energy, pressure and "
+                       "diffusion that these make");
+}
+
 bool units_known(const struct units *units) {
     return units->length > 0;
 }

@@ -40,7 +40,7 @@ EOF_TARGET
  "scene": {$scene}, "unknowns": {"potential": {"truth": $law}}, "method": {"name": "$method"},
  "verification": {"replicas": 1, "equilibration": 100, "samples": 10, "every": 25}}
 EOF_FIT
-    "$program" fit "$out.json" -o "$out" --quiet --threads 2 2>"$out.errors" ||
+    "$program" fit "$out.json" -o "$out" --quiet --force --threads 2 2>"$out.errors" ||
         echo "repetition $1: $(head -1 "$out.errors")"
 }
 

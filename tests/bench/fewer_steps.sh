@@ -73,7 +73,7 @@ fit() {
     [ -e "$here/summary.json" ] && return
     mkdir -p "$here"
     "$1" "$2" >"$here/run.json"
-    "$program" fit "$here/run.json" -o "$here" --seed "$3" --quiet --threads "${THREADS:-2}" ||
+    "$program" fit "$here/run.json" -o "$here" --seed "$3" --quiet --force --threads "${THREADS:-2}" ||
         echo "$here: did not end well" >&2
 }
 

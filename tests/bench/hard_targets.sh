@@ -46,7 +46,7 @@ fit() {
  "unknowns": {"potential": {"truth": $law}}, "method": {"name": "$5", "particles": 500},
  "verification": {"replicas": 2, "equilibration": $6, "samples": 100, "every": 25}}
 EOF_FIT
-        "$program" fit "$out.json" -o "$out" --quiet --threads 2 2>"$out.errors" || true
+        "$program" fit "$out.json" -o "$out" --quiet --force --threads 2 2>"$out.errors" || true
     fi
     message=$(head -1 "$out.errors" | sed "s|$folder/||g; s/^mesofit: //")
     [ -e "$out/summary.json" ] || { echo "$1 | $5 | refused | | | | | | $message"; return; }

@@ -133,7 +133,8 @@ static void test_imc_refuses_more_bins_than_it_can_solve_for(void **state) {
         end += sprintf(end, "%.7f 1 0.01\n", (k + 0.5) * 1e-5);
     temporary_folder_write(*state, "target.tsv", table, (size_t)(end - table));
     free(table);
-    small_inputs_write(*state, "run.json", small_inputs_run, NULL, NULL);
+    small_inputs_write(*state, "run.json", small_inputs_run, "\"file\": \"target.tsv\"",
+                       "\"file\": \"target.tsv\", \"bin_width\": 1e-5");
     RUN_PROGRAM(&result, "fit", "run.json");
     run_program_assert_refused(
         &result, ".", "too many bins", 1,
@@ -160,7 +161,7 @@ static void check_left_out(struct temporary_folder *folder, const char *table, d
     char line[128];
     small_inputs_write(folder, "etd.tsv", table, NULL, NULL);
     small_inputs_write(folder, "run.json", good, NULL, NULL);
-    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
     run_program_assert_code(&result, 0);
     results_assert_number("out/summary.json", "etd_cells_left_out", cells);
     snprintf(line, sizeof line,
@@ -187,7 +188,7 @@ static void test_fit_of_a_weight_leaves_out_what_it_does_not_know(void **state) 
     small_inputs_write(*state, "run.json", text, "\"maximum\": 6",
                        "\"maximum\": 6, \"cutoff\": 0.3, \"truth\": {\"law\": \"power\"}");
     free(text);
-    RUN_PROGRAM(&result, "fit", "run.json");
+    RUN_PROGRAM(&result, "fit", "run.json", "--force");
     run_program_assert_code(&result, 0);
     results_number("out/summary.json", "etd_rmse");
     text = temporary_folder_read("out/summary.json");
@@ -210,7 +211,7 @@ static void test_fit_to_a_diffusion_coefficient_has_a_window_for_any_time_step(v
     text = temporary_folder_read("run.json");
     small_inputs_write(*state, "run.json", text, STEP, "\"time_step\": 0.08");
     free(text);
-    RUN_PROGRAM(&result, "fit", "run.json", "--quiet");
+    RUN_PROGRAM(&result, "fit", "run.json", "--quiet", "--force");
     run_program_assert_code(&result, 0);
     results_number("out/summary.json", "diffusion_rmse");
 }

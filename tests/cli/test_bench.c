@@ -46,7 +46,7 @@ static void test_bench_prints_json_and_writes_a_table(void **state) {
     results_assert_number("object.json", "threads", 1);
     results_assert_numbers("object.json", numbers);
     assert_true(temporary_folder_exists("speed.tsv"));
-    assert_false(temporary_folder_exists("speed.tsv.partial"));
+    run_program_assert_no_partial(".");
 }
 
 static const struct {

@@ -61,7 +61,7 @@ static void test_results_do_not_depend_on_threads(void **state) {
     assert_contains(one, "\n\n\nshardlow\t0.02\t");
     free(one);
     free(three);
-    assert_false(temporary_folder_exists("one.tsv.partial"));
+    run_program_assert_no_partial(".");
 }
 
 static void test_table_is_drawn_beside_it(void **state) {
@@ -138,7 +138,7 @@ static void test_interrupted_bench_leaves_nothing(void **state) {
     assert_string_equal(err, "mesofit: interrupted\n");
     free(err);
     assert_false(temporary_folder_exists("x.tsv"));
-    assert_false(temporary_folder_exists("x.tsv.partial"));
+    run_program_assert_no_partial(".");
 }
 
 static const struct {
@@ -155,6 +155,9 @@ static const struct {
     {{"bench", "accuracy", "small.json", "--integrators", "aboba,abobo"},
      {"--integrators: \"abobo\" does not suit the scene", "\"aboba\"?"}},
     {{"bench", "accuracy", "small.json", "-o", "no/such/file.tsv"}, {"cannot write no/such/file"}},
+    {{"bench", "accuracy", "small.json", "-o", "./small.json"},
+     {"./small.json would be replaced", "reads it as small.json"}},
+    {{"bench", "engine", "small.json", "-o", "./small.json"}, {"./small.json would be replaced"}},
     {{"bench", "accuracy", "small.json", "--skips"}, {"bench accuracy takes no --skips"}},
     {{"bench", "engine", "small.json", "--time", "2"}, {"bench engine takes no --time"}},
 };

@@ -56,7 +56,7 @@ static void write_fit(struct temporary_folder *folder, const char *method) {
 
 static void run_fit(const char *out, const char *threads, int code) {
     static struct run_program_result result;
-    RUN_PROGRAM(&result, "fit", "run.json", "-o", out, "--threads", threads, "--quiet");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", out, "--threads", threads, "--quiet", "--force");
     run_program_assert_code(&result, code);
 }
 
@@ -326,7 +326,7 @@ static void test_true_potential_stands_beside_the_result(void **state) {
 static void test_genetic_without_a_survivor_ends_and_says_so(void **state) {
     static struct run_program_result result;
     write_fit(*state, GENETIC("1e-9"));
-    RUN_PROGRAM(&result, "fit", "run.json", "--quiet");
+    RUN_PROGRAM(&result, "fit", "run.json", "--quiet", "--force");
     run_program_assert_code(&result, UNCONVERGED);
     assert_contains(result.err, "not one simulation of the fit succeeded");
     results_assert_table("out/history.tsv", 9, 3);
@@ -341,7 +341,7 @@ static void test_genetic_without_a_survivor_ends_and_says_so(void **state) {
     char *text = temporary_folder_read("run.json");
     small_inputs_write(*state, "run.json", text, "0.02", "2");
     free(text);
-    RUN_PROGRAM(&result, "fit", "run.json", "--quiet");
+    RUN_PROGRAM(&result, "fit", "run.json", "--quiet", "--force");
     run_program_assert_code(&result, 1);
     assert_contains(result.err, "not one simulation of the fit succeeded");
     assert_contains(result.err, "unstable at step 1");

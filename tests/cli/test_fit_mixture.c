@@ -72,7 +72,7 @@ static void write_fit(struct temporary_folder *folder, const char *method) {
 
 static void run_fit(const char *out, const char *threads, int code) {
     static struct run_program_result result;
-    RUN_PROGRAM(&result, "fit", "run.json", "-o", out, "--threads", threads, "--quiet");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", out, "--threads", threads, "--quiet", "--force");
     run_program_assert_code(&result, code);
 }
 

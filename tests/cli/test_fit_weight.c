@@ -160,7 +160,7 @@ static void test_unstable_candidates_lose_and_never_stop_a_fit(void **state) {
         char *text = temporary_folder_read("run.json");
         small_inputs_write(*state, "run.json", text, "\"maximum\": 6", "\"maximum\": 60");
         free(text);
-        RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--quiet");
+        RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--quiet", "--force");
         if (result.code != CONVERGED && result.code != UNCONVERGED)
             run_program_assert_code(&result, CONVERGED);
         results_assert_table("out/history.tsv", 9, 0);
@@ -177,7 +177,7 @@ static void test_fit_of_a_weight_ends_and_says_so_when_no_candidate_survives(voi
         char *text = temporary_folder_read("run.json");
         small_inputs_write(*state, "run.json", text, "tolerance\": 0.5", "tolerance\": 1e-9");
         free(text);
-        RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--quiet");
+        RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--quiet", "--force");
         run_program_assert_code(&result, UNCONVERGED);
         assert_contains(result.err, "not one simulation of the fit succeeded");
         text = temporary_folder_read("out/history.tsv");

@@ -278,7 +278,7 @@ static void check_interruption_of(struct temporary_folder *folder, const char *s
     simulate(&result, "whole");
     const char *const words[] = {"simulate", "scene.json", "-o", "pieces", NULL};
     run_program_in_pieces(0, words);
-    assert_true(temporary_folder_exists("pieces/checkpoint.bin"));
+    assert_false(temporary_folder_exists("pieces/checkpoint.bin"));
     results_assert_same("whole", "pieces", expected);
     results_assert_same("whole", "pieces", (const char *const[]){"used.json", NULL});
 }
@@ -373,7 +373,9 @@ static void test_a_new_run_removes_the_results_of_the_one_before(void **state) {
     run_program_assert_code(&result, 1);
     assert_false(temporary_folder_exists("out/summary.json"));
     assert_false(temporary_folder_exists("out/rdf.tsv"));
-    assert_false(temporary_folder_exists("out/checkpoint.bin"));
+    char *saved = temporary_folder_read("out/checkpoint.bin"); // from before the first step
+    assert_int_equal(strncmp(saved, "mesofit state", 13), 0);
+    free(saved);
 }
 
 static void test_unstable_scene_ends_with_step_and_force(void **state) {

@@ -32,6 +32,11 @@ static void assert_unstable(const struct simulation_setup *setup,
     snprintf(step, sizeof step, "step %llu:", (unsigned long long)simulation.step);
     assert_contains(status_message(), step);
     assert_contains(status_message(), "largest force");
+    assert_null(strstr(status_message(), "-nan"));
+    double temperature, limit; // if it tells them, they must be a reason
+    const char *told = strstr(status_message(), "temperature ");
+    if (told && sscanf(told, "temperature %lf (limit %lf", &temperature, &limit) == 2)
+        assert_false(temperature <= limit);
     assert_contains(status_message(), "time_step");
     assert_true((double)(clock() - begin) / CLOCKS_PER_SEC < patience);
     simulation_clear(&simulation);

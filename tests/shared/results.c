@@ -90,7 +90,7 @@ static void read_member(const char *file, const char *key, enum field_type type,
     struct json_object root = json_root(document);
     struct json_object object = dot ? json_child(&root, outer, true) : root;
     json_fields(&object, fields, value);
-    assert_ok(json_close(document));
+    assert_ok(json_close(document, STATUS_OK));
 }
 
 double results_number(const char *file, const char *key) {

@@ -52,8 +52,9 @@ static int spawn_limited(pid_t *process, long largest_file,
 static void init_attributes(posix_spawnattr_t *attributes) {
     sigset_t signals;
     sigemptyset(&signals);
-    sigaddset(&signals, SIGINT);
-    sigaddset(&signals, SIGXFSZ);
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ};
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
+        sigaddset(&signals, numbers[k]);
     posix_spawnattr_init(attributes);
     posix_spawnattr_setsigdefault(attributes, &signals);
     posix_spawnattr_setflags(attributes, POSIX_SPAWN_SETSIGDEF);
@@ -139,10 +140,10 @@ void run_program(struct run_program_result *result, const struct run_program_how
     while (child.out >= 0 || child.err >= 0) {
         listen_to(&child, result);
         kill_if_late(&child, how, result);
-        if (interrupt_after > 0 && child.first_words > 0 &&
-            clock_seconds() - child.first_words >= interrupt_after) {
+        const double since = how->interrupt_from_start ? child.started : child.first_words;
+        if (interrupt_after > 0 && since > 0 && clock_seconds() - since >= interrupt_after) {
             interrupt_after = 0;
-            kill(child.process, SIGINT);
+            kill(child.process, how->interrupt_with ? how->interrupt_with : SIGINT);
         }
     }
     assert_int_equal(waitpid(child.process, &status, 0), child.process);
@@ -156,12 +157,22 @@ void run_program_assert_code(const struct run_program_result *result, int expect
                  result->err);
 }
 
-static int refuse_results(const char *path, const struct stat *about, int type, struct FTW *place) {
-    (void)about, (void)type;
+static int refuse_partial(const char *path, const struct stat *about, int type, struct FTW *place) {
+    (void)about, (void)type, (void)place;
     const char *dot = strrchr(path, '.');
-    if ((dot && strcmp(dot, ".partial") == 0) || strcmp(path + place->base, "summary.json") == 0)
+    if (dot && strcmp(dot, ".partial") == 0)
         fail_msg("%s was left behind", path);
     return 0;
+}
+
+void run_program_assert_no_partial(const char *folder) {
+    assert_int_equal(nftw(folder, refuse_partial, 16, FTW_PHYS), 0);
+}
+
+static int refuse_results(const char *path, const struct stat *about, int type, struct FTW *place) {
+    if (strcmp(path + place->base, "summary.json") == 0)
+        fail_msg("%s was left behind", path);
+    return refuse_partial(path, about, type, place);
 }
 
 void run_program_assert_refused(const struct run_program_result *result, const char *folder,

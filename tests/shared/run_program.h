@@ -5,13 +5,16 @@
 /// pipes, so that a limit on the size of files does not reach them.
 #pragma once
 
+#include <stdbool.h>
 #include <stddef.h>
 
 /// How to run it; zeros are the plain way.
 struct run_program_how {
-    long largest_file;      ///< RLIMIT_FSIZE of the program [bytes]; 0: none
-    double interrupt_after; ///< SIGINT so long after its first words on stderr [s]; 0: never
-    double time_limit;      ///< the test fails if it takes longer [s]; 0: two minutes
+    long largest_file;         ///< RLIMIT_FSIZE of the program [bytes]; 0: none
+    double interrupt_after;    ///< SIGINT so long after its first words on stderr [s]; 0: never
+    bool interrupt_from_start; ///< count that time from its start
+    int interrupt_with;        ///< this signal instead of SIGINT; 0: SIGINT
+    double time_limit;         ///< the test fails if it takes longer [s]; 0: two minutes
 };
 
 struct run_program_result {
@@ -31,6 +34,9 @@ void run_program(struct run_program_result *result, const struct run_program_how
 
 /// The program ended with `expected`; its words are shown if not.
 void run_program_assert_code(const struct run_program_result *result, int expected);
+
+/// There is no *.partial in `folder` and its folders.
+void run_program_assert_no_partial(const char *folder);
 
 /// The program refused: exit code 2, nothing on stdout, `lines` lines on stderr that begin with
 /// "mesofit: " and contain each of `words`, and in `folder` no *.partial and no summary.json.

@@ -4,6 +4,8 @@
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
 
+#include <unistd.h>
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -150,6 +152,17 @@ static void test_data_table_read_says_so_when_there_is_nothing_to_read(void **st
                  "is a folder, not a file");
 }
 
+/// Devices have no end, and a file of a gigabyte is no table.
+static void test_data_table_read_refuses_what_has_no_end(void **state) {
+    struct data_table table;
+    assert_fails(data_table_read(&table, "/dev/zero", 1), STATUS_IO,
+                 "/dev/zero: is a device, not a file");
+    assert_fails(data_table_read(&table, "/dev/full", 1), STATUS_IO, "is a device");
+    const char *file = temporary_folder_write(*state, "large.tsv", "1 2\n", 4);
+    assert_int_equal(truncate(file, ((off_t)1 << 30) + 1), 0); // without a block on the disk
+    assert_fails(data_table_read(&table, file, 1), STATUS_BAD_INPUT, "larger than 1 GiB");
+}
+
 static void test_data_table_read_takes_long_files_when_they_outgrow_the_buffer(void **state) {
     struct data_table table;
     enum { ROWS = 30000 };
@@ -222,6 +235,7 @@ int main(void) {
         IN_FOLDER(test_data_table_read_names_the_line_when_a_word_is_not_a_finite_number),
         IN_FOLDER(test_data_table_read_names_the_line_when_a_row_has_another_length),
         IN_FOLDER(test_data_table_read_says_so_when_there_is_nothing_to_read),
+        IN_FOLDER(test_data_table_read_refuses_what_has_no_end),
         IN_FOLDER(test_data_table_read_takes_long_files_when_they_outgrow_the_buffer),
         IN_FOLDER(test_data_table_check_increasing_names_the_line_when_a_row_does_not_grow),
         IN_FOLDER(test_data_table_write_prints_comment_header_and_rows_when_asked),

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/clock.h"
 #include "io/json.h"
 #include "io/json_write.h"
 #include "shared/is_close.h"
@@ -56,7 +57,7 @@ static enum status read_sample(void **state, const char *text, struct sample *sa
     struct json_object root = json_root(document);
     json_fields(&root, fields, sample);
     json_finish(&root);
-    return json_close(document);
+    return json_close(document, STATUS_OK);
 }
 
 static void assert_fault(void **state, const char *text, const char *part) {
@@ -211,7 +212,7 @@ static void test_json_fields_demands_required_ones_when_the_object_is_there(void
     json_fields(&here, required_fields, &sample);
     assert_int_equal(json_fault_count(document), 1);
     json_finish(&root);
-    assert_fails(json_close(document), STATUS_BAD_INPUT,
+    assert_fails(json_close(document, STATUS_OK), STATUS_BAD_INPUT,
                  "run.json: here.strength: missing: a number is required (how strong)");
 }
 
@@ -229,7 +230,8 @@ static void test_json_open_records_a_fault_when_a_key_stands_twice(void **state)
     assert_fault(state, "{\"seed\": 1, \"seed\": 1}", "run.json: seed: the key stands here twice");
     struct json_document *document =
         open_text(state, "{\"a\": [{\"x\": 1}, {\"b\": {\"c\": 1, \"d\": 2, \"c\": 3}}]}");
-    assert_fails(json_close(document), STATUS_BAD_INPUT, "run.json: a[1].b.c: the key stands");
+    assert_fails(json_close(document, STATUS_OK), STATUS_BAD_INPUT,
+                 "run.json: a[1].b.c: the key stands");
 }
 
 static void test_json_child_reports_paths_when_objects_are_nested(void **state) {
@@ -256,7 +258,7 @@ static void test_json_child_reports_paths_when_objects_are_nested(void **state) 
              "%s: a.b: is odd\n"
              "%s: a.b.x: unknown key; none is known here",
              file, file, file, file, file);
-    assert_int_equal(json_close(document), STATUS_BAD_INPUT);
+    assert_int_equal(json_close(document, STATUS_OK), STATUS_BAD_INPUT);
     assert_string_equal(status_message(), expected);
 }
 
@@ -273,7 +275,7 @@ static void test_json_choice_returns_known_texts_when_given_or_falls_back(void *
     assert_null(json_choice(&root, "missing", kinds, NULL));
     json_finish(&root);
     assert_int_equal(json_fault_count(document), 3);
-    assert_fails(json_close(document), STATUS_BAD_INPUT, "did you mean \"hard\"?");
+    assert_fails(json_close(document, STATUS_OK), STATUS_BAD_INPUT, "did you mean \"hard\"?");
     assert_contains(status_message(), "number: expected a text, found the number 1");
     assert_contains(status_message(), "missing: missing: a text is required");
 }
@@ -284,7 +286,8 @@ static void test_json_close_counts_the_rest_when_faults_are_many(void **state) {
     for (int k = 0; k < 27; k++)
         json_fault(&root, NULL, "fault %d", k);
     assert_int_equal(json_fault_count(document), 27);
-    assert_fails(json_close(document), STATUS_BAD_INPUT, "fault 19\n… and 7 more faults");
+    assert_fails(json_close(document, STATUS_OK), STATUS_BAD_INPUT,
+                 "fault 19\n… and 7 more faults");
     assert_null(strstr(status_message(), "fault 20"));
 }
 
@@ -293,7 +296,7 @@ static void test_json_close_drops_whole_lines_when_faults_are_long(void **state)
     struct json_object root = json_root(document);
     for (int k = 0; k < 10; k++)
         json_fault(&root, NULL, "%01500d end", k);
-    assert_fails(json_close(document), STATUS_BAD_INPUT, "04 end\n… and 5 more faults");
+    assert_fails(json_close(document, STATUS_OK), STATUS_BAD_INPUT, "04 end\n… and 5 more faults");
 }
 
 // Writing -----------------------------------------------------------------------------------------
@@ -312,7 +315,7 @@ static void assert_round_trip(void **state, const struct sample *sample) {
     struct json_object root = json_root(document);
     json_fields(&root, fields, &again);
     json_finish(&root);
-    assert_ok(json_close(document));
+    assert_ok(json_close(document, STATUS_OK));
     assert_identical(again.strength, sample->strength);
     assert_int_equal(again.steps, sample->steps);
     assert_int_equal(again.seed, sample->seed);
@@ -377,14 +380,6 @@ static void test_json_write_prints_the_tree_when_objects_are_nested(void **state
     free(text);
 }
 
-static void write_number(struct json_writer *writer) {
-    json_put_number(writer, "distance", NAN);
-}
-
-static void write_numbers(struct json_writer *writer) {
-    json_put_numbers(writer, "distance", (double[]){1, INFINITY}, 2);
-}
-
 static void write_twice(struct json_writer *writer) {
     json_put_integer(writer, "distance", 1);
     json_put_integer(writer, "distance", 1);
@@ -403,9 +398,7 @@ static void test_json_write_writes_nothing_when_the_tree_has_a_problem(void **st
     static const struct {
         void (*build)(struct json_writer *);
         const char *part;
-    } cases[] = {{write_number, "out.json: \"distance\" is not a finite number"},
-                 {write_numbers, "out.json: \"distance\" is not a finite number"},
-                 {write_twice, "out.json: \"distance\" is given twice"},
+    } cases[] = {{write_twice, "out.json: \"distance\" is given twice"},
                  {write_too_deep, "out.json: \"distance\" is nested too deeply"},
                  {write_nameless, "out.json: \"\" is an object without a key"}};
     const char *file = temporary_folder_file(*state, "out.json");
@@ -417,6 +410,84 @@ static void test_json_write_writes_nothing_when_the_tree_has_a_problem(void **st
         assert_false(temporary_folder_exists(file));
         json_writer_free(writer);
     }
+}
+
+/// JSON has no word for them but null, and one of them must not cost the rest.
+static void test_json_write_writes_null_when_a_number_is_not_finite(void **state) {
+    const char *file = temporary_folder_file(*state, "out.json");
+    struct json_writer *writer = json_writer_create();
+    assert_non_null(writer);
+    json_put_number(writer, "a", NAN);
+    json_put_number(writer, "b", -INFINITY);
+    json_put_numbers(writer, "c", (double[]){1, INFINITY, 0.5}, 3);
+    json_put_number(writer, "d", 2);
+    assert_ok(json_write(writer, file));
+    json_writer_free(writer);
+    char *text = temporary_folder_read(file);
+    assert_string_equal(text, "{\n\t\"a\":\tnull,\n\t\"b\":\tnull,\n\t\"c\":\t[1, null, 0.5],\n"
+                              "\t\"d\":\t2\n}\n");
+    free(text);
+}
+
+/// 160 000 keys took minutes; more than a thousand have no meaning in any file.
+static void test_json_open_refuses_more_keys_than_can_be_looked_for(void **state) {
+    enum { MANY = 160000 };
+    char *text = malloc(MANY * 16 + 16), *end = text;
+    struct json_document *document = NULL;
+    assert_non_null(text);
+    for (int count = JSON_MOST_MEMBERS; count <= MANY; count += MANY - JSON_MOST_MEMBERS) {
+        end = text + sprintf(text, "{\"a\": {");
+        for (int k = 0; k < count; k++)
+            end += sprintf(end, "%s\"k%d\": 1", k ? ", " : "", k);
+        sprintf(end, "}}");
+        const double begun = clock_seconds();
+        const enum status status = json_open(&document, write_text(state, text));
+        assert_true(clock_seconds() - begun < 10);
+        assert_int_equal(status, count > JSON_MOST_MEMBERS ? STATUS_BAD_INPUT : STATUS_OK);
+        if (status == STATUS_OK)
+            assert_ok(json_close(document, STATUS_OK));
+    }
+    assert_contains(status_message(), "run.json: an object has 160000 keys; 1000 are the most");
+    free(text);
+}
+
+/// Want of memory is told before what the file says wrong.
+static void test_json_close_tells_want_of_memory_first(void **state) {
+    struct json_document *document = open_text(state, "{\"a\": 1, \"a\": 2}");
+    status_fail(STATUS_NO_MEMORY, "out of memory");
+    assert_fails(json_close(document, STATUS_NO_MEMORY), STATUS_NO_MEMORY, "out of memory");
+    document = open_text(state, "{\"a\": 1, \"a\": 2}");
+    assert_fails(json_close(document, STATUS_IO), STATUS_BAD_INPUT, "twice");
+    document = open_text(state, "{}");
+    assert_int_equal(json_close(document, STATUS_IO), STATUS_IO);
+}
+
+/// A text of a file is shown, not sent to the terminal.
+static void test_faults_show_control_characters(void **state) {
+    struct sample sample;
+    assert_fails(read_sample(state, "{\"strength\": \"\\u001b[31m\\n\"}", &sample),
+                 STATUS_BAD_INPUT, "the text \"\\x1b[31m\\x0a\"");
+    assert_fails(read_sample(state, "{\"\\u001b]0;x\\u0007\": 1}", &sample), STATUS_BAD_INPUT,
+                 "\\x1b]0;x\\x07: unknown key");
+}
+
+/// Files that a document names are known by what they are.
+static void test_json_collect_files_finds_what_the_fields_name(void **state) {
+    struct sample sample;
+    struct input_files inputs = {0};
+    temporary_folder_write(*state, "table.tsv", "1", 1);
+    struct json_document *document = open_text(state, "{\"file\": \"./table.tsv\"}");
+    assert_ok(json_collect_files(document, &inputs));
+    struct json_object root = json_root(document);
+    json_fields(&root, fields, &sample);
+    assert_ok(json_close(document, STATUS_OK));
+    assert_int_equal(inputs.count, 2);
+    assert_fails(input_files_spare(&inputs, temporary_folder_file(*state, "table.tsv")),
+                 STATUS_BAD_INPUT, "/./table.tsv: write elsewhere");
+    assert_fails(input_files_spare(&inputs, temporary_folder_file(*state, "run.json")),
+                 STATUS_BAD_INPUT, "run.json would be replaced");
+    assert_ok(input_files_spare(&inputs, temporary_folder_file(*state, "other.tsv")));
+    input_files_clear(&inputs);
 }
 
 static void test_json_write_stream_prints_a_list_when_the_root_is_one(void **state) {
@@ -454,10 +525,10 @@ static void test_json_write_stream_fails_when_the_tree_or_the_stream_is_bad(void
                  "cannot write stdout: No space left");
     fclose(full);
     json_begin(writer, NULL);
-    json_put_number(writer, "distance", NAN);
+    write_twice(writer);
     json_end(writer);
     assert_fails(json_write_stream(writer, stdout, "stdout"), STATUS_IO,
-                 "cannot write stdout: \"distance\" is not a finite number");
+                 "cannot write stdout: \"distance\" is given twice");
     json_writer_free(writer);
 }
 
@@ -487,6 +558,11 @@ int main(void) {
         IN_FOLDER(test_json_put_fields_reads_back_the_same_bits_when_digits_are_many),
         IN_FOLDER(test_json_put_fields_makes_a_file_absolute_when_it_is_relative),
         IN_FOLDER(test_json_write_prints_the_tree_when_objects_are_nested),
+        IN_FOLDER(test_json_write_writes_null_when_a_number_is_not_finite),
+        IN_FOLDER(test_json_open_refuses_more_keys_than_can_be_looked_for),
+        IN_FOLDER(test_json_close_tells_want_of_memory_first),
+        IN_FOLDER(test_faults_show_control_characters),
+        IN_FOLDER(test_json_collect_files_finds_what_the_fields_name),
         IN_FOLDER(test_json_write_writes_nothing_when_the_tree_has_a_problem),
         IN_FOLDER(test_json_write_stream_prints_a_list_when_the_root_is_one),
         cmocka_unit_test(test_json_write_stream_fails_when_the_tree_or_the_stream_is_bad),

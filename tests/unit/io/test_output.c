@@ -3,6 +3,8 @@
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <sys/resource.h>
@@ -42,20 +44,52 @@ static void test_output_abandon_keeps_the_old_file_when_called_before_commit(voi
     assert_no_partial(&output);
 }
 
-/// /dev/full takes no byte: the disk is full. The stream's buffer hides it until commit.
+/// /dev/full takes no byte: the disk is full. The stream's buffer hides it until commit; of many
+/// bytes the first write fails long before, and the reason is still that of the first.
 static void test_output_commit_reports_and_cleans_up_when_the_disk_is_full(void **state) {
     const char *path = temporary_folder_write(*state, "a.txt", "old", 3);
     struct output output;
     for (int bytes = 1; bytes < 2000000; bytes *= 1000) {
         assert_ok(output_open(&output, path));
-        assert_non_null(freopen("/dev/full", "w", output.stream));
+        const int full = open("/dev/full", O_WRONLY);
+        assert_true(full >= 0 && dup2(full, output.file) == output.file);
+        close(full);
         for (int k = 0; k < bytes; k++)
             fputc('x', output.stream);
+        if (bytes > 100000) { // the disk has room again, but bytes are lost
+            const int zero = open("/dev/zero", O_WRONLY);
+            assert_true(zero >= 0 && dup2(zero, output.file) == output.file);
+            close(zero);
+        }
+        errno = 0;
         assert_fails(output_commit(&output), STATUS_IO, "a.txt: No space left on device");
         assert_no_partial(&output);
         output_abandon(&output);
         assert_file_holds(path, "old");
     }
+}
+
+/// A link where the partial file comes, to a file of somebody: its bytes stay. So does a pipe not
+/// make the program wait.
+static void test_output_open_makes_a_file_of_its_own_when_something_is_in_the_way(void **state) {
+    const char *victim = strdup(temporary_folder_write(*state, "victim", "precious", 8));
+    const char *path = temporary_folder_file(*state, "a.txt");
+    struct output output;
+    assert_ok(output_open(&output, path));
+    output_abandon(&output);
+    for (int kind = 0; kind < 2; kind++) {
+        assert_int_equal(kind ? mkfifo(output.temporary, 0666) : symlink(victim, output.temporary),
+                         0);
+        assert_ok(output_open(&output, path));
+        fputs("new\n", output.stream);
+        assert_ok(output_commit(&output));
+        assert_file_holds(victim, "precious");
+        assert_file_holds(path, "new\n");
+        struct stat about;
+        assert_int_equal(lstat(path, &about), 0);
+        assert_true(S_ISREG(about.st_mode));
+    }
+    free((char *)victim);
 }
 
 static void test_output_commit_reports_and_cleans_up_when_the_file_grows_too_large(void **state) {
@@ -130,6 +164,7 @@ int main(void) {
         IN_FOLDER(test_output_commit_replaces_the_file_when_all_was_written),
         IN_FOLDER(test_output_abandon_keeps_the_old_file_when_called_before_commit),
         IN_FOLDER(test_output_commit_reports_and_cleans_up_when_the_disk_is_full),
+        IN_FOLDER(test_output_open_makes_a_file_of_its_own_when_something_is_in_the_way),
         IN_FOLDER(test_output_commit_reports_and_cleans_up_when_the_file_grows_too_large),
         IN_FOLDER(test_output_commit_reports_and_cleans_up_when_a_folder_is_in_the_way),
         IN_FOLDER(test_output_open_names_the_file_when_the_folder_is_missing),

@@ -64,7 +64,7 @@ static void check_first_state(struct temporary_folder *folder, bool from_table) 
     double temperature, energy, pressure;
     make_liquid(&liquid, from_table);
     assert_ok(bench_lammps_write(folder->path, &liquid.scene, &liquid.simulation));
-    assert_ok(program_run(folder->path, words, PROGRAM_EVERYTHING, text, sizeof text));
+    assert_ok(program_run(folder->path, words, PROGRAM_EVERYTHING, 0, text, sizeof text));
     const char *heading = strstr(text, "Step Temp E_pair E_mol TotEng Press");
     assert_non_null(heading);
     assert_int_equal(

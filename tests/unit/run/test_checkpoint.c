@@ -87,14 +87,56 @@ static void test_checkpoint_load_refuses_when_the_file_is_cut_short(void **state
     assert_in_range(length, 80, sizeof bytes - 1);
     for (size_t kept = 0; kept < length; kept++) {
         temporary_folder_write(*state, "checkpoint.bin", bytes, kept);
-        assert_refused(file, DIGEST, SPANS, kept < 24 ? "not a checkpoint" : "another shape");
+        assert_refused(file, DIGEST, SPANS, kept < 16 ? "not a checkpoint" : "is damaged");
     }
     bytes[length] = 'x';
     temporary_folder_write(*state, "checkpoint.bin", bytes, length + 1);
-    assert_refused(file, DIGEST, SPANS, "another shape");
+    assert_refused(file, DIGEST, SPANS, "is damaged");
     bytes[14] = '0';
     temporary_folder_write(*state, "checkpoint.bin", bytes, length);
     assert_refused(file, DIGEST, SPANS, "not a checkpoint of this version");
+}
+
+/// Any byte that is another, to any of two values, is seen, and nothing is loaded: those of a
+/// number would fit as well as the right ones, and a length of 2^63 is negative where a file is
+/// positioned.
+static void test_checkpoint_load_refuses_when_any_byte_is_another(void **state) {
+    char bytes[256];
+    const char *file = save(state);
+    FILE *stream = fopen(file, "rb");
+    assert_non_null(stream);
+    const size_t length = fread(bytes, 1, sizeof bytes, stream);
+    fclose(stream);
+    for (size_t k = 0; k < length; k++)
+        for (int flip = 1; flip <= 0x80; flip *= 0x80) {
+            bytes[k] = (char)(bytes[k] ^ flip);
+            temporary_folder_write(*state, "checkpoint.bin", bytes, length);
+            assert_refused(file, DIGEST, SPANS, k < 16 ? "not a checkpoint" : "is damaged");
+            assert_fails(checkpoint_load_span(file, DIGEST, 0, &(struct memory_span){bytes, 0}),
+                         STATUS_BAD_INPUT, "checkpoint.bin: ");
+            bytes[k] = (char)(bytes[k] ^ flip);
+        }
+}
+
+/// The checksum is the one of FNV-1a over all bytes before it, computed here on its own.
+static void test_checkpoint_save_ends_with_fnv_1a_of_the_file(void **state) {
+    unsigned char bytes[256];
+    FILE *stream = fopen(save(state), "rb");
+    assert_non_null(stream);
+    const size_t length = fread(bytes, 1, sizeof bytes, stream);
+    fclose(stream);
+    uint64_t expected = 14695981039346656037u, found;
+    for (size_t k = 0; k < length - 8; k++)
+        expected = (expected ^ bytes[k]) * 1099511628211u;
+    memcpy(&found, bytes + length - 8, 8);
+    assert_true(found == expected);
+}
+
+static void test_checkpoint_load_refuses_when_it_is_no_file(void **state) {
+    (void)state;
+    assert_fails(checkpoint_load("/dev/zero", DIGEST, NULL, 0), STATUS_IO,
+                 "/dev/zero: is a device");
+    assert_fails(checkpoint_load("/", DIGEST, NULL, 0), STATUS_IO, "/: is a folder");
 }
 
 static void test_checkpoint_load_span_finds_one_alone(void **state) {
@@ -149,6 +191,9 @@ int main(void) {
         TEST(test_checkpoint_load_refuses_when_the_settings_are_others),
         TEST(test_checkpoint_load_refuses_when_the_shape_is_another),
         TEST(test_checkpoint_load_refuses_when_the_file_is_cut_short),
+        TEST(test_checkpoint_load_refuses_when_any_byte_is_another),
+        TEST(test_checkpoint_save_ends_with_fnv_1a_of_the_file),
+        cmocka_unit_test(test_checkpoint_load_refuses_when_it_is_no_file),
         TEST(test_checkpoint_load_names_the_file_when_it_is_missing),
         TEST(test_checkpoint_save_names_the_file_when_it_cannot_be_written),
         TEST(test_checkpoint_digest_is_fnv_1a),

@@ -23,7 +23,7 @@ static enum status read(void **state, const char *table, const char *members,
     struct json_object object = json_child(&root, "rdf", true);
     assert_ok(target_read(target, &object, &units, 3));
     json_finish(&root);
-    return json_close(document);
+    return json_close(document, STATUS_OK);
 }
 
 static void assert_refused(void **state, const char *table, const char *members, const char *part) {

@@ -24,7 +24,7 @@ static enum status read_members(void **state, const char *members, struct target
     struct json_object object = json_child(&root, "etd", true);
     assert_ok(target_etd_read(target, &object));
     json_finish(&root);
-    return json_close(document);
+    return json_close(document, STATUS_OK);
 }
 
 /// Read a target of these tables with more members of its object.

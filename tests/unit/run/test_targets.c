@@ -40,7 +40,7 @@ static enum status read(void **state, const char *members, struct targets *targe
     assert_ok(targets_read(targets, &root, &box, &(struct composition){.types = 1, .count = {100}},
                            &units));
     json_finish(&root);
-    return json_close(document);
+    return json_close(document, STATUS_OK);
 }
 
 static void write_tables(void **state) {

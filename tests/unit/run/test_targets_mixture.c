@@ -37,7 +37,7 @@ static enum status read(void **state, const char *members, struct targets *targe
     struct json_object root = json_root(document);
     assert_ok(targets_read(targets, &root, &box, &binary, &units));
     json_finish(&root);
-    return json_close(document);
+    return json_close(document, STATUS_OK);
 }
 
 #define AA "\"A-A\": {\"file\": \"aa.tsv\"}"
@@ -113,7 +113,7 @@ static void test_targets_write_gives_a_mixture_back(void **state) {
     struct json_object root = json_root(document);
     assert_ok(targets_read(&again, &root, &box, &binary, &units));
     json_finish(&root);
-    assert_ok(json_close(document));
+    assert_ok(json_close(document, STATUS_OK));
     targets_goals(&again, false, &fitted, &compared);
     check_values(&compared);
     targets_clear(&t);

@@ -57,7 +57,35 @@ static void test_units_put_writes_nothing_when_there_are_none(void **state) {
     assert_ok(json_open(&document, file));
     struct json_object root = json_root(document);
     assert_false(json_has(&root, "physical"));
-    assert_ok(json_close(document));
+    assert_ok(json_close(document, STATUS_OK));
+}
+
+static enum status read_text(void **state, const char *text, struct units *units) {
+    struct json_document *document;
+    assert_ok(json_open(&document, temporary_folder_write(*state, "a.json", text, strlen(text))));
+    struct json_object root = json_root(document);
+    units_read(units, &root);
+    json_finish(&root);
+    return json_close(document, STATUS_OK);
+}
+
+#define UNITS(length, temperature, mass)                                                           \
+    "{\"units\": {\"length\": " length ", \"temperature\": " temperature ", \"mass\": " mass "}}"
+
+/// Each number is a number, but what follows from it is not.
+static void test_units_read_refuses_when_no_number_can_hold_what_follows(void **state) {
+    static const char *const bad[] = {UNITS("0.5", "300", "1e308"), UNITS("1e150", "300", "1e-26"),
+                                      UNITS("1.7e308", "300", "1e-26"),
+                                      UNITS("1e-120", "300", "1e-26"),
+                                      UNITS("0.5", "1e308", "1e-320")};
+    struct units units;
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
+        assert_fails(read_text(state, bad[k], &units), STATUS_BAD_INPUT,
+                     "a.json: units: no numbers can hold");
+    assert_ok(read_text(state, UNITS("0.465", "298", "2.992e-26"), &units));
+    assert_close(units_time_ps(&units), 1.2540, 0.00005);
+    assert_ok(read_text(state, "{}", &units));
+    assert_false(units_known(&units));
 }
 
 #define TEST(name)                                                                                 \
@@ -67,6 +95,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_units_of_water_are_those_of_the_literature),
         cmocka_unit_test(test_units_scale_as_their_formulas),
+        TEST(test_units_read_refuses_when_no_number_can_hold_what_follows),
         TEST(test_units_put_writes_results_in_physical_units),
         TEST(test_units_put_writes_nothing_when_there_are_none),
     };
