@@ -75,7 +75,8 @@ struct inversion {
         bool anew; ///< the replicas are placed anew
         uint64_t evaluations, sweeps;
         double damping;
-        struct goal_distance best[GOALS]; ///< rms of g infinite: there is none yet
+        struct goal_distance best[GOALS];  ///< rms of g infinite: there is none yet
+        struct goal_distance least[GOALS]; ///< nearest so far, of all that was kept
         double best_own_noise, best_disagreement;
         double first_error, second_error; ///< of g, in the first two iterations from a start
     } progress;
@@ -112,6 +113,12 @@ double inversion_target_g(const struct inversion *inversion, size_t bin);
 
 /// The linear equations of the present samples, for g(r) alone.
 struct imc_system inversion_system(const struct inversion *inversion);
+
+/// Whether the present potential is kept: unless it is farther from the targets than the nearest so
+/// far, by two of the present noises. The nearest, not the last: samples are no more precise than a
+/// third of the error, so that each could be 1.67 times as far as the one before, and so on.
+/// Remembers the nearest. Tested: test_inversion_keeps.
+bool inversion_keeps(struct inversion *inversion);
 
 /// Fill phi with the start of the fit: the problem's own, the hypernetted chain's, or −k_B T ln g;
 /// what is made of the target is as smooth as its errors allow (imc_solve), since noise of bins

@@ -190,14 +190,23 @@ static void go_back(struct inversion *inversion) {
     progress->damping = inversion->settings.common.damping;
 }
 
-/// Keep the present potential, or go back if it is worse than the best by more than chance.
+bool inversion_keeps(struct inversion *inversion) {
+    struct inversion_progress *progress = &inversion->progress;
+    const double now = count_noises(inversion, inversion->distance);
+    const double least =
+        isinf(progress->best[GOAL_RDF].rms) ? INFINITY : count_noises(inversion, progress->least);
+    if (now < least)
+        memcpy(progress->least, inversion->distance, sizeof progress->least);
+    return now <= least + 2;
+}
+
+/// Keep the present potential, or go back if it is worse than the nearest by more than chance.
 /// Replicas that a worse potential may have frozen or torn apart are not gone on with.
 static enum status judge(struct inversion *inversion, bool *kept) {
     struct inversion_progress *progress = &inversion->progress;
     const double error = inversion->distance[GOAL_RDF].rms;
     const bool start = isinf(progress->best[GOAL_RDF].rms);
-    *kept =
-        count_noises(inversion, inversion->distance) <= count_noises(inversion, progress->best) + 2;
+    *kept = inversion_keeps(inversion);
     progress->anew = !*kept;
     if (start)
         progress->first_error = progress->second_error = error;
