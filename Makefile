@@ -6,6 +6,7 @@
 # make check-physics  laws and exact limits (minutes)
 # make check-stress   time steps, friction, tables, sizes and lengths beyond the ordinary (minutes)
 # make asan           the whole test suite under address and undefined-behaviour sanitizers
+# make fuzz           damaged files, SECONDS=600 of them: every reader (libFuzzer, needs clang), whole runs
 # make lint           formatting, static analysis, layers, names, licence lines
 # make bench          speed of the engine on this machine, to tests/bench/results
 # make WERROR=1 …     warnings are errors
@@ -33,7 +34,7 @@ OBJECTS  = $(SOURCES:%.c=$(BUILD)/%.o)
 LIBRARY  = $(BUILD)/libmesofit.a
 PROGRAM  = $(BUILD)/mesofit
 
-.PHONY: all check check-physics check-stress asan lint bench clean
+.PHONY: all check check-physics check-stress asan fuzz lint bench clean
 all: $(PROGRAM) mesofit
 
 mesofit: $(PROGRAM)
@@ -89,11 +90,39 @@ $(KILL_HOOK): tests/stress/hooks/kill_at.c
 	$(AT)$(CC) -std=c11 -O1 -fPIC -shared $(WARN) -o $@ $< -ldl
 
 check-stress: all $(STRESS) $(KILL_HOOK)
+	$(MAKE) SECONDS=60 fuzz-programs
 	KILL_HOOK=$(abspath $(KILL_HOOK)) MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(STRESS)
 
+ASAN = $(MAKE) BUILD=build/asan SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=all" \
+	    CFLAGS="-O1 -g -fno-omit-frame-pointer"
 asan:
-	$(MAKE) BUILD=build/asan SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=all" \
-	    CFLAGS="-O1 -g -fno-omit-frame-pointer" check-all
+	$(ASAN) check-all
+
+# Fuzzing. The readers belong to a few layers, which clang builds anew; the rest is as it always is.
+FUZZED  = $(wildcard src/base/*.c src/curves/*.c src/io/*.c src/run/*.c) src/system/composition.c \
+          tests/fuzz/fuzz_readers.c
+READERS = build/fuzz/readers
+MUTATE  = build/fuzz/mutate
+SECONDS ?= 600
+
+fuzz: $(READERS) fuzz-programs
+	tests/fuzz/readers.sh $(READERS) $$(($(SECONDS) / 2))
+
+# Whole runs, half of the time.
+.PHONY: fuzz-programs
+fuzz-programs: $(MUTATE)
+	$(ASAN) build/asan/mesofit
+	tests/fuzz/programs.sh build/asan/mesofit $(MUTATE) $$(($(SECONDS) / 2))
+
+$(READERS): $(LIBRARY)
+	@command -v clang >/dev/null || { echo "make fuzz needs clang (Debian package clang)"; exit 1; }
+	$(MAKE) BUILD=build/fuzz CC=clang SANITIZE="-fsanitize=address,undefined,fuzzer-no-link" \
+	    CFLAGS="-O1 -g -Wno-unknown-warning-option -fopenmp=libgomp" $(FUZZED:%.c=build/fuzz/%.o)
+	clang -fsanitize=address,undefined,fuzzer -o $@ $(FUZZED:%.c=build/fuzz/%.o) $(LIBRARY) -lgomp $(LDLIBS)
+
+$(MUTATE): tests/fuzz/mutate.c Makefile
+	@mkdir -p $(@D)
+	$(AT)$(CC) -std=c11 -O2 $(WARN) -o $@ $<
 
 .PHONY: check-all
 check-all: $(PROGRAM) $(TESTS)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The wish to stop, seen by every long loop: of the user (Ctrl-C), of the system (SIGTERM),
+/// @file The wish to stop, seen by every long loop: the user's (Ctrl-C), the machine's (SIGTERM),
 /// or since nobody listens any more (SIGHUP, SIGPIPE).
 #pragma once
 

@@ -37,7 +37,13 @@ struct fit_file {
     struct input_files inputs;
 };
 
-/// Read and check a run file. Fails: BAD_INPUT with all faults; IO; NO_MEMORY.
+/// Read a run file and those that it names, each for itself. Fails: BAD_INPUT with all faults; IO;
+/// NO_MEMORY. Tested: tests/fuzz.
+enum status fit_file_parse(struct fit_file *fit, const char *file,
+                           const struct run_options *options) MUST_USE;
+
+/// Read a run file and check how its parts fit together, by beginning a simulation. Fails:
+/// BAD_INPUT with all faults; IO; NO_MEMORY.
 enum status fit_file_read(struct fit_file *fit, const char *file,
                           const struct run_options *options) MUST_USE;
 void fit_file_clear(struct fit_file *fit);

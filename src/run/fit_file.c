@@ -314,8 +314,8 @@ static void state_problem(struct fit_file *fit, const struct run_options *option
                   &problem->compared);
 }
 
-enum status fit_file_read(struct fit_file *fit, const char *file,
-                          const struct run_options *options) {
+enum status fit_file_parse(struct fit_file *fit, const char *file,
+                           const struct run_options *options) {
     *fit = (struct fit_file){0};
     struct json_document *document;
     TRY(json_open(&document, file));
@@ -329,6 +329,12 @@ enum status fit_file_read(struct fit_file *fit, const char *file,
     if (options->has_seed)
         fit->heading.seed = options->seed;
     state_problem(fit, options);
+    return STATUS_OK;
+}
+
+enum status fit_file_read(struct fit_file *fit, const char *file,
+                          const struct run_options *options) {
+    TRY(fit_file_parse(fit, file, options));
     return check(fit, file);
 }
 

@@ -13,6 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 enum {
@@ -74,12 +75,19 @@ static const char *last_line(char *text) {
     return newline ? newline + 1 : text;
 }
 
-static int wait_for(pid_t child) {
-    int state = 0;
-    while (waitpid(child, &state, 0) < 0)
-        if (errno != EINTR)
-            return -1;
-    return state;
+/// Wait until a program has ended, which one that has closed its streams may not have; false if it
+/// has not in time.
+static bool wait_for(pid_t child, double end, int *state) {
+    const struct timespec pause = {.tv_nsec = 2000000};
+    for (;;) {
+        const pid_t ended = waitpid(child, state, isinf(end) ? 0 : WNOHANG);
+        if (ended == child || (ended < 0 && errno != EINTR))
+            return true;
+        if (ended == 0 && time_left(end) == 0)
+            return false;
+        if (ended == 0)
+            nanosleep(&pause, NULL);
+    }
 }
 
 /// What became of a program that has ended.
@@ -105,16 +113,18 @@ enum status program_run(const char *folder, const char *const *words, enum progr
         become(folder, words, says, ends);
     const int error = errno;
     close(ends[1]);
-    const bool ended = child > 0 && read_tail(ends[0], end, text, size);
+    int state = -1;
+    const bool ended =
+        child > 0 && read_tail(ends[0], end, text, size) && wait_for(child, end, &state);
     close(ends[0]);
     if (child < 0)
         return status_fail(STATUS_IO, "cannot run %s: %s", words[0], strerror(error));
-    if (!ended)
+    if (!ended) {
         kill(-child, SIGKILL); // with the programs that it has started
-    const int state = wait_for(child);
-    if (!ended)
+        wait_for(child, INFINITY, &state);
         return status_fail(STATUS_IO, "%s had not ended after %g s and was stopped", words[0],
                            seconds);
+    }
     return judge(words[0], state, text);
 }
 

@@ -61,10 +61,11 @@ static void test_program_run_says_why_when_the_program_fails(void **state) {
 /// A program that waits for ever, and one whose child does and keeps the pipe open: both are
 /// stopped.
 static void test_program_run_stops_what_takes_too_long(void **state) {
-    static const char *const scripts[] = {"exec sleep 1000", "sleep 1000 & echo $!; wait"};
+    static const char *const scripts[] = {"exec sleep 1000", "exec >&- 2>&-; sleep 1000",
+                                          "sleep 1000 & echo $!; wait"};
     char text[TEXT_SIZE];
     (void)state;
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 3; k++) {
         const char *const words[] = {"sh", "-c", scripts[k], NULL};
         const double begun = clock_seconds();
         assert_fails(program_run("/", words, PROGRAM_EVERYTHING, 0.3, text, sizeof text), STATUS_IO,

@@ -1,0 +1,45 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+#
+# readers.sh HARNESS SECONDS: libFuzzer on every reader, beginning with the files of tests/fuzz/corpus
+# and of earlier runs, which stay beside the harness with what it finds.
+set -eu
+
+place=$(dirname "$1")/corpus
+mkdir -p "$place"
+
+# add KIND FILE…: the first byte of an input says who reads it (fuzz_readers.c).
+add() {
+    kind=$1
+    shift
+    for file; do
+        { printf '%s' "$kind" && cat "$file"; } >"$place/$kind-$(echo "$file" | tr / -)"
+    done
+}
+cd "$(dirname "$0")/../.."
+corpus=tests/fuzz/corpus
+place=$(realpath "$place")
+add t $corpus/*/*.tsv
+add v $corpus/fit-votca/target.dist.tgt tests/reference_data/votca/*/*.dpot.imc
+add s $corpus/*/scene.json
+add r $corpus/*/run.json
+printf 'cmesofit state 2' >"$place/c-head"
+for kind in 1 2 3 4 5; do
+    add $kind $corpus/fit/target.tsv $corpus/simulate/potential.tsv
+done
+printf '0{"status": "ok", "method": "imc", "seconds": 1.5, "rdf_rmse": 0.1, "pressure": null}' >"$place/0-summary"
+
+[ -n "${TMPDIR:-}" ] || ! [ -w /dev/shm ] || export TMPDIR=/dev/shm # files by the ten thousand
+report=$(mktemp)
+trap 'rm -f "$report"' EXIT
+status=0
+ASAN_OPTIONS=allocator_may_return_null=1:max_allocation_size_mb=1024 \
+    "$1" -max_total_time="$2" -timeout=20 -rss_limit_mb=4096 -malloc_limit_mb=1024 -max_len=16384 \
+    -artifact_prefix="$(dirname "$place")/finding-" -print_final_stats=1 "$place" >"$report" 2>&1 ||
+    status=$?
+if [ $status -ne 0 ]; then
+    tail -40 "$report"
+    echo "readers: a finding, kept in $(dirname "$place")"
+    exit 1
+fi
+echo "readers: $(sed -n 's/^stat::number_of_executed_units: *//p' "$report") files read in $2 s, no finding"
