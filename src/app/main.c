@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/nearest.h"
 #include "mesofit.h"
+#include "run/program.h"
 
 #include <errno.h>
 #include <gsl/gsl_errno.h>
@@ -12,7 +13,6 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static const struct command *const commands[] = {&cmd_simulate, &cmd_fit,      &cmd_plot,
                                                  &cmd_compare,  &cmd_describe, &cmd_bench};
@@ -195,18 +195,6 @@ static void install_handlers(void) {
     interrupt_install();
 }
 
-/// Threads of libgomp wait for each other turning in circles, for so long that two of them on busy
-/// cores are 15 to 60 times slower than one. A thousand turns, a dozen microseconds, bridge what
-/// one thread of an idle machine is behind another; then they sleep. libgomp reads this when it is
-/// loaded, so the program begins again, once, unless the user has chosen. Without /proc it goes on
-/// as it is. Tested: test_waiting; measured by tests/bench/busy_cores.sh.
-static void wait_briefly(char **words) {
-    if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT"))
-        return;
-    if (setenv("GOMP_SPINCOUNT", "1000", 1) == 0)
-        execv("/proc/self/exe", words);
-}
-
 int main(int count, char **words) {
     if (count < 2 || asks_for(count, words, "--help")) {
         print_help();
@@ -216,7 +204,7 @@ int main(int count, char **words) {
         printf("mesofit " MESOFIT_VERSION "\n");
         return 0;
     }
-    wait_briefly(words);
+    program_begin_again(words);
     install_handlers();
     memory_keep();
     const enum status status = run(count - 1, words + 1);
