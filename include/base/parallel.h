@@ -2,9 +2,10 @@
 /// @file Loops shared between threads.
 ///
 /// Threads meet a dozen times in a step, and libgomp lets them turn in circles until all are there:
-/// on busy cores for longer than the work takes. The program mesofit sets GOMP_SPINCOUNT for
-/// itself; another one that uses the library with threads is started with GOMP_SPINCOUNT=1000 or
-/// OMP_WAIT_POLICY=passive in its environment, which are read before its main begins.
+/// on busy cores for longer than the work takes. The program mesofit (program_begin_again) sets
+/// GOMP_SPINCOUNT for itself; another one that uses the library with threads is started with
+/// GOMP_SPINCOUNT=1000 or OMP_WAIT_POLICY=passive in its environment, which are read before its
+/// main begins.
 #pragma once
 
 #include <stddef.h>

@@ -2,7 +2,7 @@
 /// @file Metropolis Monte Carlo of one configuration.
 ///
 /// N. Metropolis et al., J. Chem. Phys. 21, 1087 (1953): each sweep tries to move every particle
-/// once, in the order of the arrays, by a uniform random vector of a cube. Same particles, same
+/// once, in the order of their ids, by a uniform random vector of a cube. Same particles, same
 /// neighbour search and same tables as the dynamics.
 #pragma once
 

@@ -30,3 +30,11 @@ enum status program_run(const char *folder, const char *const *words, enum progr
 /// Fails: IO. Tested: test_program.
 enum status program_find_folder(char *path, size_t size, const char *name,
                                 const char *file) MUST_USE;
+
+/// Begin this program again, with other waiting: threads of libgomp wait for each other turning in
+/// circles, for so long that two of them on busy cores are 15 to 60 times slower than one. A
+/// thousand turns, a dozen microseconds, bridge what one thread of an idle machine is behind
+/// another; then they sleep. libgomp reads this when it is loaded, so the program begins again,
+/// once, unless the user has chosen. Without /proc it goes on as it is. Tested: test_waiting;
+/// measured by tests/bench/busy_cores.sh.
+void program_begin_again(char **words);

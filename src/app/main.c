@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/nearest.h"
 #include "mesofit.h"
+#include "run/program.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -202,18 +203,6 @@ static void install_handlers(void) {
     interrupt_install();
 }
 
-/// Threads of libgomp wait for each other turning in circles, for so long that two of them on busy
-/// cores are 15 to 60 times slower than one. A thousand turns, a dozen microseconds, bridge what
-/// one thread of an idle machine is behind another; then they sleep. libgomp reads this when it is
-/// loaded, so the program begins again, once, unless the user has chosen. Without /proc it goes on
-/// as it is. Tested: test_waiting; measured by tests/bench/busy_cores.sh.
-static void wait_briefly(char **words) {
-    if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT"))
-        return;
-    if (setenv("GOMP_SPINCOUNT", "1000", 1) == 0)
-        execv("/proc/self/exe", words);
-}
-
 /// A file that is opened must not become what a closed stream was: what is said would go into it.
 static void occupy_streams(void) {
     int file = STDIN_FILENO;
@@ -251,7 +240,7 @@ static enum status act(int count, char **words) {
         print_help();
         return status_fail(STATUS_BAD_INPUT, "give one of these commands");
     }
-    wait_briefly(words);
+    program_begin_again(words);
     return run(count - 1, words + 1);
 }
 

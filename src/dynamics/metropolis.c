@@ -105,12 +105,21 @@ static enum status refresh_if_needed(struct metropolis *metropolis) {
     return stale ? metropolis_refresh(metropolis) : STATUS_OK;
 }
 
+/// In the order of ids. Each move leaves the canonical distribution as it is, and so do moves in
+/// any order that is chosen without looking at the places, whenever the list is built. In the order
+/// of the arrays, which are sorted by place, it would not: which kernel acts depends on the state,
+/// and what is sorted so before each sweep (three particles on a ring of six sites, all 216 states)
+/// has an energy 0.4 % too high and single states off by 16 % of the largest probability.
 static enum status sweep(struct metropolis *metropolis) {
+    const struct particles *particles = &metropolis->particles;
     if (interrupt_requested())
         return status_fail(STATUS_INTERRUPTED, "interrupted");
     TRY(refresh_if_needed(metropolis));
-    for (size_t k = 0; k < metropolis->particles.count; k++)
-        try_move(metropolis, k);
+    uint32_t *place = particles->spare_words; // of each id
+    for (size_t k = 0; k < particles->count; k++)
+        place[particles->id[k]] = (uint32_t)k;
+    for (size_t id = 0; id < particles->count; id++)
+        try_move(metropolis, place[id]);
     metropolis->sweep++;
     return STATUS_OK;
 }

@@ -11,6 +11,7 @@
 #include <signal.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -152,4 +153,11 @@ enum status program_find_folder(char *path, size_t size, const char *name, const
             return STATUS_OK;
     }
     return status_fail(STATUS_IO, "no folder %s with %s near the program", name, file);
+}
+
+void program_begin_again(char **words) {
+    if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT"))
+        return;
+    if (setenv("GOMP_SPINCOUNT", "1000", 1) == 0)
+        execv("/proc/self/exe", words);
 }

@@ -79,6 +79,9 @@ static void measure_monte_carlo(const struct simulation_setup *setup, const stru
     const struct pair_law law = {.potential = setup->potential};
     const size_t count = (size_t)setup->placement.count;
     struct metropolis metropolis;
+    double slope;
+    table_evaluate(setup->potential, setup->potential->cutoff * (1 - 1e-9), NULL, &slope, NULL);
+    const double edge = setup->potential->cutoff * fabs(slope);
     measurement_init(measurement);
     assert_ok(metropolis_init(&metropolis, &setup->box,
                               &(struct composition){.types = 1, .count = {(int64_t)count}},
@@ -96,10 +99,11 @@ static void measure_monte_carlo(const struct simulation_setup *setup, const stru
             assert_ok(rdf_sample(&rdf, &metropolis.particles, &metropolis.neighbours));
             reference_forces(&law, &metropolis.particles, 0, &sums);
             energy += sums.energy;
-            // Distances are rounded to single precision before the table is read.
+            // Distances are rounded to single precision before the table is read, so that a pair
+            // may be on the other side of the cutoff, where the force ends abruptly.
             uint32_t counts[2] = {0};
             metropolis_count(&metropolis, &(struct pair_histogram){0, 1, 1, 0, counts}, &fast);
-            assert_close(fast.virial, sums.virial, 1e-4 * (double)count);
+            assert_close(fast.virial, sums.virial, 1e-4 * (double)count + edge);
         }
         add_block(measurement, energy, &rdf);
         rdf_clear(&rdf);
