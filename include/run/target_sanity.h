@@ -28,7 +28,8 @@ struct target_sanity_listener {
 enum status target_sanity_check(const struct targets *targets, const struct scene *scene,
                                 const char *file) MUST_USE;
 
-/// Tell a line for each g(r), where its errors and bins come from, and warnings.
+/// Tell a line for each g(r) as it is given, where its errors and bins come from, warnings, and the
+/// normalisation if one was found.
 ///
 /// Warned of are: 1 + ρG below zero, but not with 1.03 g, so that the normalisation may be off;
 /// layers, a minimum below 0.95 and a second maximum, of fewer than four neighbours up to that
@@ -38,7 +39,3 @@ enum status target_sanity_check(const struct targets *targets, const struct scen
 /// Tested: test_target_sanity.
 enum status target_sanity_tell(const struct targets *targets, const struct scene *scene,
                                const struct target_sanity_listener *listener) MUST_USE;
-
-/// Tell the factor that was found, if there is one.
-void target_sanity_tell_normalisation(const struct normalisation *normalisation,
-                                      const struct target_sanity_listener *listener);

@@ -34,6 +34,7 @@ struct targets {
     size_t pairs;                              ///< kinds of its pairs
     /// Of all, one behind the other, in the numbers of the scene: shape [pairs, bins].
     double *rdf_g, *rdf_error;
+    double *rdf_given;                  ///< g before it was divided by its normalisation
     struct normalisation normalisation; ///< by which those that do not say theirs are divided
     struct target_etd etd;
     struct target_curve vacf, msd;

@@ -141,25 +141,21 @@ static void say_line(void *progress, const char *line) {
     progress_say(progress, "%s", line);
 }
 
-/// Tell what is to be fitted, so that a wrong column or unit is seen before the work, and find its
-/// normalisation.
-static enum status look_at_targets(struct run *run) {
+/// What is to be fitted, so that a wrong column or unit is seen before the work.
+static enum status tell_targets(struct run *run) {
     const struct target_etd *etd = &run->fit.targets.etd;
     if (etd->left_out > 0)
         progress_say(&run->progress,
                      "target.etd: %zu of %zu cells of the target are not known and left out",
                      etd->left_out, (size_t)(etd->grid.times * etd->grid.bins));
-    const struct target_sanity_listener listener = {say_line, &run->progress};
-    TRY(target_sanity_tell(&run->fit.targets, &run->fit.scene, &listener));
-    TRY(targets_normalise(&run->fit.targets, &run->fit.scene.setup.box));
-    target_sanity_tell_normalisation(&run->fit.targets.normalisation, &listener);
-    return STATUS_OK;
+    return target_sanity_tell(&run->fit.targets, &run->fit.scene,
+                              &(struct target_sanity_listener){say_line, &run->progress});
 }
 
 static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
     TRY(fit_file_read(&run->fit, file, options));
     TRY(run_folder_open(&run->folder, file, &run->fit.inputs, options));
-    TRY(look_at_targets(run));
+    TRY(targets_normalise(&run->fit.targets, &run->fit.scene.setup.box));
     const enum status status = create(run);
     if (status != STATUS_OK)
         return status_prefix(status, "%s", file);
@@ -167,7 +163,8 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
     TRY(run_folder_begin(&run->folder, options->resume));
     TRY(write_used(run, options->resume));
     // Saved now, so that a run interrupted in its first iteration can be resumed like any other.
-    return options->resume ? load(run) : save(run);
+    TRY(options->resume ? load(run) : save(run));
+    return tell_targets(run);
 }
 
 /// Progress inside an iteration, and a checkpoint now and then.

@@ -72,16 +72,15 @@ enum status fit_explain(const char *file, const struct run_options *options) {
     struct fit_file fit;
     struct decoder decoder = {0};
     struct decoder_laws laws = {0};
-    const struct target_sanity_listener listener = {print_line, stdout};
     double *genes = NULL;
     CHECK(fit_file_read(&fit, file, options));
     CHECK(decoder_init(&decoder, &fit.problem));
     NEW_ARRAY(genes, decoder.genes);
     CHECK(decoder_start(&decoder, genes));
     CHECK(decoder_laws(&decoder, genes, &laws));
-    CHECK(target_sanity_tell(&fit.targets, &fit.scene, &listener));
     CHECK(targets_normalise(&fit.targets, &fit.scene.setup.box));
-    target_sanity_tell_normalisation(&fit.targets.normalisation, &listener);
+    CHECK(target_sanity_tell(&fit.targets, &fit.scene,
+                             &(struct target_sanity_listener){print_line, stdout}));
     print_simulations(&fit, &laws);
 done:
     decoder_laws_clear(&laws);

@@ -48,7 +48,7 @@ static struct view view_of(const struct targets *targets, const struct scene *sc
     struct view view = {.name = "rdf",
                         .target = &targets->rdf[pair],
                         .bins = &targets->rdf[0].bins,
-                        .g = targets->rdf_g + pair * bins,
+                        .g = targets->rdf_given + pair * bins,
                         .error = targets->rdf_error + pair * bins,
                         .scene = scene};
     int type[2];
@@ -320,11 +320,12 @@ static void warn_of_density(const struct view *view,
             view->name, density, core);
 }
 
-void target_sanity_tell_normalisation(const struct normalisation *n,
-                                      const struct target_sanity_listener *listener) {
+static void tell_normalisation(const struct normalisation *n,
+                               const struct target_sanity_listener *listener) {
     if (n->found)
         say(listener,
-            "target.rdf: g is too %s as a whole, by a factor of %.4f(%.0f), by which it is divided; "
+            "target.rdf: g is too %s as a whole, by a factor of %.4f(%.0f), by which it is "
+            "divided; "
             "\"normalisation\" of the target sets another, 1 for none",
             n->factor > 1 ? "large" : "small", n->factor, ceil(n->error * 1e4));
 }
@@ -338,6 +339,7 @@ enum status target_sanity_tell(const struct targets *targets, const struct scene
         TRY(warn_of_normalisation(&view, listener));
         warn_of_density(&view, listener);
     }
+    tell_normalisation(&targets->normalisation, listener);
     if (scene->setup.temperature > hot && !units_known(&scene->units))
         say(listener,
             "mesofit: warning: scene.temperature: %g in units of k_B T_0, which is 1 as a rule; "

@@ -6,6 +6,7 @@
 #include "run/checkpoint.h"
 
 #include <math.h>
+#include <string.h>
 
 /// Origins of escape windows are this many sampling intervals apart in a fit's simulations.
 static const double origin_intervals = 10;
@@ -155,9 +156,11 @@ static enum status collect_rdf(struct targets *targets, const struct box *box) {
             return STATUS_OK;
     NEW_ARRAY(targets->rdf_g, targets->pairs * bins);
     NEW_ARRAY(targets->rdf_error, targets->pairs * bins);
+    NEW_ARRAY(targets->rdf_given, targets->pairs * bins);
     for (size_t pair = 0; pair < targets->pairs; pair++)
         target_convert(&targets->rdf[pair], box, &targets->composition, (int)pair,
                        targets->rdf_g + pair * bins, targets->rdf_error + pair * bins);
+    memcpy(targets->rdf_given, targets->rdf_g, targets->pairs * bins * sizeof(double));
 done:
     return status;
 }
@@ -240,6 +243,7 @@ void targets_clear(struct targets *targets) {
         target_clear(&targets->rdf[pair]);
     memory_free(targets->rdf_g);
     memory_free(targets->rdf_error);
+    memory_free(targets->rdf_given);
     target_etd_clear(&targets->etd);
     memory_free(targets->vacf.value);
     memory_free(targets->vacf.error);

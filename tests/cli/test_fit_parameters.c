@@ -123,7 +123,7 @@ static void test_every_method_fits_sigma_alone(void **state) {
             small_inputs_write(*state, "run.json", text, MSD,
                                MSD ", \"diffusion\": {\"value\": 0.233}");
         free(text);
-        RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--quiet");
+        RUN_PROGRAM(&result, "fit", "run.json", "--force", "-o", "out", "--quiet");
         run_program_assert_code(&result, 0);
         const double sigma = parameter("out/summary.json", "sigma", "value");
         assert_true(sigma > 2 && sigma < 4);

@@ -120,7 +120,7 @@ static void test_doc_tells_of_all_that_runs_leave(void **state) {
     check_folder("scene");
     for (size_t k = 0; k < sizeof fits / sizeof *fits; k++) {
         small_inputs_write(*state, fits[k].file, fits[k].text, NULL, NULL);
-        RUN_PROGRAM(&result, "fit", fits[k].file, "-o", "fit", "--quiet");
+        RUN_PROGRAM(&result, "fit", fits[k].file, "-o", "fit", "--force", "--quiet");
         if (result.code != 0)
             run_program_assert_code(&result, 1); // not converged
         check_folder("fit");

@@ -192,15 +192,16 @@ int run_program_in_pieces(int code, const char *const *words) {
     static struct run_program_result result;
     enum { MOST_PIECES = 12, INTERRUPTED = 130 };
     const double shortest = 1e-5, longest = 0.05;
-    const char *resumed[MOST_WORDS] = {NULL};
+    const char *begun[MOST_WORDS] = {NULL}, *resumed[MOST_WORDS] = {NULL};
     int count = 0;
     for (; words[count]; count++)
-        resumed[count] = words[count];
+        begun[count] = resumed[count] = words[count];
+    begun[count] = "--force"; // an attempt that came too late has left its results
     resumed[count] = "--resume";
     for (double first = longest; first > shortest; first /= 3) {
         for (int piece = 0; piece < MOST_PIECES; piece++) {
             const struct run_program_how how = {.interrupt_after = first * (1 << piece)};
-            run_program(&result, &how, piece ? resumed : words);
+            run_program(&result, &how, piece ? resumed : begun);
             if (result.code != INTERRUPTED) {
                 run_program_assert_code(&result, code);
                 if (piece == 0)

@@ -111,6 +111,8 @@ static void check_all_sets(const struct fluid *fluid) {
     assert_ok(metropolis_init(&metropolis, &fluid->setup.box, &fluid->setup.composition,
                               &fluid->potential, fluid->setup.temperature, 3));
     assert_ok(metropolis_equilibrate(&metropolis, 60));
+    // A list has room for the moves of the sweep that it was looked at for, and no more.
+    assert_ok(metropolis_refresh(&metropolis));
     for (int s = 0; s < 3; s++) {
         if (!simd_select(sets[s]))
             continue;
