@@ -17,6 +17,7 @@
 #pragma once
 
 #include "inverse/inversion_band.h"
+#include "inverse/inversion_drift.h"
 #include "inverse/inversion_pressure.h"
 #include "inverse/potential_grid.h"
 #include "inverse/replicas.h"
@@ -77,6 +78,7 @@ struct inversion {
         double damping;
         struct goal_distance best[GOALS];  ///< rms of g infinite: there is none yet
         struct goal_distance least[GOALS]; ///< nearest so far, of all that was kept
+        struct inversion_drift drift;      ///< of the potentials sampled since the start
         double best_own_noise, best_disagreement;
         double first_error, second_error; ///< of g, in the first two iterations from a start
     } progress;
@@ -137,6 +139,9 @@ void inversion_reason_tell(const struct inversion *inversion, char reason[INVERS
 
 /// Error at or below this many times the noise of target and measurement counts as none.
 extern const double inversion_noise_margin;
+
+/// Whether the ramp of the potential grows without end; never with a pressure, which holds it.
+bool inversion_runs_away(const struct inversion *inversion);
 
 /// Damping below this part of the first: the step leads nowhere, and the fit ends.
 extern const double inversion_least_damping;

@@ -229,6 +229,7 @@ static enum status go_on(struct inversion *inversion, bool kept) {
         return STATUS_OK;
     }
     progress->best[GOAL_RDF].rms = INFINITY;
+    progress->drift.count = 0;
     progress->damping = inversion->settings.common.damping;
     progress->anew = true;
     return inversion_start_again(inversion);
@@ -242,6 +243,26 @@ static bool meets_targets(const struct inversion *inversion) {
                 inversion_noise_margin * inversion->distance[kind].noise)
             return false;
     return true;
+}
+
+bool inversion_runs_away(const struct inversion *inversion) {
+    return !goals_ask(&inversion->problem->goals, GOAL_PRESSURE) &&
+           inversion_drifts(&inversion->progress.drift, inversion->problem->scene.temperature);
+}
+
+/// Amplitude A of the present potential's ramp over the well-known bins.
+static double find_ramp(const struct inversion *inversion) {
+    const struct potential_grid *grid = &inversion->grid;
+    double product = 0, squares = 0;
+    for (size_t a = 0; a < grid->known; a++) {
+        const size_t point = grid->known_point[a];
+        const double ramp = potential_grid_ramp(grid, point);
+        if (!potential_grid_well_known(inversion->problem, grid->known_bin[a]))
+            continue;
+        product += ramp * inversion->phi[point];
+        squares += ramp * ramp;
+    }
+    return product / squares;
 }
 
 static void describe(const struct inversion *inversion, const double *own, bool converged,
@@ -264,7 +285,8 @@ static void describe(const struct inversion *inversion, const double *own, bool 
         .without_ramp = inversion->band.without_ramp,
         .ramp = inversion->band.ramp,
         .converged = converged,
-        .finished = converged || stuck || progress->iteration + 1 >= p->iterations,
+        .finished = converged || stuck || inversion_runs_away(inversion) ||
+                    progress->iteration + 1 >= p->iterations,
     };
     memcpy(step->extra + INVERSION_SHARED_COLUMNS, own, INVERSION_OWN_COLUMNS * sizeof *own);
     if (step->finished && !converged)
@@ -281,6 +303,7 @@ enum status inversion_iterate(void *memory, struct inverse_step *step,
     TRY(assess_response(inversion));
     inversion->other_step[inversion->grid.known_point[0]] = NAN;
     TRY(inversion->method->update(inversion, own));
+    inversion_drift_add(&progress->drift, find_ramp(inversion), inversion->distance[GOAL_RDF].rms);
     TRY(judge(inversion, &kept));
     const bool precise = inversion->own_noise <= inversion->settings.common.precision;
     describe(inversion, own, kept && precise && meets_targets(inversion), step);

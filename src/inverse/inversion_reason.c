@@ -16,7 +16,14 @@ void inversion_reason_tell(const struct inversion *inversion, char reason[INVERS
     const bool stuck = p->damping < inversion_least_damping * settings->damping;
     const bool agrees = rdf->rms <= inversion_noise_margin * rdf->noise;
     const double improved = rdf->rms / p->first_error;
-    if (!agrees && p->best_disagreement > frozen)
+    if (!agrees && inversion_runs_away(inversion))
+        snprintf(
+            reason, INVERSE_REASON_SIZE,
+            "the ramp A (1 - r/cutoff) of the potential goes on and on, by %.2g k_B T_0 in four "
+            "iterations, and the error of g stays at %.2g: no potential makes this target; its "
+            "\"normalisation\", density or cutoff is wrong",
+            inversion_drift_way(&p->drift), rdf->rms);
+    else if (!agrees && p->best_disagreement > frozen)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "the error of g is %.2g, and the replicas do not agree on it: their means scatter "
                  "%.1f times as much as the samples within them explain. They are frozen, or need "

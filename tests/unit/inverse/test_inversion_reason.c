@@ -89,8 +89,23 @@ static void test_inversion_reason_is_frozen_replicas_when_they_disagree(void **s
     assert_says(&inversion, "after 30 iterations");
 }
 
+static void test_inversion_reason_is_a_ramp_that_runs_away(void **state) {
+    (void)state;
+    struct inverse_problem problem;
+    struct inversion inversion = make_inversion(&problem, 0.0117, false);
+    problem.scene.temperature = 1;
+    for (int k = 0; k < INVERSION_DRIFT_MEMORY; k++)
+        inversion_drift_add(&inversion.progress.drift, 0.9 * k, 0.012);
+    assert_says(&inversion, "by 3.6 k_B T_0 in four iterations");
+    assert_says(&inversion, "\"normalisation\"");
+    // A pressure holds the ramp.
+    inversion = make_inversion(&problem, 0.0117, true);
+    assert_false(inversion_runs_away(&inversion));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_inversion_reason_is_a_ramp_that_runs_away),
         cmocka_unit_test(test_inversion_reason_is_the_start_when_no_step_from_it_helped),
         cmocka_unit_test(test_inversion_reason_is_not_the_start_when_shorter_steps_helped),
         cmocka_unit_test(test_inversion_reason_of_a_stuck_mixture_advises_a_shorter_cutoff),
