@@ -7,6 +7,9 @@
 
 #include <stddef.h>
 
+/// Transform of 1 for r < edge, 0 beyond: 4π (sin x − x cos x)/q³, x = q edge.
+double ornstein_zernike_ball(double q, double edge);
+
 /// Cells of constant h and c, from r = 0 to the range.
 struct ornstein_zernike {
     size_t cells, waves;

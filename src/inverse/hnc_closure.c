@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inverse/hnc_closure.h"
 
+#include "inverse/ornstein_zernike.h"
+
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_eigen.h>
 #include <math.h>
@@ -15,20 +17,12 @@ static const double least_structure = 0.1;
 
 static const double pi = 3.14159265358979323846;
 
-/// Transform of 1 for r < edge, 0 beyond: 4π (sin x − x cos x)/q³, x = q edge.
-static double ball(double q, double edge) {
-    const double x = q * edge;
-    if (x < 1e-2) // the difference cancels; the series is exact to 1e-13 there
-        return 4 * pi / 3 * edge * edge * edge * (1 - x * x / 10 + x * x * x * x / 280);
-    return 4 * pi * (sin(x) - x * cos(x)) / (q * q * q);
-}
-
 /// Transform at q of `values` − `zero` in the bins and of `core` below the first.
 static double transform(const struct rdf_bins *bins, const double *values, double zero, double core,
                         double q) {
-    double inner = ball(q, rdf_bins_edge(bins, 0)), sum = core * inner;
+    double inner = ornstein_zernike_ball(q, rdf_bins_edge(bins, 0)), sum = core * inner;
     for (size_t k = 0; k < bins->count; k++) {
-        const double outer = ball(q, rdf_bins_edge(bins, k + 1));
+        const double outer = ornstein_zernike_ball(q, rdf_bins_edge(bins, k + 1));
         sum += (values[k] - zero) * (outer - inner);
         inner = outer;
     }

@@ -19,8 +19,7 @@ static const double tolerance = 1e-6;
 
 enum { MOST_STEPS = 40, MOST_HALVINGS = 12 };
 
-/// Transform of 1 for r < edge: 4π (sin x − x cos x)/q³, x = q edge.
-static double ball(double q, double edge) {
+double ornstein_zernike_ball(double q, double edge) {
     const double x = q * edge;
     if (x < 1e-2) // the difference cancels; the series is exact to 1e-13 there
         return 4 * pi / 3 * edge * edge * edge * (1 - x * x / 10 + x * x * x * x / 280);
@@ -45,7 +44,8 @@ enum status ornstein_zernike_init(struct ornstein_zernike *oz, const double *edg
         const double q = (double)(n + 1) * spacing;
         oz->weight[n] = q * q * spacing / (2 * pi * pi);
         for (size_t k = 0; k < cells; k++)
-            oz->transform[n * cells + k] = ball(q, edge[k + 1]) - ball(q, edge[k]);
+            oz->transform[n * cells + k] =
+                ornstein_zernike_ball(q, edge[k + 1]) - ornstein_zernike_ball(q, edge[k]);
     }
 done:
     return status;

@@ -2,71 +2,13 @@
 #include "run/figures.h"
 
 #include "io/output.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "shared/figure_folders.h"
+#include "shared/testing.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-enum { PATH = 512 };
-
-static char root[] = "/tmp/mesofit_figures_XXXXXX";
-
-static void write_table(const char *folder, const char *name, const char *text) {
-    char path[2 * PATH];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *stream = fopen(path, "w");
-    assert_non_null(stream);
-    fputs(text, stream);
-    assert_int_equal(fclose(stream), 0);
-}
-
-/// A new folder of that name below the root, for the caller's `path`.
-static void make_folder(char path[PATH], const char *name) {
-    snprintf(path, PATH, "%s/%s", root, name);
-    assert_int_equal(output_make_folder(path), STATUS_OK);
-}
-
-/// True if the figure has that word: a legend, say.
-static bool says(const char *folder, const char *name, const char *word) {
-    char path[PATH + 64], line[4096];
-    bool found = false;
-    snprintf(path, sizeof path, "%s/figures/%s.svg", folder, name);
-    FILE *stream = fopen(path, "r");
-    assert_non_null(stream);
-    while (!found && fgets(line, sizeof line, stream))
-        found = strstr(line, word) != NULL;
-    fclose(stream);
-    return found;
-}
-
-/// Both files of a figure are there, and no text of it is a piece of its script.
-static bool is_drawn(const char *folder, const char *name) {
-    char svg[PATH + 64], png[PATH + 64];
-    snprintf(svg, sizeof svg, "%s/figures/%s.svg", folder, name);
-    snprintf(png, sizeof png, "%s/figures/%s.png", folder, name);
-    assert_int_equal(access(svg, F_OK), access(png, F_OK));
-    if (access(svg, F_OK) != 0)
-        return false;
-    static const char *const code[] = {"using", "word(", "column(", "every ", "title "};
-    for (size_t k = 0; k < sizeof code / sizeof *code; k++)
-        if (says(folder, name, code[k]))
-            fail_msg("%s says \"%s\"", svg, code[k]);
-    return true;
-}
-
-static void skip_without_gnuplot(void) {
-    if (system("gnuplot --version >/dev/null 2>&1") != 0)
-        skip();
-}
 
 static const char fit_rdf[] =
     "# r[lambda]\ttarget[1]\ttarget_error[1]\tresult[1]\tresult_error[1]\n"
@@ -87,144 +29,149 @@ static void assert_draws(const char *folder) {
 
 static void test_draws_what_the_tables_allow(void **state) {
     (void)state;
-    skip_without_gnuplot();
-    char folder[PATH];
-    make_folder(folder, "it's a \"fit\" $HOME\\");
-    write_table(folder, "rdf.tsv", fit_rdf);
-    write_table(folder, "potential.tsv",
-                "# r[lambda]\tphi[k_BT_0]\tforce[k_BT_0/lambda]\tphi_error[k_BT_0]\n"
-                "0.5\t1000\t0\tnan\n1\t-0.5\t0\tnan\n1.5\t0\t0\tnan\n");
-    write_table(folder, "history.tsv", ga_history);
-    write_table(folder, "timing.tsv", timing);
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "it's a \"fit\" $HOME\\");
+    figure_folders_write(folder, "rdf.tsv", fit_rdf);
+    figure_folders_write(folder, "potential.tsv",
+                         "# r[lambda]\tphi[k_BT_0]\tforce[k_BT_0/lambda]\tphi_error[k_BT_0]\n"
+                         "0.5\t1000\t0\tnan\n1\t-0.5\t0\tnan\n1.5\t0\t0\tnan\n");
+    figure_folders_write(folder, "history.tsv", ga_history);
+    figure_folders_write(folder, "timing.tsv", timing);
     if (figures_draw(folder) != STATUS_OK)
         fail_msg("%s", status_message());
-    assert_true(is_drawn(folder, "rdf"));
-    assert_true(is_drawn(folder, "potential"));
-    assert_true(is_drawn(folder, "error"));
-    assert_true(is_drawn(folder, "generations"));
-    assert_false(is_drawn(folder, "simulation"));
+    assert_true(figure_folders_drawn(folder, "rdf"));
+    assert_true(figure_folders_drawn(folder, "potential"));
+    assert_true(figure_folders_drawn(folder, "error"));
+    assert_true(figure_folders_drawn(folder, "generations"));
+    assert_false(figure_folders_drawn(folder, "simulation"));
 }
 
 /// Two goals, with one member on the front and errors that are not known, and three.
 static void test_draws_the_front_of_several_goals(void **state) {
     (void)state;
-    skip_without_gnuplot();
-    char folder[PATH];
-    make_folder(folder, "front");
-    write_table(folder, "pareto.tsv",
-                "# member\trank\tchosen\tmeasured\terror[1]\trdf_rmse[1]\tetd_rmse[1]\t"
-                "rdf_noise[1]\tetd_noise[1]\n1\t1\t1\t3\t2\t0.1\t0.2\t0\t0\n");
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "front");
+    figure_folders_write(folder, "pareto.tsv",
+                         "# member\trank\tchosen\tmeasured\terror[1]\trdf_rmse[1]\tetd_rmse[1]\t"
+                         "rdf_noise[1]\tetd_noise[1]\n1\t1\t1\t3\t2\t0.1\t0.2\t0\t0\n");
     assert_int_equal(figures_draw(folder), STATUS_OK);
-    assert_false(is_drawn(folder, "pareto"));
-    write_table(folder, "pareto_history.tsv",
-                "# iteration\tfront\terror[1]\trdf_rmse[1]\tetd_rmse[1]\n"
-                "0\t0\t2\t0.1\t0.2\n0\t2\t2\t0.1\t0.2\n");
+    assert_false(figure_folders_drawn(folder, "pareto"));
+    figure_folders_write(folder, "pareto_history.tsv",
+                         "# iteration\tfront\terror[1]\trdf_rmse[1]\tetd_rmse[1]\n"
+                         "0\t0\t2\t0.1\t0.2\n0\t2\t2\t0.1\t0.2\n");
     if (figures_draw(folder) != STATUS_OK)
         fail_msg("%s", status_message());
-    assert_true(is_drawn(folder, "pareto"));
-    write_table(folder, "pareto.tsv",
-                "# member\trank\tchosen\tmeasured\terror[1]\trdf_rmse[1]\tetd_rmse[1]\t"
-                "pressure_rmse[1]\trdf_noise[1]\tetd_noise[1]\tpressure_noise[1]\n"
-                "1\t1\t0\t1\t2\t0.1\t0.3\t1\t0.05\t0.1\t0.2\n"
-                "2\t1\t1\t3\t2\t0.2\t0.2\t1\t0.05\t0.1\t0.2\n"
-                "3\t2\t0\t1\t2\t0.3\t0.4\t2\t0.05\t0.1\t0.2\n");
-    write_table(folder, "pareto_history.tsv",
-                "# iteration\tfront\terror[1]\trdf_rmse[1]\tetd_rmse[1]\tpressure_rmse[1]\n"
-                "0\t0\t2\t0.1\t0.2\t1\n0\t2\t2\t0.1\t0.2\t1\n");
+    assert_true(figure_folders_drawn(folder, "pareto"));
+    figure_folders_write(folder, "pareto.tsv",
+                         "# member\trank\tchosen\tmeasured\terror[1]\trdf_rmse[1]\tetd_rmse[1]\t"
+                         "pressure_rmse[1]\trdf_noise[1]\tetd_noise[1]\tpressure_noise[1]\n"
+                         "1\t1\t0\t1\t2\t0.1\t0.3\t1\t0.05\t0.1\t0.2\n"
+                         "2\t1\t1\t3\t2\t0.2\t0.2\t1\t0.05\t0.1\t0.2\n"
+                         "3\t2\t0\t1\t2\t0.3\t0.4\t2\t0.05\t0.1\t0.2\n");
+    figure_folders_write(
+        folder, "pareto_history.tsv",
+        "# iteration\tfront\terror[1]\trdf_rmse[1]\tetd_rmse[1]\tpressure_rmse[1]\n"
+        "0\t0\t2\t0.1\t0.2\t1\n0\t2\t2\t0.1\t0.2\t1\n");
     if (figures_draw(folder) != STATUS_OK)
         fail_msg("%s", status_message());
 }
 
 static void test_draws_no_generations_without_diversity(void **state) {
     (void)state;
-    skip_without_gnuplot();
-    char folder[PATH];
-    make_folder(folder, "imc");
-    write_table(folder, "history.tsv", imc_history);
-    write_table(folder, "timing.tsv", timing);
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "imc");
+    figure_folders_write(folder, "history.tsv", imc_history);
+    figure_folders_write(folder, "timing.tsv", timing);
     assert_int_equal(figures_draw(folder), STATUS_OK);
-    assert_true(is_drawn(folder, "error"));
-    assert_false(is_drawn(folder, "generations"));
+    assert_true(figure_folders_drawn(folder, "error"));
+    assert_false(figure_folders_drawn(folder, "generations"));
 }
 
 static void test_draws_simulation_and_no_fit(void **state) {
     (void)state;
-    skip_without_gnuplot();
-    char folder[PATH];
-    make_folder(folder, "simulation");
-    write_table(folder, "rdf.tsv", "# r[lambda]\tg[1]\tg_error[1]\n0.5\t0\t0\n1\t1\t0.1\n");
-    write_table(folder, "thermodynamics.tsv",
-                "# step[1]\ttime[tau]\ttemperature[T_0]\tpotential_energy[k_BT_0]\t"
-                "pressure[k_BT_0/lambda^3]\ttemperature_configurational[T_0]\n"
-                "0\t0\t1\t0\t3\tnan\n1\t0.1\t1\t0\t3\tnan\n");
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "simulation");
+    figure_folders_write(folder, "rdf.tsv",
+                         "# r[lambda]\tg[1]\tg_error[1]\n0.5\t0\t0\n1\t1\t0.1\n");
+    figure_folders_write(folder, "thermodynamics.tsv",
+                         "# step[1]\ttime[tau]\ttemperature[T_0]\tpotential_energy[k_BT_0]\t"
+                         "pressure[k_BT_0/lambda^3]\ttemperature_configurational[T_0]\n"
+                         "0\t0\t1\t0\t3\tnan\n1\t0.1\t1\t0\t3\tnan\n");
     assert_int_equal(figures_draw(folder), STATUS_OK);
-    assert_true(is_drawn(folder, "simulation"));
-    assert_false(is_drawn(folder, "rdf"));
+    assert_true(figure_folders_drawn(folder, "simulation"));
+    assert_false(figure_folders_drawn(folder, "rdf"));
 }
 
 /// Of a mixture: g(r) of every kind of pairs, and its name. In units that the tables know.
 static void test_draws_simulation_of_a_mixture_in_its_units(void **state) {
     (void)state;
-    skip_without_gnuplot();
-    char folder[PATH];
-    make_folder(folder, "mixture");
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "mixture");
     static const char rdf[] = "# r[lambda]\tg[1]\tg_error[1]\tr[nm]\n0.5\t0\t0\t2\n1\t1\t0.1\t4\n";
-    write_table(folder, "rdf_A-A.tsv", rdf);
-    write_table(folder, "rdf_A-B.tsv", rdf);
-    write_table(folder, "rdf_B-B.tsv", rdf);
-    write_table(folder, "thermodynamics.tsv",
-                "# step\ttime[tau]\ttemperature[T_0]\tpotential_energy[k_B.T_0]\t"
-                "pressure[k_B.T_0/lambda^d]\ttemperature_configurational[T_0]\ttime[ps]\t"
-                "potential_energy[kJ/mol]\tpressure[bar]\n"
-                "0\t0\t1\t1\t3\tnan\t0\t2.5\t900\n1\t0.1\t1\t2\t3\tnan\t70\t5\t900\n");
+    figure_folders_write(folder, "rdf_A-A.tsv", rdf);
+    figure_folders_write(folder, "rdf_A-B.tsv", rdf);
+    figure_folders_write(folder, "rdf_B-B.tsv", rdf);
+    figure_folders_write(folder, "thermodynamics.tsv",
+                         "# step\ttime[tau]\ttemperature[T_0]\tpotential_energy[k_B.T_0]\t"
+                         "pressure[k_B.T_0/lambda^d]\ttemperature_configurational[T_0]\ttime[ps]\t"
+                         "potential_energy[kJ/mol]\tpressure[bar]\n"
+                         "0\t0\t1\t1\t3\tnan\t0\t2.5\t900\n1\t0.1\t1\t2\t3\tnan\t70\t5\t900\n");
     assert_draws(folder);
-    assert_true(is_drawn(folder, "simulation"));
-    assert_true(says(folder, "simulation", "A-B"));
-    assert_true(says(folder, "simulation", "nm") && says(folder, "simulation", "ps"));
-    assert_true(says(folder, "simulation", "kJ/mol") && says(folder, "simulation", "bar"));
-    assert_true(says(folder, "simulation", ">3.5<")); // a distance in nm
-    assert_true(says(folder, "simulation", ">60<"));  // a time in ps
-    assert_true(says(folder, "simulation", ">900<"));
+    assert_true(figure_folders_drawn(folder, "simulation"));
+    assert_true(figure_folders_say(folder, "simulation", "A-B"));
+    assert_true(figure_folders_say(folder, "simulation", "nm") &&
+                figure_folders_say(folder, "simulation", "ps"));
+    assert_true(figure_folders_say(folder, "simulation", "kJ/mol") &&
+                figure_folders_say(folder, "simulation", "bar"));
+    assert_true(figure_folders_say(folder, "simulation", ">3.5<")); // a distance in nm
+    assert_true(figure_folders_say(folder, "simulation", ">60<"));  // a time in ps
+    assert_true(figure_folders_say(folder, "simulation", ">900<"));
 }
 
 /// A barrier of 1.33 behind a core of 50, and a well of 0.3: all of it is seen.
 static void test_potential_is_shown_up_to_its_barrier(void **state) {
     (void)state;
-    skip_without_gnuplot();
-    char folder[PATH];
-    make_folder(folder, "barrier");
-    write_table(folder, "potential.tsv",
-                "# r[lambda]\tphi[k_B.T_0]\tforce[k_B.T_0/lambda]\tphi_error[k_B.T_0]\n"
-                "0.2\t50\t0\tnan\n0.25\t0.2\t0\tnan\n0.3\t0.1\t0\tnan\n"
-                "0.375\t1.33\t0\tnan\n0.5\t-0.3\t0\tnan\n1\t0\t0\tnan\n");
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "barrier");
+    figure_folders_write(folder, "potential.tsv",
+                         "# r[lambda]\tphi[k_B.T_0]\tforce[k_B.T_0/lambda]\tphi_error[k_B.T_0]\n"
+                         "0.2\t50\t0\tnan\n0.25\t0.2\t0\tnan\n0.3\t0.1\t0\tnan\n"
+                         "0.375\t1.33\t0\tnan\n0.5\t-0.3\t0\tnan\n1\t0\t0\tnan\n");
     assert_draws(folder);
-    assert_true(is_drawn(folder, "potential"));
-    assert_true(says(folder, "potential", ">1.4<"));
-    assert_false(says(folder, "potential", ">2<"));
+    assert_true(figure_folders_drawn(folder, "potential"));
+    assert_true(figure_folders_say(folder, "potential", ">1.4<"));
+    assert_false(figure_folders_say(folder, "potential", ">2<"));
 }
 
 /// A soft repulsion whose core goes on steeply where no pair was seen, in nm and kJ/mol.
 static void test_soft_potential_is_shown_almost_whole(void **state) {
     (void)state;
-    skip_without_gnuplot();
-    char folder[PATH], table[2048];
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH], table[2048];
     int length = snprintf(table, sizeof table,
                           "# r[lambda]\tphi[k_B.T_0]\tforce[k_B.T_0/lambda]\t"
                           "phi_error[k_B.T_0]\tr[nm]\tphi[kJ/mol]\n");
-    make_folder(folder, "soft");
+    figure_folders_make(folder, "soft");
     for (int k = 0; k <= 20; k++) {
         const double r = 0.05 * k, core = r < 0.2 ? 1000 * (0.2 - r) : 0;
         const double phi = 16 * (1 - r) * (1 - r) + core;
         length += snprintf(table + length, sizeof table - (size_t)length,
                            "%g\t%g\t0\t0.1\t%g\t%g\n", r, phi, 2 * r, 10 * phi);
     }
-    write_table(folder, "potential.tsv", table);
+    figure_folders_write(folder, "potential.tsv", table);
     assert_draws(folder);
-    assert_true(is_drawn(folder, "potential"));
-    assert_true(says(folder, "potential", "nm") && says(folder, "potential", "kJ/mol"));
-    assert_true(says(folder, "potential", ">0.8<")); // nm: 0.4 lambda
-    assert_true(says(folder, "potential", ">40<"));
-    assert_false(says(folder, "potential", ">300<"));
+    assert_true(figure_folders_drawn(folder, "potential"));
+    assert_true(figure_folders_say(folder, "potential", "nm") &&
+                figure_folders_say(folder, "potential", "kJ/mol"));
+    assert_true(figure_folders_say(folder, "potential", ">0.8<")); // nm: 0.4 lambda
+    assert_true(figure_folders_say(folder, "potential", ">40<"));
+    assert_false(figure_folders_say(folder, "potential", ">300<"));
 }
 
 /// Two times, three bins; no result at time 0, nothing known of the last bin.
@@ -237,94 +184,98 @@ static const char fit_cells[] =
 
 static void test_draws_dynamics_of_a_fit(void **state) {
     (void)state;
-    skip_without_gnuplot();
-    char folder[PATH];
-    make_folder(folder, "dynamics");
-    write_table(folder, "etd_cells.tsv", fit_cells);
-    write_table(folder, "vacf.tsv",
-                "# time[tau]\ttarget\ttarget_error\tresult\tresult_error\n"
-                "0\t3\t0.01\t3.1\tnan\n0.1\t1\t0.01\t1.2\tnan\n0.2\t-0.1\t0.01\t0\tnan\n");
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "dynamics");
+    figure_folders_write(folder, "etd_cells.tsv", fit_cells);
+    figure_folders_write(folder, "vacf.tsv",
+                         "# time[tau]\ttarget\ttarget_error\tresult\tresult_error\n"
+                         "0\t3\t0.01\t3.1\tnan\n0.1\t1\t0.01\t1.2\tnan\n0.2\t-0.1\t0.01\t0\tnan\n");
     assert_draws(folder);
-    assert_true(is_drawn(folder, "etd_cells"));
-    assert_true(says(folder, "etd_cells", "0.700"));
-    assert_false(says(folder, "etd_cells", "0.800"));
-    assert_true(is_drawn(folder, "vacf"));
-    assert_false(is_drawn(folder, "etd"));
-    assert_false(is_drawn(folder, "msd"));
-    write_table(folder, "msd.tsv",
-                "# time[tau]\ttarget[lambda^2]\ttarget_error[lambda^2]\tresult[lambda^2]\t"
-                "result_error[lambda^2]\n"
-                "0\t0\t0\t0\t0\n0.1\t1\t0.01\t1.2\tnan\n0.2\t3\t0.01\t2.9\tnan\n");
+    assert_true(figure_folders_drawn(folder, "etd_cells"));
+    assert_true(figure_folders_say(folder, "etd_cells", "0.700"));
+    assert_false(figure_folders_say(folder, "etd_cells", "0.800"));
+    assert_true(figure_folders_drawn(folder, "vacf"));
+    assert_false(figure_folders_drawn(folder, "etd"));
+    assert_false(figure_folders_drawn(folder, "msd"));
+    figure_folders_write(folder, "msd.tsv",
+                         "# time[tau]\ttarget[lambda^2]\ttarget_error[lambda^2]\tresult[lambda^2]\t"
+                         "result_error[lambda^2]\n"
+                         "0\t0\t0\t0\t0\n0.1\t1\t0.01\t1.2\tnan\n0.2\t3\t0.01\t2.9\tnan\n");
     assert_draws(folder);
-    assert_true(is_drawn(folder, "msd"));
+    assert_true(figure_folders_drawn(folder, "msd"));
 }
 
 static void test_draws_etd_of_no_known_result(void **state) {
     (void)state;
-    skip_without_gnuplot();
-    char folder[PATH];
-    make_folder(folder, "nothing known");
-    write_table(folder, "etd_cells.tsv",
-                "# time[tau]\tr0[lambda]\ttarget[1]\ttarget_error[1]\tresult[1]\tresult_error[1]\n"
-                "0\t0.6\t1\t0\tnan\tnan\n0.1\t0.6\t1\t0\tnan\tnan\n");
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "nothing known");
+    figure_folders_write(
+        folder, "etd_cells.tsv",
+        "# time[tau]\tr0[lambda]\ttarget[1]\ttarget_error[1]\tresult[1]\tresult_error[1]\n"
+        "0\t0.6\t1\t0\tnan\tnan\n0.1\t0.6\t1\t0\tnan\tnan\n");
     assert_draws(folder);
-    assert_true(is_drawn(folder, "etd_cells"));
+    assert_true(figure_folders_drawn(folder, "etd_cells"));
 }
 
 static void test_draws_bands_and_truth_where_they_are_known(void **state) {
     (void)state;
-    skip_without_gnuplot();
-    char folder[PATH];
-    make_folder(folder, "weight");
-    write_table(folder, "omega.tsv", "# r[lambda]\tomega[sqrt(mu/tau)]\n0\t2\n1\t0\n");
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "weight");
+    figure_folders_write(folder, "omega.tsv", "# r[lambda]\tomega[sqrt(mu/tau)]\n0\t2\n1\t0\n");
     assert_draws(folder);
-    assert_false(is_drawn(folder, "omega"));
-    write_table(
+    assert_false(figure_folders_drawn(folder, "omega"));
+    figure_folders_write(
         folder, "omega.tsv",
         "# r[lambda]\tomega[sqrt(mu/tau)]\tomega_error[sqrt(mu/tau)]\n0\t2\tnan\n1\t0\tnan\n");
     assert_draws(folder);
-    assert_true(is_drawn(folder, "omega"));
-    assert_false(says(folder, "omega", "95 % band"));
-    assert_false(says(folder, "omega", "truth"));
-    write_table(folder, "omega.tsv",
-                "# r[lambda]\tomega[sqrt(mu/tau)]\tomega_error[sqrt(mu/tau)]\ttruth[sqrt(mu/tau)]\n"
-                "0\t2\t0.5\t1.9\n0.5\t1\t0.1\t0.9\n1\t0\tnan\t0\n");
-    write_table(folder, "potential.tsv",
-                "# r[lambda]\tphi[k_B.T_0]\tforce[k_B.T_0/lambda]\tphi_error[k_B.T_0]\t"
-                "truth[k_B.T_0]\tr[nm]\n"
-                "0.5\t1000\t0\tnan\t900\t0.2\n1\t-0.5\t0\t0.1\t-0.4\t0.4\n"
-                "1.5\t0\t0\tnan\t0\t0.6\n");
+    assert_true(figure_folders_drawn(folder, "omega"));
+    assert_false(figure_folders_say(folder, "omega", "95 % band"));
+    assert_false(figure_folders_say(folder, "omega", "truth"));
+    figure_folders_write(
+        folder, "omega.tsv",
+        "# r[lambda]\tomega[sqrt(mu/tau)]\tomega_error[sqrt(mu/tau)]\ttruth[sqrt(mu/tau)]\n"
+        "0\t2\t0.5\t1.9\n0.5\t1\t0.1\t0.9\n1\t0\tnan\t0\n");
+    figure_folders_write(folder, "potential.tsv",
+                         "# r[lambda]\tphi[k_B.T_0]\tforce[k_B.T_0/lambda]\tphi_error[k_B.T_0]\t"
+                         "truth[k_B.T_0]\tr[nm]\n"
+                         "0.5\t1000\t0\tnan\t900\t0.2\n1\t-0.5\t0\t0.1\t-0.4\t0.4\n"
+                         "1.5\t0\t0\tnan\t0\t0.6\n");
     assert_draws(folder);
-    assert_true(is_drawn(folder, "omega"));
-    assert_true(says(folder, "omega", "95 % band") && says(folder, "omega", "truth"));
-    assert_true(says(folder, "potential", "95 % band") && says(folder, "potential", "truth"));
+    assert_true(figure_folders_drawn(folder, "omega"));
+    assert_true(figure_folders_say(folder, "omega", "95 % band") &&
+                figure_folders_say(folder, "omega", "truth"));
+    assert_true(figure_folders_say(folder, "potential", "95 % band") &&
+                figure_folders_say(folder, "potential", "truth"));
 }
 
 static void test_error_is_named_after_what_was_fitted(void **state) {
     (void)state;
-    skip_without_gnuplot();
-    char folder[PATH];
-    make_folder(folder, "names");
-    write_table(folder, "history.tsv", imc_history);
-    write_table(folder, "timing.tsv", timing);
-    write_table(folder, "used.json",
-                "{\n\t\"target\":\t{\n\t\t\"rdf\":\t{\n\t\t\t\"fitted\":\t\"no\"\n\t\t},\n"
-                "\t\t\"etd\":\t{\n\t\t\t\"fitted\":\t\"yes\"\n\t\t},\n"
-                "\t\t\"vacf\":\t{\n\t\t\t\"fitted\":\t\"yes\"\n\t\t}\n\t}\n}\n");
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "names");
+    figure_folders_write(folder, "history.tsv", imc_history);
+    figure_folders_write(folder, "timing.tsv", timing);
+    figure_folders_write(folder, "used.json",
+                         "{\n\t\"target\":\t{\n\t\t\"rdf\":\t{\n\t\t\t\"fitted\":\t\"no\"\n\t\t},\n"
+                         "\t\t\"etd\":\t{\n\t\t\t\"fitted\":\t\"yes\"\n\t\t},\n"
+                         "\t\t\"vacf\":\t{\n\t\t\t\"fitted\":\t\"yes\"\n\t\t}\n\t}\n}\n");
     assert_draws(folder);
-    assert_true(says(folder, "error", "weighted error"));
-    write_table(folder, "used.json",
-                "{\n\t\"target\":\t{\n\t\t\"diffusion\":\t{\n\t\t\t\"fitted\":\t\"yes\"\n"
-                "\t\t}\n\t}\n}\n");
+    assert_true(figure_folders_say(folder, "error", "weighted error"));
+    figure_folders_write(folder, "used.json",
+                         "{\n\t\"target\":\t{\n\t\t\"diffusion\":\t{\n\t\t\t\"fitted\":\t\"yes\"\n"
+                         "\t\t}\n\t}\n}\n");
     assert_draws(folder);
-    assert_true(says(folder, "error", "rmse of"));
-    assert_true(says(folder, "error", "τ")); // its unit
+    assert_true(figure_folders_say(folder, "error", "rmse of"));
+    assert_true(figure_folders_say(folder, "error", "τ")); // its unit
 }
 
 static void test_draws_nothing_without_tables(void **state) {
     (void)state;
-    char folder[PATH], figures[PATH + 64];
-    make_folder(folder, "empty");
+    char folder[FIGURE_PATH], figures[FIGURE_PATH + 64];
+    figure_folders_make(folder, "empty");
     assert_int_equal(figures_draw(folder), STATUS_OK);
     snprintf(figures, sizeof figures, "%s/figures", folder);
     assert_int_not_equal(access(figures, F_OK), 0);
@@ -332,30 +283,31 @@ static void test_draws_nothing_without_tables(void **state) {
 
 static void test_broken_tables_spoil_their_figures_only(void **state) {
     (void)state;
-    skip_without_gnuplot();
-    char folder[PATH];
-    make_folder(folder, "broken/figures"); // with figures of an earlier run
-    write_table(folder, "rdf.svg", "old");
-    write_table(folder, "rdf.png", "old");
-    make_folder(folder, "broken");
-    write_table(folder, "potential.tsv", "# r phi force phi_error\nnot a number\n");
-    write_table(folder, "rdf.tsv", "# r target target_error result result_error\nnot a number\n");
-    write_table(folder, "history.tsv", imc_history);
-    write_table(folder, "timing.tsv", timing);
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "broken/figures"); // with figures of an earlier run
+    figure_folders_write(folder, "rdf.svg", "old");
+    figure_folders_write(folder, "rdf.png", "old");
+    figure_folders_make(folder, "broken");
+    figure_folders_write(folder, "potential.tsv", "# r phi force phi_error\nnot a number\n");
+    figure_folders_write(folder, "rdf.tsv",
+                         "# r target target_error result result_error\nnot a number\n");
+    figure_folders_write(folder, "history.tsv", imc_history);
+    figure_folders_write(folder, "timing.tsv", timing);
     assert_int_equal(figures_draw(folder), STATUS_IO);
     assert_non_null(strstr(status_message(), "/broken/figures/rdf: gnuplot failed: "));
     assert_non_null(strstr(status_message(), "rdf.gp\" line "));
     assert_null(strchr(status_message(), '\n'));
-    assert_false(is_drawn(folder, "rdf"));
-    assert_true(is_drawn(folder, "error"));
+    assert_false(figure_folders_drawn(folder, "rdf"));
+    assert_true(figure_folders_drawn(folder, "error"));
 }
 
 static void test_missing_gnuplot_is_one_clear_line(void **state) {
     (void)state;
-    char folder[PATH], message[2 * PATH], *path = strdup(getenv("PATH"));
-    make_folder(folder, "no_gnuplot");
-    write_table(folder, "rdf.tsv", fit_rdf);
-    assert_int_equal(setenv("PATH", root, 1), 0);
+    char folder[FIGURE_PATH], message[2 * FIGURE_PATH], *path = strdup(getenv("PATH"));
+    figure_folders_make(folder, "no_gnuplot");
+    figure_folders_write(folder, "rdf.tsv", fit_rdf);
+    assert_int_equal(setenv("PATH", figure_folders_root(), 1), 0);
     const enum status status = figures_draw(folder);
     assert_int_equal(setenv("PATH", path, 1), 0);
     free(path);
@@ -366,20 +318,8 @@ static void test_missing_gnuplot_is_one_clear_line(void **state) {
 
 static void test_comparison_needs_its_table(void **state) {
     (void)state;
-    assert_int_equal(figures_draw_comparison(root), STATUS_IO);
+    assert_int_equal(figures_draw_comparison(figure_folders_root()), STATUS_IO);
     assert_non_null(strstr(status_message(), "no compare.tsv in "));
-}
-
-static int make_root(void **state) {
-    (void)state;
-    return mkdtemp(root) ? 0 : -1;
-}
-
-static int remove_root(void **state) {
-    (void)state;
-    char command[PATH];
-    snprintf(command, sizeof command, "rm -r '%s'", root);
-    return system(command);
 }
 
 int main(void) {
@@ -400,5 +340,5 @@ int main(void) {
         cmocka_unit_test(test_missing_gnuplot_is_one_clear_line),
         cmocka_unit_test(test_comparison_needs_its_table),
     };
-    return cmocka_run_group_tests(tests, make_root, remove_root);
+    return cmocka_run_group_tests(tests, figure_folders_begin, figure_folders_end);
 }

@@ -4,52 +4,14 @@
 #include "run/figures.h"
 
 #include "io/output.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "shared/figure_folders.h"
+#include "shared/testing.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-enum { PATH = 512 };
-
-static char root[] = "/tmp/mesofit_hostile_XXXXXX";
-
-static void write_table(const char *folder, const char *name, const char *text) {
-    char path[2 * PATH];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *stream = fopen(path, "w");
-    assert_non_null(stream);
-    fputs(text, stream);
-    assert_int_equal(fclose(stream), 0);
-}
-
-/// A new folder of that name below the root, for the caller's `path`.
-static void make_folder(char path[PATH], const char *name) {
-    snprintf(path, PATH, "%s/%s", root, name);
-    assert_int_equal(output_make_folder(path), STATUS_OK);
-}
-
-static bool is_drawn(const char *folder, const char *name) {
-    char svg[PATH + 64], png[PATH + 64];
-    snprintf(svg, sizeof svg, "%s/figures/%s.svg", folder, name);
-    snprintf(png, sizeof png, "%s/figures/%s.png", folder, name);
-    assert_int_equal(access(svg, F_OK), access(png, F_OK));
-    return access(svg, F_OK) == 0;
-}
-
-static void skip_without_gnuplot(void) {
-    if (system("gnuplot --version >/dev/null 2>&1") != 0)
-        skip();
-}
 
 static const char fit_rdf[] =
     "# r[lambda]\ttarget[1]\ttarget_error[1]\tresult[1]\tresult_error[1]\n"
@@ -66,7 +28,7 @@ static void assert_draws(const char *folder) {
 
 /// True if a file of that name has come into the folder or beside it.
 static bool has_come(const char *folder, const char *name) {
-    char path[PATH + 64];
+    char path[FIGURE_PATH + 64];
     snprintf(path, sizeof path, "%s/%s", folder, name);
     return access(path, F_OK) == 0 || access(name, F_OK) == 0;
 }
@@ -90,47 +52,50 @@ static void test_names_of_tables_are_no_commands(void **state) {
                                           "-B",
                                           "A_1-B"};
     enum { ENDINGS = sizeof endings / sizeof *endings };
-    skip_without_gnuplot();
-    char folder[PATH];
-    make_folder(folder, "hostile");
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "hostile");
     for (size_t k = 0; k < ENDINGS; k++) {
         char name[128];
         snprintf(name, sizeof name, "potential_%s.tsv", endings[k]);
-        write_table(folder, name, "# r phi force phi_error\n0.5 1 0 0.1\n1 0 0 nan\n");
+        figure_folders_write(folder, name, "# r phi force phi_error\n0.5 1 0 0.1\n1 0 0 nan\n");
         snprintf(name, sizeof name, "potential_%s_history.tsv", endings[k]);
-        write_table(folder, name, "# r i0 i1\n0.5 1 0\n1 0 0\n");
+        figure_folders_write(folder, name, "# r i0 i1\n0.5 1 0\n1 0 0\n");
         snprintf(name, sizeof name, "rdf_%s.tsv", endings[k]);
-        write_table(folder, name, fit_rdf);
+        figure_folders_write(folder, name, fit_rdf);
     }
-    write_table(folder, "thermodynamics.tsv", "# s t T U P Tc\n0 0 1 0 3 1\n1 0.1 1 0 3 1\n");
-    write_table(folder, "omega.tsv", "# r omega omega_error\n0 2 1\n1 0 1\n");
+    figure_folders_write(folder, "thermodynamics.tsv",
+                         "# s t T U P Tc\n0 0 1 0 3 1\n1 0.1 1 0 3 1\n");
+    figure_folders_write(folder, "omega.tsv", "# r omega omega_error\n0 2 1\n1 0 1\n");
     if (figures_draw(folder) != STATUS_OK)
         fail_msg("%s", status_message());
     assert_false(has_come(folder, "pwned"));
-    assert_true(is_drawn(folder, "rdf_A_1-B") && is_drawn(folder, "potential_A_1-B"));
-    assert_true(is_drawn(folder, "simulation"));
+    assert_true(figure_folders_drawn(folder, "rdf_A_1-B") &&
+                figure_folders_drawn(folder, "potential_A_1-B"));
+    assert_true(figure_folders_drawn(folder, "simulation"));
 }
 
 /// What stands in a table is no command either: here the names of goals on the axes of a front.
 static void test_words_of_tables_are_no_commands(void **state) {
     (void)state;
-    skip_without_gnuplot();
-    char folder[PATH];
-    make_folder(folder, "words");
-    write_table(folder, "pareto.tsv",
-                "# member\trank\tchosen\tmeasured\terror\tx'; system('touch pwned'); a='_rmse\t"
-                "`touch pwned`_rmse\trdf_noise\tetd_noise\n1\t1\t1\t3\t2\t0.1\t0.2\t0\t0\n");
-    write_table(folder, "pareto_history.tsv",
-                "# iteration\tfront\terror\trdf_rmse\tetd_rmse\n0\t0\t2\t0.1\t0.2\n");
-    write_table(folder, "used.json",
-                "{\"'; system('touch pwned'); '\": {\"rdf\":\n"
-                "\"fitted\": \"yes\"}}\n");
-    write_table(folder, "history.tsv", imc_history);
-    write_table(folder, "timing.tsv", timing);
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "words");
+    figure_folders_write(
+        folder, "pareto.tsv",
+        "# member\trank\tchosen\tmeasured\terror\tx'; system('touch pwned'); a='_rmse\t"
+        "`touch pwned`_rmse\trdf_noise\tetd_noise\n1\t1\t1\t3\t2\t0.1\t0.2\t0\t0\n");
+    figure_folders_write(folder, "pareto_history.tsv",
+                         "# iteration\tfront\terror\trdf_rmse\tetd_rmse\n0\t0\t2\t0.1\t0.2\n");
+    figure_folders_write(folder, "used.json",
+                         "{\"'; system('touch pwned'); '\": {\"rdf\":\n"
+                         "\"fitted\": \"yes\"}}\n");
+    figure_folders_write(folder, "history.tsv", imc_history);
+    figure_folders_write(folder, "timing.tsv", timing);
     if (figures_draw(folder) != STATUS_OK)
         fail_msg("%s", status_message());
     assert_false(has_come(folder, "pwned"));
-    assert_true(is_drawn(folder, "pareto"));
+    assert_true(figure_folders_drawn(folder, "pareto"));
 }
 
 /// The table of a benchmark has the name that the user gave.
@@ -148,25 +113,26 @@ static void test_names_of_a_benchmark_are_no_commands(void **state) {
                                         "-",
                                         "plain"};
     (void)state;
-    skip_without_gnuplot();
-    char folder[PATH], path[2 * PATH], name[128];
-    make_folder(folder, "benchmark");
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH], path[2 * FIGURE_PATH], name[128];
+    figure_folders_make(folder, "benchmark");
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         snprintf(name, sizeof name, "%s.tsv", names[k]);
-        write_table(folder, name, table);
+        figure_folders_write(folder, name, table);
         snprintf(path, sizeof path, "%s/%s", folder, name);
         if (figures_draw_accuracy(path) != STATUS_OK)
             fail_msg("%s", status_message());
         assert_false(has_come(folder, "pwned"));
-        assert_true(is_drawn(folder, names[k]));
+        assert_true(figure_folders_drawn(folder, names[k]));
     }
 }
 
 /// A program in the place of gnuplot that says all is well.
 static enum status draw_with(const char *gnuplot, const char *folder) {
-    char place[PATH], script[PATH + 64], path[2 * PATH], *before = strdup(getenv("PATH"));
-    make_folder(place, "bin");
-    write_table(place, "gnuplot", gnuplot);
+    char place[FIGURE_PATH], script[FIGURE_PATH + 64], path[2 * FIGURE_PATH],
+        *before = strdup(getenv("PATH"));
+    figure_folders_make(place, "bin");
+    figure_folders_write(place, "gnuplot", gnuplot);
     snprintf(script, sizeof script, "%s/gnuplot", place);
     assert_int_equal(chmod(script, 0755), 0);
     snprintf(path, sizeof path, "%s:%s", place, before);
@@ -184,13 +150,13 @@ static void test_unfinished_figures_are_none(void **state) {
         "#!/bin/sh\nprintf '%1000s</svg>\\n' x > figures/rdf.svg\n: > figures/rdf.png\n",
         "#!/bin/sh\nprintf '%1000s</svg>\\n' x > figures/rdf.svg\n", "#!/bin/sh\n"};
     (void)state;
-    char folder[PATH];
-    make_folder(folder, "unfinished");
-    write_table(folder, "rdf.tsv", fit_rdf);
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "unfinished");
+    figure_folders_write(folder, "rdf.tsv", fit_rdf);
     for (size_t k = 0; k < sizeof gnuplots / sizeof *gnuplots; k++) {
         assert_int_equal(draw_with(gnuplots[k], folder), STATUS_IO);
         assert_non_null(strstr(status_message(), "figures/rdf: gnuplot left it unfinished"));
-        assert_false(is_drawn(folder, "rdf"));
+        assert_false(figure_folders_drawn(folder, "rdf"));
     }
     assert_int_equal(draw_with("#!/bin/sh\nprintf '%1000s</svg>\\n\\n' x > figures/rdf.svg\n"
                                "printf '%100sIEND\\256\\102\\140\\202' x > figures/rdf.png\n",
@@ -201,35 +167,23 @@ static void test_unfinished_figures_are_none(void **state) {
 /// A link where a figure comes, to a file of somebody.
 static void test_figures_do_not_follow_links(void **state) {
     (void)state;
-    skip_without_gnuplot();
-    char folder[PATH], figures[PATH + 64], link[2 * PATH], text[16] = "";
-    make_folder(folder, "links");
-    write_table(folder, "rdf.tsv", fit_rdf);
-    write_table(folder, "victim", "precious");
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH], figures[FIGURE_PATH + 64], link[2 * FIGURE_PATH], text[16] = "";
+    figure_folders_make(folder, "links");
+    figure_folders_write(folder, "rdf.tsv", fit_rdf);
+    figure_folders_write(folder, "victim", "precious");
     snprintf(figures, sizeof figures, "%s/figures", folder);
     assert_int_equal(output_make_folder(figures), STATUS_OK);
     snprintf(link, sizeof link, "%s/rdf.svg", figures);
     assert_int_equal(symlink("../victim", link), 0);
     assert_draws(folder);
-    assert_true(is_drawn(folder, "rdf"));
+    assert_true(figure_folders_drawn(folder, "rdf"));
     snprintf(link, sizeof link, "%s/victim", folder);
     FILE *stream = fopen(link, "r");
     assert_non_null(stream);
     assert_non_null(fgets(text, sizeof text, stream));
     fclose(stream);
     assert_string_equal(text, "precious");
-}
-
-static int make_root(void **state) {
-    (void)state;
-    return mkdtemp(root) ? 0 : -1;
-}
-
-static int remove_root(void **state) {
-    (void)state;
-    char command[PATH];
-    snprintf(command, sizeof command, "rm -r '%s'", root);
-    return system(command);
 }
 
 int main(void) {
@@ -240,5 +194,5 @@ int main(void) {
         cmocka_unit_test(test_unfinished_figures_are_none),
         cmocka_unit_test(test_figures_do_not_follow_links),
     };
-    return cmocka_run_group_tests(tests, make_root, remove_root);
+    return cmocka_run_group_tests(tests, figure_folders_begin, figure_folders_end);
 }
