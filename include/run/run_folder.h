@@ -21,6 +21,9 @@ struct run_options {
     bool force; ///< replace the results that are in the folder
 };
 
+/// A simulation may replace an earlier one, a fit nothing without --force.
+enum run_kind { RUN_SIMULATION, RUN_FIT };
+
 /// A folder while a run writes it. Zeros are one that is not open.
 struct run_folder {
     char path[OUTPUT_PATH_SIZE];
@@ -32,9 +35,9 @@ struct run_folder {
 /// run_folder_begin. Where files cannot be locked, it goes on without.
 /// Fails: BAD_INPUT if the path is too long, another process runs in the folder, a file that the
 /// run reads has the name of a result, there is nothing to resume, or there are results that only
-/// --force may replace: those of an earlier fit, and files with such names that are of no run
-/// (there is no used.json); IO. Tested: test_folder.
-enum status run_folder_open(struct run_folder *folder, const char *input,
+/// --force may replace: those of an earlier fit, of a simulation if this is a fit, and files with
+/// such names that are of no run (there is no used.json); IO. Tested: test_folder.
+enum status run_folder_open(struct run_folder *folder, enum run_kind kind, const char *input,
                             const struct input_files *inputs,
                             const struct run_options *options) MUST_USE;
 

@@ -20,12 +20,14 @@ struct target_curve {
     double *value, *error; ///< shape [times]
 };
 
-/// A measured number: D or the pressure.
+/// A measured number: the pressure, or D.
 struct target_number {
     double value, error;
+    double window; ///< of D: the slope of the MSD over its second half; 0: of other targets [τ]
 };
 
-extern const struct field targets_curve_fields[], targets_number_fields[], targets_goal_fields[];
+extern const struct field targets_curve_fields[], targets_number_fields[];
+extern const struct field targets_diffusion_fields[], targets_goal_fields[];
 
 struct targets {
     bool given[GOALS];

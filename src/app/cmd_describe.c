@@ -130,6 +130,7 @@ static const struct topic fixed_topics[] = {
      "number-target",
      "\"diffusion\" and \"pressure\"",
      {targets_number_fields, targets_goal_fields}},
+    {"target", "diffusion-target", "\"diffusion\" besides", {targets_diffusion_fields}},
     {"unknowns", "unknowns", "\"unknowns\" of a run file", {NULL}},
     {"unknowns", "potential", "Phi(r), to be found", {inverse_potential_fields}},
     {"unknowns", "weight", "omega(r), to be found", {inverse_weight_fields}},

@@ -36,7 +36,8 @@ static void print_help(void) {
         printf("  mesofit %-9s %-22s  %s\n", commands[k]->name, commands[k]->usage,
                commands[k]->summary);
     printf("\noptions:\n"
-           "  -o DIR        folder for the results (default: \"out\" beside the input file)\n"
+           "  -o DIR        folder for the results (default: \"out\" beside the input file,\n"
+           "                \"compare\" here for compare)\n"
            "  --threads N   threads (default: all processors; bench engine: 1); results do not "
            "depend on "
            "it\n"

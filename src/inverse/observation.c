@@ -16,13 +16,21 @@ static int64_t steps_of(double interval, double time_step) {
     return steps > 0 ? steps : 1;
 }
 
+/// Intervals in the window of motion: as many of whole steps as are as long. Those of a curve,
+/// which says both, are whole anyway.
+static int64_t lags_of(const struct goals *goals, double time_step) {
+    const double interval = time_step * (double)steps_of(goals->motion_interval, time_step);
+    const int64_t lags = llround((double)goals->motion_lags * goals->motion_interval / interval);
+    return lags > 2 ? lags : 2;
+}
+
 void observation_plans(const struct goals *goals, double time_step, struct etd_plan *etd,
                        struct motion_plan *motion) {
     *etd = (struct etd_plan){.every = steps_of(goals->etd_interval, time_step)};
     if (goals_ask(goals, GOAL_ETD))
         etd->origin_every = steps_of(goals->etd_origins, goals->etd_interval);
     *motion = (struct motion_plan){.every = steps_of(goals->motion_interval, time_step),
-                                   .lags = (int64_t)goals->motion_lags,
+                                   .lags = lags_of(goals, time_step),
                                    .origin_every = 5,
                                    .fit_from = 0.5};
 }
@@ -36,7 +44,7 @@ int64_t observation_window(const struct goals *goals, double time_step, enum goa
     }
     for (int kind = GOAL_VACF; kind <= GOAL_DIFFUSION; kind++) {
         const int64_t steps =
-            (int64_t)goals->motion_lags * steps_of(goals->motion_interval, time_step);
+            lags_of(goals, time_step) * steps_of(goals->motion_interval, time_step);
         if (!goals_ask(goals, kind) || steps <= window)
             continue;
         window = steps;
@@ -229,7 +237,7 @@ static void combine(struct observed *observed, enum goal_kind kind, size_t value
 static enum status result_motion(const struct observation *replicas, size_t count,
                                  struct observed *observed) {
     enum status status = STATUS_OK;
-    const size_t values = replicas->goals->motion_lags + 1;
+    const size_t values = (size_t)replicas->motion.plan.lags + 1;
     double *memory = NULL;
     struct motion_summary *summary = NULL;
     struct replica_curve *vacf = NULL, *msd = NULL, *diffusion = NULL;

@@ -154,7 +154,7 @@ static enum status tell_targets(struct run *run) {
 
 static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
     TRY(fit_file_read(&run->fit, file, options));
-    TRY(run_folder_open(&run->folder, file, &run->fit.inputs, options));
+    TRY(run_folder_open(&run->folder, RUN_FIT, file, &run->fit.inputs, options));
     TRY(targets_normalise(&run->fit.targets, &run->fit.scene.setup.box));
     const enum status status = create(run);
     if (status != STATUS_OK)

@@ -43,6 +43,9 @@ static void say_changes(struct progress *to, const struct decoder *decoder,
         }
 }
 
+/// A target that is off by more than so many statistical errors is not met by what was fitted.
+static const double missed = 20;
+
 static void say_distances(struct progress *to, const struct fit_file *fit,
                           const struct verification *v) {
     for (int kind = 0; kind < GOALS; kind++) {
@@ -50,8 +53,10 @@ static void say_distances(struct progress *to, const struct fit_file *fit,
         if (!fit->targets.given[kind])
             continue;
         number_text(v->distance[kind].rms, v->distance_error[kind], rms);
-        progress_say(to, "verified: rms of %s - target = %s, statistics alone %.2g",
-                     goals_names[kind], rms, v->distance[kind].noise);
+        const double noises = v->distance[kind].rms / v->distance[kind].noise;
+        progress_say(to, "verified: rms of %s - target = %s, statistics alone %.2g%s",
+                     goals_names[kind], rms, v->distance[kind].noise,
+                     noises > missed ? ": not met, though nothing better was found" : "");
     }
 }
 

@@ -149,12 +149,18 @@ static bool is_simulation(const struct run_folder *folder) {
 }
 
 /// Hours of work are not to be lost by a word: a fit goes by --force alone.
-static enum status check_replaced(const struct run_folder *folder) {
+static enum status check_replaced(const struct run_folder *folder, enum run_kind kind) {
     if (!has(folder, "used.json"))
         return with_files(folder, is_result, refuse_stranger, NULL);
     const bool summary = has(folder, "summary.json"), saved = has(folder, "checkpoint.bin");
-    if ((!summary && !saved) || is_simulation(folder))
+    if (!summary && !saved)
         return STATUS_OK;
+    if (is_simulation(folder))
+        return kind == RUN_SIMULATION
+                   ? STATUS_OK
+                   : status_fail(STATUS_BAD_INPUT,
+                                 "%s holds a simulation: --force replaces it, -o OTHER keeps it",
+                                 folder->path);
     if (summary && !says(folder, "summary.json", "status", status_name(STATUS_INTERRUPTED)))
         return status_fail(STATUS_BAD_INPUT,
                            "%s holds a finished fit: --force replaces it, -o OTHER keeps it",
@@ -204,7 +210,7 @@ static enum status choose(struct run_folder *folder, const char *input,
                        folder->path, LONGEST_FOLDER);
 }
 
-enum status run_folder_open(struct run_folder *folder, const char *input,
+enum status run_folder_open(struct run_folder *folder, enum run_kind kind, const char *input,
                             const struct input_files *inputs, const struct run_options *options) {
     TRY(choose(folder, input, options));
     TRY(output_make_folder(folder->path));
@@ -214,7 +220,7 @@ enum status run_folder_open(struct run_folder *folder, const char *input,
     TRY(with_files(folder, options->resume ? is_result : is_output, spare_input, inputs));
     if (options->resume)
         return check_resumed(folder);
-    return options->force ? STATUS_OK : check_replaced(folder);
+    return options->force ? STATUS_OK : check_replaced(folder, kind);
 }
 
 enum status run_folder_begin(const struct run_folder *folder, bool resume) {

@@ -365,7 +365,7 @@ static enum status begin_measuring(struct run *run, const char *file) {
 /// What an earlier run left is touched once this one can begin.
 static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
     TRY(read_file(run, file, options));
-    TRY(run_folder_open(&run->folder, file, &run->inputs, options));
+    TRY(run_folder_open(&run->folder, RUN_SIMULATION, file, &run->inputs, options));
     TRY(begin_measuring(run, file));
     TRY(run_folder_begin(&run->folder, options->resume));
     TRY(write_used(run, options->resume));

@@ -39,6 +39,15 @@ const struct field targets_number_fields[] = {
     FIELD_END,
 };
 
+const struct field targets_diffusion_fields[] = {
+    {"window", FIELD_NUMBER, NUMBER(window), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
+     .unit = "tau",
+     .help =
+         "D is the slope of the MSD over the second half of it, as the value must be; 0: that of "
+         "\"vacf\", \"msd\" or \"etd\" if they are given, else 1.6"},
+    FIELD_END,
+};
+
 #define GOAL(name) .offset = offsetof(struct target_goal, name)
 static const char *const no_or_yes[] = {"no", "yes", NULL};
 const struct field targets_goal_fields[] = {
@@ -201,6 +210,7 @@ static enum status read_kind(struct targets *targets, enum goal_kind kind,
     case GOAL_MSD:
         return read_curve(&targets->msd, object);
     case GOAL_DIFFUSION:
+        json_fields(object, targets_diffusion_fields, &targets->diffusion);
         return read_number(&targets->diffusion, object);
     case GOAL_PRESSURE:
         return read_number(&targets->pressure, object);
@@ -208,6 +218,14 @@ static enum status read_kind(struct targets *targets, enum goal_kind kind,
         break;
     }
     return STATUS_OK;
+}
+
+/// A window of D's own beside a curve that has another.
+static void check_window(const struct targets *targets, struct json_object *object) {
+    if (targets->diffusion.window > 0 &&
+        (targets->vacf.times > 0 || targets->msd.times > 0 || targets->given[GOAL_ETD]))
+        json_fault(object, "diffusion",
+                   "has a \"window\" of its own beside \"vacf\", \"msd\" or \"etd\", which say it");
 }
 
 /// VACF and MSD come from the same samples.
@@ -235,6 +253,7 @@ enum status targets_read(struct targets *targets, struct json_object *root, cons
     }
     json_finish(&object);
     check_motion(targets, &object);
+    check_window(targets, &object);
     return STATUS_OK;
 }
 
@@ -286,6 +305,8 @@ void targets_write(const struct targets *targets, struct json_writer *writer) {
             write_rdf(targets, writer);
         else
             json_put_fields(writer, parts[kind].fields, parts[kind].parameters);
+        if (kind == GOAL_DIFFUSION)
+            json_put_fields(writer, targets_diffusion_fields, &targets->diffusion);
         json_put_fields(writer, targets_goal_fields, &targets->goal[kind]);
         json_end(writer);
     }
@@ -309,7 +330,8 @@ void targets_digest(const struct targets *targets, uint64_t *into) {
     digest(targets->msd.error, targets->msd.times, into);
 }
 
-/// Window and interval in which motion is measured, by the first target that defines them.
+/// Window and interval in which motion is measured, by the first target that defines them: D's own
+/// comes last, since a curve fixes the times at which it is compared.
 static void set_motion(const struct targets *targets, struct goals *goals) {
     const struct target_curve *curve = targets->vacf.times > 0 ? &targets->vacf : &targets->msd;
     goals->motion_lags = DEFAULT_LAGS;
@@ -320,6 +342,8 @@ static void set_motion(const struct targets *targets, struct goals *goals) {
     } else if (targets->given[GOAL_ETD]) {
         goals->motion_lags = (size_t)targets->etd.grid.times - 1;
         goals->motion_interval = targets->etd.interval;
+    } else if (targets->diffusion.window > 0) {
+        goals->motion_interval = targets->diffusion.window / DEFAULT_LAGS;
     }
 }
 

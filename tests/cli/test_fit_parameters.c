@@ -108,6 +108,23 @@ static void test_diffusion_of_a_verification_has_an_error(void **state) {
     results_assert_number("out/summary.json", "diffusion_fit_end", 1.6);
 }
 
+/// A D is that of its window: the slope of the MSD over the second half, the window being cut into
+/// whole steps whatever the time step is.
+static void test_diffusion_is_that_of_its_own_window(void **state) {
+    static const char given[] = "\"diffusion\": {\"value\": 0.233, \"window\": 1.02}";
+    write_target(*state);
+    small_inputs_write(*state, "run.json", fit, MSD, given);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--quiet");
+    assert_close(results_number("out/summary.json", "diffusion_fit_end"), 1.02, 1e-12);
+    assert_close(results_number("out/summary.json", "diffusion_fit_begin"), 0.51, 0.021);
+    small_inputs_write(*state, "run.json", fit, MSD,
+                       MSD ", \"diffusion\": {\"value\": 0.233, \"window\": 1.02}");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "other");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "target.diffusion: ");
+    assert_contains(result.err, "\"window\"");
+}
+
 static void test_every_method_fits_sigma_alone(void **state) {
     static const char *const methods[] = {
         "\"name\": \"cma-es\", \"rounds\": 3",
@@ -162,6 +179,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(
             test_fit_with_fixed_parameters_gives_the_same_bits_from_used_and_in_pieces),
         TEST_WITHOUT_FIGURES(test_diffusion_of_a_verification_has_an_error),
+        TEST_WITHOUT_FIGURES(test_diffusion_is_that_of_its_own_window),
         TEST_WITHOUT_FIGURES(test_every_method_fits_sigma_alone),
         TEST_WITHOUT_FIGURES(test_fit_refuses_what_cannot_be_fixed),
     };

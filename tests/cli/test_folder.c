@@ -129,13 +129,16 @@ static void test_a_fit_is_replaced_by_force_alone(void **state) {
     assert_refused("out holds an unfinished fit", "--force");
 }
 
-static void test_a_simulation_is_replaced_without_a_word(void **state) {
+static void test_a_simulation_is_replaced_by_another_without_a_word(void **state) {
     write_inputs(*state);
     for (int time = 0; time < 2; time++) {
         RUN_PROGRAM(&result, "simulate", "scene.json", "--quiet");
         run_program_assert_code(&result, 0);
     }
     RUN_PROGRAM(&result, "fit", "run.json", "--quiet");
+    assert_refused("out holds a simulation: --force replaces it, -o OTHER keeps it", "mesofit: ");
+    assert_true(temporary_folder_exists("out/thermodynamics.tsv"));
+    RUN_PROGRAM(&result, "fit", "run.json", "--force", "--quiet");
     assert_in_range(result.code, 0, 1);
     assert_false(temporary_folder_exists("out/thermodynamics.tsv"));
     RUN_PROGRAM(&result, "simulate", "scene.json", "--quiet");
@@ -299,7 +302,7 @@ int main(void) {
         TEST(test_inputs_of_a_run_survive_it),
         TEST(test_a_finished_fit_is_not_replaced_by_the_simulation_of_it),
         TEST(test_a_fit_is_replaced_by_force_alone),
-        TEST(test_a_simulation_is_replaced_without_a_word),
+        TEST(test_a_simulation_is_replaced_by_another_without_a_word),
         TEST(test_files_of_no_run_are_not_replaced),
         TEST(test_an_earlier_run_stays_when_the_new_one_cannot_begin),
         TEST(test_a_resumed_run_may_read_its_own_settings),
