@@ -20,13 +20,15 @@ struct normalisation {
 /// The factor of a target:
 ///   minimise  [(ν − 1)/width]² + [ln(S(0)/S_0)/s]² + [Φ_tail/(t k_B T)]²
 /// with S(0) and the hypernetted chain's Φ of g/ν (ornstein_zernike_solve), Φ_tail its mean over
-/// the last third of the range, and S_0 that of hard spheres as large as the core (N. F. Carnahan
-/// and K. E. Starling, J. Chem. Phys. 51, 635 (1969)). ν = 1 is kept unless this is larger there by
-/// more than six and ν two of its standard errors away. Of a mixture it takes the g of all beads,
-/// and one factor. In two dimensions, and of a g(r) that ends before 1.8 mean distances, ν is 1.
-/// @param[in] g      shape [pairs, bins.count], of the system in the box
+/// the last tenth of the range but for that of a parabola, and S_0 that of hard spheres as large as
+/// the core (N. F. Carnahan and K. E. Starling, J. Chem. Phys. 51, 635 (1969)). ν = 1 is kept
+/// unless this is larger there by more than six and ν two of its standard errors away. Of a mixture
+/// it takes the g of all beads, and one factor. In two dimensions, and of a g(r) that ends
+/// before 1.8 mean distances, ν is 1. Noise of the target widens s and t.
+/// @param[in] g, error  shape [pairs, bins.count], of the system in the box
 /// @param[in] width  standard deviation of ν about 1 before any measurement
 /// Fails: NO_MEMORY. Tested: test_normalisation.
 enum status normalisation_find(const struct rdf_bins *bins, const struct box *box,
-                               const struct composition *composition, const double *g, double width,
+                               const struct composition *composition, const double *g,
+                               const double *error, double width,
                                struct normalisation *normalisation) MUST_USE;

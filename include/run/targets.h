@@ -58,7 +58,7 @@ void targets_write(const struct targets *targets, struct json_writer *writer);
 void targets_digest(const struct targets *targets, uint64_t *digest);
 
 /// Divide g(r) by its normalisation: what the file says, else what normalisation_find makes of the
-/// target in this box. Fails: NO_MEMORY.
+/// target in this box. If the file says some of a mixture's, the others are 1. Fails: NO_MEMORY.
 enum status targets_normalise(struct targets *targets, const struct box *box) MUST_USE;
 
 /// The goals of the scene: those to be fitted, and all. With `moves`, D is among

@@ -357,23 +357,25 @@ static void divide(struct targets *targets, size_t pair, double factor) {
 }
 
 enum status targets_normalise(struct targets *targets, const struct box *box) {
-    bool open = false;
+    size_t given = 0;
     double width = 0;
     targets->normalisation = (struct normalisation){.factor = 1};
-    for (size_t pair = 0; pair < targets->pairs && targets->given[GOAL_RDF]; pair++) {
+    if (!targets->given[GOAL_RDF])
+        return STATUS_OK;
+    for (size_t pair = 0; pair < targets->pairs; pair++) {
         const struct target_parameters *p = &targets->rdf[pair].parameters;
         if (p->normalisation > 0)
             divide(targets, pair, p->normalisation);
-        open = open || !(p->normalisation > 0);
+        given += p->normalisation > 0;
         width = fmax(width, p->normalisation_error);
     }
-    if (!open)
+    // What all together say tells nothing of a part of them.
+    if (given > 0)
         return STATUS_OK;
-    TRY(normalisation_find(&targets->rdf[0].bins, box, &targets->composition, targets->rdf_g, width,
-                           &targets->normalisation));
+    TRY(normalisation_find(&targets->rdf[0].bins, box, &targets->composition, targets->rdf_g,
+                           targets->rdf_error, width, &targets->normalisation));
     for (size_t pair = 0; pair < targets->pairs; pair++)
-        if (!(targets->rdf[pair].parameters.normalisation > 0))
-            divide(targets, pair, targets->normalisation.factor);
+        divide(targets, pair, targets->normalisation.factor);
     return STATUS_OK;
 }
 

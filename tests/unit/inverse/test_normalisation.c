@@ -32,10 +32,13 @@ static void make(struct fluid *fluid, double eta, double range) {
 
 static struct normalisation find(struct fluid *fluid, double factor) {
     struct normalisation found;
-    double g[3 * BINS];
-    for (int k = 0; k < 3 * BINS; k++)
+    double g[3 * BINS], error[3 * BINS];
+    for (int k = 0; k < 3 * BINS; k++) {
         g[k] = factor * fluid->g[k];
-    assert_ok(normalisation_find(&fluid->bins, &fluid->box, &fluid->composition, g, width, &found));
+        error[k] = 1e-4 * g[k];
+    }
+    assert_ok(normalisation_find(&fluid->bins, &fluid->box, &fluid->composition, g, error, width,
+                                 &found));
     print_message("factor %.4f: %s %.5f(%.5f), S(0) = %.3f\n", factor,
                   found.found ? "found" : "kept", found.factor, found.error, found.compressibility);
     return found;
