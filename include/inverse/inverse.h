@@ -108,6 +108,9 @@ struct inverse_step {
     char reason[INVERSE_REASON_SIZE]; ///< why it finished without having converged; or ""
 };
 
+/// The same for an optimiser that gave up before that.
+void inverse_give_up(struct inverse_step *step);
+
 /// Finish a step of a method that uses up what "parameter" gives it: `used_up`, and a reason that
 /// says whether the error still fell.
 /// @param[in] last_better  iteration in which it fell last

@@ -64,6 +64,8 @@ struct optimiser {
     /// Whether it ended since it could do no better, before its budget was used up. NULL: it never
     /// does.
     bool (*settled)(const void *state);
+    /// Whether it ended by itself without having settled, or NULL: it does not.
+    bool (*gave_up)(const void *state);
     /// The state of a checkpoint, between tell and tell: what is written there and read into a new
     /// state of the same space and parameters goes on with the same bits. Returns their number, at
     /// most OPTIMISER_MAX_SPANS.

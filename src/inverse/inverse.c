@@ -70,6 +70,15 @@ const struct inverse_method *const inverse_methods[] = {
 /// An error that has fallen in this last part of the iterations still falls.
 static const double recent = 0.25;
 
+void inverse_give_up(struct inverse_step *step) {
+    step->used_up = true;
+    snprintf(
+        step->reason, sizeof step->reason,
+        "the algorithm found no next step before its steps were small, as the noise of errors may "
+        "do; its error is %.2g (%.2g by statistics)",
+        step->error, step->noise);
+}
+
 void inverse_use_up(struct inverse_step *step, const char *parameter, uint32_t last_better) {
     const uint32_t iterations = step->iteration + 1, since = step->iteration - last_better;
     step->used_up = true;

@@ -199,6 +199,8 @@ static void conclude(const struct state *state, struct inverse_step *step) {
                                 step->reason);
     else if (optimiser->settled && optimiser->settled(state->optimiser_state))
         step->converged = true;
+    else if (optimiser->gave_up && optimiser->gave_up(state->optimiser_state))
+        inverse_give_up(step);
     else
         inverse_use_up(step, optimiser->budget, state->progress.last_better);
 }

@@ -69,6 +69,7 @@ struct state {
     struct coroutine *loop; ///< the algorithm, or NULL
     uint64_t played;        ///< told errors that it knows
     bool is_over;           ///< whether it had no question when it was asked last
+    nlopt_result result;    ///< what it says then
 };
 
 // Inside the coroutine ----------------------------------------------------------------------------
@@ -122,10 +123,10 @@ static nlopt_opt prepare(const struct state *state, struct call *call) {
     return o;
 }
 
-/// The algorithm from its beginning to its end. How it ends does not matter: rounding that stops a
-/// model stops the search, and the best candidate stands.
+/// The algorithm from its beginning to its end. However it ends, the best candidate stands; `result`
+/// tells whether its steps had become small.
 static void body(struct coroutine *self, void *context) {
-    const struct state *state = context;
+    struct state *state = context;
     struct call call = {.self = self, .least = HUGE_VAL, .most = -HUGE_VAL};
     nlopt_opt optimiser = prepare(state, &call);
     const struct rng_block seed = rng_philox(state->space.seed, RNG_INITIAL, 0, 0, 0);
@@ -133,7 +134,7 @@ static void body(struct coroutine *self, void *context) {
     if (optimiser && x) {
         memcpy(x, state->start, state->space.genes * sizeof *x);
         nlopt_srand(seed.word[0]); // it takes 32 bits: all 64 are mixed into them
-        (void)nlopt_optimize(optimiser, x, &least);
+        state->result = nlopt_optimize(optimiser, x, &least);
     }
     memory_free(x);
     nlopt_destroy(optimiser);
@@ -264,7 +265,15 @@ static double hopeless(const void *memory) {
 /// It asks for nothing any more although it might: steps below the tolerance, or below rounding.
 static bool settled(const void *memory) {
     const struct state *state = memory;
-    return state->is_over && state->progress.told < (uint64_t)state->parameters.evaluations;
+    return state->is_over && state->progress.told < (uint64_t)state->parameters.evaluations &&
+           (state->result == NLOPT_XTOL_REACHED || state->result == NLOPT_FTOL_REACHED);
+}
+
+/// It stopped before its steps were small: the noise of errors is rounding to it.
+static bool gave_up(const void *memory) {
+    const struct state *state = memory;
+    return state->is_over && state->progress.told < (uint64_t)state->parameters.evaluations &&
+           !settled(memory);
 }
 
 static size_t spans(void *memory, struct memory_span *span) {
@@ -295,5 +304,6 @@ const struct optimiser nlopt_optimiser = {
     .spread = spread,
     .hopeless = hopeless,
     .settled = settled,
+    .gave_up = gave_up,
     .spans = spans,
 };
