@@ -42,7 +42,8 @@ enum status run_folder_open(struct run_folder *folder, enum run_kind kind, const
                             const struct run_options *options) MUST_USE;
 
 /// Remove what killed processes had begun to write and, unless the run goes on with them, the
-/// results of an earlier run, so that a folder never mixes two. Fails: IO.
+/// results of an earlier run, so that a folder never mixes two: once used.json and checkpoint.bin
+/// are those of the new run, which so has room to begin. Fails: IO.
 enum status run_folder_begin(const struct run_folder *folder, bool resume) MUST_USE;
 
 /// Unlock it.

@@ -159,11 +159,11 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
     const enum status status = create(run);
     if (status != STATUS_OK)
         return status_prefix(status, "%s", file);
-    // What an earlier run left is touched once this one can begin.
-    TRY(run_folder_begin(&run->folder, options->resume));
     TRY(write_used(run, options->resume));
     // Saved now, so that a run interrupted in its first iteration can be resumed like any other.
     TRY(options->resume ? load(run) : save(run));
+    // What an earlier run left is touched once this one has begun.
+    TRY(run_folder_begin(&run->folder, options->resume));
     return tell_targets(run);
 }
 

@@ -49,11 +49,31 @@ static const char *const results[] = {
     "checkpoint.bin",
 };
 
+/// Whether a pattern is a file's name, the two * being names of types: a date is none.
+static bool fits(const char *pattern, const char *name) {
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
+    const char *star = strchr(pattern, '*');
+    if (fnmatch(pattern, name, 0) != 0)
+        return false;
+    if (star == NULL)
+        return true;
+    const char *first = name + (star - pattern), *end = first + strspn(first, letters);
+    if (end == first || *end != '-')
+        return false;
+    const char *second = end + 1, *dot = second + strspn(second, letters);
+    return dot > second && *dot == '.';
+}
+
 static int is_result(const struct dirent *entry) {
     for (size_t k = 0; k < sizeof results / sizeof *results; k++)
-        if (fnmatch(results[k], entry->d_name, 0) == 0)
+        if (fits(results[k], entry->d_name))
             return 1;
     return 0;
+}
+
+/// A result, but for the checkpoint, which the new run has replaced by its own.
+static int is_earlier(const struct dirent *entry) {
+    return is_result(entry) && strcmp(entry->d_name, "checkpoint.bin") != 0;
 }
 
 /// A result, or the settings.
@@ -225,7 +245,7 @@ enum status run_folder_open(struct run_folder *folder, enum run_kind kind, const
 
 enum status run_folder_begin(const struct run_folder *folder, bool resume) {
     TRY(with_files(folder, is_left_behind, remove_file, NULL));
-    return resume ? STATUS_OK : with_files(folder, is_result, remove_file, NULL);
+    return resume ? STATUS_OK : with_files(folder, is_earlier, remove_file, NULL);
 }
 
 void run_folder_close(struct run_folder *folder) {

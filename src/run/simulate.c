@@ -367,9 +367,9 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
     TRY(read_file(run, file, options));
     TRY(run_folder_open(&run->folder, RUN_SIMULATION, file, &run->inputs, options));
     TRY(begin_measuring(run, file));
-    TRY(run_folder_begin(&run->folder, options->resume));
     TRY(write_used(run, options->resume));
-    return options->resume ? load(run) : save(run);
+    TRY(options->resume ? load(run) : save(run));
+    return run_folder_begin(&run->folder, options->resume);
 }
 
 static enum status carry_out(struct run *run) {

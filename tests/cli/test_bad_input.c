@@ -243,7 +243,7 @@ static void test_good_files_are_accepted(void **state) {
     run_program_assert_code(&result, 0);
     RUN_PROGRAM(&result, "simulate", "scene.json");
     run_program_assert_code(&result, 0);
-    RUN_PROGRAM(&result, "fit", "run.json");
+    RUN_PROGRAM(&result, "fit", "run.json", "--force");
     assert_in_range(result.code, 0, 1);
     assert_true(temporary_folder_exists("out/summary.json"));
 }

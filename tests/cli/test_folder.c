@@ -145,6 +145,19 @@ static void test_a_simulation_is_replaced_by_another_without_a_word(void **state
     assert_refused("out holds a finished fit", "--force");
 }
 
+static void test_files_that_only_look_like_tables_stay(void **state) {
+    static const char *const mine[] = {"out/potential_2026-11-22.tsv", "out/rdf_a b-c.tsv", NULL};
+    write_inputs(*state);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--quiet");
+    run_program_assert_code(&result, 0);
+    for (size_t k = 0; mine[k]; k++)
+        temporary_folder_write(*state, mine[k], "mine", 4);
+    struct kept kept = keep(mine);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--quiet");
+    run_program_assert_code(&result, 0);
+    assert_kept(&kept);
+}
+
 static void test_files_of_no_run_are_not_replaced(void **state) {
     write_inputs(*state);
     assert_int_equal(mkdir("mine", 0777), 0);
@@ -303,6 +316,7 @@ int main(void) {
         TEST(test_a_finished_fit_is_not_replaced_by_the_simulation_of_it),
         TEST(test_a_fit_is_replaced_by_force_alone),
         TEST(test_a_simulation_is_replaced_by_another_without_a_word),
+        TEST(test_files_that_only_look_like_tables_stay),
         TEST(test_files_of_no_run_are_not_replaced),
         TEST(test_an_earlier_run_stays_when_the_new_one_cannot_begin),
         TEST(test_a_resumed_run_may_read_its_own_settings),
