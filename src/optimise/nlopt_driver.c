@@ -123,8 +123,8 @@ static nlopt_opt prepare(const struct state *state, struct call *call) {
     return o;
 }
 
-/// The algorithm from its beginning to its end. However it ends, the best candidate stands; `result`
-/// tells whether its steps had become small.
+/// The algorithm from its beginning to its end. However it ends, the best candidate stands;
+/// `result` tells whether its steps had become small.
 static void body(struct coroutine *self, void *context) {
     struct state *state = context;
     struct call call = {.self = self, .least = HUGE_VAL, .most = -HUGE_VAL};
