@@ -2,6 +2,7 @@
 /// @file A running simulation: owns the state, steps it, watches over it.
 #pragma once
 
+#include "base/crew.h"
 #include "base/memory.h"
 #include "dynamics/integrator.h"
 #include "dynamics/skin.h"
@@ -24,7 +25,7 @@ struct simulation_setup {
     const struct table *weight;    ///< ω(r), the same, or NULL; borrowed
     uint64_t seed;
     int precision; ///< enum pair_precision
-    int threads;   ///< of this one simulation, at least 1: the same bits for any number
+    int threads;   ///< that a step may take, at least 1: the same bits for any number
 };
 
 /// What a simulation spends its time on.
@@ -40,6 +41,7 @@ struct simulation {
     struct particles particles;
     struct neighbours neighbours;
     struct pair_law law;
+    struct crew crew;         ///< threads of a step
     struct friction friction; ///< of an integrator that splits it off
     uint64_t step;
     enum pair_wants wants; ///< set before a step whose sums will be read

@@ -67,7 +67,8 @@ enum status simulation_init(struct simulation *simulation, const struct simulati
     CHECK(particles_init(&simulation->particles, &setup->box, count));
     if (simulation->law.precision == PAIR_DOUBLE)
         CHECK(particles_keep_precise(&simulation->particles));
-    simulation->particles.threads = setup->threads > 1 ? setup->threads : 1;
+    crew_init(&simulation->crew, setup->threads > 1 ? setup->threads : 1);
+    simulation->particles.threads = simulation->crew.now;
     CHECK(neighbours_init(&simulation->neighbours, NEIGHBOURS_HALF, &setup->box, count,
                           pair_cutoff(&simulation->law), find_skin(simulation)));
     if (setup->weight && setup->integrator->friction)
@@ -247,9 +248,10 @@ enum status simulation_run(struct simulation *simulation, uint64_t steps) {
             simulation->ticks[SIMULATION_LIST] + simulation->ticks[SIMULATION_FORCES];
         simulation->step++;
         simulation->temperature = NAN;
+        simulation->particles.threads = simulation->crew.now;
         TRY(simulation->setup.integrator->step(simulation));
         TRY(watch(simulation));
-        count_ticks(simulation, SIMULATION_MOTION, begin);
+        crew_end_turn(&simulation->crew, count_ticks(simulation, SIMULATION_MOTION, begin) - begin);
         simulation->ticks[SIMULATION_MOTION] -=
             simulation->ticks[SIMULATION_LIST] + simulation->ticks[SIMULATION_FORCES] - other;
     }
