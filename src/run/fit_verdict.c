@@ -4,17 +4,22 @@
 #include <math.h>
 #include <stdio.h>
 
-/// A kinetic temperature farther off than this is the time step's doing.
-static const double hot = 0.05;
+/// A kinetic temperature farther off than this is the time step's doing, and one by the positions
+/// that is `cold` and three errors off.
+static const double hot = 0.05, cold = 0.005;
 
 /// What is the likely cause.
 static const char *find_cause(const struct thermodynamics_summary *found, double temperature) {
+    const double off = fabs(found->temperature_configurational - temperature);
     if (fabs(found->temperature / temperature - 1) > hot)
         return "the potential is too rough for this time step: set a shorter "
                "\"verification.time_step\"";
     if (found->pressure < 0)
         return "a liquid under tension tears: g(r) leaves the pressure open, so give it as a "
                "second target";
+    if (off > fmax(cold * temperature, 3 * found->temperature_configurational_error))
+        return "the temperature by the positions is off, too: set a shorter "
+               "\"verification.time_step\"";
     return "longer \"equilibration\" of either, or more \"particles\", may tell why";
 }
 

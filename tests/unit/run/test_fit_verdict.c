@@ -6,9 +6,11 @@
 #include <string.h>
 
 static struct verification make(double rms, double temperature, double pressure) {
-    return (struct verification){
-        .distance[GOAL_RDF] = {.rms = rms, .noise = 0.002},
-        .thermodynamics = {.temperature = temperature, .pressure = pressure}};
+    return (struct verification){.distance[GOAL_RDF] = {.rms = rms, .noise = 0.002},
+                                 .thermodynamics = {.temperature = temperature,
+                                                    .temperature_configurational = temperature,
+                                                    .temperature_configurational_error = 0.002,
+                                                    .pressure = pressure}};
 }
 
 static void assert_says(const struct verification *verification, const char *words) {
@@ -29,6 +31,9 @@ static void test_fit_verdict_names_the_cause_when_g_is_off(void **state) {
     (void)state;
     const struct verification heated = make(0.0272, 1.69, -0.3), torn = make(0.157, 1.53, -2.19),
                               other = make(0.157, 1.5, 2.2);
+    struct verification coarse = other;
+    coarse.thermodynamics.temperature_configurational = 1.48;
+    assert_says(&coarse, "the temperature by the positions is off");
     assert_says(&heated, "verification.time_step");
     assert_says(&torn, "off by 0.16 (0.002 by statistics) at T = 1.53, pressure -2.19: a liquid "
                        "under tension tears");
