@@ -287,7 +287,7 @@ static void test_fit_has_nothing_against_soft_fluids_and_gases(void **state) {
                  "{\"seed\": 5, \"box\": %s, \"particles\": {\"count\": 648}, \"time_step\": 0.01, "
                  "\"conservative\": %s, \"dissipative\": {\"law\": \"power\", \"sigma\": 3}, "
                  "\"measure\": {\"equilibration\": 300, \"samples\": 60, \"every\": 20}, "
-                 "\"rdf\": {\"range\": 2.3, \"bins\": 46}}",
+                 "\"rdf\": {\"range\": 2.25, \"bins\": 45}}",
                  edge, fluids[k].law);
         small_inputs_write(*state, "scene.json", text, NULL, NULL);
         RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "fluid", "--quiet", "--threads", "1");
