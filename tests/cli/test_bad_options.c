@@ -43,6 +43,7 @@ static const struct command_line bad_lines[] = {
     {{"fit", "no/such.json"}, {"no/such.json: No such file"}},
     {{"fit", "/"}, {"/: is a folder"}},
     {{"plot", "no/such"}, {"no/such"}},
+    {{"plot", "."}, {"mesofit: .: there is nothing to draw"}},
     {{"compare", "no/such", "no/such"}, {"no/such"}},
     {{"simulate", "scene.json", "--resume"}, {"checkpoint.bin: No such file"}},
 };
