@@ -13,8 +13,7 @@ if (truth) {
     stats "omega.tsv" using truth name "T" nooutput
     W_max = high(W_max, T_max)
 }
-# Where the data say nothing the band is wide: it may leave the figure.
-stats "omega.tsv" using ($2 + low(1.96 * known(3), 0.3 * W_max)) name "B" nooutput
+stats "omega.tsv" using (shown_high(2, 3, W_max)) name "B" nooutput
 top = high(W_max, B_max)
 # An empty loop would keep its place in the legend; so would nan.
 show_band = !has_numbers("omega.tsv", 3) ? "" : "'omega.tsv' " . \

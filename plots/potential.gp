@@ -41,6 +41,13 @@ do for [k = columns:2:-every] {
     stats history using k name "H" nooutput
     bottom = low(bottom, high(lowest, H_min))
 }
+
+# With the band, where the result is shown.
+most = top - bottom
+stats table using ($2 > top ? NaN : shown_high(2, 4, most)) name "B" nooutput
+stats table using ($2 > top ? NaN : shown_low(2, 4, most)) name "A" nooutput
+top = high(top, B_max)
+bottom = low(bottom, A_min)
 bottom = bottom - 0.06 * (top - bottom)
 
 truth = column_of(table, "truth")

@@ -28,8 +28,10 @@ stats "thermodynamics.tsv" using (bar * $5) name "P" nooutput
 configurational = int(system("awk '!/^#/ && $6 ~ /[0-9]/ { found = 1 } END { print found + 0 }' \
     thermodynamics.tsv"))
 
-left = with_rdf ? 0.60 : 0.13
-label = with_rdf ? 0.515 : 0.03
+left = with_rdf ? 0.61 : 0.16
+label = with_rdf ? 0.512 : 0.03
+# The legend of a mixture stands above the curves.
+rows = words(rdfs) < 2 ? 0 : words(rdfs) < 6 ? words(rdfs) : 6
 ceiling(panel) = 0.93 - 0.275 * panel
 begin_panel(panel) = sprintf("set tmargin at screen %g; set bmargin at screen %g", \
     ceiling(panel), ceiling(panel) - 0.24)
@@ -42,24 +44,24 @@ do for [kind in kinds] {
     eval open(kind, "simulation", with_rdf ? 980 : 560, 500)
     set multiplot
     if (with_rdf) {
-        set lmargin at screen 0.075
+        set lmargin at screen 0.085
         set rmargin at screen 0.485
         set tmargin at screen 0.93
         set bmargin at screen 0.14
         set xrange [0:R_max]
         set ytics autofreq
-        set yrange [0:g_top > 0 ? 1.08 * g_top : 1]
+        set yrange [0:(g_top > 0 ? 1.08 * g_top : 1) / (1 - 0.075 * rows)]
         set format x "%h"
         set xlabel r_axis_of(word(rdfs, 1))
-        eval name_axis(g_label, 0.018)
-        set key on inside right bottom vertical maxrows auto noautotitle
+        eval name_axis(g_label, 0.014)
+        set key on inside right top vertical maxrows 6 noautotitle
         plot for [i = 1:words(rdfs)] word(rdfs, i) using (nm * $1):($2 - $3):($2 + $3) \
                 with filledcurves @band linecolor rgb colour_of(i - 1), \
             for [i = 1:words(rdfs)] word(rdfs, i) using (nm * $1):2 with lines title kind_of(word(rdfs, i)) \
                 linewidth 2.2 linecolor rgb colour_of(i - 1)
     }
     set lmargin at screen left
-    set rmargin at screen 0.98
+    set rmargin at screen 0.975
     set xrange [T_min < T_max ? T_min : T_min - 1:T_max]
     set format x ""
     unset xlabel

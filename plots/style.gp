@@ -64,6 +64,12 @@ positive(n) = known(n) > 0 ? column(n) : 1e300
 band_low(n, m)  = column(n) - 1.96 * column(m)
 band_high(n, m) = column(n) + 1.96 * column(m)
 
+# Ends of the band that a figure has room for: whole, but where it is wider than `most` to a side the
+# data say nothing, and it would squeeze the curve into a line; there it may leave the figure.
+shown_error(m, most)   = 1.96 * known(m) > most ? 0 : 1.96 * known(m)
+shown_low(n, m, most)  = column(n) - shown_error(m, most)
+shown_high(n, m, most) = column(n) + shown_error(m, most)
+
 # Input of a command from a file, whatever its name: quoted, with each ' as '\\''.
 escape(text) = strstrt(text, "'") == 0 ? text : \
     text[1:strstrt(text, "'") - 1] . "'\\''" . escape(text[strstrt(text, "'") + 1:strlen(text)])

@@ -50,6 +50,11 @@ void decoder_parameters(const struct decoder *decoder, const double *genes,
                         const double *covariance,
                         struct inverse_parameter parameter[INVERSE_PARAMETERS]);
 
+/// The end of its range, "minimum" or "maximum", that a parameter of the formula has come to within
+/// a thousandth of the range; NULL if none, or if it is held fixed. Tested: test_decoder.
+const char *decoder_parameter_bound(const struct unknown_parameters *p, int parameter,
+                                    double value);
+
 /// Standard errors of the curve of some genes, shape [points], from the covariance of the genes,
 /// shape [genes, genes] of all unknowns; NaN if that is NULL, and in the core, which is set.
 /// @param[out] flat  as curve_flat of an inverse_step: principal components of the curve's errors,

@@ -104,7 +104,8 @@ struct inverse_step {
     struct inverse_parameter parameter[INVERSE_PARAMETERS]; ///< of a weight that is a formula
     bool finished;
     bool converged; ///< it has settled: by its own measure it can do no better
-    bool used_up;   ///< it finished since all was used that it was to use, as populations do
+    bool used_up;   ///< it finished since all was used that it was to use, as populations do, or at
+                    ///< a standstill away from a target that may be out of reach
     char reason[INVERSE_REASON_SIZE]; ///< why it finished without having converged; or ""
 };
 

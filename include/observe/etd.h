@@ -91,7 +91,9 @@ enum status etd_sample(struct etd *etd, const struct simulation *simulation) MUS
 /// and between windows that overlap (blocks should be longer than a window);
 ///   error² = (B − 1)/B Σ_b (E_(b) − mean E_(b))²
 /// over the B blocks with a pair in the bin (B. Efron and C. Stein, Ann. Stat. 9, 586 (1981)).
-/// Fewer than 3 tell nothing: then sqrt(E (1 − E)/n), as if the n pairs were independent.
+/// Fewer than 3, or blocks that do not differ, tell nothing: then sqrt(E (1 − E)/n), as if the n
+/// pairs were independent, and 1/(n + 1) if all or none of them survive, the end of the interval
+/// of E. B. Wilson, J. Am. Stat. Assoc. 22, 209 (1927). The error of E(0), 1 by definition, is 0.
 /// @param[in]  replicas         shape [count]
 /// @param[out] survival, error  shape [times, bins]; NaN where no pair began; error may be NULL
 /// @param[out] pairs            shape [bins]: begun, sum over origins; may be NULL

@@ -13,6 +13,10 @@
 /// Threads: one at a time, since the environment is changed. Tested: test_figures.
 enum status figures_draw(const char *folder) MUST_USE;
 
+/// The same for a person who asks for them. BAD_INPUT if there is no table to draw.
+/// Tested: test_bad_lines_are_refused_with_a_hint.
+enum status figures_draw_again(const char *folder) MUST_USE;
+
 /// Draw figures/compare.svg and .png from the tables that compare_folders wrote to `folder`.
 enum status figures_draw_comparison(const char *folder) MUST_USE;
 

@@ -27,6 +27,7 @@ struct result_summary {
     double kirkwood_buff, kirkwood_buff_error, compressibility, compressibility_error;
     double ramp_error, ramp_pressure, pressure_left_open, directions; ///< of an inversion
     double seed;
+    double length_unit_nm; ///< λ
 };
 
 extern const struct field result_summary_fields[];

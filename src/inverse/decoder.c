@@ -158,6 +158,16 @@ static struct span parameter_span(const struct unknown_parameters *p, int parame
     return spans[parameter];
 }
 
+const char *decoder_parameter_bound(const struct unknown_parameters *p, int parameter,
+                                    double value) {
+    static const double near = 1e-3;
+    const struct span span = parameter_span(p, parameter);
+    const double part = (value - span.least) / span.range;
+    if (!isnan(p->fixed[parameter]))
+        return NULL;
+    return part < near ? "minimum" : part > 1 - near ? "maximum" : NULL;
+}
+
 void decoder_parameters(const struct decoder *decoder, const double *genes,
                         const double *covariance,
                         struct inverse_parameter parameter[INVERSE_PARAMETERS]) {

@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "base/rng.h"
 #include "inverse/candidates.h"
+#include "inverse/inversion.h"
 
 #include <assert.h>
 #include <math.h>
@@ -252,12 +253,48 @@ static void tell_reason(const struct state *state, char reason[INVERSE_REASON_SI
     candidates_tell_failure(&state->candidates, why, reason);
 }
 
+/// Whether some potential meets all that is fitted: g(r) and the pressure. What moves may be out of
+/// reach of any friction.
+static bool can_be_met(const struct inverse_problem *problem) {
+    const struct goals *goals = &problem->goals;
+    return problem->unknown[UNKNOWN_POTENTIAL].wanted &&
+           goals_count(goals) ==
+               (size_t)goals_ask(goals, GOAL_RDF) + (size_t)goals_ask(goals, GOAL_PRESSURE);
+}
+
+static bool has_narrowed(const struct state *state) {
+    return state->progress.reach < state->own.tolerance * state->own.reach;
+}
+
+/// It goes no further: at its noise it has converged, and elsewhere that is no success unless what
+/// is fitted cannot be met.
+static void settle(const struct state *state, struct inverse_step *step) {
+    const struct progress *progress = &state->progress;
+    const struct goals *goals = &state->problem->goals;
+    const char *what = goals_count(goals) > 1       ? "the weighted error of all targets is"
+                       : goals_ask(goals, GOAL_RDF) ? "g(r) is still off by"
+                                                    : "the target is still off by";
+    char why[64] = "its steps have become small";
+    step->finished = true;
+    step->converged = progress->error <= inversion_noise_margin * progress->noise;
+    step->used_up = !step->converged && !can_be_met(state->problem);
+    if (step->converged)
+        return;
+    if (!has_narrowed(state))
+        snprintf(why, sizeof why, "its error has not fallen in %u iterations", progress->idle);
+    snprintf(step->reason, sizeof step->reason,
+             "%s, but %s %.2g, %.2g by statistics: more \"genes\", a wider range of the curve or "
+             "another start may lead on%s",
+             why, what, progress->error, progress->noise,
+             step->used_up ? ", if the target can be met at all" : "");
+}
+
 static void describe(struct state *state, struct inverse_step *step) {
     const struct candidates_survey *survey = &state->candidates.survey;
     const struct progress *progress = &state->progress;
-    const bool narrowed = progress->reach < state->own.tolerance * state->own.reach;
-    const bool settled = progress->known && (narrowed || progress->at_noise >= SETTLED_AT_NOISE ||
-                                             progress->idle >= SETTLED_IDLE);
+    const bool settled =
+        progress->known && (has_narrowed(state) || progress->at_noise >= SETTLED_AT_NOISE ||
+                            progress->idle >= SETTLED_IDLE);
     const bool last = progress->iteration + 1 >= (uint32_t)state->own.iterations;
     *step = (struct inverse_step){
         .iteration = progress->iteration,
@@ -268,10 +305,11 @@ static void describe(struct state *state, struct inverse_step *step) {
         .variance = progress->variance,
         .extra = {survey->least, survey->alive.count > 0 ? survey->alive.mean : NAN,
                   progress->reach, (double)survey->failures},
-        .finished = last || narrowed || settled,
-        .converged = settled,
+        .finished = last || has_narrowed(state),
     };
-    if (step->finished && !settled)
+    if (settled)
+        settle(state, step);
+    else if (step->finished)
         tell_reason(state, step->reason);
     decoder_curves_show(&state->decoder, state->best, &state->curves, step);
 }

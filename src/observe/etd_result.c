@@ -13,6 +13,17 @@ static double survived(struct tally tally) {
     return 1 - tally.escaped / tally.begun;
 }
 
+/// Standard error of what has survived of n independent pairs; if all or none have, the end of
+/// Wilson's interval of one standard deviation, where n p² = p (1 − p).
+static double find_error_of_pairs(struct tally sum) {
+    if (sum.escaped == 0 || sum.escaped == sum.begun)
+        return 1 / (sum.begun + 1);
+    return sqrt(survived(sum) * (1 - survived(sum)) / sum.begun);
+}
+
+/// Spread of a jackknife that is but rounding.
+static const double no_spread = 1e-12;
+
 /// Standard error of what has survived of the sum of `count` blocks.
 static double find_error(const struct tally *blocks, size_t count, struct tally sum) {
     double filled = 0, changes = 0, squares = 0;
@@ -26,8 +37,10 @@ static double find_error(const struct tally *blocks, size_t count, struct tally 
         squares += change * change;
     }
     if (filled < 3)
-        return sqrt(survived(sum) * (1 - survived(sum)) / sum.begun);
-    return sqrt(fmax(0, squares - changes * changes / filled) * (filled - 1) / filled);
+        return find_error_of_pairs(sum);
+    const double error =
+        sqrt(fmax(0, squares - changes * changes / filled) * (filled - 1) / filled);
+    return error > no_spread ? error : find_error_of_pairs(sum);
 }
 
 /// Go on to the next time: the pairs of a bin that are begun at time 0 or escape at a later one.
@@ -64,7 +77,9 @@ enum status etd_result(const struct etd *const *replicas, size_t count, double *
             const bool known = sum.begun > 0;
             survival[time * bins + bin] = known ? survived(sum) : NAN;
             if (error)
-                error[time * bins + bin] = known ? find_error(blocks, block_count, sum) : NAN;
+                error[time * bins + bin] = !known      ? NAN
+                                           : time == 0 ? 0 // E(0) is 1 by definition
+                                                       : find_error(blocks, block_count, sum);
             if (pairs)
                 pairs[bin] = (uint64_t)sum.begun;
         }

@@ -136,6 +136,29 @@ static enum status write_tables(const char *out, const struct compared *fits, si
     return STATUS_OK;
 }
 
+/// Tables and figures are over r in λ: those of different λ do not go together.
+static enum status check_lengths(const struct compared *fits, size_t count,
+                                 const char *const *folders) {
+    static const double rounding = 1e-9;
+    const double *first = NULL;
+    size_t at = 0;
+    for (size_t k = 0; k < count; k++) {
+        const double *length = &fits[k].result.summary.length_unit_nm;
+        if (isnan(*length))
+            continue;
+        if (first && fabs(*length / *first - 1) > rounding)
+            return status_fail(STATUS_BAD_INPUT,
+                               "compare: the unit of length is %.6g nm in %s and %.6g nm in %s: "
+                               "tables over r in it do not go together",
+                               *first, folders[at], *length, folders[k]);
+        if (first == NULL) {
+            first = length;
+            at = k;
+        }
+    }
+    return STATUS_OK;
+}
+
 enum status compare_folders(const char *const *folders, size_t count, const char *out, bool quiet) {
     enum status status = STATUS_OK;
     struct compared *fits = NULL;
@@ -146,6 +169,7 @@ enum status compare_folders(const char *const *folders, size_t count, const char
         CHECK(result_read(&fits[k].result, folders[k]));
         CHECK(find_path(&fits[k], folders[k]));
     }
+    CHECK(check_lengths(fits, count, folders));
     name_fits(fits, count);
     CHECK(write_tables(out, fits, count));
     if (!quiet)

@@ -183,7 +183,7 @@ static bool take_pair(const char *name, const char *table, char pair[PAIR_SIZE])
 
 /// Draw a figure from a table of one kind of pairs, like rdf_A-B.tsv, if `name` is one.
 static enum status draw_pair(const char *folder, const char *plots, const struct figure *figure,
-                             const char *name) {
+                             const char *name, size_t *count) {
     char path[PATH_SIZE], pair[PAIR_SIZE];
     // What follows the name of a kind of pairs, as "_history", makes another table.
     if (!take_pair(name, figure->tables[0], pair) || strstr(name, "_history.tsv") ||
@@ -192,18 +192,20 @@ static enum status draw_pair(const char *folder, const char *plots, const struct
     snprintf(path, sizeof path, "%s/%s", folder, name);
     if (!is_table(path) || (figure->column && !has_column(path, figure->column)))
         return STATUS_OK;
+    ++*count;
     return draw(folder, plots, figure->name, pair);
 }
 
-/// Draw a figure for each kind of pairs; the first failure.
-static enum status draw_pairs(const char *folder, const char *plots, const struct figure *figure) {
+/// Draw a figure for each kind of pairs, and count them; the first failure.
+static enum status draw_pairs(const char *folder, const char *plots, const struct figure *figure,
+                              size_t *count) {
     struct dirent **entries;
     enum status first = STATUS_OK;
-    const int count = scandir(folder, &entries, NULL, alphasort);
-    if (count < 0)
+    const int files = scandir(folder, &entries, NULL, alphasort);
+    if (files < 0)
         return status_fail(STATUS_IO, "%s: %s", folder, strerror(errno));
-    for (int k = 0; k < count; k++) {
-        const enum status status = draw_pair(folder, plots, figure, entries[k]->d_name);
+    for (int k = 0; k < files; k++) {
+        const enum status status = draw_pair(folder, plots, figure, entries[k]->d_name, count);
         first = first == STATUS_OK ? status : first;
         free(entries[k]);
     }
@@ -211,7 +213,8 @@ static enum status draw_pairs(const char *folder, const char *plots, const struc
     return first;
 }
 
-enum status figures_draw(const char *folder) {
+/// Draw all figures, and count them, also those that fail.
+static enum status draw_all(const char *folder, size_t *count) {
     enum status first = STATUS_OK;
     char message[ERRORS_SIZE], plots[PATH_SIZE];
     if (access(folder, X_OK) != 0)
@@ -219,16 +222,33 @@ enum status figures_draw(const char *folder) {
     TRY(find_plots(plots));
     for (size_t k = 0; k < sizeof figures / sizeof figures[0]; k++) {
         enum status status = STATUS_OK;
-        if (has_tables(folder, &figures[k]))
+        if (has_tables(folder, &figures[k])) {
+            ++*count;
             status = draw(folder, plots, figures[k].name, "");
-        else if (figures[k].by_pairs)
-            status = draw_pairs(folder, plots, &figures[k]);
+        } else if (figures[k].by_pairs) {
+            status = draw_pairs(folder, plots, &figures[k], count);
+        }
         if (first != STATUS_OK || status == STATUS_OK)
             continue;
         first = status;
         snprintf(message, sizeof message, "%s", status_message());
     }
     return first == STATUS_OK ? STATUS_OK : status_fail(first, "%s", message);
+}
+
+enum status figures_draw(const char *folder) {
+    size_t count = 0;
+    return draw_all(folder, &count);
+}
+
+enum status figures_draw_again(const char *folder) {
+    size_t count = 0;
+    TRY(draw_all(folder, &count));
+    return count > 0 ? STATUS_OK
+                     : status_fail(STATUS_BAD_INPUT,
+                                   "%s: there is nothing to draw: no table that a fit or a "
+                                   "simulation leaves",
+                                   folder);
 }
 
 enum status figures_draw_comparison(const char *folder) {

@@ -401,6 +401,7 @@ enum status fit_run(const char *file, const struct run_options *options) {
     struct run *run = NULL;
     NEW_ARRAY(run, 1);
     run->progress = progress_begin(options->quiet);
+    run->progress.left_for = "all iterations"; // it may converge before
     CHECK(prepare(run, file, options));
     status = iterate(run);
     if (status == STATUS_OK)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/memory.h"
 #include "inverse/decoder.h"
 #include "run/explain.h"
 #include "run/target_sanity.h"
@@ -67,6 +68,19 @@ static void print_line(void *stream, const char *line) {
     fprintf(stream, "%s\n", line);
 }
 
+/// The method refuses what it cannot fit when it is created.
+static enum status try_method(const struct fit_file *fit) {
+    void *state = memory_zeroed(1, fit->method->state_size);
+    if (state == NULL)
+        return STATUS_NO_MEMORY;
+    const enum status status =
+        fit->method->create(state, fit->method, &fit->problem, fit->method_parameters);
+    fit->method->destroy(state);
+    memory_free(state);
+    return status;
+}
+
+/// In the order of the run (fit.c), so that it begins with the same curves.
 enum status fit_explain(const char *file, const struct run_options *options) {
     enum status status = STATUS_OK;
     struct fit_file fit;
@@ -74,11 +88,14 @@ enum status fit_explain(const char *file, const struct run_options *options) {
     struct decoder_laws laws = {0};
     double *genes = NULL;
     CHECK(fit_file_read(&fit, file, options));
-    CHECK(decoder_init(&decoder, &fit.problem));
+    CHECK(targets_normalise(&fit.targets, &fit.scene.setup.box));
+    status = decoder_init(&decoder, &fit.problem);
+    if (status == STATUS_OK)
+        status = try_method(&fit);
+    CHECK(status != STATUS_OK ? status_prefix(status, "%s", file) : STATUS_OK);
     NEW_ARRAY(genes, decoder.genes);
     CHECK(decoder_start(&decoder, genes));
     CHECK(decoder_laws(&decoder, genes, &laws));
-    CHECK(targets_normalise(&fit.targets, &fit.scene.setup.box));
     CHECK(target_sanity_tell(&fit.targets, &fit.scene,
                              &(struct target_sanity_listener){print_line, stdout}));
     print_simulations(&fit, &laws);

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-/// "weight: sigma = 2.98(4), exponent = 1 (fixed), inner_cutoff = 0.02(1)".
+/// "weight: sigma = 6.00(4) (at its maximum), exponent = 1 (fixed), inner_cutoff = 0.02(1)".
 static void say_parameters(struct progress *to, const struct fit_file *fit,
                            const struct inverse_parameter *parameter) {
     const struct unknown_parameters *p = &fit->unknown[UNKNOWN_WEIGHT].parameters;
@@ -16,10 +16,15 @@ static void say_parameters(struct progress *to, const struct fit_file *fit,
         return;
     for (int k = 0; k < INVERSE_PARAMETERS; k++) {
         char text[NUMBER_TEXT_SIZE];
+        const char *bound = decoder_parameter_bound(p, k, parameter[k].value);
+        char mark[32] = "";
+        if (!isnan(p->fixed[k]))
+            snprintf(mark, sizeof mark, " (fixed)");
+        else if (bound)
+            snprintf(mark, sizeof mark, " (at its %s)", bound);
         number_text(parameter[k].value, parameter[k].error, text);
-        length +=
-            snprintf(line + length, sizeof line - (size_t)length, "%s %s = %s%s", k > 0 ? "," : "",
-                     inverse_fixed_fields[k].name, text, isnan(p->fixed[k]) ? "" : " (fixed)");
+        length += snprintf(line + length, sizeof line - (size_t)length, "%s %s = %s%s",
+                           k > 0 ? "," : "", inverse_fixed_fields[k].name, text, mark);
     }
     progress_say(to, "%s", line);
 }

@@ -139,12 +139,15 @@ static void put_parameters(struct json_writer *writer, const struct fit_file *fi
     json_begin(writer, "parameters");
     json_begin(writer, inverse_unknown_names[UNKNOWN_WEIGHT]);
     for (int k = 0; k < INVERSE_PARAMETERS; k++) {
+        const char *bound = decoder_parameter_bound(p, k, parameter[k].value);
         json_begin(writer, inverse_fixed_fields[k].name);
         put_known(writer, "value", parameter[k].value);
         if (isnan(p->fixed[k]))
             put_known(writer, "error", parameter[k].error);
         else
             json_put_text(writer, "fixed", "yes");
+        if (bound)
+            json_put_text(writer, "bound", bound);
         json_end(writer);
     }
     json_end(writer);

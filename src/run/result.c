@@ -118,12 +118,20 @@ static void read_simulated_diffusion(struct json_object *root, struct result_sum
     json_fields(&motion, fields, summary);
 }
 
+/// λ stands in an object of its own, if it is known.
+static void read_length_unit(struct json_object *root, struct result_summary *summary) {
+    static const struct field fields[] = {NUMBER(length_unit_nm, "nm"), FIELD_END};
+    struct json_object physical = json_child(root, "physical", false);
+    json_fields(&physical, fields, summary);
+}
+
 /// Keys that are not in the table are left alone: a later version may write more.
 static enum status read_summary(struct result_summary *summary, const char *file) {
     struct json_document *document;
     TRY(json_open(&document, file));
     struct json_object root = json_root(document);
     json_fields(&root, result_summary_fields, summary);
+    read_length_unit(&root, summary);
     if (is_simulation(summary))
         read_simulated_diffusion(&root, summary);
     else if (root.item && !has_distance(&root))

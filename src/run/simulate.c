@@ -409,6 +409,22 @@ static enum status write_results(struct run *run) {
     return STATUS_OK;
 }
 
+static void clear(struct run *run) {
+    if (run == NULL)
+        return;
+    simulation_clear(&run->simulation);
+    rdf_clear(&run->rdf);
+    rdf_force_clear(&run->rdf_force);
+    thermodynamics_clear(&run->thermodynamics);
+    simulate_motion_clear(&run->motion);
+    simulate_etd_clear(&run->etd);
+    simulate_force_covariance_clear(&run->force_covariance);
+    scene_clear(&run->scene);
+    input_files_clear(&run->inputs);
+    run_folder_close(&run->folder);
+    memory_free(run);
+}
+
 enum status simulate_file(const char *file, const struct run_options *options) {
     enum status status = STATUS_OK;
     struct run *run = NULL;
@@ -424,19 +440,7 @@ enum status simulate_file(const char *file, const struct run_options *options) {
     if (status == STATUS_OK)
         status = write_results(run);
 done:
-    if (run) {
-        simulation_clear(&run->simulation);
-        rdf_clear(&run->rdf);
-        rdf_force_clear(&run->rdf_force);
-        thermodynamics_clear(&run->thermodynamics);
-        simulate_motion_clear(&run->motion);
-        simulate_etd_clear(&run->etd);
-        simulate_force_covariance_clear(&run->force_covariance);
-        scene_clear(&run->scene);
-        input_files_clear(&run->inputs);
-        run_folder_close(&run->folder);
-    }
-    memory_free(run);
+    clear(run);
     return status;
 }
 
@@ -445,9 +449,10 @@ enum status simulate_explain(const char *file, const struct run_options *options
     struct run *run = NULL;
     NEW_ARRAY(run, 1);
     CHECK(read_file(run, file, options));
+    // All that a run refuses before its first step.
+    CHECK(begin_measuring(run, file));
     const struct simulation_setup *setup = &run->scene.setup;
-    const struct pair_law law = {.potential = setup->potential, .weight = setup->weight};
-    const double cutoff = pair_cutoff(&law);
+    const double cutoff = pair_cutoff(&run->simulation.law);
     const struct explain_measured measured = {
         .has_potential = setup->potential != NULL,
         .cutoff = cutoff,
@@ -461,10 +466,6 @@ enum status simulate_explain(const char *file, const struct run_options *options
         .etd_plan = &run->etd.plan};
     explain_scene(stdout, setup, &measured);
 done:
-    if (run) {
-        scene_clear(&run->scene);
-        input_files_clear(&run->inputs);
-    }
-    memory_free(run);
+    clear(run);
     return status;
 }

@@ -34,6 +34,7 @@ static const double hot = 50;
 /// g(r) of one kind of pairs, and how many beads there are.
 struct view {
     char name[sizeof "rdf." + COMPOSITION_PAIR_NAME_SIZE];
+    const struct targets *targets; ///< of all kinds of pairs
     const struct target *target;
     const struct rdf_bins *bins;
     const double *g, *error; ///< shape [bins->count]
@@ -46,6 +47,7 @@ static struct view view_of(const struct targets *targets, const struct scene *sc
     const size_t bins = targets->rdf[0].bins.count;
     const struct composition *composition = &targets->composition;
     struct view view = {.name = "rdf",
+                        .targets = targets,
                         .target = &targets->rdf[pair],
                         .bins = &targets->rdf[0].bins,
                         .g = targets->rdf_given + pair * bins,
@@ -77,6 +79,31 @@ static void print_density(const struct view *view, char *text, size_t size) {
                  scene_mass_density(view->scene));
 }
 
+/// ∫ (g − 1) d³r of the pairs of two types.
+static double integral_of(const struct view *view, int a, int b) {
+    const int pair = composition_pair(&view->targets->composition, a, b);
+    const struct view own = view_of(view->targets, view->scene, (size_t)pair);
+    return kirkwood_buff_integrate(own.bins, own.g, own.error, &own.scene->setup.box, 0).integral;
+}
+
+/// What a fault goes on with if two types look demixed, else "": each has more beads of its own
+/// around it than on the whole, and fewer of the other's, as within the phases of a box with two.
+static void print_demixing(const struct view *view, char *text, size_t size) {
+    const struct composition *composition = &view->targets->composition;
+    text[0] = '\0';
+    for (int b = 1; b < composition->types && view->scene->setup.box.dimensions == 3; b++)
+        for (int a = 0; a < b && text[0] == '\0'; a++) {
+            const double first = integral_of(view, a, a), second = integral_of(view, b, b);
+            const double unlike = integral_of(view, a, b);
+            const char *one = composition->name[a], *other = composition->name[b];
+            if (first > 0 && second > 0 && unlike < 0)
+                snprintf(text, size,
+                         "; or have %s and %s demixed? Their integrals of g - 1 are %.3g (%s-%s), "
+                         "%.3g (%s-%s) and %.3g (%s-%s) lambda^3",
+                         one, other, first, one, one, second, other, other, unlike, one, other);
+        }
+}
+
 static enum status check_tail(const struct view *view, const char *file) {
     const struct target_tail *tail = &view->target->tail;
     const struct target_parameters *p = &view->target->parameters;
@@ -84,15 +111,18 @@ static enum status check_tail(const struct view *view, const char *file) {
     const double away = fabs(tail->mean - 1);
     if (away <= fmax(far_from_1, 2 * tail->scatter) && !(tail->grows && away > far_from_1))
         return STATUS_OK;
+    char demixing[256];
+    print_demixing(view, demixing, sizeof demixing);
     return status_fail(
         STATUS_BAD_INPUT,
-        "%s: target.%s.%s: the mean of g over the last quarter of %s is %.4g, not 1: %s", file,
+        "%s: target.%s.%s: the mean of g over the last quarter of %s is %.4g, not 1: %s%s", file,
         view->name, votca ? "file" : "g_column", p->file, tail->mean,
         tail->grows ? "it grows from row to row, as a number of neighbours does"
         : away > 1  ? "counts of pairs, or another column than g?"
         : tail->mean < far_from_1
             ? "a potential, or another column than g?"
-            : "not normalised by the density of the whole system, or another column than g?");
+            : "not normalised by the density of the whole system, or another column than g?",
+        demixing);
 }
 
 /// Upper edge of the bins where g stays below `level` from the first on [λ].
@@ -169,17 +199,18 @@ static void print_compressibility(const struct view *view, char *text, size_t si
 
 static enum status check_compressibility(const struct view *view, const char *file) {
     double largest;
-    char density[80], value[80];
+    char density[80], value[80], demixing[256];
     TRY(largest_compressibility(view, normalisation, &largest));
     if (largest >= 0)
         return STATUS_OK;
     print_density(view, density, sizeof density);
     print_compressibility(view, value, sizeof value);
+    print_demixing(view, demixing, sizeof demixing);
     return status_fail(STATUS_BAD_INPUT,
                        "%s: target.%s: at the density of the scene, %s, it asks for a negative "
                        "compressibility, %s: the density (scene.box, the number of particles, the "
-                       "unit of length) or the normalisation of g is wrong",
-                       file, view->name, density, value);
+                       "unit of length) or the normalisation of g is wrong%s",
+                       file, view->name, density, value, demixing);
 }
 
 static size_t views(const struct targets *targets) {

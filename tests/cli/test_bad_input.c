@@ -28,6 +28,8 @@ static void check_fault(struct temporary_folder *folder, const char *verb, const
     small_inputs_write(folder, "input.json", good, fault->from, fault->to);
     RUN_PROGRAM(&result, verb, "input.json");
     run_program_assert_refused(&result, ".", fault->what, 1, fault->words);
+    RUN_PROGRAM(&result, verb, "input.json", "--explain");
+    run_program_assert_refused(&result, ".", fault->what, 1, fault->words);
 }
 
 #define WITH_TABLE(name, old, new, rows, ...)                                                      \
@@ -116,6 +118,9 @@ static const struct fault scene_faults[] = {
     FAULT("a window longer than the run", "\"measure\"",
           "\"motion\": {\"every\": 1, \"lags\": 5}, \"measure\"", "input.json: motion",
           "5 lags of 1 steps", "4 steps"),
+    FAULT("a force covariance without friction in the forces", "\"measure\"",
+          "\"force_covariance\": {}, \"measure\"", "input.json: force_covariance", "aboba",
+          "dpd-verlet"),
     FAULT("a method in a scene", "\"measure\"", "\"method\": {}, \"measure\"", "method: unknown"),
 
 };

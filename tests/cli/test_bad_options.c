@@ -2,15 +2,19 @@
 //
 // Command lines that cannot be right, and folders that cannot be written.
 #define _GNU_SOURCE // unshare
+#include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
 
+#include <fcntl.h>
 #include <sched.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <sys/mount.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 enum { MOST_WORDS = 8 };
 
@@ -43,6 +47,7 @@ static const struct command_line bad_lines[] = {
     {{"fit", "no/such.json"}, {"no/such.json: No such file"}},
     {{"fit", "/"}, {"/: is a folder"}},
     {{"plot", "no/such"}, {"no/such"}},
+    {{"plot", "."}, {"mesofit: .: there is nothing to draw"}},
     {{"compare", "no/such", "no/such"}, {"no/such"}},
     {{"simulate", "scene.json", "--resume"}, {"checkpoint.bin: No such file"}},
 };
@@ -135,6 +140,76 @@ static void test_full_file_system_is_an_error_wherever_it_is_met(void **state) {
     assert_in_range(failures, 8, 100);
 }
 
+/// Fill the disk but for so many pages.
+static void fill_disk(int pages) {
+    static const char page[4096];
+    off_t size = 0;
+    const int file = open("disk/filler", O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    assert_true(file >= 0);
+    while (write(file, page, sizeof page) == (ssize_t)sizeof page)
+        size += (off_t)sizeof page;
+    assert_int_equal(ftruncate(file, size - pages * (off_t)sizeof page), 0);
+    assert_int_equal(close(file), 0);
+}
+
+static void assert_text(const char *name, const char *text) {
+    char *now = temporary_folder_read(name);
+    assert_string_equal(now, text);
+    free(now);
+}
+
+/// What keeps a forced fit on a disk with so many free pages from replacing the one that it holds.
+enum barrier { AT_SETTINGS, AT_CHECKPOINT, LATER, NOWHERE, BARRIERS };
+
+static enum barrier force_fit(int pages) {
+    enum { KEPT = 4 };
+    static const char *const names[KEPT] = {"disk/summary.json", "disk/potential.tsv",
+                                            "disk/history.tsv", "disk/used.json"};
+    static struct run_program_result result;
+    char *text[KEPT];
+    RUN_PROGRAM(&result, "fit", "run.json", "--quiet", "-o", "disk");
+    assert_in_range(result.code, 0, 1);
+    for (int k = 0; k < KEPT; k++)
+        text[k] = temporary_folder_read(names[k]);
+    fill_disk(pages);
+    RUN_PROGRAM(&result, "fit", "run.json", "--quiet", "-o", "disk", "--seed", "7", "--force");
+    const enum barrier barrier = result.code != 2                                    ? NOWHERE
+                                 : strstr(result.err, "cannot write disk/used.json") ? AT_SETTINGS
+                                 : strstr(result.err, "cannot write disk/checkpoint.bin")
+                                     ? AT_CHECKPOINT
+                                     : LATER;
+    for (int k = 0; k < KEPT; k++) {
+        const bool settings = k == KEPT - 1;
+        if (barrier == AT_SETTINGS || (barrier == AT_CHECKPOINT && !settings))
+            assert_text(names[k], text[k]);
+        free(text[k]);
+    }
+    if (barrier == LATER)
+        assert_false(temporary_folder_exists("disk/summary.json"));
+    if (barrier == NOWHERE)
+        results_assert_number("disk/summary.json", "seed", 7);
+    else
+        assert_contains(result.err, "No space left");
+    return barrier;
+}
+
+/// A forced fit replaces used.json, then the checkpoint, and once it has both it removes what else
+/// the earlier one left: from a disk without room for the first to one with room for all.
+static void test_forced_fit_on_a_full_disk_keeps_the_earlier_one_until_it_has_begun(void **state) {
+    enum { PAGES = 64, MOST = 32 };
+    int met[BARRIERS] = {0};
+    assert_int_equal(mkdir("disk", 0777), 0);
+    small_inputs_write(*state, "run.json", small_inputs_run, NULL, NULL);
+    small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
+    for (int pages = 0; met[NOWHERE] == 0 && pages < MOST; pages++) {
+        if (!mount_small("disk", PAGES))
+            skip();
+        met[force_fit(pages)]++;
+        umount("disk");
+    }
+    assert_true(met[AT_SETTINGS] > 0 && met[AT_CHECKPOINT] > 0 && met[NOWHERE] > 0);
+}
+
 static int leave_disk(void **state) {
     umount("disk"); // if the test has failed
     return small_inputs_leave(state);
@@ -150,6 +225,9 @@ int main(void) {
         TEST(test_full_disk_is_an_error_and_leaves_nothing_half_written),
         cmocka_unit_test_setup_teardown(test_full_file_system_is_an_error_wherever_it_is_met,
                                         small_inputs_enter, leave_disk),
+        cmocka_unit_test_setup_teardown(
+            test_forced_fit_on_a_full_disk_keeps_the_earlier_one_until_it_has_begun,
+            small_inputs_enter_without_gnuplot, leave_disk),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

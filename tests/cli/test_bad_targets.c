@@ -102,6 +102,8 @@ static void test_fit_of_a_weight_refuses_with_a_line_for_each_fault(void **state
         small_inputs_write(*state, "run.json", good, faults[k].from, faults[k].to);
         RUN_PROGRAM(&result, "fit", "run.json");
         run_program_assert_refused(&result, ".", faults[k].what, 1, faults[k].words);
+        RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+        run_program_assert_refused(&result, ".", faults[k].what, 1, faults[k].words);
         assert_false(temporary_folder_exists("out"));
     }
 }
@@ -136,10 +138,11 @@ static void test_imc_refuses_more_bins_than_it_can_solve_for(void **state) {
     small_inputs_write(*state, "run.json", small_inputs_run, "\"file\": \"target.tsv\"",
                        "\"file\": \"target.tsv\", \"bin_width\": 1e-5");
     RUN_PROGRAM(&result, "fit", "run.json");
-    run_program_assert_refused(
-        &result, ".", "too many bins", 1,
-        (const char *[]){"run.json: target.rdf: an inversion takes 4000 bins",
-                         "there are 100000: join bins", NULL});
+    const char *const words[] = {"run.json: target.rdf: an inversion takes 4000 bins",
+                                 "there are 100000: join bins", NULL};
+    run_program_assert_refused(&result, ".", "too many bins", 1, words);
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_refused(&result, ".", "too many bins, explained", 1, words);
 }
 
 static void test_fit_of_a_weight_refuses_more_genes_than_a_round_can_hold(void **state) {
@@ -151,8 +154,10 @@ static void test_fit_of_a_weight_refuses_more_genes_than_a_round_can_hold(void *
     small_inputs_write(*state, "run.json", text, "\"genes\": 4", "\"genes\": 340");
     free(text);
     RUN_PROGRAM(&result, "fit", "run.json");
-    run_program_assert_refused(&result, ".", "too many genes", 1,
-                               (const char *[]){"run.json: method.name", "1030", "1024", NULL});
+    const char *const words[] = {"run.json: method.name", "1030", "1024", NULL};
+    run_program_assert_refused(&result, ".", "too many genes", 1, words);
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_refused(&result, ".", "too many genes, explained", 1, words);
 }
 
 /// The fit is told once, and the number is in the summary.

@@ -76,10 +76,71 @@ static void test_compare_takes_a_simulation_beside_a_fit(void **state) {
     free(text);
 }
 
+/// All files of a folder and their contents, but those that are called "…compare…".
+static char *snapshot(const char *folder) {
+    static char text[4096];
+    char command[512];
+    snprintf(command, sizeof command,
+             "find %s -type f ! -name '*compare.*' -exec cksum {} + | sort", folder);
+    FILE *stream = popen(command, "r");
+    assert_non_null(stream);
+    text[fread(text, 1, sizeof text - 1, stream)] = '\0';
+    assert_int_equal(pclose(stream), 0);
+    return strdup(text);
+}
+
+static void test_compare_leaves_a_run_in_its_own_folder_alone(void **state) {
+    small_inputs_need_gnuplot();
+    simulate(*state, "cold", "1");
+    small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
+    small_inputs_write(*state, "run.json", small_inputs_run, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit", "--quiet");
+    assert_in_range(result.code, 0, 1);
+    static const char *const folders[] = {"cold", "fit"};
+    for (int k = 0; k < 2; k++) {
+        char *before = snapshot(folders[k]);
+        assert_contains(before, "rdf.tsv");
+        assert_contains(before, "figures/");
+        RUN_PROGRAM(&result, "compare", "cold", "fit", "-o", folders[k]);
+        run_program_assert_code(&result, 0);
+        char *after = snapshot(folders[k]);
+        assert_string_equal(before, after);
+        free(before);
+        free(after);
+    }
+}
+
+static void test_compare_refuses_results_of_different_units_of_length(void **state) {
+    static const char units[] = "\"units\": {\"length\": 0.7, \"temperature\": 300, \"mass\": "
+                                "9e-26}, \"temperature\": 1";
+    simulate(*state, "reduced", "1");
+    char *text = temporary_folder_read("scene.json");
+    small_inputs_write(*state, "wide.json", text, "\"temperature\": 1", units);
+    small_inputs_write(*state, "narrow.json", text, "\"temperature\": 1",
+                       "\"units\": {\"length\": 0.465, \"temperature\": 300, \"mass\": 9e-26}, "
+                       "\"temperature\": 1");
+    free(text);
+    RUN_PROGRAM(&result, "simulate", "wide.json", "-o", "wide", "--quiet");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "simulate", "narrow.json", "-o", "narrow", "--quiet");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "compare", "reduced", "wide", "narrow", "-o", "all");
+    run_program_assert_code(&result, 2);
+    assert_string_equal(result.err, "mesofit: compare: the unit of length is 0.7 nm in wide and "
+                                    "0.465 nm in narrow: tables over r in it do not go together\n");
+    assert_false(temporary_folder_exists("all"));
+    RUN_PROGRAM(&result, "compare", "reduced", "wide", "wide", "-o", "all");
+    run_program_assert_code(&result, 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_compare_puts_simulations_side_by_side,
                                         small_inputs_enter, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_compare_leaves_a_run_in_its_own_folder_alone,
+                                        small_inputs_enter, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_compare_refuses_results_of_different_units_of_length,
+                                        small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_compare_takes_a_simulation_beside_a_fit,
                                         small_inputs_enter, small_inputs_leave),
     };

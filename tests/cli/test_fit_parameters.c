@@ -61,6 +61,7 @@ static void test_fit_finds_a_known_sigma_within_its_error(void **state) {
     small_inputs_write(*state, "run.json", fit, NULL, NULL);
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out");
     run_program_assert_code(&result, 0);
+    assert_null(strstr(result.err, "(at its"));
     assert_contains(result.err, "error of the fit: ");
     assert_contains(result.err, "weight: changed by ");
     assert_contains(result.err, "weight: sigma = ");
@@ -74,6 +75,22 @@ static void test_fit_finds_a_known_sigma_within_its_error(void **state) {
     assert_close(parameter("out/summary.json", "exponent", "value"), 1, 0);
     assert_true(isnan(parameter("out/summary.json", "exponent", "error")));
     assert_close(parameter("out/summary.json", "inner_cutoff", "value"), 0, 0);
+}
+
+/// A sigma of 3 is asked for of a range from 4 to 6: the fit ends there and says so.
+static void test_fit_says_that_a_parameter_is_at_its_bound(void **state) {
+    write_target(*state);
+    small_inputs_write(*state, "run.json", fit, "\"maximum\": 6", "\"minimum\": 4, \"maximum\": 6");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out");
+    assert_in_range(result.code, 0, 1);
+    assert_contains(result.err, "weight: sigma = 4");
+    assert_contains(result.err, " (at its minimum), exponent = 1 (fixed)");
+    char *text = temporary_folder_read("out/summary.json");
+    char *bound = strstr(text, "\"bound\":\t\"minimum\"");
+    assert_non_null(bound);
+    // One of the three parameters: a fixed one has no bounds.
+    assert_null(strstr(bound + 1, "\"bound\""));
+    free(text);
 }
 
 static void
@@ -176,6 +193,7 @@ static void test_fit_refuses_what_cannot_be_fixed(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST_WITHOUT_FIGURES(test_fit_finds_a_known_sigma_within_its_error),
+        TEST_WITHOUT_FIGURES(test_fit_says_that_a_parameter_is_at_its_bound),
         TEST_WITHOUT_FIGURES(
             test_fit_with_fixed_parameters_gives_the_same_bits_from_used_and_in_pieces),
         TEST_WITHOUT_FIGURES(test_diffusion_of_a_verification_has_an_error),

@@ -69,9 +69,31 @@ static void test_gauss_newton_stops_at_its_noise(void **state) {
     assert_contains(result.err, "converged after ");
     assert_summary("converged", NULL);
     assert_true(results_number("out/summary.json", "iterations") < 60);
+    // What is left is that of 200 iterations; the verification takes all of its time.
+    assert_contains(result.err, " left for all iterations\n");
+    assert_non_null(strstr(strstr(result.err, "verification "), " left\n"));
     // Twice what statistics make: what own measurements of ten samples cannot tell from none.
     assert_true(results_number("out/summary.json", "rdf_rmse") <
                 4 * results_number("out/summary.json", "rdf_noise"));
+}
+
+/// Three coefficients up to 5 k_B T_0 cannot make a repulsion of 12.5: it stands still.
+static void test_gauss_newton_has_not_converged_at_a_standstill_above_its_noise(void **state) {
+    static struct run_program_result result;
+    run_fit(*state, PLAN, GAUSS_NEWTON(", \"iterations\": 100"), &result);
+    char *text = temporary_folder_read("run.json");
+    small_inputs_write(*state, "run.json", text,
+                       "\"curve\": \"bspline\", \"genes\": 6, \"maximum\": 30",
+                       "\"curve\": \"bezier\", \"genes\": 3, \"maximum\": 5");
+    free(text);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
+    run_program_assert_code(&result, 1);
+    assert_contains(result.err, "not converged after ");
+    assert_contains(result.err, ", but g(r) is still off by 0.1");
+    assert_summary("unconverged", "more \\\"genes\\\"");
+    assert_true(results_number("out/summary.json", "iterations") < 100);
+    assert_true(results_number("out/summary.json", "rdf_rmse") >
+                5 * results_number("out/summary.json", "rdf_noise"));
 }
 
 static void test_gauss_newton_says_when_too_few_succeeded_for_a_model(void **state) {
@@ -153,6 +175,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST_WITHOUT_FIGURES(test_gauss_newton_has_not_converged_at_the_limit_of_iterations),
         TEST_WITHOUT_FIGURES(test_gauss_newton_stops_at_its_noise),
+        TEST_WITHOUT_FIGURES(test_gauss_newton_has_not_converged_at_a_standstill_above_its_noise),
         TEST_WITHOUT_FIGURES(test_gauss_newton_says_when_too_few_succeeded_for_a_model),
         TEST_WITHOUT_FIGURES(test_populations_have_finished_when_their_budget_is_used_up),
         TEST_WITHOUT_FIGURES(test_cmaes_has_not_converged_when_its_verification_is_worse),

@@ -264,6 +264,11 @@ static void test_decoder_parameters_have_the_errors_of_their_genes(void **state)
     // Half of the way from 0.1 to 1.6 is one gene's range.
     assert_close(found[INVERSE_INNER_CUTOFF].value, 0.4, 1e-12);
     assert_close(found[INVERSE_INNER_CUTOFF].error, 0.75 * 0.02, 1e-12);
+    const struct unknown_parameters *p = &both.problem.unknown[UNKNOWN_WEIGHT].parameters;
+    assert_null(decoder_parameter_bound(p, INVERSE_SIGMA, 0.5 * (p->minimum + p->maximum)));
+    assert_string_equal(decoder_parameter_bound(p, INVERSE_SIGMA, p->minimum), "minimum");
+    assert_string_equal(decoder_parameter_bound(p, INVERSE_SIGMA, p->maximum), "maximum");
+    assert_null(decoder_parameter_bound(p, INVERSE_SIGMA, NAN));
     decoder_parameters(&both.decoder, both.genes, NULL, found);
     assert_true(isnan(found[INVERSE_SIGMA].error));
     decoder_clear(&both.decoder);

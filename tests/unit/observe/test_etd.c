@@ -127,7 +127,10 @@ static void test_etd_result_pools_replicas_and_their_blocks(void **state) {
         const double mean = (n[0] * one[0][cell] + n[1] * one[1][cell]) / (n[0] + n[1]);
         assert_close(both[cell], mean, 1e-14);
         // Two blocks are too few: as if pairs were independent.
-        assert_close(error[cell] * error[cell], mean * (1 - mean) / (n[0] + n[1]), 1e-14);
+        if (cell >= BINS && (both[cell] == 0 || both[cell] == 1))
+            assert_close(error[cell], 1 / (n[0] + n[1] + 1), 1e-14);
+        else
+            assert_close(error[cell] * error[cell], mean * (1 - mean) / (n[0] + n[1]), 1e-14);
     }
     etd_clear(&etd[0]);
     etd_clear(&etd[1]);
@@ -151,6 +154,34 @@ static void test_etd_result_leaves_out_one_block_at_a_time(void **state) {
     assert_int_equal(pairs, 60);
     assert_close(survival[1], 1 - 17.0 / 60, 1e-15);
     assert_close(error[1], sqrt(squares * 2 / 3), 1e-15);
+}
+
+/// A few pairs of which all or none stay, in one block or in each of four, where the jackknife sees
+/// no spread: the error p is where Wilson's interval ends, (p − 0)² = p (1 − p)/n. Blocks with half
+/// of their pairs each have the binomial error.
+static void test_etd_result_has_an_error_when_no_pair_differs(void **state) {
+    (void)state;
+    enum { BLOCKS = 4 };
+    const struct etd_grid small = {.r_minimum = 0, .r_maximum = 1, .bins = 1, .times = 2};
+    for (uint64_t pairs = 1; pairs <= 2; pairs++)
+        for (size_t blocks = 1; blocks <= BLOCKS; blocks += BLOCKS - 1)
+            for (uint64_t escaped = 0; escaped <= pairs; escaped++) {
+                uint64_t counts[2 * BLOCKS], begun;
+                double survival[2], error[2];
+                for (size_t b = 0; b < blocks; b++) {
+                    counts[2 * b] = pairs;
+                    counts[2 * b + 1] = escaped;
+                }
+                const struct etd etd = {.grid = small, .blocks = blocks, .counts = counts};
+                assert_ok(etd_result(&(const struct etd *){&etd}, 1, survival, error, &begun));
+                const double n = (double)begun, p = error[1];
+                assert_identical(error[0], 0.0);
+                assert_true(p > 0);
+                if (escaped == 0 || escaped == pairs)
+                    assert_close(n * p * p, p * (1 - p), 1e-15);
+                else
+                    assert_close(p * p, 0.25 / n, 1e-15);
+            }
 }
 
 static void test_etd_result_is_not_known_without_pairs(void **state) {
@@ -180,7 +211,8 @@ static void test_etd_result_is_not_known_without_pairs(void **state) {
         for (int time = 0; time < 2; time++) {
             assert_true(pairs[bin] ? survival[2 * time + bin] == 1
                                    : isnan(survival[2 * time + bin]));
-            assert_true(pairs[bin] ? error[2 * time + bin] == 0 : isnan(error[2 * time + bin]));
+            const double least = time == 0 ? 0 : 1 / (double)(pairs[bin] + 1);
+            assert_true(pairs[bin] ? error[2 * time + bin] == least : isnan(error[2 * time + bin]));
         }
     etd_clear(&etd);
     simulation_clear(&simulation);
@@ -253,6 +285,7 @@ int main(void) {
         cmocka_unit_test(test_etd_begins_with_1_and_falls),
         cmocka_unit_test(test_etd_result_pools_replicas_and_their_blocks),
         cmocka_unit_test(test_etd_result_leaves_out_one_block_at_a_time),
+        cmocka_unit_test(test_etd_result_has_an_error_when_no_pair_differs),
         cmocka_unit_test(test_etd_result_is_not_known_without_pairs),
         cmocka_unit_test(test_etd_errors_are_what_they_say),
         cmocka_unit_test(test_etd_init_refuses_what_cannot_be_measured),
