@@ -26,7 +26,7 @@ WARN     = -Wall -Wextra -Wshadow -Wpointer-arith -Wstrict-prototypes -Wmissing-
 OPTIMISE = -O3 -fno-math-errno -fno-trapping-math -ffp-contract=fast
 CFLAGS  ?= $(OPTIMISE) -g
 override CFLAGS += -std=c11 -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 -fopenmp $(WARN) \
-           -Iinclude -MMD -MP $(shell pkg-config --cflags $(PACKAGES)) $(SANITIZE)
+           -Iinclude -Isrc -MMD -MP $(shell pkg-config --cflags $(PACKAGES)) $(SANITIZE)
 LDLIBS  := $(shell pkg-config --libs $(PACKAGES)) -lm
 override LDFLAGS += -fopenmp $(SANITIZE)
 
@@ -103,7 +103,7 @@ asan:
 	$(ASAN) check-all
 
 # Fuzzing. The readers belong to a few layers, which clang builds anew; the rest is as it always is.
-FUZZED  = $(wildcard src/base/*.c src/curves/*.c src/io/*.c src/run/*.c) src/system/composition.c \
+FUZZED  = $(wildcard src/base/*.c src/curves/*.c src/io/*.c src/input/*.c) src/system/composition.c \
           tests/fuzz/fuzz_readers.c
 READERS = build/fuzz/readers
 MUTATE  = build/fuzz/mutate

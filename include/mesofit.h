@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file What a small C program needs to run a simulation of its own.
+/// @file The version of the library and the program.
 #pragma once
-
-#include "curves/formula.h"
-#include "curves/sampled.h"
-#include "observe/measure.h"
 
 #define MESOFIT_VERSION "0.1.0"

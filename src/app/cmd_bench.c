@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command.h"
 #include "base/nearest.h"
-#include "run/bench.h"
-#include "run/bench_accuracy.h"
-#include "run/bench_samplers.h"
+#include "bench/bench.h"
+#include "bench/bench_accuracy.h"
+#include "bench/bench_samplers.h"
 
 #include <omp.h>
 #include <string.h>

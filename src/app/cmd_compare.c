@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command.h"
-#include "run/compare.h"
+#include "report/compare.h"
 
 static enum status run(const struct command_line *line) {
     return compare_folders(line->files, line->file_count,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command.h"
 #include "base/nearest.h"
-#include "run/fit_file.h"
-#include "run/simulate.h"
+#include "input/fit_file.h"
+#include "work/simulate.h"
 
 #include <string.h>
 

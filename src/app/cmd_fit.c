@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command.h"
-#include "run/fit.h"
+#include "work/fit.h"
 
 enum { EXPLAIN };
 

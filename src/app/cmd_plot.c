@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command.h"
-#include "run/figures.h"
+#include "report/figures.h"
 
 static enum status run(const struct command_line *line) {
     return figures_draw_again(line->files[0]);

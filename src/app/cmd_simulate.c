@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command.h"
-#include "run/simulate.h"
+#include "work/simulate.h"
 
 enum { EXPLAIN };
 

@@ -4,8 +4,9 @@
 #include "base/interrupt.h"
 #include "base/memory.h"
 #include "base/nearest.h"
+#include "base/fields.h"
 #include "mesofit.h"
-#include "run/program.h"
+#include "report/program.h"
 
 #include <errno.h>
 #include <fcntl.h>

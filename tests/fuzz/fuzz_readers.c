@@ -4,9 +4,9 @@
 // file. `make fuzz` builds and runs it. What a reader may do is take the file or refuse it.
 #include "io/data_table.h"
 #include "io/votca.h"
-#include "run/checkpoint.h"
-#include "run/fit_file.h"
-#include "run/result.h"
+#include "io/checkpoint.h"
+#include "input/fit_file.h"
+#include "report/result.h"
 
 #include <stdio.h>
 #include <stdlib.h>

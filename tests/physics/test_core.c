@@ -109,7 +109,7 @@ static void test_core_model_does_not_matter_when_the_potential_is_fitted(void **
     const double noise =
         sqrt(noise_soft * noise_soft + noise_hard * noise_hard + error_of_rms * error_of_rms);
     print_message("rms of the difference %.4f, noise %.4f\n", rms, noise);
-    assert_true(rms < inversion_noise_margin * noise);
+    assert_true(rms < inverse_noise_margin * noise);
     potential_grid_clear(&grid);
     comoments_clear(&target);
     fluid_clear(&fluid);

@@ -3,7 +3,7 @@
 // The slopes of the pressure in the potential, against differences of simulations.
 #include "curves/formula.h"
 #include "curves/sampled.h"
-#include "inverse/inversion.h"
+#include "inversion/inversion.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"

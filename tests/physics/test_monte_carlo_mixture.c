@@ -3,7 +3,7 @@
 // The samplers of a mixture, single moves and short trajectories, draw from one distribution: the
 // same partial g(r) and virial, within their errors, as dynamics with friction do.
 #include "base/comoments.h"
-#include "inverse/sampler.h"
+#include "inversion/sampler.h"
 #include "observe/rdf.h"
 #include "shared/fluids.h"
 #include "shared/hotelling.h"

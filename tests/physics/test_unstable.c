@@ -5,7 +5,7 @@
 #include "curves/formula.h"
 #include "curves/sampled.h"
 #include "dynamics/metropolis.h"
-#include "inverse/evaluate.h"
+#include "problem/evaluate.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"

@@ -2,7 +2,7 @@
 /// @file An inversion of g(r) from beginning to end, small enough for a test.
 #pragma once
 
-#include "inverse/inversion.h"
+#include "inversion/inversion.h"
 
 /// Invert until the method says that it is done, or 40 iterations.
 /// @param[in]  precision  of g; 0: the method's default

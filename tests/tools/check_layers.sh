@@ -7,7 +7,7 @@ set -u
 
 # Prints "file:line: layer may not include other" for each include that breaks a rule.
 includes_against_the_rules() {
-    find src include -mindepth 2 -type f -name '*.[ch]' -exec awk '
+    find src -mindepth 2 -type f -name '*.[ch]' -exec awk '
         BEGIN {
             while ((getline line < "src/layers.txt") > 0) {
                 if (line ~ /^#/ || line !~ /:/)
@@ -41,7 +41,7 @@ includes_against_the_rules() {
 
 # only_in FILE PATTERN WHAT: prints the lines of other files that match the extended regex.
 only_in() {
-    grep -rnE --include='*.[ch]' "$2" src include | grep -v "^$1:" |
+    grep -rnE --include='*.[ch]' "$2" src | grep -v "^$1:" |
         sed "s|\$|    ($3 belongs in $1 only)|"
 }
 
@@ -49,9 +49,9 @@ faults=$(
     includes_against_the_rules
     only_in 'src/io/json[_a-z]*.c' 'include.*cJSON\.h' 'cJSON'
     only_in src/optimise/nlopt_driver.c 'include.*nlopt\.h' 'NLopt'
-    only_in src/run/figures.c '"([^" ]*/)?gnuplot[" ]' 'gnuplot'
-    only_in src/run/bench_lammps.c '"([^" ]*/)?lmp[" ]' 'LAMMPS'
-    only_in src/run/program.c '\b(fork|vfork|popen|system|exec[lv]p?e?|posix_spawnp?) ?\(' \
+    only_in src/report/figures.c '"([^" ]*/)?gnuplot[" ]' 'gnuplot'
+    only_in src/bench/bench_lammps.c '"([^" ]*/)?lmp[" ]' 'LAMMPS'
+    only_in src/report/program.c '\b(fork|vfork|popen|system|exec[lv]p?e?|posix_spawnp?) ?\(' \
         'starting a program'
 )
 if [ -n "$faults" ]; then

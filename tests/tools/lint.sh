@@ -50,7 +50,7 @@ check_cppcheck() {
             --enable=warning,performance,portability --inline-suppr --error-exitcode=1 \
             --suppress=missingIncludeSystem --suppress=internalAstError \
             --template='{file}:{line}: {message} [{id}]' --cppcheck-build-dir="$analysed" \
-            -j "$(nproc)" -Iinclude -Itests -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 --file-list=-
+            -j "$(nproc)" -Iinclude -Isrc -Itests -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 --file-list=-
 }
 
 check_licence_lines() {

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file A subcommand of the program: one record, one file.
+#pragma once
+
+#include "report/run_folder.h"
+
+#include <stddef.h>
+
+enum { COMMAND_MAX_FILES = 64, COMMAND_MAX_OPTIONS = 12 };
+
+/// An option of one subcommand. It may take the place of a common one.
+struct command_option {
+    const char *name;  ///< such as "--json"
+    const char *value; ///< what it takes, such as "FILE", or NULL
+    const char *help;  ///< one line
+};
+
+/// The command line after the subcommand, parsed.
+struct command_line {
+    struct run_options options;
+    const char *files[COMMAND_MAX_FILES];
+    size_t file_count;
+    /// Of each of the subcommand's own options its value, or its name if it takes none; NULL if it
+    /// was not given.
+    const char *own[COMMAND_MAX_OPTIONS];
+};
+
+struct command {
+    const char *name;
+    const char *usage;   ///< arguments, such as "SCENE.json"
+    const char *summary; ///< one line
+    size_t least_files, most_files;
+    const struct command_option *options; ///< its own, up to one without a name; NULL: none
+    int threads;                          ///< unless --threads says more; 0: all processors
+    enum status (*run)(const struct command_line *line);
+};
+
+extern const struct command cmd_simulate, cmd_fit, cmd_plot, cmd_compare, cmd_describe, cmd_bench;

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bench/bench_point.h"
+
+#include "base/statistics.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+enum {
+    BLOCKS = 20,
+    SHORTEST_STRETCH = 6, ///< steps between samples: most of them are timed
+    SCALE_EVERY = 10,     ///< steps between scalings of the velocities
+};
+
+static const double lambdas[] = {0.5, 0.65}; // of dpd-verlet; Groot and Warren's optimum
+static const double equilibration_share = 0.05;
+
+/// Window of the diffusion coefficient, in times in which a particle flies the mean distance: in
+/// the standard fluid 4 τ, where its D(t) has come to its plateau. It is measured in runs of
+/// LEAST_WINDOWS or more.
+static const double window_length = 6;
+enum { LEAST_WINDOWS = 4, ORIGINS = 6 };
+
+// What to run -------------------------------------------------------------------------------------
+
+static void add_method(struct bench_method *methods, size_t *count,
+                       const struct simulation_setup *setup, const struct integrator *integrator) {
+    struct bench_method *method = &methods[(*count)++];
+    method->integrator = integrator;
+    fields_set_defaults(integrator->fields, &method->parameters);
+    if (setup->integrator == integrator)
+        method->parameters = setup->integrator_parameters;
+    snprintf(method->name, sizeof method->name, "%s", integrator->name);
+}
+
+size_t bench_methods(const struct simulation_setup *setup, struct bench_method *methods) {
+    size_t count = 0;
+    for (size_t k = 0; integrator_list[k] && count + 2 <= BENCH_MOST_METHODS; k++) {
+        const struct integrator *integrator = integrator_list[k];
+        if (integrator->dissipative != (setup->weight != NULL))
+            continue;
+        const bool predicts = integrator == &dpd_verlet;
+        for (size_t l = 0; l < (predicts ? sizeof lambdas / sizeof *lambdas : 1); l++) {
+            add_method(methods, &count, setup, integrator);
+            struct bench_method *method = &methods[count - 1];
+            if (!predicts)
+                continue;
+            method->parameters.lambda = lambdas[l];
+            snprintf(method->name, sizeof method->name, "%s(%g)", integrator->name, lambdas[l]);
+        }
+    }
+    return count;
+}
+
+const struct bench_method *bench_reference_method(const struct bench_method *methods,
+                                                  size_t count) {
+    for (size_t k = 0; k < count; k++)
+        if (methods[k].integrator == &aboba)
+            return &methods[k];
+    return methods;
+}
+
+/// Mean distance of particles, ρ^(−1/d) [λ].
+static double mean_distance(const struct box *box, size_t particles) {
+    return pow(box_volume(box) / (double)particles, 1.0 / box->dimensions);
+}
+
+struct bench_bins bench_bins_choose(const struct box *box, size_t particles, double cutoff) {
+    const double distance = mean_distance(box, particles);
+    struct bench_bins bins;
+    bins.fine.low = 0;
+    bins.fine.count = (size_t)fmin(fmax(2, rint(cutoff / distance * 10)), BENCH_MOST_BINS);
+    bins.fine.width = cutoff / (double)bins.fine.count;
+    bins.core = (size_t)fmax(1, rint(distance / 3 / bins.fine.width));
+    if (bins.core > bins.fine.count / 2)
+        bins.core = bins.fine.count / 2;
+    bins.count = bins.fine.count - bins.core + 1;
+    return bins;
+}
+
+// Running -----------------------------------------------------------------------------------------
+
+/// Seconds that the calling thread has spent on a processor.
+static double processor_seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/// Time in which a particle flies the mean distance [τ].
+static double flight(const struct simulation_setup *setup) {
+    return mean_distance(&setup->box, (size_t)setup->placement.count) / sqrt(setup->temperature);
+}
+
+/// Samples a fifth of a flight apart: pairs have then left their bins.
+static struct measure_plan plan_of(const struct bench_common *common,
+                                   const struct bench_point *point) {
+    const struct simulation_setup *setup = common->setup;
+    struct measure_plan plan;
+    plan.every = (int64_t)fmax(SHORTEST_STRETCH, rint(0.2 * flight(setup) / point->time_step));
+    plan.samples =
+        (int64_t)fmax(BLOCKS, rint(point->time / ((double)plan.every * point->time_step)));
+    plan.equilibration = (int64_t)rint(equilibration_share * point->time / point->time_step);
+    return plan;
+}
+
+/// The motion is sampled with everything else: the MSD is read far beyond the time between samples.
+static struct motion_plan motion_plan_of(const struct bench_common *common,
+                                         const struct bench_point *point,
+                                         const struct measure_plan *plan) {
+    const double between = (double)plan->every * point->time_step;
+    const int64_t lags = (int64_t)fmax(4, rint(window_length * flight(common->setup) / between));
+    return (struct motion_plan){.every = plan->every,
+                                .lags = lags,
+                                .origin_every = (int64_t)fmax(1, (double)(lags / ORIGINS)),
+                                .fit_from = 0.5};
+}
+
+uint64_t bench_point_steps(const struct bench_common *common, const struct bench_point *point) {
+    const struct measure_plan plan = plan_of(common, point);
+    return measure_steps(&plan);
+}
+
+static int compare_numbers(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/// Median of the blocks: a machine that was busy for a while does not count. The median of normal
+/// numbers has a standard error 1.25 times that of their mean.
+static struct bench_number median(double *blocks) {
+    struct running_mean running = {0};
+    for (int b = 0; b < BLOCKS; b++)
+        statistics_add(&running, blocks[b]);
+    qsort(blocks, BLOCKS, sizeof *blocks, compare_numbers);
+    return (struct bench_number){(blocks[BLOCKS / 2 - 1] + blocks[BLOCKS / 2]) / 2,
+                                 1.25 * statistics_standard_error(&running)};
+}
+
+static void tell(const struct bench_common *common, struct bench_point *point, int64_t steps) {
+    point->told += (uint64_t)steps;
+    common->tell(common->context, (uint64_t)steps);
+}
+
+/// Run between samples by itself, timed; measure_sample then does the one step that is left.
+static enum status sample(const struct bench_common *common, struct bench_point *point,
+                          struct simulation *simulation, const struct measure_plan *plan,
+                          struct measure_targets targets) {
+    double seconds[BLOCKS] = {0}, times[BLOCKS] = {0};
+    if (targets.motion)
+        motion_sample(targets.motion, simulation);
+    for (int64_t k = 0; k < plan->samples; k++) {
+        const struct measure_plan next = {plan->equilibration, k + 1, plan->every};
+        const int64_t block = k * BLOCKS / plan->samples;
+        const double begin = processor_seconds();
+        simulation->wants = PAIR_FORCES;
+        TRY(simulation_run(simulation, (uint64_t)plan->every - 1));
+        seconds[block] += processor_seconds() - begin;
+        times[block] += (double)(plan->every - 1) * point->time_step;
+        TRY(measure_sample(simulation, &next, targets, NULL));
+        tell(common, point, plan->every);
+    }
+    for (int b = 0; b < BLOCKS; b++)
+        seconds[b] /= times[b];
+    point->cpu = median(seconds);
+    return STATUS_OK;
+}
+
+/// Total energy of a particle in each block, its mean and its slope in time.
+static void find_total(const struct thermodynamics *thermodynamics, const struct box *box,
+                       double particles, struct bench_point *point) {
+    const double *potential =
+        thermodynamics_series(thermodynamics, THERMODYNAMICS_POTENTIAL_ENERGY);
+    const double *temperature = thermodynamics_series(thermodynamics, THERMODYNAMICS_TEMPERATURE);
+    const double degrees = box->dimensions * (1 - 1 / particles);
+    double energy[BLOCKS] = {0}, along = 0, spread = 0, rest = 0;
+    struct running_mean blocks = {0};
+    for (size_t b = 0; b < BLOCKS; b++) {
+        const size_t begin = thermodynamics->samples * b / BLOCKS,
+                     end = thermodynamics->samples * (b + 1) / BLOCKS;
+        for (size_t k = begin; k < end; k++)
+            energy[b] += (potential[k] + 0.5 * degrees * temperature[k]) / (double)(end - begin);
+        statistics_add(&blocks, energy[b]);
+    }
+    for (int b = 0; b < BLOCKS; b++) {
+        const double t = point->time * ((b + 0.5) / BLOCKS - 0.5);
+        along += t * (energy[b] - blocks.mean);
+        spread += t * t;
+    }
+    const double slope = along / spread;
+    for (int b = 0; b < BLOCKS; b++) {
+        const double t = point->time * ((b + 0.5) / BLOCKS - 0.5);
+        rest += pow(energy[b] - blocks.mean - slope * t, 2);
+    }
+    point->quantity[BENCH_TOTAL] =
+        (struct bench_number){blocks.mean, statistics_standard_error(&blocks)};
+    point->quantity[BENCH_DRIFT] = (struct bench_number){slope, sqrt(rest / (BLOCKS - 2) / spread)};
+}
+
+/// Join the bins of the core: pairs add up, and so do the squares of their errors.
+static void join_bins(const struct bench_bins *bins, const struct rdf *rdf, const double *g,
+                      const double *error, struct bench_number *joined) {
+    double pairs = 0, squares = 0, ideal = 0;
+    for (size_t k = 0; k < bins->core; k++) {
+        const double here = rdf_ideal_pairs(&bins->fine, k, &rdf->box, rdf->particle_count);
+        pairs += here * g[k];
+        squares += here * error[k] * here * error[k];
+        ideal += here;
+    }
+    joined[0] = (struct bench_number){pairs / ideal, sqrt(squares) / ideal};
+    for (size_t k = bins->core; k < bins->fine.count; k++)
+        joined[k - bins->core + 1] = (struct bench_number){g[k], error[k]};
+}
+
+static enum status find_results(const struct bench_common *common, struct measure_targets targets,
+                                struct bench_point *point) {
+    enum status status = STATUS_OK;
+    const struct bench_bins *bins = &common->bins;
+    const struct rdf *rdf = targets.rdf;
+    const struct thermodynamics_summary s = thermodynamics_result(targets.thermodynamics, 1);
+    double *g = NULL, *error = NULL;
+    NEW_ARRAY(g, bins->fine.count);
+    NEW_ARRAY(error, bins->fine.count);
+    CHECK(rdf_result(rdf, 1, g, error));
+    join_bins(bins, rdf, g, error, point->g);
+    struct bench_number *quantity = point->quantity;
+    quantity[BENCH_TEMPERATURE] = (struct bench_number){s.temperature, s.temperature_error};
+    quantity[BENCH_CONFIGURATIONAL] =
+        (struct bench_number){s.temperature_configurational, s.temperature_configurational_error};
+    quantity[BENCH_ENERGY] = (struct bench_number){s.potential_energy, s.potential_energy_error};
+    quantity[BENCH_PRESSURE] = (struct bench_number){s.pressure, s.pressure_error};
+    quantity[BENCH_DIFFUSION] = (struct bench_number){NAN, NAN};
+    if (targets.motion) {
+        const struct motion_summary motion = motion_result(targets.motion, NULL);
+        quantity[BENCH_DIFFUSION] = (struct bench_number){motion.msd, motion.msd_error};
+    }
+    find_total(targets.thermodynamics, &rdf->box, (double)rdf->particle_count, point);
+done:
+    memory_free(g);
+    memory_free(error);
+    return status;
+}
+
+static struct simulation_setup setup_of(const struct simulation_setup *scene,
+                                        const struct simulation_start *start,
+                                        const struct bench_method *method, double time_step) {
+    struct simulation_setup setup = *scene;
+    setup.integrator = method->integrator;
+    setup.integrator_parameters = method->parameters;
+    setup.time_step = time_step;
+    setup.threads = 1;
+    if (start)
+        setup.placement.kind = PLACEMENT_FILE;
+    return setup;
+}
+
+enum status bench_point_run(const struct bench_common *common, struct bench_point *point) {
+    enum status status = STATUS_OK;
+    struct simulation simulation = {0};
+    struct rdf rdf = {0};
+    struct thermodynamics thermodynamics = {0};
+    struct motion motion = {0};
+    struct simulation_setup setup =
+        setup_of(common->setup, common->start, point->method, point->time_step);
+    const struct measure_plan plan = plan_of(common, point);
+    const struct motion_plan motion_plan = motion_plan_of(common, point, &plan);
+    const bool moves = plan.samples >= LEAST_WINDOWS * motion_plan.lags;
+    const struct measure_targets targets = {
+        .rdf = &rdf, .thermodynamics = &thermodynamics, .motion = moves ? &motion : NULL};
+    double temperature;
+    setup.seed = point->seed;
+    point->steps = (uint64_t)(plan.samples * plan.every);
+    point->time = (double)point->steps * point->time_step;
+    NEW_ARRAY(point->g, common->bins.count);
+    CHECK(simulation_init(&simulation, &setup, common->start));
+    CHECK(rdf_init(&rdf, &common->bins.fine, &setup.box, simulation.particles.count,
+                   pair_cutoff(&simulation.law), (size_t)plan.samples));
+    CHECK(thermodynamics_init(&thermodynamics, (size_t)plan.samples));
+    CHECK(measure_equilibrate(&simulation, &plan, &temperature, NULL));
+    tell(common, point, plan.equilibration);
+    if (moves)
+        CHECK(motion_init(&motion, &motion_plan, &simulation, plan.equilibration,
+                          plan.samples * plan.every));
+    CHECK(sample(common, point, &simulation, &plan, targets));
+    CHECK(find_results(common, targets, point));
+done:
+    point->status = status;
+    simulation_clear(&simulation);
+    rdf_clear(&rdf);
+    thermodynamics_clear(&thermodynamics);
+    motion_clear(&motion);
+    return status == STATUS_UNSTABLE ? STATUS_OK : status;
+}
+
+// Equilibrating -----------------------------------------------------------------------------------
+
+static void scale_velocities(struct simulation *simulation) {
+    struct particles *particles = &simulation->particles;
+    const double factor = sqrt(simulation->setup.temperature / particles_temperature(particles));
+    for (int d = 0; isfinite(factor) && d < particles->box.dimensions; d++)
+        for (size_t k = 0; k < particles->count; k++)
+            particles->velocity[d][k] *= factor;
+}
+
+enum status bench_point_prepare(const struct simulation_setup *setup,
+                                const struct simulation_start *start,
+                                const struct bench_method *method, double time_step, double time,
+                                double *values) {
+    enum status status = STATUS_OK;
+    struct simulation simulation = {0};
+    const struct simulation_setup changed = setup_of(setup, NULL, method, time_step);
+    CHECK(simulation_init(&simulation, &changed, start));
+    for (double done = 0; done < time; done += SCALE_EVERY * time_step) {
+        CHECK(simulation_run(&simulation, SCALE_EVERY));
+        if (setup->weight == NULL)
+            scale_velocities(&simulation);
+    }
+    const struct particles *particles = &simulation.particles;
+    for (int d = 0; d < particles->box.dimensions; d++) {
+        memcpy(values + (size_t)d * particles->count, particles->position[d],
+               particles->count * sizeof *values);
+        memcpy(values + (size_t)(3 + d) * particles->count, particles->velocity[d],
+               particles->count * sizeof *values);
+    }
+done:
+    simulation_clear(&simulation);
+    return status;
+}

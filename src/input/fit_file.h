@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file A run file of `mesofit fit`: target, scene, method.
+#pragma once
+
+#include "problem/verify.h"
+#include "input/heading.h"
+#include "input/run_options.h"
+#include "input/scene.h"
+#include "input/targets.h"
+
+/// Numbers of the object "core".
+struct fit_core {
+    double threshold, stiffness;
+};
+
+extern const struct field fit_core_fields[];
+
+/// What "unknowns" says of one of them.
+struct fit_unknown {
+    bool wanted;
+    struct unknown_parameters parameters;
+    struct scene_law start; ///< without a curve: as decoder_start says
+    struct scene_law truth; ///< the true curves where they are known
+};
+
+/// Owns everything that the problem borrows.
+struct fit_file {
+    struct heading heading;
+    struct targets targets;
+    struct scene scene;
+    struct fit_unknown unknown[UNKNOWNS];
+    struct fit_core core;
+    const struct inverse_method *method;
+    void *method_parameters;
+    struct verify_parameters verification;
+    struct inverse_problem problem;
+    struct input_files inputs;
+};
+
+/// Read a run file and those that it names, each for itself. Fails: BAD_INPUT with all faults; IO;
+/// NO_MEMORY. Tested: tests/fuzz.
+enum status fit_file_parse(struct fit_file *fit, const char *file,
+                           const struct run_options *options) MUST_USE;
+
+/// Read a run file and check how its parts fit together, by beginning a simulation. Fails:
+/// BAD_INPUT with all faults; IO; NO_MEMORY.
+enum status fit_file_read(struct fit_file *fit, const char *file,
+                          const struct run_options *options) MUST_USE;
+void fit_file_clear(struct fit_file *fit);
+
+/// Write all values, defaults filled in, so that running the written file gives the same bits.
+enum status fit_file_write(const struct fit_file *fit, const char *path) MUST_USE;

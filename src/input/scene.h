@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file A scene: what a JSON file says of a simulation, read, checked and written back.
+#pragma once
+
+#include "dynamics/simulation.h"
+#include "input/scene_law.h"
+
+/// What a fit looks for, and the scene therefore does not say.
+enum scene_unknown {
+    SCENE_FITS_NOTHING = 0,
+    SCENE_FITS_POTENTIAL = 1, ///< no "conservative"
+    SCENE_FITS_WEIGHT = 2,    ///< no "dissipative"; there will be friction
+};
+
+/// Owns its laws and arrays; `setup` borrows them.
+struct scene {
+    struct simulation_setup setup;
+    struct scene_law potential, weight;
+    struct units units;
+    struct simulation_start start; ///< arrays of a placement file
+    int unknown;                   ///< as it was read
+    double *start_values;
+};
+
+/// Fields of the scene itself, for `mesofit describe`.
+extern const struct field scene_fields[];
+
+/// Read the objects of a scene from `object`, but for what `unknown`, a sum of scene_unknown, says.
+/// With units, a mass density or a temperature that no matter has is a fault.
+/// Faults go to its document; *scene may then be incomplete but is safe to clear. Fails: NO_MEMORY.
+enum status scene_read(struct scene *scene, struct json_object *object, int unknown) MUST_USE;
+void scene_clear(struct scene *scene);
+
+/// Mass of the beads over the volume of the box [g/cm³], for a scene of three dimensions with
+/// units.
+double scene_mass_density(const struct scene *scene);
+
+/// Write everything that scene_read reads, defaults filled in.
+void scene_write(const struct scene *scene, struct json_writer *writer);
+
+/// Add the tables that a scene only names to the digest of a checkpoint.
+void scene_digest(const struct scene *scene, uint64_t *digest);

@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "input/target_sanity.h"
+
+#include "base/memory.h"
+#include "observe/kirkwood_buff.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+/// Measured: the tails of targets/ and of soft fluids, gases and Lennard-Jones near its critical
+/// point are within 0.07 of 1, that of a dense Lennard-Jones fluid known up to 1.6 is 0.9(2).
+static const double far_from_1 = 0.25;
+
+/// Beads are apart where g is below.
+static const double empty = 0.01;
+
+/// A normalisation that is off by so much can be mended by a factor.
+static const double normalisation = 1.03;
+
+static const double standard_errors = 3;
+
+/// Layers, and the neighbours that they take up to the second maximum: measured 12 in water, 29 in
+/// the Lennard-Jones liquid, 33 in the Gaussian core, and 5 in a model of methanol, whose first
+/// layer has only two. With a tenth of the density there are 3.3 at most.
+static const double deep = 0.95, few_neighbours = 4;
+
+/// ρ d³ of a gas.
+static const double dilute = 0.01;
+
+/// Hardly a multiple of T_0, often a number of kelvins.
+static const double hot = 50;
+
+/// g(r) of one kind of pairs, and how many beads there are.
+struct view {
+    char name[sizeof "rdf." + COMPOSITION_PAIR_NAME_SIZE];
+    const struct targets *targets; ///< of all kinds of pairs
+    const struct target *target;
+    const struct rdf_bins *bins;
+    const double *g, *error; ///< shape [bins->count]
+    const struct scene *scene;
+    size_t like;    ///< beads of the type if both of a pair have the same, else 0
+    double density; ///< of beads of all types [λ^-d]
+};
+
+static struct view view_of(const struct targets *targets, const struct scene *scene, size_t pair) {
+    const size_t bins = targets->rdf[0].bins.count;
+    const struct composition *composition = &targets->composition;
+    struct view view = {.name = "rdf",
+                        .targets = targets,
+                        .target = &targets->rdf[pair],
+                        .bins = &targets->rdf[0].bins,
+                        .g = targets->rdf_given + pair * bins,
+                        .error = targets->rdf_error + pair * bins,
+                        .scene = scene};
+    int type[2];
+    composition_pair_types(composition, (int)pair, type);
+    if (type[0] == type[1])
+        view.like = (size_t)composition->count[type[0]];
+    view.density = (double)composition_particles(composition) / box_volume(&scene->setup.box);
+    if (composition_is_mixed(composition)) {
+        char pair_name[COMPOSITION_PAIR_NAME_SIZE];
+        composition_pair_name(composition, (int)pair, pair_name);
+        snprintf(view.name, sizeof view.name, "rdf.%s", pair_name);
+    }
+    return view;
+}
+
+/// "14.66 nm^-3 = 0.780 g/cm^3", or in λ without units.
+static void print_density(const struct view *view, char *text, size_t size) {
+    const struct units *units = &view->scene->units;
+    const int dimensions = view->scene->setup.box.dimensions;
+    if (!units_known(units))
+        snprintf(text, size, "%.4g lambda^-%d", view->density, dimensions);
+    else if (dimensions == 2)
+        snprintf(text, size, "%.4g nm^-2", view->density / pow(units->length, 2));
+    else
+        snprintf(text, size, "%.4g nm^-3 = %.3g g/cm^3", view->density / pow(units->length, 3),
+                 scene_mass_density(view->scene));
+}
+
+/// ∫ (g − 1) d³r of the pairs of two types.
+static double integral_of(const struct view *view, int a, int b) {
+    const int pair = composition_pair(&view->targets->composition, a, b);
+    const struct view own = view_of(view->targets, view->scene, (size_t)pair);
+    return kirkwood_buff_integrate(own.bins, own.g, own.error, &own.scene->setup.box, 0).integral;
+}
+
+/// What a fault goes on with if two types look demixed, else "": each has more beads of its own
+/// around it than on the whole, and fewer of the other's, as within the phases of a box with two.
+static void print_demixing(const struct view *view, char *text, size_t size) {
+    const struct composition *composition = &view->targets->composition;
+    text[0] = '\0';
+    for (int b = 1; b < composition->types && view->scene->setup.box.dimensions == 3; b++)
+        for (int a = 0; a < b && text[0] == '\0'; a++) {
+            const double first = integral_of(view, a, a), second = integral_of(view, b, b);
+            const double unlike = integral_of(view, a, b);
+            const char *one = composition->name[a], *other = composition->name[b];
+            if (first > 0 && second > 0 && unlike < 0)
+                snprintf(text, size,
+                         "; or have %s and %s demixed? Their integrals of g - 1 are %.3g (%s-%s), "
+                         "%.3g (%s-%s) and %.3g (%s-%s) lambda^3",
+                         one, other, first, one, one, second, other, other, unlike, one, other);
+        }
+}
+
+static enum status check_tail(const struct view *view, const char *file) {
+    const struct target_tail *tail = &view->target->tail;
+    const struct target_parameters *p = &view->target->parameters;
+    const bool votca = p->format == TARGET_VOTCA;
+    const double away = fabs(tail->mean - 1);
+    if (away <= fmax(far_from_1, 2 * tail->scatter) && !(tail->grows && away > far_from_1))
+        return STATUS_OK;
+    char demixing[256];
+    print_demixing(view, demixing, sizeof demixing);
+    return status_fail(
+        STATUS_BAD_INPUT,
+        "%s: target.%s.%s: the mean of g over the last quarter of %s is %.4g, not 1: %s%s", file,
+        view->name, votca ? "file" : "g_column", p->file, tail->mean,
+        tail->grows ? "it grows from row to row, as a number of neighbours does"
+        : away > 1  ? "counts of pairs, or another column than g?"
+        : tail->mean < far_from_1
+            ? "a potential, or another column than g?"
+            : "not normalised by the density of the whole system, or another column than g?",
+        demixing);
+}
+
+/// Upper edge of the bins where g stays below `level` from the first on [λ].
+static double reach_below(const struct view *view, double level) {
+    size_t k = 0;
+    while (k < view->bins->count && view->g[k] <= level)
+        k++;
+    return rdf_bins_edge(view->bins, k);
+}
+
+static enum status check_packing(const struct view *view, const char *file) {
+    const struct box *box = &view->scene->setup.box;
+    const double closest = box->dimensions == 2 ? 2 / sqrt(3) : sqrt(2);
+    const double apart = view->g[0] <= empty ? reach_below(view, empty) : 0;
+    const double filled =
+        (double)view->like / box_volume(box) * pow(apart, (double)box->dimensions);
+    char density[80];
+    if (filled <= closest)
+        return STATUS_OK;
+    print_density(view, density, sizeof density);
+    return status_fail(STATUS_BAD_INPUT,
+                       "%s: target.%s: it has no pairs nearer than %.3g lambda, and the scene a "
+                       "density of %s: rho d^%d = %.3g, while the closest packing has %.3g; is the "
+                       "unit of length, scene.box or the number of particles wrong?",
+                       file, view->name, apart, density, box->dimensions, filled, closest);
+}
+
+/// Bins from one range of an integral to the next shorter one: some fifty ranges are enough.
+static size_t step_of_ranges(const struct view *view) {
+    return 1 + view->bins->count / 100;
+}
+
+/// The largest 1 + ρG that `factor` g allows, by three standard errors and by any range from half
+/// of what is known on; +∞ where it is not defined.
+static enum status largest_compressibility(const struct view *view, double factor,
+                                           double *largest) {
+    enum status status = STATUS_OK;
+    double *g = NULL;
+    *largest = INFINITY;
+    if (view->scene->setup.box.dimensions != 3 || view->like < 2)
+        return STATUS_OK;
+    NEW_ARRAY(g, view->bins->count);
+    for (size_t k = 0; k < view->bins->count; k++)
+        g[k] = factor * view->g[k];
+    *largest = -INFINITY;
+    for (struct rdf_bins part = *view->bins; 2 * part.count >= view->bins->count;
+         part.count -= step_of_ranges(view)) {
+        const struct kirkwood_buff kb =
+            kirkwood_buff_integrate(&part, g, view->error, &view->scene->setup.box, view->like);
+        *largest = fmax(*largest, kb.compressibility + standard_errors * kb.compressibility_error);
+    }
+done:
+    memory_free(g);
+    return status;
+}
+
+/// "1 + rho G = -8.42(12)": the error is by noise or, where that is more, by the range, half of how
+/// far the values up to three quarters of it and more are apart.
+static void print_compressibility(const struct view *view, char *text, size_t size) {
+    struct rdf_bins part = *view->bins;
+    struct kirkwood_buff whole = {0};
+    double least = INFINITY, largest = -INFINITY;
+    for (; 4 * part.count >= 3 * view->bins->count; part.count -= step_of_ranges(view)) {
+        const struct kirkwood_buff kb = kirkwood_buff_integrate(
+            &part, view->g, view->error, &view->scene->setup.box, view->like);
+        if (part.count == view->bins->count)
+            whole = kb;
+        least = fmin(least, kb.compressibility);
+        largest = fmax(largest, kb.compressibility);
+    }
+    const double error = fmax(whole.compressibility_error, 0.5 * (largest - least));
+    snprintf(text, size, "1 + rho G = %.2f(%.0f)", whole.compressibility, ceil(1e2 * error));
+}
+
+static enum status check_compressibility(const struct view *view, const char *file) {
+    double largest;
+    char density[80], value[80], demixing[256];
+    TRY(largest_compressibility(view, normalisation, &largest));
+    if (largest >= 0)
+        return STATUS_OK;
+    print_density(view, density, sizeof density);
+    print_compressibility(view, value, sizeof value);
+    print_demixing(view, demixing, sizeof demixing);
+    return status_fail(STATUS_BAD_INPUT,
+                       "%s: target.%s: at the density of the scene, %s, it asks for a negative "
+                       "compressibility, %s: the density (scene.box, the number of particles, the "
+                       "unit of length) or the normalisation of g is wrong%s",
+                       file, view->name, density, value, demixing);
+}
+
+static size_t views(const struct targets *targets) {
+    return targets->given[GOAL_RDF] ? targets->pairs : 0;
+}
+
+enum status target_sanity_check(const struct targets *targets, const struct scene *scene,
+                                const char *file) {
+    for (size_t pair = 0; pair < views(targets); pair++) {
+        const struct view view = view_of(targets, scene, pair);
+        TRY(check_tail(&view, file));
+        TRY(check_packing(&view, file));
+        TRY(check_compressibility(&view, file));
+    }
+    return STATUS_OK;
+}
+
+__attribute__((format(printf, 2, 3))) static void say(const struct target_sanity_listener *listener,
+                                                      const char *format, ...) {
+    char line[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    listener->say(listener->context, line);
+}
+
+static size_t highest_bin(const struct view *view) {
+    size_t highest = 0;
+    for (size_t k = 0; k < view->bins->count; k++)
+        if (view->g[k] > view->g[highest])
+            highest = k;
+    return highest;
+}
+
+/// What lengths are told in.
+static const char *unit_of(const struct view *view, double *length) {
+    const struct units *units = &view->scene->units;
+    *length = units_known(units) ? units->length : 1;
+    return units_known(units) ? "nm" : "lambda";
+}
+
+/// "target rdf: g from 0.005 to 0.995 nm, peak 2.79 at 0.275 nm, tail 0.998(6); density …".
+static void tell_view(const struct view *view, const struct target_sanity_listener *listener) {
+    const struct rdf_bins *bins = view->bins;
+    const struct target_tail *tail = &view->target->tail;
+    const size_t peak = highest_bin(view);
+    double length;
+    const char *unit = unit_of(view, &length);
+    char density[80], compressibility[80] = "";
+    print_density(view, density, sizeof density);
+    if (view->like > 1 && view->scene->setup.box.dimensions == 3)
+        print_compressibility(view, compressibility, sizeof compressibility);
+    say(listener,
+        "target %s: g from %.4g to %.4g %s, peak %.3g at %.4g %s, tail %.3f(%.0f); density %s%s%s",
+        view->name, rdf_bins_centre(bins, 0) * length,
+        rdf_bins_centre(bins, bins->count - 1) * length, unit, view->g[peak],
+        rdf_bins_centre(bins, peak) * length, unit, tail->mean, ceil(1e3 * tail->scatter), density,
+        compressibility[0] ? ", " : "", compressibility);
+}
+
+static void tell_origin(const struct view *view, const struct target_sanity_listener *listener) {
+    const struct target *target = view->target;
+    double length;
+    const char *unit = unit_of(view, &length);
+    if (target->joined > 1)
+        say(listener, "target %s: %zu rows of the file make a bin of %.4g %s", view->name,
+            target->joined, view->bins->width * length, unit);
+    if (target->assumed)
+        say(listener,
+            "target %s: no errors given, and no scatter tells them: %.2g at g = 1 in the last bin "
+            "is assumed",
+            view->name, target->estimated_error);
+    else if (target->estimated_error > 0)
+        say(listener,
+            "target %s: no errors given: %.2g at g = 1 in the last bin, from the scatter of the "
+            "rows",
+            view->name, target->estimated_error);
+}
+
+/// Neighbours of a bead, of any type, up to the second maximum of g, if there are layers; else +∞.
+static double neighbours_in_layers(const struct view *view) {
+    const struct rdf_bins *bins = view->bins;
+    size_t k = highest_bin(view), lowest, second;
+    while (k < bins->count && view->g[k] >= 1)
+        k++;
+    for (lowest = k; k < bins->count && view->g[k] < 1; k++)
+        if (view->g[k] < view->g[lowest])
+            lowest = k;
+    if (k == bins->count || view->g[lowest] + standard_errors * view->error[lowest] > deep)
+        return INFINITY;
+    for (second = k; k < bins->count && view->g[k] >= 1; k++)
+        if (view->g[k] > view->g[second])
+            second = k;
+    double sum = 0;
+    for (size_t n = 0; n <= second; n++)
+        sum += view->density * view->g[n] *
+               box_shell_volume(&view->scene->setup.box, rdf_bins_edge(bins, n),
+                                rdf_bins_edge(bins, n + 1));
+    return sum;
+}
+
+static enum status warn_of_normalisation(const struct view *view,
+                                         const struct target_sanity_listener *listener) {
+    double largest;
+    char value[80];
+    TRY(largest_compressibility(view, 1, &largest));
+    if (largest >= 0)
+        return STATUS_OK;
+    print_compressibility(view, value, sizeof value);
+    say(listener,
+        "mesofit: warning: target.%s: it asks for a negative compressibility, %s; a normalisation "
+        "or "
+        "density that is off by up to 3 %% would explain it",
+        view->name, value);
+    return STATUS_OK;
+}
+
+static void warn_of_density(const struct view *view,
+                            const struct target_sanity_listener *listener) {
+    const double neighbours = neighbours_in_layers(view);
+    const double core = view->g[0] <= 0.5 ? reach_below(view, 0.5) : INFINITY;
+    const double filled = view->density * pow(core, view->scene->setup.box.dimensions);
+    char density[80];
+    print_density(view, density, sizeof density);
+    if (neighbours < few_neighbours)
+        say(listener,
+            "mesofit: warning: target.%s: it has the layers of a liquid, but at the density of the "
+            "scene, %s, a bead has only %.2g neighbours up to the second one: is the unit of "
+            "length, scene.box or the number of particles wrong? (solutes in an implicit solvent "
+            "look so, too)",
+            view->name, density, neighbours);
+    else if (filled < dilute)
+        say(listener,
+            "mesofit: warning: target.%s: a dilute gas: the density of the scene is %s, and the "
+            "beads "
+            "are %.3g lambda wide",
+            view->name, density, core);
+}
+
+static void tell_normalisation(const struct normalisation *n,
+                               const struct target_sanity_listener *listener) {
+    if (n->found)
+        say(listener,
+            "target.rdf: g is too %s as a whole, by a factor of %.4f(%.0f), by which it is "
+            "divided; "
+            "\"normalisation\" of the target sets another, 1 for none",
+            n->factor > 1 ? "large" : "small", n->factor, ceil(n->error * 1e4));
+}
+
+enum status target_sanity_tell(const struct targets *targets, const struct scene *scene,
+                               const struct target_sanity_listener *listener) {
+    for (size_t pair = 0; pair < views(targets); pair++) {
+        const struct view view = view_of(targets, scene, pair);
+        tell_view(&view, listener);
+        tell_origin(&view, listener);
+        TRY(warn_of_normalisation(&view, listener));
+        warn_of_density(&view, listener);
+    }
+    tell_normalisation(&targets->normalisation, listener);
+    if (scene->setup.temperature > hot && !units_known(&scene->units))
+        say(listener,
+            "mesofit: warning: scene.temperature: %g in units of k_B T_0, which is 1 as a rule; "
+            "kelvins "
+            "belong into \"units\"",
+            scene->setup.temperature);
+    return STATUS_OK;
+}

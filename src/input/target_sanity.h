@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file A look at the targets of g(r) and at the scene's density before a fit.
+///
+/// What no fluid does is refused: a g that does not end near 1, beads that no packing holds, number
+/// fluctuations below zero. What a fluid hardly does is a warning. Told are the numbers by which a
+/// person sees a wrong column, unit of length or number of beads at once.
+#pragma once
+
+#include "input/scene.h"
+#include "input/targets.h"
+
+/// Takes one line at a time, without its end.
+struct target_sanity_listener {
+    void (*say)(void *context, const char *line);
+    void *context;
+};
+
+/// Refuse what cannot be, for g(r) of each kind of pairs, converted to the scene's number of beads.
+///
+/// Its mean over the last quarter of the file must be within 0.25 of 1, or within twice the scatter
+/// that oscillations make there. Pairs of one type must have ρ d³ ≤ √2 (in two dimensions ρ d² ≤
+/// 2/√3), the closest packing of beads no two of which are nearer than d, up to where g stays below
+/// 0.01. In three dimensions they must have 1 + ρG ≥ 0, the variance of their number over its mean
+/// in a large volume (J. G. Kirkwood and F. P. Buff, J. Chem. Phys. 19, 774 (1951)): refused is
+/// what stays below zero by three standard errors up to any range from half of the target's on, and
+/// with 1.03 g, too. In a mixture a fault of the mean or of 1 + ρG asks for demixing if the
+/// integrals G of two types are above 0 for pairs alike and below 0 for the others. Fails:
+/// BAD_INPUT with `file`, the key and the likely reason; NO_MEMORY. Tested: test_target_sanity.
+enum status target_sanity_check(const struct targets *targets, const struct scene *scene,
+                                const char *file) MUST_USE;
+
+/// Tell a line for each g(r) as it is given, where its errors and bins come from, warnings, and the
+/// normalisation if one was found.
+///
+/// Warned of are: 1 + ρG below zero, but not with 1.03 g, so that the normalisation may be off;
+/// layers, a minimum below 0.95 and a second maximum, of fewer than four neighbours up to that
+/// maximum, as a liquid's g has at a density ten times too low (solutes in an implicit solvent look
+/// so, too, which is why it is no fault); ρ d³ < 0.01 with d where g exceeds 1/2, the density of a
+/// dilute gas; and without units a temperature above 50, which may be in kelvins. Fails: NO_MEMORY.
+/// Tested: test_target_sanity.
+enum status target_sanity_tell(const struct targets *targets, const struct scene *scene,
+                               const struct target_sanity_listener *listener) MUST_USE;

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file "target" of a run file: the measured observables that a fit is to reproduce.
+#pragma once
+
+#include "problem/goals.h"
+#include "inversion/normalisation.h"
+#include "io/json_write.h"
+#include "input/target.h"
+#include "input/target_etd.h"
+
+/// A measured function of time: VACF or MSD.
+struct target_curve {
+    struct target_curve_parameters {
+        char file[FIELD_TEXT_SIZE];
+        int64_t time_column, value_column,
+            error_column; ///< from 1; error_column 0: none, −1: 3 or none
+    } parameters;
+    size_t times;          ///< 0: not given
+    double interval;       ///< [τ]
+    double *value, *error; ///< shape [times]
+};
+
+/// A measured number: the pressure, or D.
+struct target_number {
+    double value, error;
+    double window; ///< of D: the slope of the MSD over its second half; 0: of other targets [τ]
+};
+
+extern const struct field targets_curve_fields[], targets_number_fields[];
+extern const struct field targets_diffusion_fields[], targets_goal_fields[];
+
+struct targets {
+    bool given[GOALS];
+    struct target rdf[COMPOSITION_MOST_PAIRS]; ///< of each kind of pairs
+    struct composition composition;            ///< of the scene
+    size_t pairs;                              ///< kinds of its pairs
+    /// Of all, one behind the other, in the numbers of the scene: shape [pairs, bins].
+    double *rdf_g, *rdf_error;
+    double *rdf_given;                  ///< g before it was divided by its normalisation
+    struct normalisation normalisation; ///< by which those that do not say theirs are divided
+    struct target_etd etd;
+    struct target_curve vacf, msd;
+    struct target_number diffusion, pressure;
+    struct target_goal {
+        double weight; ///< 0: by the errors
+        int fitted;    ///< 0: only compared with the result
+    } goal[GOALS];
+};
+
+/// Read the object "target" of a scene of this box and composition; `units` convert VOTCA's tables.
+/// Faults go to the document. Fails: NO_MEMORY.
+enum status targets_read(struct targets *targets, struct json_object *root, const struct box *box,
+                         const struct composition *composition, const struct units *units) MUST_USE;
+void targets_clear(struct targets *targets);
+void targets_write(const struct targets *targets, struct json_writer *writer);
+
+/// Add what was read from files to the digest of a checkpoint.
+void targets_digest(const struct targets *targets, uint64_t *digest);
+
+/// Divide g(r) by its normalisation: what the file says, else what normalisation_find makes of the
+/// target in this box. If the file says some of a mixture's, the others are 1. Fails: NO_MEMORY.
+enum status targets_normalise(struct targets *targets, const struct box *box) MUST_USE;
+
+/// The goals of the scene: those to be fitted, and all. With `moves`, D is among
+/// those to be compared even if no value is given, so that a result knows its own, if another
+/// target says in what window.
+void targets_goals(struct targets *targets, bool moves, struct goals *fitted,
+                   struct goals *compared);
+
+/// BAD_INPUT with the time steps that would do if an interval is not a whole number of steps.
+enum status targets_check_steps(const struct targets *targets, double time_step) MUST_USE;

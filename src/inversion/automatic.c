@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Inverse Monte Carlo where its linear response holds, and before that the steps that need none: by
+// the hypernetted chain, or in two dimensions Boltzmann inversion. A Newton step converges at once
+// near the solution and leads away from far off it (its basin; P. Deuflhard, Newton Methods for
+// Nonlinear Problems (2004), section 2.1, which tests it as here, by what the last step did against
+// what was predicted).
+#include "inversion/inversion.h"
+
+#include <math.h>
+#include <string.h>
+
+/// The response holds if it tells what the last step did within this part.
+static const double trust = 0.3;
+
+/// Ridge of the hypernetted chain, its default.
+static const double ridge = 0.35;
+
+static const char *const columns[] = {INVERSION_COLUMNS, "newton", "misfit[1]", "directions", NULL};
+
+/// Whether −C ΔΦ/k_B T is the change of S from the best potential to this one, in the norm of their
+/// noise, but for the noise of both.
+static bool predicts(const struct inversion *inversion) {
+    const struct potential_grid *grid = &inversion->grid;
+    double miss = 0, change = 0;
+    for (size_t a = 0; a < grid->known; a++) {
+        const size_t bin = grid->known_bin[a];
+        const double actual = inversion->replicas.counts.mean[bin] - inversion->best_counts[bin];
+        double predicted = 0;
+        for (size_t b = 0; b < grid->known; b++) {
+            const size_t point = grid->known_point[b];
+            predicted -= inversion->covariance[a * grid->known + b] *
+                         (inversion->phi[point] - inversion->best[point]) /
+                         inversion->problem->scene.temperature;
+        }
+        miss += (actual - predicted) * (actual - predicted) / inversion->variance[a];
+        change += actual * actual / inversion->variance[a];
+    }
+    return miss <= trust * trust * change + 2 * (double)grid->known;
+}
+
+/// Whether the last step was Newton's, which keeps the other in reserve, and halved the error.
+static bool newton_helped(const struct inversion *inversion) {
+    return !isnan(inversion->best_other[inversion->grid.known_point[0]]) &&
+           inversion->distance[GOAL_RDF].rms < 0.5 * inversion->progress.best[GOAL_RDF].rms;
+}
+
+/// Inside the basin of inverse Monte Carlo: near the noise, where its response holds, or where its
+/// steps converge.
+static bool in_basin(const struct inversion *inversion) {
+    const struct goal_distance *rdf = &inversion->distance[GOAL_RDF];
+    const bool first = isinf(inversion->progress.best[GOAL_RDF].rms);
+    return rdf->rms < 2 * rdf->noise ||
+           (!first && (newton_helped(inversion) || predicts(inversion)));
+}
+
+static enum status careful_step(const struct inversion *inversion, double *step) {
+    if (inversion->box.dimensions == 3)
+        return hnc_step(inversion, ridge, step);
+    ibi_step(inversion, step);
+    return STATUS_OK;
+}
+
+/// The Newton step with the careful one in reserve, or that alone.
+static enum status update(struct inversion *inversion, double *extra) {
+    const struct imc_parameters noise = {0};
+    double newton[3];
+    if (!in_basin(inversion))
+        return careful_step(inversion, inversion->step);
+    TRY(careful_step(inversion, inversion->other_step));
+    TRY(imc_step(inversion, &noise, inversion->step, newton));
+    extra[0] = 1;
+    extra[1] = newton[1];
+    extra[2] = newton[2];
+    return STATUS_OK;
+}
+
+const struct inverse_method automatic = {
+    .name = "auto",
+    .summary = "hypernetted-chain steps (Delbary et al. 2020; in 2-D Boltzmann inversion, Reith et "
+               "al. 2003) until their linear response holds, then inverse Monte Carlo (Lyubartsev "
+               "and Laaksonen 1995)",
+    .tables = (const struct field *const[]){inversion_fields, NULL},
+    .columns = columns,
+    .update = update,
+    .create = inversion_create,
+    INVERSION_RECORD,
+};

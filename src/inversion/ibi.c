@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Iterative Boltzmann inversion. D. Reith, M. Pütz and F. Müller-Plathe, J. Comput. Chem. 24, 1624
+// (2003).
+#include "inversion/inversion.h"
+
+#include <math.h>
+
+static const char *const columns[] = {INVERSION_COLUMNS, NULL};
+
+void ibi_logarithms(const struct inversion *inversion, double *step) {
+    const struct potential_grid *grid = &inversion->grid;
+    const double least = inversion->problem->core_threshold;
+    for (size_t n = 0; n < grid->known; n++) {
+        // An empty bin is as full as one with the threshold's few pairs.
+        const size_t bin = grid->known_bin[n];
+        const double g = fmax(inversion_g(inversion, bin), least);
+        const double target = fmax(inversion_target_g(inversion, bin), least);
+        step[grid->known_point[n]] = inversion->problem->scene.temperature * log(g / target);
+    }
+}
+
+void ibi_step(const struct inversion *inversion, double *step) {
+    ibi_logarithms(inversion, step);
+    inversion_pressure_add_ramp(inversion, step);
+}
+
+static enum status update(struct inversion *inversion, double *extra) {
+    (void)extra;
+    ibi_step(inversion, inversion->step);
+    return STATUS_OK;
+}
+
+const struct inverse_method ibi = {
+    .name = "ibi",
+    .summary =
+        "iterative Boltzmann inversion; D. Reith, M. Puetz and F. Mueller-Plathe, J. Comput. "
+        "Chem. 24, 1624 (2003)",
+    .tables = (const struct field *const[]){inversion_fields, NULL},
+    .columns = columns,
+    .update = update,
+    .create = inversion_create,
+    INVERSION_RECORD,
+};

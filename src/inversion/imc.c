@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Inverse Monte Carlo. A. P. Lyubartsev and A. Laaksonen, Phys. Rev. E 52, 3730 (1995).
+#include "inversion/imc_solve.h"
+#include "inversion/inversion.h"
+
+#include <assert.h>
+
+static_assert(sizeof(struct imc_parameters) <= sizeof((struct inversion_settings){0}.own),
+              "no room");
+
+/// How the linear equations are solved, in the order of `regularisations`.
+static enum status (*const solvers[])(const struct imc_system *, double, double *,
+                                      struct imc_solution *) = {imc_solve, imc_truncated,
+                                                                imc_votca};
+static const char *const regularisations[] = {"noise", "truncated", "votca", NULL};
+
+#define MEMBER(name)                                                                               \
+    .offset = offsetof(struct inversion_settings, own) + offsetof(struct imc_parameters, name)
+static const struct field own_fields[] = {
+    {"regularisation", FIELD_CHOICE, MEMBER(regularisation), .choices = regularisations,
+     .initial = 0, .unit = "",
+     .help = "noise: smooth, as strong as the noise asks; truncated: singular values above the "
+             "noise; votca: Tikhonov's lambda, as there"},
+    {"strength", FIELD_NUMBER, MEMBER(strength), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
+     .unit = "",
+     .help = "of the regularisation; of \"truncated\" the least singular value over the largest; "
+             "0: chosen from the noise, or none with \"votca\""},
+    FIELD_END,
+};
+
+static const char *const columns[] = {INVERSION_COLUMNS, "regularisation[1]", "misfit[1]",
+                                      "directions", NULL};
+
+enum status imc_step(const struct inversion *inversion, const struct imc_parameters *parameters,
+                     double *step, double extra[3]) {
+    const struct inverse_problem *problem = inversion->problem;
+    const struct goal *pressure = &problem->goals.goal[GOAL_PRESSURE];
+    const bool constrained = goals_ask(&problem->goals, GOAL_PRESSURE);
+    const struct potential_grid *grid = &inversion->grid;
+    enum status status = STATUS_OK;
+    struct imc_solution solution;
+    double *x = NULL;
+    struct imc_system system = inversion_system(inversion);
+    if (constrained) {
+        system.constraint = inversion->pressure.slope;
+        system.wanted = *pressure->value - inversion->pressure.value;
+    }
+    NEW_ARRAY(x, grid->known);
+    CHECK(solvers[parameters->regularisation](&system, parameters->strength, x, &solution));
+    for (size_t a = 0; a < grid->known; a++)
+        step[grid->known_point[a]] = x[a];
+    extra[0] = solution.strength;
+    extra[1] = solution.misfit;
+    extra[2] = solution.directions;
+done:
+    memory_free(x);
+    return status;
+}
+
+static enum status update(struct inversion *inversion, double *extra) {
+    return imc_step(inversion, (const void *)inversion->settings.own, inversion->step, extra);
+}
+
+const struct inverse_method imc = {
+    .name = "imc",
+    .summary = "inverse Monte Carlo; A. P. Lyubartsev and A. Laaksonen, Phys. Rev. E 52, 3730 "
+               "(1995)",
+    .tables = (const struct field *const[]){inversion_fields, own_fields, NULL},
+    .columns = columns,
+    .update = update,
+    .create = inversion_create,
+    INVERSION_RECORD,
+};

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "inversion/inversion.h"
+
+#include <math.h>
+#include <string.h>
+
+const double inversion_least_damping = 1.0 / 64;
+
+/// Largest change of the potential in one iteration where the target is well known [k_B T_0].
+static const double largest_change = 1;
+
+/// Samples are doubled until their noise is this share of the error, or as small as was asked for.
+static const double noise_share = 1.0 / 3;
+
+/// Samples of an iteration double at most so often.
+enum { MOST_DOUBLINGS = 7 };
+
+/// Replicas that are placed anew are equilibrated so many times as long.
+enum { ANEW_EQUILIBRATION = 5 };
+
+double inversion_g(const struct inversion *inversion, size_t bin) {
+    return inversion->replicas.counts.mean[bin] / inversion->ideal[bin];
+}
+
+double inversion_target_g(const struct inversion *inversion, size_t bin) {
+    return inversion->target_counts[bin] / inversion->ideal[bin];
+}
+
+/// Fill excess and variance of S, and the distance of g over all bins, from the present samples.
+static void assess_rdf(struct inversion *inversion) {
+    const struct potential_grid *grid = &inversion->grid;
+    const struct comoments *counts = &inversion->replicas.counts;
+    inversion->inefficiency =
+        replicas_inefficiency(&inversion->replicas, inversion->ideal, grid->known_bin, grid->known);
+    inversion->disagreement =
+        replicas_disagreement(&inversion->replicas, inversion->ideal, grid->known_bin, grid->known);
+    const double independent = counts->count / inversion->inefficiency;
+    double sum = 0, own = 0, both = 0;
+    for (size_t n = 0; n < inversion->bins; n++)
+        sum += pow(inversion_g(inversion, n) - inversion_target_g(inversion, n), 2);
+    for (size_t a = 0; a < grid->known; a++) {
+        const size_t bin = grid->known_bin[a];
+        const double ideal = inversion->ideal[bin];
+        const double target_error = ideal * inversion->problem->goals.goal[GOAL_RDF].error[bin];
+        // An empty bin still has the uncertainty of one pair.
+        const double sampled =
+            fmax(comoments_covariance(counts, bin, bin), 1 / counts->count) / independent;
+        inversion->excess[a] = counts->mean[bin] - inversion->target_counts[bin];
+        inversion->variance[a] = sampled + target_error * target_error;
+        own += sampled / (ideal * ideal);
+        both += inversion->variance[a] / (ideal * ideal);
+    }
+    const double bins = (double)inversion->bins;
+    inversion->distance[GOAL_RDF] =
+        (struct goal_distance){.rms = sqrt(sum / bins), .noise = sqrt(both / bins)};
+    inversion->own_noise = sqrt(own / bins);
+}
+
+struct imc_system inversion_system(const struct inversion *inversion) {
+    return (struct imc_system){.size = inversion->grid.known,
+                               .block = inversion->grid.known_of,
+                               .blocks = inversion->grid.pairs,
+                               .covariance = inversion->covariance,
+                               .excess = inversion->excess,
+                               .variance = inversion->variance,
+                               .temperature = inversion->problem->scene.temperature,
+                               .spacing = inversion->problem->goals.bins.width};
+}
+
+/// What the samples say besides g: how far the pressure is from what is asked for, and how all
+/// respond to the potential.
+static enum status assess_response(struct inversion *inversion) {
+    const struct goals *goals = &inversion->problem->goals;
+    const struct potential_grid *grid = &inversion->grid;
+    const struct comoments *counts = &inversion->replicas.counts;
+    inversion_pressure_measure(inversion);
+    if (goals_ask(goals, GOAL_PRESSURE))
+        inversion->distance[GOAL_PRESSURE] = goals_distance(
+            &goals->goal[GOAL_PRESSURE], &inversion->pressure.value, &inversion->pressure.error);
+    for (size_t a = 0; a < grid->known; a++)
+        for (size_t b = 0; b < grid->known; b++)
+            inversion->covariance[a * grid->known + b] =
+                comoments_covariance(counts, grid->known_bin[a], grid->known_bin[b]);
+    return inversion_pressure_slopes(inversion);
+}
+
+/// phi = best + damping · best_step, with a bound where the target is well known.
+static void take_step(struct inversion *inversion) {
+    const struct potential_grid *grid = &inversion->grid;
+    double largest = 0;
+    for (size_t a = 0; a < grid->known; a++)
+        if (potential_grid_well_known(inversion->problem, grid->known_bin[a]))
+            largest = fmax(largest, fabs(inversion->best_step[grid->known_point[a]]));
+    const double share = fmin(inversion->progress.damping, largest_change / fmax(largest, 1e-300));
+    for (size_t a = 0; a < grid->known; a++) {
+        const size_t point = grid->known_point[a];
+        inversion->phi[point] = inversion->best[point] + share * inversion->best_step[point];
+    }
+    potential_grid_complete(grid, inversion->phi);
+}
+
+/// Keep the present potential as the best, with the steps that lead on from it.
+static enum status keep(struct inversion *inversion) {
+    struct inversion_progress *progress = &inversion->progress;
+    const size_t bytes = inversion->grid.points * sizeof(double);
+    memcpy(inversion->best, inversion->phi, bytes);
+    memcpy(inversion->best_step, inversion->step, bytes);
+    memcpy(inversion->best_other, inversion->other_step, bytes);
+    memcpy(inversion->best_counts, inversion->replicas.counts.mean,
+           inversion->bins * sizeof(double));
+    memcpy(progress->best, inversion->distance, sizeof progress->best);
+    progress->best_own_noise = inversion->own_noise;
+    progress->best_disagreement = inversion->disagreement;
+    return inversion_band_find(inversion);
+}
+
+/// The sweeps and least samples of this iteration.
+static struct replicas_plan plan(const struct inversion *inversion) {
+    const struct inversion_parameters *p = &inversion->settings.common;
+    const bool anew = inversion->progress.anew;
+    return (struct replicas_plan){.scatter = anew,
+                                  .equilibration =
+                                      p->equilibration * (anew ? ANEW_EQUILIBRATION : 1),
+                                  .block_samples = (p->samples - 1) / REPLICAS_BLOCKS + 1,
+                                  .every = p->every};
+}
+
+/// Whether more samples would help: their noise is a large part of the error, and not yet what was
+/// asked for. Replicas that are stuck would never be told apart from noise.
+static bool needs_samples(const struct inversion *inversion, int doublings) {
+    return inversion->own_noise > fmax(inversion->settings.common.precision,
+                                       noise_share * inversion->distance[GOAL_RDF].rms) &&
+           doublings < MOST_DOUBLINGS;
+}
+
+/// Sample the present potential until the noise is small against its error.
+static enum status sample(struct inversion *inversion, const struct inverse_listener *listener) {
+    struct replicas_plan now = plan(inversion);
+    struct inversion_progress *state = &inversion->progress;
+    const int threads = inversion->problem->threads;
+    const uint64_t replicas = (uint64_t)inversion->settings.common.replicas;
+    const struct inverse_progress progress = {
+        .iteration = state->iteration,
+        .iterations = (uint32_t)inversion->settings.common.iterations,
+        .best = goals_error(&inversion->problem->goals, state->best),
+        .least = NAN,
+        .mean = NAN,
+    };
+    table_clear(&inversion->table);
+    TRY(potential_grid_table(&inversion->grid, inversion->phi, &inversion->table));
+    state->evaluations += replicas;
+    TRY(replicas_run(&inversion->replicas, &now, threads, &progress, listener));
+    assess_rdf(inversion);
+    for (int n = 0; needs_samples(inversion, n); n++) {
+        TRY(replicas_double(&inversion->replicas, &now, threads, &progress, listener));
+        assess_rdf(inversion);
+    }
+    state->sweeps +=
+        replicas * (uint64_t)(REPLICAS_BLOCKS * now.block_samples * now.every + now.equilibration);
+    return STATUS_OK;
+}
+
+/// Distances from all targets together, each in units of the noise of the present samples.
+static double count_noises(const struct inversion *inversion,
+                           const struct goal_distance distance[GOALS]) {
+    double sum = 0;
+    for (int kind = 0; kind < GOALS; kind++)
+        if (goals_ask(&inversion->problem->goals, kind))
+            sum += pow(distance[kind].rms / inversion->distance[kind].noise, 2);
+    return sqrt(sum);
+}
+
+/// Go back to the best, for its other step if it has one, or for half of its step.
+static void go_back(struct inversion *inversion) {
+    struct inversion_progress *progress = &inversion->progress;
+    const size_t bytes = inversion->grid.points * sizeof(double);
+    if (isnan(inversion->best_other[inversion->grid.known_point[0]])) {
+        progress->damping *= 0.5;
+        return;
+    }
+    memcpy(inversion->best_step, inversion->best_other, bytes);
+    inversion->best_other[inversion->grid.known_point[0]] = NAN;
+    progress->damping = inversion->settings.common.damping;
+}
+
+bool inversion_keeps(struct inversion *inversion) {
+    struct inversion_progress *progress = &inversion->progress;
+    const double now = count_noises(inversion, inversion->distance);
+    const double least =
+        isinf(progress->best[GOAL_RDF].rms) ? INFINITY : count_noises(inversion, progress->least);
+    if (now < least)
+        memcpy(progress->least, inversion->distance, sizeof progress->least);
+    return now <= least + 2;
+}
+
+/// Keep the present potential, or go back if it is worse than the nearest by more than chance.
+/// Replicas that a worse potential may have frozen or torn apart are not gone on with.
+static enum status judge(struct inversion *inversion, bool *kept) {
+    struct inversion_progress *progress = &inversion->progress;
+    const double error = inversion->distance[GOAL_RDF].rms;
+    const bool start = isinf(progress->best[GOAL_RDF].rms);
+    *kept = inversion_keeps(inversion);
+    progress->anew = !*kept;
+    if (start)
+        progress->first_error = progress->second_error = error;
+    else if (progress->second_error == progress->first_error)
+        progress->second_error = error;
+    if (!*kept) {
+        go_back(inversion);
+        return STATUS_OK;
+    }
+    if (!start)
+        progress->damping = fmin(1, 1.5 * progress->damping);
+    return keep(inversion);
+}
+
+/// The next potential to be sampled: the other start, or a step from the best.
+static enum status go_on(struct inversion *inversion, bool kept) {
+    struct inversion_progress *progress = &inversion->progress;
+    if (!inversion_start_is_poor(inversion, kept)) {
+        take_step(inversion);
+        return STATUS_OK;
+    }
+    progress->best[GOAL_RDF].rms = INFINITY;
+    progress->drift.count = 0;
+    progress->damping = inversion->settings.common.damping;
+    progress->anew = true;
+    return inversion_start_again(inversion);
+}
+
+/// Whether the present potential meets all targets as far as their noise lets see.
+static bool meets_targets(const struct inversion *inversion) {
+    for (int kind = 0; kind < GOALS; kind++)
+        if (goals_ask(&inversion->problem->goals, kind) &&
+            inversion->distance[kind].rms >
+                inverse_noise_margin * inversion->distance[kind].noise)
+            return false;
+    return true;
+}
+
+bool inversion_runs_away(const struct inversion *inversion) {
+    return !goals_ask(&inversion->problem->goals, GOAL_PRESSURE) &&
+           inversion_drifts(&inversion->progress.drift, inversion->problem->scene.temperature);
+}
+
+/// Amplitude A of the present potential's ramp over the well-known bins.
+static double find_ramp(const struct inversion *inversion) {
+    const struct potential_grid *grid = &inversion->grid;
+    double product = 0, squares = 0;
+    for (size_t a = 0; a < grid->known; a++) {
+        const size_t point = grid->known_point[a];
+        const double ramp = potential_grid_ramp(grid, point);
+        if (!potential_grid_well_known(inversion->problem, grid->known_bin[a]))
+            continue;
+        product += ramp * inversion->phi[point];
+        squares += ramp * ramp;
+    }
+    return product / squares;
+}
+
+static void describe(const struct inversion *inversion, const double *own, bool converged,
+                     struct inverse_step *step) {
+    const struct inversion_progress *progress = &inversion->progress;
+    const struct inversion_parameters *p = &inversion->settings.common;
+    const bool stuck = progress->damping < inversion_least_damping * p->damping;
+    *step = (struct inverse_step){
+        .iteration = progress->iteration,
+        .evaluations = progress->evaluations,
+        .engine_steps = progress->sweeps,
+        .error = goals_error(&inversion->problem->goals, progress->best),
+        .noise = goals_noise(&inversion->problem->goals, progress->best),
+        .extra = {progress->damping, inversion->own_noise, inversion->disagreement,
+                  inversion->distance[GOAL_RDF].rms, inversion->pressure.value,
+                  inversion->pressure.error},
+        .curve = {inversion->best},
+        .curve_error = {inversion->band.error},
+        .curve_flat = {inversion->band.flat},
+        .without_ramp = inversion->band.without_ramp,
+        .ramp = inversion->band.ramp,
+        .converged = converged,
+        .finished = converged || stuck || inversion_runs_away(inversion) ||
+                    progress->iteration + 1 >= p->iterations,
+    };
+    memcpy(step->extra + INVERSION_SHARED_COLUMNS, own, INVERSION_OWN_COLUMNS * sizeof *own);
+    if (step->finished && !converged)
+        inversion_reason_tell(inversion, step->reason);
+}
+
+enum status inversion_iterate(void *memory, struct inverse_step *step,
+                              const struct inverse_listener *listener) {
+    struct inversion *inversion = memory;
+    struct inversion_progress *progress = &inversion->progress;
+    double own[INVERSION_OWN_COLUMNS] = {0};
+    bool kept;
+    TRY(sample(inversion, listener));
+    TRY(assess_response(inversion));
+    inversion->other_step[inversion->grid.known_point[0]] = NAN;
+    TRY(inversion->method->update(inversion, own));
+    inversion_drift_add(&progress->drift, find_ramp(inversion), inversion->distance[GOAL_RDF].rms);
+    TRY(judge(inversion, &kept));
+    const bool precise = inversion->own_noise <= inversion->settings.common.precision;
+    describe(inversion, own, kept && precise && meets_targets(inversion), step);
+    if (!step->finished)
+        TRY(go_on(inversion, kept));
+    progress->iteration++;
+    return STATUS_OK;
+}

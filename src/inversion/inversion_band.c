@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "inversion/inversion.h"
+
+#include <gsl/gsl_blas.h>
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+
+enum status inversion_band_init(struct inversion_band *band, size_t known, size_t points) {
+    enum status status = STATUS_OK;
+    *band = (struct inversion_band){0};
+    NEW_ARRAY(band->covariance, known * known);
+    NEW_ARRAY(band->error, points);
+    NEW_ARRAY(band->without_ramp, points);
+    NEW_ARRAY(band->flat, INVERSE_FLAT * points);
+done:
+    return status;
+}
+
+void inversion_band_clear(struct inversion_band *band) {
+    memory_free(band->covariance);
+    memory_free(band->error);
+    memory_free(band->without_ramp);
+    memory_free(band->flat);
+    *band = (struct inversion_band){0};
+}
+
+size_t inversion_band_spans(struct inversion_band *band, size_t points, struct memory_span *span) {
+    span[0] = (struct memory_span){band->error, points * sizeof(double)};
+    span[1] = (struct memory_span){band->without_ramp, points * sizeof(double)};
+    span[2] = (struct memory_span){band->flat, INVERSE_FLAT * points * sizeof(double)};
+    span[3] = (struct memory_span){&band->ramp, sizeof band->ramp};
+    return INVERSION_BAND_SPANS;
+}
+
+enum status inversion_band_covariance(const struct imc_system *system, double *covariance,
+                                      double *directions) {
+    enum status status = STATUS_OK;
+    const size_t size = system->size;
+    const double unit = 1 / (system->temperature * system->temperature);
+    gsl_matrix *prior = gsl_matrix_alloc(2 * size - 1, size);
+    gsl_matrix *response = gsl_matrix_alloc(size, size), *known = gsl_matrix_calloc(size, size);
+    gsl_matrix_view to = gsl_matrix_view_array(covariance, size, size);
+    CHECK(prior && response && known ? STATUS_OK : STATUS_NO_MEMORY);
+    imc_solve_response(system, response);
+    imc_solve_prior(system->spacing, system->block, system->blocks, prior);
+    gsl_blas_dsyrk(CblasLower, CblasTrans, 1, response, 0, known);
+    gsl_matrix_memcpy(&to.matrix, known);
+    gsl_blas_dsyrk(CblasLower, CblasTrans, unit, prior, 1, &to.matrix);
+    // Rounding may leave it not positive: then there is no band.
+    if (gsl_linalg_cholesky_decomp1(&to.matrix) != GSL_SUCCESS ||
+        gsl_linalg_cholesky_invert(&to.matrix) != GSL_SUCCESS)
+        gsl_matrix_set_all(&to.matrix, GSL_NAN);
+    // trace of F (F + prior)⁻¹; F has its lower triangle alone.
+    *directions = 0;
+    for (size_t a = 0; a < size; a++)
+        for (size_t b = 0; b <= a; b++)
+            *directions +=
+                (a == b ? 1 : 2) * gsl_matrix_get(known, a, b) * covariance[a * size + b];
+done:
+    gsl_matrix_free(prior);
+    gsl_matrix_free(response);
+    gsl_matrix_free(known);
+    return status;
+}
+
+/// Weights w of the best ramp, A = Σ w_a Φ_a, over the bins that are well known.
+static void weigh_ramp(const struct inversion *inversion, double *weight) {
+    const struct potential_grid *grid = &inversion->grid;
+    double squares = 0;
+    for (size_t a = 0; a < grid->known; a++) {
+        const bool known = potential_grid_well_known(inversion->problem, grid->known_bin[a]);
+        weight[a] = known ? potential_grid_ramp(grid, grid->known_point[a]) : 0;
+        squares += weight[a] * weight[a];
+    }
+    for (size_t a = 0; a < grid->known; a++)
+        weight[a] /= squares;
+}
+
+/// out = Σ v; returns v·Σ v.
+static double spread(const struct inversion *inversion, const double *v, double *out) {
+    const size_t n = inversion->grid.known;
+    double variance = 0;
+    for (size_t a = 0; a < n; a++) {
+        out[a] = 0;
+        for (size_t b = 0; b < n; b++)
+            out[a] += inversion->band.covariance[a * n + b] * v[b];
+        variance += v[a] * out[a];
+    }
+    return variance;
+}
+
+/// What a pressure with its error adds: Σ ← Σ − Σp (Σp)ᵀ/(p·Σp + σ_P²).
+static void add_pressure(struct inversion *inversion, double *scratch) {
+    const size_t n = inversion->grid.known;
+    const double open = spread(inversion, inversion->pressure.slope, scratch);
+    inversion->band.ramp.pressure_open = sqrt(open);
+    if (!goals_ask(&inversion->problem->goals, GOAL_PRESSURE))
+        return;
+    const double noise = inversion->distance[GOAL_PRESSURE].noise;
+    for (size_t a = 0; a < n; a++)
+        for (size_t b = 0; b < n; b++)
+            inversion->band.covariance[a * n + b] -=
+                scratch[a] * scratch[b] / (open + noise * noise);
+}
+
+/// Standard errors, those of A, and those of Φ if A were known.
+static void find_errors(struct inversion *inversion, const double *weight, double *scratch) {
+    const struct potential_grid *grid = &inversion->grid;
+    struct inversion_band *band = &inversion->band;
+    const size_t n = grid->known;
+    const double ramp_variance = spread(inversion, weight, scratch);
+    for (size_t a = 0; a < n; a++) {
+        const double variance = band->covariance[a * n + a];
+        band->error[grid->known_point[a]] = variance >= 0 ? sqrt(variance) : NAN;
+        band->without_ramp[grid->known_point[a]] =
+            sqrt(fmax(0, variance - scratch[a] * scratch[a] / ramp_variance));
+    }
+    band->ramp.error = sqrt(ramp_variance);
+    band->ramp.pressure = inversion_pressure_ramp_slope(inversion);
+    band->ramp.bins = (double)n;
+}
+
+/// Widest principal components of the well-known bins, continued to the others.
+static enum status find_flat(struct inversion *inversion) {
+    enum status status = STATUS_OK;
+    const struct potential_grid *grid = &inversion->grid;
+    const struct inversion_band *band = &inversion->band;
+    const size_t n = grid->known;
+    gsl_matrix *part = gsl_matrix_calloc(n, n), *vectors = gsl_matrix_alloc(n, n);
+    gsl_vector *values = gsl_vector_alloc(n);
+    gsl_eigen_symmv_workspace *work = gsl_eigen_symmv_alloc(n);
+    CHECK(part && vectors && values && work ? STATUS_OK : STATUS_NO_MEMORY);
+    for (size_t a = 0; a < n; a++)
+        for (size_t b = 0; b < n; b++)
+            if (potential_grid_well_known(inversion->problem, grid->known_bin[a]) &&
+                potential_grid_well_known(inversion->problem, grid->known_bin[b]))
+                gsl_matrix_set(part, a, b, band->covariance[a * n + b]);
+    gsl_eigen_symmv(part, values, vectors, work);
+    gsl_eigen_symmv_sort(values, vectors, GSL_EIGEN_SORT_VAL_DESC);
+    for (size_t k = 0; k < INVERSE_FLAT; k++)
+        for (size_t a = 0; a < n; a++) {
+            double sum = 0;
+            for (size_t b = 0; b < n; b++)
+                if (potential_grid_well_known(inversion->problem, grid->known_bin[b]))
+                    sum += band->covariance[a * n + b] * gsl_matrix_get(vectors, b, k);
+            band->flat[k * grid->points + grid->known_point[a]] =
+                sum / sqrt(gsl_vector_get(values, k));
+        }
+done:
+    gsl_matrix_free(part);
+    gsl_matrix_free(vectors);
+    gsl_vector_free(values);
+    gsl_eigen_symmv_free(work);
+    return status;
+}
+
+/// Variances of the excess, as large as what is left of it shows them to be: χ² by bin, if above 1.
+/// R. T. Birge, Phys. Rev. 40, 207 (1932).
+static void find_variance(const struct imc_system *system, const double *nothing,
+                          double *variance) {
+    const double chi2 = fmax(1, imc_solve_misfit(system, nothing));
+    for (size_t a = 0; a < system->size; a++)
+        variance[a] = chi2 * system->variance[a];
+}
+
+enum status inversion_band_find(struct inversion *inversion) {
+    enum status status = STATUS_OK;
+    const struct potential_grid *grid = &inversion->grid;
+    struct inversion_band *band = &inversion->band;
+    double *weight = NULL, *scratch = NULL, *variance = NULL;
+    NEW_ARRAY(weight, grid->known);
+    NEW_ARRAY(scratch, grid->known);
+    NEW_ARRAY(variance, grid->known);
+    struct imc_system system = inversion_system(inversion);
+    find_variance(&system, scratch, variance);
+    system.variance = variance;
+    CHECK(inversion_band_covariance(&system, band->covariance, &band->ramp.directions));
+    add_pressure(inversion, scratch);
+    weigh_ramp(inversion, weight);
+    find_errors(inversion, weight, scratch);
+    if (!isnan(band->covariance[0]))
+        CHECK(find_flat(inversion));
+done:
+    memory_free(weight);
+    memory_free(scratch);
+    memory_free(variance);
+    return status;
+}

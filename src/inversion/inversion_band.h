@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file How well the data of an inversion determine its potential.
+///
+/// The excess of S, with the variances σ_a² by target and samples, determines the potential by
+///   F = Bᵀ B,   B_ab = C_ab/(σ_a k_B T),
+/// as in imc_solve, whatever step led there. What the data leave open is held by the smoothness
+/// prior there with the weight 1/(k_B T)²: a bend by k_B T within a tenth of λ, or ten k_B T in
+/// all, is as wide as one standard error. The covariance of Φ is (F + prior)⁻¹.
+///
+/// Where more of the excess is left than these say, χ² by bin above 1, the σ_a² are that much
+/// larger: a fit stops within 1.7 times the noise, and what it leaves is an error of Φ too.
+///
+/// Errors of bins count as independent. Those by sampling are correlated as S is, and with that
+/// F = n C/(k_B T)² (n independent configurations; the canonical ensemble is an exponential family)
+/// would determine water's ramp within 0.008 k_B T; but then every systematic error of the target
+/// must be smaller than its noise in the sum of all bins, and fits of the same target differ by
+/// 0.1.
+///
+/// C is itself sampled. Its noise adds to C·C, but what is least known follows the smallest
+/// eigenvalues, and those of a sampled covariance come out too small: the band of few samples is
+/// wider than by the exact C (test_inversion_band: the ramp's error by 27 % with twice as many
+/// independent samples as bins, by 4 % with 32 times as many), and needs no correction.
+#pragma once
+
+#include "inversion/imc_solve.h"
+#include "problem/inverse.h"
+
+struct inversion;
+
+struct inversion_band {
+    double *covariance;   ///< of Φ in the known bins, shape [known, known]
+    double *error;        ///< standard errors, shape [points]; 0 where Φ is set
+    double *without_ramp; ///< if A of the ramp A (1 − r/r_c) were known, shape [points]
+    double *flat;         ///< inverse_step.curve_flat, shape [INVERSE_FLAT, points]
+    struct inverse_ramp ramp;
+};
+
+/// (F + prior)⁻¹.
+/// @param[in]  system      size, blocks, C, variances, temperature, spacing
+/// @param[out] covariance  shape [size, size]
+/// @param[out] directions  that the data determine: trace of F (F + prior)⁻¹
+/// Fails: NO_MEMORY. Tested: test_inversion_band.
+enum status inversion_band_covariance(const struct imc_system *system, double *covariance,
+                                      double *directions) MUST_USE;
+
+enum status inversion_band_init(struct inversion_band *band, size_t known, size_t points) MUST_USE;
+void inversion_band_clear(struct inversion_band *band);
+
+/// Fill the band of the present potential. Ramp and flat directions are those of the bins that the
+/// target knows well: A is the best ramp over them, and a flat direction is what the whole curve
+/// does, on average, when a principal component of them is off by one standard error.
+/// Fails: NO_MEMORY.
+enum status inversion_band_find(struct inversion *inversion) MUST_USE;
+
+enum { INVERSION_BAND_SPANS = 4 };
+size_t inversion_band_spans(struct inversion_band *band, size_t points, struct memory_span *span);

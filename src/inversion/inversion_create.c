@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What an inversion is made of: its parameters, its system, its memory.
+#include "inversion/inversion.h"
+
+#include "observe/finite_size.h"
+
+#include <math.h>
+
+static const char *const starts[] = {"auto", "mean-force", NULL};
+
+#define MEMBER(name) .offset = offsetof(struct inversion_settings, common.name)
+const struct field inversion_fields[] = {
+    {"particles", FIELD_INTEGER, MEMBER(particles), .initial = 0, .minimum = 0, .maximum = 1e7,
+     .unit = "", .help = "of the Monte Carlo system, at the scene's density; 0 means the scene's"},
+    {"sampler", FIELD_CHOICE, MEMBER(sampler), .choices = sampler_kinds,
+     .initial = SAMPLER_MONTE_CARLO, .unit = "",
+     .help = "single moves, or short trajectories of all particles"},
+    {"replicas", FIELD_INTEGER, MEMBER(replicas), .initial = 8, .minimum = 2,
+     .maximum = REPLICAS_MOST, .unit = "", .help = "independent samplers"},
+    {"equilibration", FIELD_INTEGER, MEMBER(equilibration), .initial = 200, .minimum = 0,
+     .maximum = 8e8, .unit = "sweeps",
+     .help = "before each iteration's samples; five times as many where replicas begin anew"},
+    {"samples", FIELD_INTEGER, MEMBER(samples), .initial = 200, .minimum = 2 * REPLICAS_BLOCKS,
+     .maximum = 1e9, .unit = "",
+     .help = "of each replica, at least; doubled until the noise is a third of the error, or as "
+             "small as \"precision\""},
+    {"every", FIELD_INTEGER, MEMBER(every), .initial = 2, .minimum = 1, .maximum = 1e6,
+     .unit = "sweeps", .help = "between samples"},
+    {"iterations", FIELD_INTEGER, MEMBER(iterations), .initial = 30, .minimum = 1, .maximum = 10000,
+     .unit = "", .help = "at most"},
+    {"precision", FIELD_NUMBER, MEMBER(precision), .initial = 0.004, .minimum = FIELD_ABOVE_ZERO,
+     .maximum = 1, .unit = "",
+     .help = "statistical error of g, rms over bins, at which an "
+             "agreement is believed"},
+    {"damping", FIELD_NUMBER, MEMBER(damping), .initial = 1, .minimum = FIELD_ABOVE_ZERO,
+     .maximum = 1, .unit = "", .help = "share of a method's step taken at first; adapts"},
+    {"start", FIELD_CHOICE, MEMBER(start), .choices = starts, .initial = INVERSION_FROM_HNC,
+     .unit = "",
+     .help = "without unknowns.potential.start: the hypernetted-chain inversion, and -k_B T ln g "
+             "where that leads nowhere or in two dimensions; mean-force: -k_B T ln g"},
+    FIELD_END,
+};
+
+struct inverse_sampling inversion_sampling(const void *parameters) {
+    (void)parameters;
+    return (struct inverse_sampling){0};
+}
+
+uint32_t inversion_most_iterations(const struct inverse_method *method,
+                                   const struct inverse_problem *problem, const void *parameters) {
+    (void)method, (void)problem;
+    return (uint32_t)((const struct inversion_settings *)parameters)->common.iterations;
+}
+
+void inversion_destroy(void *memory) {
+    struct inversion *inversion = memory;
+    replicas_clear(&inversion->replicas);
+    table_clear(&inversion->table);
+    potential_grid_clear(&inversion->grid);
+    inversion_band_clear(&inversion->band);
+    double *arrays[] = {inversion->ideal,      inversion->target_counts, inversion->excess,
+                        inversion->variance,   inversion->covariance,    inversion->pressure.slope,
+                        inversion->phi,        inversion->step,          inversion->other_step,
+                        inversion->best,       inversion->best_step,     inversion->best_other,
+                        inversion->best_counts};
+    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
+        memory_free(arrays[k]);
+}
+
+static enum status allocate(struct inversion *inversion) {
+    enum status status = STATUS_OK;
+    const size_t bins = inversion->bins, points = inversion->grid.points;
+    const size_t known = inversion->grid.known;
+    NEW_ARRAY(inversion->ideal, bins);
+    NEW_ARRAY(inversion->target_counts, bins);
+    NEW_ARRAY(inversion->excess, known);
+    NEW_ARRAY(inversion->variance, known);
+    NEW_ARRAY(inversion->covariance, known * known);
+    NEW_ARRAY(inversion->pressure.slope, known);
+    NEW_ARRAY(inversion->phi, points);
+    NEW_ARRAY(inversion->step, points);
+    NEW_ARRAY(inversion->other_step, points);
+    NEW_ARRAY(inversion->best, points);
+    NEW_ARRAY(inversion->best_step, points);
+    NEW_ARRAY(inversion->best_other, points);
+    NEW_ARRAY(inversion->best_counts, bins);
+    CHECK(inversion_band_init(&inversion->band, known, points));
+done:
+    return status;
+}
+
+/// By which the share of a type may change with the number of particles: rare types are rounded,
+/// and keep two beads.
+static const double most_distortion = 0.2;
+
+/// As many particles as are asked for, at the densities of the scene.
+static enum status choose_size(struct inversion *inversion) {
+    const struct simulation_setup *scene = &inversion->problem->scene;
+    const int64_t wanted = inversion->settings.common.particles;
+    inversion->composition =
+        wanted > 0 ? composition_scaled(&scene->composition, wanted) : scene->composition;
+    inversion->box =
+        box_scaled(&scene->box, (double)composition_particles(&inversion->composition) /
+                                    (double)composition_particles(&scene->composition));
+    const double distortion = composition_distortion(&scene->composition, &inversion->composition);
+    if (distortion <= most_distortion)
+        return STATUS_OK;
+    return status_fail(
+        STATUS_BAD_INPUT,
+        "method.particles: %lld change the share of a type by %.0f %%; %lld are the "
+        "next that keep all shares",
+        (long long)wanted, 100 * distortion,
+        (long long)composition_least_particles(&scene->composition, wanted, most_distortion));
+}
+
+/// S if g were 1, and of the target.
+static void count_target(struct inversion *inversion) {
+    const struct inverse_problem *problem = inversion->problem;
+    const struct simulation_setup *scene = &problem->scene;
+    const struct rdf_bins *bins = &problem->goals.bins;
+    const struct goal *goal = &problem->goals.goal[GOAL_RDF];
+    const double from = (double)composition_particles(&scene->composition);
+    const double to = (double)composition_particles(&inversion->composition);
+    for (size_t first = 0; first < inversion->bins; first += bins->count) {
+        const int pair = (int)(first / bins->count);
+        const double factor =
+            finite_size_factor_of(bins, goal->value + first, goal->error + first, &scene->box,
+                                  &scene->composition, pair, from, to);
+        for (size_t k = 0; k < bins->count; k++) {
+            inversion->ideal[first + k] =
+                rdf_ideal_pairs_of(bins, k, &inversion->box, &inversion->composition, pair);
+            inversion->target_counts[first + k] =
+                inversion->ideal[first + k] * goal->value[first + k] * factor;
+        }
+    }
+}
+
+/// No potential of pairs empties a shell in the midst of a liquid: an empty bin beyond one that is
+/// well known is a fault of the target, and what would be made of it a barrier without an end.
+static enum status refuse_holes(const struct inversion *inversion) {
+    const struct inverse_problem *problem = inversion->problem;
+    const struct potential_grid *grid = &inversion->grid;
+    for (size_t n = 0; n < grid->known; n++) {
+        const size_t bin = grid->known_bin[n], next = grid->known_bin[n] + 1;
+        if (next % grid->bins == 0 || !potential_grid_well_known(problem, bin) ||
+            problem->goals.goal[GOAL_RDF].value[next] > problem->core_threshold)
+            continue;
+        const double r = rdf_bins_centre(&problem->goals.bins, next % grid->bins);
+        char kind[COMPOSITION_PAIR_NAME_SIZE];
+        composition_pair_name(&problem->scene.composition, (int)(bin / grid->bins), kind);
+        return status_fail(
+            STATUS_BAD_INPUT,
+            "%s%sthe target is empty at r = %g, where the bin before it has g = %.3g: no "
+            "potential of pairs makes such a hole; mend the target there, or end "
+            "it before by \"cutoff\"",
+            kind, kind[0] ? ": " : "", r, problem->goals.goal[GOAL_RDF].value[bin]);
+    }
+    return STATUS_OK;
+}
+
+enum status inversion_create(void *memory, const struct inverse_method *method,
+                             const struct inverse_problem *problem, const void *parameters) {
+    struct inversion *inversion = memory;
+    const struct rdf_bins *bins = &problem->goals.bins;
+    inversion->settings = *(const struct inversion_settings *)parameters;
+    inversion->method = method;
+    inversion->problem = problem;
+    inversion->bins = problem->goals.goal[GOAL_RDF].count;
+    const struct inversion_parameters *p = &inversion->settings.common;
+    TRY(choose_size(inversion));
+    TRY(potential_grid_init(&inversion->grid, problem));
+    TRY(refuse_holes(inversion));
+    TRY(allocate(inversion));
+    count_target(inversion);
+    TRY(inversion_start(inversion));
+    TRY(potential_grid_table(&inversion->grid, inversion->phi, &inversion->table));
+    TRY(replicas_init(&inversion->replicas, (size_t)p->replicas, (enum sampler_kind)p->sampler,
+                      &(struct sampler_system){.box = &inversion->box,
+                                               .composition = &inversion->composition,
+                                               .potential = &inversion->table,
+                                               .temperature = problem->scene.temperature,
+                                               .low = bins->low,
+                                               .width = bins->width,
+                                               .bins = bins->count,
+                                               .seed = problem->seed}));
+    inversion->progress = (struct inversion_progress){
+        .anew = true, .damping = p->damping, .best[GOAL_RDF].rms = INFINITY};
+    return STATUS_OK;
+}
+
+size_t inversion_spans(void *memory, struct memory_span *span) {
+    struct inversion *inversion = memory;
+    const size_t bytes = inversion->grid.points * sizeof(double);
+    size_t n = 0;
+    span[n++] = (struct memory_span){&inversion->progress, sizeof inversion->progress};
+    double *arrays[] = {inversion->phi, inversion->best, inversion->best_step,
+                        inversion->best_other};
+    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
+        span[n++] = (struct memory_span){arrays[k], bytes};
+    span[n++] = (struct memory_span){inversion->best_counts, inversion->bins * sizeof(double)};
+    n += inversion_band_spans(&inversion->band, inversion->grid.points, span + n);
+    return n + replicas_spans(&inversion->replicas, span + n);
+}

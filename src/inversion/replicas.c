@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "inversion/replicas.h"
+
+#include "base/rng.h"
+#include "base/statistics.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum status replicas_init(struct replicas *replicas, size_t count, enum sampler_kind kind,
+                          const struct sampler_system *system) {
+    enum status status = STATUS_OK;
+    const size_t bins = (size_t)composition_pairs(system->composition) * system->bins;
+    struct sampler_system own = *system;
+    *replicas = (struct replicas){.bins = bins, .count = count};
+    CHECK(comoments_init(&replicas->counts, bins + 1));
+    for (size_t k = 0; k < count; k++) {
+        struct replica *replica = &replicas->member[k];
+        NEW_ARRAY(replica->sample, bins + 1);
+        NEW_ARRAY(replica->block, REPLICAS_BLOCKS * bins);
+        CHECK(comoments_init(&replica->counts, bins + 1));
+        own.seed = rng_child_seed(system->seed, RNG_EVALUATION, (uint32_t)k, 0);
+        CHECK(sampler_init(&replica->sampler, kind, &own));
+    }
+done:
+    return status;
+}
+
+void replicas_clear(struct replicas *replicas) {
+    for (size_t k = 0; k < replicas->count; k++) {
+        struct replica *replica = &replicas->member[k];
+        sampler_clear(&replica->sampler);
+        comoments_clear(&replica->counts);
+        memory_free(replica->sample);
+        memory_free(replica->block);
+    }
+    comoments_clear(&replicas->counts);
+    *replicas = (struct replicas){0};
+}
+
+/// Take the samples of block first … last − 1.
+static enum status fill_blocks(struct replica *replica, size_t bins, size_t first, size_t last,
+                               const struct replicas_plan *plan) {
+    const double each = (double)plan->block_samples;
+    for (size_t block = first; block < last; block++) {
+        double *mean = replica->block + block * bins;
+        memset(mean, 0, bins * sizeof *mean);
+        for (int64_t sample = 0; sample < plan->block_samples; sample++) {
+            TRY(sampler_sample(&replica->sampler, (uint64_t)plan->every, replica->sample));
+            comoments_add(&replica->counts, replica->sample);
+            for (size_t a = 0; a < bins; a++)
+                mean[a] += replica->sample[a] / each;
+        }
+    }
+    return STATUS_OK;
+}
+
+/// Equilibrate one sampler, then take its samples.
+static enum status run_one(struct replica *replica, size_t bins, const struct replicas_plan *plan) {
+    comoments_reset(&replica->counts);
+    if (plan->scatter)
+        TRY(sampler_scatter(&replica->sampler));
+    TRY(sampler_begin(&replica->sampler));
+    TRY(sampler_equilibrate(&replica->sampler, (uint64_t)plan->equilibration));
+    return fill_blocks(replica, bins, 0, REPLICAS_BLOCKS, plan);
+}
+
+/// Two blocks become one, half as many; then as many samples again.
+static enum status double_one(struct replica *replica, size_t bins,
+                              const struct replicas_plan *plan) {
+    enum { HALF = REPLICAS_BLOCKS / 2 };
+    double *block = replica->block;
+    for (size_t b = 0; b < HALF; b++)
+        for (size_t a = 0; a < bins; a++)
+            block[b * bins + a] = 0.5 * (block[2 * b * bins + a] + block[(2 * b + 1) * bins + a]);
+    return fill_blocks(replica, bins, HALF, REPLICAS_BLOCKS, plan);
+}
+
+/// Run all, each by `one`.
+static enum status
+run_all(struct replicas *replicas, const struct replicas_plan *plan, int threads,
+        const struct inverse_progress *progress, const struct inverse_listener *listener,
+        enum status (*one)(struct replica *, size_t, const struct replicas_plan *)) {
+    enum status worst = STATUS_OK;
+    char message[256] = "";
+    uint64_t done = 0;
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
+    for (size_t k = 0; k < replicas->count; k++) {
+        const enum status status = one(&replicas->member[k], replicas->bins, plan);
+#pragma omp critical
+        {
+            // Messages belong to threads.
+            if (status != STATUS_OK && worst != STATUS_INTERRUPTED) {
+                worst = status;
+                snprintf(message, sizeof message, "%s", status_message());
+            }
+            struct inverse_progress now = *progress;
+            now.done = ++done;
+            now.total = replicas->count;
+            listener->tell(listener->context, &now);
+        }
+    }
+    if (worst != STATUS_OK)
+        return status_fail(worst, "%s", message);
+    comoments_reset(&replicas->counts);
+    for (size_t k = 0; k < replicas->count; k++)
+        comoments_merge(&replicas->counts, &replicas->member[k].counts);
+    return STATUS_OK;
+}
+
+enum status replicas_run(struct replicas *replicas, const struct replicas_plan *plan, int threads,
+                         const struct inverse_progress *progress,
+                         const struct inverse_listener *listener) {
+    return run_all(replicas, plan, threads, progress, listener, run_one);
+}
+
+enum status replicas_double(struct replicas *replicas, struct replicas_plan *plan, int threads,
+                            const struct inverse_progress *progress,
+                            const struct inverse_listener *listener) {
+    plan->block_samples *= 2;
+    return run_all(replicas, plan, threads, progress, listener, double_one);
+}
+
+double replicas_inefficiency(const struct replicas *replicas, const double *ideal,
+                             const size_t *seen, size_t count) {
+    const size_t bins = replicas->bins;
+    double scatter = 0, variance = 0;
+    for (size_t n = 0; n < count; n++) {
+        const size_t a = seen[n];
+        struct running_mean blocks = {0};
+        for (size_t k = 0; k < replicas->count; k++)
+            for (size_t b = 0; b < REPLICAS_BLOCKS; b++)
+                statistics_add(&blocks, replicas->member[k].block[b * bins + a]);
+        // Weighted by 1/S²: bins with many pairs would drown the others.
+        const double weight = 1 / (ideal[a] * ideal[a]);
+        scatter += weight * blocks.squares / (blocks.count - 1);
+        variance += weight * comoments_covariance(&replicas->counts, a, a);
+    }
+    const double block_samples =
+        replicas->counts.count / (double)(replicas->count * REPLICAS_BLOCKS);
+    return variance > 0 ? fmax(1, scatter / variance * block_samples) : 1;
+}
+
+double replicas_disagreement(const struct replicas *replicas, const double *ideal,
+                             const size_t *seen, size_t count) {
+    double between = 0, within = 0;
+    for (size_t n = 0; n < count; n++) {
+        const size_t a = seen[n];
+        const double weight = 1 / (ideal[a] * ideal[a]);
+        struct running_mean means = {0};
+        for (size_t k = 0; k < replicas->count; k++) {
+            struct running_mean blocks = {0};
+            for (size_t b = 0; b < REPLICAS_BLOCKS; b++)
+                statistics_add(&blocks, replicas->member[k].block[b * replicas->bins + a]);
+            statistics_add(&means, blocks.mean);
+            within += weight * blocks.squares / (blocks.count - 1) / (double)replicas->count;
+        }
+        between += weight * means.squares / (means.count - 1);
+    }
+    if (!(within > 0))
+        return between > 0 ? INFINITY : 1;
+    return REPLICAS_BLOCKS * between / within;
+}
+
+size_t replicas_spans(struct replicas *replicas, struct memory_span *span) {
+    size_t n = 0;
+    for (size_t k = 0; k < replicas->count; k++)
+        n += sampler_spans(&replicas->member[k].sampler, span + n);
+    return n;
+}

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "inversion/sampler.h"
+
+#include <string.h>
+
+const char *const sampler_kinds[] = {"monte-carlo", "dynamics", NULL};
+
+enum status sampler_init(struct sampler *sampler, enum sampler_kind kind,
+                         const struct sampler_system *system) {
+    enum status status = STATUS_OK;
+    *sampler =
+        (struct sampler){.kind = kind,
+                         .histogram = {.low = system->low,
+                                       .width = system->width,
+                                       .bins = system->bins,
+                                       .pairs = (size_t)composition_pairs(system->composition)}};
+    if (kind == SAMPLER_DYNAMICS)
+        return hybrid_init(&sampler->hybrid, system->box, system->composition, system->potential,
+                           &sampler->histogram, system->temperature, system->seed);
+    NEW_ARRAY(sampler->histogram.counts, pair_histogram_size(&sampler->histogram));
+    CHECK(metropolis_init(&sampler->chain, system->box, system->composition, system->potential,
+                          system->temperature, system->seed));
+done:
+    if (status != STATUS_OK)
+        sampler_clear(sampler);
+    return status;
+}
+
+void sampler_clear(struct sampler *sampler) {
+    metropolis_clear(&sampler->chain);
+    hybrid_clear(&sampler->hybrid);
+    memory_free(sampler->histogram.counts);
+    *sampler = (struct sampler){0};
+}
+
+enum status sampler_scatter(struct sampler *sampler) {
+    return sampler->kind == SAMPLER_DYNAMICS ? hybrid_scatter(&sampler->hybrid)
+                                             : metropolis_scatter(&sampler->chain);
+}
+
+enum status sampler_begin(struct sampler *sampler) {
+    if (sampler->kind == SAMPLER_DYNAMICS)
+        return hybrid_refresh(&sampler->hybrid);
+    return metropolis_refresh(&sampler->chain);
+}
+
+enum status sampler_equilibrate(struct sampler *sampler, uint64_t sweeps) {
+    if (sampler->kind == SAMPLER_DYNAMICS)
+        return hybrid_equilibrate(&sampler->hybrid, sweeps);
+    return metropolis_equilibrate(&sampler->chain, (uint32_t)sweeps);
+}
+
+enum status sampler_sample(struct sampler *sampler, uint64_t sweeps, double *sample) {
+    const size_t bins = pair_histogram_size(&sampler->histogram) - 1;
+    const uint32_t *counts = sampler->histogram.counts;
+    struct pair_sums sums;
+    if (sampler->kind == SAMPLER_DYNAMICS) {
+        TRY(hybrid_run(&sampler->hybrid, sweeps));
+        counts = sampler->hybrid.counts;
+        sums = sampler->hybrid.sums;
+    } else {
+        TRY(metropolis_run(&sampler->chain, (uint32_t)sweeps));
+        memset(sampler->histogram.counts, 0, (bins + 1) * sizeof *counts);
+        metropolis_count(&sampler->chain, &sampler->histogram, &sums);
+    }
+    for (size_t a = 0; a < bins; a++)
+        sample[a] = counts[a];
+    sample[bins] = sums.virial;
+    return STATUS_OK;
+}
+
+/// Positions and ids of the particles, in their order.
+static size_t place_spans(struct particles *particles, struct memory_span *span) {
+    size_t n = 0;
+    for (int d = 0; d < particles->box.dimensions; d++)
+        span[n++] = (struct memory_span){particles->position[d], particles->count * sizeof(double)};
+    span[n++] = (struct memory_span){particles->id, particles->count * sizeof(uint32_t)};
+    return n;
+}
+
+static size_t chain_spans(struct metropolis *chain, struct memory_span *span) {
+    size_t n = place_spans(&chain->particles, span);
+    span[n++] = (struct memory_span){&chain->step, sizeof chain->step};
+    span[n++] = (struct memory_span){&chain->sweep, sizeof chain->sweep};
+    return n;
+}
+
+static size_t hybrid_spans(struct hybrid *hybrid, struct memory_span *span) {
+    struct particles *particles = &hybrid->simulation.particles;
+    double *time_step = &hybrid->simulation.setup.time_step;
+    size_t n = place_spans(particles, span);
+    for (int d = 0; d < particles->box.dimensions; d++)
+        span[n++] = (struct memory_span){particles->velocity[d], particles->count * sizeof(double)};
+    span[n++] = (struct memory_span){time_step, sizeof *time_step};
+    span[n++] = (struct memory_span){&hybrid->trajectory, sizeof hybrid->trajectory};
+    return n;
+}
+
+size_t sampler_spans(struct sampler *sampler, struct memory_span *span) {
+    return sampler->kind == SAMPLER_DYNAMICS ? hybrid_spans(&sampler->hybrid, span)
+                                             : chain_spans(&sampler->chain, span);
+}

@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Gauss-Newton steps on what simulations show: around the best curves so far, candidates are spread
+// over a region; a linear model of their observables (matching/surrogate.h) says where in it the
+// targets would be met best; and by what that place measures, the region is moved, widened or
+// narrowed (a trust region: J. Nocedal and S. J. Wright, Numerical Optimization (2nd ed., 2006),
+// algorithm 4.1). Optimisers see one number of a simulation, this sees all of g(r) and E(t, r_0).
+#include "problem/inverse.h"
+
+#include "base/memory.h"
+#include "base/rng.h"
+#include "matching/candidates.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/// The region's radius is multiplied by these after a step that helped and one that did harm, and
+/// never gets wider than the last [gene].
+static const double widen = 1.4, narrow = 0.7, widest = 0.3;
+
+/// The error is at its noise up to this multiple of it, which is known to a tenth or two. What is
+/// there for so many iterations, or has not fallen by more than chance for so many, has settled: a
+/// D whose error went below its noise in iteration 6 wandered about in it for 13 more.
+static const double noise_margin = 1.1;
+enum { SETTLED_AT_NOISE = 2, SETTLED_IDLE = 10 };
+
+/// Candidates are spread by this part of the radius, so that the model is asked for little beyond.
+static const double spread_part = 0.7;
+
+struct own {
+    int64_t iterations, spread, checks;
+    double reach, tolerance;
+    int pressure; ///< PRESSURE_…
+};
+
+enum { PRESSURE_WEIGHED, PRESSURE_CONSTRAINT };
+static const char *const pressures[] = {"weighed", "constraint", NULL};
+
+struct state {
+    struct own own;
+    const struct inverse_problem *problem;
+    struct decoder decoder;
+    struct candidates candidates;
+    double *round;                ///< shape [candidates, genes]: spread about the best
+    double *proposal;             ///< shape [genes]
+    double *best;                 ///< shape [genes]: the centre of the region
+    struct decoder_curves curves; ///< of the best
+    bool has_model;               ///< whether the last iteration had one
+    struct progress {
+        uint32_t iteration;
+        bool known;                    ///< whether the best has been measured
+        double reach;                  ///< radius of the region [gene]
+        double error, variance, noise; ///< of the best
+        uint32_t at_noise;             ///< iterations since the error is no more than noise
+        uint32_t idle;                 ///< since it fell by more than chance,
+        double reference;              ///< from this
+    } progress;
+};
+
+#define OWN(name) .offset = offsetof(struct own, name)
+static const struct field own_fields[] = {
+    {"iterations", FIELD_INTEGER, OWN(iterations), .initial = 20, .minimum = 1, .maximum = 10000,
+     .unit = "", .help = "at most; a fit that has not settled by then has not converged"},
+    {"spread", FIELD_INTEGER, OWN(spread), .initial = 0, .minimum = 0, .maximum = CANDIDATES_MOST,
+     .unit = "", .help = "candidates about the best in an iteration; 0: 1.5 for each gene"},
+    {"reach", FIELD_NUMBER, OWN(reach), .initial = 0.15, .minimum = FIELD_ABOVE_ZERO, .maximum = 1,
+     .unit = "", .help = "radius of the region at first, as a part of a gene's range"},
+    {"checks", FIELD_INTEGER, OWN(checks), .initial = 4, .minimum = 1, .maximum = CANDIDATES_MOST,
+     .unit = "", .help = "measurements of what the model thinks best"},
+    {"tolerance", FIELD_NUMBER, OWN(tolerance), .initial = 0.1, .minimum = FIELD_ABOVE_ZERO,
+     .maximum = 1, .unit = "", .help = "of the first radius; with a smaller region the fit ends"},
+    {"pressure", FIELD_CHOICE, OWN(pressure), .choices = pressures, .initial = PRESSURE_WEIGHED,
+     .unit = "",
+     .help = "a fitted one: weighed with the other targets, or met exactly by the linear model"},
+    FIELD_END,
+};
+
+static_assert(sizeof(struct own) <= sizeof((struct candidates_settings){0}.method), "no room");
+
+static const char *const columns[] = {"least[1]", "mean[1]", "reach[1]", "failures", NULL};
+
+static uint32_t most_iterations(const struct inverse_method *method,
+                                const struct inverse_problem *problem, const void *parameters) {
+    (void)method, (void)problem;
+    return (uint32_t)((const struct own *)parameters)->iterations;
+}
+
+/// Candidates of an iteration, an even number; the first must be enough for a model.
+static size_t round_size(const struct state *state) {
+    const size_t genes = state->decoder.genes;
+    const size_t wanted = state->own.spread > 0 ? (size_t)state->own.spread : (3 * genes + 1) / 2;
+    // Some may fail.
+    const size_t least = state->progress.iteration == 0 ? 11 * surrogate_least_rows(genes) / 10 : 4;
+    return ((wanted > least ? wanted : least) + 1) / 2 * 2;
+}
+
+static size_t most_candidates(const struct state *state) {
+    const size_t genes = state->decoder.genes, least = 11 * surrogate_least_rows(genes) / 10;
+    const size_t wanted = state->own.spread > 0 ? (size_t)state->own.spread : 2 * genes;
+    return ((wanted > least ? wanted : least) + 1) / 2 * 2;
+}
+
+static void destroy(void *memory) {
+    struct state *state = memory;
+    candidates_clear(&state->candidates);
+    decoder_clear(&state->decoder);
+    memory_free(state->round);
+    memory_free(state->proposal);
+    memory_free(state->best);
+    decoder_curves_clear(&state->curves);
+}
+
+/// The pressure, the last of the features, is met exactly.
+static enum status constrain_pressure(struct state *state) {
+    if (!goals_ask(&state->problem->goals, GOAL_PRESSURE))
+        return status_fail(
+            STATUS_BAD_INPUT,
+            "method.pressure: \"constraint\" needs a target.pressure that is fitted");
+    state->candidates.surrogate.exact = state->candidates.surrogate.features - 1;
+    return STATUS_OK;
+}
+
+static enum status create(void *memory, const struct inverse_method *method,
+                          const struct inverse_problem *problem, const void *parameters) {
+    enum status status = STATUS_OK;
+    struct state *state = memory;
+    const struct candidates_settings *settings = parameters;
+    memcpy(&state->own, &settings->method, sizeof state->own);
+    state->problem = problem;
+    state->progress = (struct progress){
+        .reach = state->own.reach, .error = NAN, .noise = NAN, .reference = INFINITY};
+    CHECK(decoder_init(&state->decoder, problem));
+    if (most_candidates(state) > CANDIDATES_MOST) {
+        status = status_fail(
+            STATUS_BAD_INPUT,
+            "method.name: \"gauss-newton\" needs %zu candidates in a round for %zu "
+            "genes, and %d are the most",
+            surrogate_least_rows(state->decoder.genes), state->decoder.genes, CANDIDATES_MOST);
+        goto done;
+    }
+    NEW_ARRAY(state->round, most_candidates(state) * state->decoder.genes);
+    NEW_ARRAY(state->proposal, state->decoder.genes);
+    NEW_ARRAY(state->best, state->decoder.genes);
+    CHECK(decoder_curves_init(&state->decoder, &state->curves));
+    CHECK(decoder_start(&state->decoder, state->best));
+    CHECK(candidates_init(&state->candidates, &state->decoder, &settings->candidates));
+    state->candidates.iterations = most_iterations(method, problem, parameters);
+    if (state->own.pressure == PRESSURE_CONSTRAINT)
+        CHECK(constrain_pressure(state));
+done:
+    return status;
+}
+
+/// Pairs on opposite sides of the best, normally distributed.
+static void spread(struct state *state, size_t count) {
+    const size_t genes = state->decoder.genes;
+    for (size_t pair = 0; pair < count / 2; pair++)
+        for (size_t n = 0; n < genes; n++) {
+            double normal[4];
+            rng_normal4(rng_philox(state->problem->seed, RNG_SELECTION, state->progress.iteration,
+                                   (uint32_t)pair, (uint32_t)n),
+                        normal);
+            const double step = spread_part * state->progress.reach * normal[0];
+            double *one = state->round + 2 * pair * genes + n;
+            one[0] = fmin(1, fmax(0, state->best[n] + step));
+            one[genes] = fmin(1, fmax(0, state->best[n] - step));
+        }
+}
+
+/// Take a measured place for the best.
+static void move(struct state *state, const double *genes, double error, double noise,
+                 double variance) {
+    struct progress *progress = &state->progress;
+    memcpy(state->best, genes, state->decoder.genes * sizeof *genes);
+    progress->known = true;
+    progress->error = error;
+    progress->noise = noise;
+    progress->variance = variance;
+}
+
+/// Compare the proposal's measurement with the best's: go there unless it failed or is worse by
+/// more than chance, and trust the model in a wider or narrower region.
+static void judge(struct state *state, double error, double noise, double variance) {
+    struct progress *progress = &state->progress;
+    const double chance = sqrt(variance + progress->variance);
+    const bool better = !progress->known || error < progress->error + chance;
+    if (error < OPTIMISER_FAILED && better) {
+        if (progress->known && error < progress->error - chance)
+            progress->reach = fmin(widest, widen * progress->reach);
+        move(state, state->proposal, error, noise, variance);
+    } else {
+        progress->reach *= narrow;
+    }
+}
+
+/// Count the iterations at the noise, and those without progress.
+static void watch(struct progress *progress) {
+    progress->at_noise =
+        progress->error <= noise_margin * progress->noise ? progress->at_noise + 1 : 0;
+    progress->idle++;
+    if (!(progress->error > progress->reference - sqrt(2 * progress->variance))) {
+        progress->reference = progress->error;
+        progress->idle = 0;
+    }
+}
+
+/// Measure what the model says, if enough simulations succeeded to have one.
+static enum status propose(struct state *state) {
+    enum status status = STATUS_OK;
+    struct surrogate_model model = {0};
+    bool known;
+    double error, noise, variance;
+    CHECK(surrogate_fit(&state->candidates.surrogate, state->best, state->progress.reach, &model,
+                        &known));
+    if (known) {
+        memcpy(state->proposal, model.best, state->decoder.genes * sizeof *model.best);
+        CHECK(candidates_remeasure(&state->candidates, state->proposal, (size_t)state->own.checks,
+                                   &error, &noise, &variance, NULL));
+        judge(state, error, noise, variance);
+        if (state->progress.known)
+            watch(&state->progress);
+    }
+    state->has_model = known;
+    CHECK(decoder_curves_bands(&state->decoder, state->best, known ? model.covariance : NULL,
+                               &state->curves));
+done:
+    surrogate_model_clear(&model);
+    return status;
+}
+
+/// Why there is no result, or why it is not the last word.
+static void tell_reason(const struct state *state, char reason[INVERSE_REASON_SIZE]) {
+    const struct progress *progress = &state->progress;
+    char why[128];
+    if (progress->known) {
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "stopped at the limit of %lld iterations: the error is %.2g (%.2g by statistics), "
+                 "and the region %.2g wide, where \"tolerance\" asks for %.2g",
+                 (long long)state->own.iterations, progress->error, progress->noise,
+                 progress->reach, state->own.tolerance * state->own.reach);
+        return;
+    }
+    if (state->has_model)
+        snprintf(why, sizeof why, "but none of what the linear model thought best");
+    else
+        snprintf(why, sizeof why,
+                 "too few for a linear model of %zu genes, which needs %zu: more \"iterations\" or "
+                 "\"spread\" would do",
+                 state->decoder.genes, surrogate_least_rows(state->decoder.genes));
+    candidates_tell_failure(&state->candidates, why, reason);
+}
+
+/// Whether some potential meets all that is fitted: g(r) and the pressure. What moves may be out of
+/// reach of any friction.
+static bool can_be_met(const struct inverse_problem *problem) {
+    const struct goals *goals = &problem->goals;
+    return problem->unknown[UNKNOWN_POTENTIAL].wanted &&
+           goals_count(goals) ==
+               (size_t)goals_ask(goals, GOAL_RDF) + (size_t)goals_ask(goals, GOAL_PRESSURE);
+}
+
+static bool has_narrowed(const struct state *state) {
+    return state->progress.reach < state->own.tolerance * state->own.reach;
+}
+
+/// It goes no further: at its noise it has converged, and elsewhere that is no success unless what
+/// is fitted cannot be met.
+static void settle(const struct state *state, struct inverse_step *step) {
+    const struct progress *progress = &state->progress;
+    const struct goals *goals = &state->problem->goals;
+    const char *what = goals_count(goals) > 1       ? "the weighted error of all targets is"
+                       : goals_ask(goals, GOAL_RDF) ? "g(r) is still off by"
+                                                    : "the target is still off by";
+    char why[64] = "its steps have become small";
+    step->finished = true;
+    step->converged = progress->error <= inverse_noise_margin * progress->noise;
+    step->used_up = !step->converged && !can_be_met(state->problem);
+    if (step->converged)
+        return;
+    if (!has_narrowed(state))
+        snprintf(why, sizeof why, "its error has not fallen in %u iterations", progress->idle);
+    snprintf(step->reason, sizeof step->reason,
+             "%s, but %s %.2g, %.2g by statistics: more \"genes\", a wider range of the curve or "
+             "another start may lead on%s",
+             why, what, progress->error, progress->noise,
+             step->used_up ? ", if the target can be met at all" : "");
+}
+
+static void describe(struct state *state, struct inverse_step *step) {
+    const struct candidates_survey *survey = &state->candidates.survey;
+    const struct progress *progress = &state->progress;
+    const bool settled =
+        progress->known && (has_narrowed(state) || progress->at_noise >= SETTLED_AT_NOISE ||
+                            progress->idle >= SETTLED_IDLE);
+    const bool last = progress->iteration + 1 >= (uint32_t)state->own.iterations;
+    *step = (struct inverse_step){
+        .iteration = progress->iteration,
+        .evaluations = state->candidates.totals.evaluations,
+        .engine_steps = state->candidates.totals.steps,
+        .error = progress->error,
+        .noise = progress->noise,
+        .variance = progress->variance,
+        .extra = {survey->least, survey->alive.count > 0 ? survey->alive.mean : NAN,
+                  progress->reach, (double)survey->failures},
+        .finished = last || has_narrowed(state),
+    };
+    if (settled)
+        settle(state, step);
+    else if (step->finished)
+        tell_reason(state, step->reason);
+    decoder_curves_show(&state->decoder, state->best, &state->curves, step);
+}
+
+static enum status iterate(void *memory, struct inverse_step *step,
+                           const struct inverse_listener *listener) {
+    struct state *state = memory;
+    struct candidates *candidates = &state->candidates;
+    const struct optimiser_round round = {state->round, round_size(state)};
+    candidates->iteration = state->progress.iteration;
+    candidates->best = state->progress.error;
+    if (candidates->survey.evaluations == 0) {
+        spread(state, round.count);
+        TRY(candidates_measure(candidates, &round, HUGE_VAL, listener));
+    }
+    TRY(propose(state));
+    describe(state, step);
+    candidates_next_round(candidates);
+    candidates_forget_survey(candidates);
+    state->progress.iteration++;
+    return STATUS_OK;
+}
+
+static size_t spans(void *memory, struct memory_span *span) {
+    struct state *state = memory;
+    size_t n = 0;
+    span[n++] = (struct memory_span){&state->progress, sizeof state->progress};
+    span[n++] = (struct memory_span){state->best, state->decoder.genes * sizeof(double)};
+    n += decoder_curves_spans(&state->decoder, &state->curves, span + n);
+    return n + candidates_spans(&state->candidates, span + n);
+}
+
+const struct inverse_method gauss_newton = {
+    .name = "gauss-newton",
+    .summary = "linear models of all observables in a trust region; J. Nocedal and S. J. Wright "
+               "(2006)",
+    .tables = (const struct field *const[]){own_fields, candidates_fields, NULL},
+    .parameters_size = sizeof(struct candidates_settings),
+    .state_size = sizeof(struct state),
+    .fits = {true, true},
+    .most_iterations = most_iterations,
+    .sampling = candidates_sampling,
+    .keeps_parts = true,
+    .columns = columns,
+    .create = create,
+    .destroy = destroy,
+    .iterate = iterate,
+    .spans = spans,
+};

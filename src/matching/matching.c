@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Matching: genes → curves → simulation → observables → distance from the goals, which an
+// optimiser makes small. A. G. Baydin (thesis on DPD coarse-graining by evolutionary optimisation,
+// 2008) does it with a genetic algorithm; the optimiser is a record of its own here.
+#include "problem/inverse.h"
+
+#include "base/memory.h"
+#include "matching/candidates.h"
+#include "problem/decoder.h"
+#include "optimise/optimiser.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+struct parameters {
+    struct candidates_settings settings; ///< with the parameters of the optimiser
+    int64_t checks;
+    int surrogate;
+};
+
+struct state {
+    struct parameters parameters;
+    const struct inverse_problem *problem;
+    const struct optimiser *optimiser;
+    void *optimiser_state;
+    bool created;
+    struct decoder decoder;
+    struct candidates candidates;
+    double *favourite;            ///< shape [genes]: what is thought best
+    double *best;                 ///< shape [genes]: the best by fresh measurements
+    struct decoder_curves curves; ///< of the best, with errors by the linear model
+    struct progress {
+        uint32_t iteration;
+        int stage;            ///< of `check`
+        uint64_t checked;     ///< evaluations when a favourite was last measured
+        uint32_t last_better; ///< iteration in which the error fell last
+        bool known;           ///< whether there is a best
+        double error, noise;  ///< of the best: the mean of its fresh measurements
+        double variance;      ///< of that mean
+    } progress;
+};
+
+#define MEMBER(name) .offset = offsetof(struct parameters, name)
+static const struct field own_fields[] = {
+    {"checks", FIELD_INTEGER, MEMBER(checks), .initial = 2, .minimum = 1,
+     .maximum = CANDIDATES_MOST, .unit = "",
+     .help = "fresh measurements of what is thought best, before it is believed"},
+    {"surrogate", FIELD_CHOICE, MEMBER(surrogate), .choices = candidates_no_or_yes, .initial = 1,
+     .unit = "", .help = "whether to try what a linear model of all simulations thinks best, too"},
+    FIELD_END,
+};
+
+static_assert(offsetof(struct parameters, settings) == 0, "candidates_fields need it first");
+
+static const char *const columns[] = {"least[1]", "mean[1]", "diversity[1]", "failures", NULL};
+
+/// Evaluations of an iteration whose rounds are of one candidate, so that a history stays readable.
+static const size_t least_evaluations = 10;
+
+/// How far the linear model may go from what was measured, as a part of a gene's range.
+static const double reach = 0.3;
+
+/// Rounds, of which an iteration takes at least one, and a last iteration for the favourite.
+static uint32_t most_iterations(const struct inverse_method *method,
+                                const struct inverse_problem *problem, const void *parameters) {
+    size_t genes = 0;
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        if (problem->unknown[kind].wanted)
+            genes += (size_t)problem->unknown[kind].parameters.genes;
+    return method->optimiser->most_rounds(parameters, genes) + 1;
+}
+
+static void destroy(void *memory) {
+    struct state *state = memory;
+    if (state->created)
+        state->optimiser->destroy(state->optimiser_state);
+    memory_free(state->optimiser_state);
+    candidates_clear(&state->candidates);
+    decoder_clear(&state->decoder);
+    memory_free(state->favourite);
+    memory_free(state->best);
+    decoder_curves_clear(&state->curves);
+}
+
+static enum status create_optimiser(struct state *state) {
+    enum status status = STATUS_OK;
+    double *start = NULL;
+    NEW_ARRAY(start, state->decoder.genes);
+    CHECK(decoder_start(&state->decoder, start));
+    const struct optimiser_space space = {.genes = state->decoder.genes,
+                                          .minimum = 0,
+                                          .maximum = 1,
+                                          .start = start,
+                                          .seed = state->problem->seed,
+                                          .most = CANDIDATES_MOST};
+    state->optimiser_state = memory_zeroed(1, state->optimiser->state_size);
+    CHECK(state->optimiser_state ? STATUS_OK : STATUS_NO_MEMORY);
+    CHECK(state->optimiser->create(state->optimiser_state, &space, &state->parameters));
+    state->created = true;
+done:
+    memory_free(start);
+    return status;
+}
+
+static enum status create(void *memory, const struct inverse_method *method,
+                          const struct inverse_problem *problem, const void *parameters) {
+    enum status status = STATUS_OK;
+    struct state *state = memory;
+    state->parameters = *(const struct parameters *)parameters;
+    state->problem = problem;
+    state->optimiser = method->optimiser;
+    state->progress.error = NAN;
+    CHECK(decoder_init(&state->decoder, problem));
+    NEW_ARRAY(state->favourite, state->decoder.genes);
+    NEW_ARRAY(state->best, state->decoder.genes);
+    CHECK(decoder_curves_init(&state->decoder, &state->curves));
+    CHECK(create_optimiser(state));
+    CHECK(candidates_init(&state->candidates, &state->decoder,
+                          &state->parameters.settings.candidates));
+    state->candidates.iterations = most_iterations(method, problem, parameters);
+done:
+    return status;
+}
+
+/// Whether an iteration has the evaluations that it should.
+static bool is_full(const struct candidates_survey *survey, size_t next_round) {
+    return survey->evaluations >= (next_round == 1 ? least_evaluations : 1);
+}
+
+/// One round of the optimiser: measure what it asks for and tell it.
+static enum status take_round(struct state *state, const struct optimiser_round *round,
+                              const struct inverse_listener *listener) {
+    TRY(candidates_measure(&state->candidates, round,
+                           state->optimiser->hopeless(state->optimiser_state), listener));
+    TRY(state->optimiser->tell(state->optimiser_state, state->candidates.errors,
+                               state->candidates.variances));
+    candidates_next_round(&state->candidates);
+    return STATUS_OK;
+}
+
+/// Whether what is thought best is to be measured: something new, and not more than one evaluation
+/// in ten goes into such measurements but for the last.
+static bool wants_check(const struct state *state, bool last) {
+    const size_t bytes = state->decoder.genes * sizeof(double);
+    if (state->progress.known && memcmp(state->favourite, state->best, bytes) == 0)
+        return false;
+    const uint64_t since = state->candidates.totals.evaluations - state->progress.checked;
+    return last || !state->progress.known || since >= 10 * (uint64_t)state->parameters.checks;
+}
+
+/// Measure the favourite afresh and keep it if it is better than the best so far, or as good within
+/// `slack` standard errors.
+static enum status check_favourite(struct state *state, double slack) {
+    double error, noise, variance;
+    TRY(candidates_remeasure(&state->candidates, state->favourite, (size_t)state->parameters.checks,
+                             &error, &noise, &variance, NULL));
+    if (error >= OPTIMISER_FAILED ||
+        (state->progress.known && error > state->progress.error + slack * sqrt(variance)))
+        return STATUS_OK;
+    memcpy(state->best, state->favourite, state->decoder.genes * sizeof(double));
+    if (!state->progress.known || error < state->progress.error)
+        state->progress.last_better = state->progress.iteration;
+    state->progress.known = true;
+    state->progress.error = error;
+    state->progress.noise = noise;
+    state->progress.variance = variance;
+    return STATUS_OK;
+}
+
+/// Try what a linear model of all measurements near the best thinks better. It rests on many
+/// simulations and what is best so far on few, so it need only be as good within the noise.
+static enum status try_surrogate(struct state *state) {
+    enum status status = STATUS_OK;
+    struct surrogate_model model = {0};
+    bool known = false;
+    if (state->progress.known)
+        CHECK(surrogate_fit(&state->candidates.surrogate, state->best, reach, &model, &known));
+    CHECK(decoder_curves_bands(&state->decoder, state->best, known ? model.covariance : NULL,
+                               &state->curves));
+    if (!known || !state->parameters.surrogate)
+        goto done;
+    memcpy(state->favourite, model.best, state->decoder.genes * sizeof(double));
+    CHECK(check_favourite(state, 1));
+done:
+    surrogate_model_clear(&model);
+    return status;
+}
+
+/// An optimiser has converged if it ended by itself; what has used its budget up has just ended.
+static void conclude(const struct state *state, struct inverse_step *step) {
+    const struct optimiser *optimiser = state->optimiser;
+    step->finished = true;
+    if (!state->progress.known)
+        candidates_tell_failure(&state->candidates,
+                                "but what seemed best failed when it was measured again",
+                                step->reason);
+    else if (optimiser->settled && optimiser->settled(state->optimiser_state))
+        step->converged = true;
+    else if (optimiser->gave_up && optimiser->gave_up(state->optimiser_state))
+        inverse_give_up(step);
+    else
+        inverse_use_up(step, optimiser->budget, state->progress.last_better);
+}
+
+static void describe(struct state *state, struct inverse_step *step, bool finished) {
+    const struct candidates_survey *survey = &state->candidates.survey;
+    *step = (struct inverse_step){
+        .iteration = state->progress.iteration,
+        .evaluations = state->candidates.totals.evaluations,
+        .engine_steps = state->candidates.totals.steps,
+        .error = state->progress.error,
+        .noise = state->progress.noise,
+        .variance = state->progress.variance,
+        .extra = {survey->least, survey->alive.count > 0 ? survey->alive.mean : NAN,
+                  state->optimiser->spread(state->optimiser_state), (double)survey->failures},
+    };
+    if (finished)
+        conclude(state, step);
+    decoder_curves_show(&state->decoder,
+                        state->progress.known ? state->best : state->candidates.first,
+                        &state->curves, step);
+}
+
+/// Measure what the optimiser, and then the linear model, thinks best. Each stage is done once,
+/// also if an interruption comes between them.
+static enum status check(struct state *state, bool last) {
+    enum { NOTHING, FAVOURITE, SURROGATE };
+    struct progress *progress = &state->progress;
+    if (!state->optimiser->favourite(state->optimiser_state, state->favourite))
+        return STATUS_OK;
+    if (progress->stage == NOTHING && wants_check(state, last))
+        progress->stage = FAVOURITE;
+    if (progress->stage == FAVOURITE) {
+        TRY(check_favourite(state, 0));
+        progress->stage = SURROGATE;
+    }
+    if (progress->stage == SURROGATE) {
+        TRY(try_surrogate(state));
+        progress->stage = NOTHING;
+        progress->checked = state->candidates.totals.evaluations;
+    }
+    return STATUS_OK;
+}
+
+static enum status iterate(void *memory, struct inverse_step *step,
+                           const struct inverse_listener *listener) {
+    struct state *state = memory;
+    state->candidates.iteration = state->progress.iteration;
+    state->candidates.best = state->progress.error;
+    struct optimiser_round round;
+    TRY(state->optimiser->ask(state->optimiser_state, &round));
+    while (round.count > 0 && !is_full(&state->candidates.survey, round.count)) {
+        TRY(take_round(state, &round, listener));
+        TRY(state->optimiser->ask(state->optimiser_state, &round));
+    }
+    const bool finished = round.count == 0;
+    TRY(check(state, finished));
+    describe(state, step, finished);
+    candidates_forget_survey(&state->candidates);
+    state->progress.iteration++;
+    return STATUS_OK;
+}
+
+static size_t spans(void *memory, struct memory_span *span) {
+    struct state *state = memory;
+    const size_t bytes = state->decoder.genes * sizeof(double);
+    size_t n = 0;
+    span[n++] = (struct memory_span){&state->progress, sizeof state->progress};
+    span[n++] = (struct memory_span){state->best, bytes};
+    n += decoder_curves_spans(&state->decoder, &state->curves, span + n);
+    n += candidates_spans(&state->candidates, span + n);
+    n += state->optimiser->spans(state->optimiser_state, span + n);
+    return n;
+}
+
+#define MATCHING(its_name, its_optimiser, its_fields, its_summary)                                 \
+    {                                                                                              \
+        .name = its_name, .summary = its_summary,                                                  \
+        .tables = (const struct field *const[]){its_fields, candidates_fields, own_fields, NULL},  \
+        .parameters_size = sizeof(struct parameters), .state_size = sizeof(struct state),          \
+        .fits = {true, true}, .optimiser = &(its_optimiser), .most_iterations = most_iterations,   \
+        .sampling = candidates_sampling, .keeps_parts = true, .columns = columns,                  \
+        .create = create, .destroy = destroy, .iterate = iterate, .spans = spans,                  \
+    }
+
+const struct inverse_method matching_genetic =
+    MATCHING("genetic", genetic_optimiser, genetic_fields,
+             "genetic algorithm over smooth curves; A. G. Baydin (2008)");
+const struct inverse_method matching_cmaes =
+    MATCHING("cma-es", cmaes_optimiser, cmaes_fields,
+             "evolution strategy with covariance matrix adaptation; N. Hansen, arXiv:1604.00772");
+const struct inverse_method matching_nlopt =
+    MATCHING("nlopt", nlopt_optimiser, nlopt_fields,
+             "algorithms of NLopt by name; S. G. Johnson, github.com/stevengj/nlopt");

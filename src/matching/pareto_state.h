@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file State of the method "pareto", and its tables.
+#pragma once
+
+#include "matching/candidates.h"
+#include "problem/inverse.h"
+#include "optimise/nsga2.h"
+
+struct pareto_own {
+    struct nsga2_parameters nsga2;
+    int64_t checks, surrogate;
+};
+
+/// What a row of the log is of.
+enum pareto_log_kind { LOG_MEASURED, LOG_FRONT, LOG_CHOSEN };
+
+/// Columns of a row before the objectives.
+enum { LOG_ITERATION, LOG_KIND, LOG_ERROR, LOG_OBJECTIVES };
+
+struct pareto_state {
+    struct pareto_own own;
+    const struct inverse_problem *problem;
+    struct decoder decoder;
+    struct candidates candidates;
+    struct nsga2 nsga2;
+    size_t objectives;
+    enum goal_kind goal[GOALS];   ///< of each objective
+    double *value;                ///< shape [candidates, objectives]: scratch
+    double *log;                  ///< shape [rows, LOG_OBJECTIVES + objectives]
+    struct decoder_curves curves; ///< of the chosen
+    struct progress {
+        uint32_t iteration, stage;
+        uint64_t rows;        ///< of the log
+        uint64_t chosen;      ///< parent
+        bool known;           ///< whether there is a chosen one
+        double noise[GOALS];  ///< of one simulation's distances, by objective
+        double variance;      ///< of the error of what was checked last
+        uint32_t last_better; ///< iteration in which the least error fell last
+        double least;         ///< chosen so far
+    } progress;
+};
+
+/// Numbers in a row of the log.
+size_t pareto_log_width(const struct pareto_state *state);
+
+/// Weighted error of a row of objectives, or of their noise.
+double pareto_error(const struct pareto_state *state, const double *value);
+
+/// Objectives of a parent.
+const double *pareto_value(const struct pareto_state *state, size_t parent);
+
+/// Whether a parent is a member of the front. Those that failed are a front when all have.
+bool pareto_is_member(const struct pareto_state *state, size_t parent);
+
+/// Write pareto.tsv, pareto_history.tsv, and the curves of the front. Fails: IO, NO_MEMORY.
+enum status pareto_write_tables(const void *state, const struct inverse_folder *folder) MUST_USE;

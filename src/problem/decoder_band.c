@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "problem/decoder.h"
+
+#include <math.h>
+#include <string.h>
+
+/// How the curve changes with each gene, shape [points, genes of it].
+static enum status find_slopes(const struct decoder *decoder, enum unknown_kind kind,
+                               const double *genes, double *slopes) {
+    enum status status = STATUS_OK;
+    const struct unknown_parameters *p = &decoder->problem->unknown[kind].parameters;
+    const size_t count = decoder_genes(decoder, kind), points = decoder_points(decoder, kind);
+    double *moved = NULL, *curve = NULL;
+    if (decoder->basis[kind]) {
+        for (size_t k = 0; k < points * count; k++)
+            slopes[k] = decoder->basis[kind][k] * (p->maximum - p->minimum);
+        return STATUS_OK;
+    }
+    NEW_ARRAY(moved, decoder->genes);
+    NEW_ARRAY(curve, 2 * points);
+    for (size_t n = 0; n < count; n++) {
+        static const double step = 1e-3;
+        for (int side = 0; side < 2; side++) {
+            memcpy(moved, genes, decoder->genes * sizeof *genes);
+            moved[decoder->first[kind] + n] += side ? step : -step;
+            decoder_curve(decoder, kind, moved, curve + (size_t)side * points);
+        }
+        for (size_t k = 0; k < points; k++)
+            slopes[k * count + n] = (curve[points + k] - curve[k]) / (2 * step);
+    }
+done:
+    memory_free(moved);
+    memory_free(curve);
+    return status;
+}
+
+/// Make a vector's length 1, upwards where it is largest; returns what it was.
+static double normalise(size_t count, double *vector) {
+    double sum = 0, largest = 0;
+    for (size_t k = 0; k < count; k++) {
+        sum += vector[k] * vector[k];
+        largest = fabs(vector[k]) > fabs(largest) ? vector[k] : largest;
+    }
+    const double length = sqrt(sum), factor = length > 0 ? copysign(1 / length, largest) : 0;
+    for (size_t k = 0; k < count; k++)
+        vector[k] *= factor;
+    return length;
+}
+
+/// Take the part along `axis`, of any length, out of a vector.
+static void remove_component(const double *axis, size_t count, double *vector) {
+    double product = 0, square = 0;
+    for (size_t k = 0; k < count; k++) {
+        product += axis[k] * vector[k];
+        square += axis[k] * axis[k];
+    }
+    for (size_t k = 0; k < count && square > 0; k++)
+        vector[k] -= product / square * axis[k];
+}
+
+/// to = Σ of slopes and a vector of genes or, transposed, of points.
+static void multiply(const double *slopes, size_t points, size_t count, const double *from,
+                     double *to, bool transposed) {
+    memset(to, 0, (transposed ? count : points) * sizeof *to);
+    for (size_t k = 0; k < points; k++)
+        for (size_t n = 0; n < count; n++)
+            to[transposed ? n : k] += slopes[k * count + n] * from[transposed ? k : n];
+}
+
+/// Rounds of the power iteration, which only needs to tell the widest directions from the rest.
+enum { POWER_ROUNDS = 200 };
+
+/// Widest principal component of the curve's errors S C Sᵀ that is orthogonal to the `before` ones,
+/// by power iteration; its length is one standard error.
+static enum status find_flat(const double *slopes, const double *covariance, size_t points,
+                             size_t count, const double *before, size_t before_count,
+                             double *flat) {
+    enum status status = STATUS_OK;
+    double *gene = NULL, *moved = NULL, length = 0;
+    NEW_ARRAY(gene, count);
+    NEW_ARRAY(moved, count);
+    for (size_t k = 0; k < points; k++)
+        flat[k] = 1 + 0.1 * sin((double)(k * (before_count + 1)));
+    for (int round = 0; round < POWER_ROUNDS; round++) {
+        for (size_t n = 0; n < before_count; n++)
+            remove_component(before + n * points, points, flat);
+        length = normalise(points, flat);
+        multiply(slopes, points, count, flat, gene, true);
+        multiply(covariance, count, count, gene, moved, false);
+        multiply(slopes, points, count, moved, flat, false);
+    }
+    for (size_t n = 0; n < before_count; n++)
+        remove_component(before + n * points, points, flat);
+    length = normalise(points, flat);
+    for (size_t k = 0; k < points; k++)
+        flat[k] *= sqrt(length);
+done:
+    memory_free(gene);
+    memory_free(moved);
+    return status;
+}
+
+/// Errors of the points that follow the genes, from the slopes and the covariance of these genes.
+static void find_errors(const double *slopes, const double *covariance, size_t points, size_t count,
+                        double *error) {
+    for (size_t k = 0; k < points; k++) {
+        const double *row = slopes + k * count;
+        double sum = 0;
+        for (size_t a = 0; a < count; a++)
+            for (size_t b = 0; b < count; b++)
+                sum += row[a] * row[b] * covariance[a * count + b];
+        error[k] = sqrt(fmax(0, sum));
+    }
+}
+
+/// A core is set: it has no error.
+static void forget_core(const struct decoder *decoder, enum unknown_kind kind, double *values) {
+    for (size_t k = 0; k < decoder_points(decoder, kind); k++)
+        if (kind == UNKNOWN_POTENTIAL && potential_grid_in_core(&decoder->potential, k))
+            values[k] = NAN;
+}
+
+enum status decoder_band(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
+                         const double *covariance, double *error, double *flat) {
+    enum status status = STATUS_OK;
+    const size_t count = decoder_genes(decoder, kind), at = decoder->first[kind];
+    const size_t points = decoder_points(decoder, kind);
+    double *slopes = NULL, *own = NULL;
+    for (size_t k = 0; k < points; k++)
+        error[k] = NAN;
+    for (size_t k = 0; k < INVERSE_FLAT * points; k++)
+        flat[k] = NAN;
+    if (covariance == NULL)
+        return STATUS_OK;
+    NEW_ARRAY(slopes, points * count);
+    NEW_ARRAY(own, count * count);
+    for (size_t a = 0; a < count; a++)
+        for (size_t b = 0; b < count; b++)
+            own[a * count + b] = covariance[(at + a) * decoder->genes + at + b];
+    CHECK(find_slopes(decoder, kind, genes, slopes));
+    find_errors(slopes, own, points, count, error);
+    for (size_t n = 0; n < INVERSE_FLAT; n++)
+        CHECK(find_flat(slopes, own, points, count, flat, n, flat + n * points));
+    forget_core(decoder, kind, error);
+    for (size_t n = 0; n < INVERSE_FLAT; n++)
+        forget_core(decoder, kind, flat + n * points);
+done:
+    memory_free(slopes);
+    memory_free(own);
+    return status;
+}

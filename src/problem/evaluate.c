@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "problem/evaluate.h"
+
+#include <math.h>
+
+/// A liquid has about the pairs in range of a uniform one; a drop has many times as many.
+static const double collapse_factor = 2;
+
+/// Parts of the samples after each of which a simulation may be stopped, and samples that it must
+/// have by then, so that their errors mean something.
+enum { PARTS = 16, LEAST_SAMPLES = 4 };
+
+static bool has_collapsed(const struct simulation *simulation) {
+    const struct neighbours *neighbours = &simulation->neighbours;
+    const double count = (double)simulation->particles.count;
+    const double uniform = 0.5 * count * particles_density(&simulation->particles) *
+                           box_shell_volume(&simulation->particles.box, 0, neighbours->range);
+    return (double)neighbours_listed(neighbours) > collapse_factor * uniform;
+}
+
+static enum status equilibrate(struct simulation *simulation, const struct measure_plan *plan,
+                               double tolerance) {
+    double temperature;
+    TRY(measure_equilibrate(simulation, plan, &temperature, NULL));
+    const double wanted = simulation->setup.temperature;
+    if (!(fabs(temperature / wanted - 1) <= tolerance))
+        return status_fail(STATUS_UNSTABLE, "the temperature is %.3g after equilibration, not %.3g",
+                           temperature, wanted);
+    if (has_collapsed(simulation))
+        return status_fail(STATUS_UNSTABLE, "the particles have collapsed into a drop");
+    return STATUS_OK;
+}
+
+static enum status score(const struct observation *observation, struct observed *observed,
+                         struct evaluate_result *result) {
+    const struct goals *goals = observation->goals;
+    TRY(observation_result(observation, 1, observed));
+    observation_distance(observed, goals, result->distance);
+    result->error = goals_error(goals, result->distance);
+    result->noise = goals_noise(goals, result->distance);
+    result->variance = goals_variance(goals, result->distance);
+    return STATUS_OK;
+}
+
+/// Whether a running result says enough: that the candidate cannot win (racing: O. Maron and A. W.
+/// Moore, Artif. Intell. Rev. 11, 193 (1997)), or its error as well as is wanted.
+static bool says_enough(const struct evaluate_result *result, double hopeless,
+                        const struct evaluate_parameters *parameters) {
+    const double chance = sqrt(result->variance);
+    if (!isfinite(result->error) || !(result->noise > 0))
+        return false;
+    return (parameters->patience > 0 && result->error - parameters->patience * chance > hopeless) ||
+           chance < parameters->precision * result->error;
+}
+
+/// Take the samples part by part, until they are all there or say enough.
+static enum status sample(struct observation *observation, double hopeless,
+                          const struct evaluate_parameters *parameters, struct observed *observed,
+                          struct evaluate_result *result) {
+    const struct measure_plan *plan = &parameters->plan;
+    const bool may_stop = parameters->patience > 0 || parameters->precision > 0;
+    for (int part = may_stop ? 1 : PARTS; part < PARTS; part++) {
+        struct measure_plan so_far = *plan;
+        so_far.samples = plan->samples * part / PARTS;
+        if (so_far.samples < LEAST_SAMPLES)
+            continue;
+        TRY(measure_sample(&observation->simulation, &so_far, observation->targets, NULL));
+        TRY(score(observation, observed, result));
+        result->stopped = says_enough(result, hopeless, parameters);
+        if (result->stopped)
+            return STATUS_OK;
+    }
+    TRY(measure_sample(&observation->simulation, plan, observation->targets, NULL));
+    return score(observation, observed, result);
+}
+
+/// Positions by particle number, wrapped into the box.
+static void copy_positions(const struct particles *particles, double *const *position) {
+    for (int d = 0; d < particles->box.dimensions; d++) {
+        const double length = particles->box.length[d];
+        for (size_t k = 0; k < particles->count; k++) {
+            const double x = particles->position[d][k];
+            const double wrapped = x - length * floor(x / length);
+            position[d][particles->id[k]] = wrapped < length ? wrapped : 0;
+        }
+    }
+}
+
+enum status evaluate(const struct inverse_problem *problem,
+                     const struct evaluate_candidate *candidate,
+                     const struct evaluate_parameters *parameters, double *features,
+                     double *const *position, struct evaluate_result *result) {
+    enum status status = STATUS_OK;
+    struct observation observation = {0};
+    struct observed observed = {0};
+    struct measure_plan plan = parameters->plan;
+    *result = (struct evaluate_result){0};
+    const struct observation_setup setup = {.goals = &problem->goals,
+                                            .potential = candidate->potential,
+                                            .weight = candidate->weight,
+                                            .position = candidate->position,
+                                            .plan = plan,
+                                            .force_estimator =
+                                                parameters->estimator == RDF_FORCE_USED,
+                                            .threads = candidate->threads,
+                                            .seed = candidate->seed};
+    CHECK(observation_values_init(&observed, &problem->goals));
+    CHECK(observation_init(&observation, problem, &setup));
+    CHECK(equilibrate(&observation.simulation, &plan, parameters->temperature_tolerance));
+    CHECK(sample(&observation, candidate->hopeless, parameters, &observed, result));
+    if (features)
+        goals_take_features(&problem->goals, observed.value, features, NULL);
+    if (position)
+        copy_positions(&observation.simulation.particles, position);
+done:
+    result->engine_steps = observation.simulation.step;
+    observation_clear(&observation);
+    observation_values_clear(&observed);
+    return status;
+}

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Measure curves by simulation: for fitness, and for verification.
+#pragma once
+
+#include "problem/observation.h"
+
+/// How a candidate is measured for its fitness.
+struct evaluate_parameters {
+    struct measure_plan plan;
+    double temperature_tolerance; ///< largest |T/T_set − 1| at the end of the equilibration
+    int estimator;    ///< of g(r), enum rdf_force_estimator; without a barrier (rdf_force_applies)
+                      ///< the histogram
+    double patience;  ///< standard errors by which a running error must be beyond `hopeless` before
+                      ///< a simulation is stopped; 0: never
+    double precision; ///< relative standard error of the error that is enough to stop; 0: never
+};
+
+/// One candidate.
+struct evaluate_candidate {
+    const struct table *potential, *weight;
+    const double *const *position; ///< as in observation_setup
+    double hopeless;               ///< error with which the candidate cannot win
+    int threads;                   ///< of its simulation
+    uint64_t seed;
+};
+
+/// Result of one short simulation.
+struct evaluate_result {
+    struct goal_distance distance[GOALS];
+    double error;          ///< goals_error
+    double noise;          ///< expected from the statistical errors of both
+    double variance;       ///< of the error
+    bool stopped;          ///< before its time
+    uint64_t engine_steps; ///< also when it failed
+};
+
+/// One simulation of the problem's scene.
+/// @param[out] features  of what was measured, shape [goals_features], or NULL
+/// @param[out] position  where the particles were at the end, shape [dimensions][count] by particle
+///                       number, or NULL
+/// Fails: UNSTABLE if it blows up, leaves its temperature or collapses into a drop (which would
+/// also be slow); INTERRUPTED; NO_MEMORY; BAD_INPUT as observation_init.
+enum status evaluate(const struct inverse_problem *problem,
+                     const struct evaluate_candidate *candidate,
+                     const struct evaluate_parameters *parameters, double *features,
+                     double *const *position, struct evaluate_result *result) MUST_USE;

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file From a target back to the interaction: the problem, and the record of a method.
+///
+/// A method is a state that improves by iterations. It says what of its state a checkpoint must
+/// keep (spans), so that a run stopped after any iteration goes on with the same bits.
+#pragma once
+
+#include "base/fields.h"
+#include "base/memory.h"
+#include "curves/curve.h"
+#include "dynamics/simulation.h"
+#include "problem/goals.h"
+
+enum unknown_kind { UNKNOWN_POTENTIAL, UNKNOWN_WEIGHT, UNKNOWNS };
+
+/// Names in run files, shape [UNKNOWNS].
+extern const char *const inverse_unknown_names[UNKNOWNS];
+
+/// What genes make: the shapes of curves/shape.h in their order, or the formula of a weight,
+/// ω = σ(1 − r/r_c)^s beyond r_0, of which the genes are σ in [minimum, maximum], s in [0, 4] and
+/// r_0 from the inner cutoff to half-way to the cutoff.
+enum { INVERSE_CURVE_BEZIER, INVERSE_CURVE_BSPLINE, INVERSE_CURVE_POWER };
+
+/// Parameters of the formula, in this order everywhere: σ [sqrt(mass/time)], s, r_0 [λ]. Each is a
+/// gene unless it is held fixed.
+enum { INVERSE_SIGMA, INVERSE_EXPONENT, INVERSE_INNER_CUTOFF, INVERSE_PARAMETERS };
+
+/// How an optimiser writes an unknown as a curve of some genes.
+struct unknown_parameters {
+    int shape;                        ///< INVERSE_CURVE_…
+    int64_t genes;                    ///< of the curve
+    double minimum, maximum;          ///< of a gene [k_B T_0] or [sqrt(mass/time)]
+    double inner_cutoff, cutoff;      ///< of a weight [λ]
+    double fixed[INVERSE_PARAMETERS]; ///< of the formula; NaN: to be found
+};
+
+extern const struct field inverse_potential_fields[], inverse_weight_fields[];
+
+/// The parameters of the formula, of an array shape [INVERSE_PARAMETERS]; the default is NaN.
+extern const struct field inverse_fixed_fields[];
+
+/// Parameters of the formula that are to be found.
+int inverse_free_parameters(const double fixed[INVERSE_PARAMETERS]);
+
+/// A parameter of a formula as it was found.
+struct inverse_parameter {
+    double value; ///< NaN: the unknown is no formula
+    double error; ///< standard error; 0: held fixed, NaN: not known
+};
+
+/// A function of the distance, to be found or known. Borrowed.
+struct unknown {
+    bool wanted;
+    struct unknown_parameters parameters;
+    /// To begin with, or NULL: of a potential for each kind of pairs, of a weight for all.
+    const struct curve *start[COMPOSITION_MOST_PAIRS];
+};
+
+/// What is to be fitted. Borrowed by the methods.
+struct inverse_problem {
+    struct goals goals;    ///< to be fitted
+    struct goals compared; ///< by the verification: those and others
+    struct unknown unknown[UNKNOWNS];
+    struct simulation_setup scene; ///< all but the unknowns; its composition is set
+    double core_threshold;         ///< bins below the first with g* above this are the hard core
+    double core_stiffness;         ///< of the core (core_fill) [k_B T_0/λ²]
+    uint64_t seed;
+    int threads;
+};
+
+/// Error at or below this many times the noise of target and measurement counts as none.
+extern const double inverse_noise_margin;
+
+/// Directions of a curve that the data say least of.
+enum { INVERSE_FLAT = 2 };
+
+/// Numbers of a method's own in a row of the history, and characters of its reason.
+enum { INVERSE_EXTRA = 9, INVERSE_REASON_SIZE = 256 };
+
+/// What g(r) leaves open of a potential: the ramp A (1 − r/r_c).
+struct inverse_ramp {
+    double error;         ///< standard error of A [k_B T_0]; 0: not known
+    double pressure;      ///< ∂P/∂A [1/λ^d]
+    double pressure_open; ///< standard error of the pressure by g(r) alone [k_B T_0/λ^d]
+    double directions;    ///< of the potential that the data determine,
+    double bins;          ///< out of so many
+};
+
+/// State of a fit after an iteration. Arrays belong to the method.
+struct inverse_step {
+    uint32_t iteration;    ///< from 0
+    uint64_t evaluations;  ///< simulations so far
+    uint64_t engine_steps; ///< time steps or Monte Carlo sweeps so far, over all replicas
+    double error;          ///< goals_error of the best curves so far, as the method measured it
+    double noise;          ///< what the statistical errors alone would give
+    double variance;       ///< of error by the noise of what was measured; 0: not known
+    double extra[INVERSE_EXTRA];         ///< columns of the method's own
+    const double *curve[UNKNOWNS];       ///< on the unknown's points, best so far; NULL: not fitted
+    const double *curve_error[UNKNOWNS]; ///< standard errors; NULL where the method has none
+    /// Changes of a curve that the data say least of, one standard error each, widest first: shape
+    /// [INVERSE_FLAT, points]; NULL where the method has none.
+    const double *curve_flat[UNKNOWNS];
+    /// Standard errors of the potential if A of its ramp were known; NULL where the method has
+    /// none.
+    const double *without_ramp;
+    struct inverse_ramp ramp;
+    struct inverse_parameter parameter[INVERSE_PARAMETERS]; ///< of a weight that is a formula
+    bool finished;
+    bool converged; ///< it has settled: by its own measure it can do no better
+    bool used_up;   ///< it finished since all was used that it was to use, as populations do, or at
+                    ///< a standstill away from a target that may be out of reach
+    char reason[INVERSE_REASON_SIZE]; ///< why it finished without having converged; or ""
+};
+
+/// The same for an optimiser that gave up before that.
+void inverse_give_up(struct inverse_step *step);
+
+/// Finish a step of a method that uses up what "parameter" gives it: `used_up`, and a reason that
+/// says whether the error still fell.
+/// @param[in] last_better  iteration in which it fell last
+void inverse_use_up(struct inverse_step *step, const char *parameter, uint32_t last_better);
+
+/// Told from time to time inside an iteration, from one thread at a time.
+struct inverse_progress {
+    uint32_t iteration;
+    uint32_t iterations;  ///< at most
+    uint64_t done, total; ///< parts of this iteration
+    double best;          ///< error of the best so far; not finite if not known yet
+    double least, mean;   ///< of this iteration's candidates; not finite without
+    uint64_t failures;    ///< simulations that left their temperature or blew up
+};
+
+struct inverse_listener {
+    void (*tell)(void *context, const struct inverse_progress *progress);
+    void *context;
+};
+
+/// Where a method puts tables of its own.
+struct inverse_folder {
+    /// Path of a file in it, into OUTPUT_PATH_SIZE bytes (io/output.h).
+    void (*file)(void *context, const char *name, char *path);
+    void *context;
+};
+
+enum { INVERSE_MAX_SPANS = 1024 };
+
+struct optimiser;
+struct inversion;
+
+/// What a method measures of an evaluation.
+struct inverse_sampling {
+    int64_t every;  ///< steps between samples; 0: no dynamics are simulated
+    bool rdf_force; ///< g(r) from forces, where the potential allows
+    int64_t samples;
+};
+
+struct inverse_method {
+    const char *name;
+    const char *summary;               ///< with citation, one line
+    const struct field *const *tables; ///< of the parameter struct, NULL-terminated
+    size_t parameters_size;
+    size_t state_size;
+    uint32_t (*most_iterations)(const struct inverse_method *method,
+                                const struct inverse_problem *problem, const void *parameters);
+    struct inverse_sampling (*sampling)(const void *parameters);
+    bool keeps_parts;
+    const char *const *columns;        ///< names of `extra`, NULL-terminated
+    bool fits[UNKNOWNS];               ///< what it can find
+    const struct optimiser *optimiser; ///< that matching drives, or NULL
+    /// The step of an inversion (inversion/inversion.h) from its samples: `step` of the known bins,
+    /// and up to INVERSION_OWN_COLUMNS columns of the method's own. NULL of other methods.
+    enum status (*update)(struct inversion *inversion, double *extra);
+    enum status (*create)(void *state, const struct inverse_method *method,
+                          const struct inverse_problem *problem, const void *parameters);
+    void (*destroy)(void *state);
+    /// One iteration. After INTERRUPTED the state is fit for a checkpoint if `keeps_parts`, else
+    /// only that from before the iteration is.
+    enum status (*iterate)(void *state, struct inverse_step *step,
+                           const struct inverse_listener *listener);
+    /// List the state; returns the number of spans.
+    size_t (*spans)(void *state, struct memory_span *spans);
+    /// Write its own tables after an iteration, or NULL. Fails: IO, NO_MEMORY.
+    enum status (*write)(const void *state, const struct inverse_folder *folder);
+};
+
+/// All methods, NULL-terminated.
+extern const struct inverse_method *const inverse_methods[];
+
+extern const struct inverse_method imc, ibi, hnc, automatic;
+extern const struct inverse_method gauss_newton;
+extern const struct inverse_method pareto;
+extern const struct inverse_method matching_genetic, matching_cmaes, matching_nlopt;

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "problem/verify.h"
+
+#include "base/memory.h"
+#include "base/rng.h"
+
+#include <math.h>
+
+#define MEMBER(name) .offset = offsetof(struct verify_parameters, name)
+const struct field verify_fields[] = {
+    {"replicas", FIELD_INTEGER, MEMBER(replicas), .initial = 4, .minimum = 1, .maximum = 1024,
+     .unit = "", .help = "independent simulations"},
+    {"time_step", FIELD_NUMBER, MEMBER(time_step), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
+     .unit = "tau",
+     .help =
+         "of the verification, which should be finer than a fit's: a fit makes up for the error "
+         "of its own; 0: that of the scene"},
+    {"equilibration", FIELD_INTEGER, MEMBER(plan.equilibration), .initial = 1000, .minimum = 0,
+     .maximum = 1e12, .unit = "steps", .help = "before the first sample"},
+    {"samples", FIELD_INTEGER, MEMBER(plan.samples), .initial = 50, .minimum = 1, .maximum = 1e8,
+     .unit = "", .help = "of each replica"},
+    {"every", FIELD_INTEGER, MEMBER(plan.every), .initial = 25, .minimum = 1, .maximum = 1e9,
+     .unit = "steps", .help = "between samples"},
+    FIELD_END,
+};
+
+static enum status run_replica(const struct inverse_problem *problem, const struct table *potential,
+                               const struct table *weight,
+                               const struct verify_parameters *parameters, uint32_t number,
+                               struct observation *replica) {
+    double temperature;
+    const struct observation_setup setup = {
+        .goals = &problem->compared,
+        .potential = potential,
+        .weight = weight,
+        .time_step = parameters->time_step,
+        .plan = parameters->plan,
+        .thermodynamics = true,
+        .threads = 1,
+        .seed = rng_child_seed(problem->seed, RNG_VERIFICATION, number, 0)};
+    TRY(observation_init(replica, problem, &setup));
+    TRY(measure_equilibrate(&replica->simulation, &parameters->plan, &temperature, NULL));
+    return measure_sample(&replica->simulation, &parameters->plan, replica->targets, NULL);
+}
+
+/// All replicas in parallel.
+static enum status run_replicas(const struct inverse_problem *problem,
+                                const struct table *potential, const struct table *weight,
+                                const struct verify_parameters *parameters,
+                                const struct inverse_listener *listener,
+                                struct observation *replicas) {
+    enum status status = STATUS_OK;
+    const size_t count = (size_t)parameters->replicas;
+    uint64_t done = 0;
+    char reason[512] = "";
+#pragma omp parallel for schedule(dynamic) num_threads(problem->threads)
+    for (size_t k = 0; k < count; k++) {
+        const enum status here =
+            run_replica(problem, potential, weight, parameters, (uint32_t)k, &replicas[k]);
+#pragma omp critical
+        {
+            if (here != STATUS_OK) {
+                status = here;
+                snprintf(reason, sizeof reason, "%s", status_message());
+            }
+            done++;
+            const struct inverse_progress progress = {
+                .done = done, .total = count, .best = NAN, .least = NAN, .mean = NAN};
+            listener->tell(listener->context, &progress);
+        }
+    }
+    return status == STATUS_OK ? STATUS_OK : status_fail(status, "%s", reason);
+}
+
+/// Exchange the last replica and that at `k`.
+static void exchange_with_last(struct observation *replicas, size_t count, size_t k) {
+    const struct observation last = replicas[count - 1];
+    replicas[count - 1] = replicas[k];
+    replicas[k] = last;
+}
+
+/// Standard error of the distances by leaving out one replica in turn (jackknife); NaN with one.
+static enum status find_errors(struct observation *replicas, size_t count,
+                               struct verification *verification) {
+    enum status status = STATUS_OK;
+    const struct goals *goals = replicas->goals;
+    struct observed without = {0};
+    double squares[GOALS] = {0};
+    CHECK(observation_values_init(&without, goals));
+    for (size_t k = 0; k < count && count > 1; k++) {
+        struct goal_distance distance[GOALS];
+        exchange_with_last(replicas, count, k);
+        status = observation_result(replicas, count - 1, &without);
+        exchange_with_last(replicas, count, k);
+        CHECK(status);
+        observation_distance(&without, goals, distance);
+        for (int kind = 0; kind < GOALS; kind++) {
+            const double difference = distance[kind].rms - verification->distance[kind].rms;
+            squares[kind] += difference * difference;
+        }
+    }
+    for (int kind = 0; kind < GOALS; kind++)
+        verification->distance_error[kind] =
+            count > 1 ? sqrt(squares[kind] * (double)(count - 1) / (double)count) : NAN;
+done:
+    observation_values_clear(&without);
+    return status;
+}
+
+/// The error of g(r)'s distance by leaving out blocks, of which there are more than replicas.
+static enum status find_rdf_error(const struct observation *replicas, size_t count,
+                                  struct verification *verification) {
+    enum status status = STATUS_OK;
+    struct rdf *rdf = NULL;
+    const struct goals *goals = replicas->goals;
+    if (!goals_ask(goals, GOAL_RDF))
+        return STATUS_OK;
+    NEW_ARRAY(rdf, count);
+    for (size_t k = 0; k < count; k++)
+        rdf[k] = replicas[k].rdf;
+    CHECK(rdf_distance(rdf, count, goals->goal[GOAL_RDF].value,
+                       &verification->distance[GOAL_RDF].rms,
+                       &verification->distance_error[GOAL_RDF]));
+done:
+    memory_free(rdf);
+    return status;
+}
+
+/// Results of all replicas together, in their order.
+static enum status summarise(struct observation *replicas, size_t count,
+                             struct verification *verification) {
+    enum status status = STATUS_OK;
+    const struct goals *goals = replicas->goals;
+    struct thermodynamics *thermodynamics = NULL;
+    NEW_ARRAY(thermodynamics, count);
+    for (size_t k = 0; k < count; k++) {
+        thermodynamics[k] = replicas[k].thermodynamics;
+        verification->engine_steps += replicas[k].simulation.step;
+    }
+    verification->thermodynamics = thermodynamics_result(thermodynamics, count);
+    if (thermodynamics_judge_fit(&verification->thermodynamics, &replicas->simulation.setup) !=
+        STATUS_OK)
+        snprintf(verification->warning, sizeof verification->warning, "%s", status_message());
+    if (observation_moves(goals)) {
+        const struct motion_summary motion = motion_result(&replicas->motion, NULL);
+        verification->diffusion_begin = motion.fit_begin;
+        verification->diffusion_end = motion.fit_end;
+    }
+    CHECK(observation_values_init(&verification->observed, goals));
+    CHECK(observation_result(replicas, count, &verification->observed));
+    observation_distance(&verification->observed, goals, verification->distance);
+    CHECK(find_errors(replicas, count, verification));
+    CHECK(find_rdf_error(replicas, count, verification));
+done:
+    memory_free(thermodynamics);
+    return status;
+}
+
+enum status verify(const struct inverse_problem *problem, const struct table *potential,
+                   const struct table *weight, const struct verify_parameters *parameters,
+                   const struct inverse_listener *listener, struct verification *verification) {
+    enum status status = STATUS_OK;
+    const size_t count = (size_t)parameters->replicas;
+    struct observation *replicas = NULL;
+    *verification = (struct verification){0};
+    NEW_ARRAY(replicas, count);
+    CHECK(run_replicas(problem, potential, weight, parameters, listener, replicas));
+    CHECK(summarise(replicas, count, verification));
+done:
+    for (size_t k = 0; replicas && k < count; k++)
+        observation_clear(&replicas[k]);
+    memory_free(replicas);
+    return status;
+}
+
+void verify_clear(struct verification *verification) {
+    observation_values_clear(&verification->observed);
+    *verification = (struct verification){0};
+}

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Verification of a result by independent replicas of a longer simulation.
+#pragma once
+
+#include "problem/observation.h"
+
+struct verify_parameters {
+    int64_t replicas;
+    double time_step; ///< 0: that of the scene [τ]
+    struct measure_plan plan;
+};
+
+extern const struct field verify_fields[];
+
+struct verification {
+    struct observed observed;
+    struct goal_distance distance[GOALS];
+    double distance_error[GOALS]; ///< standard error of each distance, by leaving out replicas;
+                                  ///< that of g(r) by leaving out blocks. NaN with one replica
+    struct thermodynamics_summary thermodynamics;
+    double diffusion_begin, diffusion_end; ///< times between which D is the MSD's slope [τ]; or 0
+    char warning[256]; ///< why its temperatures are not to be trusted; "" if they are
+    uint64_t engine_steps;
+};
+
+/// Simulate the problem's scene with new seeds; replicas in parallel.
+/// Fails: as simulation_run.
+enum status verify(const struct inverse_problem *problem, const struct table *potential,
+                   const struct table *weight, const struct verify_parameters *parameters,
+                   const struct inverse_listener *listener,
+                   struct verification *verification) MUST_USE;
+void verify_clear(struct verification *verification);

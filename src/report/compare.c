@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/compare.h"
+
+#include "base/memory.h"
+#include "io/output.h"
+#include "report/compare_table.h"
+#include "report/figures.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PATH_SIZE = OUTPUT_PATH_SIZE + 64 };
+
+// Names -------------------------------------------------------------------------------------------
+
+/// The absolute path of a folder, without a last part "out", which says nothing.
+static enum status find_path(struct compared *fit, const char *folder) {
+    char *path = realpath(folder, NULL);
+    if (path == NULL)
+        return status_fail(STATUS_IO, "%s: %s", folder, strerror(errno));
+    char *slash = strrchr(path, '/');
+    if (slash > path && strcmp(slash, "/out") == 0)
+        *slash = '\0';
+    snprintf(fit->path, sizeof fit->path, "%s", path);
+    free(path);
+    return STATUS_OK;
+}
+
+/// The last `parts` parts of a path, or all of it without its first slash.
+static const char *last_parts(const char *path, size_t parts) {
+    const char *begin = path + strlen(path);
+    for (; parts > 0 && begin > path; parts--)
+        do
+            begin--;
+        while (begin > path && begin[-1] != '/');
+    return begin;
+}
+
+/// True if another folder has the same last parts.
+static bool is_shared(const struct compared *fits, size_t count, const char *path, size_t parts) {
+    const char *name = last_parts(path, parts);
+    for (size_t k = 0; k < count; k++)
+        if (strcmp(fits[k].path, path) != 0 && strcmp(last_parts(fits[k].path, parts), name) == 0)
+            return true;
+    return false;
+}
+
+static void name_fits(struct compared *fits, size_t count) {
+    for (size_t k = 0; k < count; k++) {
+        size_t parts = 1, same = 1;
+        while (is_shared(fits, count, fits[k].path, parts))
+            parts++;
+        for (size_t before = 0; before < k; before++)
+            same += strcmp(fits[before].path, fits[k].path) == 0;
+        const char *name = last_parts(fits[k].path, parts);
+        if (same > 1)
+            snprintf(fits[k].name, sizeof fits[k].name, "%.*s (%zu)", OUTPUT_PATH_SIZE - 32, name,
+                     same);
+        else
+            snprintf(fits[k].name, sizeof fits[k].name, "%s", name);
+        compare_table_clean(fits[k].name);
+    }
+}
+
+// Blocks of tables --------------------------------------------------------------------------------
+
+/// A fit without the table has one row of nan, so that the numbers of the blocks stay those of the
+/// fits: gnuplot does not count empty blocks.
+static void write_rows(FILE *stream, const struct result_table *table, size_t columns) {
+    for (size_t k = 0; table->rows == 0 && k < columns; k++)
+        fprintf(stream, "nan%c", k + 1 < columns ? '\t' : '\n');
+    for (size_t k = 0; k < table->rows * table->columns; k++) {
+        const char end = (k + 1) % table->columns ? '\t' : '\n';
+        if (isnan(table->values[k]))
+            fprintf(stream, "nan%c", end);
+        else
+            fprintf(stream, "%.10g%c", table->values[k], end);
+    }
+}
+
+/// A table that fits may have.
+struct block {
+    const char *name;   ///< of the file
+    const char *header; ///< names of the columns
+    size_t columns;
+    size_t table; ///< offset of its struct result_table in struct result
+};
+
+static const struct block blocks[] = {
+    {"rdf_compare.tsv", "r[lambda]\ttarget[1]\ttarget_error[1]\tresult[1]\tresult_error[1]", 5,
+     offsetof(struct result, rdf)},
+    {"potential_compare.tsv", "r[lambda]\tphi[k_B.T_0]\tphi_error[k_B.T_0]\ttruth[k_B.T_0]", 4,
+     offsetof(struct result, potential)},
+    {"omega_compare.tsv",
+     "r[lambda]\tomega[sqrt(mu/tau)]\tomega_error[sqrt(mu/tau)]\ttruth[sqrt(mu/tau)]", 4,
+     offsetof(struct result, omega)},
+    {"error_compare.tsv",
+     "iteration[1]\tevaluations[1]\tengine_steps[1]\tseconds[s]\terror[1]\tnoise[1]", 6,
+     offsetof(struct result, course)},
+};
+
+static const struct result_table *table_of(const struct compared *fit, const struct block *block) {
+    return (const struct result_table *)((const char *)&fit->result + block->table);
+}
+
+/// One block a fit; no file if no fit has the table, not even that of an earlier comparison.
+static enum status write_blocks(const char *out, const struct block *block,
+                                const struct compared *fits, size_t count) {
+    struct output output;
+    char file[PATH_SIZE];
+    size_t rows = 0;
+    snprintf(file, sizeof file, "%s/%s", out, block->name);
+    for (size_t k = 0; k < count; k++)
+        rows += table_of(&fits[k], block)->rows;
+    if (rows == 0)
+        return remove(file) == 0 || errno == ENOENT
+                   ? STATUS_OK
+                   : status_fail(STATUS_IO, "%s: %s", file, strerror(errno));
+    TRY(output_open(&output, file));
+    for (size_t k = 0; k < count; k++) {
+        fprintf(output.stream, "%s# %zu\t%s\n# %s\n", k ? "\n\n" : "", k, fits[k].name,
+                block->header);
+        write_rows(output.stream, table_of(&fits[k], block), block->columns);
+    }
+    return output_commit(&output);
+}
+
+static enum status write_tables(const char *out, const struct compared *fits, size_t count) {
+    TRY(output_make_folder(out));
+    TRY(compare_table_write(out, fits, count));
+    for (size_t k = 0; k < sizeof blocks / sizeof blocks[0]; k++)
+        TRY(write_blocks(out, &blocks[k], fits, count));
+    return STATUS_OK;
+}
+
+/// Tables and figures are over r in λ: those of different λ do not go together.
+static enum status check_lengths(const struct compared *fits, size_t count,
+                                 const char *const *folders) {
+    static const double rounding = 1e-9;
+    const double *first = NULL;
+    size_t at = 0;
+    for (size_t k = 0; k < count; k++) {
+        const double *length = &fits[k].result.summary.length_unit_nm;
+        if (isnan(*length))
+            continue;
+        if (first && fabs(*length / *first - 1) > rounding)
+            return status_fail(STATUS_BAD_INPUT,
+                               "compare: the unit of length is %.6g nm in %s and %.6g nm in %s: "
+                               "tables over r in it do not go together",
+                               *first, folders[at], *length, folders[k]);
+        if (first == NULL) {
+            first = length;
+            at = k;
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status compare_folders(const char *const *folders, size_t count, const char *out, bool quiet) {
+    enum status status = STATUS_OK;
+    struct compared *fits = NULL;
+    if (count == 0)
+        return status_fail(STATUS_BAD_INPUT, "compare: give the folder of at least one fit");
+    NEW_ARRAY(fits, count);
+    for (size_t k = 0; k < count; k++) {
+        CHECK(result_read(&fits[k].result, folders[k]));
+        CHECK(find_path(&fits[k], folders[k]));
+    }
+    CHECK(check_lengths(fits, count, folders));
+    name_fits(fits, count);
+    CHECK(write_tables(out, fits, count));
+    if (!quiet)
+        CHECK(compare_table_print(fits, count));
+    if (figures_draw_comparison(out) != STATUS_OK)
+        fprintf(stderr, "mesofit: warning: %s\n", status_message());
+done:
+    for (size_t k = 0; fits && k < count; k++)
+        result_clear(&fits[k].result);
+    memory_free(fits);
+    return status;
+}

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/compare_table.h"
+
+#include "base/memory.h"
+#include "base/visible.h"
+#include "io/data_table.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum {
+    PATH_SIZE = OUTPUT_PATH_SIZE + 64,
+    CELL_SIZE = 64,    ///< one entry of the printed table
+    MOST_NUMBERS = 64, ///< in a summary
+    HEADER_SIZE = 64,  ///< of one column of compare.tsv
+};
+
+// Columns of the printed table --------------------------------------------------------------------
+
+/// "0.0123(4)": the error in units of the last digit, with two digits if it begins with 1.
+static void print_with_error(char *cell, double value, double error) {
+    if (!isfinite(value) || !(error > 0) || !isfinite(error)) {
+        snprintf(cell, CELL_SIZE, isfinite(value) ? "%.4g" : "-", value);
+        return;
+    }
+    int decimals = -(int)floor(log10(error));
+    if (error * pow(10, decimals) < 1.95)
+        decimals++;
+    if (error * pow(10, decimals) >= 9.5 && error * pow(10, decimals) < 10)
+        decimals--;
+    if (decimals < 0)
+        decimals = 0;
+    snprintf(cell, CELL_SIZE, "%.*f(%.0f)", decimals, value, error * pow(10, decimals));
+}
+
+static void print_number(char *cell, const char *format, double value) {
+    if (isfinite(value))
+        snprintf(cell, CELL_SIZE, format, value);
+    else
+        snprintf(cell, CELL_SIZE, "-");
+}
+
+static void print_text(char *cell, const char *text) {
+    char beginning[61];
+    snprintf(beginning, sizeof beginning, "%s", text[0] ? text : "-");
+    visible_copy(cell, CELL_SIZE, beginning, "");
+}
+
+/// One column: a text, or a number with its format or its error.
+struct column {
+    const char *title;
+    bool is_text;
+    size_t value;       ///< offset in struct result_summary
+    const char *format; ///< NULL: with the error
+    size_t error;       ///< offset in struct result_summary
+};
+
+#define AT(member) offsetof(struct result_summary, member)
+static const struct column columns[] = {
+    {"method", true, AT(method), NULL, 0},
+    {"status", true, AT(status), NULL, 0},
+    {"threads", false, AT(threads), "%.0f", 0},
+    {"iterations", false, AT(iterations), "%.0f", 0},
+    {"simulations", false, AT(evaluations), "%.0f", 0},
+    {"steps", false, AT(engine_steps), "%.0f", 0},
+    {"time/s", false, AT(seconds), "%.1f", 0},
+    {"rmse(g)", false, AT(rdf_rmse), NULL, AT(rdf_rmse_error)},
+    {"noise", false, AT(rdf_noise), "%.2g", 0},
+    {"rmse(E)", false, AT(etd_rmse), NULL, AT(etd_rmse_error)},
+    {"noise(E)", false, AT(etd_noise), "%.2g", 0},
+    {"rmse(VACF)", false, AT(vacf_rmse), NULL, AT(vacf_rmse_error)},
+    {"rmse(MSD)", false, AT(msd_rmse), NULL, AT(msd_rmse_error)},
+    {"D", false, AT(diffusion), NULL, AT(diffusion_error)},
+    {"truth(phi)", false, AT(truth_rms), "%.3g", 0},
+    {"truth(omega)", false, AT(truth_error), "%.3g", 0},
+    {"T", false, AT(temperature), "%.3f", 0},
+    {"T_conf", false, AT(temperature_configurational), "%.3f", 0},
+    {"p", false, AT(pressure), "%.4g", 0},
+};
+enum { COLUMN_COUNT = sizeof columns / sizeof columns[0] };
+
+static double number_at(const struct result_summary *summary, size_t offset) {
+    double value;
+    memcpy(&value, (const char *)summary + offset, sizeof value);
+    return value;
+}
+
+static void fill_cell(char *cell, const struct column *column,
+                      const struct result_summary *summary) {
+    if (column->is_text) {
+        print_text(cell, (const char *)summary + column->value);
+        return;
+    }
+    const double value = number_at(summary, column->value);
+    if (column->format == NULL)
+        print_with_error(cell, value, number_at(summary, column->error));
+    else
+        print_number(cell, column->value == AT(seconds) && value >= 100 ? "%.0f" : column->format,
+                     value);
+}
+
+/// A number that no fit has gets no column.
+static bool is_shown(const struct column *column, const struct compared *fits, size_t count) {
+    for (size_t k = 0; k < count; k++)
+        if (column->is_text || isfinite(number_at(&fits[k].result.summary, column->value)))
+            return true;
+    return false;
+}
+
+// The printed table -------------------------------------------------------------------------------
+
+/// Characters of a UTF-8 text.
+static size_t width_of(const char *text) {
+    size_t width = 0;
+    for (; *text; text++)
+        width += ((unsigned char)*text & 0xC0) != 0x80;
+    return width;
+}
+
+static void widen(size_t *width, const char *text) {
+    const size_t needed = width_of(text);
+    if (needed > *width)
+        *width = needed;
+}
+
+/// Texts begin, and numbers end, at the edge of their column.
+static void print_cell(const struct column *column, const char *text, size_t width) {
+    const int blanks = (int)(width - width_of(text));
+    if (column->is_text)
+        printf("  %s%*s", text, blanks, "");
+    else
+        printf("  %*s%s", blanks, "", text);
+}
+
+static void print_column(char (*cells)[CELL_SIZE], const struct column *column,
+                         const struct compared *fits, size_t count) {
+    print_text(cells[0], column->title);
+    for (size_t k = 0; k < count; k++)
+        fill_cell(cells[k + 1], column, &fits[k].result.summary);
+}
+
+enum status compare_table_print(const struct compared *fits, size_t count) {
+    enum status status = STATUS_OK;
+    char(*cells)[CELL_SIZE] = NULL; // shape [COLUMN_COUNT][count + 1]
+    size_t widths[COLUMN_COUNT] = {0}, name_width = width_of("name");
+    const size_t rows = count + 1;
+    NEW_ARRAY(cells, COLUMN_COUNT * rows);
+    for (size_t k = 0; k < count; k++)
+        widen(&name_width, fits[k].name);
+    for (size_t c = 0; c < COLUMN_COUNT; c++) {
+        if (!is_shown(&columns[c], fits, count))
+            continue;
+        print_column(cells + c * rows, &columns[c], fits, count);
+        for (size_t row = 0; row < rows; row++)
+            widen(&widths[c], cells[c * rows + row]);
+    }
+    for (size_t row = 0; row < rows; row++) {
+        const char *name = row ? fits[row - 1].name : "name";
+        printf("%s%*s", name, (int)(name_width - width_of(name)), "");
+        for (size_t c = 0; c < COLUMN_COUNT; c++)
+            if (widths[c] > 0)
+                print_cell(&columns[c], cells[c * rows + row], widths[c]);
+        printf("\n");
+    }
+done:
+    memory_free(cells);
+    return status;
+}
+
+// compare.tsv -------------------------------------------------------------------------------------
+
+void compare_table_clean(char *text) {
+    for (; *text; text++)
+        if ((unsigned char)*text < ' ')
+            *text = '?';
+}
+
+/// Lines "index, name, method, status, version" for the comment of compare.tsv.
+static enum status list_names(char **comment, const struct compared *fits, size_t count) {
+    enum status status = STATUS_OK;
+    const size_t size = (count + 1) * (sizeof fits->name + sizeof fits->result.summary);
+    NEW_ARRAY(*comment, size);
+    char *end = *comment;
+    end += sprintf(end, "index\tname\tmethod\tstatus\tversion");
+    for (size_t k = 0; k < count; k++) {
+        struct result_summary texts = fits[k].result.summary;
+        compare_table_clean(texts.method);
+        compare_table_clean(texts.status);
+        compare_table_clean(texts.version);
+        end += sprintf(end, "\n%zu\t%s\t%s\t%s\t%s", k, fits[k].name, texts.method, texts.status,
+                       texts.version);
+    }
+done:
+    return status;
+}
+
+/// Numbers of all fits under one name; false if no fit has it.
+static bool fill_numbers(double *values, const struct field *field, const struct compared *fits,
+                         size_t count) {
+    bool any = false;
+    for (size_t k = 0; field->type == FIELD_NUMBER && k < count; k++) {
+        values[k] = number_at(&fits[k].result.summary, field->offset);
+        any = any || isfinite(values[k]);
+    }
+    return any;
+}
+
+enum status compare_table_write(const char *out, const struct compared *fits, size_t count) {
+    enum status status = STATUS_OK;
+    char file[PATH_SIZE], headers[MOST_NUMBERS][HEADER_SIZE], *comment = NULL;
+    struct data_column written[MOST_NUMBERS] = {{.name = "index[1]"}};
+    double *values = NULL;
+    size_t used = 1;
+    NEW_ARRAY(values, MOST_NUMBERS * count);
+    for (size_t k = 0; k < count; k++)
+        values[k] = (double)k;
+    written[0].values = values;
+    for (const struct field *field = result_summary_fields; field->name; field++) {
+        if (used == MOST_NUMBERS || !fill_numbers(values + used * count, field, fits, count))
+            continue;
+        snprintf(headers[used], HEADER_SIZE, "%s[%s]", field->name, field->unit);
+        written[used] = (struct data_column){headers[used], values + used * count, "%.16g"};
+        used++;
+    }
+    CHECK(list_names(&comment, fits, count));
+    snprintf(file, sizeof file, "%s/compare.tsv", out);
+    CHECK(data_table_write(file, comment, written, used, count));
+done:
+    memory_free(comment);
+    memory_free(values);
+    return status;
+}

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/fit_change.h"
+
+#include <math.h>
+
+/// Whether the target has enough pairs at a point to tell of the curve there.
+static bool is_determined(const struct decoder *decoder, enum unknown_kind kind, size_t point) {
+    const struct potential_grid *grid = &decoder->potential;
+    if (kind == UNKNOWN_WEIGHT)
+        return decoder_fits(decoder, kind, point);
+    for (size_t n = 0; n < grid->known; n++)
+        if (grid->known_point[n] == point)
+            return potential_grid_well_known(decoder->problem, grid->known_bin[n]);
+    return false;
+}
+
+static void find_lower(double value, double r, double *lowest, double *at) {
+    if (value >= *lowest)
+        return;
+    *lowest = value;
+    *at = r;
+}
+
+struct fit_change fit_change_find(const struct decoder *decoder, enum unknown_kind kind,
+                                  size_t curve, const double *first, const double *last) {
+    struct fit_change change = {.well = INFINITY, .first_well = INFINITY};
+    const size_t points = decoder_points(decoder, kind) / decoder_curve_count(decoder, kind);
+    const double *r = decoder_r(decoder, kind);
+    double squares = 0, count = 0;
+    for (size_t k = curve * points; k < (curve + 1) * points; k++) {
+        if (!is_determined(decoder, kind, k))
+            continue;
+        squares += (last[k] - first[k]) * (last[k] - first[k]);
+        count += 1;
+        find_lower(last[k], r[k], &change.well, &change.well_at);
+        find_lower(first[k], r[k], &change.first_well, &change.first_well_at);
+    }
+    change.rms = sqrt(squares / count);
+    return change;
+}

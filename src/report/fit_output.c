@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/fit_output.h"
+
+#include "base/memory.h"
+#include "io/data_table.h"
+#include "io/votca.h"
+
+#include <math.h>
+
+/// The true curve number `curve` of an unknown at `r`, where the run file names it; the caller
+/// frees it.
+static double *truth_at(const struct fit_file *fit, enum unknown_kind kind, size_t curve,
+                        const double *r, size_t points) {
+    const struct curve *truth = scene_law_curve(&fit->unknown[kind].truth, (int)curve);
+    double *values = memory_zeroed(points, sizeof *values);
+    for (size_t k = 0; values && truth && k < points; k++)
+        values[k] = curve_value(truth, r[k]);
+    return values;
+}
+
+/// Path of a table about one curve of an unknown: its name and an ending.
+static void curve_file(const struct decoder *decoder, enum unknown_kind kind, size_t curve,
+                       const char *ending, const struct run_folder *folder, char *path) {
+    char name[DECODER_NAME_SIZE], file[DECODER_NAME_SIZE + 16];
+    decoder_curve_name(decoder, kind, curve, name);
+    snprintf(file, sizeof file, "%s%s", name, ending);
+    run_folder_file(folder, file, path);
+}
+
+/// Of one kind of pairs, from the table of all.
+static enum status write_potential(const struct fit_file *fit, const struct decoder *decoder,
+                                   const struct fit_result *result, const struct table *table,
+                                   size_t pair, const struct run_folder *folder) {
+    enum status status = STATUS_OK;
+    const struct units *units = &fit->scene.units;
+    const size_t points = decoder->potential.bins + 1;
+    const size_t first = potential_grid_block(&decoder->potential, pair);
+    const double *r = decoder->potential.r + first;
+    const double *phi = result->curve[UNKNOWN_POTENTIAL] + first;
+    double *force = NULL, *truth = NULL, *nanometres = NULL, *energy = NULL;
+    size_t count = 0;
+    char path[OUTPUT_PATH_SIZE];
+    NEW_ARRAY(force, points);
+    for (size_t k = 0; k < points; k++) {
+        table_evaluate_pair(table, (int)pair, r[k], NULL, &force[k], NULL);
+        force[k] = -force[k];
+    }
+    nanometres = units_column(r, points, units->length);
+    energy = units_column(phi, points, units_known(units) ? units_energy_kj_per_mol(units) : 0);
+    truth = truth_at(fit, UNKNOWN_POTENTIAL, pair, r, points);
+    CHECK(nanometres && energy && truth ? STATUS_OK : STATUS_NO_MEMORY);
+    struct data_column columns[8] = {
+        {"r[lambda]", r, "%.17g"},
+        {"phi[k_B.T_0]", phi, "%.17g"},
+        {"force[k_B.T_0/lambda]", force, NULL},
+        {"phi_error[k_B.T_0]", result->curve_error[UNKNOWN_POTENTIAL] + first, "%.3g"}};
+    count = 4;
+    if (result->ramp.error > 0)
+        columns[count++] = (struct data_column){"phi_error_without_ramp[k_B.T_0]",
+                                                result->without_ramp + first, "%.3g"};
+    if (scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair))
+        columns[count++] = (struct data_column){"truth[k_B.T_0]", truth, "%.8g"};
+    if (units_known(units)) {
+        columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
+        columns[count++] = (struct data_column){"phi[kJ/mol]", energy, NULL};
+    }
+    curve_file(decoder, UNKNOWN_POTENTIAL, pair, ".tsv", folder, path);
+    CHECK(data_table_write(path, NULL, columns, count, points));
+    if (units_known(units)) {
+        curve_file(decoder, UNKNOWN_POTENTIAL, pair, ".pot", folder, path);
+        CHECK(votca_write(path, nanometres, energy, points, decoder->potential.core[pair]));
+    }
+done:
+    memory_free(force);
+    memory_free(truth);
+    memory_free(nanometres);
+    memory_free(energy);
+    return status;
+}
+
+static enum status write_potentials(const struct fit_file *fit, const struct decoder *decoder,
+                                    const struct fit_result *result,
+                                    const struct run_folder *folder) {
+    enum status status = STATUS_OK;
+    struct table table = {0};
+    CHECK(potential_grid_table(&decoder->potential, result->curve[UNKNOWN_POTENTIAL], &table));
+    for (size_t pair = 0; pair < decoder->potential.pairs; pair++)
+        CHECK(write_potential(fit, decoder, result, &table, pair, folder));
+done:
+    table_clear(&table);
+    return status;
+}
+
+static enum status write_omega(const struct fit_file *fit, const struct decoder *decoder,
+                               const struct fit_result *result, const struct run_folder *folder) {
+    const bool truth_known = fit->unknown[UNKNOWN_WEIGHT].truth.curves > 0;
+    const struct units *units = &fit->scene.units;
+    enum status status = STATUS_NO_MEMORY;
+    double *truth = truth_at(fit, UNKNOWN_WEIGHT, 0, decoder->weight.r, WEIGHT_POINTS);
+    double *nanometres = units_column(decoder->weight.r, WEIGHT_POINTS, units->length);
+    char path[OUTPUT_PATH_SIZE];
+    struct data_column columns[5] = {
+        {"r[lambda]", decoder->weight.r, "%.17g"},
+        {"omega[sqrt(mu/tau)]", result->curve[UNKNOWN_WEIGHT], "%.17g"},
+        {"omega_error[sqrt(mu/tau)]", result->curve_error[UNKNOWN_WEIGHT], "%.3g"}};
+    size_t count = 3;
+    if (truth_known)
+        columns[count++] = (struct data_column){"truth[sqrt(mu/tau)]", truth, "%.8g"};
+    if (units_known(units))
+        columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
+    run_folder_file(folder, "omega.tsv", path);
+    if (truth && nanometres)
+        status = data_table_write(path, NULL, columns, count, WEIGHT_POINTS);
+    memory_free(truth);
+    memory_free(nanometres);
+    return status;
+}
+
+/// Changes that the data say least of; no table where the method does not tell.
+static enum status write_flat(enum unknown_kind kind, size_t curve, const struct decoder *decoder,
+                              const struct fit_result *result, const struct run_folder *folder) {
+    const size_t all = decoder_points(decoder, kind);
+    const size_t points = all / decoder_curve_count(decoder, kind), first = curve * points;
+    const double *flat = result->curve_flat[kind];
+    char path[OUTPUT_PATH_SIZE];
+    if (flat == NULL || isnan(flat[all - 1]))
+        return STATUS_OK;
+    const char *unit = kind == UNKNOWN_POTENTIAL ? "k_B.T_0" : "sqrt(mu/tau)";
+    char names[INVERSE_FLAT][64];
+    struct data_column columns[1 + INVERSE_FLAT] = {
+        {"r[lambda]", decoder_r(decoder, kind) + first, NULL}};
+    for (size_t n = 0; n < INVERSE_FLAT; n++) {
+        snprintf(names[n], sizeof names[n], "flat_%zu[%s]", n + 1, unit);
+        columns[n + 1] = (struct data_column){names[n], flat + n * all + first, "%.5g"};
+    }
+    curve_file(decoder, kind, curve, "_flat.tsv", folder, path);
+    return data_table_write(path,
+                            "changes of the curve that the data say least of, widest first; one "
+                            "standard error each",
+                            columns, 1 + INVERSE_FLAT, points);
+}
+
+enum status fit_output_curves(const struct fit_file *fit, const struct decoder *decoder,
+                              const struct fit_result *result, const struct run_folder *folder) {
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        for (size_t n = 0; result->curve[kind] && n < decoder_curve_count(decoder, kind); n++)
+            TRY(write_flat(kind, n, decoder, result, folder));
+    if (result->curve[UNKNOWN_POTENTIAL])
+        TRY(write_potentials(fit, decoder, result, folder));
+    return result->curve[UNKNOWN_WEIGHT] ? write_omega(fit, decoder, result, folder) : STATUS_OK;
+}
+
+/// g(r) of a kind of pairs: rdf.tsv, or rdf_A-B.tsv in a mixture.
+static enum status write_rdf(const struct fit_file *fit, const struct observed *observed,
+                             size_t pair, const struct run_folder *folder) {
+    enum status status = STATUS_OK;
+    const struct targets *targets = &fit->targets;
+    const struct rdf_bins *bins = &targets->rdf[0].bins;
+    const struct units *units = &fit->scene.units;
+    const size_t first = pair * bins->count;
+    double *r = NULL, *nanometres = NULL;
+    char path[OUTPUT_PATH_SIZE];
+    NEW_ARRAY(r, bins->count);
+    for (size_t k = 0; k < bins->count; k++)
+        r[k] = rdf_bins_centre(bins, k);
+    nanometres = units_column(r, bins->count, units->length);
+    CHECK(nanometres ? STATUS_OK : STATUS_NO_MEMORY);
+    const struct data_column columns[] = {
+        {"r[lambda]", r, NULL},
+        {"target[1]", targets->rdf_g + first, "%.8g"},
+        {"target_error[1]", targets->rdf_error + first, "%.3g"},
+        {"result[1]", observed->value[GOAL_RDF] + first, "%.8g"},
+        {"result_error[1]", observed->error[GOAL_RDF] + first, "%.3g"},
+        {"r[nm]", nanometres, NULL}};
+    run_folder_rdf(folder, &targets->composition, (int)pair, path);
+    CHECK(data_table_write(path, NULL, columns, units_known(units) ? 6 : 5, bins->count));
+done:
+    memory_free(r);
+    memory_free(nanometres);
+    return status;
+}
+
+/// One row a cell: time, r_0, target, result; what is not known is nan.
+static enum status write_etd(const struct fit_file *fit, const struct observed *observed,
+                             const struct run_folder *folder) {
+    enum status status = STATUS_OK;
+    const struct target_etd *target = &fit->targets.etd;
+    const size_t bins = (size_t)target->grid.bins, cells = (size_t)target->grid.times * bins;
+    const double width = (target->grid.r_maximum - target->grid.r_minimum) / (double)bins;
+    const struct units *units = &fit->scene.units;
+    double *time = NULL, *r = NULL, *picoseconds = NULL, *nanometres = NULL;
+    char path[OUTPUT_PATH_SIZE];
+    NEW_ARRAY(time, cells);
+    NEW_ARRAY(r, cells);
+    for (size_t k = 0; k < cells; k++) {
+        time[k] = (double)(k / bins) * target->interval;
+        r[k] = target->grid.r_minimum + ((double)(k % bins) + 0.5) * width;
+    }
+    const bool known = units_known(units);
+    picoseconds = units_column(time, cells, known ? units_time_ps(units) : 0);
+    nanometres = units_column(r, cells, units->length);
+    CHECK(picoseconds && nanometres ? STATUS_OK : STATUS_NO_MEMORY);
+    const struct data_column columns[] = {{"time[tau]", time, "%.6f"},
+                                          {"r0[lambda]", r, "%.6f"},
+                                          {"target[1]", target->survival, "%.6f"},
+                                          {"target_error[1]", target->error, "%.3g"},
+                                          {"result[1]", observed->value[GOAL_ETD], "%.6f"},
+                                          {"result_error[1]", observed->error[GOAL_ETD], "%.3g"},
+                                          {"time[ps]", picoseconds, "%.6g"},
+                                          {"r0[nm]", nanometres, "%.6g"}};
+    run_folder_file(folder, "etd_cells.tsv", path);
+    CHECK(data_table_write(path, NULL, columns, known ? 8 : 6, cells));
+done:
+    memory_free(time);
+    memory_free(r);
+    memory_free(picoseconds);
+    memory_free(nanometres);
+    return status;
+}
+
+/// What a table of VACF or MSD calls its columns, and the same in nm and ps.
+struct motion_names {
+    const char *columns[4], *physical[4];
+    double unit; ///< of VACF or MSD in nm and ps
+};
+
+static struct motion_names motion_names(enum goal_kind kind, const struct units *units) {
+    const double nm2 = units->length * units->length;
+    if (kind == GOAL_MSD)
+        return (struct motion_names){
+            {"target[lambda^2]", "target_error[lambda^2]", "result[lambda^2]",
+             "result_error[lambda^2]"},
+            {"target[nm^2]", "target_error[nm^2]", "result[nm^2]", "result_error[nm^2]"},
+            nm2};
+    const double ps = units_known(units) ? units_time_ps(units) : 1;
+    return (struct motion_names){{"target[lambda^2/tau^2]", "target_error[lambda^2/tau^2]",
+                                  "result[lambda^2/tau^2]", "result_error[lambda^2/tau^2]"},
+                                 {"target[nm^2/ps^2]", "target_error[nm^2/ps^2]",
+                                  "result[nm^2/ps^2]", "result_error[nm^2/ps^2]"},
+                                 nm2 / (ps * ps)};
+}
+
+/// VACF or MSD beside its target.
+static enum status write_motion(const struct fit_file *fit, const struct target_curve *target,
+                                const struct observed *observed, enum goal_kind kind,
+                                const struct run_folder *folder) {
+    enum status status = STATUS_OK;
+    const struct units *units = &fit->scene.units;
+    const struct motion_names names = motion_names(kind, units);
+    const double *const values[4] = {target->value, target->error, observed->value[kind],
+                                     observed->error[kind]};
+    double *time = NULL, *picoseconds = NULL, *physical[4] = {NULL};
+    char path[OUTPUT_PATH_SIZE], name[64];
+    struct data_column columns[10];
+    NEW_ARRAY(time, target->times);
+    for (size_t k = 0; k < target->times; k++)
+        time[k] = (double)k * target->interval;
+    picoseconds = units_column(time, target->times, units_known(units) ? units_time_ps(units) : 0);
+    CHECK(picoseconds ? STATUS_OK : STATUS_NO_MEMORY);
+    columns[0] = (struct data_column){"time[tau]", time, NULL};
+    columns[5] = (struct data_column){"time[ps]", picoseconds, NULL};
+    for (int k = 0; k < 4; k++) {
+        const char *format = k % 2 ? "%.3g" : "%.8g";
+        physical[k] = units_column(values[k], target->times, names.unit);
+        CHECK(physical[k] ? STATUS_OK : STATUS_NO_MEMORY);
+        columns[1 + k] = (struct data_column){names.columns[k], values[k], format};
+        columns[6 + k] = (struct data_column){names.physical[k], physical[k], format};
+    }
+    snprintf(name, sizeof name, "%s.tsv", goals_names[kind]);
+    run_folder_file(folder, name, path);
+    CHECK(data_table_write(path, NULL, columns, units_known(units) ? 10 : 5, target->times));
+done:
+    memory_free(time);
+    memory_free(picoseconds);
+    for (int k = 0; k < 4; k++)
+        memory_free(physical[k]);
+    return status;
+}
+
+enum status fit_output_observables(const struct fit_file *fit, const struct fit_result *result,
+                                   const struct run_folder *folder) {
+    const struct targets *targets = &fit->targets;
+    const struct observed *observed = &result->verification->observed;
+    for (size_t pair = 0; targets->given[GOAL_RDF] && pair < targets->pairs; pair++)
+        TRY(write_rdf(fit, observed, pair, folder));
+    if (targets->given[GOAL_ETD])
+        TRY(write_etd(fit, observed, folder));
+    if (targets->given[GOAL_VACF])
+        TRY(write_motion(fit, &targets->vacf, observed, GOAL_VACF, folder));
+    if (targets->given[GOAL_MSD])
+        TRY(write_motion(fit, &targets->msd, observed, GOAL_MSD, folder));
+    return STATUS_OK;
+}

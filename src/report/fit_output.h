@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What a fit writes besides its history.
+#pragma once
+
+#include "problem/decoder.h"
+#include "input/fit_file.h"
+#include "report/run_folder.h"
+
+/// The result of a fit so far.
+struct fit_result {
+    enum status status; ///< OK: converged, or finished; UNCONVERGED; INTERRUPTED
+    bool settled;       ///< whether OK says that it has converged
+    uint64_t iterations, evaluations, engine_steps;
+    double seconds;                            ///< of the fit, without its verification
+    const double *curve[UNKNOWNS];             ///< on the unknown's points; NULL: not fitted
+    const double *curve_error[UNKNOWNS];       ///< may hold NaN: not known
+    const double *curve_flat[UNKNOWNS];        ///< shape [INVERSE_FLAT, points]; may hold NaN
+    const double *first[UNKNOWNS];             ///< the curve of the first iteration; NULL: none yet
+    double first_error, error;                 ///< of the fit, as its method measured them
+    const double *without_ramp;                ///< inverse_step.without_ramp; may hold NaN
+    struct inverse_ramp ramp;                  ///< error 0: not known
+    const struct inverse_parameter *parameter; ///< shape [INVERSE_PARAMETERS], of a formula
+    const char *reason;                        ///< why it has not converged, or settled, or ""
+    const struct verification *verification;   ///< NULL if there was none
+};
+
+/// potential.tsv and omega.tsv, what of them was fitted.
+enum status fit_output_curves(const struct fit_file *fit, const struct decoder *decoder,
+                              const struct fit_result *result,
+                              const struct run_folder *folder) MUST_USE;
+
+/// From the verification: rdf.tsv, etd.tsv and motion.tsv, as far as there are targets.
+enum status fit_output_observables(const struct fit_file *fit, const struct fit_result *result,
+                                   const struct run_folder *folder) MUST_USE;
+
+/// summary.json.
+enum status fit_output_summary(const struct fit_file *fit, const struct decoder *decoder,
+                               const struct fit_result *result,
+                               const struct run_folder *folder) MUST_USE;
+
+/// How far the fitted potential of a kind of pairs is from the known true one, over the bins with a
+/// target above 0.1.
+struct fit_truth {
+    double rms;              ///< of Φ − Φ_true [k_B T_0]
+    double ramp;             ///< A of the ramp A(1 − r/r_c) that explains most of it [k_B T_0]
+    double rms_without_ramp; ///< of what is left
+};
+struct fit_truth fit_output_truth(const struct fit_file *fit, const struct decoder *decoder,
+                                  const double *phi, size_t pair);

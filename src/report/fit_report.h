@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What a finished fit says on the terminal.
+#pragma once
+
+#include "report/fit_output.h"
+#include "report/progress.h"
+
+/// How far the fit came from its first iteration, the parameters of a formula, and what the
+/// verification found.
+void fit_report_say(struct progress *to, const struct fit_file *fit, const struct decoder *decoder,
+                    const struct fit_result *result);

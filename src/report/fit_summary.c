@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/fit_output.h"
+
+#include "mesofit.h"
+#include "observe/kirkwood_buff.h"
+#include "report/fit_change.h"
+
+#include <math.h>
+
+struct fit_truth fit_output_truth(const struct fit_file *fit, const struct decoder *decoder,
+                                  const double *phi, size_t pair) {
+    const struct potential_grid *grid = &decoder->potential;
+    const struct curve *curve = scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair);
+    double count = 0, squares = 0, with_ramp = 0, ramp_squares = 0;
+    for (size_t n = 0; n < grid->known; n++) {
+        const size_t point = grid->known_point[n];
+        if (point / (grid->bins + 1) != pair ||
+            !potential_grid_well_known(&fit->problem, grid->known_bin[n]))
+            continue;
+        const double difference = phi[point] - curve_value(curve, grid->r[point]);
+        const double ramp = potential_grid_ramp(grid, point);
+        count += 1;
+        squares += difference * difference;
+        with_ramp += difference * ramp;
+        ramp_squares += ramp * ramp;
+    }
+    const double amplitude = with_ramp / ramp_squares;
+    return (struct fit_truth){
+        .rms = sqrt(squares / count),
+        .ramp = amplitude,
+        .rms_without_ramp = sqrt(fmax(0, squares - amplitude * with_ramp) / count),
+    };
+}
+
+/// rms of ω − ω_true over the points that the data can see, relative to the largest ω_true.
+static double weight_truth(const struct fit_file *fit, const struct decoder *decoder,
+                           const double *omega) {
+    double squares = 0, largest = 0, count = 0;
+    // Between the cutoffs, at which a weight may end in a step.
+    for (size_t k = 1; k + 1 < WEIGHT_POINTS; k++) {
+        const double r = decoder->weight.r[k];
+        const double truth =
+            curve_value(scene_law_curve(&fit->unknown[UNKNOWN_WEIGHT].truth, 0), r);
+        largest = fmax(largest, truth);
+        // Closer pairs than the target follows do not exist.
+        if (fit->targets.given[GOAL_ETD] && r < fit->targets.etd.grid.r_minimum)
+            continue;
+        squares += (omega[k] - truth) * (omega[k] - truth);
+        count += 1;
+    }
+    return sqrt(squares / count) / largest;
+}
+
+/// A number that is not known is left out.
+static void put_known(struct json_writer *writer, const char *key, double value) {
+    if (isfinite(value))
+        json_put_number(writer, key, value);
+}
+
+/// "etd_rmse", "etd_rmse_error", "etd_noise", and so on for every target.
+static void put_distances(struct json_writer *writer, const struct fit_file *fit,
+                          const struct verification *v) {
+    char key[64];
+    for (int kind = 0; kind < GOALS; kind++) {
+        if (!fit->targets.given[kind])
+            continue;
+        snprintf(key, sizeof key, "%s_rmse", goals_names[kind]);
+        put_known(writer, key, v->distance[kind].rms);
+        snprintf(key, sizeof key, "%s_rmse_error", goals_names[kind]);
+        put_known(writer, key, v->distance_error[kind]);
+        snprintf(key, sizeof key, "%s_noise", goals_names[kind]);
+        json_put_number(writer, key, v->distance[kind].noise);
+    }
+}
+
+static void put_diffusion(struct json_writer *writer, const struct fit_file *fit,
+                          const struct verification *v) {
+    const struct units *units = &fit->scene.units;
+    if (!goals_ask(&fit->problem.compared, GOAL_DIFFUSION))
+        return;
+    const double value = *v->observed.value[GOAL_DIFFUSION];
+    const double error = *v->observed.error[GOAL_DIFFUSION];
+    put_known(writer, "diffusion", value);
+    if (error > 0) // one replica of one window has none
+        put_known(writer, "diffusion_error", error);
+    json_put_number(writer, "diffusion_fit_begin", v->diffusion_begin);
+    json_put_number(writer, "diffusion_fit_end", v->diffusion_end);
+    if (units_known(units)) {
+        const double unit = units_diffusion_cm2_per_s(units);
+        json_put_number(writer, "diffusion_cm2_per_s", value * unit);
+        if (error > 0)
+            put_known(writer, "diffusion_error_cm2_per_s", error * unit);
+    }
+}
+
+/// What part of a curve's variance its widest direction is, and of a potential's how much of that
+/// is the ramp 1 − r/r_c, which moves the pressure and hardly g(r).
+static void put_flat(struct json_writer *writer, enum unknown_kind kind,
+                     const struct decoder *decoder, const struct fit_result *result) {
+    const size_t points = decoder_points(decoder, kind);
+    const double *r = decoder_r(decoder, kind), *flat = result->curve_flat[kind];
+    double all = 0, widest = 0, ramps = 0, product = 0;
+    char key[64];
+    for (size_t k = 0; flat && k < points; k++) {
+        const double ramp = 1 - r[k] / r[points - 1], error = result->curve_error[kind][k];
+        if (!isfinite(flat[k]) || !isfinite(error))
+            continue;
+        all += error * error;
+        widest += flat[k] * flat[k];
+        ramps += ramp * ramp;
+        product += ramp * flat[k];
+    }
+    if (!(all > 0))
+        return;
+    snprintf(key, sizeof key, "%s_flat_share", inverse_unknown_names[kind]);
+    json_put_number(writer, key, fmin(1, widest / all));
+    if (kind == UNKNOWN_POTENTIAL)
+        json_put_number(writer, "potential_flat_is_ramp", product * product / (widest * ramps));
+}
+
+/// What g(r) leaves open.
+static void put_ramp(struct json_writer *writer, const struct inverse_ramp *ramp) {
+    if (!(ramp->error > 0))
+        return;
+    put_known(writer, "ramp_error", ramp->error);
+    put_known(writer, "ramp_pressure", ramp->pressure);
+    put_known(writer, "pressure_left_open", ramp->pressure_open);
+    put_known(writer, "directions", ramp->directions);
+    put_known(writer, "directions_of", ramp->bins);
+}
+
+/// "parameters": {"weight": {"sigma": {"value": 3.0, "error": 0.1}, …}} of a weight that is a
+/// formula.
+static void put_parameters(struct json_writer *writer, const struct fit_file *fit,
+                           const struct inverse_parameter *parameter) {
+    const struct unknown_parameters *p = &fit->unknown[UNKNOWN_WEIGHT].parameters;
+    if (!fit->unknown[UNKNOWN_WEIGHT].wanted || p->shape != INVERSE_CURVE_POWER)
+        return;
+    json_begin(writer, "parameters");
+    json_begin(writer, inverse_unknown_names[UNKNOWN_WEIGHT]);
+    for (int k = 0; k < INVERSE_PARAMETERS; k++) {
+        const char *bound = decoder_parameter_bound(p, k, parameter[k].value);
+        json_begin(writer, inverse_fixed_fields[k].name);
+        put_known(writer, "value", parameter[k].value);
+        if (isnan(p->fixed[k]))
+            put_known(writer, "error", parameter[k].error);
+        else
+            json_put_text(writer, "fixed", "yes");
+        if (bound)
+            json_put_text(writer, "bound", bound);
+        json_end(writer);
+    }
+    json_end(writer);
+    json_end(writer);
+}
+
+/// "start": {"error": 0.11, "potential": {"change": 0.05, "well": -0.45, "well_at": 0.99}, …}, the
+/// first iteration, and what the fit changed by since.
+static void put_start(struct json_writer *writer, const struct decoder *decoder,
+                      const struct fit_result *result) {
+    char name[DECODER_NAME_SIZE];
+    json_begin(writer, "start");
+    put_known(writer, "error", result->first_error);
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        for (size_t n = 0; result->first[kind] && n < decoder_curve_count(decoder, kind); n++) {
+            const struct fit_change change =
+                fit_change_find(decoder, kind, n, result->first[kind], result->curve[kind]);
+            decoder_curve_name(decoder, kind, n, name);
+            json_begin(writer, name);
+            put_known(writer, "change", change.rms);
+            if (kind == UNKNOWN_POTENTIAL) {
+                put_known(writer, "well", change.first_well);
+                put_known(writer, "well_at", change.first_well_at);
+                put_known(writer, "well_now", change.well);
+                put_known(writer, "well_now_at", change.well_at);
+            }
+            json_end(writer);
+        }
+    json_end(writer);
+}
+
+/// "truth_rms" and so on, in a mixture "truth_rms_A-B".
+static void put_potential_truth(struct json_writer *writer, const struct fit_file *fit,
+                                const struct decoder *decoder, const double *phi, size_t pair) {
+    static const char *const names[] = {"truth_rms", "truth_ramp", "truth_rms_without_ramp"};
+    const struct fit_truth truth = fit_output_truth(fit, decoder, phi, pair);
+    const double values[] = {truth.rms, truth.ramp, truth.rms_without_ramp};
+    char kind[COMPOSITION_PAIR_NAME_SIZE], key[COMPOSITION_PAIR_NAME_SIZE + 32];
+    composition_pair_name(&fit->scene.setup.composition, (int)pair, kind);
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        snprintf(key, sizeof key, "%s%s%s", names[k], kind[0] ? "_" : "", kind);
+        put_known(writer, key, values[k]);
+    }
+}
+
+static void put_truth(struct json_writer *writer, const struct fit_file *fit,
+                      const struct decoder *decoder, const struct fit_result *result) {
+    const double *phi = result->curve[UNKNOWN_POTENTIAL], *omega = result->curve[UNKNOWN_WEIGHT];
+    for (size_t pair = 0; phi && pair < decoder->potential.pairs; pair++)
+        if (scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair))
+            put_potential_truth(writer, fit, decoder, phi, pair);
+    if (omega && fit->unknown[UNKNOWN_WEIGHT].truth.curves > 0)
+        put_known(writer, "truth_error", weight_truth(fit, decoder, omega));
+}
+
+/// What the targets g(r) were divided by. In a mixture those that the file states are left out.
+static void put_normalisation(struct json_writer *writer, const struct fit_file *fit) {
+    const struct normalisation *found = &fit->targets.normalisation;
+    const double given = fit->targets.rdf[0].parameters.normalisation;
+    const bool mixed = composition_is_mixed(&fit->scene.setup.composition);
+    if (!fit->targets.given[GOAL_RDF])
+        return;
+    json_put_number(writer, "normalisation", !mixed && given > 0 ? given : found->factor);
+    json_put_number(writer, "normalisation_error", !mixed && given > 0 ? 0 : found->error);
+}
+
+/// S(0) of the target and of the result, in three dimensions and of beads that are alike.
+static void put_kirkwood_buff(struct json_writer *writer, const struct fit_file *fit,
+                              const struct verification *v) {
+    const struct box *box = &fit->scene.setup.box;
+    const struct rdf_bins *bins = &fit->targets.rdf[0].bins;
+    const size_t count = (size_t)fit->scene.setup.placement.count;
+    if (!fit->targets.given[GOAL_RDF] || box->dimensions != 3 ||
+        composition_is_mixed(&fit->scene.setup.composition))
+        return;
+    const struct kirkwood_buff target =
+        kirkwood_buff_integrate(bins, fit->targets.rdf_g, fit->targets.rdf_error, box, count);
+    const struct kirkwood_buff found = kirkwood_buff_integrate(
+        bins, v->observed.value[GOAL_RDF], v->observed.error[GOAL_RDF], box, count);
+    put_known(writer, "target_kirkwood_buff", target.integral);
+    put_known(writer, "target_kirkwood_buff_error", target.integral_error);
+    put_known(writer, "kirkwood_buff", found.integral);
+    put_known(writer, "kirkwood_buff_error", found.integral_error);
+    put_known(writer, "target_compressibility", target.compressibility);
+    put_known(writer, "target_compressibility_error", target.compressibility_error);
+    put_known(writer, "compressibility", found.compressibility);
+    put_known(writer, "compressibility_error", found.compressibility_error);
+}
+
+static void put_verification(struct json_writer *writer, const struct fit_file *fit,
+                             const struct verification *v) {
+    const struct thermodynamics_summary *t = &v->thermodynamics;
+    if (v->warning[0])
+        json_put_text(writer, "warning", v->warning);
+    put_distances(writer, fit, v);
+    put_diffusion(writer, fit, v);
+    put_kirkwood_buff(writer, fit, v);
+    json_put_number(writer, "temperature", t->temperature);
+    json_put_number(writer, "temperature_error", t->temperature_error);
+    put_known(writer, "temperature_configurational", t->temperature_configurational);
+    put_known(writer, "temperature_configurational_error", t->temperature_configurational_error);
+    json_put_number(writer, "potential_energy", t->potential_energy);
+    json_put_number(writer, "potential_energy_error", t->potential_energy_error);
+    json_put_number(writer, "pressure", t->pressure);
+    json_put_number(writer, "pressure_error", t->pressure_error);
+    json_put_number(writer, "verification_steps", (double)v->engine_steps);
+    units_put(&fit->scene.units, writer, t->potential_energy, t->pressure);
+}
+
+enum status fit_output_summary(const struct fit_file *fit, const struct decoder *decoder,
+                               const struct fit_result *result, const struct run_folder *folder) {
+    struct json_writer *writer = json_writer_create();
+    char path[OUTPUT_PATH_SIZE];
+    json_put_text(writer, "status",
+                  result->status != STATUS_OK ? status_name(result->status)
+                  : result->settled           ? "converged"
+                                              : "finished");
+    if (result->reason[0])
+        json_put_text(writer, "reason", result->reason);
+    json_put_text(writer, "method", fit->method->name);
+    json_put_text(writer, "method_summary", fit->method->summary);
+    json_put_number(writer, "seconds", result->seconds);
+    json_put_number(writer, "threads", fit->problem.threads);
+    json_put_number(writer, "iterations", (double)result->iterations);
+    json_put_number(writer, "evaluations", (double)result->evaluations);
+    json_put_number(writer, "engine_steps", (double)result->engine_steps);
+    put_known(writer, "error", result->error);
+    if (result->verification)
+        put_verification(writer, fit, result->verification);
+    put_normalisation(writer, fit);
+    put_truth(writer, fit, decoder, result);
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        if (result->curve[kind])
+            put_flat(writer, kind, decoder, result);
+    put_ramp(writer, &result->ramp);
+    put_parameters(writer, fit, result->parameter);
+    put_start(writer, decoder, result);
+    if (fit->targets.given[GOAL_ETD])
+        json_put_number(writer, "etd_cells_left_out", (double)fit->targets.etd.left_out);
+    json_put_number(writer, "seed", (double)fit->heading.seed);
+    json_put_text(writer, "version", MESOFIT_VERSION);
+    run_folder_file(folder, "summary.json", path);
+    const enum status status = json_write(writer, path);
+    json_writer_free(writer);
+    return status;
+}

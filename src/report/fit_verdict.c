@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/fit_verdict.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/// A kinetic temperature farther off than this is the time step's doing, and one by the positions
+/// that is `cold` and three errors off.
+static const double hot = 0.05, cold = 0.005;
+
+/// What is the likely cause.
+static const char *find_cause(const struct thermodynamics_summary *found, double temperature) {
+    const double off = fabs(found->temperature_configurational - temperature);
+    if (fabs(found->temperature / temperature - 1) > hot)
+        return "the potential is too rough for this time step: set a shorter "
+               "\"verification.time_step\"";
+    if (found->pressure < 0)
+        return "a liquid under tension tears: g(r) leaves the pressure open, so give it as a "
+               "second target";
+    if (off > fmax(cold * temperature, 3 * found->temperature_configurational_error))
+        return "the temperature by the positions is off, too: set a shorter "
+               "\"verification.time_step\"";
+    return "longer \"equilibration\" of either, or more \"particles\", may tell why";
+}
+
+bool fit_verdict_contradicts(const struct verification *verification, bool pressure_is_fitted,
+                             double temperature, double noise_margin,
+                             char reason[INVERSE_REASON_SIZE]) {
+    const struct goal_distance *rdf = &verification->distance[GOAL_RDF];
+    const struct thermodynamics_summary *found = &verification->thermodynamics;
+    const struct goal_distance *pressure = &verification->distance[GOAL_PRESSURE];
+    if (pressure_is_fitted && pressure->rms > noise_margin * pressure->noise) {
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "the verification's pressure, %.4g, is off by %.2g (%.2g by statistics): its time "
+                 "step may be too long",
+                 found->pressure, pressure->rms, pressure->noise);
+        return true;
+    }
+    if (!(rdf->rms > noise_margin * rdf->noise))
+        return false;
+    snprintf(reason, INVERSE_REASON_SIZE,
+             "the fit's samples agree with g(r), its verification is off by %.2g (%.2g by "
+             "statistics) at T = %.3g, pressure %.3g: %s",
+             rdf->rms, rdf->noise, found->temperature, found->pressure,
+             find_cause(found, temperature));
+    return true;
+}
+
+bool fit_verdict_is_worse(const struct verification *verification, const struct goals *goals,
+                          double error, double variance, char reason[INVERSE_REASON_SIZE]) {
+    static const double deviations = 5, part = 0.25;
+    const double verified = goals_error(goals, verification->distance);
+    const double own = goals_variance(goals, verification->distance);
+    if (!(verified > error + deviations * sqrt(variance + own) && verified > (1 + part) * error))
+        return false;
+    snprintf(
+        reason, INVERSE_REASON_SIZE,
+        "the fit's own error is %.2g +- %.1g, that of its verification %.2g +- %.1g: its "
+        "simulations "
+        "were too short, or too coarse in time: longer \"equilibration\", more \"samples\" or a "
+        "shorter time step may tell why",
+        error, sqrt(variance), verified, sqrt(own));
+    return true;
+}

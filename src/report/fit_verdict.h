@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Whether the verification bears out a fit that took itself for converged.
+///
+/// The samples of an inversion are of another size, and by moves that know no time step: they can
+/// agree with g(r) where a simulation does not. A liquid under tension holds in a small box and
+/// tears in a large one; a rough potential heats a simulation of too long a step.
+#pragma once
+
+#include "problem/verify.h"
+
+/// Why the verified g(r), or the pressure if it was fitted, is not what the fit says it is, into
+/// `reason`.
+/// @param[in] noise_margin  either may be off by this many times its statistical error
+/// Returns whether there is something to say. Tested: test_fit_verdict.
+bool fit_verdict_contradicts(const struct verification *verification, bool pressure_is_fitted,
+                             double temperature, double noise_margin,
+                             char reason[INVERSE_REASON_SIZE]);
+
+/// Why the verified error of all targets is not the one that a method measured itself: it is larger
+/// by five standard errors of the difference and by a quarter. The best of many candidates is a
+/// lucky draw of one to two standard errors, and a finer time step of the verification makes some
+/// per cent.
+/// @param[in] error, variance  goals_error by the method, and its variance
+/// Returns whether there is something to say. Tested: test_fit_verdict.
+bool fit_verdict_is_worse(const struct verification *verification, const struct goals *goals,
+                          double error, double variance, char reason[INVERSE_REASON_SIZE]);

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/history.h"
+
+#include "base/memory.h"
+#include "io/data_table.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { COMMON = 5, MOST_COLUMNS = COMMON + INVERSE_EXTRA };
+
+enum status history_init(struct history *history, const struct inverse_method *method,
+                         const size_t points[UNKNOWNS], size_t capacity) {
+    enum status status = STATUS_OK;
+    *history = (struct history){.capacity = capacity};
+    while (method->columns[history->extra])
+        history->extra++;
+    NEW_ARRAY(history->rows, capacity * (COMMON + history->extra));
+    NEW_ARRAY(history->seconds, capacity);
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        history->points[kind] = points[kind];
+        if (points[kind] > 0)
+            NEW_ARRAY(history->curve[kind], capacity * points[kind]);
+    }
+done:
+    return status;
+}
+
+double history_first_error(const struct history *history) {
+    return history->iterations > 0 ? history->rows[3] : NAN;
+}
+
+void history_clear(struct history *history) {
+    memory_free(history->rows);
+    memory_free(history->seconds);
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        memory_free(history->curve[kind]);
+    *history = (struct history){0};
+}
+
+void history_add(struct history *history, const struct inverse_step *step, double seconds) {
+    const size_t k = history->iterations++;
+    double *row = history->rows + k * (COMMON + history->extra);
+    row[0] = (double)step->iteration;
+    row[1] = (double)step->evaluations;
+    row[2] = (double)step->engine_steps;
+    row[3] = step->error;
+    row[4] = step->noise;
+    memcpy(row + COMMON, step->extra, history->extra * sizeof *row);
+    history->seconds[k] = seconds;
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        if (history->points[kind] > 0)
+            memcpy(history->curve[kind] + k * history->points[kind], step->curve[kind],
+                   history->points[kind] * sizeof(double));
+}
+
+/// Write a row-major table of `rows` by `columns` numbers, transposed into columns.
+static enum status write_transposed(const char *path, const double *values, size_t rows,
+                                    size_t columns, const struct data_column *first,
+                                    size_t first_count, const char *const *names) {
+    enum status status = STATUS_OK;
+    double *transposed = NULL;
+    struct data_column *column = NULL;
+    NEW_ARRAY(transposed, rows * columns);
+    NEW_ARRAY(column, first_count + columns);
+    for (size_t k = 0; k < first_count; k++)
+        column[k] = first[k];
+    for (size_t c = 0; c < columns; c++) {
+        for (size_t k = 0; k < rows; k++)
+            transposed[c * rows + k] = values[k * columns + c];
+        column[first_count + c] = (struct data_column){names[c], transposed + c * rows, NULL};
+    }
+    CHECK(data_table_write(path, NULL, column, first_count + columns, rows));
+done:
+    memory_free(transposed);
+    memory_free(column);
+    return status;
+}
+
+static enum status write_history(const struct history *history, const struct inverse_method *method,
+                                 const struct run_folder *folder) {
+    const char *names[MOST_COLUMNS] = {"iteration", "evaluations", "engine_steps", "error[1]",
+                                       "noise[1]"};
+    char path[OUTPUT_PATH_SIZE];
+    for (size_t k = 0; k < history->extra; k++)
+        names[COMMON + k] = method->columns[k];
+    run_folder_file(folder, "history.tsv", path);
+    return write_transposed(path, history->rows, history->iterations, COMMON + history->extra, NULL,
+                            0, names);
+}
+
+static enum status write_timing(const struct history *history, const struct run_folder *folder) {
+    enum status status = STATUS_OK;
+    double *iteration = NULL;
+    char path[OUTPUT_PATH_SIZE];
+    NEW_ARRAY(iteration, history->iterations);
+    for (size_t k = 0; k < history->iterations; k++)
+        iteration[k] = history->rows[k * (COMMON + history->extra)];
+    const struct data_column columns[] = {{"iteration", iteration, NULL},
+                                          {"seconds[s]", history->seconds, "%.3f"}};
+    run_folder_file(folder, "timing.tsv", path);
+    CHECK(data_table_write(path, NULL, columns, 2, history->iterations));
+done:
+    memory_free(iteration);
+    return status;
+}
+
+/// A curve of an unknown: one column an iteration, named by its number.
+static enum status write_curve(const struct history *history, const struct decoder *decoder,
+                               enum unknown_kind kind, size_t curve,
+                               const struct run_folder *folder) {
+    enum { NAME_SIZE = 24 };
+    enum status status = STATUS_OK;
+    const size_t points = history->points[kind] / decoder_curve_count(decoder, kind);
+    struct data_column *columns = NULL;
+    char *names = NULL;
+    char path[OUTPUT_PATH_SIZE], name[DECODER_NAME_SIZE], file[DECODER_NAME_SIZE + 16];
+    NEW_ARRAY(columns, history->iterations + 1);
+    NEW_ARRAY(names, history->iterations * NAME_SIZE);
+    columns[0] = (struct data_column){"r[lambda]", decoder_r(decoder, kind) + curve * points, NULL};
+    for (size_t k = 0; k < history->iterations; k++) {
+        snprintf(names + k * NAME_SIZE, NAME_SIZE, "%zu", k);
+        columns[k + 1] = (struct data_column){
+            names + k * NAME_SIZE,
+            history->curve[kind] + k * history->points[kind] + curve * points, "%.6g"};
+    }
+    decoder_curve_name(decoder, kind, curve, name);
+    snprintf(file, sizeof file, "%s_history.tsv", name);
+    run_folder_file(folder, file, path);
+    CHECK(data_table_write(path, NULL, columns, history->iterations + 1, points));
+done:
+    memory_free(columns);
+    memory_free(names);
+    return status;
+}
+
+enum status history_write(const struct history *history, const struct inverse_method *method,
+                          const struct decoder *decoder, const struct run_folder *folder) {
+    TRY(write_history(history, method, folder));
+    TRY(write_timing(history, folder));
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        for (size_t curve = 0;
+             history->points[kind] > 0 && curve < decoder_curve_count(decoder, kind); curve++)
+            TRY(write_curve(history, decoder, kind, curve, folder));
+    return STATUS_OK;
+}
+
+size_t history_spans(struct history *history, struct memory_span *spans) {
+    const size_t columns = COMMON + history->extra, n = history->capacity;
+    size_t count = 0;
+    spans[count++] = (struct memory_span){&history->iterations, sizeof history->iterations};
+    spans[count++] = (struct memory_span){history->rows, n * columns * sizeof(double)};
+    spans[count++] = (struct memory_span){history->seconds, n * sizeof(double)};
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        if (history->points[kind] > 0)
+            spans[count++] = (struct memory_span){history->curve[kind],
+                                                  n * history->points[kind] * sizeof(double)};
+    return count;
+}

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The iterations of a fit: history.tsv, timing.tsv, and potential_history.tsv or
+/// weight_history.tsv.
+///
+/// The seconds stand in a file of their own, since everything in history.tsv is the same bits for
+/// any number of threads and any restart.
+#pragma once
+
+#include "problem/decoder.h"
+#include "report/run_folder.h"
+
+struct history {
+    size_t iterations, capacity;
+    size_t extra;            ///< columns of the method's own
+    size_t points[UNKNOWNS]; ///< of the curves; 0: not fitted
+    double *rows;    ///< shape [capacity, 5 + extra]: iteration, evaluations, engine_steps, …
+    double *seconds; ///< shape [capacity]
+    double *curve[UNKNOWNS]; ///< shape [capacity, points]
+};
+
+/// Room for `capacity` iterations of a method. Fails: NO_MEMORY.
+enum status history_init(struct history *history, const struct inverse_method *method,
+                         const size_t points[UNKNOWNS], size_t capacity) MUST_USE;
+/// Error of the first iteration; NaN before it.
+double history_first_error(const struct history *history);
+
+void history_clear(struct history *history);
+
+/// Append an iteration.
+void history_add(struct history *history, const struct inverse_step *step, double seconds);
+
+/// Write the tables.
+enum status history_write(const struct history *history, const struct inverse_method *method,
+                          const struct decoder *decoder, const struct run_folder *folder) MUST_USE;
+
+/// Pieces for a checkpoint.
+enum { HISTORY_SPANS = 3 + UNKNOWNS };
+size_t history_spans(struct history *history, struct memory_span *spans);

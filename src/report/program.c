@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/program.h"
+
+#include "base/clock.h"
+#include "io/output.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+enum {
+    EXIT_NOT_FOUND = 127,   ///< of the child, when there is no such program
+    EXIT_NOT_STARTED = 126, ///< of the child, when it cannot run the program
+};
+
+// Running -----------------------------------------------------------------------------------------
+
+/// In the child: nothing but calls that are safe after a fork of a program with threads.
+static void become(const char *folder, const char *const *words, enum program_says says,
+                   const int ends[2]) {
+    setpgid(0, 0); // a group of its own, so that it can be stopped as a whole
+    const int nothing = open("/dev/null", O_RDWR);
+    const int out = says == PROGRAM_EVERYTHING ? ends[1] : nothing;
+    if (nothing >= 0 && dup2(nothing, STDIN_FILENO) >= 0 && dup2(out, STDOUT_FILENO) >= 0 &&
+        dup2(ends[1], STDERR_FILENO) >= 0 && close(ends[0]) == 0 && chdir(folder) == 0)
+        execvp(words[0], (char *const *)words);
+    _exit(errno == ENOENT ? EXIT_NOT_FOUND : EXIT_NOT_STARTED);
+}
+
+/// Milliseconds until the clock shows `end`; −1 if that is never.
+static int time_left(double end) {
+    const double seconds = end - clock_seconds();
+    return isinf(end) ? -1 : seconds > 0 ? (int)ceil(1e3 * seconds) : 0;
+}
+
+/// Read to the end and keep the last size − 1 bytes as a text; false if it does not end in time.
+static bool read_tail(int file, double end, char *text, size_t size) {
+    char chunk[512];
+    size_t used = 0;
+    struct pollfd ready = {.fd = file, .events = POLLIN};
+    for (;;) {
+        const int events = poll(&ready, 1, time_left(end));
+        if (events < 0 && errno == EINTR)
+            continue;
+        if (events == 0)
+            return false;
+        const ssize_t count = read(file, chunk, sizeof chunk);
+        if (count < 0 && errno == EINTR)
+            continue;
+        if (count <= 0)
+            return true;
+        const size_t room = size - 1 - (size_t)count;
+        const size_t kept = used < room ? used : room;
+        memmove(text, text + used - kept, kept);
+        memcpy(text + kept, chunk, (size_t)count);
+        used = kept + (size_t)count;
+        text[used] = '\0';
+    }
+}
+
+/// Cut `text` behind its last line that is not empty, and return that line.
+static const char *last_line(char *text) {
+    size_t length = strlen(text);
+    while (length > 0 && strchr(" \t\n", text[length - 1]))
+        text[--length] = '\0';
+    const char *newline = strrchr(text, '\n');
+    return newline ? newline + 1 : text;
+}
+
+/// Wait until a program has ended, which one that has closed its streams may not have; false if it
+/// has not in time.
+static bool wait_for(pid_t child, double end, int *state) {
+    const struct timespec pause = {.tv_nsec = 2000000};
+    for (;;) {
+        const pid_t ended = waitpid(child, state, isinf(end) ? 0 : WNOHANG);
+        if (ended == child || (ended < 0 && errno != EINTR))
+            return true;
+        if (ended == 0 && time_left(end) == 0)
+            return false;
+        if (ended == 0)
+            nanosleep(&pause, NULL);
+    }
+}
+
+/// What became of a program that has ended.
+static enum status judge(const char *name, int state, char *text) {
+    if (WIFEXITED(state) && WEXITSTATUS(state) == 0)
+        return STATUS_OK;
+    if (WIFSIGNALED(state))
+        return status_fail(STATUS_IO, "%s was ended by signal %d", name, WTERMSIG(state));
+    if (WEXITSTATUS(state) == EXIT_NOT_FOUND)
+        return status_fail(STATUS_IO, "%s is not installed", name);
+    return status_fail(STATUS_IO, "%s failed: %s", name, text[0] ? last_line(text) : "no reason");
+}
+
+enum status program_run(const char *folder, const char *const *words, enum program_says says,
+                        double seconds, char *text, size_t size) {
+    int ends[2];
+    text[0] = '\0';
+    if (pipe(ends) != 0)
+        return status_fail(STATUS_IO, "cannot run %s: %s", words[0], strerror(errno));
+    const double end = seconds > 0 ? clock_seconds() + seconds : INFINITY;
+    const pid_t child = fork();
+    if (child == 0)
+        become(folder, words, says, ends);
+    const int error = errno;
+    close(ends[1]);
+    int state = -1;
+    const bool ended =
+        child > 0 && read_tail(ends[0], end, text, size) && wait_for(child, end, &state);
+    close(ends[0]);
+    if (child < 0)
+        return status_fail(STATUS_IO, "cannot run %s: %s", words[0], strerror(error));
+    if (!ended) {
+        kill(-child, SIGKILL); // with the programs that it has started
+        wait_for(child, INFINITY, &state);
+        return status_fail(STATUS_IO, "%s had not ended after %g s and was stopped", words[0],
+                           seconds);
+    }
+    return judge(words[0], state, text);
+}
+
+// Where this program's files are ------------------------------------------------------------------
+
+static bool has_file(const char *folder, const char *file) {
+    char path[OUTPUT_PATH_SIZE + 64];
+    snprintf(path, sizeof path, "%s/%s", folder, file);
+    return access(path, R_OK) == 0;
+}
+
+enum status program_find_folder(char *path, size_t size, const char *name, const char *file) {
+    char folder[OUTPUT_PATH_SIZE];
+    const ssize_t length = readlink("/proc/self/exe", folder, sizeof folder - 1);
+    if (length < 0)
+        return status_fail(STATUS_IO, "cannot read /proc/self/exe: %s", strerror(errno));
+    folder[length] = '\0';
+    for (char *slash = strrchr(folder, '/'); slash; slash = strrchr(folder, '/')) {
+        *slash = '\0';
+        snprintf(path, size, "%s/%s", folder, name);
+        if (has_file(path, file))
+            return STATUS_OK;
+        snprintf(path, size, "%s/share/mesofit/%s", folder, name);
+        if (has_file(path, file))
+            return STATUS_OK;
+    }
+    return status_fail(STATUS_IO, "no folder %s with %s near the program", name, file);
+}
+
+void program_begin_again(char **words) {
+    if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT"))
+        return;
+    if (setenv("GOMP_SPINCOUNT", "1000", 1) == 0)
+        execv("/proc/self/exe", words);
+}

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/result.h"
+
+#include "base/memory.h"
+#include "problem/goals.h"
+#include "io/json.h"
+#include "io/output.h"
+#include "io/text_file.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { PATH_SIZE = OUTPUT_PATH_SIZE + 64 };
+
+#define TEXT(member)                                                                               \
+    { .name = #member, .type = FIELD_TEXT, .offset = offsetof(struct result_summary, member) }
+#define NUMBER(member, its_unit)                                                                   \
+    {                                                                                              \
+        .name = #member, .type = FIELD_NUMBER, .offset = offsetof(struct result_summary, member),  \
+        .initial = NAN, .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = its_unit                  \
+    }
+
+#define DISTANCE(kind, its_unit)                                                                   \
+    NUMBER(kind##_rmse, its_unit), NUMBER(kind##_rmse_error, its_unit),                            \
+        NUMBER(kind##_noise, its_unit)
+#define MEAN(member, its_unit) NUMBER(member, its_unit), NUMBER(member##_error, its_unit)
+
+const struct field result_summary_fields[] = {
+    TEXT(status),
+    TEXT(method),
+    TEXT(version),
+    NUMBER(seconds, "s"),
+    NUMBER(threads, "1"),
+    NUMBER(iterations, "1"),
+    NUMBER(evaluations, "1"),
+    NUMBER(engine_steps, "1"),
+    DISTANCE(rdf, "1"),
+    DISTANCE(etd, "1"),
+    DISTANCE(vacf, "lambda^2/tau^2"),
+    DISTANCE(msd, "lambda^2"),
+    DISTANCE(diffusion, "lambda^2/tau"),
+    DISTANCE(pressure, "k_BT_0/lambda^3"),
+    MEAN(diffusion, "lambda^2/tau"),
+    NUMBER(diffusion_cm2_per_s, "cm^2/s"),
+    NUMBER(diffusion_error_cm2_per_s, "cm^2/s"),
+    NUMBER(truth_rms, "k_BT_0"),
+    NUMBER(truth_ramp, "k_BT_0"),
+    NUMBER(truth_rms_without_ramp, "k_BT_0"),
+    NUMBER(truth_error, "1"),
+    MEAN(temperature, "T_0"),
+    MEAN(temperature_configurational, "T_0"),
+    MEAN(potential_energy, "k_BT_0"),
+    MEAN(pressure, "k_BT_0/lambda^3"),
+    MEAN(kirkwood_buff, "lambda^3"),
+    MEAN(compressibility, "1"),
+    NUMBER(ramp_error, "k_BT_0"),
+    NUMBER(ramp_pressure, "1/lambda^3"),
+    NUMBER(pressure_left_open, "k_BT_0/lambda^3"),
+    NUMBER(directions, "1"),
+    NUMBER(seed, "1"),
+    FIELD_END,
+};
+
+/// Say what is wrong with the folder before a reader complains of a file in it.
+static enum status check_folder(const char *folder, const char *summary) {
+    struct stat about;
+    if (stat(folder, &about) != 0)
+        return status_fail(STATUS_IO, "%s: %s", folder, strerror(errno));
+    if (!S_ISDIR(about.st_mode))
+        return status_fail(STATUS_BAD_INPUT, "%s: not a folder", folder);
+    if (access(summary, F_OK) != 0)
+        return status_fail(STATUS_BAD_INPUT, "%s: missing, so this is no folder of a finished fit",
+                           summary);
+    return STATUS_OK;
+}
+
+/// True if the result was compared with any target.
+static bool has_distance(struct json_object *root) {
+    char key[64];
+    bool found = false;
+    for (int kind = 0; kind < GOALS; kind++) {
+        snprintf(key, sizeof key, "%s_rmse", goals_names[kind]);
+        found = json_has(root, key) || found;
+    }
+    return found;
+}
+
+static bool is_simulation(const struct result_summary *summary) {
+    return strcmp(summary->method, "simulate") == 0;
+}
+
+/// D of a simulation stands in an object of its own.
+static void read_simulated_diffusion(struct json_object *root, struct result_summary *summary) {
+    static const struct field fields[] = {
+        {.name = "diffusion_msd",
+         .type = FIELD_NUMBER,
+         .offset = offsetof(struct result_summary, diffusion),
+         .initial = NAN,
+         .minimum = -DBL_MAX,
+         .maximum = DBL_MAX,
+         .unit = ""},
+        {.name = "diffusion_msd_error",
+         .type = FIELD_NUMBER,
+         .offset = offsetof(struct result_summary, diffusion_error),
+         .initial = NAN,
+         .minimum = -DBL_MAX,
+         .maximum = DBL_MAX,
+         .unit = ""},
+        FIELD_END,
+    };
+    struct json_object motion = json_child(root, "motion", false);
+    json_fields(&motion, fields, summary);
+}
+
+/// λ stands in an object of its own, if it is known.
+static void read_length_unit(struct json_object *root, struct result_summary *summary) {
+    static const struct field fields[] = {NUMBER(length_unit_nm, "nm"), FIELD_END};
+    struct json_object physical = json_child(root, "physical", false);
+    json_fields(&physical, fields, summary);
+}
+
+/// Keys that are not in the table are left alone: a later version may write more.
+static enum status read_summary(struct result_summary *summary, const char *file) {
+    struct json_document *document;
+    TRY(json_open(&document, file));
+    struct json_object root = json_root(document);
+    json_fields(&root, result_summary_fields, summary);
+    read_length_unit(&root, summary);
+    if (is_simulation(summary))
+        read_simulated_diffusion(&root, summary);
+    else if (root.item && !has_distance(&root))
+        json_fault(&root, NULL, "not the result of a fit: there is no rdf_rmse or other rmse");
+    return json_close(document, STATUS_OK);
+}
+
+/// Cut `*text` behind its first line and step over it; NULL at the end.
+static char *take_line(char **text) {
+    char *line = *text;
+    if (*line == '\0')
+        return NULL;
+    char *end = line + strcspn(line, "\n");
+    *text = *end ? end + 1 : end;
+    *end = '\0';
+    return line;
+}
+
+static bool is_data(const char *line) {
+    const char *word = line + strspn(line, " \t\r");
+    return *word != '\0' && *word != '#';
+}
+
+/// A column of a table that is to be read.
+struct wish {
+    const char *name; ///< in the header, without its unit; NULL: go by the place
+    size_t place;     ///< from 1, if the header has no such name; 0: then it is nan
+};
+
+/// Places of the columns whose names the header has.
+static void find_places(struct wish *wishes, size_t count, const char *header) {
+    size_t place = 0;
+    for (const char *word = header + 1 + strspn(header + 1, " "); *word;) {
+        const size_t length = strcspn(word, "[\t\r");
+        place++;
+        for (size_t k = 0; k < count; k++)
+            if (wishes[k].name && strlen(wishes[k].name) == length &&
+                strncmp(wishes[k].name, word, length) == 0) {
+                wishes[k].place = place;
+                wishes[k].name = NULL; // the first one counts
+            }
+        word += strcspn(word, "\t");
+        word += *word == '\t';
+    }
+}
+
+static enum status read_row(double *row, const struct wish *wishes, size_t count, const char *line,
+                            const char *file, size_t number) {
+    size_t last = 0;
+    for (size_t k = 0; k < count; k++) {
+        row[k] = NAN;
+        last = wishes[k].place > last ? wishes[k].place : last;
+    }
+    for (size_t place = 1; place <= last; place++) {
+        char *end;
+        const double value = strtod(line, &end);
+        if (end == line || strchr(" \t\r", *end) == NULL)
+            return status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu is not a number", file, number,
+                               place);
+        for (size_t k = 0; k < count; k++)
+            if (wishes[k].place == place)
+                row[k] = value;
+        line = end;
+    }
+    return STATUS_OK;
+}
+
+/// Read the columns that `wishes` says, which learns from the header; others are left alone.
+static enum status read_table(struct result_table *table, const char *folder, const char *name,
+                              struct wish *wishes, size_t count) {
+    enum status status = STATUS_OK;
+    char file[PATH_SIZE], *text = NULL, *line;
+    size_t length = 0, most_rows = 1, number = 0;
+    snprintf(file, sizeof file, "%s/%s", folder, name);
+    CHECK(text_file_read(file, &text, &length));
+    for (size_t k = 0; k < length; k++)
+        most_rows += text[k] == '\n';
+    table->columns = count;
+    NEW_ARRAY(table->values, most_rows * count);
+    for (char *rest = text; (line = take_line(&rest));) {
+        number++;
+        if (is_data(line))
+            CHECK(
+                read_row(table->values + count * table->rows++, wishes, count, line, file, number));
+        else if (line[0] == '#')
+            find_places(wishes, count, line);
+    }
+    if (table->rows == 0)
+        status = status_fail(STATUS_BAD_INPUT, "%s: there is no row of numbers", file);
+done:
+    memory_free(text);
+    return status;
+}
+
+static bool is_there(const char *folder, const char *name) {
+    char file[PATH_SIZE];
+    snprintf(file, sizeof file, "%s/%s", folder, name);
+    return access(file, F_OK) == 0;
+}
+
+/// That of a simulation is r, g, g_error: a result without a target.
+static enum status read_rdf(struct result_table *table, const char *folder, bool simulated) {
+    struct wish fitted[] = {{NULL, 1}, {NULL, 2}, {NULL, 3}, {NULL, 4}, {NULL, 5}};
+    struct wish counted[] = {{NULL, 1}, {NULL, 0}, {NULL, 0}, {NULL, 2}, {NULL, 3}};
+    return is_there(folder, "rdf.tsv")
+               ? read_table(table, folder, "rdf.tsv", simulated ? counted : fitted, 5)
+               : STATUS_OK;
+}
+
+static enum status read_potential(struct result_table *table, const char *folder) {
+    struct wish wishes[] = {{NULL, 1}, {NULL, 2}, {"phi_error", 0}, {"truth", 0}};
+    return is_there(folder, "potential.tsv") ? read_table(table, folder, "potential.tsv", wishes, 4)
+                                             : STATUS_OK;
+}
+
+/// A weight without a column of errors was not fitted.
+static enum status read_omega(struct result_table *table, const char *folder) {
+    struct wish wishes[] = {{NULL, 1}, {NULL, 2}, {"omega_error", 0}, {"truth", 0}};
+    if (!is_there(folder, "omega.tsv"))
+        return STATUS_OK;
+    TRY(read_table(table, folder, "omega.tsv", wishes, 4));
+    if (wishes[2].place == 0) {
+        memory_free(table->values);
+        *table = (struct result_table){0};
+    }
+    return STATUS_OK;
+}
+
+static double seconds_at(const struct result_table *timing, double iteration) {
+    for (size_t row = 0; row < timing->rows; row++)
+        if (timing->values[2 * row] == iteration)
+            return timing->values[2 * row + 1];
+    return NAN;
+}
+
+/// history.tsv with the seconds of timing.tsv.
+static enum status read_course(struct result_table *table, const char *folder) {
+    enum { SECONDS = 3 };
+    enum status status = STATUS_OK;
+    struct result_table timing = {0};
+    struct wish wishes[] = {{NULL, 1}, {NULL, 2}, {NULL, 3}, {NULL, 0}, {NULL, 4}, {NULL, 5}};
+    struct wish times[] = {{NULL, 1}, {NULL, 2}};
+    CHECK(read_table(table, folder, "history.tsv", wishes, 6));
+    CHECK(read_table(&timing, folder, "timing.tsv", times, 2));
+    for (size_t row = 0; row < table->rows; row++) {
+        double *values = table->values + row * table->columns;
+        values[SECONDS] = seconds_at(&timing, values[0]);
+    }
+done:
+    memory_free(timing.values);
+    return status;
+}
+
+enum status result_read(struct result *result, const char *folder) {
+    enum status status = STATUS_OK;
+    char summary[PATH_SIZE];
+    snprintf(summary, sizeof summary, "%s/summary.json", folder);
+    *result = (struct result){0};
+    CHECK(check_folder(folder, summary));
+    CHECK(read_summary(&result->summary, summary));
+    const bool simulated = is_simulation(&result->summary);
+    CHECK(read_rdf(&result->rdf, folder, simulated));
+    CHECK(read_potential(&result->potential, folder));
+    CHECK(read_omega(&result->omega, folder));
+    if (!simulated)
+        CHECK(read_course(&result->course, folder));
+done:
+    if (status != STATUS_OK)
+        result_clear(result);
+    return status;
+}
+
+void result_clear(struct result *result) {
+    memory_free(result->rdf.values);
+    memory_free(result->potential.values);
+    memory_free(result->omega.values);
+    memory_free(result->course.values);
+    *result = (struct result){0};
+}

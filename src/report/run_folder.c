@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/run_folder.h"
+
+#include "io/json.h"
+#include "report/figures.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <fnmatch.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+/// Room for the name of any file behind the path of the folder.
+enum { NAME_ROOM = 320, LONGEST_FOLDER = OUTPUT_PATH_SIZE - NAME_ROOM };
+
+/// What a run writes beside used.json; with * the tables about the kinds of pairs of a mixture.
+static const char *const results[] = {
+    "summary.json",
+    "history.tsv",
+    "timing.tsv",
+    "potential.tsv",
+    "potential_*-*.tsv",
+    "potential_history.tsv",
+    "potential_flat.tsv",
+    "potential.pot",
+    "potential_*-*.pot",
+    "weight_flat.tsv",
+    "weight_history.tsv",
+    "omega.tsv",
+    "rdf.tsv",
+    "rdf_*-*.tsv",
+    "thermodynamics.tsv",
+    "motion.tsv",
+    "etd.tsv",
+    "etd_error.tsv",
+    "etd_bins.tsv",
+    "etd_cells.tsv",
+    "vacf.tsv",
+    "msd.tsv",
+    "pareto.tsv",
+    "pareto_history.tsv",
+    "pareto_weight.tsv",
+    "pareto_potential.tsv",
+    "force_covariance.tsv",
+    "pareto_potential_*-*.tsv",
+    "checkpoint.bin",
+};
+
+/// Whether a pattern is a file's name, the two * being names of types: a date is none.
+static bool fits(const char *pattern, const char *name) {
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
+    const char *star = strchr(pattern, '*');
+    if (fnmatch(pattern, name, 0) != 0)
+        return false;
+    if (star == NULL)
+        return true;
+    const char *first = name + (star - pattern), *end = first + strspn(first, letters);
+    if (end == first || *end != '-')
+        return false;
+    const char *second = end + 1, *dot = second + strspn(second, letters);
+    return dot > second && *dot == '.';
+}
+
+static int is_result(const struct dirent *entry) {
+    for (size_t k = 0; k < sizeof results / sizeof *results; k++)
+        if (fits(results[k], entry->d_name))
+            return 1;
+    return 0;
+}
+
+/// A result, but for the checkpoint, which the new run has replaced by its own.
+static int is_earlier(const struct dirent *entry) {
+    return is_result(entry) && strcmp(entry->d_name, "checkpoint.bin") != 0;
+}
+
+/// A result, or the settings.
+static int is_output(const struct dirent *entry) {
+    return is_result(entry) || strcmp(entry->d_name, "used.json") == 0;
+}
+
+/// "rdf.tsv.123.partial" and the like: what a process that was killed had begun to write.
+static int is_left_behind(const struct dirent *entry) {
+    struct dirent whole = *entry;
+    if (strcmp(entry->d_name, "used.json.resumed") == 0)
+        return 1;
+    char *end = strrchr(whole.d_name, '.');
+    if (end == NULL || strcmp(end, OUTPUT_PARTIAL) != 0)
+        return 0;
+    *end = '\0';
+    end = strrchr(whole.d_name, '.');
+    if (end == NULL || end[1] == '\0' || end[1 + strspn(end + 1, "0123456789")] != '\0')
+        return 0;
+    *end = '\0';
+    return is_output(&whole);
+}
+
+/// What to do with a file of the folder.
+static enum status remove_file(const char *path, const void *context) {
+    (void)context;
+    if (unlink(path) != 0 && errno != ENOENT)
+        return status_fail(STATUS_IO, "%s: %s", path, strerror(errno));
+    return STATUS_OK;
+}
+
+static enum status spare_input(const char *path, const void *context) {
+    return input_files_spare(context, path);
+}
+
+static enum status refuse_stranger(const char *path, const void *context) {
+    (void)context;
+    return status_fail(STATUS_BAD_INPUT,
+                       "%s is there, but no used.json, so no run wrote it: -o OTHER keeps it, "
+                       "--force replaces it",
+                       path);
+}
+
+/// Do something with every file of the folder that is one of those.
+static enum status with_files(const struct run_folder *folder, int (*is_one)(const struct dirent *),
+                              enum status (*act)(const char *path, const void *context),
+                              const void *context) {
+    enum status status = STATUS_OK;
+    struct dirent **entries;
+    const int count = scandir(folder->path, &entries, is_one, alphasort);
+    if (count < 0)
+        return status_fail(STATUS_IO, "%s: %s", folder->path, strerror(errno));
+    for (int k = 0; k < count; k++) {
+        char path[OUTPUT_PATH_SIZE];
+        run_folder_file(folder, entries[k]->d_name, path);
+        if (status == STATUS_OK)
+            status = act(path, context);
+        free(entries[k]);
+    }
+    free(entries);
+    return status;
+}
+
+// May it be written? ------------------------------------------------------------------------------
+
+static bool has(const struct run_folder *folder, const char *name) {
+    char path[OUTPUT_PATH_SIZE];
+    run_folder_file(folder, name, path);
+    return access(path, F_OK) == 0;
+}
+
+/// Whether the object in a JSON file has this key, with this text if one is given. A file that
+/// cannot be read has not.
+static bool says(const struct run_folder *folder, const char *name, const char *key,
+                 const char *text) {
+    char path[OUTPUT_PATH_SIZE];
+    struct json_document *document;
+    run_folder_file(folder, name, path);
+    if (json_open(&document, path) != STATUS_OK)
+        return false;
+    struct json_object root = json_root(document);
+    bool found = json_has(&root, key);
+    if (found && text) {
+        const char *said = json_choice(&root, key, NULL, NULL);
+        found = said && strcmp(said, text) == 0;
+    }
+    return json_close(document, STATUS_OK) == STATUS_OK && found;
+}
+
+/// Settings that cannot be read are taken for those of a fit, which is worth more.
+static bool is_simulation(const struct run_folder *folder) {
+    return says(folder, "used.json", "seed", NULL) && !says(folder, "used.json", "method", NULL);
+}
+
+/// Hours of work are not to be lost by a word: a fit goes by --force alone.
+static enum status check_replaced(const struct run_folder *folder, enum run_kind kind) {
+    if (!has(folder, "used.json"))
+        return with_files(folder, is_result, refuse_stranger, NULL);
+    const bool summary = has(folder, "summary.json"), saved = has(folder, "checkpoint.bin");
+    if (!summary && !saved)
+        return STATUS_OK;
+    if (is_simulation(folder))
+        return kind == RUN_SIMULATION
+                   ? STATUS_OK
+                   : status_fail(STATUS_BAD_INPUT,
+                                 "%s holds a simulation: --force replaces it, -o OTHER keeps it",
+                                 folder->path);
+    if (summary && !says(folder, "summary.json", "status", status_name(STATUS_INTERRUPTED)))
+        return status_fail(STATUS_BAD_INPUT,
+                           "%s holds a finished fit: --force replaces it, -o OTHER keeps it",
+                           folder->path);
+    return status_fail(STATUS_BAD_INPUT,
+                       "%s holds an unfinished fit: --resume goes on, --force begins anew",
+                       folder->path);
+}
+
+static enum status check_resumed(const struct run_folder *folder) {
+    char path[OUTPUT_PATH_SIZE];
+    run_folder_file(folder, "checkpoint.bin", path);
+    if (access(path, F_OK) == 0)
+        return STATUS_OK;
+    return status_fail(STATUS_IO, "%s: %s: there is nothing to resume", path, strerror(errno));
+}
+
+/// Find out now, and not after an hour, that the folder cannot be written.
+static enum status check_writable(const struct run_folder *folder) {
+    if (access(folder->path, W_OK | X_OK) == 0)
+        return STATUS_OK;
+    return status_fail(STATUS_IO, "%s: %s", folder->path, strerror(errno));
+}
+
+/// The system takes the lock back when the process ends, however it ends.
+static enum status lock(struct run_folder *folder) {
+    folder->lock = open(folder->path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (folder->lock < 0)
+        return status_fail(STATUS_IO, "%s: %s", folder->path, strerror(errno));
+    folder->locked = true;
+    if (flock(folder->lock, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
+        return STATUS_OK;
+    return status_fail(STATUS_BAD_INPUT, "%s: another process is running in this folder",
+                       folder->path);
+}
+
+static enum status choose(struct run_folder *folder, const char *input,
+                          const struct run_options *options) {
+    const char *slash = strrchr(input, '/');
+    const int length = options->folder
+                           ? snprintf(folder->path, sizeof folder->path, "%s", options->folder)
+                           : snprintf(folder->path, sizeof folder->path, "%.*sout",
+                                      slash ? (int)(slash - input + 1) : 0, input);
+    if (length >= 0 && length <= LONGEST_FOLDER)
+        return STATUS_OK;
+    return status_fail(STATUS_BAD_INPUT, "%.60s…: the path of a run's folder has at most %d bytes",
+                       folder->path, LONGEST_FOLDER);
+}
+
+enum status run_folder_open(struct run_folder *folder, enum run_kind kind, const char *input,
+                            const struct input_files *inputs, const struct run_options *options) {
+    TRY(choose(folder, input, options));
+    TRY(output_make_folder(folder->path));
+    TRY(check_writable(folder));
+    TRY(lock(folder));
+    // A run that goes on leaves used.json alone, which may then be its input.
+    TRY(with_files(folder, options->resume ? is_result : is_output, spare_input, inputs));
+    if (options->resume)
+        return check_resumed(folder);
+    return options->force ? STATUS_OK : check_replaced(folder, kind);
+}
+
+enum status run_folder_begin(const struct run_folder *folder, bool resume) {
+    TRY(with_files(folder, is_left_behind, remove_file, NULL));
+    return resume ? STATUS_OK : with_files(folder, is_earlier, remove_file, NULL);
+}
+
+void run_folder_close(struct run_folder *folder) {
+    if (folder->locked)
+        close(folder->lock);
+    folder->locked = false;
+}
+
+void run_folder_file(const struct run_folder *folder, const char *name, char *path) {
+    snprintf(path, OUTPUT_PATH_SIZE, "%.*s/%.*s", LONGEST_FOLDER, folder->path, NAME_ROOM - 2,
+             name);
+}
+
+void run_folder_rdf(const struct run_folder *folder, const struct composition *composition,
+                    int pair, char *path) {
+    char kind[COMPOSITION_PAIR_NAME_SIZE], name[COMPOSITION_PAIR_NAME_SIZE + 8];
+    composition_pair_name(composition, pair, kind);
+    snprintf(name, sizeof name, "rdf%s%s.tsv", kind[0] ? "_" : "", kind);
+    run_folder_file(folder, name, path);
+}
+
+void run_folder_draw(const struct run_folder *folder) {
+    if (figures_draw(folder->path) != STATUS_OK)
+        fprintf(stderr, "mesofit: warning: %s\n", status_message());
+}

@@ -1,0 +1,429 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "work/fit.h"
+
+#include "base/memory.h"
+#include "base/visible.h"
+#include "io/checkpoint.h"
+#include "report/fit_output.h"
+#include "report/fit_report.h"
+#include "report/fit_verdict.h"
+#include "report/history.h"
+#include "report/progress.h"
+#include "input/target_sanity.h"
+
+#include <math.h>
+#include <string.h>
+
+/// Seconds between checkpoints inside an iteration.
+static const double checkpoint_interval = 30;
+
+struct run {
+    struct run_folder folder;
+    struct progress progress;
+    struct fit_file fit;
+    struct decoder decoder;
+    void *state;
+    bool created;
+    struct history history;
+    uint64_t digest; ///< of used.json
+    double last_checkpoint;
+    double seconds_before;                           ///< of a run before a restart
+    double *curve[UNKNOWNS], *curve_error[UNKNOWNS]; ///< shape [decoder_points]
+    double *curve_flat[UNKNOWNS];                    ///< shape [INVERSE_FLAT, decoder_points]
+    double *without_ramp;                            ///< shape [decoder_points of Φ]
+    struct standing {
+        bool finished, converged, used_up; ///< as in struct inverse_step
+        uint64_t iterations, evaluations, engine_steps;
+        double error, variance, seconds;
+        struct inverse_ramp ramp;
+        struct inverse_parameter parameter[INVERSE_PARAMETERS];
+        char reason[INVERSE_REASON_SIZE];
+    } standing;
+};
+
+static double seconds(const struct run *run) {
+    return run->seconds_before + progress_seconds(&run->progress);
+}
+
+enum { MAX_SPANS = INVERSE_MAX_SPANS + HISTORY_SPANS + 2 + 3 * UNKNOWNS };
+
+static size_t run_spans(struct run *run, struct memory_span *spans) {
+    size_t n = run->fit.method->spans(run->state, spans);
+    n += history_spans(&run->history, spans + n);
+    spans[n++] = (struct memory_span){&run->standing, sizeof run->standing};
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        const size_t bytes = decoder_points(&run->decoder, kind) * sizeof(double);
+        if (bytes == 0)
+            continue;
+        spans[n++] = (struct memory_span){run->curve[kind], bytes};
+        spans[n++] = (struct memory_span){run->curve_error[kind], bytes};
+        spans[n++] = (struct memory_span){run->curve_flat[kind], INVERSE_FLAT * bytes};
+    }
+    const size_t points = decoder_points(&run->decoder, UNKNOWN_POTENTIAL);
+    if (points > 0)
+        spans[n++] = (struct memory_span){run->without_ramp, points * sizeof(double)};
+    return n;
+}
+
+static enum status save(struct run *run) {
+    struct memory_span spans[MAX_SPANS];
+    char path[OUTPUT_PATH_SIZE];
+    run_folder_file(&run->folder, "checkpoint.bin", path);
+    run->last_checkpoint = progress_seconds(&run->progress);
+    run->standing.seconds = seconds(run);
+    return checkpoint_save(path, run->digest, spans, run_spans(run, spans));
+}
+
+static enum status load(struct run *run) {
+    struct memory_span spans[MAX_SPANS];
+    char path[OUTPUT_PATH_SIZE];
+    run_folder_file(&run->folder, "checkpoint.bin", path);
+    TRY(checkpoint_load(path, run->digest, spans, run_spans(run, spans)));
+    run->seconds_before = run->standing.seconds;
+    return STATUS_OK;
+}
+
+/// Curves to begin with may come from files, which used.json only names.
+static void digest_starts(struct run *run) {
+    enum { POINTS = 1000 };
+    for (int n = 0; n < UNKNOWNS * COMPOSITION_MOST_PAIRS; n++) {
+        const int kind = n / COMPOSITION_MOST_PAIRS, pair = n % COMPOSITION_MOST_PAIRS;
+        const struct curve *start = run->fit.problem.unknown[kind].start[pair];
+        for (int k = 0; start && k < POINTS; k++) {
+            const double value = curve_value(start, curve_cutoff(start) * k / POINTS);
+            checkpoint_digest_add(&run->digest, &value, sizeof value);
+        }
+    }
+}
+
+/// Write all settings to used.json and take their digest. A run that is resumed leaves used.json
+/// alone, since the settings may turn out to be others.
+static enum status write_used(struct run *run, bool resume) {
+    const struct fit_file *fit = &run->fit;
+    char path[OUTPUT_PATH_SIZE];
+    run_folder_file(&run->folder, resume ? "used.json.resumed" : "used.json", path);
+    TRY(fit_file_write(fit, path));
+    TRY(checkpoint_digest(path, &run->digest));
+    targets_digest(&fit->targets, &run->digest);
+    scene_digest(&fit->scene, &run->digest);
+    digest_starts(run);
+    if (resume)
+        remove(path);
+    return STATUS_OK;
+}
+
+static enum status create(struct run *run) {
+    enum status status = STATUS_OK;
+    const struct fit_file *fit = &run->fit;
+    size_t points[UNKNOWNS];
+    CHECK(decoder_init(&run->decoder, &fit->problem));
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        points[kind] = decoder_points(&run->decoder, kind);
+        if (points[kind] == 0)
+            continue;
+        NEW_ARRAY(run->curve[kind], points[kind]);
+        NEW_ARRAY(run->curve_error[kind], points[kind]);
+        NEW_ARRAY(run->curve_flat[kind], INVERSE_FLAT * points[kind]);
+    }
+    if (points[UNKNOWN_POTENTIAL] > 0)
+        NEW_ARRAY(run->without_ramp, points[UNKNOWN_POTENTIAL]);
+    CHECK(history_init(
+        &run->history, fit->method, points,
+        fit->method->most_iterations(fit->method, &fit->problem, fit->method_parameters)));
+    CHECK((run->state = memory_zeroed(1, fit->method->state_size)) ? STATUS_OK : STATUS_NO_MEMORY);
+    run->created = true;
+    CHECK(fit->method->create(run->state, fit->method, &fit->problem, fit->method_parameters));
+done:
+    return status;
+}
+
+static void say_line(void *progress, const char *line) {
+    progress_say(progress, "%s", line);
+}
+
+/// What is to be fitted, so that a wrong column or unit is seen before the work.
+static enum status tell_targets(struct run *run) {
+    const struct target_etd *etd = &run->fit.targets.etd;
+    if (etd->left_out > 0)
+        progress_say(&run->progress,
+                     "target.etd: %zu of %zu cells of the target are not known and left out",
+                     etd->left_out, (size_t)(etd->grid.times * etd->grid.bins));
+    return target_sanity_tell(&run->fit.targets, &run->fit.scene,
+                              &(struct target_sanity_listener){say_line, &run->progress});
+}
+
+static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
+    TRY(fit_file_read(&run->fit, file, options));
+    TRY(run_folder_open(&run->folder, RUN_FIT, file, &run->fit.inputs, options));
+    TRY(targets_normalise(&run->fit.targets, &run->fit.scene.setup.box));
+    const enum status status = create(run);
+    if (status != STATUS_OK)
+        return status_prefix(status, "%s", file);
+    TRY(write_used(run, options->resume));
+    // Saved now, so that a run interrupted in its first iteration can be resumed like any other.
+    TRY(options->resume ? load(run) : save(run));
+    // What an earlier run left is touched once this one has begun.
+    TRY(run_folder_begin(&run->folder, options->resume));
+    return tell_targets(run);
+}
+
+/// Progress inside an iteration, and a checkpoint now and then.
+static void tell(void *context, const struct inverse_progress *p) {
+    struct run *run = context;
+    char text[160], best[48] = "", least[48] = "", mean[64] = "";
+    const uint64_t done = p->iteration * p->total + p->done, total = p->iterations * p->total;
+    if (isfinite(p->best))
+        snprintf(best, sizeof best, "  best %.4f", p->best);
+    if (isfinite(p->least))
+        snprintf(least, sizeof least, "  now least %.4f", p->least);
+    if (isfinite(p->mean))
+        snprintf(mean, sizeof mean, "  mean %.4f  failed %llu", p->mean,
+                 (unsigned long long)p->failures);
+    snprintf(text, sizeof text, "iteration %u%s%s%s", p->iteration, best, least, mean);
+    if (run->progress.done_before == 0)
+        run->progress.done_before = done - 1;
+    progress_tell(&run->progress, done, total, "evaluations", text);
+    if (run->fit.method->keeps_parts &&
+        progress_seconds(&run->progress) - run->last_checkpoint > checkpoint_interval &&
+        save(run) != STATUS_OK)
+        progress_say(&run->progress, "mesofit: warning: %s", status_message());
+}
+
+static void tell_verification(void *context, const struct inverse_progress *p) {
+    progress_tell(context, p->done, p->total, "simulations", "verification");
+}
+
+/// What the tables and the summary say at this point.
+static struct fit_result result_so_far(const struct run *run, enum status status) {
+    const struct standing *s = &run->standing;
+    struct fit_result result = {.status = status,
+                                .iterations = s->iterations,
+                                .evaluations = s->evaluations,
+                                .engine_steps = s->engine_steps,
+                                .seconds = s->seconds,
+                                .without_ramp = run->without_ramp,
+                                .ramp = s->ramp,
+                                .settled = s->converged,
+                                .parameter = s->parameter,
+                                .error = s->error,
+                                .first_error = history_first_error(&run->history),
+                                .reason = s->reason};
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        result.curve[kind] = run->curve[kind];
+        result.curve_error[kind] = run->curve_error[kind];
+        result.curve_flat[kind] = run->curve_flat[kind];
+        result.first[kind] = run->history.iterations > 0 ? run->history.curve[kind] : NULL;
+    }
+    return result;
+}
+
+/// The curves of an iteration. What is set, not fitted, has no error: core and cutoff.
+static void keep_curves(struct run *run, const struct inverse_step *step) {
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        const size_t points = decoder_points(&run->decoder, kind);
+        for (size_t k = 0; k < points; k++) {
+            const bool known = step->curve_error[kind] && decoder_fits(&run->decoder, kind, k);
+            run->curve[kind][k] = step->curve[kind][k];
+            run->curve_error[kind][k] = known ? step->curve_error[kind][k] : NAN;
+        }
+        for (size_t k = 0; k < INVERSE_FLAT * points; k++)
+            run->curve_flat[kind][k] = step->curve_flat[kind] ? step->curve_flat[kind][k] : NAN;
+    }
+    for (size_t k = 0; k < decoder_points(&run->decoder, UNKNOWN_POTENTIAL); k++)
+        run->without_ramp[k] =
+            step->without_ramp && isfinite(run->curve_error[UNKNOWN_POTENTIAL][k])
+                ? step->without_ramp[k]
+                : NAN;
+}
+
+static void own_file(void *context, const char *name, char *path) {
+    run_folder_file(context, name, path);
+}
+
+/// Remember an iteration and put it on disk.
+static enum status record(struct run *run, const struct inverse_step *step) {
+    keep_curves(run, step);
+    run->standing = (struct standing){.finished = step->finished,
+                                      .converged = step->converged,
+                                      .used_up = step->used_up,
+                                      .iterations = step->iteration + 1,
+                                      .evaluations = step->evaluations,
+                                      .engine_steps = step->engine_steps,
+                                      .error = step->error,
+                                      .variance = step->variance,
+                                      .seconds = seconds(run),
+                                      .ramp = step->ramp};
+    memcpy(run->standing.parameter, step->parameter, sizeof run->standing.parameter);
+    memcpy(run->standing.reason, step->reason, sizeof run->standing.reason);
+    history_add(&run->history, step, run->standing.seconds);
+    TRY(history_write(&run->history, run->fit.method, &run->decoder, &run->folder));
+    const struct fit_result result = result_so_far(run, STATUS_UNCONVERGED);
+    TRY(fit_output_curves(&run->fit, &run->decoder, &result, &run->folder));
+    if (run->fit.method->write) {
+        const struct inverse_folder own = {own_file, &run->folder};
+        TRY(run->fit.method->write(run->state, &own));
+    }
+    progress_say(&run->progress, "iteration %u  error %.4f  noise %.4f  %.1f s", step->iteration,
+                 visible_number(step->error), visible_number(step->noise), run->standing.seconds);
+    return save(run);
+}
+
+static enum status iterate(struct run *run) {
+    const struct inverse_method *method = run->fit.method;
+    const struct inverse_listener listener = {tell, run};
+    while (!run->standing.finished) {
+        struct inverse_step step;
+        const enum status status = method->iterate(run->state, &step, &listener);
+        if (status == STATUS_INTERRUPTED && method->keeps_parts)
+            TRY(save(run));
+        TRY(status);
+        TRY(record(run, &step));
+    }
+    return STATUS_OK;
+}
+
+/// A method without an error and without a reason has not measured anything.
+static void tell_unconverged(const struct run *run) {
+    const char *folder = run->folder.path, *reason = run->standing.reason;
+    if (isfinite(run->standing.error))
+        status_fail(STATUS_UNCONVERGED, "the fit has not converged%s%s; its best curves are in %s",
+                    reason[0] ? ": " : "", reason, folder);
+    else if (reason[0])
+        status_fail(STATUS_UNCONVERGED,
+                    "the fit has no result: %s; the failures are counted in %s/history.tsv", reason,
+                    folder);
+    else
+        status_fail(STATUS_UNCONVERGED,
+                    "not one simulation of the fit succeeded; the failures are counted in "
+                    "%s/history.tsv",
+                    folder);
+}
+
+/// A result whose verification blows up leaves a summary that says so.
+static enum status write_unstable(struct run *run) {
+    const struct fit_result result = result_so_far(run, STATUS_UNSTABLE);
+    status_prefix(STATUS_UNSTABLE, "the verification of what was fitted%s",
+                  isfinite(run->standing.error) ? ""
+                  : run->standing.reason[0]     ? " (the fit has no result)"
+                                                : " (not one simulation of the fit succeeded)");
+    char reason[512];
+    snprintf(reason, sizeof reason, "%s", status_message());
+    TRY(fit_output_summary(&run->fit, &run->decoder, &result, &run->folder));
+    run_folder_draw(&run->folder);
+    return status_fail(STATUS_UNSTABLE, "%s", reason);
+}
+
+static void say_verified(struct run *run, const struct fit_result *result) {
+    struct progress *to = &run->progress;
+    const struct standing *standing = &run->standing;
+    progress_say(to, "%s after %llu iterations, %.1f s%s%s",
+                 standing->converged ? "converged"
+                 : standing->used_up ? "finished"
+                                     : "not converged",
+                 (unsigned long long)standing->iterations, standing->seconds,
+                 standing->used_up ? ": " : "", standing->used_up ? standing->reason : "");
+    fit_report_say(to, &run->fit, &run->decoder, result);
+    progress_say(to, "results in %s", run->folder.path);
+}
+
+/// The verification has the last word. An inversion has converged only if the result agrees with
+/// the target; measured, inversions of water, Lennard-Jones and the Gaussian core are verified
+/// within 0.8 to 2.3 times the statistical error. Other methods do not say that they agree, but how
+/// far they are off: that is what must be borne out.
+static void doubt(struct run *run, const struct verification *verification) {
+    static const double noise_margin = 3;
+    struct standing *standing = &run->standing;
+    const struct goals *goals = &run->fit.problem.goals;
+    if (!standing->converged && !standing->used_up)
+        return;
+    if (run->fit.method->update
+            ? fit_verdict_contradicts(verification, goals_ask(goals, GOAL_PRESSURE),
+                                      run->fit.problem.scene.temperature, noise_margin,
+                                      standing->reason)
+            : fit_verdict_is_worse(verification, goals, standing->error, standing->variance,
+                                   standing->reason))
+        standing->converged = standing->used_up = false;
+}
+
+/// The independent verification of the result, and everything that rests on it.
+static enum status verify_and_write(struct run *run) {
+    struct decoder_laws laws = {
+        .table = {run->fit.problem.scene.potential, run->fit.problem.scene.weight}};
+    struct verification verification = {0};
+    struct progress progress = progress_begin(run->progress.quiet);
+    const struct inverse_listener listener = {tell_verification, &progress};
+    enum status status = STATUS_OK;
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        if (run->curve[kind] == NULL)
+            continue;
+        CHECK(decoder_table(&run->decoder, kind, run->curve[kind], &laws.own[kind]));
+        laws.table[kind] = &laws.own[kind];
+    }
+    status = verify(&run->fit.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_WEIGHT],
+                    &run->fit.verification, &listener, &verification);
+    if (status == STATUS_UNSTABLE)
+        status = write_unstable(run);
+    CHECK(status);
+    doubt(run, &verification);
+    const bool accepted = run->standing.converged || run->standing.used_up;
+    struct fit_result result = result_so_far(run, accepted ? STATUS_OK : STATUS_UNCONVERGED);
+    result.verification = &verification;
+    CHECK(fit_output_observables(&run->fit, &result, &run->folder));
+    CHECK(fit_output_summary(&run->fit, &run->decoder, &result, &run->folder));
+    run_folder_draw(&run->folder);
+    say_verified(run, &result);
+    if (verification.warning[0])
+        progress_say(&run->progress, "mesofit: warning: %s", verification.warning);
+    status = result.status;
+    if (status == STATUS_UNCONVERGED)
+        tell_unconverged(run);
+done:
+    decoder_laws_clear(&laws);
+    verify_clear(&verification);
+    return status;
+}
+
+/// A fit that is stopped leaves a summary that says so.
+static enum status write_interrupted(struct run *run) {
+    const struct fit_result result = result_so_far(run, STATUS_INTERRUPTED);
+    if (run->standing.iterations > 0) {
+        TRY(fit_output_summary(&run->fit, &run->decoder, &result, &run->folder));
+        run_folder_draw(&run->folder);
+    }
+    return status_fail(STATUS_INTERRUPTED,
+                       "interrupted after %llu iterations; what there is, is in %s; go on with "
+                       "--resume",
+                       (unsigned long long)run->standing.iterations, run->folder.path);
+}
+
+enum status fit_run(const char *file, const struct run_options *options) {
+    enum status status = STATUS_OK;
+    struct run *run = NULL;
+    NEW_ARRAY(run, 1);
+    run->progress = progress_begin(options->quiet);
+    run->progress.left_for = "all iterations"; // it may converge before
+    CHECK(prepare(run, file, options));
+    status = iterate(run);
+    if (status == STATUS_OK)
+        status = verify_and_write(run);
+    if (status == STATUS_INTERRUPTED)
+        status = write_interrupted(run);
+done:
+    if (run) {
+        if (run->created)
+            run->fit.method->destroy(run->state);
+        memory_free(run->state);
+        history_clear(&run->history);
+        decoder_clear(&run->decoder);
+        for (int kind = 0; kind < UNKNOWNS; kind++) {
+            memory_free(run->curve[kind]);
+            memory_free(run->curve_error[kind]);
+            memory_free(run->curve_flat[kind]);
+        }
+        memory_free(run->without_ramp);
+        fit_file_clear(&run->fit);
+        run_folder_close(&run->folder);
+    }
+    memory_free(run);
+    return status;
+}

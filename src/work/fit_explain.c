@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/memory.h"
+#include "problem/decoder.h"
+#include "work/explain.h"
+#include "input/target_sanity.h"
+#include "work/fit.h"
+#include "input/fit_file.h"
+
+/// What is measured of goals in simulations with some time step.
+struct measured {
+    struct motion_plan motion;
+    struct etd_plan etd;
+    struct explain_measured explain;
+};
+
+static struct measured measured_of(const struct goals *goals, const struct simulation_setup *setup,
+                                   int64_t every) {
+    const struct pair_law law = {.potential = setup->potential, .weight = setup->weight};
+    struct measured measured;
+    observation_plans(goals, setup->time_step, &measured.etd, &measured.motion);
+    measured.explain = (struct explain_measured){
+        .has_potential = setup->potential != NULL,
+        .cutoff = pair_cutoff(&law),
+        .rdf_range = goals_ask(goals, GOAL_RDF) ? rdf_bins_range(&goals->bins) : 0,
+        .every = every,
+        .sums = goals_ask(goals, GOAL_PRESSURE)};
+    return measured;
+}
+
+static void print_simulation(const struct measured *measured, const struct goals *goals,
+                             const struct simulation_setup *setup) {
+    struct explain_measured explain = measured->explain;
+    explain.etd_plan = &measured->etd;
+    explain.etd_grid = goals_ask(goals, GOAL_ETD) ? &goals->etd : NULL;
+    explain.motion = observation_moves(goals) ? &measured->motion : NULL;
+    explain_scene(stdout, setup, &explain);
+}
+
+/// Simulations with the curves that the fit begins with.
+static void print_simulations(const struct fit_file *fit, const struct decoder_laws *laws) {
+    const struct inverse_problem *problem = &fit->problem;
+    const struct inverse_sampling sampling = fit->method->sampling(fit->method_parameters);
+    struct simulation_setup setup = problem->scene;
+    setup.potential = laws->table[UNKNOWN_POTENTIAL];
+    setup.weight = laws->table[UNKNOWN_WEIGHT];
+    if (sampling.every > 0) {
+        struct measured measured = measured_of(&problem->goals, &setup, sampling.every);
+        measured.explain.rdf_force = measured.explain.rdf_force_alone =
+            sampling.rdf_force && goals_ask(&problem->goals, GOAL_RDF) &&
+            !composition_is_mixed(&setup.composition);
+        printf("An evaluation of the method \"%s\", one a thread:\n", fit->method->name);
+        print_simulation(&measured, &problem->goals, &setup);
+    } else {
+        printf("The method \"%s\" samples by a Monte Carlo of its own, not by the dynamics of the "
+               "scene.\n",
+               fit->method->name);
+    }
+    if (fit->verification.time_step > 0)
+        setup.time_step = fit->verification.time_step;
+    struct measured measured =
+        measured_of(&problem->compared, &setup, fit->verification.plan.every);
+    measured.explain.sums = true;
+    printf("A replica of the verification, one a thread:\n");
+    print_simulation(&measured, &problem->compared, &setup);
+}
+
+static void print_line(void *stream, const char *line) {
+    fprintf(stream, "%s\n", line);
+}
+
+/// The method refuses what it cannot fit when it is created.
+static enum status try_method(const struct fit_file *fit) {
+    void *state = memory_zeroed(1, fit->method->state_size);
+    if (state == NULL)
+        return STATUS_NO_MEMORY;
+    const enum status status =
+        fit->method->create(state, fit->method, &fit->problem, fit->method_parameters);
+    fit->method->destroy(state);
+    memory_free(state);
+    return status;
+}
+
+/// In the order of the run (fit.c), so that it begins with the same curves.
+enum status fit_explain(const char *file, const struct run_options *options) {
+    enum status status = STATUS_OK;
+    struct fit_file fit;
+    struct decoder decoder = {0};
+    struct decoder_laws laws = {0};
+    double *genes = NULL;
+    CHECK(fit_file_read(&fit, file, options));
+    CHECK(targets_normalise(&fit.targets, &fit.scene.setup.box));
+    status = decoder_init(&decoder, &fit.problem);
+    if (status == STATUS_OK)
+        status = try_method(&fit);
+    CHECK(status != STATUS_OK ? status_prefix(status, "%s", file) : STATUS_OK);
+    NEW_ARRAY(genes, decoder.genes);
+    CHECK(decoder_start(&decoder, genes));
+    CHECK(decoder_laws(&decoder, genes, &laws));
+    CHECK(target_sanity_tell(&fit.targets, &fit.scene,
+                             &(struct target_sanity_listener){print_line, stdout}));
+    print_simulations(&fit, &laws);
+done:
+    decoder_laws_clear(&laws);
+    decoder_clear(&decoder);
+    memory_free(genes);
+    fit_file_clear(&fit);
+    return status;
+}

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "input/targets.h"
+
+#include "shared/is_close.h"
+#include "shared/temporary_folder.h"
+#include "shared/testing.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const char g[] = "# r g e\n0.05 0 0\n0.15 0.5 0.1\n0.25 1.5 0.2\n0.35 1 0.3\n";
+static const char escape[] = "# t E E\n0 1 1\n0.1 0.9 0.5\n0.2 nan 0\n";
+static const char vacf[] = "# t vacf e\n0 3 0.01\n0.1 1 0.02\n0.2 -0.1 0.03\n";
+static const char msd[] = "# t msd e\n0 0 0\n0.1 0.02 0.001\n0.2 0.06 0.002\n";
+
+#define RDF "\"rdf\": {\"file\": \"g.tsv\"}"
+#define ETD "\"etd\": {\"file\": \"e.tsv\", \"r_minimum\": 0.5, \"r_maximum\": 1}"
+#define VACF "\"vacf\": {\"file\": \"v.tsv\"}"
+#define MSD "\"msd\": {\"file\": \"m.tsv\"}"
+#define NUMBERS                                                                                    \
+    "\"diffusion\": {\"value\": 0.02, \"error\": 0.001, \"weight\": 7}, "                          \
+    "\"pressure\": {\"value\": -3, \"fitted\": \"no\"}"
+
+/// λ is half a nanometre, k_B T_0 2.5 kJ/mol.
+static const struct box box = {3, {5, 5, 5}};
+static const struct units units = {.length = 0.5, .temperature = 300.68, .mass = 1e-26};
+
+static void put(void **state, const char *name, const char *text) {
+    temporary_folder_write(*state, name, text, strlen(text));
+}
+
+/// Read the targets in `members`; the status is that of the document.
+static enum status read(void **state, const char *members, struct targets *targets) {
+    char text[1024];
+    struct json_document *document;
+    const int length = snprintf(text, sizeof text, "{\"target\": {%s}}", members);
+    assert_in_range(length, 1, sizeof text - 1);
+    assert_ok(json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
+    struct json_object root = json_root(document);
+    assert_ok(targets_read(targets, &root, &box, &(struct composition){.types = 1, .count = {100}},
+                           &units));
+    json_finish(&root);
+    return json_close(document, STATUS_OK);
+}
+
+static void write_tables(void **state) {
+    put(state, "g.tsv", g);
+    put(state, "e.tsv", escape);
+    put(state, "v.tsv", vacf);
+    put(state, "m.tsv", msd);
+}
+
+static void test_targets_read_takes_all_kinds(void **state) {
+    struct targets t;
+    struct goals fitted, compared;
+    write_tables(state);
+    assert_ok(read(state, RDF ", " ETD ", " VACF ", " MSD ", " NUMBERS, &t));
+    targets_goals(&t, true, &fitted, &compared);
+    assert_int_equal(goals_count(&compared), 6);
+    assert_int_equal(goals_count(&fitted), 5);
+    assert_false(goals_ask(&fitted, GOAL_PRESSURE));
+    assert_close(*compared.goal[GOAL_PRESSURE].value, -3, 0);
+    assert_close(*fitted.goal[GOAL_DIFFUSION].value, 0.02, 0);
+    assert_close(*fitted.goal[GOAL_DIFFUSION].error, 0.001, 0);
+    assert_close(fitted.goal[GOAL_DIFFUSION].weight, 7, 0);
+    assert_close(fitted.goal[GOAL_RDF].weight, 0, 0);
+    assert_int_equal(fitted.goal[GOAL_RDF].count, 4);
+    assert_int_equal(fitted.goal[GOAL_ETD].count, 6);
+    assert_close(fitted.goal[GOAL_ETD].value[2], 0.9, 0);
+    assert_true(isnan(fitted.goal[GOAL_ETD].value[4]));
+    assert_int_equal(t.etd.left_out, 1);
+    assert_close(fitted.etd_interval, 0.1, 1e-12);
+    assert_close(fitted.etd_origins, 1, 1e-12);
+    assert_int_equal(fitted.goal[GOAL_VACF].count, 3);
+    assert_close(fitted.goal[GOAL_VACF].value[2], -0.1, 0);
+    assert_close(fitted.goal[GOAL_MSD].error[2], 0.002, 0);
+    assert_close(fitted.motion_interval, 0.1, 1e-12);
+    assert_int_equal(fitted.motion_lags, 2);
+    targets_clear(&t);
+}
+
+static void test_targets_read_takes_the_columns_of_a_curve(void **state) {
+    struct targets t;
+    put(state, "v.tsv", "9 0 8 3\n9 0.5 8 2\n9 1 8 1\n");
+    assert_ok(read(state,
+                   "\"vacf\": {\"file\": \"v.tsv\", \"time_column\": 2, \"value_column\": 4, "
+                   "\"error_column\": 0}",
+                   &t));
+    assert_close(t.vacf.interval, 0.5, 0);
+    assert_close(t.vacf.value[2], 1, 0);
+    assert_close(t.vacf.error[2], 0, 0);
+    targets_clear(&t);
+}
+
+/// The window of motion is that of a curve, else that of the escape times, else its own.
+static void test_targets_goals_measure_motion_as_the_targets_do(void **state) {
+    struct targets t;
+    struct goals fitted, compared;
+    write_tables(state);
+    put(state, "v.tsv", "0 3 0\n0.3 2 0\n0.6 1 0\n0.9 1 0\n");
+    assert_ok(read(state, ETD ", " VACF, &t));
+    targets_goals(&t, true, &fitted, &compared);
+    assert_close(compared.motion_interval, 0.3, 1e-12);
+    assert_int_equal(compared.motion_lags, 3);
+    assert_true(goals_ask(&compared, GOAL_DIFFUSION) && !goals_ask(&fitted, GOAL_DIFFUSION));
+    assert_true(isnan(*compared.goal[GOAL_DIFFUSION].value));
+    targets_goals(&t, false, &fitted, &compared);
+    assert_false(goals_ask(&compared, GOAL_DIFFUSION));
+    targets_clear(&t);
+    assert_ok(read(state, ETD, &t));
+    targets_goals(&t, true, &fitted, &compared);
+    assert_close(compared.motion_interval, 0.1, 1e-12);
+    assert_int_equal(compared.motion_lags, 2);
+    targets_clear(&t);
+    assert_ok(read(state, "\"diffusion\": {\"value\": 1}", &t));
+    targets_goals(&t, true, &fitted, &compared);
+    assert_close(compared.motion_interval * (double)compared.motion_lags, 1.6, 1e-12);
+    targets_clear(&t);
+}
+
+static void assert_refused(void **state, const char *members, const char *first,
+                           const char *second) {
+    struct targets t;
+    assert_fails(read(state, members, &t), STATUS_BAD_INPUT, first);
+    assert_contains(status_message(), second);
+    assert_contains(status_message(), "a.json: target");
+    targets_clear(&t);
+}
+
+static void refuse_curve(void **state, const char *table, const char *part) {
+    put(state, "v.tsv", table);
+    put(state, "m.tsv", table);
+    assert_refused(state, VACF, "target.vacf.file: ", part);
+    // A curve that is wrong once is not also compared with the other.
+    assert_refused(state, MSD, "target.msd.file: ", part);
+}
+
+static void test_targets_read_refuses_what_is_no_function_of_time(void **state) {
+    refuse_curve(state, "0 3 0\n0.1 2 0\n0.3 1 0\n", ".tsv:2: the times are not equally");
+    refuse_curve(state, "0.1 3 0\n0.2 2 0\n0.3 1 0\n", ".tsv:1: the times are not");
+    refuse_curve(state, "0 3 0\n0 2 0\n0 1 0\n", ".tsv:2: ");
+    refuse_curve(state, "0 3 0\n-0.1 2 0\n-0.2 1 0\n", ".tsv:2: ");
+    refuse_curve(state, "0 3 0\n0.1 2 0\n", ".tsv: only 2 times");
+    refuse_curve(state, "0 3 0\n0.1 nan 0\n0.2 1 0\n", ".tsv:2: column 2: \"nan\"");
+    refuse_curve(state, "0 3 0\n0.1 2 -1\n0.2 1 0\n", ".tsv:2: column 3: -1 is not");
+    refuse_curve(state, "0\n0.1\n0.2\n", ".tsv:1: 1 columns, at least 2");
+    refuse_curve(state, "0 3 0\n0.1 2 nan\n0.2 1 0\n", ".tsv:2: column 3: nan is not");
+    refuse_curve(state, "0 3 0\n0.1 2\n0.2 1 0\n", ".tsv:2: 2 columns");
+}
+
+static void test_targets_read_takes_curves_without_errors(void **state) {
+    struct targets t;
+    put(state, "v.tsv", "t,vacf\n0,3\n0.1,2\n0.2,1\n");
+    assert_ok(read(state, VACF, &t));
+    assert_int_equal(t.vacf.times, 3);
+    assert_close(t.vacf.value[1], 2, 0);
+    assert_close(t.vacf.error[1], 0, 0);
+    targets_clear(&t);
+    assert_refused(state, "\"vacf\": {\"file\": \"v.tsv\", \"error_column\": 3}",
+                   "v.tsv:2: 2 columns, at least 3", "\"error_column\"; 0 if");
+}
+
+static void test_targets_read_tells_what_is_wrong_and_where(void **state) {
+    write_tables(state);
+    assert_refused(state, "\"vacf\": {\"file\": \"none.tsv\"}", "target.vacf.file", "none.tsv");
+    assert_refused(state, "\"vacf\": {}", "target.vacf.file", "missing");
+    assert_refused(state, "\"vcf\": {}", "target.vcf", "did you mean \"vacf\"?");
+    assert_refused(state, "\"msd\": {\"file\": \"m.tsv\", \"fited\": \"no\"}", "target.msd.fited",
+                   "did you mean \"fitted\"?");
+    assert_refused(state, "\"msd\": {\"file\": \"m.tsv\", \"fitted\": \"maybe\"}",
+                   "target.msd.fitted", "\"maybe\"");
+    assert_refused(state, "\"msd\": {\"file\": \"m.tsv\", \"weight\": -1}", "target.msd.weight",
+                   "out of range");
+    assert_refused(state, "\"msd\": {\"file\": \"m.tsv\", \"error_column\": 4}", "m.tsv:2",
+                   "3 columns, at least 4");
+    assert_refused(state, "\"diffusion\": {}", "target.diffusion.value", "missing");
+    assert_refused(state, "\"diffusion\": 3", "target.diffusion", "expected an object");
+    assert_refused(state, "\"pressure\": {\"value\": 1, \"error\": -1}", "target.pressure.error",
+                   "out of range");
+    put(state, "m.tsv", "0 0 0\n0.1 1 0\n0.2 2 0\n0.3 3 0\n");
+    assert_refused(state, VACF ", " MSD, "target.msd", "must have the times of \"vacf\"");
+}
+
+static void test_targets_check_steps_tells_the_time_step_that_would_do(void **state) {
+    struct targets t;
+    write_tables(state);
+    assert_ok(read(state, VACF, &t));
+    assert_ok(targets_check_steps(&t, 0.1));
+    assert_ok(targets_check_steps(&t, 0.025));
+    assert_fails(targets_check_steps(&t, 0.03), STATUS_BAD_INPUT, "v.tsv");
+    assert_contains(status_message(), "0.025 would do");
+    assert_fails(targets_check_steps(&t, 0.15), STATUS_BAD_INPUT, "0.1 would do");
+    targets_clear(&t);
+    assert_ok(read(state, ETD, &t));
+    assert_fails(targets_check_steps(&t, 0.03), STATUS_BAD_INPUT, "a time step of 0.025 or 0.0333");
+    targets_clear(&t);
+}
+
+static void test_targets_digest_knows_every_number(void **state) {
+    struct targets t;
+    uint64_t before = 1, after;
+    write_tables(state);
+    assert_ok(read(state, RDF ", " ETD ", " VACF ", " MSD, &t));
+    targets_digest(&t, &before);
+    double *const numbers[] = {t.rdf_g,      t.rdf_error,  t.etd.survival, t.etd.error,
+                               t.vacf.value, t.vacf.error, t.msd.value,    t.msd.error};
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
+        const double good = numbers[k][2];
+        numbers[k][2] = good + 1;
+        after = 1;
+        targets_digest(&t, &after);
+        assert_true(after != before);
+        numbers[k][2] = good;
+    }
+    targets_clear(&t);
+}
+
+#define TEST(name)                                                                                 \
+    cmocka_unit_test_setup_teardown(name, temporary_folder_create, temporary_folder_remove)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        TEST(test_targets_read_takes_all_kinds),
+        TEST(test_targets_read_takes_the_columns_of_a_curve),
+        TEST(test_targets_goals_measure_motion_as_the_targets_do),
+        TEST(test_targets_read_refuses_what_is_no_function_of_time),
+        TEST(test_targets_read_takes_curves_without_errors),
+        TEST(test_targets_read_tells_what_is_wrong_and_where),
+        TEST(test_targets_check_steps_tells_the_time_step_that_would_do),
+        TEST(test_targets_digest_knows_every_number),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "inversion/inversion.h"
+
+#include "shared/testing.h"
+
+#include <string.h>
+
+/// A fit of g(r), perhaps with a pressure, that ended with this error.
+static struct inversion make_inversion(struct inverse_problem *problem, double rms, bool pressure) {
+    static const double target = 5;
+    *problem = (struct inverse_problem){0};
+    problem->goals.goal[GOAL_RDF].count = 1;
+    problem->goals.goal[GOAL_PRESSURE] = (struct goal){pressure, &target, &target, 0};
+    return (struct inversion){
+        .problem = problem,
+        .method = &imc,
+        .settings.common = {.iterations = 30, .precision = 0.002, .damping = 1},
+        .progress = {.damping = 1,
+                     .best[GOAL_RDF] = {.rms = rms, .noise = 0.003},
+                     .best[GOAL_PRESSURE] = {.rms = 2, .noise = 0.1},
+                     .best_own_noise = 0.0025,
+                     .first_error = 0.11,
+                     .second_error = 0.08}};
+}
+
+static void assert_says(const struct inversion *inversion, const char *words) {
+    char reason[INVERSE_REASON_SIZE];
+    inversion_reason_tell(inversion, reason);
+    assert_contains(reason, words);
+    assert_true(strlen(reason) + 1 < INVERSE_REASON_SIZE);
+}
+
+static void test_inversion_reason_is_the_start_when_no_step_from_it_helped(void **state) {
+    (void)state;
+    struct inverse_problem problem;
+    struct inversion inversion = make_inversion(&problem, 0.11, false);
+    inversion.progress.second_error = 0.83;
+    inversion.progress.damping = 1.0 / 128;
+    assert_says(&inversion, "rose from 0.11 to 0.83 with the first step");
+    assert_says(&inversion, "outside the basin of \"imc\"");
+}
+
+static void test_inversion_reason_is_not_the_start_when_shorter_steps_helped(void **state) {
+    (void)state;
+    struct inverse_problem problem;
+    struct inversion inversion = make_inversion(&problem, 0.05, false);
+    inversion.progress.second_error = 0.83;
+    assert_says(&inversion, "after 30 iterations the error of g is 0.05, from 0.11 at first");
+    inversion.progress.damping = 1.0 / 128;
+    assert_says(&inversion, "shrunk to 1/128 without progress: the error of g is 0.05, its "
+                            "statistical error 0.003");
+}
+
+static void test_inversion_reason_of_a_stuck_mixture_advises_a_shorter_cutoff(void **state) {
+    (void)state;
+    struct inverse_problem problem;
+    struct inversion inversion = make_inversion(&problem, 0.265, false);
+    inversion.progress.damping = 1.0 / 128;
+    problem.scene.composition = composition_of_one(100);
+    assert_says(&inversion, "without progress");
+    problem.scene.composition.types = 2;
+    assert_says(&inversion, "a shorter \"cutoff\"");
+}
+
+static void test_inversion_reason_is_the_precision_when_the_curves_agree(void **state) {
+    (void)state;
+    struct inverse_problem problem;
+    const struct inversion inversion = make_inversion(&problem, 0.004, false);
+    assert_says(&inversion,
+                "within a statistical error of 0.0025, but \"precision\" asks for 0.002");
+}
+
+static void test_inversion_reason_is_the_pressure_when_only_that_is_off(void **state) {
+    (void)state;
+    struct inverse_problem problem;
+    struct inversion inversion = make_inversion(&problem, 0.004, true);
+    assert_says(&inversion, "the pressure is 2 off, with an error of 0.1");
+    inversion.progress.best[GOAL_PRESSURE].rms = 0.1;
+    assert_says(&inversion, "\"precision\"");
+}
+
+static void test_inversion_reason_is_frozen_replicas_when_they_disagree(void **state) {
+    (void)state;
+    struct inverse_problem problem;
+    struct inversion inversion = make_inversion(&problem, 0.3, false);
+    inversion.progress.best_disagreement = 9;
+    assert_says(&inversion, "the replicas do not agree on it: their means scatter 3.0 times");
+    inversion.progress.best_disagreement = 3;
+    assert_says(&inversion, "after 30 iterations");
+}
+
+static void test_inversion_reason_is_a_ramp_that_runs_away(void **state) {
+    (void)state;
+    struct inverse_problem problem;
+    struct inversion inversion = make_inversion(&problem, 0.0117, false);
+    problem.scene.temperature = 1;
+    for (int k = 0; k < INVERSION_DRIFT_MEMORY; k++)
+        inversion_drift_add(&inversion.progress.drift, 0.9 * k, 0.012);
+    assert_says(&inversion, "by 3.6 k_B T_0 in four iterations");
+    assert_says(&inversion, "\"normalisation\"");
+    // A pressure holds the ramp.
+    inversion = make_inversion(&problem, 0.0117, true);
+    assert_false(inversion_runs_away(&inversion));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_inversion_reason_is_a_ramp_that_runs_away),
+        cmocka_unit_test(test_inversion_reason_is_the_start_when_no_step_from_it_helped),
+        cmocka_unit_test(test_inversion_reason_is_not_the_start_when_shorter_steps_helped),
+        cmocka_unit_test(test_inversion_reason_of_a_stuck_mixture_advises_a_shorter_cutoff),
+        cmocka_unit_test(test_inversion_reason_is_the_precision_when_the_curves_agree),
+        cmocka_unit_test(test_inversion_reason_is_frozen_replicas_when_they_disagree),
+        cmocka_unit_test(test_inversion_reason_is_the_pressure_when_only_that_is_off),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/rng.h"
+#include "curves/formula.h"
+#include "inversion/inversion.h"
+#include "shared/fluids.h"
+#include "shared/testing.h"
+
+#include <math.h>
+
+enum { BINS = 125 };
+
+static const double noise = 0.02;
+
+struct made {
+    struct fluid fluid;
+    double g[BINS], error[BINS], exact[BINS];
+    struct inverse_problem problem;
+    struct inversion_settings settings;
+    struct inversion inversion;
+};
+
+/// A target exp(−Φ/k_B T) with normal noise of 2 % and its error.
+static void make(struct made *made, int start) {
+    *made = (struct made){0};
+    fluid_lennard_jones(&made->fluid, 500, 0.004);
+    const struct rdf_bins bins = {0, 2.5 / BINS, BINS};
+    const double temperature = made->fluid.setup.temperature;
+    for (int k = 0; k < BINS; k++) {
+        double normal[4];
+        rng_normal4(rng_philox(5, RNG_INITIAL, (uint32_t)k, 0, 0), normal);
+        table_evaluate(&made->fluid.potential, rdf_bins_centre(&bins, (size_t)k), &made->exact[k],
+                       NULL, NULL);
+        const double g = exp(-made->exact[k] / temperature);
+        made->g[k] = g * (1 + noise * normal[0]);
+        made->error[k] = noise * g;
+    }
+    made->problem = (struct inverse_problem){
+        .goals = {.bins = bins, .goal[GOAL_RDF] = {BINS, made->g, made->error, 0}},
+        .unknown[UNKNOWN_POTENTIAL] = {.wanted = true},
+        .scene = made->fluid.setup,
+        .core_threshold = 1e-3,
+        .core_stiffness = 2000,
+        .seed = 5,
+        .threads = 1};
+    made->settings = (struct inversion_settings){.common = {.replicas = 2,
+                                                            .equilibration = 10,
+                                                            .samples = 8,
+                                                            .every = 1,
+                                                            .iterations = 2,
+                                                            .precision = 1,
+                                                            .damping = 1,
+                                                            .start = start}};
+}
+
+static void clear(struct made *made) {
+    inversion_destroy(&made->inversion);
+    fluid_clear(&made->fluid);
+}
+
+static void test_inversion_start_is_smooth_within_the_errors_of_the_target(void **state) {
+    (void)state;
+    struct made made;
+    double off = 0, rough = 0, raw = 0;
+    make(&made, INVERSION_FROM_MEAN_FORCE);
+    assert_ok(inversion_create(&made.inversion, &imc, &made.problem, &made.settings));
+    const struct inversion *inversion = &made.inversion;
+    const double temperature = made.problem.scene.temperature;
+    // Beyond the minimum, where the truth itself is nearly straight within three bins.
+    for (size_t k = 75; k + 1 < BINS; k++) {
+        const double *phi = inversion->phi + k;
+        const double *g = made.g + k;
+        rough += pow(phi[-1] - 2 * phi[0] + phi[1], 2);
+        raw += pow(temperature * log(g[-1] * g[1] / (g[0] * g[0])), 2);
+    }
+    for (size_t a = 0; a < inversion->grid.known; a++) {
+        const size_t bin = inversion->grid.known_bin[a];
+        off += pow((inversion->phi[bin] + temperature * log(made.g[bin])) / temperature / noise, 2);
+    }
+    off = sqrt(off / (double)inversion->grid.known);
+    print_message("off by %.2f standard errors, rough %.3g of the raw\n", off, sqrt(rough / raw));
+    assert_true(off > 0.5 && off < 1.1);
+    // Measured: 0.236, and the square of it here.
+    assert_true(rough < 0.1 * raw);
+    clear(&made);
+}
+
+static void test_inversion_start_is_the_target_as_it_stands_without_errors(void **state) {
+    (void)state;
+    struct made made;
+    make(&made, INVERSION_FROM_MEAN_FORCE);
+    made.error[BINS - 1] = 0;
+    assert_ok(inversion_create(&made.inversion, &imc, &made.problem, &made.settings));
+    for (size_t k = 60; k < BINS; k++)
+        assert_float_equal(made.inversion.phi[k], -made.problem.scene.temperature * log(made.g[k]),
+                           1e-12);
+    clear(&made);
+}
+
+static void test_inversion_start_is_poor_when_g_is_far_off_under_tension(void **state) {
+    (void)state;
+    struct made made;
+    make(&made, INVERSION_FROM_HNC);
+    assert_ok(inversion_create(&made.inversion, &imc, &made.problem, &made.settings));
+    made.inversion.distance[GOAL_RDF].rms = 0.5;
+    made.inversion.pressure.value = 0.1;
+    assert_false(inversion_start_is_poor(&made.inversion, true));
+    made.inversion.pressure.value = -4;
+    assert_true(inversion_start_is_poor(&made.inversion, true));
+    made.inversion.distance[GOAL_RDF].rms = 0.01;
+    assert_false(inversion_start_is_poor(&made.inversion, true));
+    made.inversion.distance[GOAL_RDF].rms = 0.5;
+    made.inversion.progress.iteration = 1;
+    assert_false(inversion_start_is_poor(&made.inversion, true));
+    assert_true(inversion_start_is_poor(&made.inversion, false));
+    made.inversion.progress.iteration = 2;
+    assert_false(inversion_start_is_poor(&made.inversion, false));
+    made.inversion.progress.iteration = 0;
+    made.inversion.settings.common.start = INVERSION_FROM_MEAN_FORCE;
+    assert_false(inversion_start_is_poor(&made.inversion, true));
+    clear(&made);
+}
+
+static void test_inversion_create_refuses_a_hole_beyond_the_core(void **state) {
+    (void)state;
+    struct made made;
+    make(&made, INVERSION_FROM_HNC);
+    made.g[70] = made.g[71] = 0;
+    assert_fails(inversion_create(&made.inversion, &imc, &made.problem, &made.settings),
+                 STATUS_BAD_INPUT, "empty at r = 1.41");
+    clear(&made);
+}
+
+static void ignore(void *context, const struct inverse_progress *progress) {
+    (void)context, (void)progress;
+}
+
+/// Without a prior the errors would be as many times larger as sqrt(χ²), here 3.
+static void test_inversion_band_widens_when_more_than_noise_is_left(void **state) {
+    (void)state;
+    struct made made;
+    struct inverse_step step;
+    const struct inverse_listener listener = {ignore, NULL};
+    double error[2];
+    make(&made, INVERSION_FROM_MEAN_FORCE);
+    made.settings.common.samples = 200; // enough for the data to say more than the prior
+    assert_ok(inversion_create(&made.inversion, &imc, &made.problem, &made.settings));
+    struct inversion *inversion = &made.inversion;
+    assert_ok(inversion_iterate(inversion, &step, &listener));
+    for (int left = 0; left < 2; left++) {
+        for (size_t a = 0; a < inversion->grid.known; a++)
+            inversion->excess[a] = (left ? 3 : 0.5) * sqrt(inversion->variance[a]);
+        assert_ok(inversion_band_find(inversion));
+        error[left] = inversion->band.error[inversion->grid.known_point[30]];
+    }
+    print_message("errors of %.4f and %.4f\n", error[0], error[1]);
+    assert_true(error[1] > 1.2 * error[0] && error[1] < 3.01 * error[0]);
+    clear(&made);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_inversion_start_is_smooth_within_the_errors_of_the_target),
+        cmocka_unit_test(test_inversion_start_is_the_target_as_it_stands_without_errors),
+        cmocka_unit_test(test_inversion_start_is_poor_when_g_is_far_off_under_tension),
+        cmocka_unit_test(test_inversion_band_widens_when_more_than_noise_is_left),
+        cmocka_unit_test(test_inversion_create_refuses_a_hole_beyond_the_core),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

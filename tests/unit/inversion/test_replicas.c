@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "inversion/replicas.h"
+
+#include "base/rng.h"
+#include "shared/fluids.h"
+#include "shared/testing.h"
+
+#include <math.h>
+
+enum { COUNT = 8, BINS = 40 };
+
+static void ignore(void *context, const struct inverse_progress *progress) {
+    (void)context, (void)progress;
+}
+
+/// Blocks of normal numbers with a shift of each replica's own.
+static void make(struct replicas *replicas, double *block, double shift) {
+    *replicas = (struct replicas){.bins = BINS, .count = COUNT};
+    for (size_t k = 0; k < COUNT; k++) {
+        replicas->member[k].block = block + k * REPLICAS_BLOCKS * BINS;
+        for (size_t n = 0; n < REPLICAS_BLOCKS * BINS; n++) {
+            double normal[4];
+            rng_normal4(rng_philox(3, RNG_INITIAL, (uint32_t)k, (uint32_t)n, 0), normal);
+            replicas->member[k].block[n] = 100 + normal[0] + (k % 2 ? shift : -shift);
+        }
+    }
+}
+
+/// Of 40 bins: 7 and 24 degrees of freedom in each, so that the ratio is good to 0.1; five of that.
+static void test_replicas_disagree_as_their_means_do(void **state) {
+    (void)state;
+    static double block[COUNT * REPLICAS_BLOCKS * BINS];
+    double ideal[BINS];
+    size_t seen[BINS];
+    struct replicas replicas;
+    for (size_t a = 0; a < BINS; a++) {
+        ideal[a] = 10 + (double)a;
+        seen[a] = a;
+    }
+    make(&replicas, block, 0);
+    assert_true(fabs(replicas_disagreement(&replicas, ideal, seen, BINS) - 1) < 0.5);
+    make(&replicas, block, 2);
+    // A shift by ±2 has a variance of 4 · 8/7, and the mean of four blocks one of 1/4.
+    const double expected = 1 + REPLICAS_BLOCKS * 4.0 * COUNT / (COUNT - 1);
+    assert_true(fabs(replicas_disagreement(&replicas, ideal, seen, BINS) / expected - 1) < 0.3);
+}
+
+/// S(q) of the lattice's planes across x, as in test_placement.
+static double order(const struct particles *particles, int edge) {
+    double real = 0, imaginary = 0;
+    for (size_t k = 0; k < particles->count; k++) {
+        const double angle =
+            2 * acos(-1.0) * edge / particles->box.length[0] * particles->position[0][k];
+        real += cos(angle);
+        imaginary += sin(angle);
+    }
+    return (real * real + imaginary * imaginary) / (double)particles->count;
+}
+
+/// A lattice has S = N but for its jitter; without order it is a number of order 1.
+static void test_replicas_scatter_their_particles_when_the_plan_says_so(void **state) {
+    (void)state;
+    enum { EDGE = 8, PARTICLES = EDGE * EDGE * EDGE };
+    struct fluid fluid;
+    const struct inverse_listener listener = {ignore, NULL};
+    const struct inverse_progress progress = {0};
+    fluid_lennard_jones(&fluid, PARTICLES, 0.004);
+    for (enum sampler_kind kind = SAMPLER_MONTE_CARLO; kind <= SAMPLER_DYNAMICS; kind++)
+        for (int scatter = 0; scatter < 2; scatter++) {
+            struct replicas replicas;
+            struct replicas_plan plan = {.scatter = scatter, .block_samples = 1, .every = 1};
+            assert_ok(
+                replicas_init(&replicas, 2, kind,
+                              &(struct sampler_system){.box = &fluid.setup.box,
+                                                       .composition = &fluid.setup.composition,
+                                                       .potential = &fluid.potential,
+                                                       .temperature = 1,
+                                                       .width = 0.1,
+                                                       .bins = 25,
+                                                       .seed = 3}));
+            assert_ok(replicas_run(&replicas, &plan, 1, &progress, &listener));
+            for (size_t k = 0; k < 2; k++) {
+                const struct sampler *sampler = &replicas.member[k].sampler;
+                const struct particles *particles = kind == SAMPLER_DYNAMICS
+                                                        ? &sampler->hybrid.simulation.particles
+                                                        : &sampler->chain.particles;
+                const double found = order(particles, EDGE);
+                assert_true(scatter ? found < 12 : found > 0.1 * PARTICLES);
+            }
+            replicas_clear(&replicas);
+        }
+    fluid_clear(&fluid);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_replicas_disagree_as_their_means_do),
+        cmocka_unit_test(test_replicas_scatter_their_particles_when_the_plan_says_so),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

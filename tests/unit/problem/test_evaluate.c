@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Single simulations of a small soft fluid, and rounds of them.
+#include "problem/evaluate.h"
+
+#include "matching/candidates.h"
+#include "shared/fluids.h"
+#include "shared/is_close.h"
+#include "shared/testing.h"
+
+#include <math.h>
+
+enum { COUNT = 81, BINS = 20, GENES = 4, CANDIDATES = 6 };
+
+/// A fluid whose g(r) is to be 1 everywhere, which it is not.
+struct made {
+    struct fluid fluid;
+    double g[BINS], error[BINS];
+    struct inverse_problem problem;
+    struct evaluate_parameters parameters;
+};
+
+static void begin(struct made *made) {
+    *made = (struct made){.parameters = {.plan = {.equilibration = 20, .samples = 40, .every = 5},
+                                         .temperature_tolerance = 0.9}};
+    fluid_groot_warren(&made->fluid, COUNT, 0.02);
+    for (int k = 0; k < BINS; k++) {
+        made->g[k] = 1;
+        made->error[k] = 0.01;
+    }
+    made->problem = (struct inverse_problem){
+        .goals = {.bins = {0, 0.05, BINS}, .goal[GOAL_RDF] = {BINS, made->g, made->error, 0}},
+        .unknown[UNKNOWN_WEIGHT] = {true, {0, GENES, 0, 6, 0, 1}, {NULL}},
+        .scene = made->fluid.setup,
+        .seed = 3,
+        .threads = 1};
+}
+
+static void measure(const struct made *made, double hopeless, double patience,
+                    struct evaluate_result *result) {
+    struct evaluate_parameters parameters = made->parameters;
+    parameters.patience = patience;
+    const struct evaluate_candidate candidate = {.potential = made->problem.scene.potential,
+                                                 .weight = made->problem.scene.weight,
+                                                 .hopeless = hopeless,
+                                                 .threads = 1,
+                                                 .seed = 11};
+    assert_ok(evaluate(&made->problem, &candidate, &parameters, NULL, NULL, result));
+}
+
+static void test_evaluate_stops_early_when_a_candidate_is_hopeless(void **state) {
+    (void)state;
+    struct made made;
+    struct evaluate_result whole, stopped;
+    begin(&made);
+    measure(&made, HUGE_VAL, 0, &whole);
+    assert_false(whole.stopped);
+    assert_int_equal(whole.engine_steps, 220);
+    assert_true(whole.error > 0.1);
+    measure(&made, 0.1 * whole.error, 2, &stopped);
+    assert_true(stopped.stopped);
+    assert_in_range(stopped.engine_steps, 20 + 4 * 5, 70);
+    assert_true(stopped.error > 0.1 * whole.error);
+    fluid_clear(&made.fluid);
+}
+
+/// Looking at a quarter of the samples does not change what comes of all of them.
+static void test_evaluate_has_the_same_bits_when_it_is_not_stopped(void **state) {
+    (void)state;
+    struct made made;
+    struct evaluate_result whole, raced;
+    begin(&made);
+    measure(&made, HUGE_VAL, 0, &whole);
+    const struct evaluate_result expected = whole;
+    measure(&made, 10 * whole.error, 2, &raced);
+    assert_false(raced.stopped);
+    assert_identical(raced.error, expected.error);
+    assert_identical(raced.noise, expected.noise);
+    assert_identical(raced.variance, expected.variance);
+    assert_int_equal(raced.engine_steps, expected.engine_steps);
+    measure(&made, 0.1 * whole.error, 0, &raced);
+    assert_false(raced.stopped);
+    measure(&made, HUGE_VAL, 2, &raced);
+    assert_false(raced.stopped);
+    fluid_clear(&made.fluid);
+}
+
+/// Fewer samples than parts of a race.
+static void test_evaluate_races_with_fewer_samples_than_looks(void **state) {
+    (void)state;
+    struct made made;
+    struct evaluate_result result;
+    begin(&made);
+    made.parameters.plan.samples = 1;
+    measure(&made, 1e-9, 0.1, &result);
+    assert_int_equal(result.engine_steps, 25);
+    assert_true(isfinite(result.error));
+    fluid_clear(&made.fluid);
+}
+
+/// With a time step of next to nothing a simulation ends where it begins.
+static void test_evaluate_begins_where_it_is_told(void **state) {
+    (void)state;
+    struct made made;
+    struct evaluate_result result;
+    double from[3][COUNT], to[3][COUNT];
+    begin(&made);
+    made.problem.scene.time_step = 1e-9;
+    made.parameters.plan = (struct measure_plan){.equilibration = 10, .samples = 1, .every = 1};
+    for (int d = 0; d < 3; d++)
+        for (int k = 0; k < COUNT; k++)
+            from[d][k] = (d == 0 ? k % 5 : d == 1 ? k / 5 % 5 : k / 25) * 0.6 + 0.1;
+    const struct evaluate_candidate candidate = {
+        .potential = made.problem.scene.potential,
+        .weight = made.problem.scene.weight,
+        .position = (const double *const[]){from[0], from[1], from[2]},
+        .hopeless = HUGE_VAL,
+        .threads = 1,
+        .seed = 11};
+    assert_ok(evaluate(&made.problem, &candidate, &made.parameters, NULL,
+                       (double *const[]){to[0], to[1], to[2]}, &result));
+    for (int d = 0; d < 3; d++)
+        for (int k = 0; k < COUNT; k++)
+            assert_close(to[d][k], from[d][k], 1e-6);
+    fluid_clear(&made.fluid);
+}
+
+static void test_evaluate_fails_when_the_temperature_is_another(void **state) {
+    (void)state;
+    struct made made;
+    struct evaluate_result result;
+    begin(&made);
+    made.parameters.temperature_tolerance = 1e-9;
+    const struct evaluate_candidate candidate = {.potential = made.problem.scene.potential,
+                                                 .weight = made.problem.scene.weight,
+                                                 .hopeless = HUGE_VAL,
+                                                 .threads = 1,
+                                                 .seed = 11};
+    assert_fails(evaluate(&made.problem, &candidate, &made.parameters, NULL, NULL, &result),
+                 STATUS_UNSTABLE, "the temperature is");
+    assert_int_equal(result.engine_steps, 20);
+    fluid_clear(&made.fluid);
+}
+
+static void ignore(void *context, const struct inverse_progress *progress) {
+    (void)context, (void)progress;
+}
+
+/// Errors and steps of two rounds of candidates, the second begun where the best of the first
+/// ended.
+struct rounds {
+    double errors[2][CANDIDATES], positions[3 * COUNT];
+    uint64_t steps;
+};
+
+static void measure_rounds(const struct made *made, int threads, struct rounds *rounds) {
+    struct inverse_problem problem = made->problem;
+    struct decoder decoder;
+    struct candidates candidates;
+    double genes[CANDIDATES * GENES];
+    const struct inverse_listener listener = {ignore, NULL};
+    const struct optimiser_round round = {genes, CANDIDATES};
+    const struct candidates_parameters parameters = {made->parameters, 1, 0};
+    problem.threads = threads;
+    for (int k = 0; k < CANDIDATES * GENES; k++)
+        genes[k] = 0.2 + 0.03 * k;
+    assert_ok(decoder_init(&decoder, &problem));
+    assert_ok(candidates_init(&candidates, &decoder, &parameters));
+    for (int n = 0; n < 2; n++) {
+        const double hopeless = n == 0 ? HUGE_VAL : 0.5 * rounds->errors[0][0];
+        assert_int_equal(candidates.totals.warm, n > 0);
+        assert_ok(candidates_measure(&candidates, &round, hopeless, &listener));
+        memcpy(rounds->errors[n], candidates.errors, sizeof rounds->errors[n]);
+        candidates_next_round(&candidates);
+    }
+    memcpy(rounds->positions, candidates.position, sizeof rounds->positions);
+    rounds->steps = candidates.totals.steps;
+    assert_int_equal(candidates.totals.evaluations, 2 * CANDIDATES);
+    candidates_clear(&candidates);
+    decoder_clear(&decoder);
+}
+
+static void test_candidates_race_with_the_same_bits_for_any_threads(void **state) {
+    (void)state;
+    struct made made;
+    struct rounds one = {0}, many = {0};
+    begin(&made);
+    made.parameters.patience = 1;
+    measure_rounds(&made, 1, &one);
+    // Those of the second round are all stopped within their first quarter.
+    assert_in_range(one.steps, CANDIDATES * (220 + 20 + 4 * 5), CANDIDATES * (220 + 70));
+    for (int threads = 2; threads <= 3; threads++) {
+        measure_rounds(&made, threads, &many);
+        assert_int_equal(many.steps, one.steps);
+        assert_memory_equal(many.errors, one.errors, sizeof one.errors);
+        assert_memory_equal(many.positions, one.positions, sizeof one.positions);
+    }
+    fluid_clear(&made.fluid);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_evaluate_stops_early_when_a_candidate_is_hopeless),
+        cmocka_unit_test(test_evaluate_has_the_same_bits_when_it_is_not_stopped),
+        cmocka_unit_test(test_evaluate_races_with_fewer_samples_than_looks),
+        cmocka_unit_test(test_evaluate_begins_where_it_is_told),
+        cmocka_unit_test(test_evaluate_fails_when_the_temperature_is_another),
+        cmocka_unit_test(test_candidates_race_with_the_same_bits_for_any_threads),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/figures.h"
+
+#include "io/output.h"
+#include "shared/figure_folders.h"
+#include "shared/testing.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char fit_rdf[] =
+    "# r[lambda]\ttarget[1]\ttarget_error[1]\tresult[1]\tresult_error[1]\n"
+    "0.5\t0\t0\t0\t0\n1\t1.5\tnan\t1.4\t0.1\n1.5\t1\t0.1\t1.1\t0.1\n";
+static const char ga_history[] =
+    "# iteration[1]\tevaluations[1]\tengine_steps[1]\terror[1]\tnoise[1]\tbest[1]\tmean[1]\t"
+    "diversity[1]\tfailures[1]\n0\t10\t100\t0.5\t0\t0.5\t1\t2\t0\n1\t20\t200\t0.4\tnan\t0."
+    "4\t1\t1\t0\n";
+static const char imc_history[] =
+    "# iteration[1]\tevaluations[1]\tengine_steps[1]\terror[1]\tnoise[1]\tdamping[1]\t"
+    "regularisation[1]\n0\t1\t100\t0.5\t0.01\t1\t0\n";
+static const char timing[] = "# iteration[1]\tseconds[s]\n0\t0\n1\t2\n";
+
+static void assert_draws(const char *folder) {
+    if (figures_draw(folder) != STATUS_OK)
+        fail_msg("%s", status_message());
+}
+
+static void test_draws_what_the_tables_allow(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "it's a \"fit\" $HOME\\");
+    figure_folders_write(folder, "rdf.tsv", fit_rdf);
+    figure_folders_write(folder, "potential.tsv",
+                         "# r[lambda]\tphi[k_BT_0]\tforce[k_BT_0/lambda]\tphi_error[k_BT_0]\n"
+                         "0.5\t1000\t0\tnan\n1\t-0.5\t0\tnan\n1.5\t0\t0\tnan\n");
+    figure_folders_write(folder, "history.tsv", ga_history);
+    figure_folders_write(folder, "timing.tsv", timing);
+    if (figures_draw(folder) != STATUS_OK)
+        fail_msg("%s", status_message());
+    assert_true(figure_folders_drawn(folder, "rdf"));
+    assert_true(figure_folders_drawn(folder, "potential"));
+    assert_true(figure_folders_drawn(folder, "error"));
+    assert_true(figure_folders_drawn(folder, "generations"));
+    assert_false(figure_folders_drawn(folder, "simulation"));
+}
+
+/// Two goals, with one member on the front and errors that are not known, and three.
+static void test_draws_the_front_of_several_goals(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "front");
+    figure_folders_write(folder, "pareto.tsv",
+                         "# member\trank\tchosen\tmeasured\terror[1]\trdf_rmse[1]\tetd_rmse[1]\t"
+                         "rdf_noise[1]\tetd_noise[1]\n1\t1\t1\t3\t2\t0.1\t0.2\t0\t0\n");
+    assert_int_equal(figures_draw(folder), STATUS_OK);
+    assert_false(figure_folders_drawn(folder, "pareto"));
+    figure_folders_write(folder, "pareto_history.tsv",
+                         "# iteration\tfront\terror[1]\trdf_rmse[1]\tetd_rmse[1]\n"
+                         "0\t0\t2\t0.1\t0.2\n0\t2\t2\t0.1\t0.2\n");
+    if (figures_draw(folder) != STATUS_OK)
+        fail_msg("%s", status_message());
+    assert_true(figure_folders_drawn(folder, "pareto"));
+    figure_folders_write(folder, "pareto.tsv",
+                         "# member\trank\tchosen\tmeasured\terror[1]\trdf_rmse[1]\tetd_rmse[1]\t"
+                         "pressure_rmse[1]\trdf_noise[1]\tetd_noise[1]\tpressure_noise[1]\n"
+                         "1\t1\t0\t1\t2\t0.1\t0.3\t1\t0.05\t0.1\t0.2\n"
+                         "2\t1\t1\t3\t2\t0.2\t0.2\t1\t0.05\t0.1\t0.2\n"
+                         "3\t2\t0\t1\t2\t0.3\t0.4\t2\t0.05\t0.1\t0.2\n");
+    figure_folders_write(
+        folder, "pareto_history.tsv",
+        "# iteration\tfront\terror[1]\trdf_rmse[1]\tetd_rmse[1]\tpressure_rmse[1]\n"
+        "0\t0\t2\t0.1\t0.2\t1\n0\t2\t2\t0.1\t0.2\t1\n");
+    if (figures_draw(folder) != STATUS_OK)
+        fail_msg("%s", status_message());
+}
+
+static void test_draws_no_generations_without_diversity(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "imc");
+    figure_folders_write(folder, "history.tsv", imc_history);
+    figure_folders_write(folder, "timing.tsv", timing);
+    assert_int_equal(figures_draw(folder), STATUS_OK);
+    assert_true(figure_folders_drawn(folder, "error"));
+    assert_false(figure_folders_drawn(folder, "generations"));
+}
+
+static void test_draws_simulation_and_no_fit(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "simulation");
+    figure_folders_write(folder, "rdf.tsv",
+                         "# r[lambda]\tg[1]\tg_error[1]\n0.5\t0\t0\n1\t1\t0.1\n");
+    figure_folders_write(folder, "thermodynamics.tsv",
+                         "# step[1]\ttime[tau]\ttemperature[T_0]\tpotential_energy[k_BT_0]\t"
+                         "pressure[k_BT_0/lambda^3]\ttemperature_configurational[T_0]\n"
+                         "0\t0\t1\t0\t3\tnan\n1\t0.1\t1\t0\t3\tnan\n");
+    assert_int_equal(figures_draw(folder), STATUS_OK);
+    assert_true(figure_folders_drawn(folder, "simulation"));
+    assert_false(figure_folders_drawn(folder, "rdf"));
+}
+
+/// Of a mixture: g(r) of every kind of pairs, and its name. In units that the tables know.
+static void test_draws_simulation_of_a_mixture_in_its_units(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "mixture");
+    static const char rdf[] = "# r[lambda]\tg[1]\tg_error[1]\tr[nm]\n0.5\t0\t0\t2\n1\t1\t0.1\t4\n";
+    figure_folders_write(folder, "rdf_A-A.tsv", rdf);
+    figure_folders_write(folder, "rdf_A-B.tsv", rdf);
+    figure_folders_write(folder, "rdf_B-B.tsv", rdf);
+    figure_folders_write(folder, "thermodynamics.tsv",
+                         "# step\ttime[tau]\ttemperature[T_0]\tpotential_energy[k_B.T_0]\t"
+                         "pressure[k_B.T_0/lambda^d]\ttemperature_configurational[T_0]\ttime[ps]\t"
+                         "potential_energy[kJ/mol]\tpressure[bar]\n"
+                         "0\t0\t1\t1\t3\tnan\t0\t2.5\t900\n1\t0.1\t1\t2\t3\tnan\t70\t5\t900\n");
+    assert_draws(folder);
+    assert_true(figure_folders_drawn(folder, "simulation"));
+    assert_true(figure_folders_say(folder, "simulation", "A-B"));
+    assert_true(figure_folders_say(folder, "simulation", "nm") &&
+                figure_folders_say(folder, "simulation", "ps"));
+    assert_true(figure_folders_say(folder, "simulation", "kJ/mol") &&
+                figure_folders_say(folder, "simulation", "bar"));
+    assert_true(figure_folders_say(folder, "simulation", ">3.5<")); // a distance in nm
+    assert_true(figure_folders_say(folder, "simulation", ">60<"));  // a time in ps
+    assert_true(figure_folders_say(folder, "simulation", ">900<"));
+}
+
+/// A barrier of 1.33 behind a core of 50, and a well of 0.3: all of it is seen.
+static void test_potential_is_shown_up_to_its_barrier(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "barrier");
+    figure_folders_write(folder, "potential.tsv",
+                         "# r[lambda]\tphi[k_B.T_0]\tforce[k_B.T_0/lambda]\tphi_error[k_B.T_0]\n"
+                         "0.2\t50\t0\tnan\n0.25\t0.2\t0\tnan\n0.3\t0.1\t0\tnan\n"
+                         "0.375\t1.33\t0\tnan\n0.5\t-0.3\t0\tnan\n1\t0\t0\tnan\n");
+    assert_draws(folder);
+    assert_true(figure_folders_drawn(folder, "potential"));
+    assert_true(figure_folders_say(folder, "potential", ">1.4<"));
+    assert_false(figure_folders_say(folder, "potential", ">2<"));
+}
+
+/// A soft repulsion whose core goes on steeply where no pair was seen, in nm and kJ/mol.
+static void test_soft_potential_is_shown_almost_whole(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH], table[2048];
+    int length = snprintf(table, sizeof table,
+                          "# r[lambda]\tphi[k_B.T_0]\tforce[k_B.T_0/lambda]\t"
+                          "phi_error[k_B.T_0]\tr[nm]\tphi[kJ/mol]\n");
+    figure_folders_make(folder, "soft");
+    for (int k = 0; k <= 20; k++) {
+        const double r = 0.05 * k, core = r < 0.2 ? 1000 * (0.2 - r) : 0;
+        const double phi = 16 * (1 - r) * (1 - r) + core;
+        length += snprintf(table + length, sizeof table - (size_t)length,
+                           "%g\t%g\t0\t0.1\t%g\t%g\n", r, phi, 2 * r, 10 * phi);
+    }
+    figure_folders_write(folder, "potential.tsv", table);
+    assert_draws(folder);
+    assert_true(figure_folders_drawn(folder, "potential"));
+    assert_true(figure_folders_say(folder, "potential", "nm") &&
+                figure_folders_say(folder, "potential", "kJ/mol"));
+    assert_true(figure_folders_say(folder, "potential", ">0.8<")); // nm: 0.4 lambda
+    assert_true(figure_folders_say(folder, "potential", ">40<"));
+    assert_false(figure_folders_say(folder, "potential", ">300<"));
+}
+
+/// Two times, three bins; no result at time 0, nothing known of the last bin.
+static const char fit_cells[] =
+    "# time[tau]\tr0[lambda]\ttarget[1]\ttarget_error[1]\tresult[1]\tresult_error[1]\n"
+    "0\t0.6\t1\t0\tnan\t0\n0\t0.7\t1\t0\tnan\t0\n0\t0.8\t1\t0\tnan\tnan\n"
+    "0.1\t0.6\t0.9\t0.01\t0.8\t0.01\n0.1\t0.7\t0.7\t0.01\t0.75\t0.01\n"
+    "0.1\t0.8\t0.4\t0.01\tnan\tnan\n0.2\t0.6\t0.8\t0.01\t0.7\t0.01\n"
+    "0.2\t0.7\t0.6\t0.01\t0.65\t0.01\n0.2\t0.8\t0.3\t0.01\tnan\tnan\n";
+
+static void test_draws_dynamics_of_a_fit(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "dynamics");
+    figure_folders_write(folder, "etd_cells.tsv", fit_cells);
+    figure_folders_write(folder, "vacf.tsv",
+                         "# time[tau]\ttarget\ttarget_error\tresult\tresult_error\n"
+                         "0\t3\t0.01\t3.1\tnan\n0.1\t1\t0.01\t1.2\tnan\n0.2\t-0.1\t0.01\t0\tnan\n");
+    assert_draws(folder);
+    assert_true(figure_folders_drawn(folder, "etd_cells"));
+    assert_true(figure_folders_say(folder, "etd_cells", "0.700"));
+    assert_false(figure_folders_say(folder, "etd_cells", "0.800"));
+    assert_true(figure_folders_drawn(folder, "vacf"));
+    assert_false(figure_folders_drawn(folder, "etd"));
+    assert_false(figure_folders_drawn(folder, "msd"));
+    figure_folders_write(folder, "msd.tsv",
+                         "# time[tau]\ttarget[lambda^2]\ttarget_error[lambda^2]\tresult[lambda^2]\t"
+                         "result_error[lambda^2]\n"
+                         "0\t0\t0\t0\t0\n0.1\t1\t0.01\t1.2\tnan\n0.2\t3\t0.01\t2.9\tnan\n");
+    assert_draws(folder);
+    assert_true(figure_folders_drawn(folder, "msd"));
+}
+
+static void test_draws_etd_of_no_known_result(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "nothing known");
+    figure_folders_write(
+        folder, "etd_cells.tsv",
+        "# time[tau]\tr0[lambda]\ttarget[1]\ttarget_error[1]\tresult[1]\tresult_error[1]\n"
+        "0\t0.6\t1\t0\tnan\tnan\n0.1\t0.6\t1\t0\tnan\tnan\n");
+    assert_draws(folder);
+    assert_true(figure_folders_drawn(folder, "etd_cells"));
+}
+
+static void test_draws_bands_and_truth_where_they_are_known(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "weight");
+    figure_folders_write(folder, "omega.tsv", "# r[lambda]\tomega[sqrt(mu/tau)]\n0\t2\n1\t0\n");
+    assert_draws(folder);
+    assert_false(figure_folders_drawn(folder, "omega"));
+    figure_folders_write(
+        folder, "omega.tsv",
+        "# r[lambda]\tomega[sqrt(mu/tau)]\tomega_error[sqrt(mu/tau)]\n0\t2\tnan\n1\t0\tnan\n");
+    assert_draws(folder);
+    assert_true(figure_folders_drawn(folder, "omega"));
+    assert_false(figure_folders_say(folder, "omega", "95 % band"));
+    assert_false(figure_folders_say(folder, "omega", "truth"));
+    figure_folders_write(
+        folder, "omega.tsv",
+        "# r[lambda]\tomega[sqrt(mu/tau)]\tomega_error[sqrt(mu/tau)]\ttruth[sqrt(mu/tau)]\n"
+        "0\t2\t0.5\t1.9\n0.5\t1\t0.1\t0.9\n1\t0\tnan\t0\n");
+    figure_folders_write(folder, "potential.tsv",
+                         "# r[lambda]\tphi[k_B.T_0]\tforce[k_B.T_0/lambda]\tphi_error[k_B.T_0]\t"
+                         "truth[k_B.T_0]\tr[nm]\n"
+                         "0.5\t1000\t0\tnan\t900\t0.2\n1\t-0.5\t0\t0.1\t-0.4\t0.4\n"
+                         "1.5\t0\t0\tnan\t0\t0.6\n");
+    assert_draws(folder);
+    assert_true(figure_folders_drawn(folder, "omega"));
+    assert_true(figure_folders_say(folder, "omega", "95 % band") &&
+                figure_folders_say(folder, "omega", "truth"));
+    assert_true(figure_folders_say(folder, "potential", "95 % band") &&
+                figure_folders_say(folder, "potential", "truth"));
+}
+
+static void test_error_is_named_after_what_was_fitted(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "names");
+    figure_folders_write(folder, "history.tsv", imc_history);
+    figure_folders_write(folder, "timing.tsv", timing);
+    figure_folders_write(folder, "used.json",
+                         "{\n\t\"target\":\t{\n\t\t\"rdf\":\t{\n\t\t\t\"fitted\":\t\"no\"\n\t\t},\n"
+                         "\t\t\"etd\":\t{\n\t\t\t\"fitted\":\t\"yes\"\n\t\t},\n"
+                         "\t\t\"vacf\":\t{\n\t\t\t\"fitted\":\t\"yes\"\n\t\t}\n\t}\n}\n");
+    assert_draws(folder);
+    assert_true(figure_folders_say(folder, "error", "weighted error"));
+    figure_folders_write(folder, "used.json",
+                         "{\n\t\"target\":\t{\n\t\t\"diffusion\":\t{\n\t\t\t\"fitted\":\t\"yes\"\n"
+                         "\t\t}\n\t}\n}\n");
+    assert_draws(folder);
+    assert_true(figure_folders_say(folder, "error", "rmse of"));
+    assert_true(figure_folders_say(folder, "error", "τ")); // its unit
+}
+
+static void test_draws_nothing_without_tables(void **state) {
+    (void)state;
+    char folder[FIGURE_PATH], figures[FIGURE_PATH + 64];
+    figure_folders_make(folder, "empty");
+    assert_int_equal(figures_draw(folder), STATUS_OK);
+    snprintf(figures, sizeof figures, "%s/figures", folder);
+    assert_int_not_equal(access(figures, F_OK), 0);
+}
+
+static void test_broken_tables_spoil_their_figures_only(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "broken/figures"); // with figures of an earlier run
+    figure_folders_write(folder, "rdf.svg", "old");
+    figure_folders_write(folder, "rdf.png", "old");
+    figure_folders_make(folder, "broken");
+    figure_folders_write(folder, "potential.tsv", "# r phi force phi_error\nnot a number\n");
+    figure_folders_write(folder, "rdf.tsv",
+                         "# r target target_error result result_error\nnot a number\n");
+    figure_folders_write(folder, "history.tsv", imc_history);
+    figure_folders_write(folder, "timing.tsv", timing);
+    assert_int_equal(figures_draw(folder), STATUS_IO);
+    assert_non_null(strstr(status_message(), "/broken/figures/rdf: gnuplot failed: "));
+    assert_non_null(strstr(status_message(), "rdf.gp\" line "));
+    assert_null(strchr(status_message(), '\n'));
+    assert_false(figure_folders_drawn(folder, "rdf"));
+    assert_true(figure_folders_drawn(folder, "error"));
+}
+
+static void test_missing_gnuplot_is_one_clear_line(void **state) {
+    (void)state;
+    char folder[FIGURE_PATH], message[2 * FIGURE_PATH], *path = strdup(getenv("PATH"));
+    figure_folders_make(folder, "no_gnuplot");
+    figure_folders_write(folder, "rdf.tsv", fit_rdf);
+    assert_int_equal(setenv("PATH", figure_folders_root(), 1), 0);
+    const enum status status = figures_draw(folder);
+    assert_int_equal(setenv("PATH", path, 1), 0);
+    free(path);
+    assert_int_equal(status, STATUS_IO);
+    snprintf(message, sizeof message, "no figure %s/figures/rdf: gnuplot is not installed", folder);
+    assert_string_equal(status_message(), message);
+}
+
+static void test_comparison_needs_its_table(void **state) {
+    (void)state;
+    assert_int_equal(figures_draw_comparison(figure_folders_root()), STATUS_IO);
+    assert_non_null(strstr(status_message(), "no compare.tsv in "));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_draws_what_the_tables_allow),
+        cmocka_unit_test(test_draws_the_front_of_several_goals),
+        cmocka_unit_test(test_draws_no_generations_without_diversity),
+        cmocka_unit_test(test_draws_simulation_and_no_fit),
+        cmocka_unit_test(test_draws_simulation_of_a_mixture_in_its_units),
+        cmocka_unit_test(test_potential_is_shown_up_to_its_barrier),
+        cmocka_unit_test(test_soft_potential_is_shown_almost_whole),
+        cmocka_unit_test(test_draws_dynamics_of_a_fit),
+        cmocka_unit_test(test_draws_etd_of_no_known_result),
+        cmocka_unit_test(test_draws_bands_and_truth_where_they_are_known),
+        cmocka_unit_test(test_error_is_named_after_what_was_fitted),
+        cmocka_unit_test(test_draws_nothing_without_tables),
+        cmocka_unit_test(test_broken_tables_spoil_their_figures_only),
+        cmocka_unit_test(test_missing_gnuplot_is_one_clear_line),
+        cmocka_unit_test(test_comparison_needs_its_table),
+    };
+    return cmocka_run_group_tests(tests, figure_folders_begin, figure_folders_end);
+}

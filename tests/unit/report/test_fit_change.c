@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/fit_change.h"
+#include "shared/is_close.h"
+#include "shared/testing.h"
+
+#include <math.h>
+
+enum { BINS = 40, CORE = 8 };
+
+/// g(r) = 0 in the core, 0.05 in the next bin, of too few pairs to tell, and 1; a potential and a
+/// weight of B-splines.
+static void begin(struct decoder *decoder, struct inverse_problem *problem, double g[BINS]) {
+    for (int k = 0; k < BINS; k++)
+        g[k] = k < CORE ? 0 : k == CORE ? 0.05 : 1;
+    *problem = (struct inverse_problem){
+        .goals = {.bins = {0, 0.1, BINS}, .goal[GOAL_RDF] = {.count = BINS, .value = g}},
+        .unknown = {{true, {INVERSE_CURVE_BSPLINE, 12, -20, 80, 0, 0}, {NULL}},
+                    {true, {INVERSE_CURVE_BSPLINE, 10, 0, 5, 0.1, 1.5}, {NULL}}},
+        .scene = {.temperature = 1},
+        .core_threshold = 1e-3,
+        .core_stiffness = 2000};
+    assert_ok(decoder_init(decoder, problem));
+}
+
+/// A well that goes from −1 at r = 2.05 to −0.5 at r = 2.55; what changes in the core is not told.
+static void test_change_of_a_potential_is_that_beyond_its_core(void **state) {
+    (void)state;
+    struct decoder decoder;
+    struct inverse_problem problem;
+    double g[BINS], first[BINS + 1] = {0}, last[BINS + 1] = {0};
+    begin(&decoder, &problem, g);
+    assert_close(decoder_r(&decoder, UNKNOWN_POTENTIAL)[20], 2.05, 1e-12);
+    first[20] = -1;
+    last[25] = -0.5;
+    last[CORE] = -50;
+    first[CORE - 3] = 1000;
+    last[CORE - 3] = -1000;
+    const struct fit_change change = fit_change_find(&decoder, UNKNOWN_POTENTIAL, 0, first, last);
+    assert_close(change.first_well, -1, 0);
+    assert_close(change.first_well_at, 2.05, 1e-12);
+    assert_close(change.well, -0.5, 0);
+    assert_close(change.well_at, 2.55, 1e-12);
+    assert_close(change.rms, sqrt(1.25 / (BINS - CORE - 1)), 1e-12);
+    decoder_clear(&decoder);
+}
+
+static void test_change_of_a_weight_is_its_rms(void **state) {
+    (void)state;
+    struct decoder decoder;
+    struct inverse_problem problem;
+    double g[BINS], first[WEIGHT_POINTS], last[WEIGHT_POINTS];
+    begin(&decoder, &problem, g);
+    for (int k = 0; k < WEIGHT_POINTS; k++) {
+        first[k] = 1;
+        last[k] = 1.25;
+    }
+    assert_close(fit_change_find(&decoder, UNKNOWN_WEIGHT, 0, first, last).rms, 0.25, 1e-12);
+    decoder_clear(&decoder);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_change_of_a_potential_is_that_beyond_its_core),
+        cmocka_unit_test(test_change_of_a_weight_is_its_rms),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

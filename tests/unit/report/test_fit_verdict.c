@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/fit_verdict.h"
+
+#include "shared/testing.h"
+
+#include <string.h>
+
+static struct verification make(double rms, double temperature, double pressure) {
+    return (struct verification){.distance[GOAL_RDF] = {.rms = rms, .noise = 0.002},
+                                 .thermodynamics = {.temperature = temperature,
+                                                    .temperature_configurational = temperature,
+                                                    .temperature_configurational_error = 0.002,
+                                                    .pressure = pressure}};
+}
+
+static void assert_says(const struct verification *verification, const char *words) {
+    char reason[INVERSE_REASON_SIZE];
+    assert_true(fit_verdict_contradicts(verification, false, 1.5, 3, reason));
+    assert_contains(reason, words);
+    assert_true(strlen(reason) + 1 < INVERSE_REASON_SIZE);
+}
+
+static void test_fit_verdict_is_silent_when_g_is_off_by_noise(void **state) {
+    (void)state;
+    char reason[INVERSE_REASON_SIZE];
+    const struct verification good = make(0.0059, 1.8, -3);
+    assert_false(fit_verdict_contradicts(&good, true, 1.5, 3, reason));
+}
+
+static void test_fit_verdict_names_the_cause_when_g_is_off(void **state) {
+    (void)state;
+    const struct verification heated = make(0.0272, 1.69, -0.3), torn = make(0.157, 1.53, -2.19),
+                              other = make(0.157, 1.5, 2.2);
+    struct verification coarse = other;
+    coarse.thermodynamics.temperature_configurational = 1.48;
+    assert_says(&coarse, "the temperature by the positions is off");
+    assert_says(&heated, "verification.time_step");
+    assert_says(&torn, "off by 0.16 (0.002 by statistics) at T = 1.53, pressure -2.19: a liquid "
+                       "under tension tears");
+    assert_says(&other, "longer \"equilibration\"");
+}
+
+static void test_fit_verdict_names_the_pressure_when_it_was_fitted_and_is_off(void **state) {
+    (void)state;
+    char reason[INVERSE_REASON_SIZE];
+    struct verification found = make(0.0021, 1.5, 1.9);
+    found.distance[GOAL_PRESSURE] = (struct goal_distance){.rms = 0.4, .noise = 0.1};
+    assert_false(fit_verdict_contradicts(&found, false, 1.5, 3, reason));
+    assert_true(fit_verdict_contradicts(&found, true, 1.5, 3, reason));
+    assert_contains(reason, "pressure, 1.9, is off by 0.4 (0.1 by statistics)");
+    found.distance[GOAL_PRESSURE].rms = 0.29;
+    assert_false(fit_verdict_contradicts(&found, true, 1.5, 3, reason));
+}
+
+/// Of one target, and of two that count in units of their errors.
+static void test_fit_verdict_is_worse_when_the_difference_is_no_chance(void **state) {
+    (void)state;
+    static const double value[10] = {0}, error[10] = {0};
+    const struct goals goals = {.goal[GOAL_RDF] = {10, value, error, 10},
+                                .goal[GOAL_DIFFUSION] = {1, value, error, 100}};
+    struct goals one = goals;
+    char reason[INVERSE_REASON_SIZE];
+    struct verification found = {.distance = {[GOAL_RDF] = {.rms = 1.12, .variance = 1e-4},
+                                              [GOAL_DIFFUSION] = {.rms = 0.02, .variance = 1e-6}}};
+    one.goal[GOAL_DIFFUSION].count = 0;
+    assert_true(fit_verdict_is_worse(&found, &one, 0.088, 0.0001, reason));
+    assert_contains(reason, "own error is 0.088 +- 0.01, that of its verification 1.1 +- 0.01");
+    assert_true(strlen(reason) + 1 < INVERSE_REASON_SIZE);
+    // Better, or worse by 4 errors, or by a tenth, are no contradiction.
+    assert_false(fit_verdict_is_worse(&found, &one, 1.3, 0, reason));
+    assert_false(fit_verdict_is_worse(&found, &one, 0.8, 0.0063, reason));
+    assert_false(fit_verdict_is_worse(&found, &one, 1.0, 0, reason));
+    // sqrt(((10 1.12)² + (100 0.02)²)/2) = 8.04.
+    assert_true(fit_verdict_is_worse(&found, &goals, 6, 0, reason));
+    assert_contains(reason, "verification 8 +- ");
+    assert_false(fit_verdict_is_worse(&found, &goals, 7, 0, reason));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_fit_verdict_is_silent_when_g_is_off_by_noise),
+        cmocka_unit_test(test_fit_verdict_names_the_cause_when_g_is_off),
+        cmocka_unit_test(test_fit_verdict_names_the_pressure_when_it_was_fitted_and_is_off),
+        cmocka_unit_test(test_fit_verdict_is_worse_when_the_difference_is_no_chance),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
