@@ -232,8 +232,7 @@ static enum status go_on(struct inversion *inversion, bool kept) {
 static bool meets_targets(const struct inversion *inversion) {
     for (int kind = 0; kind < GOALS; kind++)
         if (goals_ask(&inversion->problem->goals, kind) &&
-            inversion->distance[kind].rms >
-                inverse_noise_margin * inversion->distance[kind].noise)
+            inversion->distance[kind].rms > inverse_noise_margin * inversion->distance[kind].noise)
             return false;
     return true;
 }
