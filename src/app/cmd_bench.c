@@ -41,7 +41,7 @@ static enum status check_options(const struct command_line *line, const char *su
                                  const int *foreign) {
     for (; *foreign < OPTIONS; foreign++)
         if (line->own[*foreign])
-            return status_fail(STATUS_BAD_INPUT, "bench %s takes no %s", subject,
+            return mf_status_fail(STATUS_BAD_INPUT, "bench %s takes no %s", subject,
                                options[*foreign].name);
     return STATUS_OK;
 }
@@ -57,14 +57,14 @@ static enum status run_engine(const struct command_line *line) {
         .against_lammps = line->own[AGAINST_LAMMPS] != NULL,
         .skips = line->own[SKIPS] != NULL,
     };
-    return bench_engine(line->files + 1, line->file_count - 1, &line->options, &chosen);
+    return mf_bench_engine(line->files + 1, line->file_count - 1, &line->options, &chosen);
 }
 
 static enum status run_accuracy(const struct command_line *line) {
     static const int foreign[] = {AGAINST_LAMMPS, SKIPS, ISA, PRECISION, OPTIONS};
     TRY(check_options(line, "accuracy", foreign));
     if (line->file_count != 2)
-        return status_fail(STATUS_BAD_INPUT, "usage: mesofit bench accuracy SCENE.json");
+        return mf_status_fail(STATUS_BAD_INPUT, "usage: mesofit bench accuracy SCENE.json");
     const struct bench_accuracy_options chosen = {
         .output = line->own[OUTPUT],
         .error = line->own[WANTED],
@@ -76,7 +76,7 @@ static enum status run_accuracy(const struct command_line *line) {
     struct run_options common = line->options;
     if (!common.has_threads)
         common.threads = omp_get_max_threads();
-    return bench_accuracy(line->files[1], &common, &chosen);
+    return mf_bench_accuracy(line->files[1], &common, &chosen);
 }
 
 static enum status run_samplers(const struct command_line *line) {
@@ -85,8 +85,8 @@ static enum status run_samplers(const struct command_line *line) {
                                   TIME_STEPS, INTEGRATORS,    OPTIONS};
     TRY(check_options(line, "samplers", foreign));
     if (line->file_count != 2)
-        return status_fail(STATUS_BAD_INPUT, "usage: mesofit bench samplers SCENE.json");
-    return bench_samplers(line->files[1], &line->options);
+        return mf_status_fail(STATUS_BAD_INPUT, "usage: mesofit bench samplers SCENE.json");
+    return mf_bench_samplers(line->files[1], &line->options);
 }
 
 static enum status run(const struct command_line *line) {
@@ -98,8 +98,8 @@ static enum status run(const struct command_line *line) {
         return run_accuracy(line);
     if (strcmp(line->files[0], subjects[2]) == 0)
         return run_samplers(line);
-    nearest_hint(line->files[0], subjects, 3, hint, sizeof hint);
-    return status_fail(STATUS_BAD_INPUT, "bench: \"%s\" is not known; %s", line->files[0], hint);
+    mf_nearest_hint(line->files[0], subjects, 3, hint, sizeof hint);
+    return mf_status_fail(STATUS_BAD_INPUT, "bench: \"%s\" is not known; %s", line->files[0], hint);
 }
 
 const struct command cmd_bench = {

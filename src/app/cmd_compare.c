@@ -3,7 +3,7 @@
 #include "report/compare.h"
 
 static enum status run(const struct command_line *line) {
-    return compare_folders(line->files, line->file_count,
+    return mf_compare_folders(line->files, line->file_count,
                            line->options.folder ? line->options.folder : "compare",
                            line->options.quiet);
 }

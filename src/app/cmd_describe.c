@@ -83,61 +83,61 @@ static const struct {
 enum { MAX_TOPICS = 64 };
 
 static const struct topic fixed_topics[] = {
-    {"files", "run", "the top of a run file, for `mesofit fit`", {heading_fields}},
+    {"files", "run", "the top of a run file, for `mesofit fit`", {mf_heading_fields}},
     {"files",
      "scene",
      "the top of a scene file, and \"scene\" of a run file, which has no title and seed",
-     {heading_fields, scene_fields}},
+     {mf_heading_fields, mf_scene_fields}},
     {"files",
      "particles",
      "\"particles\" of a scene; a mixture has \"types\": {\"A\": 500, \"B\": 300} for \"count\"",
-     {placement_count_fields, placement_fields}},
-    {"files", "measure", "\"measure\" of a scene file: when to sample", {measure_plan_fields}},
-    {"files", "rdf", "\"rdf\" of a scene file", {simulate_rdf_fields}},
+     {mf_placement_count_fields, mf_placement_fields}},
+    {"files", "measure", "\"measure\" of a scene file: when to sample", {mf_measure_plan_fields}},
+    {"files", "rdf", "\"rdf\" of a scene file", {mf_simulate_rdf_fields}},
     {"files",
      "motion",
      "\"motion\" of a scene file: diffusion; measured if it is there",
-     {motion_plan_fields}},
+     {mf_motion_plan_fields}},
     {"files",
      "etd",
      "\"etd\" of a scene file: escape times of pairs; measured if it is there",
-     {etd_grid_fields, etd_plan_fields}},
+     {mf_etd_grid_fields, mf_etd_plan_fields}},
     {"files",
      "force_covariance",
      "\"force_covariance\" of a scene file: friction as the forces show it; measured if it is "
      "there",
-     {force_covariance_fields}},
-    {"files", "units", "\"units\" of a scene: physical units for the results", {units_fields}},
-    {"files", "core", "\"core\" of a run file: where the target is 0", {fit_core_fields}},
+     {mf_force_covariance_fields}},
+    {"files", "units", "\"units\" of a scene: physical units for the results", {mf_units_fields}},
+    {"files", "core", "\"core\" of a run file: where the target is 0", {mf_fit_core_fields}},
     {"files",
      "verification",
      "\"verification\" of a run file: independent simulations of the result",
-     {verify_fields}},
+     {mf_verify_fields}},
     {"target", "target", "\"target\" of a run file", {NULL}},
     {"target",
      "rdf-target",
      "\"rdf\" of a run file's \"target\": g(r)",
-     {target_fields, targets_goal_fields}},
+     {mf_target_fields, mf_targets_goal_fields}},
     {"target",
      "etd-target",
      "\"etd\": escape times of pairs",
-     {target_etd_fields, targets_goal_fields}},
+     {mf_target_etd_fields, mf_targets_goal_fields}},
     {"target",
      "curve-target",
      "\"vacf\" and \"msd\": functions of time, each with its file",
-     {targets_curve_fields, targets_goal_fields}},
+     {mf_targets_curve_fields, mf_targets_goal_fields}},
     {"target",
      "number-target",
      "\"diffusion\" and \"pressure\"",
-     {targets_number_fields, targets_goal_fields}},
-    {"target", "diffusion-target", "\"diffusion\" besides", {targets_diffusion_fields}},
+     {mf_targets_number_fields, mf_targets_goal_fields}},
+    {"target", "diffusion-target", "\"diffusion\" besides", {mf_targets_diffusion_fields}},
     {"unknowns", "unknowns", "\"unknowns\" of a run file", {NULL}},
-    {"unknowns", "potential", "Phi(r), to be found", {inverse_potential_fields}},
-    {"unknowns", "weight", "omega(r), to be found", {inverse_weight_fields}},
+    {"unknowns", "potential", "Phi(r), to be found", {mf_inverse_potential_fields}},
+    {"unknowns", "weight", "omega(r), to be found", {mf_inverse_weight_fields}},
     {"unknowns",
      "fixed",
      "\"fixed\" of a weight: parameters of the curve \"power\" that are not to be found",
-     {inverse_fixed_fields}},
+     {mf_inverse_fixed_fields}},
 };
 
 static size_t add_curves(struct topic *topics, size_t n, const char *group,
@@ -151,15 +151,15 @@ static size_t add_curves(struct topic *topics, size_t n, const char *group,
 static size_t collect(struct topic topics[MAX_TOPICS]) {
     size_t n = sizeof fixed_topics / sizeof *fixed_topics;
     memcpy(topics, fixed_topics, sizeof fixed_topics);
-    n = add_curves(topics, n, "conservative", curve_potentials);
-    n = add_curves(topics, n, "dissipative", curve_weights);
-    for (size_t k = 0; integrator_list[k]; k++)
+    n = add_curves(topics, n, "conservative", mf_curve_potentials);
+    n = add_curves(topics, n, "dissipative", mf_curve_weights);
+    for (size_t k = 0; mf_integrator_list[k]; k++)
         topics[n++] = (struct topic){"dynamics",
-                                     integrator_list[k]->name,
-                                     integrator_list[k]->summary,
-                                     {integrator_list[k]->fields}};
-    for (size_t k = 0; inverse_methods[k]; k++) {
-        const struct inverse_method *method = inverse_methods[k];
+                                     mf_integrator_list[k]->name,
+                                     mf_integrator_list[k]->summary,
+                                     {mf_integrator_list[k]->fields}};
+    for (size_t k = 0; mf_inverse_methods[k]; k++) {
+        const struct inverse_method *method = mf_inverse_methods[k];
         topics[n] = (struct topic){"method", method->name, method->summary, {NULL}};
         for (size_t t = 0; t < 3 && method->tables[t]; t++)
             topics[n].tables[t] = method->tables[t];
@@ -189,7 +189,7 @@ static void print_objects(const struct inner *objects) {
 static void print_topic(const struct topic *topic) {
     printf("%s (%s): %s\n", topic->name, topic->group, topic->summary);
     for (size_t t = 0; topic->tables[t]; t++)
-        fields_describe(topic->tables[t], stdout);
+        mf_fields_describe(topic->tables[t], stdout);
     for (size_t k = 0; k < sizeof contents / sizeof *contents; k++)
         if (strcmp(contents[k].topic, topic->name) == 0)
             print_objects(contents[k].objects);
@@ -220,8 +220,8 @@ static enum status run(const struct command_line *line) {
     for (size_t k = 0; k < count; k++)
         names[k] = topics[k].name;
     char hint[512];
-    nearest_hint(line->files[0], names, count, hint, sizeof hint);
-    return status_fail(STATUS_BAD_INPUT, "describe: \"%s\" is not known; %s", line->files[0], hint);
+    mf_nearest_hint(line->files[0], names, count, hint, sizeof hint);
+    return mf_status_fail(STATUS_BAD_INPUT, "describe: \"%s\" is not known; %s", line->files[0], hint);
 }
 
 const struct command cmd_describe = {

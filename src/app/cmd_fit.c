@@ -11,8 +11,8 @@ static const struct command_option options[] = {
 
 static enum status run(const struct command_line *line) {
     if (line->own[EXPLAIN])
-        return fit_explain(line->files[0], &line->options);
-    return fit_run(line->files[0], &line->options);
+        return mf_fit_explain(line->files[0], &line->options);
+    return mf_fit_run(line->files[0], &line->options);
 }
 
 const struct command cmd_fit = {

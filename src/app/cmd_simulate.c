@@ -11,8 +11,8 @@ static const struct command_option options[] = {
 
 static enum status run(const struct command_line *line) {
     if (line->own[EXPLAIN])
-        return simulate_explain(line->files[0], &line->options);
-    return simulate_file(line->files[0], &line->options);
+        return mf_simulate_explain(line->files[0], &line->options);
+    return mf_simulate_file(line->files[0], &line->options);
 }
 
 const struct command cmd_simulate = {

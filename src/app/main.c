@@ -79,7 +79,7 @@ static enum status parse_number(const char *option, const char *text, uint64_t l
     *number = text ? strtoull(text, &end, 10) : 0;
     if (text == NULL || end == text || *end != '\0' || errno || *text == '-' || *number < least ||
         *number > most)
-        return status_fail(STATUS_BAD_INPUT, "%s takes a whole number from %llu to %llu", option,
+        return mf_status_fail(STATUS_BAD_INPUT, "%s takes a whole number from %llu to %llu", option,
                            (unsigned long long)least, (unsigned long long)most);
     return STATUS_OK;
 }
@@ -92,7 +92,7 @@ static enum status parse_own_option(const struct command *command, const char *w
         if (strcmp(word, own->name) != 0)
             continue;
         if (own->value && (value == NULL || *value == '\0' || *value == '-'))
-            return status_fail(STATUS_BAD_INPUT, "%s takes %s", word, own->value);
+            return mf_status_fail(STATUS_BAD_INPUT, "%s takes %s", word, own->value);
         line->own[k] = own->value ? value : own->name;
         *used = own->value ? 2 : 1;
         return STATUS_OK;
@@ -108,8 +108,8 @@ static enum status fail_unknown_option(const struct command *command, const char
         if (strcmp(own->name, "-o") != 0)
             known[count++] = own->name;
     char hint[256];
-    nearest_hint(word, known, count, hint, sizeof hint);
-    return status_fail(STATUS_BAD_INPUT, "unknown option %s; %s", word, hint);
+    mf_nearest_hint(word, known, count, hint, sizeof hint);
+    return mf_status_fail(STATUS_BAD_INPUT, "unknown option %s; %s", word, hint);
 }
 
 /// One option with its value, if it takes one; *used is how many words it took.
@@ -124,7 +124,7 @@ static enum status parse_option(const struct command *command, const char *word,
     *used = 2;
     if (strcmp(word, "-o") == 0) {
         if (value == NULL || *value == '\0' || *value == '-')
-            return status_fail(STATUS_BAD_INPUT, "-o takes a folder");
+            return mf_status_fail(STATUS_BAD_INPUT, "-o takes a folder");
         options->folder = value;
     } else if (strcmp(word, "--threads") == 0) {
         TRY(parse_number(word, value, 1, 1024, &number));
@@ -156,7 +156,7 @@ static enum status parse_line(const struct command *command, int count, char **w
         if (words[k][0] == '-')
             TRY(parse_option(command, words[k], k + 1 < count ? words[k + 1] : NULL, line, &used));
         else if (line->file_count == COMMAND_MAX_FILES)
-            return status_fail(STATUS_BAD_INPUT, "more than %d files", COMMAND_MAX_FILES);
+            return mf_status_fail(STATUS_BAD_INPUT, "more than %d files", COMMAND_MAX_FILES);
         else
             line->files[line->file_count++] = words[k];
         k += used;
@@ -174,8 +174,8 @@ static enum status find_command(const char *name, const struct command **command
             return STATUS_OK;
         }
     }
-    nearest_hint(name, names, COMMANDS, hint, sizeof hint);
-    return status_fail(STATUS_BAD_INPUT, "unknown command \"%s\"; %s", name, hint);
+    mf_nearest_hint(name, names, COMMANDS, hint, sizeof hint);
+    return mf_status_fail(STATUS_BAD_INPUT, "unknown command \"%s\"; %s", name, hint);
 }
 
 static enum status run(int count, char **words) {
@@ -184,9 +184,9 @@ static enum status run(int count, char **words) {
     TRY(find_command(words[0], &command));
     TRY(parse_line(command, count - 1, words + 1, &line));
     if (line.file_count < command->least_files || line.file_count > command->most_files)
-        return status_fail(STATUS_BAD_INPUT, "usage: mesofit %s %s", command->name, command->usage);
+        return mf_status_fail(STATUS_BAD_INPUT, "usage: mesofit %s %s", command->name, command->usage);
     if (line.options.resume && line.options.force)
-        return status_fail(STATUS_BAD_INPUT,
+        return mf_status_fail(STATUS_BAD_INPUT,
                            "--resume goes on with what --force would replace: give one of them");
     return command->run(&line);
 }
@@ -202,7 +202,7 @@ static bool asks_for(int count, char **words, const char *option) {
 static void install_handlers(void) {
     gsl_set_error_handler_off();
     signal(SIGXFSZ, SIG_IGN); // a write beyond the file size limit fails like a full disk
-    interrupt_install();
+    mf_interrupt_install();
 }
 
 /// A file that is opened must not become what a closed stream was: what is said would go into it.
@@ -225,7 +225,7 @@ static enum status finish_output(enum status status) {
     }
     if (status != STATUS_OK || (error == 0 && !ferror(stdout)))
         return status;
-    return status_fail(STATUS_IO, "cannot write to stdout: %s",
+    return mf_status_fail(STATUS_IO, "cannot write to stdout: %s",
                        error ? strerror(error) : "not all of it has arrived");
 }
 
@@ -240,18 +240,18 @@ static enum status act(int count, char **words) {
     }
     if (count < 2) {
         print_help();
-        return status_fail(STATUS_BAD_INPUT, "give one of these commands");
+        return mf_status_fail(STATUS_BAD_INPUT, "give one of these commands");
     }
-    program_begin_again(words);
+    mf_program_begin_again(words);
     return run(count - 1, words + 1);
 }
 
 int main(int count, char **words) {
     occupy_streams();
     install_handlers();
-    memory_keep();
+    mf_memory_keep();
     const enum status status = finish_output(act(count, words));
     if (status != STATUS_OK)
-        fprintf(stderr, "mesofit: %s\n", status_message());
+        fprintf(stderr, "mesofit: %s\n", mf_status_message());
     return exit_code(status);
 }

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-enum status comoments_init(struct comoments *moments, size_t size) {
+enum status mf_comoments_init(struct comoments *moments, size_t size) {
     enum status status = STATUS_OK;
     *moments = (struct comoments){.size = size};
     NEW_ARRAY(moments->mean, size);
@@ -13,18 +13,18 @@ enum status comoments_init(struct comoments *moments, size_t size) {
     NEW_ARRAY(moments->scratch, size);
 done:
     if (status != STATUS_OK)
-        comoments_clear(moments);
+        mf_comoments_clear(moments);
     return status;
 }
 
-void comoments_clear(struct comoments *moments) {
-    memory_free(moments->mean);
-    memory_free(moments->comoment);
-    memory_free(moments->scratch);
+void mf_comoments_clear(struct comoments *moments) {
+    mf_memory_free(moments->mean);
+    mf_memory_free(moments->comoment);
+    mf_memory_free(moments->scratch);
     *moments = (struct comoments){0};
 }
 
-void comoments_reset(struct comoments *moments) {
+void mf_comoments_reset(struct comoments *moments) {
     moments->count = 0;
     memset(moments->mean, 0, moments->size * sizeof *moments->mean);
     memset(moments->comoment, 0, moments->size * moments->size * sizeof *moments->comoment);
@@ -42,7 +42,7 @@ static void add_outer_product(struct comoments *moments, double weight) {
     }
 }
 
-void comoments_add(struct comoments *moments, const double *x) {
+void mf_comoments_add(struct comoments *moments, const double *x) {
     const double before = moments->count;
     moments->count += 1;
     for (size_t a = 0; a < moments->size; a++) {
@@ -52,7 +52,7 @@ void comoments_add(struct comoments *moments, const double *x) {
     add_outer_product(moments, before / moments->count);
 }
 
-void comoments_merge(struct comoments *moments, const struct comoments *other) {
+void mf_comoments_merge(struct comoments *moments, const struct comoments *other) {
     if (other->count == 0)
         return;
     const double before = moments->count;
@@ -67,7 +67,7 @@ void comoments_merge(struct comoments *moments, const struct comoments *other) {
     add_outer_product(moments, before * fraction);
 }
 
-double comoments_covariance(const struct comoments *moments, size_t a, size_t b) {
+double mf_comoments_covariance(const struct comoments *moments, size_t a, size_t b) {
     if (moments->count < 1)
         return 0;
     return moments->comoment[a * moments->size + b] / moments->count;

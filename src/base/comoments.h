@@ -17,17 +17,17 @@ struct comoments {
     double *scratch;  ///< shape [size]
 };
 
-enum status comoments_init(struct comoments *moments, size_t size) MUST_USE;
-void comoments_clear(struct comoments *moments);
+enum status mf_comoments_init(struct comoments *moments, size_t size) MUST_USE;
+void mf_comoments_clear(struct comoments *moments);
 
 /// Forget all samples.
-void comoments_reset(struct comoments *moments);
+void mf_comoments_reset(struct comoments *moments);
 
 /// Add one sample x of shape [size].
-void comoments_add(struct comoments *moments, const double *x);
+void mf_comoments_add(struct comoments *moments, const double *x);
 
 /// Add all samples of `other`. Merge in a fixed order for the same bits at any thread count.
-void comoments_merge(struct comoments *moments, const struct comoments *other);
+void mf_comoments_merge(struct comoments *moments, const struct comoments *other);
 
 /// Covariance ⟨x_a x_b⟩ − ⟨x_a⟩⟨x_b⟩ (population form) of one pair of components.
-double comoments_covariance(const struct comoments *moments, size_t a, size_t b);
+double mf_comoments_covariance(const struct comoments *moments, size_t a, size_t b);

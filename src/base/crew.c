@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-void crew_init(struct crew *crew, int most) {
+void mf_crew_init(struct crew *crew, int most) {
     *crew = (struct crew){.most = most, .now = most, .better = most, .next_rest = CREW_FIRST_REST};
 }
 
@@ -35,7 +35,7 @@ static void begin_trial(struct crew *crew) {
     crew->turn = 0;
 }
 
-void crew_end_turn(struct crew *crew, uint64_t ticks) {
+void mf_crew_end_turn(struct crew *crew, uint64_t ticks) {
     if (crew->most <= 1)
         return;
     const int turn = crew->turn++;

@@ -21,7 +21,7 @@ struct crew {
 };
 
 /// A crew of at most `most` threads; with one there is nothing to try.
-void crew_init(struct crew *crew, int most);
+void mf_crew_init(struct crew *crew, int most);
 
 /// A turn with crew->now threads took `ticks`: settle crew->now for the next one.
-void crew_end_turn(struct crew *crew, uint64_t ticks);
+void mf_crew_end_turn(struct crew *crew, uint64_t ticks);

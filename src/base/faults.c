@@ -3,7 +3,7 @@
 
 #include <stdio.h>
 
-void faults_add(struct faults *faults, const char *line) {
+void mf_faults_add(struct faults *faults, const char *line) {
     faults->count++;
     if (faults->full)
         return;
@@ -20,11 +20,11 @@ void faults_add(struct faults *faults, const char *line) {
     faults->full = faults->told == FAULTS_TOLD;
 }
 
-enum status faults_status(const struct faults *faults) {
+enum status mf_faults_status(const struct faults *faults) {
     const size_t left_out = faults->count - faults->told;
     if (faults->count == 0)
         return STATUS_OK;
     if (left_out == 0)
-        return status_fail(STATUS_BAD_INPUT, "%s", faults->text);
-    return status_fail(STATUS_BAD_INPUT, "%s\n… and %zu more faults", faults->text, left_out);
+        return mf_status_fail(STATUS_BAD_INPUT, "%s", faults->text);
+    return mf_status_fail(STATUS_BAD_INPUT, "%s\n… and %zu more faults", faults->text, left_out);
 }

@@ -21,7 +21,7 @@ struct faults {
 };
 
 /// Add one line. After FAULTS_TOLD lines, or when the text is full, faults are only counted.
-void faults_add(struct faults *faults, const char *line);
+void mf_faults_add(struct faults *faults, const char *line);
 
 /// OK if there are none; otherwise BAD_INPUT with all lines and how many were left out.
-enum status faults_status(const struct faults *faults) MUST_USE;
+enum status mf_faults_status(const struct faults *faults) MUST_USE;

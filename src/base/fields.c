@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-void fields_set_defaults(const struct field *fields, void *parameters) {
+void mf_fields_set_defaults(const struct field *fields, void *parameters) {
     for (const struct field *field = fields; field->name; field++) {
         char *member = (char *)parameters + field->offset;
         switch (field->type) {
@@ -31,7 +31,7 @@ void fields_set_defaults(const struct field *fields, void *parameters) {
     }
 }
 
-void fields_range_text(const struct field *field, char *text, size_t size) {
+void mf_fields_range_text(const struct field *field, char *text, size_t size) {
     const double low = field->minimum, high = field->maximum;
     const bool bounded_above = high < DBL_MAX && high < FIELD_LARGEST_INTEGER;
     if (low == FIELD_ABOVE_ZERO && !bounded_above)
@@ -46,7 +46,7 @@ void fields_range_text(const struct field *field, char *text, size_t size) {
         snprintf(text, size, "any");
 }
 
-int fields_choice_index(const struct field *field, const char *name) {
+int mf_fields_choice_index(const struct field *field, const char *name) {
     for (int i = 0; field->choices[i]; i++)
         if (strcmp(field->choices[i], name) == 0)
             return i;
@@ -95,14 +95,14 @@ static void describe_default(const struct field *field, char *text, size_t size)
         snprintf(text, size, "%.12g", field->initial);
 }
 
-void fields_describe(const struct field *fields, FILE *stream) {
+void mf_fields_describe(const struct field *fields, FILE *stream) {
     for (const struct field *field = fields; field->name; field++) {
         char type[256], fallback[64], range[64] = "";
         describe_type(field, type, sizeof type);
         describe_default(field, fallback, sizeof fallback);
         if (field->type == FIELD_NUMBER || field->type == FIELD_INTEGER ||
             field->type == FIELD_LENGTHS)
-            fields_range_text(field, range, sizeof range);
+            mf_fields_range_text(field, range, sizeof range);
         fprintf(stream, "  %-24s %s%s%s\n", field->name, field->help, field->unit[0] ? ", in " : "",
                 field->unit);
         fprintf(stream, "  %-24s   %s, %s%s%s\n", "", type, field->required ? "" : "default ",

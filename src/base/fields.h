@@ -46,13 +46,13 @@ struct field {
 #define FIELD_LARGEST_INTEGER 9007199254740992.0
 
 /// Set every member of `parameters` to its default.
-void fields_set_defaults(const struct field *fields, void *parameters);
+void mf_fields_set_defaults(const struct field *fields, void *parameters);
 
 /// Print one line a field: name, type or choices, unit, default, range, help.
-void fields_describe(const struct field *fields, FILE *stream);
+void mf_fields_describe(const struct field *fields, FILE *stream);
 
 /// Print the allowed range of a field, such as "above 0" or "0 to 1", into `text`.
-void fields_range_text(const struct field *field, char *text, size_t size);
+void mf_fields_range_text(const struct field *field, char *text, size_t size);
 
 /// Index of `name` among the choices of `field`, or −1.
-int fields_choice_index(const struct field *field, const char *name);
+int mf_fields_choice_index(const struct field *field, const char *name);

@@ -17,7 +17,7 @@ static bool is_ignored(int signal_number) {
     return sigaction(signal_number, NULL, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 
-void interrupt_install(void) {
+void mf_interrupt_install(void) {
     // A second wish of the user ends the program; a terminal that is gone may say so twice, and a
     // closed pipe with every word.
     static const struct {
@@ -36,6 +36,6 @@ void interrupt_install(void) {
     }
 }
 
-bool interrupt_requested(void) {
+bool mf_interrupt_requested(void) {
     return requested != 0;
 }

@@ -7,7 +7,7 @@
 
 /// Catch SIGINT and SIGTERM from now on, a second one of which ends the program at once, and SIGHUP
 /// and SIGPIPE unless they are ignored. Tested: test_signals.
-void interrupt_install(void);
+void mf_interrupt_install(void);
 
 /// True once the user has asked to stop. Any thread may ask, as often as it likes.
-bool interrupt_requested(void);
+bool mf_interrupt_requested(void);

@@ -11,10 +11,10 @@ enum { MEMORY_ALIGNMENT = 64 };
 
 /// Allocate `count` zeroed elements of `size` bytes, aligned to MEMORY_ALIGNMENT.
 /// @return NULL if there is no memory or count × size overflows; the message is set.
-void *memory_zeroed(size_t count, size_t size) MUST_USE;
+void *mf_memory_zeroed(size_t count, size_t size) MUST_USE;
 
 /// The same, but for the zeros: pages that are never written take no memory.
-void *memory_uncleared(size_t count, size_t size) MUST_USE;
+void *mf_memory_uncleared(size_t count, size_t size) MUST_USE;
 
 /// A piece of state that a checkpoint keeps.
 struct memory_span {
@@ -26,11 +26,11 @@ struct memory_span {
 /// a fit come and go by the thousand, and each worker works in the pages of its last one. Measured
 /// for the quick genetic fit: system time falls from 2.6 to 1.6 % of the whole. Call it once,
 /// before there are threads.
-void memory_keep(void);
+void mf_memory_keep(void);
 
-/// Free an array of memory_zeroed; NULL is allowed.
-void memory_free(void *array);
+/// Free an array of mf_memory_zeroed; NULL is allowed.
+void mf_memory_free(void *array);
 
 /// Allocate an array for `pointer`, or leave the function through CHECK's `done`.
 #define NEW_ARRAY(pointer, count)                                                                  \
-    CHECK(((pointer) = memory_zeroed((count), sizeof *(pointer))) ? STATUS_OK : STATUS_NO_MEMORY)
+    CHECK(((pointer) = mf_memory_zeroed((count), sizeof *(pointer))) ? STATUS_OK : STATUS_NO_MEMORY)

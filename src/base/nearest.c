@@ -29,7 +29,7 @@ static size_t edit_distance(const char *a, size_t length_a, const char *b, size_
     return cost[length_a][length_b];
 }
 
-const char *nearest_name(const char *given, const char *const *known, size_t count) {
+const char *mf_nearest_name(const char *given, const char *const *known, size_t count) {
     const char *nearest = NULL;
     size_t least = LONGEST_NAME;
     const size_t length = strlen(given);
@@ -48,9 +48,9 @@ const char *nearest_name(const char *given, const char *const *known, size_t cou
     return nearest;
 }
 
-void nearest_hint(const char *given, const char *const *known, size_t count, char *text,
+void mf_nearest_hint(const char *given, const char *const *known, size_t count, char *text,
                   size_t size) {
-    const char *nearest = nearest_name(given, known, count);
+    const char *nearest = mf_nearest_name(given, known, count);
     if (nearest) {
         snprintf(text, size, "did you mean \"%s\"?", nearest);
         return;

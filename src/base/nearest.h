@@ -8,8 +8,8 @@
 /// @param[in] known  shape [count]
 /// @return NULL if even the nearest differs in more than a third of its letters. Tested:
 /// test_nearest.
-const char *nearest_name(const char *given, const char *const *known, size_t count);
+const char *mf_nearest_name(const char *given, const char *const *known, size_t count);
 
 /// Print `did you mean "seed"?`, or `known: a, b, c` when nothing is near, into `text`.
-void nearest_hint(const char *given, const char *const *known, size_t count, char *text,
+void mf_nearest_hint(const char *given, const char *const *known, size_t count, char *text,
                   size_t size);

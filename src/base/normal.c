@@ -37,7 +37,7 @@ static void fit_piece(double begin, double width, double coefficient[4]) {
     }
 }
 
-void normal_table_init(struct normal_table *table) {
+void mf_normal_table_init(struct normal_table *table) {
     memset(table, 0, sizeof *table);
     for (int row = 0; row < NORMAL_ROWS - 1; row++) {
         const double octave = ldexp(0.5, row / NORMAL_PIECES), width = octave / NORMAL_PIECES;
@@ -47,7 +47,7 @@ void normal_table_init(struct normal_table *table) {
     }
 }
 
-double normal_of_word(const struct normal_table *table, uint32_t word) {
+double mf_normal_of_word(const struct normal_table *table, uint32_t word) {
     const int32_t sign = (int32_t)word < 0 ? -1 : 0;
     const float tail = (float)((int32_t)word ^ sign) + 0.5F;
     int32_t bits;

@@ -21,7 +21,7 @@ struct normal_table {
     float single[NORMAL_ROWS][4];   ///< the same rounded
 };
 
-void normal_table_init(struct normal_table *table);
+void mf_normal_table_init(struct normal_table *table);
 
 /// ζ of a word.
-double normal_of_word(const struct normal_table *table, uint32_t word);
+double mf_normal_of_word(const struct normal_table *table, uint32_t word);

@@ -6,7 +6,7 @@ static size_t part_begin(size_t count, int number, int parts) {
     return number == parts ? count : count * (size_t)number / (size_t)parts / 16 * 16;
 }
 
-void parallel_for(size_t count, int threads, void (*body)(void *context, size_t begin, size_t end),
+void mf_parallel_for(size_t count, int threads, void (*body)(void *context, size_t begin, size_t end),
                   void *context) {
     if (threads <= 1) {
         body(context, 0, count);
@@ -17,7 +17,7 @@ void parallel_for(size_t count, int threads, void (*body)(void *context, size_t 
         body(context, part_begin(count, part, threads), part_begin(count, part + 1, threads));
 }
 
-double parallel_sum(size_t count, int threads,
+double mf_parallel_sum(size_t count, int threads,
                     double (*body)(const void *context, size_t begin, size_t end),
                     const void *context) {
     enum { MOST_BLOCKS = 64, SMALLEST_BLOCK = 4096 };

@@ -2,7 +2,7 @@
 /// @file Loops shared between threads.
 ///
 /// Threads meet a dozen times in a step, and libgomp lets them turn in circles until all are there:
-/// on busy cores for longer than the work takes. The program mesofit (program_begin_again) sets
+/// on busy cores for longer than the work takes. The program mesofit (mf_program_begin_again) sets
 /// GOMP_SPINCOUNT for itself; another one that uses the library with threads is started with
 /// GOMP_SPINCOUNT=1000 or OMP_WAIT_POLICY=passive in its environment, which are read before its
 /// main begins.
@@ -14,11 +14,11 @@
 ///
 /// The stretches depend on the number of threads: a body whose elements do not touch each other
 /// gives the same bits for any number.
-void parallel_for(size_t count, int threads, void (*body)(void *context, size_t begin, size_t end),
+void mf_parallel_for(size_t count, int threads, void (*body)(void *context, size_t begin, size_t end),
                   void *context);
 
 /// Σ of body(begin, end) over blocks of 0 … count − 1 that are the same for any number of threads,
 /// added in order. Blocks are large, and few enough that their sums stay on the stack.
-double parallel_sum(size_t count, int threads,
+double mf_parallel_sum(size_t count, int threads,
                     double (*body)(const void *context, size_t begin, size_t end),
                     const void *context);

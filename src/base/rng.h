@@ -30,17 +30,17 @@ struct rng_block {
 };
 
 /// Four independent 32-bit words for (seed, stream, a, b, c).
-struct rng_block rng_philox(uint64_t seed, enum rng_stream stream, uint32_t a, uint32_t b,
+struct rng_block mf_rng_philox(uint64_t seed, enum rng_stream stream, uint32_t a, uint32_t b,
                             uint32_t c);
 
 /// Seed of a simulation that is number (a, b) of `stream`, itself the child of `seed`.
-uint64_t rng_child_seed(uint64_t seed, enum rng_stream stream, uint32_t a, uint32_t b);
+uint64_t mf_rng_child_seed(uint64_t seed, enum rng_stream stream, uint32_t a, uint32_t b);
 
 /// Four standard normal numbers (Box and Muller, Ann. Math. Stat. 29, 610 (1958)).
-void rng_normal4(struct rng_block block, double normal[4]);
+void mf_rng_normal4(struct rng_block block, double normal[4]);
 
 /// Uniform number in (0, 1), 52 bits from two words; never 0 and never 1.
-double rng_uniform(uint32_t high, uint32_t low);
+double mf_rng_uniform(uint32_t high, uint32_t low);
 
 /// A sequence of numbers for serial code: counter (a, b) fixed, c counting.
 struct rng_sequence {
@@ -51,14 +51,14 @@ struct rng_sequence {
     struct rng_block block;
 };
 
-struct rng_sequence rng_sequence_begin(uint64_t seed, enum rng_stream stream, uint32_t a,
+struct rng_sequence mf_rng_sequence_begin(uint64_t seed, enum rng_stream stream, uint32_t a,
                                        uint32_t b);
 
 /// Next uniform number in (0, 1).
-double rng_sequence_uniform(struct rng_sequence *sequence);
+double mf_rng_sequence_uniform(struct rng_sequence *sequence);
 
 /// Next integer in 0 … count − 1, count ≥ 1.
-uint32_t rng_sequence_below(struct rng_sequence *sequence, uint32_t count);
+uint32_t mf_rng_sequence_below(struct rng_sequence *sequence, uint32_t count);
 
 #define RNG_PHILOX_MULTIPLIER0 0xD2511F53u
 #define RNG_PHILOX_MULTIPLIER1 0xCD9E8D57u

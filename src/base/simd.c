@@ -21,15 +21,15 @@ static enum simd best(void) {
     return SIMD_PORTABLE;
 }
 
-enum simd simd_used(void) {
+enum simd mf_simd_used(void) {
     return selected < 0 ? best() : (enum simd)selected;
 }
 
-const char *simd_name(void) {
-    return names[simd_used()];
+const char *mf_simd_name(void) {
+    return names[mf_simd_used()];
 }
 
-bool simd_select(const char *name) {
+bool mf_simd_select(const char *name) {
     for (int k = SIMD_PORTABLE; k <= (int)best(); k++)
         if (strcmp(name, names[k]) == 0) {
             selected = k;

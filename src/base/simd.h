@@ -15,15 +15,15 @@ enum simd { SIMD_PORTABLE, SIMD_AVX2, SIMD_AVX512 };
 #endif
 
 /// Instruction set that kernels use: the best of this processor, or the selected one.
-enum simd simd_used(void);
+enum simd mf_simd_used(void);
 
 /// Its name: "portable", "avx2" or "avx512".
-const char *simd_name(void);
+const char *mf_simd_name(void);
 
 /// Use the instruction set called `name` from now on.
 /// @return false, and change nothing, if there is none of that name or the processor lacks it.
 /// Threads: call it before there are several.
-bool simd_select(const char *name);
+bool mf_simd_select(const char *name);
 
 /// Compile a function once for each instruction set; the loader picks one when the program starts.
 /// For helpers that are plain loops; kernels have a file for each set (pair_avx2.c, close_avx2.c).

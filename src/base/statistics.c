@@ -3,14 +3,14 @@
 
 #include <math.h>
 
-void statistics_add(struct running_mean *running, double value) {
+void mf_statistics_add(struct running_mean *running, double value) {
     running->count += 1;
     const double deviation = value - running->mean;
     running->mean += deviation / running->count;
     running->squares += deviation * (value - running->mean);
 }
 
-double statistics_standard_error(const struct running_mean *running) {
+double mf_statistics_standard_error(const struct running_mean *running) {
     if (running->count < 2)
         return 0;
     return sqrt(running->squares / (running->count - 1) / running->count);
@@ -37,7 +37,7 @@ static struct chains describe(const double *values, size_t length, size_t count)
     struct chains chains = {values, length, count, 0, 0};
     struct running_mean mean = {0};
     for (size_t k = 0; k < length * count; k++)
-        statistics_add(&mean, values[k]);
+        mf_statistics_add(&mean, values[k]);
     chains.mean = mean.mean;
     chains.variance = autocovariance(&chains, 0);
     return chains;
@@ -59,7 +59,7 @@ static double autocorrelation(const double *values, size_t length, size_t chains
     return count > 0 ? sum / count : 0;
 }
 
-double statistics_inefficiency(const double *values, size_t length, size_t chains, size_t numbers) {
+double mf_statistics_inefficiency(const double *values, size_t length, size_t chains, size_t numbers) {
     const double n = (double)(length * chains);
     double sum = -1, last = INFINITY;
     size_t window = 0;
@@ -79,12 +79,12 @@ double statistics_inefficiency(const double *values, size_t length, size_t chain
     return fmax(sum / left, 1 / (n - 1)) * n;
 }
 
-double statistics_correlated_error(const double *values, size_t length, size_t chains) {
+double mf_statistics_correlated_error(const double *values, size_t length, size_t chains) {
     const size_t n = length * chains;
     if (n < 2)
         return 0;
     const double variance = describe(values, length, chains).variance;
     if (!(variance > 0))
         return variance;
-    return sqrt(variance * statistics_inefficiency(values, length, chains, 1) / (double)n);
+    return sqrt(variance * mf_statistics_inefficiency(values, length, chains, 1) / (double)n);
 }

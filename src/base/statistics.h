@@ -10,10 +10,10 @@ struct running_mean {
     double count, mean, squares;
 };
 
-void statistics_add(struct running_mean *running, double value);
+void mf_statistics_add(struct running_mean *running, double value);
 
 /// Standard error of the mean if the values are independent; 0 for fewer than two.
-double statistics_standard_error(const struct running_mean *running);
+double mf_statistics_standard_error(const struct running_mean *running);
 
 /// How many times the variance of the mean of a stationary series, whose neighbours are correlated,
 /// is Γ(0)/n: of several independent series (chains) of the same length, and of several numbers
@@ -32,7 +32,7 @@ double statistics_standard_error(const struct running_mean *running);
 /// number.
 /// @param[in] values  shape [numbers, chains, length]
 /// Tested: test_statistics.
-double statistics_inefficiency(const double *values, size_t length, size_t chains, size_t numbers);
+double mf_statistics_inefficiency(const double *values, size_t length, size_t chains, size_t numbers);
 
 /// Standard error of the mean of one such number; 0 for fewer than two values:
 ///   error² = Γ(0)/n times the inefficiency.
@@ -42,4 +42,4 @@ double statistics_inefficiency(const double *values, size_t length, size_t chain
 /// tell what a short series does not show.
 /// @param[in] values  shape [chains, length]
 /// Tested: test_statistics, test_errors.
-double statistics_correlated_error(const double *values, size_t length, size_t chains);
+double mf_statistics_correlated_error(const double *values, size_t length, size_t chains);

@@ -14,11 +14,11 @@ static _Thread_local char message[MESSAGE_SIZE];
 static int print_visible(char *text, const char *format, va_list arguments) {
     char raw[MESSAGE_SIZE];
     vsnprintf(raw, sizeof raw, format, arguments);
-    visible_copy(text, MESSAGE_SIZE, raw, "\n");
+    mf_visible_copy(text, MESSAGE_SIZE, raw, "\n");
     return (int)strlen(text);
 }
 
-enum status status_fail(enum status status, const char *format, ...) {
+enum status mf_status_fail(enum status status, const char *format, ...) {
     char text[MESSAGE_SIZE]; // the arguments may be parts of the message before
     va_list arguments;
     va_start(arguments, format);
@@ -28,7 +28,7 @@ enum status status_fail(enum status status, const char *format, ...) {
     return status;
 }
 
-enum status status_prefix(enum status status, const char *format, ...) {
+enum status mf_status_prefix(enum status status, const char *format, ...) {
     char rest[MESSAGE_SIZE];
     memcpy(rest, message, sizeof rest);
     va_list arguments;
@@ -41,11 +41,11 @@ enum status status_prefix(enum status status, const char *format, ...) {
     return status;
 }
 
-const char *status_message(void) {
+const char *mf_status_message(void) {
     return message;
 }
 
-const char *status_name(enum status status) {
+const char *mf_status_name(enum status status) {
     switch (status) {
     case STATUS_OK:
         return "ok";

@@ -20,18 +20,18 @@ enum status {
 #define MUST_USE __attribute__((warn_unused_result))
 
 /// Record a message for the calling thread and return `status`.
-enum status status_fail(enum status status, const char *format, ...)
+enum status mf_status_fail(enum status status, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
 /// Put "prefix: " before the message of the calling thread and return `status` unchanged.
-enum status status_prefix(enum status status, const char *format, ...)
+enum status mf_status_prefix(enum status status, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
 /// Message of the last failure in the calling thread; never NULL.
-const char *status_message(void);
+const char *mf_status_message(void);
 
 /// Name of a status as it stands in summary.json, such as "unstable".
-const char *status_name(enum status status);
+const char *mf_status_name(enum status status);
 
 /// Leave the function with the status of `call` unless it is STATUS_OK.
 #define TRY(call)                                                                                  \

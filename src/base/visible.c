@@ -14,7 +14,7 @@ static size_t control_bytes(const char *text) {
     return first == 0xc2 && second >= 0x80 && second <= 0x9f ? 2 : 0;
 }
 
-void visible_copy(char *copy, size_t size, const char *text, const char *kept) {
+void mf_visible_copy(char *copy, size_t size, const char *text, const char *kept) {
     char *end = copy;
     while (*text) {
         const size_t bytes = strchr(kept, *text) ? 0 : control_bytes(text);
@@ -29,6 +29,6 @@ void visible_copy(char *copy, size_t size, const char *text, const char *kept) {
     *end = '\0';
 }
 
-double visible_number(double number) {
+double mf_visible_number(double number) {
     return isnan(number) ? (double)NAN : number;
 }

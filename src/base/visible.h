@@ -8,7 +8,7 @@
 /// ASCII, of ISO 6429 (U+0080 to U+009F), and no others; a text that does not fit is cut.
 /// @param[in] kept  control characters that stay, as "\n"
 /// Tested: test_visible.
-void visible_copy(char *copy, size_t size, const char *text, const char *kept);
+void mf_visible_copy(char *copy, size_t size, const char *text, const char *kept);
 
 /// The number, or NaN without the sign that it happens to carry: printf would show it.
-double visible_number(double number);
+double mf_visible_number(double number);

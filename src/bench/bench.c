@@ -68,22 +68,22 @@ static enum status check_choice(const char *option, const char *given, const cha
     for (size_t k = 0; k < count; k++)
         if (given == NULL || strcmp(given, known[k]) == 0)
             return STATUS_OK;
-    nearest_hint(given, known, count, hint, sizeof hint);
-    return status_fail(STATUS_BAD_INPUT, "%s: \"%s\" is not known; %s", option, given, hint);
+    mf_nearest_hint(given, known, count, hint, sizeof hint);
+    return mf_status_fail(STATUS_BAD_INPUT, "%s: \"%s\" is not known; %s", option, given, hint);
 }
 
 static enum status choose_cases(struct run *run) {
     const struct bench_options *options = run->options;
     TRY(check_choice("--isa", options->isa, kernels, MOST_KERNELS));
     TRY(check_choice("--precision", options->precision, precisions, MOST_PRECISIONS));
-    if (options->isa && !simd_select(options->isa))
-        return status_fail(STATUS_BAD_INPUT, "--isa: this processor lacks %s", options->isa);
+    if (options->isa && !mf_simd_select(options->isa))
+        return mf_status_fail(STATUS_BAD_INPUT, "--isa: this processor lacks %s", options->isa);
     if (options->isa || options->against_lammps || options->skips) {
-        add_kernel(run, simd_name());
+        add_kernel(run, mf_simd_name());
         return STATUS_OK;
     }
     for (size_t k = 0; k < MOST_KERNELS; k++)
-        if (simd_select(kernels[k]))
+        if (mf_simd_select(kernels[k]))
             add_kernel(run, kernels[k]);
     return STATUS_OK;
 }
@@ -92,10 +92,10 @@ static enum status choose_cases(struct run *run) {
 
 static enum status read_shipped(struct run *run) {
     char folder[PATH_SIZE], file[PATH_SIZE + 64];
-    TRY(program_find_folder(folder, sizeof folder, scenes_folder, "thesis.json"));
+    TRY(mf_program_find_folder(folder, sizeof folder, scenes_folder, "thesis.json"));
     for (size_t k = 0; k < SHIPPED; k++) {
         snprintf(file, sizeof file, "%s/%s.json", folder, shipped[k]);
-        TRY(bench_scene_read(&run->scenes[k], file, run->options->output, run->common));
+        TRY(mf_bench_scene_read(&run->scenes[k], file, run->options->output, run->common));
     }
     return STATUS_OK;
 }
@@ -107,7 +107,7 @@ static enum status read_scenes(struct run *run, const char *const *files, size_t
     if (count == 0)
         CHECK(read_shipped(run));
     for (size_t k = 0; k < count; k++)
-        CHECK(bench_scene_read(&run->scenes[k], files[k], run->options->output, run->common));
+        CHECK(mf_bench_scene_read(&run->scenes[k], files[k], run->options->output, run->common));
     NEW_ARRAY(run->results, run->scene_count * run->how_count);
 done:
     return status;
@@ -120,16 +120,16 @@ static void tell(struct run *run, const struct bench_scene *scene, const struct 
     const uint64_t parts = run->options->against_lammps ? 1 : 1 + BENCH_REPEATS;
     char text[BENCH_NAME_SIZE + 32];
     snprintf(text, sizeof text, "%s  %s  %s", scene->name, how->isa, how->precision);
-    progress_tell(&run->progress, run->parts_done++, parts * cases, "runs", text);
+    mf_progress_tell(&run->progress, run->parts_done++, parts * cases, "runs", text);
 }
 
 static enum status time_alone(struct run *run, struct bench_case *bench,
                               const struct bench_scene *scene, struct bench_result *result) {
     for (int k = 0; k < BENCH_REPEATS; k++) {
         tell(run, scene, &bench->how);
-        TRY(bench_case_repeat(bench));
+        TRY(mf_bench_case_repeat(bench));
     }
-    bench_case_result(bench, scene->name, result);
+    mf_bench_case_result(bench, scene->name, result);
     return STATUS_OK;
 }
 
@@ -138,20 +138,20 @@ static enum status time_case(struct run *run, const struct bench_scene *scene,
     struct bench_case bench;
     struct bench_result *result = &run->results[run->result_count];
     tell(run, scene, how);
-    enum status status = bench_case_begin(&bench, scene, how);
+    enum status status = mf_bench_case_begin(&bench, scene, how);
     if (status == STATUS_OK)
-        status = run->options->against_lammps ? bench_lammps_compare(&bench, scene, result)
+        status = run->options->against_lammps ? mf_bench_lammps_compare(&bench, scene, result)
                                               : time_alone(run, &bench, scene, result);
-    bench_case_clear(&bench);
+    mf_bench_case_clear(&bench);
     if (status != STATUS_OK && status != STATUS_INTERRUPTED)
-        return status_prefix(status, "%s", scene->name);
+        return mf_status_prefix(status, "%s", scene->name);
     run->result_count += status == STATUS_OK;
     return status;
 }
 
 /// True, after a word about it, if LAMMPS cannot do the scene.
 static bool is_left_out(struct run *run, const struct bench_scene *scene) {
-    const char *objection = bench_lammps_objection(&scene->scene);
+    const char *objection = mf_bench_lammps_objection(&scene->scene);
     if (!run->options->against_lammps || objection == NULL)
         return false;
     if (!run->common->quiet)
@@ -164,12 +164,12 @@ static enum status time_scene(struct run *run, const struct bench_scene *scene) 
     const struct bench_result *first = run->results + run->result_count;
     for (size_t k = 0; k < run->how_count; k++)
         TRY(time_case(run, scene, &run->hows[k]));
-    progress_say(&run->progress, "%s: %.0f s", scene->name, progress_seconds(&run->progress));
+    mf_progress_say(&run->progress, "%s: %.0f s", scene->name, mf_progress_seconds(&run->progress));
     if (run->options->json)
         return STATUS_OK;
     if (first > run->results)
         printf("\n");
-    TRY(bench_output_table(stdout, first, run->how_count, run->options->against_lammps));
+    TRY(mf_bench_output_table(stdout, first, run->how_count, run->options->against_lammps));
     fflush(stdout);
     return STATUS_OK;
 }
@@ -177,7 +177,7 @@ static enum status time_scene(struct run *run, const struct bench_scene *scene) 
 static enum status time_skips(struct run *run) {
     for (size_t s = 0; s < run->scene_count; s++)
         for (size_t k = 0; k < run->how_count; k++)
-            TRY(bench_skips(stdout, &run->scenes[s], &run->hows[k]));
+            TRY(mf_bench_skips(stdout, &run->scenes[s], &run->hows[k]));
     return STATUS_OK;
 }
 
@@ -187,7 +187,7 @@ static enum status time_scenes(struct run *run) {
     for (size_t k = 0; k < run->scene_count; k++)
         if (!is_left_out(run, &run->scenes[k]))
             TRY(time_scene(run, &run->scenes[k]));
-    return run->options->json ? bench_output_json(stdout, run->results, run->result_count)
+    return run->options->json ? mf_bench_output_json(stdout, run->results, run->result_count)
                               : STATUS_OK;
 }
 
@@ -197,8 +197,8 @@ static enum status prepare(struct run *run, const char *const *files, size_t cou
     if (!run->options->against_lammps)
         return STATUS_OK;
     if (run->common->threads > 1)
-        return status_fail(STATUS_BAD_INPUT, "--against-lammps compares single threads");
-    return bench_lammps_check();
+        return mf_status_fail(STATUS_BAD_INPUT, "--against-lammps compares single threads");
+    return mf_bench_lammps_check();
 }
 
 /// Time all scenes, the file for the results being open already, so that two minutes are not lost.
@@ -206,27 +206,27 @@ static enum status time_to_file(struct run *run) {
     struct output output;
     if (run->options->output == NULL)
         return time_scenes(run);
-    TRY(output_open(&output, run->options->output));
+    TRY(mf_output_open(&output, run->options->output));
     const enum status status = time_scenes(run);
     if (status != STATUS_OK) {
-        output_abandon(&output);
+        mf_output_abandon(&output);
         return status;
     }
-    bench_output_tsv(output.stream, run->results, run->result_count);
-    return output_commit(&output);
+    mf_bench_output_tsv(output.stream, run->results, run->result_count);
+    return mf_output_commit(&output);
 }
 
-enum status bench_engine(const char *const *files, size_t count, const struct run_options *common,
+enum status mf_bench_engine(const char *const *files, size_t count, const struct run_options *common,
                          const struct bench_options *options) {
     struct run run = {.common = common, .options = options};
-    run.progress = progress_begin(common->quiet);
+    run.progress = mf_progress_begin(common->quiet);
     run.progress.quiet |= !run.progress.terminal; // nothing but results goes into a pipe
     enum status status = prepare(&run, files, count);
     if (status == STATUS_OK)
         status = time_to_file(&run);
     for (size_t k = 0; run.scenes && k < run.scene_count; k++)
-        scene_clear(&run.scenes[k].scene);
-    memory_free(run.scenes);
-    memory_free(run.results);
+        mf_scene_clear(&run.scenes[k].scene);
+    mf_memory_free(run.scenes);
+    mf_memory_free(run.results);
     return status;
 }

@@ -52,7 +52,7 @@ static enum status parse_number(const char *option, const char *text, double *nu
     char *end;
     *number = strtod(text, &end);
     if (end == text || *end != '\0' || !isfinite(*number) || *number <= 0)
-        return status_fail(STATUS_BAD_INPUT, "%s takes a number above 0", option);
+        return mf_status_fail(STATUS_BAD_INPUT, "%s takes a number above 0", option);
     return STATUS_OK;
 }
 
@@ -66,7 +66,7 @@ static enum status parse_time_steps(struct run *run, const char *text) {
         if (*end == '\0')
             return STATUS_OK;
     }
-    return status_fail(STATUS_BAD_INPUT,
+    return mf_status_fail(STATUS_BAD_INPUT,
                        "--time-steps takes growing numbers above 0, such as 0.01,0.02, %d at most",
                        MOST_STEPS);
 }
@@ -95,8 +95,8 @@ static enum status check_names(const struct run *run, const char *list) {
             is_known |= is_listed(word, &run->suitable[k]);
         if (is_known)
             continue;
-        nearest_hint(word, names, run->suitable_count, hint, sizeof hint);
-        return status_fail(STATUS_BAD_INPUT, "--integrators: \"%s\" does not suit the scene; %s",
+        mf_nearest_hint(word, names, run->suitable_count, hint, sizeof hint);
+        return mf_status_fail(STATUS_BAD_INPUT, "--integrators: \"%s\" does not suit the scene; %s",
                            word, hint);
     }
     return STATUS_OK;
@@ -104,7 +104,7 @@ static enum status check_names(const struct run *run, const char *list) {
 
 static enum status choose_methods(struct run *run) {
     const char *list = run->options->integrators;
-    run->suitable_count = bench_methods(&run->scene.scene.setup, run->suitable);
+    run->suitable_count = mf_bench_methods(&run->scene.scene.setup, run->suitable);
     if (list)
         TRY(check_names(run, list));
     for (size_t k = 0; k < run->suitable_count; k++)
@@ -139,7 +139,7 @@ static void tell(void *context, uint64_t steps) {
 #pragma omp critical
     {
         run->steps_done += steps;
-        progress_tell(&run->progress, run->steps_done, run->steps_total, "steps", run->scene.name);
+        mf_progress_tell(&run->progress, run->steps_done, run->steps_total, "steps", run->scene.name);
     }
 }
 
@@ -148,12 +148,12 @@ static enum status prepare(struct run *run) {
     enum status status = STATUS_OK;
     const struct scene *scene = &run->scene.scene;
     const size_t particles = (size_t)scene->setup.placement.count;
-    const struct bench_method *method = bench_reference_method(run->suitable, run->suitable_count);
+    const struct bench_method *method = mf_bench_reference_method(run->suitable, run->suitable_count);
     const struct simulation_start *start =
         scene->setup.placement.kind == PLACEMENT_FILE ? &scene->start : NULL;
     NEW_ARRAY(run->start_values, 6 * particles);
-    progress_tell(&run->progress, 0, run->steps_total, "steps", run->scene.name);
-    CHECK(bench_point_prepare(&scene->setup, start, method, run->time_steps[0],
+    mf_progress_tell(&run->progress, 0, run->steps_total, "steps", run->scene.name);
+    CHECK(mf_bench_point_prepare(&scene->setup, start, method, run->time_steps[0],
                               preparation_share * run->time, run->start_values));
     for (size_t d = 0; d < 3; d++) {
         run->start.position[d] = run->start_values + d * particles;
@@ -173,21 +173,21 @@ static enum status plan(struct run *run) {
     run->points_common = (struct bench_common){
         .setup = setup,
         .start = &run->start,
-        .bins = bench_bins_choose(&setup->box, (size_t)setup->placement.count, pair_cutoff(&law)),
+        .bins = mf_bench_bins_choose(&setup->box, (size_t)setup->placement.count, mf_pair_cutoff(&law)),
         .tell = tell,
         .context = run};
     run->reference =
-        (struct bench_point){.method = bench_reference_method(run->suitable, run->suitable_count),
+        (struct bench_point){.method = mf_bench_reference_method(run->suitable, run->suitable_count),
                              .time_step = reference_step * run->time_steps[0],
                              .time = reference_length * run->time,
                              .seed = setup->seed};
-    run->steps_total = bench_point_steps(&run->points_common, &run->reference);
+    run->steps_total = mf_bench_point_steps(&run->points_common, &run->reference);
     for (size_t k = 0; k < points; k++) {
         run->points[k] = (struct bench_point){.method = &run->methods[k / run->step_count],
                                               .time_step = run->time_steps[k % run->step_count],
                                               .time = run->time,
                                               .seed = setup->seed + 1 + k};
-        run->steps_total += bench_point_steps(&run->points_common, &run->points[k]);
+        run->steps_total += mf_bench_point_steps(&run->points_common, &run->points[k]);
     }
     for (size_t m = 0; m < run->method_count; m++)
         run->unstable_from[m] = INFINITY;
@@ -208,15 +208,15 @@ static struct bench_point *task(struct run *run, size_t k) {
 static enum status run_point(struct run *run, struct bench_point *point) {
     enum status status = STATUS_OK;
     if (point == &run->reference)
-        return bench_point_run(&run->points_common, point);
+        return mf_bench_point_run(&run->points_common, point);
     const size_t method = (size_t)(point->method - run->methods);
-    const uint64_t planned = bench_point_steps(&run->points_common, point);
+    const uint64_t planned = mf_bench_point_steps(&run->points_common, point);
     double unstable_from;
 #pragma omp critical
     unstable_from = run->unstable_from[method];
     point->status = STATUS_UNSTABLE;
     if (point->time_step <= unstable_from)
-        status = bench_point_run(&run->points_common, point);
+        status = mf_bench_point_run(&run->points_common, point);
     if (status != STATUS_OK || point->status == STATUS_OK)
         return status;
 #pragma omp critical
@@ -244,13 +244,13 @@ static enum status run_points(struct run *run) {
 #pragma omp critical
         {
             status = here;
-            snprintf(reason, sizeof reason, "%s", status_message());
+            snprintf(reason, sizeof reason, "%s", mf_status_message());
         }
     }
     if (status != STATUS_OK)
-        return status_fail(status, "%s", reason);
+        return mf_status_fail(status, "%s", reason);
     if (run->reference.status != STATUS_OK)
-        return status_fail(STATUS_UNSTABLE,
+        return mf_status_fail(STATUS_UNSTABLE,
                            "the reference is unstable at a time step of %g; lower \"time_step\"",
                            run->reference.time_step);
     return STATUS_OK;
@@ -264,20 +264,20 @@ static void judge(struct run *run, size_t method) {
     const struct bench_row *first = run->rows + run->row_count;
     size_t count = 0;
     for (; count < run->step_count && points[count].status == STATUS_OK; count++)
-        run->rows[run->row_count++] = bench_row_of(&points[count], &run->reference,
+        run->rows[run->row_count++] = mf_bench_row_of(&points[count], &run->reference,
                                                    run->points_common.bins.count, run->wanted);
-    run->reach[method] = bench_reach_of(first, count, run->wanted);
+    run->reach[method] = mf_bench_reach_of(first, count, run->wanted);
 }
 
 static enum status write_table(struct run *run, const struct bench_diagram *diagram) {
     struct output output;
     if (run->options->output == NULL)
         return STATUS_OK;
-    TRY(output_open(&output, run->options->output));
-    bench_accuracy_tsv(output.stream, diagram);
-    TRY(output_commit(&output));
-    if (figures_draw_accuracy(run->options->output) != STATUS_OK && !run->common->quiet)
-        fprintf(stderr, "warning: %s\n", status_message());
+    TRY(mf_output_open(&output, run->options->output));
+    mf_bench_accuracy_tsv(output.stream, diagram);
+    TRY(mf_output_commit(&output));
+    if (mf_figures_draw_accuracy(run->options->output) != STATUS_OK && !run->common->quiet)
+        fprintf(stderr, "warning: %s\n", mf_status_message());
     return STATUS_OK;
 }
 
@@ -285,7 +285,7 @@ static enum status report(struct run *run) {
     const char *names[BENCH_MOST_METHODS];
     const size_t bins = run->points_common.bins.count;
     const struct bench_extrapolation to_zero =
-        bench_extrapolate(&run->reference, run->points, run->method_count * run->step_count, bins);
+        mf_bench_extrapolate(&run->reference, run->points, run->method_count * run->step_count, bins);
     for (size_t m = 0; m < run->method_count; m++) {
         names[m] = run->methods[m].name;
         judge(run, m);
@@ -299,60 +299,60 @@ static enum status report(struct run *run) {
         .extrapolation = to_zero,
         .row = run->rows,
         .rows = run->row_count,
-        .reference = bench_row_of(&run->reference, &run->reference, bins, run->wanted),
+        .reference = mf_bench_row_of(&run->reference, &run->reference, bins, run->wanted),
         .reach = run->reach,
         .method = names,
         .methods = run->method_count,
         .has_weight = run->scene.scene.setup.weight != NULL};
-    progress_say(&run->progress, "%s: %.0f s", run->scene.name, progress_seconds(&run->progress));
+    mf_progress_say(&run->progress, "%s: %.0f s", run->scene.name, mf_progress_seconds(&run->progress));
     if (run->options->json)
-        TRY(bench_accuracy_json(stdout, &diagram));
+        TRY(mf_bench_accuracy_json(stdout, &diagram));
     else
-        bench_accuracy_table(stdout, &diagram);
+        mf_bench_accuracy_table(stdout, &diagram);
     return write_table(run, &diagram);
 }
 
 static enum status carry_out(struct run *run, const char *file) {
     struct output probe;
-    TRY(bench_scene_read(&run->scene, file, run->options->output, run->common));
+    TRY(mf_bench_scene_read(&run->scene, file, run->options->output, run->common));
     if (composition_is_mixed(&run->scene.scene.setup.composition))
-        return status_fail(STATUS_BAD_INPUT,
+        return mf_status_fail(STATUS_BAD_INPUT,
                            "%s: particles.types: bench accuracy wants beads that are alike", file);
     TRY(choose(run));
     if (run->options->output) { // two minutes are not to be lost
-        TRY(output_open(&probe, run->options->output));
-        output_abandon(&probe);
+        TRY(mf_output_open(&probe, run->options->output));
+        mf_output_abandon(&probe);
     }
     TRY(plan(run));
     enum status status = prepare(run);
     if (status == STATUS_OK)
         status = run_points(run);
     if (status != STATUS_OK && status != STATUS_INTERRUPTED)
-        return status_prefix(status, "%s", file);
+        return mf_status_prefix(status, "%s", file);
     TRY(status);
     return report(run);
 }
 
-enum status bench_accuracy(const char *file, const struct run_options *common,
+enum status mf_bench_accuracy(const char *file, const struct run_options *common,
                            const struct bench_accuracy_options *options) {
     enum status status = STATUS_OK;
     struct run *run = NULL;
     NEW_ARRAY(run, 1);
     run->common = common;
     run->options = options;
-    run->progress = progress_begin(common->quiet);
+    run->progress = mf_progress_begin(common->quiet);
     run->progress.quiet |= !run->progress.terminal; // nothing but results goes into a pipe
     status = carry_out(run, file);
 done:
     if (run) {
         for (size_t k = 0; run->points && k < run->method_count * run->step_count; k++)
-            memory_free(run->points[k].g);
-        memory_free(run->reference.g);
-        memory_free(run->points);
-        memory_free(run->rows);
-        memory_free(run->start_values);
-        scene_clear(&run->scene.scene);
+            mf_memory_free(run->points[k].g);
+        mf_memory_free(run->reference.g);
+        mf_memory_free(run->points);
+        mf_memory_free(run->rows);
+        mf_memory_free(run->start_values);
+        mf_scene_clear(&run->scene.scene);
     }
-    memory_free(run);
+    mf_memory_free(run);
     return status;
 }

@@ -19,5 +19,5 @@ struct bench_accuracy_options {
 /// @param[in] common  threads, seed and quiet count
 /// Fails: BAD_INPUT, IO, NO_MEMORY; UNSTABLE if the reference is; INTERRUPTED, and nothing is kept.
 /// Tested: tests/cli/test_bench_accuracy.c.
-enum status bench_accuracy(const char *file, const struct run_options *common,
+enum status mf_bench_accuracy(const char *file, const struct run_options *common,
                            const struct bench_accuracy_options *options) MUST_USE;

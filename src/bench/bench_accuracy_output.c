@@ -42,7 +42,7 @@ static const struct column columns[BENCH_COLUMNS] = {
 
 // For people --------------------------------------------------------------------------------------
 
-void bench_number_text(char *text, size_t size, double value, double error) {
+void mf_bench_number_text(char *text, size_t size, double value, double error) {
     if (!isfinite(value)) {
         snprintf(text, size, "-");
         return;
@@ -59,7 +59,7 @@ void bench_number_text(char *text, size_t size, double value, double error) {
     snprintf(text, size, "%.*f(%.0f)", decimals, value, shown);
 }
 
-size_t bench_cheapest(const struct bench_diagram *diagram) {
+size_t mf_bench_cheapest(const struct bench_diagram *diagram) {
     size_t best = diagram->methods;
     for (size_t m = 0; m < diagram->methods; m++)
         if (diagram->reach[m].method &&
@@ -70,7 +70,7 @@ size_t bench_cheapest(const struct bench_diagram *diagram) {
 
 static void print_cell(FILE *stream, int width, double value, double error, double scale) {
     char cell[CELL_SIZE];
-    bench_number_text(cell, sizeof cell, scale * value, scale * error);
+    mf_bench_number_text(cell, sizeof cell, scale * value, scale * error);
     fprintf(stream, "  %*s", width, cell);
 }
 
@@ -118,7 +118,7 @@ static void print_reference(FILE *stream, const struct bench_diagram *diagram) {
         char cell[CELL_SIZE];
         if ((q == BENCH_TOTAL && diagram->has_weight) || !isfinite(value[BENCH_VALUES + 2 * q]))
             continue;
-        bench_number_text(cell, sizeof cell, value[BENCH_VALUES + 2 * q],
+        mf_bench_number_text(cell, sizeof cell, value[BENCH_VALUES + 2 * q],
                           value[BENCH_VALUES + 2 * q + 1]);
         fprintf(stream, "%s %s %s", q > 0 ? "," : "", names[q], cell);
     }
@@ -155,7 +155,7 @@ static const struct bench_reach *find_usual(const struct bench_diagram *diagram)
 }
 
 static void print_recommendation(FILE *stream, const struct bench_diagram *diagram) {
-    const size_t best = bench_cheapest(diagram);
+    const size_t best = mf_bench_cheapest(diagram);
     if (best == diagram->methods) {
         fprintf(stream,
                 "\nno time step here has |dg| <= %g for certain; try smaller ones "
@@ -169,7 +169,7 @@ static void print_recommendation(FILE *stream, const struct bench_diagram *diagr
     if (usual && usual != reach) {
         char cell[CELL_SIZE];
         const double ratio = usual->cpu / reach->cpu;
-        bench_number_text(cell, sizeof cell, ratio,
+        mf_bench_number_text(cell, sizeof cell, ratio,
                           ratio *
                               hypot(usual->cpu_error / usual->cpu, reach->cpu_error / reach->cpu));
         fprintf(stream, ", %s times less than %s at %.2g tau", cell, usual->method,
@@ -178,7 +178,7 @@ static void print_recommendation(FILE *stream, const struct bench_diagram *diagr
     fprintf(stream, "\n");
 }
 
-void bench_accuracy_table(FILE *stream, const struct bench_diagram *diagram) {
+void mf_bench_accuracy_table(FILE *stream, const struct bench_diagram *diagram) {
     print_reference(stream, diagram);
     fprintf(stream, "%-16s  %7s  %9s  %7s  %11s  %11s  %13s  %13s  %13s  %13s  %13s", "integrator",
             "step", "cpu", "to err.", "|dg|", "rms dg", "dT kinetic", "dT config.", "dP", "dU",
@@ -197,29 +197,29 @@ void bench_accuracy_table(FILE *stream, const struct bench_diagram *diagram) {
 
 static void put_row(struct json_writer *writer, const char *role, const struct bench_row *row) {
     const bool has_changes = strcmp(role, "reference") != 0;
-    json_begin(writer, NULL);
-    json_put_text(writer, "role", role);
-    json_put_text(writer, "integrator", row->method);
+    mf_json_begin(writer, NULL);
+    mf_json_put_text(writer, "role", role);
+    mf_json_put_text(writer, "integrator", row->method);
     for (int k = 0; k < BENCH_COLUMNS; k++)
         if (isfinite(row->value[k]) && (has_changes || k < BENCH_G_LARGEST || k >= BENCH_VALUES))
-            json_put_number(writer, columns[k].key, row->value[k]);
-    json_end(writer);
+            mf_json_put_number(writer, columns[k].key, row->value[k]);
+    mf_json_end(writer);
 }
 
 static void put_reach(struct json_writer *writer, const char *role,
                       const struct bench_reach *reach) {
-    json_begin(writer, NULL);
-    json_put_text(writer, "role", role);
-    json_put_text(writer, "integrator", reach->method);
-    json_put_number(writer, "time_step", reach->time_step);
-    json_put_number(writer, "time_step_error", reach->time_step_error);
-    json_put_number(writer, "cpu", reach->cpu);
-    json_put_number(writer, "cpu_error", reach->cpu_error);
-    json_end(writer);
+    mf_json_begin(writer, NULL);
+    mf_json_put_text(writer, "role", role);
+    mf_json_put_text(writer, "integrator", reach->method);
+    mf_json_put_number(writer, "time_step", reach->time_step);
+    mf_json_put_number(writer, "time_step_error", reach->time_step_error);
+    mf_json_put_number(writer, "cpu", reach->cpu);
+    mf_json_put_number(writer, "cpu_error", reach->cpu_error);
+    mf_json_end(writer);
 }
 
-enum status bench_accuracy_json(FILE *stream, const struct bench_diagram *diagram) {
-    struct json_writer *writer = json_writer_create_list();
+enum status mf_bench_accuracy_json(FILE *stream, const struct bench_diagram *diagram) {
+    struct json_writer *writer = mf_json_writer_create_list();
     if (writer == NULL)
         return STATUS_NO_MEMORY;
     put_row(writer, "reference", &diagram->reference);
@@ -228,11 +228,11 @@ enum status bench_accuracy_json(FILE *stream, const struct bench_diagram *diagra
     for (size_t m = 0; m < diagram->methods; m++)
         if (diagram->reach[m].method)
             put_reach(writer, "reach", &diagram->reach[m]);
-    const size_t best = bench_cheapest(diagram);
+    const size_t best = mf_bench_cheapest(diagram);
     if (best < diagram->methods)
         put_reach(writer, "recommendation", &diagram->reach[best]);
-    const enum status status = json_write_stream(writer, stream, "the results");
-    json_writer_free(writer);
+    const enum status status = mf_json_write_stream(writer, stream, "the results");
+    mf_json_writer_free(writer);
     return status;
 }
 
@@ -243,7 +243,7 @@ static void put_line(FILE *stream, const struct bench_row *row) {
     fprintf(stream, "\n");
 }
 
-void bench_accuracy_tsv(FILE *stream, const struct bench_diagram *diagram) {
+void mf_bench_accuracy_tsv(FILE *stream, const struct bench_diagram *diagram) {
     fprintf(stream, "# %s: %zu particles, %.6g tau a point; reference: ", diagram->scene,
             diagram->particles, diagram->time);
     put_line(stream, &diagram->reference);

@@ -23,18 +23,18 @@ struct bench_diagram {
 
 /// "0.0312(14)": as many digits as the error allows; "-" if there is no number.
 /// Tested: test_bench_accuracy_output.
-void bench_number_text(char *text, size_t size, double value, double error);
+void mf_bench_number_text(char *text, size_t size, double value, double error);
 
 /// Index of the method whose reach costs least; `methods` if none has any.
 /// Tested: test_bench_accuracy_output.
-size_t bench_cheapest(const struct bench_diagram *diagram);
+size_t mf_bench_cheapest(const struct bench_diagram *diagram);
 
 /// Tables of errors and reaches, and the recommendation. Tested: test_bench_accuracy_output.
-void bench_accuracy_table(FILE *stream, const struct bench_diagram *diagram);
+void mf_bench_accuracy_table(FILE *stream, const struct bench_diagram *diagram);
 
 /// A list of objects with "role": reference, point, reach or recommendation.
 /// Fails: IO, NO_MEMORY. Tested: test_bench_accuracy.
-enum status bench_accuracy_json(FILE *stream, const struct bench_diagram *diagram) MUST_USE;
+enum status mf_bench_accuracy_json(FILE *stream, const struct bench_diagram *diagram) MUST_USE;
 
 /// Tab-separated, a block a method, two empty lines between blocks. Tested: test_bench_accuracy.
-void bench_accuracy_tsv(FILE *stream, const struct bench_diagram *diagram);
+void mf_bench_accuracy_tsv(FILE *stream, const struct bench_diagram *diagram);

@@ -29,7 +29,7 @@ static void sort(double *sorted, const double *values, uint64_t count) {
     }
 }
 
-double bench_median(const double *values, uint64_t count) {
+double mf_bench_median(const double *values, uint64_t count) {
     double sorted[BENCH_REPEATS];
     if (count == 0)
         return NAN;
@@ -37,12 +37,12 @@ double bench_median(const double *values, uint64_t count) {
     return (sorted[(count - 1) / 2] + sorted[count / 2]) / 2;
 }
 
-double bench_spread(const double *values, uint64_t count) {
+double mf_bench_spread(const double *values, uint64_t count) {
     double sorted[BENCH_REPEATS];
     if (count == 0)
         return NAN;
     sort(sorted, values, count);
-    return (sorted[count - 1] - sorted[0]) / bench_median(values, count);
+    return (sorted[count - 1] - sorted[0]) / mf_bench_median(values, count);
 }
 
 // Running -----------------------------------------------------------------------------------------
@@ -50,7 +50,7 @@ double bench_spread(const double *values, uint64_t count) {
 /// Scale all velocities to the set temperature.
 static void scale_velocities(struct simulation *simulation) {
     struct particles *particles = &simulation->particles;
-    const double temperature = particles_temperature(particles);
+    const double temperature = mf_particles_temperature(particles);
     if (!(temperature > 0))
         return;
     const double factor = sqrt(simulation->setup.temperature / temperature);
@@ -61,7 +61,7 @@ static void scale_velocities(struct simulation *simulation) {
 
 static enum status equilibrate(struct simulation *simulation) {
     for (int step = 0; step < EQUILIBRATION; step += SCALE_EVERY) {
-        TRY(simulation_run(simulation, SCALE_EVERY));
+        TRY(mf_simulation_run(simulation, SCALE_EVERY));
         if (simulation->setup.weight == NULL)
             scale_velocities(simulation);
     }
@@ -73,7 +73,7 @@ static enum status calibrate(struct bench_case *bench) {
     const double wanted = bench->how.seconds;
     for (uint64_t steps = FIRST_TRIAL;; steps *= 2) {
         const double begin = clock_seconds();
-        TRY(simulation_run(&bench->simulation, steps));
+        TRY(mf_simulation_run(&bench->simulation, steps));
         const double seconds = clock_seconds() - begin;
         if (seconds < trial_share * wanted)
             continue;
@@ -82,22 +82,22 @@ static enum status calibrate(struct bench_case *bench) {
     }
 }
 
-enum status bench_case_begin(struct bench_case *bench, const struct bench_scene *scene,
+enum status mf_bench_case_begin(struct bench_case *bench, const struct bench_scene *scene,
                              const struct bench_how *how) {
     *bench = (struct bench_case){.how = *how};
-    if (!simd_select(how->isa))
-        return status_fail(STATUS_BAD_INPUT, "this processor lacks %s", how->isa);
+    if (!mf_simd_select(how->isa))
+        return mf_status_fail(STATUS_BAD_INPUT, "this processor lacks %s", how->isa);
     struct simulation_setup setup = scene->scene.setup;
     setup.precision = strcmp(how->precision, "double") == 0 ? PAIR_DOUBLE : PAIR_MIXED;
     setup.threads = how->threads;
-    TRY(simulation_init(&bench->simulation, &setup, &scene->scene.start));
+    TRY(mf_simulation_init(&bench->simulation, &setup, &scene->scene.start));
     bench->simulation.wants = PAIR_FORCES;
     TRY(equilibrate(&bench->simulation));
     return calibrate(bench);
 }
 
-void bench_case_clear(struct bench_case *bench) {
-    simulation_clear(&bench->simulation);
+void mf_bench_case_clear(struct bench_case *bench) {
+    mf_simulation_clear(&bench->simulation);
 }
 
 static void count_distances(void *context, const float *squared_distances, size_t count) {
@@ -109,21 +109,21 @@ static void count_distances(void *context, const float *squared_distances, size_
 static void sample(struct bench_case *bench) {
     const struct simulation *simulation = &bench->simulation;
     const struct neighbours *neighbours = &simulation->neighbours;
-    neighbours_visit_distances(neighbours, &simulation->particles, pair_cutoff(&simulation->law),
+    mf_neighbours_visit_distances(neighbours, &simulation->particles, mf_pair_cutoff(&simulation->law),
                                count_distances, &bench->in_range);
-    bench->listed += (double)neighbours_listed(neighbours);
-    bench->places += (double)neighbours_entries(neighbours);
-    bench->temperature += particles_temperature(&simulation->particles);
+    bench->listed += (double)mf_neighbours_listed(neighbours);
+    bench->places += (double)mf_neighbours_entries(neighbours);
+    bench->temperature += mf_particles_temperature(&simulation->particles);
 }
 
-enum status bench_case_repeat(struct bench_case *bench) {
+enum status mf_bench_case_repeat(struct bench_case *bench) {
     struct simulation *simulation = &bench->simulation;
     const struct bench_case before = *bench;
-    if (!simd_select(bench->how.isa)) // another case may have run in between
-        return status_fail(STATUS_BAD_INPUT, "this processor lacks %s", bench->how.isa);
+    if (!mf_simd_select(bench->how.isa)) // another case may have run in between
+        return mf_status_fail(STATUS_BAD_INPUT, "this processor lacks %s", bench->how.isa);
     const uint64_t begin_ticks = clock_ticks();
     const double begin = clock_seconds();
-    TRY(simulation_run(simulation, bench->steps));
+    TRY(mf_simulation_run(simulation, bench->steps));
     const double seconds = clock_seconds() - begin;
     bench->ticks_total += clock_ticks() - begin_ticks;
     bench->seconds += seconds;
@@ -135,12 +135,12 @@ enum status bench_case_repeat(struct bench_case *bench) {
     return STATUS_OK;
 }
 
-void bench_case_result(const struct bench_case *bench, const char *scene,
+void mf_bench_case_result(const struct bench_case *bench, const char *scene,
                        struct bench_result *result) {
     const double repeats = (double)bench->repeats;
     const double particles = (double)bench->simulation.particles.count;
     const double pairs = bench->in_range / repeats;
-    const double steps = bench_median(bench->rate, bench->repeats);
+    const double steps = mf_bench_median(bench->rate, bench->repeats);
     double best = NAN, phases = 0;
     for (uint64_t k = 0; k < bench->repeats; k++)
         best = fmax(best, bench->rate[k]);
@@ -155,7 +155,7 @@ void bench_case_result(const struct bench_case *bench, const char *scene,
         .pairs = pairs,
         .steps_per_second = steps,
         .steps_per_second_best = best,
-        .steps_per_second_spread = bench_spread(bench->rate, bench->repeats),
+        .steps_per_second_spread = mf_bench_spread(bench->rate, bench->repeats),
         .particle_steps_per_second = particles * steps,
         .pairs_per_second = pairs * steps,
         .ns_per_pair = 1e9 / (pairs * steps),

@@ -28,7 +28,7 @@ static const struct bench_point *find_partner(const struct bench_point *referenc
     return best;
 }
 
-struct bench_extrapolation bench_extrapolate(struct bench_point *reference,
+struct bench_extrapolation mf_bench_extrapolate(struct bench_point *reference,
                                              const struct bench_point *points, size_t count,
                                              size_t bins) {
     const struct bench_point *partner = find_partner(reference, points, count);
@@ -49,7 +49,7 @@ struct bench_extrapolation bench_extrapolate(struct bench_point *reference,
 
 // Errors ------------------------------------------------------------------------------------------
 
-double bench_expected_largest(const double *error, size_t count) {
+double mf_bench_expected_largest(const double *error, size_t count) {
     double most = 0, sum = 0;
     for (size_t k = 0; k < count; k++)
         most = fmax(most, error[k]);
@@ -81,12 +81,12 @@ static void find_rdf_errors(const struct bench_point *point, const struct bench_
         value[BENCH_G_LARGEST_ERROR] = error[k];
     }
     const double n = (double)bins;
-    value[BENCH_G_NOISE] = bench_expected_largest(error, bins);
+    value[BENCH_G_NOISE] = mf_bench_expected_largest(error, bins);
     value[BENCH_G_RMS] = sqrt(fmax(squares / n, 0));
     value[BENCH_G_RMS_ERROR] = sqrt(fmax(squares / n, 0) + sqrt(variance) / n) - value[BENCH_G_RMS];
 }
 
-struct bench_row bench_row_of(const struct bench_point *point, const struct bench_point *reference,
+struct bench_row mf_bench_row_of(const struct bench_point *point, const struct bench_point *reference,
                               size_t bins, double wanted) {
     struct bench_row row = {.method = point->method->name};
     double *value = row.value, worst = 0;
@@ -109,7 +109,7 @@ struct bench_row bench_row_of(const struct bench_point *point, const struct benc
 
 // What to recommend -------------------------------------------------------------------------------
 
-struct bench_reach bench_reach_of(const struct bench_row *rows, size_t count, double wanted) {
+struct bench_reach mf_bench_reach_of(const struct bench_row *rows, size_t count, double wanted) {
     size_t good = 0;
     while (good < count && rows[good].value[BENCH_G_LARGEST] <= wanted)
         good++;

@@ -36,18 +36,18 @@ struct bench_extrapolation {
     double partner; ///< ρ h, or 0 [τ]
     double moved;   ///< largest change of g
 };
-struct bench_extrapolation bench_extrapolate(struct bench_point *reference,
+struct bench_extrapolation mf_bench_extrapolate(struct bench_point *reference,
                                              const struct bench_point *points, size_t count,
                                              size_t bins);
 
 /// Errors of a point. @param[in] wanted  standard error for BENCH_CPU_TO_ERROR
 /// Tested: test_bench_errors.
-struct bench_row bench_row_of(const struct bench_point *point, const struct bench_point *reference,
+struct bench_row mf_bench_row_of(const struct bench_point *point, const struct bench_point *reference,
                               size_t bins, double wanted);
 
 /// Mean of the largest of |x_k|, x_k normal with standard deviations `error`: ∫ (1 − Π erf(x/√2
 /// σ_k)) dx. Tested: test_bench_errors.
-double bench_expected_largest(const double *error, size_t count);
+double mf_bench_expected_largest(const double *error, size_t count);
 
 /// Largest time step of a method with an error |Δg| that is wanted.
 struct bench_reach {
@@ -60,4 +60,4 @@ struct bench_reach {
 /// Climb the rows of one method, in the order of their time steps, to the first whose largest |Δg|
 /// is above `wanted`, and interpolate between it and the last in logarithms.
 /// Tested: test_bench_errors.
-struct bench_reach bench_reach_of(const struct bench_row *rows, size_t count, double wanted);
+struct bench_reach mf_bench_reach_of(const struct bench_row *rows, size_t count, double wanted);

@@ -40,23 +40,23 @@ struct variant {
     double rate; ///< in its trial [steps/s]
 };
 
-enum status bench_lammps_check(void) {
+enum status mf_bench_lammps_check(void) {
     static const char *const words[] = {"lmp", "-h", NULL};
     char text[TEXT_SIZE];
-    if (program_run("/", words, PROGRAM_EVERYTHING, 0, text, sizeof text) == STATUS_OK)
+    if (mf_program_run("/", words, PROGRAM_EVERYTHING, 0, text, sizeof text) == STATUS_OK)
         return STATUS_OK;
-    return status_prefix(STATUS_BAD_INPUT, "--against-lammps needs Debian's package lammps");
+    return mf_status_prefix(STATUS_BAD_INPUT, "--against-lammps needs Debian's package lammps");
 }
 
-const char *bench_lammps_objection(const struct scene *scene) {
+const char *mf_bench_lammps_objection(const struct scene *scene) {
     const struct curve_family *family = scene->potential.curve[0].family;
     if (composition_is_mixed(&scene->setup.composition))
         return "it is a mixture";
     if (scene->weight.curves)
         return "Debian's LAMMPS has no pair style with friction and noise";
-    if (scene->setup.integrator != &velocity_verlet)
+    if (scene->setup.integrator != &mf_velocity_verlet)
         return "its integrator is not velocity-verlet";
-    if (family != &sampled_family && family != &formula_lennard_jones)
+    if (family != &mf_sampled_family && family != &mf_formula_lennard_jones)
         return "its potential is neither a table nor Lennard-Jones";
     if (scene->setup.box.dimensions != 3)
         return "it is not in three dimensions";
@@ -68,7 +68,7 @@ const char *bench_lammps_objection(const struct scene *scene) {
 static enum status open_in(struct output *output, const char *folder, const char *name) {
     char path[PATH_SIZE];
     snprintf(path, sizeof path, "%s/%s", folder, name);
-    return output_open(output, path);
+    return mf_output_open(output, path);
 }
 
 /// Every particle with its velocity: both programs begin where the other does.
@@ -88,7 +88,7 @@ static enum status write_start(const char *folder, const struct particles *parti
     for (size_t k = 0; k < particles->count; k++)
         fprintf(stream, "%zu %.17g %.17g %.17g\n", k + 1, particles->velocity[0][k],
                 particles->velocity[1][k], particles->velocity[2][k]);
-    return output_commit(&output);
+    return mf_output_commit(&output);
 }
 
 /// Points of the table that our kernels read, at equal steps of r² as pair_style table keeps them.
@@ -103,14 +103,14 @@ static enum status write_table(const char *folder, const struct table *table) {
         const double share = k / (TABLE_POINTS - 1.0);
         const double r = sqrt(first * first + share * (last * last - first * first));
         double value, slope;
-        table_evaluate(table, r, &value, &slope, NULL);
+        mf_table_evaluate(table, r, &value, &slope, NULL);
         fprintf(output.stream, "%d %.17g %.17g %.17g\n", k + 1, r, value, -slope);
     }
-    return output_commit(&output);
+    return mf_output_commit(&output);
 }
 
 static void write_pair_style(FILE *stream, const struct scene *scene) {
-    if (scene->potential.curve[0].family == &sampled_family) {
+    if (scene->potential.curve[0].family == &mf_sampled_family) {
         fprintf(stream, "pair_style table linear %d\npair_coeff 1 1 pair.table SCENE %.17g\n",
                 TABLE_POINTS, scene->potential.table.cutoff);
         return;
@@ -120,11 +120,11 @@ static void write_pair_style(FILE *stream, const struct scene *scene) {
             p->cutoff, p->epsilon, p->sigma);
 }
 
-enum status bench_lammps_write(const char *folder, const struct scene *scene,
+enum status mf_bench_lammps_write(const char *folder, const struct scene *scene,
                                const struct simulation *simulation) {
     struct output output;
     TRY(write_start(folder, &simulation->particles));
-    if (scene->potential.curve[0].family == &sampled_family)
+    if (scene->potential.curve[0].family == &mf_sampled_family)
         TRY(write_table(folder, &scene->potential.table));
     TRY(open_in(&output, folder, "in.bench"));
     fprintf(output.stream, "# from mesofit bench: -var skin S -var steps N\n"
@@ -135,12 +135,12 @@ enum status bench_lammps_write(const char *folder, const struct scene *scene,
             "neighbor ${skin} bin\nneigh_modify delay 0 every 1 check yes\n"
             "fix motion all nve\ntimestep %.17g\nthermo 0\nrun %d\nrun ${steps}\n",
             scene->setup.time_step, WARM_UP);
-    return output_commit(&output);
+    return mf_output_commit(&output);
 }
 
 // Running -----------------------------------------------------------------------------------------
 
-double bench_lammps_rate(const char *text) {
+double mf_bench_lammps_rate(const char *text) {
     const char *last = NULL;
     for (const char *line = text; (line = strstr(line, "Loop time of ")); line++)
         last = line;
@@ -160,14 +160,14 @@ static enum status run_variant(const char *folder, const struct variant *variant
     snprintf(count, sizeof count, "%.0f", ceil(steps));
     for (size_t k = 0, used = 11; k < SUFFIX_WORDS && variant->suffix[k]; k++)
         words[used++] = variant->suffix[k];
-    const enum status status = program_run(folder, words, PROGRAM_EVERYTHING, 0, text, sizeof text);
-    if (interrupt_requested())
-        return status_fail(STATUS_INTERRUPTED, "interrupted");
+    const enum status status = mf_program_run(folder, words, PROGRAM_EVERYTHING, 0, text, sizeof text);
+    if (mf_interrupt_requested())
+        return mf_status_fail(STATUS_INTERRUPTED, "interrupted");
     TRY(status);
-    *rate = bench_lammps_rate(text);
+    *rate = mf_bench_lammps_rate(text);
     if (isfinite(*rate))
         return STATUS_OK;
-    return status_fail(STATUS_IO, "lmp does not say how long its run took");
+    return mf_status_fail(STATUS_IO, "lmp does not say how long its run took");
 }
 
 /// Try every variant and keep the fastest. Some may be missing in this LAMMPS, but not all.
@@ -194,7 +194,7 @@ static enum status choose_variant(const char *folder, double skin, double ours, 
 
 static void describe_variant(const struct scene *scene, const struct variant *variant, char *text) {
     const char *style =
-        scene->potential.curve[0].family == &sampled_family ? "table linear" : "lj/cut";
+        scene->potential.curve[0].family == &mf_sampled_family ? "table linear" : "lj/cut";
     int used = snprintf(text, BENCH_NAME_SIZE, "pair_style %s, skin %g", style, variant->skin);
     for (size_t k = 0; k < SUFFIX_WORDS && variant->suffix[k]; k++)
         used += snprintf(text + used, (size_t)(BENCH_NAME_SIZE - used), "%s%s", k ? " " : ", ",
@@ -206,28 +206,28 @@ static enum status take_turns(struct bench_case *bench, const struct bench_scene
     struct variant variant;
     double theirs[TURNS];
     const double seconds = bench->how.seconds;
-    TRY(bench_lammps_write(folder, &scene->scene, &bench->simulation));
+    TRY(mf_bench_lammps_write(folder, &scene->scene, &bench->simulation));
     TRY(choose_variant(folder, scene->scene.setup.skin, (double)bench->steps / seconds, seconds,
                        &variant));
     for (int turn = 0; turn < TURNS; turn++) {
-        TRY(bench_case_repeat(bench));
+        TRY(mf_bench_case_repeat(bench));
         TRY(run_variant(folder, &variant, variant.rate * seconds, &theirs[turn]));
     }
-    bench_case_result(bench, scene->name, result);
-    result->lammps_steps_per_second = bench_median(theirs, TURNS);
+    mf_bench_case_result(bench, scene->name, result);
+    result->lammps_steps_per_second = mf_bench_median(theirs, TURNS);
     result->lammps_ratio = result->steps_per_second / result->lammps_steps_per_second;
     describe_variant(&scene->scene, &variant, result->lammps_style);
     return STATUS_OK;
 }
 
-enum status bench_lammps_compare(struct bench_case *bench, const struct bench_scene *scene,
+enum status mf_bench_lammps_compare(struct bench_case *bench, const struct bench_scene *scene,
                                  struct bench_result *result) {
     char folder[OUTPUT_PATH_SIZE], path[PATH_SIZE];
     const char *temporary = getenv("TMPDIR");
     snprintf(folder, sizeof folder, "%.3900s/mesofit-lammps-XXXXXX",
              temporary ? temporary : "/tmp");
     if (mkdtemp(folder) == NULL)
-        return status_fail(STATUS_IO, "cannot make a folder for LAMMPS: %s", folder);
+        return mf_status_fail(STATUS_IO, "cannot make a folder for LAMMPS: %s", folder);
     enum status status = STATUS_NO_MEMORY;
     if (setenv("OMP_NUM_THREADS", "1", 1) == 0)
         status = take_turns(bench, scene, folder, result);

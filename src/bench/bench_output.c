@@ -119,7 +119,7 @@ static void append_number(char *const *lines, const struct bench_result *results
     append_column(lines, count + 2, cells, false);
 }
 
-enum status bench_output_table(FILE *stream, const struct bench_result *results, size_t count,
+enum status mf_bench_output_table(FILE *stream, const struct bench_result *results, size_t count,
                                bool lammps) {
     enum { LINE_SIZE = (COLUMNS + 2) * (CELL_SIZE + 2) };
     enum status status = STATUS_OK;
@@ -143,41 +143,41 @@ enum status bench_output_table(FILE *stream, const struct bench_result *results,
     for (size_t row = 0; row < rows; row++)
         fprintf(stream, "%s\n", lines[row]);
 done:
-    memory_free(cells);
-    memory_free(text);
-    memory_free(lines);
+    mf_memory_free(cells);
+    mf_memory_free(text);
+    mf_memory_free(lines);
     return status;
 }
 
 // For programs ------------------------------------------------------------------------------------
 
 static void put_result(struct json_writer *writer, const struct bench_result *result) {
-    json_begin(writer, NULL);
-    json_put_text(writer, "scene", result->scene);
-    json_put_text(writer, "isa", result->isa);
-    json_put_text(writer, "precision", result->precision);
+    mf_json_begin(writer, NULL);
+    mf_json_put_text(writer, "scene", result->scene);
+    mf_json_put_text(writer, "isa", result->isa);
+    mf_json_put_text(writer, "precision", result->precision);
     for (size_t k = 0; k < COLUMNS; k++) {
         const double value = number_of(result, &columns[k]);
         if (isfinite(value))
-            json_put_number(writer, columns[k].key, value);
+            mf_json_put_number(writer, columns[k].key, value);
     }
     if (result->lammps_style[0])
-        json_put_text(writer, "lammps_style", result->lammps_style);
-    json_end(writer);
+        mf_json_put_text(writer, "lammps_style", result->lammps_style);
+    mf_json_end(writer);
 }
 
-enum status bench_output_json(FILE *stream, const struct bench_result *results, size_t count) {
-    struct json_writer *writer = json_writer_create_list();
+enum status mf_bench_output_json(FILE *stream, const struct bench_result *results, size_t count) {
+    struct json_writer *writer = mf_json_writer_create_list();
     if (writer == NULL)
         return STATUS_NO_MEMORY;
     for (size_t k = 0; k < count; k++)
         put_result(writer, &results[k]);
-    const enum status status = json_write_stream(writer, stream, "the results");
-    json_writer_free(writer);
+    const enum status status = mf_json_write_stream(writer, stream, "the results");
+    mf_json_writer_free(writer);
     return status;
 }
 
-void bench_output_tsv(FILE *stream, const struct bench_result *results, size_t count) {
+void mf_bench_output_tsv(FILE *stream, const struct bench_result *results, size_t count) {
     const bool lammps = are_compared(results, count);
     fprintf(stream, "# scene\tisa\tprecision");
     for (size_t k = 0; k < COLUMNS; k++)

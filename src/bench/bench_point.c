@@ -29,19 +29,19 @@ static void add_method(struct bench_method *methods, size_t *count,
                        const struct simulation_setup *setup, const struct integrator *integrator) {
     struct bench_method *method = &methods[(*count)++];
     method->integrator = integrator;
-    fields_set_defaults(integrator->fields, &method->parameters);
+    mf_fields_set_defaults(integrator->fields, &method->parameters);
     if (setup->integrator == integrator)
         method->parameters = setup->integrator_parameters;
     snprintf(method->name, sizeof method->name, "%s", integrator->name);
 }
 
-size_t bench_methods(const struct simulation_setup *setup, struct bench_method *methods) {
+size_t mf_bench_methods(const struct simulation_setup *setup, struct bench_method *methods) {
     size_t count = 0;
-    for (size_t k = 0; integrator_list[k] && count + 2 <= BENCH_MOST_METHODS; k++) {
-        const struct integrator *integrator = integrator_list[k];
+    for (size_t k = 0; mf_integrator_list[k] && count + 2 <= BENCH_MOST_METHODS; k++) {
+        const struct integrator *integrator = mf_integrator_list[k];
         if (integrator->dissipative != (setup->weight != NULL))
             continue;
-        const bool predicts = integrator == &dpd_verlet;
+        const bool predicts = integrator == &mf_dpd_verlet;
         for (size_t l = 0; l < (predicts ? sizeof lambdas / sizeof *lambdas : 1); l++) {
             add_method(methods, &count, setup, integrator);
             struct bench_method *method = &methods[count - 1];
@@ -54,20 +54,20 @@ size_t bench_methods(const struct simulation_setup *setup, struct bench_method *
     return count;
 }
 
-const struct bench_method *bench_reference_method(const struct bench_method *methods,
+const struct bench_method *mf_bench_reference_method(const struct bench_method *methods,
                                                   size_t count) {
     for (size_t k = 0; k < count; k++)
-        if (methods[k].integrator == &aboba)
+        if (methods[k].integrator == &mf_aboba)
             return &methods[k];
     return methods;
 }
 
 /// Mean distance of particles, ρ^(−1/d) [λ].
 static double mean_distance(const struct box *box, size_t particles) {
-    return pow(box_volume(box) / (double)particles, 1.0 / box->dimensions);
+    return pow(mf_box_volume(box) / (double)particles, 1.0 / box->dimensions);
 }
 
-struct bench_bins bench_bins_choose(const struct box *box, size_t particles, double cutoff) {
+struct bench_bins mf_bench_bins_choose(const struct box *box, size_t particles, double cutoff) {
     const double distance = mean_distance(box, particles);
     struct bench_bins bins;
     bins.fine.low = 0;
@@ -118,9 +118,9 @@ static struct motion_plan motion_plan_of(const struct bench_common *common,
                                 .fit_from = 0.5};
 }
 
-uint64_t bench_point_steps(const struct bench_common *common, const struct bench_point *point) {
+uint64_t mf_bench_point_steps(const struct bench_common *common, const struct bench_point *point) {
     const struct measure_plan plan = plan_of(common, point);
-    return measure_steps(&plan);
+    return mf_measure_steps(&plan);
 }
 
 static int compare_numbers(const void *a, const void *b) {
@@ -133,10 +133,10 @@ static int compare_numbers(const void *a, const void *b) {
 static struct bench_number median(double *blocks) {
     struct running_mean running = {0};
     for (int b = 0; b < BLOCKS; b++)
-        statistics_add(&running, blocks[b]);
+        mf_statistics_add(&running, blocks[b]);
     qsort(blocks, BLOCKS, sizeof *blocks, compare_numbers);
     return (struct bench_number){(blocks[BLOCKS / 2 - 1] + blocks[BLOCKS / 2]) / 2,
-                                 1.25 * statistics_standard_error(&running)};
+                                 1.25 * mf_statistics_standard_error(&running)};
 }
 
 static void tell(const struct bench_common *common, struct bench_point *point, int64_t steps) {
@@ -144,22 +144,22 @@ static void tell(const struct bench_common *common, struct bench_point *point, i
     common->tell(common->context, (uint64_t)steps);
 }
 
-/// Run between samples by itself, timed; measure_sample then does the one step that is left.
+/// Run between samples by itself, timed; mf_measure_sample then does the one step that is left.
 static enum status sample(const struct bench_common *common, struct bench_point *point,
                           struct simulation *simulation, const struct measure_plan *plan,
                           struct measure_targets targets) {
     double seconds[BLOCKS] = {0}, times[BLOCKS] = {0};
     if (targets.motion)
-        motion_sample(targets.motion, simulation);
+        mf_motion_sample(targets.motion, simulation);
     for (int64_t k = 0; k < plan->samples; k++) {
         const struct measure_plan next = {plan->equilibration, k + 1, plan->every};
         const int64_t block = k * BLOCKS / plan->samples;
         const double begin = processor_seconds();
         simulation->wants = PAIR_FORCES;
-        TRY(simulation_run(simulation, (uint64_t)plan->every - 1));
+        TRY(mf_simulation_run(simulation, (uint64_t)plan->every - 1));
         seconds[block] += processor_seconds() - begin;
         times[block] += (double)(plan->every - 1) * point->time_step;
-        TRY(measure_sample(simulation, &next, targets, NULL));
+        TRY(mf_measure_sample(simulation, &next, targets, NULL));
         tell(common, point, plan->every);
     }
     for (int b = 0; b < BLOCKS; b++)
@@ -172,8 +172,8 @@ static enum status sample(const struct bench_common *common, struct bench_point 
 static void find_total(const struct thermodynamics *thermodynamics, const struct box *box,
                        double particles, struct bench_point *point) {
     const double *potential =
-        thermodynamics_series(thermodynamics, THERMODYNAMICS_POTENTIAL_ENERGY);
-    const double *temperature = thermodynamics_series(thermodynamics, THERMODYNAMICS_TEMPERATURE);
+        mf_thermodynamics_series(thermodynamics, THERMODYNAMICS_POTENTIAL_ENERGY);
+    const double *temperature = mf_thermodynamics_series(thermodynamics, THERMODYNAMICS_TEMPERATURE);
     const double degrees = box->dimensions * (1 - 1 / particles);
     double energy[BLOCKS] = {0}, along = 0, spread = 0, rest = 0;
     struct running_mean blocks = {0};
@@ -182,7 +182,7 @@ static void find_total(const struct thermodynamics *thermodynamics, const struct
                      end = thermodynamics->samples * (b + 1) / BLOCKS;
         for (size_t k = begin; k < end; k++)
             energy[b] += (potential[k] + 0.5 * degrees * temperature[k]) / (double)(end - begin);
-        statistics_add(&blocks, energy[b]);
+        mf_statistics_add(&blocks, energy[b]);
     }
     for (int b = 0; b < BLOCKS; b++) {
         const double t = point->time * ((b + 0.5) / BLOCKS - 0.5);
@@ -195,7 +195,7 @@ static void find_total(const struct thermodynamics *thermodynamics, const struct
         rest += pow(energy[b] - blocks.mean - slope * t, 2);
     }
     point->quantity[BENCH_TOTAL] =
-        (struct bench_number){blocks.mean, statistics_standard_error(&blocks)};
+        (struct bench_number){blocks.mean, mf_statistics_standard_error(&blocks)};
     point->quantity[BENCH_DRIFT] = (struct bench_number){slope, sqrt(rest / (BLOCKS - 2) / spread)};
 }
 
@@ -204,7 +204,7 @@ static void join_bins(const struct bench_bins *bins, const struct rdf *rdf, cons
                       const double *error, struct bench_number *joined) {
     double pairs = 0, squares = 0, ideal = 0;
     for (size_t k = 0; k < bins->core; k++) {
-        const double here = rdf_ideal_pairs(&bins->fine, k, &rdf->box, rdf->particle_count);
+        const double here = mf_rdf_ideal_pairs(&bins->fine, k, &rdf->box, rdf->particle_count);
         pairs += here * g[k];
         squares += here * error[k] * here * error[k];
         ideal += here;
@@ -219,11 +219,11 @@ static enum status find_results(const struct bench_common *common, struct measur
     enum status status = STATUS_OK;
     const struct bench_bins *bins = &common->bins;
     const struct rdf *rdf = targets.rdf;
-    const struct thermodynamics_summary s = thermodynamics_result(targets.thermodynamics, 1);
+    const struct thermodynamics_summary s = mf_thermodynamics_result(targets.thermodynamics, 1);
     double *g = NULL, *error = NULL;
     NEW_ARRAY(g, bins->fine.count);
     NEW_ARRAY(error, bins->fine.count);
-    CHECK(rdf_result(rdf, 1, g, error));
+    CHECK(mf_rdf_result(rdf, 1, g, error));
     join_bins(bins, rdf, g, error, point->g);
     struct bench_number *quantity = point->quantity;
     quantity[BENCH_TEMPERATURE] = (struct bench_number){s.temperature, s.temperature_error};
@@ -233,13 +233,13 @@ static enum status find_results(const struct bench_common *common, struct measur
     quantity[BENCH_PRESSURE] = (struct bench_number){s.pressure, s.pressure_error};
     quantity[BENCH_DIFFUSION] = (struct bench_number){NAN, NAN};
     if (targets.motion) {
-        const struct motion_summary motion = motion_result(targets.motion, NULL);
+        const struct motion_summary motion = mf_motion_result(targets.motion, NULL);
         quantity[BENCH_DIFFUSION] = (struct bench_number){motion.msd, motion.msd_error};
     }
     find_total(targets.thermodynamics, &rdf->box, (double)rdf->particle_count, point);
 done:
-    memory_free(g);
-    memory_free(error);
+    mf_memory_free(g);
+    mf_memory_free(error);
     return status;
 }
 
@@ -256,7 +256,7 @@ static struct simulation_setup setup_of(const struct simulation_setup *scene,
     return setup;
 }
 
-enum status bench_point_run(const struct bench_common *common, struct bench_point *point) {
+enum status mf_bench_point_run(const struct bench_common *common, struct bench_point *point) {
     enum status status = STATUS_OK;
     struct simulation simulation = {0};
     struct rdf rdf = {0};
@@ -274,23 +274,23 @@ enum status bench_point_run(const struct bench_common *common, struct bench_poin
     point->steps = (uint64_t)(plan.samples * plan.every);
     point->time = (double)point->steps * point->time_step;
     NEW_ARRAY(point->g, common->bins.count);
-    CHECK(simulation_init(&simulation, &setup, common->start));
-    CHECK(rdf_init(&rdf, &common->bins.fine, &setup.box, simulation.particles.count,
-                   pair_cutoff(&simulation.law), (size_t)plan.samples));
-    CHECK(thermodynamics_init(&thermodynamics, (size_t)plan.samples));
-    CHECK(measure_equilibrate(&simulation, &plan, &temperature, NULL));
+    CHECK(mf_simulation_init(&simulation, &setup, common->start));
+    CHECK(mf_rdf_init(&rdf, &common->bins.fine, &setup.box, simulation.particles.count,
+                   mf_pair_cutoff(&simulation.law), (size_t)plan.samples));
+    CHECK(mf_thermodynamics_init(&thermodynamics, (size_t)plan.samples));
+    CHECK(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
     tell(common, point, plan.equilibration);
     if (moves)
-        CHECK(motion_init(&motion, &motion_plan, &simulation, plan.equilibration,
+        CHECK(mf_motion_init(&motion, &motion_plan, &simulation, plan.equilibration,
                           plan.samples * plan.every));
     CHECK(sample(common, point, &simulation, &plan, targets));
     CHECK(find_results(common, targets, point));
 done:
     point->status = status;
-    simulation_clear(&simulation);
-    rdf_clear(&rdf);
-    thermodynamics_clear(&thermodynamics);
-    motion_clear(&motion);
+    mf_simulation_clear(&simulation);
+    mf_rdf_clear(&rdf);
+    mf_thermodynamics_clear(&thermodynamics);
+    mf_motion_clear(&motion);
     return status == STATUS_UNSTABLE ? STATUS_OK : status;
 }
 
@@ -298,22 +298,22 @@ done:
 
 static void scale_velocities(struct simulation *simulation) {
     struct particles *particles = &simulation->particles;
-    const double factor = sqrt(simulation->setup.temperature / particles_temperature(particles));
+    const double factor = sqrt(simulation->setup.temperature / mf_particles_temperature(particles));
     for (int d = 0; isfinite(factor) && d < particles->box.dimensions; d++)
         for (size_t k = 0; k < particles->count; k++)
             particles->velocity[d][k] *= factor;
 }
 
-enum status bench_point_prepare(const struct simulation_setup *setup,
+enum status mf_bench_point_prepare(const struct simulation_setup *setup,
                                 const struct simulation_start *start,
                                 const struct bench_method *method, double time_step, double time,
                                 double *values) {
     enum status status = STATUS_OK;
     struct simulation simulation = {0};
     const struct simulation_setup changed = setup_of(setup, NULL, method, time_step);
-    CHECK(simulation_init(&simulation, &changed, start));
+    CHECK(mf_simulation_init(&simulation, &changed, start));
     for (double done = 0; done < time; done += SCALE_EVERY * time_step) {
-        CHECK(simulation_run(&simulation, SCALE_EVERY));
+        CHECK(mf_simulation_run(&simulation, SCALE_EVERY));
         if (setup->weight == NULL)
             scale_velocities(&simulation);
     }
@@ -325,6 +325,6 @@ enum status bench_point_prepare(const struct simulation_setup *setup,
                particles->count * sizeof *values);
     }
 done:
-    simulation_clear(&simulation);
+    mf_simulation_clear(&simulation);
     return status;
 }

@@ -18,11 +18,11 @@ enum { BENCH_MOST_METHODS = 16, BENCH_MOST_BINS = 4096 };
 
 /// Integrators that suit a scene: those with friction for a scene with ω, dpd-verlet with two λ,
 /// and those without for one without. Returns how many. Tested: test_bench_point.
-size_t bench_methods(const struct simulation_setup *setup, struct bench_method *methods);
+size_t mf_bench_methods(const struct simulation_setup *setup, struct bench_method *methods);
 
 /// The one that others are compared with: it has an error of order Δt² and an unbiased kinetic
 /// temperature. Tested: test_bench_point.
-const struct bench_method *bench_reference_method(const struct bench_method *methods, size_t count);
+const struct bench_method *mf_bench_reference_method(const struct bench_method *methods, size_t count);
 
 /// Bins of g(r) up to the cutoff of the forces. Those within a third of the mean distance hold few
 /// pairs: they count as one.
@@ -34,7 +34,7 @@ struct bench_bins {
 
 /// Bins a tenth of the mean distance wide: 0.07 for the fluid of Groot and Warren.
 /// Tested: test_bench_point.
-struct bench_bins bench_bins_choose(const struct box *box, size_t particles, double cutoff);
+struct bench_bins mf_bench_bins_choose(const struct box *box, size_t particles, double cutoff);
 
 /// A mean or a difference with its standard error.
 struct bench_number {
@@ -73,18 +73,18 @@ struct bench_common {
     void *context;
 };
 
-/// Steps that bench_point_run will take, for progress.
-uint64_t bench_point_steps(const struct bench_common *common, const struct bench_point *point);
+/// Steps that mf_bench_point_run will take, for progress.
+uint64_t mf_bench_point_steps(const struct bench_common *common, const struct bench_point *point);
 
 /// Run a point: equilibration of a twentieth of its time, then 20 blocks. The time of the processor
 /// is that of the calling thread, over steps that nothing is measured in: the median of the blocks.
 /// An unstable run is a result. Fails: BAD_INPUT, NO_MEMORY, INTERRUPTED.
-enum status bench_point_run(const struct bench_common *common, struct bench_point *point) MUST_USE;
+enum status mf_bench_point_run(const struct bench_common *common, struct bench_point *point) MUST_USE;
 
 /// Equilibrate a scene for `time` with `method` and keep its positions and velocities in `values`,
 /// shape [6, count]. Without ω velocities are scaled to the scene's temperature.
-/// Fails: as simulation_init and simulation_run.
-enum status bench_point_prepare(const struct simulation_setup *setup,
+/// Fails: as mf_simulation_init and mf_simulation_run.
+enum status mf_bench_point_prepare(const struct simulation_setup *setup,
                                 const struct simulation_start *start,
                                 const struct bench_method *method, double time_step, double time,
                                 double *values) MUST_USE;

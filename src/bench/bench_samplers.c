@@ -34,9 +34,9 @@ static double error_of_g(const struct replicas *replicas, const double *ideal,
     for (size_t a = 0; a < replicas->bins; a++)
         if (counts->mean[a] > 0)
             seen[count++] = a;
-    *inefficiency = replicas_inefficiency(replicas, ideal, seen, count);
+    *inefficiency = mf_replicas_inefficiency(replicas, ideal, seen, count);
     for (size_t n = 0; n < count; n++)
-        sum += comoments_covariance(counts, seen[n], seen[n]) / (ideal[seen[n]] * ideal[seen[n]]);
+        sum += mf_comoments_covariance(counts, seen[n], seen[n]) / (ideal[seen[n]] * ideal[seen[n]]);
     return sqrt(sum / (double)count * *inefficiency / counts->count);
 }
 
@@ -50,36 +50,36 @@ static enum status time_sampler(const struct sampler_system *system, enum sample
     struct running_mean merit = {0}, seconds = {0}, inefficiency = {0};
     struct replicas replicas = {0};
     double ideal[MOST_BINS];
-    for (int pair = 0; pair < composition_pairs(system->composition); pair++)
+    for (int pair = 0; pair < mf_composition_pairs(system->composition); pair++)
         for (size_t a = 0; a < BINS; a++)
             ideal[(size_t)pair * BINS + a] =
-                rdf_ideal_pairs_of(&bins, a, system->box, system->composition, pair);
-    CHECK(replicas_init(&replicas, REPLICAS, kind, system));
-    CHECK(replicas_run(&replicas, &warm_up, threads, &progress, &listener));
+                mf_rdf_ideal_pairs_of(&bins, a, system->box, system->composition, pair);
+    CHECK(mf_replicas_init(&replicas, REPLICAS, kind, system));
+    CHECK(mf_replicas_run(&replicas, &warm_up, threads, &progress, &listener));
     for (int repeat = 0; repeat < REPEATS; repeat++) {
         double correlated;
         const double begin = processor_seconds();
-        CHECK(replicas_run(&replicas, &timed, threads, &progress, &listener));
+        CHECK(mf_replicas_run(&replicas, &timed, threads, &progress, &listener));
         const double used = processor_seconds() - begin;
-        statistics_add(&merit, error_of_g(&replicas, ideal, &correlated) * sqrt(used));
-        statistics_add(&seconds, used / replicas.counts.count);
-        statistics_add(&inefficiency, correlated);
+        mf_statistics_add(&merit, error_of_g(&replicas, ideal, &correlated) * sqrt(used));
+        mf_statistics_add(&seconds, used / replicas.counts.count);
+        mf_statistics_add(&inefficiency, correlated);
     }
     printf("%9lld  %-11s  %11.3f  %12.2f  %10.5f +- %.5f\n",
-           (long long)composition_particles(system->composition), sampler_kinds[kind],
-           1e3 * seconds.mean, inefficiency.mean, merit.mean, statistics_standard_error(&merit));
+           (long long)mf_composition_particles(system->composition), mf_sampler_kinds[kind],
+           1e3 * seconds.mean, inefficiency.mean, merit.mean, mf_statistics_standard_error(&merit));
 done:
-    replicas_clear(&replicas);
+    mf_replicas_clear(&replicas);
     return status;
 }
 
 /// All samplers of a system with the scene's densities.
 static enum status time_size(const struct simulation_setup *setup, size_t particles, int threads) {
     const struct composition composition =
-        composition_scaled(&setup->composition, (int64_t)particles);
+        mf_composition_scaled(&setup->composition, (int64_t)particles);
     const struct box box =
-        box_scaled(&setup->box, (double)composition_particles(&composition) /
-                                    (double)composition_particles(&setup->composition));
+        mf_box_scaled(&setup->box, (double)mf_composition_particles(&composition) /
+                                    (double)mf_composition_particles(&setup->composition));
     const struct sampler_system system = {.box = &box,
                                           .composition = &composition,
                                           .potential = setup->potential,
@@ -87,25 +87,25 @@ static enum status time_size(const struct simulation_setup *setup, size_t partic
                                           .width = setup->potential->cutoff / BINS,
                                           .bins = BINS,
                                           .seed = setup->seed};
-    for (int kind = 0; sampler_kinds[kind]; kind++)
+    for (int kind = 0; mf_sampler_kinds[kind]; kind++)
         TRY(time_sampler(&system, (enum sampler_kind)kind, threads));
     return STATUS_OK;
 }
 
 static enum status time_all(const struct simulation_setup *setup, int threads) {
     if (setup->potential == NULL)
-        return status_fail(STATUS_BAD_INPUT, "a scene without a potential has nothing to sample");
+        return mf_status_fail(STATUS_BAD_INPUT, "a scene without a potential has nothing to sample");
     printf("particles  sampler      ms a sample  inefficiency  error of g * sqrt(s)\n");
     for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++)
         TRY(time_size(setup, sizes[k], threads));
     return STATUS_OK;
 }
 
-enum status bench_samplers(const char *file, const struct run_options *common) {
+enum status mf_bench_samplers(const char *file, const struct run_options *common) {
     struct bench_scene scene = {0};
-    enum status status = bench_scene_read(&scene, file, NULL, common);
+    enum status status = mf_bench_scene_read(&scene, file, NULL, common);
     if (status == STATUS_OK)
         status = time_all(&scene.scene.setup, common->has_threads ? common->threads : 1);
-    scene_clear(&scene.scene);
+    mf_scene_clear(&scene.scene);
     return status;
 }

@@ -19,26 +19,26 @@ static void name_scene(struct bench_scene *scene, const char *file) {
 static enum status read_file(struct bench_scene *scene, const char *file, struct heading *heading,
                              struct input_files *inputs) {
     struct json_document *document;
-    TRY(json_open(&document, file));
-    struct json_object root = json_root(document);
-    json_fields(&root, heading_fields, heading);
-    enum status status = json_collect_files(document, inputs);
+    TRY(mf_json_open(&document, file));
+    struct json_object root = mf_json_root(document);
+    mf_json_fields(&root, mf_heading_fields, heading);
+    enum status status = mf_json_collect_files(document, inputs);
     if (status == STATUS_OK)
-        status = scene_read(&scene->scene, &root, SCENE_FITS_NOTHING);
-    json_has(&root, "measure");
-    json_has(&root, "rdf");
-    json_finish(&root);
-    return json_close(document, status);
+        status = mf_scene_read(&scene->scene, &root, SCENE_FITS_NOTHING);
+    mf_json_has(&root, "measure");
+    mf_json_has(&root, "rdf");
+    mf_json_finish(&root);
+    return mf_json_close(document, status);
 }
 
-enum status bench_scene_read(struct bench_scene *scene, const char *file, const char *output,
+enum status mf_bench_scene_read(struct bench_scene *scene, const char *file, const char *output,
                              const struct run_options *options) {
     struct heading heading;
     struct input_files inputs = {0};
     enum status status = read_file(scene, file, &heading, &inputs);
     if (status == STATUS_OK && output)
-        status = input_files_spare(&inputs, output);
-    input_files_clear(&inputs);
+        status = mf_input_files_spare(&inputs, output);
+    mf_input_files_clear(&inputs);
     TRY(status);
     scene->scene.setup.seed = options->has_seed ? options->seed : heading.seed;
     name_scene(scene, file);

@@ -23,25 +23,25 @@ static enum status time_part(const struct bench_scene *scene, const struct bench
     struct pair_histogram histogram = {.bins = BINS};
     if (part == WITHOUT_WEIGHT) {
         changed.scene.setup.weight = NULL;
-        changed.scene.setup.integrator = &velocity_verlet;
+        changed.scene.setup.integrator = &mf_velocity_verlet;
     }
     NEW_ARRAY(histogram.counts, NEIGHBOURS_MOST_PARTS * (BINS + 1));
-    CHECK(bench_case_begin(&bench, &changed, how));
-    histogram.width = pair_cutoff(&bench.simulation.law) / BINS;
+    CHECK(mf_bench_case_begin(&bench, &changed, how));
+    histogram.width = mf_pair_cutoff(&bench.simulation.law) / BINS;
     if (part == WITH_SUMS)
         bench.simulation.wants = PAIR_FORCES_AND_SUMS;
     if (part == WITH_RDF)
         bench.simulation.law.histogram = &histogram;
     while (bench.repeats < BENCH_REPEATS)
-        CHECK(bench_case_repeat(&bench));
-    *steps_per_second = bench_median(bench.rate, bench.repeats);
+        CHECK(mf_bench_case_repeat(&bench));
+    *steps_per_second = mf_bench_median(bench.rate, bench.repeats);
 done:
-    bench_case_clear(&bench);
-    memory_free(histogram.counts);
+    mf_bench_case_clear(&bench);
+    mf_memory_free(histogram.counts);
     return status;
 }
 
-enum status bench_skips(FILE *out, const struct bench_scene *scene, const struct bench_how *how) {
+enum status mf_bench_skips(FILE *out, const struct bench_scene *scene, const struct bench_how *how) {
     double rate[PARTS];
     fprintf(out, "%s: %lld particles, %s, %s precision\n", scene->name,
             (long long)scene->scene.setup.placement.count, how->isa, how->precision);

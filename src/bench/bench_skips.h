@@ -7,6 +7,6 @@
 #include <stdio.h>
 
 /// Time the scene as a fit runs it, and then with one part more or less at every step, with the
-/// instruction set and precision of `how`; print a line each. Fails: as bench_case_begin.
-enum status bench_skips(FILE *out, const struct bench_scene *scene,
+/// instruction set and precision of `how`; print a line each. Fails: as mf_bench_case_begin.
+enum status mf_bench_skips(FILE *out, const struct bench_scene *scene,
                         const struct bench_how *how) MUST_USE;

@@ -18,5 +18,5 @@
 /// @param[in]  genes      shape [count], count ≥ 1
 /// @param[in]  t, values  shape [points]
 /// Fails: NO_MEMORY. Tested: test_curves.
-enum status bezier_values(const double *genes, size_t count, const double *t, double *values,
+enum status mf_bezier_values(const double *genes, size_t count, const double *t, double *values,
                           size_t points) MUST_USE;

@@ -18,14 +18,14 @@ static double value(gsl_bspline_workspace *basis, gsl_vector *nonzero, const dou
     return sum;
 }
 
-enum status bspline_values(const double *genes, size_t count, const double *t, double *values,
+enum status mf_bspline_values(const double *genes, size_t count, const double *t, double *values,
                            size_t points) {
     const size_t order = GSL_MIN(ORDER, count + 1), breaks = count + 1 - order + 2;
     gsl_bspline_workspace *basis = gsl_bspline_alloc(order, breaks);
     gsl_vector *nonzero = gsl_vector_alloc(order);
     enum status status = STATUS_OK;
     if (basis == NULL || nonzero == NULL || gsl_bspline_knots_uniform(0, 1, basis) != 0)
-        status = status_fail(STATUS_NO_MEMORY, "out of memory for a spline of %zu genes", count);
+        status = mf_status_fail(STATUS_NO_MEMORY, "out of memory for a spline of %zu genes", count);
     for (size_t p = 0; status == STATUS_OK && p < points; p++)
         values[p] = value(basis, nonzero, genes, count, t[p]);
     gsl_vector_free(nonzero);

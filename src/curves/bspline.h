@@ -19,5 +19,5 @@
 /// @param[in]  genes      shape [count], count ≥ 1
 /// @param[in]  t, values  shape [points]
 /// Fails: NO_MEMORY. Tested: test_shape.
-enum status bspline_values(const double *genes, size_t count, const double *t, double *values,
+enum status mf_bspline_values(const double *genes, size_t count, const double *t, double *values,
                            size_t points) MUST_USE;

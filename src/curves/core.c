@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-void core_fill(const double *r, double *phi, size_t known, double slope, double stiffness) {
+void mf_core_fill(const double *r, double *phi, size_t known, double slope, double stiffness) {
     const double steepness = fmax(0, -slope);
     for (size_t k = 0; k < known; k++) {
         const double depth = r[known] - r[k];

@@ -14,4 +14,4 @@
 /// @param[in]     known      index of r_1
 /// @param[in]     slope      Φ'(r_1)                          [k_B T_0 / λ]
 /// @param[in]     stiffness  k                                [k_B T_0 / λ²]
-void core_fill(const double *r, double *phi, size_t known, double slope, double stiffness);
+void mf_core_fill(const double *r, double *phi, size_t known, double slope, double stiffness);

@@ -26,23 +26,23 @@ struct curve {
 };
 
 /// Potentials Φ(r) that a scene can name, NULL-terminated.
-extern const struct curve_family *const curve_potentials[];
+extern const struct curve_family *const mf_curve_potentials[];
 
 /// Weights ω(r) that a scene can name, NULL-terminated.
-extern const struct curve_family *const curve_weights[];
+extern const struct curve_family *const mf_curve_weights[];
 
 /// Family called `name` in `list`, or NULL.
-const struct curve_family *curve_find(const struct curve_family *const *list, const char *name);
+const struct curve_family *mf_curve_find(const struct curve_family *const *list, const char *name);
 
 /// Start a curve with the family's default parameters.
-enum status curve_create(struct curve *curve, const struct curve_family *family) MUST_USE;
+enum status mf_curve_create(struct curve *curve, const struct curve_family *family) MUST_USE;
 
 /// Free the parameters; a zeroed curve is fine.
-void curve_clear(struct curve *curve);
+void mf_curve_clear(struct curve *curve);
 
 /// Value at distance r ≥ 0 [λ]: Φ [k_B T_0] or ω [sqrt(mass/time)]. Finite for every r ≥ 0.
 /// Threads: any number at once.
-double curve_value(const struct curve *curve, double r);
+double mf_curve_value(const struct curve *curve, double r);
 
 /// Distance beyond which the value is 0 [λ].
-double curve_cutoff(const struct curve *curve);
+double mf_curve_cutoff(const struct curve *curve);

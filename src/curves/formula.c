@@ -38,7 +38,7 @@ static const struct field lennard_jones_fields[] = {
     FIELD_END,
 };
 
-const struct curve_family formula_lennard_jones = {
+const struct curve_family mf_formula_lennard_jones = {
     .name = "lennard-jones",
     .summary = "4 epsilon [(sigma/r)^12 - (sigma/r)^6], shifted to 0 at the cutoff",
     .fields = lennard_jones_fields,
@@ -66,7 +66,7 @@ static const struct field soft_repulsion_fields[] = {
     FIELD_END,
 };
 
-const struct curve_family formula_soft_repulsion = {
+const struct curve_family mf_formula_soft_repulsion = {
     .name = "soft-repulsion",
     .summary = "a r_c (1 - r/r_c)^2 / 2, the force a (1 - r/r_c) of Groot and Warren (1997)",
     .fields = soft_repulsion_fields,
@@ -98,7 +98,7 @@ static const struct field gaussian_fields[] = {
     FIELD_END,
 };
 
-const struct curve_family formula_gaussian = {
+const struct curve_family mf_formula_gaussian = {
     .name = "gaussian",
     .summary = "epsilon exp(-(r/sigma)^2), shifted to 0 at the cutoff",
     .fields = gaussian_fields,
@@ -133,7 +133,7 @@ static const struct field power_weight_fields[] = {
     FIELD_END,
 };
 
-const struct curve_family formula_power_weight = {
+const struct curve_family mf_formula_power_weight = {
     .name = "power",
     .summary = "omega = sigma (1 - r/r_c)^s for r_0 < r <= r_c, else 0; omega^2 is the friction",
     .fields = power_weight_fields,

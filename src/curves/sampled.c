@@ -33,7 +33,7 @@ static const struct field fields[] = {
     FIELD_END,
 };
 
-const struct curve_family sampled_family = {
+const struct curve_family mf_sampled_family = {
     .name = "table",
     .summary = "cubic spline through the points of a file",
     .fields = fields,
@@ -43,32 +43,32 @@ const struct curve_family sampled_family = {
     .clear = clear,
 };
 
-enum status sampled_set_points(struct curve *curve, const double *r, const double *y,
+enum status mf_sampled_set_points(struct curve *curve, const double *r, const double *y,
                                size_t count) {
     struct sampled_parameters *p = curve->parameters;
     if (count < 3)
-        return status_fail(STATUS_BAD_INPUT, "a table needs at least 3 points, not %zu", count);
+        return mf_status_fail(STATUS_BAD_INPUT, "a table needs at least 3 points, not %zu", count);
     for (size_t k = 1; k < count; k++)
         if (!(r[k] > r[k - 1]))
-            return status_fail(STATUS_BAD_INPUT, "r does not grow at point %zu", k + 1);
+            return mf_status_fail(STATUS_BAD_INPUT, "r does not grow at point %zu", k + 1);
     const double last = r[count - 1];
     // One part in 10^9 forgives a cutoff that was rounded when the table was written.
     if (p->cutoff > last * (1 + 1e-9))
-        return status_fail(STATUS_BAD_INPUT, "the table ends at r = %g, before the cutoff %g", last,
+        return mf_status_fail(STATUS_BAD_INPUT, "the table ends at r = %g, before the cutoff %g", last,
                            p->cutoff);
     if (p->cutoff == 0 || p->cutoff > last)
         p->cutoff = last;
     p->spline = gsl_spline_alloc(gsl_interp_cspline, count);
     if (p->spline == NULL || gsl_spline_init(p->spline, r, y, count) != 0)
-        return status_fail(STATUS_NO_MEMORY, "no memory for a table of %zu points", count);
+        return mf_status_fail(STATUS_NO_MEMORY, "no memory for a table of %zu points", count);
     p->first_slope = gsl_spline_eval_deriv(p->spline, r[0], NULL);
     return STATUS_OK;
 }
 
-enum status sampled_create(struct curve *curve, const double *r, const double *y, size_t count) {
-    TRY(curve_create(curve, &sampled_family));
-    const enum status status = sampled_set_points(curve, r, y, count);
+enum status mf_sampled_create(struct curve *curve, const double *r, const double *y, size_t count) {
+    TRY(mf_curve_create(curve, &mf_sampled_family));
+    const enum status status = mf_sampled_set_points(curve, r, y, count);
     if (status != STATUS_OK)
-        curve_clear(curve);
+        mf_curve_clear(curve);
     return status;
 }

@@ -8,7 +8,7 @@
 
 /// Cubic spline through points (r_k, y_k); below r_0 the straight line with the spline's slope
 /// there, beyond the cutoff 0.
-extern const struct curve_family sampled_family;
+extern const struct curve_family mf_sampled_family;
 
 enum { SAMPLED_COLUMNS, SAMPLED_VOTCA };
 
@@ -16,16 +16,16 @@ struct sampled_parameters {
     char file[FIELD_TEXT_SIZE]; ///< where the points came from; "" if from memory
     int format;                 ///< SAMPLED_…: of the file
     double cutoff;              ///< 0 means the last point [λ]
-    gsl_spline *spline;         ///< NULL until sampled_set_points
+    gsl_spline *spline;         ///< NULL until mf_sampled_set_points
     double first_slope;
 };
 
 /// Give a curve of this family its points.
 /// @param[in] r, y  shape [count], r ≥ 0 growing strictly, count ≥ 3   [λ], [curve's unit]
 /// Fails: NO_MEMORY; BAD_INPUT if the last r lies below the cutoff or r does not grow.
-enum status sampled_set_points(struct curve *curve, const double *r, const double *y,
+enum status mf_sampled_set_points(struct curve *curve, const double *r, const double *y,
                                size_t count) MUST_USE;
 
 /// A new curve of this family through points in memory.
-enum status sampled_create(struct curve *curve, const double *r, const double *y,
+enum status mf_sampled_create(struct curve *curve, const double *r, const double *y,
                            size_t count) MUST_USE;

@@ -13,25 +13,25 @@
 static const struct shape bezier = {
     .name = "bezier",
     .summary = "Bezier curve whose control points are the genes; A. G. Baydin (2008)",
-    .values = bezier_values,
+    .values = mf_bezier_values,
 };
 
 static const struct shape bspline = {
     .name = "bspline",
     .summary = "clamped uniform cubic B-spline, each gene acts near its place; C. de Boor (1978)",
-    .values = bspline_values,
+    .values = mf_bspline_values,
 };
 
-const struct shape *const shapes[] = {&bezier, &bspline, NULL};
+const struct shape *const mf_shapes[] = {&bezier, &bspline, NULL};
 
-const struct shape *shape_find(const char *name) {
-    for (const struct shape *const *known = shapes; *known; known++)
+const struct shape *mf_shape_find(const char *name) {
+    for (const struct shape *const *known = mf_shapes; *known; known++)
         if (strcmp((*known)->name, name) == 0)
             return *known;
     return NULL;
 }
 
-enum status shape_basis(const struct shape *shape, size_t genes, const double *t, size_t points,
+enum status mf_shape_basis(const struct shape *shape, size_t genes, const double *t, size_t points,
                         double *basis) {
     enum status status = STATUS_OK;
     double *unit = NULL, *column = NULL;
@@ -45,8 +45,8 @@ enum status shape_basis(const struct shape *shape, size_t genes, const double *t
             basis[p * genes + k] = column[p];
     }
 done:
-    memory_free(unit);
-    memory_free(column);
+    mf_memory_free(unit);
+    mf_memory_free(column);
     return status;
 }
 
@@ -75,7 +75,7 @@ static enum status rows_init(struct rows *rows, size_t points, size_t count) {
                           gsl_vector_calloc(count), gsl_multifit_linear_alloc(total, count)};
     if (rows->basis && rows->values && rows->genes && rows->work)
         return STATUS_OK;
-    return status_fail(STATUS_NO_MEMORY, "out of memory for a fit of %zu genes", count);
+    return mf_status_fail(STATUS_NO_MEMORY, "out of memory for a fit of %zu genes", count);
 }
 
 /// Rows scaled by the roots of their weights.
@@ -85,7 +85,7 @@ static enum status rows_fill(struct rows *rows, const double *basis, const doubl
     for (size_t p = 0; p < points; p++) {
         const double root = weights ? sqrt(weights[p]) : 1;
         if (!isfinite(root * values[p]))
-            return status_fail(STATUS_BAD_INPUT, "point %zu of a curve is %g, its weight %g", p,
+            return mf_status_fail(STATUS_BAD_INPUT, "point %zu of a curve is %g, its weight %g", p,
                                values[p], weights ? weights[p] : 1);
         gsl_vector_set(rows->values, p, root * values[p]);
         for (size_t k = 0; k < count; k++)
@@ -97,25 +97,25 @@ static enum status rows_fill(struct rows *rows, const double *basis, const doubl
 static enum status rows_solve(struct rows *rows) {
     double residual, size;
     if (gsl_multifit_linear_svd(rows->basis, rows->work) != 0)
-        return status_fail(STATUS_BAD_INPUT, "a curve cannot be decomposed");
+        return mf_status_fail(STATUS_BAD_INPUT, "a curve cannot be decomposed");
     const double largest = gsl_vector_get(rows->work->S, 0);
     if (!(largest > 0))
-        return status_fail(STATUS_BAD_INPUT, "no point of the curve has any weight");
+        return mf_status_fail(STATUS_BAD_INPUT, "no point of the curve has any weight");
     if (gsl_multifit_linear_solve(ridge * largest, rows->basis, rows->values, rows->genes,
                                   &residual, &size, rows->work) != 0)
-        return status_fail(STATUS_BAD_INPUT, "a curve cannot be fitted");
+        return mf_status_fail(STATUS_BAD_INPUT, "a curve cannot be fitted");
     return STATUS_OK;
 }
 
-enum status shape_fit(const struct shape *shape, const double *t, const double *values,
+enum status mf_shape_fit(const struct shape *shape, const double *t, const double *values,
                       const double *weights, size_t points, double *genes, size_t count) {
     enum status status = STATUS_OK;
     struct rows rows = {0};
     double *basis = NULL;
     if (points < 1)
-        return status_fail(STATUS_BAD_INPUT, "a curve without points has no genes");
+        return mf_status_fail(STATUS_BAD_INPUT, "a curve without points has no genes");
     NEW_ARRAY(basis, points * count);
-    CHECK(shape_basis(shape, count, t, points, basis));
+    CHECK(mf_shape_basis(shape, count, t, points, basis));
     CHECK(rows_init(&rows, points, count));
     CHECK(rows_fill(&rows, basis, values, weights, points));
     CHECK(rows_solve(&rows));
@@ -123,6 +123,6 @@ enum status shape_fit(const struct shape *shape, const double *t, const double *
         genes[k] = gsl_vector_get(rows.genes, k);
 done:
     rows_clear(&rows);
-    memory_free(basis);
+    mf_memory_free(basis);
     return status;
 }

@@ -19,15 +19,15 @@ struct shape {
 };
 
 /// All shapes, NULL-terminated: "bezier" (curves/bezier.h) and "bspline" (curves/bspline.h).
-extern const struct shape *const shapes[];
+extern const struct shape *const mf_shapes[];
 
 /// The one of that name, or NULL.
-const struct shape *shape_find(const char *name);
+const struct shape *mf_shape_find(const char *name);
 
 /// What each gene adds to the curve: values = basis · genes.
 /// @param[out] basis  shape [points, genes]
 /// Fails: NO_MEMORY. Tested: test_shape.
-enum status shape_basis(const struct shape *shape, size_t genes, const double *t, size_t points,
+enum status mf_shape_basis(const struct shape *shape, size_t genes, const double *t, size_t points,
                         double *basis) MUST_USE;
 
 /// Genes x of the curve nearest to `values`: least Σ_p w_p (y_p − Σ_k B_pk x_k)² + λ² Σ_k x_k²,
@@ -38,5 +38,5 @@ enum status shape_basis(const struct shape *shape, size_t genes, const double *t
 /// @param[in]  weights    shape [points], none below 0; NULL: all 1
 /// @param[out] genes      shape [count], count ≥ 1
 /// Fails: NO_MEMORY, BAD_INPUT without points or where numbers are not finite. Tested: test_shape.
-enum status shape_fit(const struct shape *shape, const double *t, const double *values,
+enum status mf_shape_fit(const struct shape *shape, const double *t, const double *values,
                       const double *weights, size_t points, double *genes, size_t count) MUST_USE;

@@ -45,7 +45,7 @@ static double node(int k, double cutoff) {
 
 /// Curve value just inside the cutoff for the last node, where curves drop to 0 by definition.
 static double value_at_node(const struct curve *curve, int k, double cutoff) {
-    return curve_value(curve, k == TABLE_INTERVALS ? cutoff * (1 - 1e-12) : node(k, cutoff));
+    return mf_curve_value(curve, k == TABLE_INTERVALS ? cutoff * (1 - 1e-12) : node(k, cutoff));
 }
 
 /// Slope at an end from three points on its inner side, in units of the spacing.
@@ -53,8 +53,8 @@ static double end_slope(const struct curve *curve, double cutoff, int end) {
     const double step = cutoff / TABLE_INTERVALS / 16;
     const double at = end == 0 ? 0 : cutoff * (1 - 1e-12);
     const double inward = end == 0 ? step : -step;
-    const double y0 = curve_value(curve, at), y1 = curve_value(curve, at + inward),
-                 y2 = curve_value(curve, at + 2 * inward);
+    const double y0 = mf_curve_value(curve, at), y1 = mf_curve_value(curve, at + inward),
+                 y2 = mf_curve_value(curve, at + 2 * inward);
     return (-1.5 * y0 + 2 * y1 - 0.5 * y2) / inward * cutoff / TABLE_INTERVALS;
 }
 
@@ -71,10 +71,10 @@ static void spline_slopes(const double *y, double *m, double *ratio) {
         m[k] -= ratio[k] * m[k + 1];
 }
 
-enum status table_init_potential(struct table *table, const struct curve *curve) {
+enum status mf_table_init_potential(struct table *table, const struct curve *curve) {
     enum status status = STATUS_OK;
     double *y = NULL, *m = NULL, *ratio = NULL;
-    CHECK(allocate(table, curve_cutoff(curve), 4, 1));
+    CHECK(allocate(table, mf_curve_cutoff(curve), 4, 1));
     NEW_ARRAY(y, TABLE_INTERVALS + 1);
     NEW_ARRAY(m, TABLE_INTERVALS + 1);
     NEW_ARRAY(ratio, TABLE_INTERVALS + 1);
@@ -94,17 +94,17 @@ enum status table_init_potential(struct table *table, const struct curve *curve)
     }
     fill_rows(table);
 done:
-    memory_free(y);
-    memory_free(m);
-    memory_free(ratio);
+    mf_memory_free(y);
+    mf_memory_free(m);
+    mf_memory_free(ratio);
     if (status != STATUS_OK)
-        table_clear(table);
+        mf_table_clear(table);
     return status;
 }
 
-enum status table_init_weight(struct table *table, const struct curve *curve) {
+enum status mf_table_init_weight(struct table *table, const struct curve *curve) {
     enum status status = STATUS_OK;
-    CHECK(allocate(table, curve_cutoff(curve), 2, 1));
+    CHECK(allocate(table, mf_curve_cutoff(curve), 2, 1));
     for (int k = 0; k < TABLE_INTERVALS; k++) {
         const double low = value_at_node(curve, k, table->cutoff);
         table->coefficient[2 * k] = low;
@@ -113,11 +113,11 @@ enum status table_init_weight(struct table *table, const struct curve *curve) {
     fill_rows(table);
 done:
     if (status != STATUS_OK)
-        table_clear(table);
+        mf_table_clear(table);
     return status;
 }
 
-enum status table_stack(struct table *table, const struct table *parts, int curves) {
+enum status mf_table_stack(struct table *table, const struct table *parts, int curves) {
     enum status status = STATUS_OK;
     double cutoff = 0;
     int terms = 0;
@@ -138,30 +138,30 @@ enum status table_stack(struct table *table, const struct table *parts, int curv
     }
 done:
     if (status != STATUS_OK)
-        table_clear(table);
+        mf_table_clear(table);
     return status;
 }
 
-void table_clear(struct table *table) {
-    memory_free(table->coefficient);
-    memory_free(table->precise);
-    memory_free(table->single);
+void mf_table_clear(struct table *table) {
+    mf_memory_free(table->coefficient);
+    mf_memory_free(table->precise);
+    mf_memory_free(table->single);
     *table = (struct table){0};
 }
 
-double table_inverse_spacing(const struct table *table, int pair) {
+double mf_table_inverse_spacing(const struct table *table, int pair) {
     const double reach = table_reach(table, pair);
     return TABLE_INTERVALS / (reach > 0 ? reach : table->cutoff);
 }
 
-void table_evaluate(const struct table *table, double r, double *value, double *slope,
+void mf_table_evaluate(const struct table *table, double r, double *value, double *slope,
                     double *curvature) {
-    table_evaluate_pair(table, 0, r, value, slope, curvature);
+    mf_table_evaluate_pair(table, 0, r, value, slope, curvature);
 }
 
-void table_evaluate_pair(const struct table *table, int pair, double r, double *value,
+void mf_table_evaluate_pair(const struct table *table, int pair, double r, double *value,
                          double *slope, double *curvature) {
-    const double h = table_inverse_spacing(table, pair);
+    const double h = mf_table_inverse_spacing(table, pair);
     const int k = (int)fmin(r * h, TABLE_INTERVALS); // the row of zeros beyond the cutoff
     const double f = r * h - k;
     const ptrdiff_t row = (ptrdiff_t)pair * table_stride(table) + k;

@@ -36,18 +36,18 @@ struct table {
 };
 
 /// Potential: cubic spline, shifted so that Φ(cutoff) = 0.
-enum status table_init_potential(struct table *table, const struct curve *curve) MUST_USE;
+enum status mf_table_init_potential(struct table *table, const struct curve *curve) MUST_USE;
 
 /// Weight: straight pieces.
-enum status table_init_weight(struct table *table, const struct curve *curve) MUST_USE;
+enum status mf_table_init_weight(struct table *table, const struct curve *curve) MUST_USE;
 
 /// One table of the curves of several, of one curve each, for the kinds of pairs in their order. A
 /// zeroed part is a curve that is 0 everywhere; one at least is not.
 /// @param[in] parts  shape [curves]; copied
 /// Fails: NO_MEMORY.
-enum status table_stack(struct table *table, const struct table *parts, int curves) MUST_USE;
+enum status mf_table_stack(struct table *table, const struct table *parts, int curves) MUST_USE;
 
-void table_clear(struct table *table);
+void mf_table_clear(struct table *table);
 
 /// Which curve a kind of pairs has: a table of one is for all.
 static inline int table_curve(const struct table *table, int pair) {
@@ -65,12 +65,12 @@ static inline double table_reach(const struct table *table, int pair) {
 }
 
 /// Intervals of that curve per length [1/λ]; for one that is 0 everywhere any would do.
-double table_inverse_spacing(const struct table *table, int pair);
+double mf_table_inverse_spacing(const struct table *table, int pair);
 
 /// Value, slope and curvature in double precision, of a table of one curve; each may be NULL.
-void table_evaluate(const struct table *table, double r, double *value, double *slope,
+void mf_table_evaluate(const struct table *table, double r, double *value, double *slope,
                     double *curvature);
 
 /// The same of the curve of a kind of pairs.
-void table_evaluate_pair(const struct table *table, int pair, double r, double *value,
+void mf_table_evaluate_pair(const struct table *table, int pair, double r, double *value,
                          double *slope, double *curvature);

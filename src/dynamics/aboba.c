@@ -31,12 +31,12 @@ static const struct friction_method midpoint = {.damping = midpoint_damping,
 typedef enum status friction_change(struct simulation *simulation);
 
 static enum status sweep(struct simulation *simulation) {
-    friction_sweep(&simulation->friction, &simulation->particles);
+    mf_friction_sweep(&simulation->friction, &simulation->particles);
     return STATUS_OK;
 }
 
 static enum status solve(struct simulation *simulation) {
-    return friction_solve(&simulation->friction, &simulation->particles,
+    return mf_friction_solve(&simulation->friction, &simulation->particles,
                           simulation->setup.integrator_parameters.tolerance);
 }
 
@@ -45,14 +45,14 @@ static enum status solve(struct simulation *simulation) {
 /// distribution: there the standard fluid at Δt = 0.04 is 0.8 % too hot, at the end of the step
 /// 2.4 %, and at 0.08 4.9 and 12.5 %.
 static enum status step_with(struct simulation *simulation, friction_change *change) {
-    simulation_drift_half(simulation);
-    TRY(simulation_compute_forces(simulation, 0));
-    simulation_kick(simulation);
+    mf_simulation_drift_half(simulation);
+    TRY(mf_simulation_compute_forces(simulation, 0));
+    mf_simulation_kick(simulation);
     if (simulation->setup.weight)
         TRY(change(simulation));
-    simulation_take_temperature(simulation);
-    simulation_kick(simulation);
-    simulation_drift_half(simulation);
+    mf_simulation_take_temperature(simulation);
+    mf_simulation_kick(simulation);
+    mf_simulation_drift_half(simulation);
     return STATUS_OK;
 }
 
@@ -66,7 +66,7 @@ static enum status step_implicit(struct simulation *simulation) {
 
 static const struct field no_fields[] = {FIELD_END};
 
-const struct integrator aboba = {
+const struct integrator mf_aboba = {
     .name = "aboba",
     .summary = "drift, kick, exact friction pair by pair, kick, drift; X. Shang, Comput. Phys. "
                "Commun. 262, 107834 (2021)",
@@ -84,7 +84,7 @@ static const struct field implicit_fields[] = {
     FIELD_END,
 };
 
-const struct integrator aboba_implicit = {
+const struct integrator mf_aboba_implicit = {
     .name = "aboba-implicit",
     .summary = "the same with friction of all pairs at once by the implicit midpoint rule",
     .fields = implicit_fields,

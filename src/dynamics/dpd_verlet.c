@@ -5,9 +5,9 @@
 /// v + (λ − ½) Δt F.
 static enum status step(struct simulation *simulation) {
     const double lambda = simulation->setup.integrator_parameters.lambda;
-    simulation_kick_and_drift(simulation);
-    TRY(simulation_compute_forces(simulation, (lambda - 0.5) * simulation->setup.time_step));
-    simulation_kick(simulation);
+    mf_simulation_kick_and_drift(simulation);
+    TRY(mf_simulation_compute_forces(simulation, (lambda - 0.5) * simulation->setup.time_step));
+    mf_simulation_kick(simulation);
     return STATUS_OK;
 }
 
@@ -18,7 +18,7 @@ static const struct field fields[] = {
     FIELD_END,
 };
 
-const struct integrator dpd_verlet = {
+const struct integrator mf_dpd_verlet = {
     .name = "dpd-verlet",
     .summary = "DPD velocity Verlet; R. D. Groot and P. B. Warren, J. Chem. Phys. 107, 4423 "
                "(1997), eq. 21",

@@ -17,21 +17,21 @@ static const struct friction_method forces = {.damping = damping, .square = squa
 static enum status step(struct simulation *simulation) {
     struct particles *particles = &simulation->particles;
     struct friction *friction = &simulation->friction;
-    simulation_kick_and_drift(simulation);
-    TRY(simulation_compute_forces(simulation, 0));
+    mf_simulation_kick_and_drift(simulation);
+    TRY(mf_simulation_compute_forces(simulation, 0));
     if (simulation->setup.weight)
-        TRY(friction_add_to_forces(friction, particles, particles->velocity, 1, true));
-    simulation_kick(simulation);
+        TRY(mf_friction_add_to_forces(friction, particles, particles->velocity, 1, true));
+    mf_simulation_kick(simulation);
     // Friction is linear in the velocities: what the kick has changed of them changes it.
     const double half_step = 0.5 * simulation->setup.time_step;
     if (simulation->setup.weight)
-        TRY(friction_add_to_forces(friction, particles, particles->force, half_step, false));
+        TRY(mf_friction_add_to_forces(friction, particles, particles->force, half_step, false));
     return STATUS_OK;
 }
 
 static const struct field fields[] = {FIELD_END};
 
-const struct integrator dpd_vv = {
+const struct integrator mf_dpd_vv = {
     .name = "dpd-vv",
     .summary = "DPD-VV, friction from the new velocities; G. Besold et al., Phys. Rev. E 62, R7611 "
                "(2000)",

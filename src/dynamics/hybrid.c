@@ -25,14 +25,14 @@ static double longest_step(const struct table *potential, double temperature) {
 
 /// 2 Φ'' where the curve of a kind of pairs bends most, as far up as ten k_B T reach.
 static double fastest_of(const struct table *potential, int pair, double temperature) {
-    const double spacing = 1 / table_inverse_spacing(potential, pair);
+    const double spacing = 1 / mf_table_inverse_spacing(potential, pair);
     double lowest = 0, fastest = 0, value, curvature;
     for (int k = 0; k < TABLE_INTERVALS; k++) {
-        table_evaluate_pair(potential, pair, k * spacing, &value, NULL, NULL);
+        mf_table_evaluate_pair(potential, pair, k * spacing, &value, NULL, NULL);
         lowest = fmin(lowest, value);
     }
     for (int k = 0; k < TABLE_INTERVALS; k++) {
-        table_evaluate_pair(potential, pair, (k + 0.5) * spacing, &value, NULL, &curvature);
+        mf_table_evaluate_pair(potential, pair, (k + 0.5) * spacing, &value, NULL, &curvature);
         if (value < lowest + highest * temperature)
             fastest = fmax(fastest, 2 * curvature);
     }
@@ -46,11 +46,11 @@ static double first_step(const struct table *potential, double temperature) {
     return fmin(first_share / sqrt(fastest), longest_step(potential, temperature));
 }
 
-enum status hybrid_init(struct hybrid *hybrid, const struct box *box,
+enum status mf_hybrid_init(struct hybrid *hybrid, const struct box *box,
                         const struct composition *composition, const struct table *potential,
                         const struct pair_histogram *bins, double temperature, uint64_t seed) {
     enum status status = STATUS_OK;
-    const size_t count = (size_t)composition_particles(composition);
+    const size_t count = (size_t)mf_composition_particles(composition);
     const struct simulation_setup setup = {
         .box = *box,
         .composition = *composition,
@@ -58,7 +58,7 @@ enum status hybrid_init(struct hybrid *hybrid, const struct box *box,
         .temperature = temperature,
         .time_step = first_step(potential, temperature),
         .temperature_limit = 1e6,
-        .integrator = &velocity_verlet,
+        .integrator = &mf_velocity_verlet,
         .potential = potential,
         .seed = seed,
         .threads = 1,
@@ -72,23 +72,23 @@ enum status hybrid_init(struct hybrid *hybrid, const struct box *box,
         NEW_ARRAY(hybrid->position[d], count);
         NEW_ARRAY(hybrid->velocity[d], count);
     }
-    CHECK(simulation_init(&hybrid->simulation, &setup, NULL));
-    CHECK(hybrid_refresh(hybrid));
+    CHECK(mf_simulation_init(&hybrid->simulation, &setup, NULL));
+    CHECK(mf_hybrid_refresh(hybrid));
 done:
     if (status != STATUS_OK)
-        hybrid_clear(hybrid);
+        mf_hybrid_clear(hybrid);
     return status;
 }
 
-void hybrid_clear(struct hybrid *hybrid) {
-    simulation_clear(&hybrid->simulation);
+void mf_hybrid_clear(struct hybrid *hybrid) {
+    mf_simulation_clear(&hybrid->simulation);
     for (int d = 0; d < 3; d++) {
-        memory_free(hybrid->position[d]);
-        memory_free(hybrid->velocity[d]);
+        mf_memory_free(hybrid->position[d]);
+        mf_memory_free(hybrid->velocity[d]);
     }
-    memory_free(hybrid->id);
-    memory_free(hybrid->trial.counts);
-    memory_free(hybrid->kept);
+    mf_memory_free(hybrid->id);
+    mf_memory_free(hybrid->trial.counts);
+    mf_memory_free(hybrid->kept);
     *hybrid = (struct hybrid){0};
 }
 
@@ -114,20 +114,20 @@ static void keep_sample(struct hybrid *hybrid) {
     hybrid->sums = hybrid->simulation.sums;
 }
 
-enum status hybrid_refresh(struct hybrid *hybrid) {
+enum status mf_hybrid_refresh(struct hybrid *hybrid) {
     struct simulation *simulation = &hybrid->simulation;
-    TRY(neighbours_sort_and_build(&simulation->neighbours, &simulation->particles));
+    TRY(mf_neighbours_sort_and_build(&simulation->neighbours, &simulation->particles));
     count_pairs(hybrid, true);
-    TRY(simulation_compute_forces(simulation, 0));
+    TRY(mf_simulation_compute_forces(simulation, 0));
     count_pairs(hybrid, false);
     keep_sample(hybrid);
     return STATUS_OK;
 }
 
-enum status hybrid_scatter(struct hybrid *hybrid) {
+enum status mf_hybrid_scatter(struct hybrid *hybrid) {
     struct simulation *simulation = &hybrid->simulation;
-    TRY(placement_disordered(&simulation->particles, simulation->setup.seed));
-    return hybrid_refresh(hybrid);
+    TRY(mf_placement_disordered(&simulation->particles, simulation->setup.seed));
+    return mf_hybrid_refresh(hybrid);
 }
 
 /// New velocities for the particles whose turn it is, by their ids.
@@ -138,7 +138,7 @@ static void collide(struct hybrid *hybrid) {
         if (particles->id[k] % TURNS != hybrid->trajectory % TURNS)
             continue;
         double normal[4];
-        rng_normal4(rng_philox(hybrid->simulation.setup.seed, RNG_COLLISIONS, hybrid->trajectory,
+        mf_rng_normal4(mf_rng_philox(hybrid->simulation.setup.seed, RNG_COLLISIONS, hybrid->trajectory,
                                particles->id[k], 0),
                     normal);
         for (int d = 0; d < particles->box.dimensions; d++)
@@ -148,7 +148,7 @@ static void collide(struct hybrid *hybrid) {
 
 /// Φ + Σ v²/2 [k_B T_0].
 static double hamiltonian(const struct hybrid *hybrid, const struct pair_sums *sums) {
-    return sums->energy + 0.5 * particles_square_velocities(&hybrid->simulation.particles);
+    return sums->energy + 0.5 * mf_particles_square_velocities(&hybrid->simulation.particles);
 }
 
 static void remember(struct hybrid *hybrid) {
@@ -174,17 +174,17 @@ static enum status turn_round(struct hybrid *hybrid, uint64_t list_builds) {
     memcpy(particles->id, hybrid->id, count * sizeof(uint32_t));
     // A list that was built meanwhile belongs to another order of the particles.
     if (simulation->list_builds != list_builds)
-        TRY(neighbours_sort_and_build(&simulation->neighbours, particles));
-    return simulation_compute_forces(simulation, 0);
+        TRY(mf_neighbours_sort_and_build(&simulation->neighbours, particles));
+    return mf_simulation_compute_forces(simulation, 0);
 }
 
 /// The steps of a trajectory; the last force pass counts. Unstable ones end beyond all energies.
 static enum status propose(struct hybrid *hybrid, double *energy) {
     struct simulation *simulation = &hybrid->simulation;
-    enum status status = simulation_run(simulation, HYBRID_STEPS - 1);
+    enum status status = mf_simulation_run(simulation, HYBRID_STEPS - 1);
     count_pairs(hybrid, true);
     if (status == STATUS_OK)
-        status = simulation_run(simulation, 1);
+        status = mf_simulation_run(simulation, 1);
     count_pairs(hybrid, false);
     *energy = status == STATUS_OK ? hamiltonian(hybrid, &simulation->sums) : INFINITY;
     return status == STATUS_UNSTABLE ? STATUS_OK : status;
@@ -199,23 +199,23 @@ static enum status run_trajectory(struct hybrid *hybrid) {
     const double before = hamiltonian(hybrid, &hybrid->sums);
     TRY(propose(hybrid, &after));
     const struct rng_block random =
-        rng_philox(simulation->setup.seed, RNG_METROPOLIS, hybrid->trajectory++, UINT32_MAX, 0);
+        mf_rng_philox(simulation->setup.seed, RNG_METROPOLIS, hybrid->trajectory++, UINT32_MAX, 0);
     // Written so that a NaN is refused.
     const double share = exp(-(after - before) / simulation->setup.temperature);
     hybrid->accepted = share > 0 ? fmin(1, share) : 0;
-    if (!(rng_uniform(random.word[0], 0) < hybrid->accepted))
+    if (!(mf_rng_uniform(random.word[0], 0) < hybrid->accepted))
         return turn_round(hybrid, list_builds);
     keep_sample(hybrid);
     return STATUS_OK;
 }
 
-enum status hybrid_run(struct hybrid *hybrid, uint64_t trajectories) {
+enum status mf_hybrid_run(struct hybrid *hybrid, uint64_t trajectories) {
     for (uint64_t k = 0; k < trajectories; k++)
         TRY(run_trajectory(hybrid));
     return STATUS_OK;
 }
 
-enum status hybrid_equilibrate(struct hybrid *hybrid, uint64_t trajectories) {
+enum status mf_hybrid_equilibrate(struct hybrid *hybrid, uint64_t trajectories) {
     struct simulation_setup *setup = &hybrid->simulation.setup;
     const double longest = longest_step(setup->potential, setup->temperature);
     for (uint64_t k = 0; k < trajectories; k++) {

@@ -27,25 +27,25 @@ struct hybrid {
 };
 
 /// Particles on a lattice in `box`, mixed at random.
-/// @param[in] potential  borrowed; may be exchanged before hybrid_refresh
+/// @param[in] potential  borrowed; may be exchanged before mf_hybrid_refresh
 /// @param[in] bins       of the pairs to be counted, within the cutoff; `counts` is not read
-/// Fails: as simulation_init.
-enum status hybrid_init(struct hybrid *hybrid, const struct box *box,
+/// Fails: as mf_simulation_init.
+enum status mf_hybrid_init(struct hybrid *hybrid, const struct box *box,
                         const struct composition *composition, const struct table *potential,
                         const struct pair_histogram *bins, double temperature,
                         uint64_t seed) MUST_USE;
-void hybrid_clear(struct hybrid *hybrid);
+void mf_hybrid_clear(struct hybrid *hybrid);
 
 /// Place the particles anew, without order. Fails: NO_MEMORY.
-enum status hybrid_scatter(struct hybrid *hybrid) MUST_USE;
+enum status mf_hybrid_scatter(struct hybrid *hybrid) MUST_USE;
 
 /// Begin with the potential as it is now, from positions, velocities and ids alone, so that a run
 /// that continues and one that was reloaded here go on with the same bits. Fails: NO_MEMORY.
-enum status hybrid_refresh(struct hybrid *hybrid) MUST_USE;
+enum status mf_hybrid_refresh(struct hybrid *hybrid) MUST_USE;
 
 /// Trajectories whose time step is tuned until nine of ten are taken. Fails: NO_MEMORY,
 /// INTERRUPTED.
-enum status hybrid_equilibrate(struct hybrid *hybrid, uint64_t trajectories) MUST_USE;
+enum status mf_hybrid_equilibrate(struct hybrid *hybrid, uint64_t trajectories) MUST_USE;
 
 /// Trajectories with a fixed time step, as detailed balance asks. Fails: NO_MEMORY, INTERRUPTED.
-enum status hybrid_run(struct hybrid *hybrid, uint64_t trajectories) MUST_USE;
+enum status mf_hybrid_run(struct hybrid *hybrid, uint64_t trajectories) MUST_USE;

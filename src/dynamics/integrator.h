@@ -21,23 +21,23 @@ struct integrator {
     bool friction_first;
     /// Forces are computed in the middle of the step: those at its end take a pass of their own.
     bool forces_midway;
-    /// Advance by one step, with one call of simulation_compute_forces.
+    /// Advance by one step, with one call of mf_simulation_compute_forces.
     enum status (*step)(struct simulation *simulation);
 };
 
-/// Parameters of all integrator_list; a record's field table names those it reads.
+/// Parameters of all mf_integrator_list; a record's field table names those it reads.
 struct integrator_parameters {
     double lambda;    ///< dpd-verlet
     double tolerance; ///< aboba-implicit
 };
 
-/// All integrator_list, NULL-terminated.
-extern const struct integrator *const integrator_list[];
+/// All mf_integrator_list, NULL-terminated.
+extern const struct integrator *const mf_integrator_list[];
 
-extern const struct integrator velocity_verlet;
-extern const struct integrator dpd_verlet;
-extern const struct integrator dpd_vv;
-extern const struct integrator shardlow;
-extern const struct integrator aboba;
-extern const struct integrator aboba_implicit;
-extern const struct integrator lowe_andersen;
+extern const struct integrator mf_velocity_verlet;
+extern const struct integrator mf_dpd_verlet;
+extern const struct integrator mf_dpd_vv;
+extern const struct integrator mf_shardlow;
+extern const struct integrator mf_aboba;
+extern const struct integrator mf_aboba_implicit;
+extern const struct integrator mf_lowe_andersen;

@@ -28,19 +28,19 @@ static void draw_collisions(struct friction *friction, double temperature) {
 }
 
 static enum status step(struct simulation *simulation) {
-    simulation_kick_and_drift(simulation);
-    TRY(simulation_compute_forces(simulation, 0));
-    simulation_kick(simulation);
+    mf_simulation_kick_and_drift(simulation);
+    TRY(mf_simulation_compute_forces(simulation, 0));
+    mf_simulation_kick(simulation);
     if (simulation->setup.weight) {
         draw_collisions(&simulation->friction, simulation->setup.temperature);
-        friction_sweep(&simulation->friction, &simulation->particles);
+        mf_friction_sweep(&simulation->friction, &simulation->particles);
     }
     return STATUS_OK;
 }
 
 static const struct field fields[] = {FIELD_END};
 
-const struct integrator lowe_andersen = {
+const struct integrator mf_lowe_andersen = {
     .name = "lowe-andersen",
     .summary = "velocity Verlet, then collisions of pairs with a heat bath; C. P. Lowe, Europhys. "
                "Lett. 47, 145 (1999)",

@@ -19,7 +19,7 @@ static const double skin_distances = 0.72;
 static const double wanted_acceptance = 0.4;
 
 static double mean_distance(const struct box *box, size_t count) {
-    return pow(box_volume(box) / (double)count, 1.0 / box->dimensions);
+    return pow(mf_box_volume(box) / (double)count, 1.0 / box->dimensions);
 }
 
 /// Largest step that leaves the list room for one sweep.
@@ -27,51 +27,51 @@ static double largest_step(const struct metropolis *metropolis) {
     return 0.49 * metropolis->neighbours.skin / sqrt(metropolis->particles.box.dimensions);
 }
 
-enum status metropolis_init(struct metropolis *metropolis, const struct box *box,
+enum status mf_metropolis_init(struct metropolis *metropolis, const struct box *box,
                             const struct composition *composition, const struct table *potential,
                             double temperature, uint64_t seed) {
     enum status status = STATUS_OK;
-    const size_t count = (size_t)composition_particles(composition);
+    const size_t count = (size_t)mf_composition_particles(composition);
     *metropolis = (struct metropolis){
         .law = {.potential = potential, .composition = *composition, .temperature = temperature},
         .step = 0.1,
         .seed = seed};
-    CHECK(particles_init(&metropolis->particles, box, count));
+    CHECK(mf_particles_init(&metropolis->particles, box, count));
     NEW_ARRAY(metropolis->order, count);
-    CHECK(neighbours_init(&metropolis->neighbours, NEIGHBOURS_FULL, box, count, potential->cutoff,
+    CHECK(mf_neighbours_init(&metropolis->neighbours, NEIGHBOURS_FULL, box, count, potential->cutoff,
                           skin_distances * mean_distance(box, count)));
     if (metropolis->neighbours.skin < 0.05 * potential->cutoff) {
-        status = status_fail(STATUS_BAD_INPUT,
+        status = mf_status_fail(STATUS_BAD_INPUT,
                              "the box is too small for Monte Carlo: its shortest edge %g must be "
                              "at least 2.1 times the cutoff %g",
-                             box_shortest(box), potential->cutoff);
+                             mf_box_shortest(box), potential->cutoff);
         goto done;
     }
     metropolis->step = fmin(metropolis->step, largest_step(metropolis));
-    placement_lattice(&metropolis->particles, 0.05, seed);
+    mf_placement_lattice(&metropolis->particles, 0.05, seed);
     if (composition_is_mixed(composition))
-        placement_mix(&metropolis->particles, seed);
-    CHECK(metropolis_refresh(metropolis));
+        mf_placement_mix(&metropolis->particles, seed);
+    CHECK(mf_metropolis_refresh(metropolis));
     memcpy(metropolis->order, metropolis->particles.id, count * sizeof *metropolis->order);
 done:
     if (status != STATUS_OK)
-        metropolis_clear(metropolis);
+        mf_metropolis_clear(metropolis);
     return status;
 }
 
-void metropolis_clear(struct metropolis *metropolis) {
-    particles_clear(&metropolis->particles);
-    neighbours_clear(&metropolis->neighbours);
-    memory_free(metropolis->order);
+void mf_metropolis_clear(struct metropolis *metropolis) {
+    mf_particles_clear(&metropolis->particles);
+    mf_neighbours_clear(&metropolis->neighbours);
+    mf_memory_free(metropolis->order);
 }
 
-enum status metropolis_refresh(struct metropolis *metropolis) {
-    return neighbours_sort_and_build(&metropolis->neighbours, &metropolis->particles);
+enum status mf_metropolis_refresh(struct metropolis *metropolis) {
+    return mf_neighbours_sort_and_build(&metropolis->neighbours, &metropolis->particles);
 }
 
-enum status metropolis_scatter(struct metropolis *metropolis) {
-    TRY(placement_disordered(&metropolis->particles, metropolis->seed));
-    return metropolis_refresh(metropolis);
+enum status mf_metropolis_scatter(struct metropolis *metropolis) {
+    TRY(mf_placement_disordered(&metropolis->particles, metropolis->seed));
+    return mf_metropolis_refresh(metropolis);
 }
 
 /// Try to move particle k once.
@@ -79,19 +79,19 @@ static void try_move(struct metropolis *metropolis, size_t k) {
     struct particles *particles = &metropolis->particles;
     const struct box *box = &particles->box;
     const struct rng_block random =
-        rng_philox(metropolis->seed, RNG_METROPOLIS, metropolis->sweep, particles->id[k], 0);
+        mf_rng_philox(metropolis->seed, RNG_METROPOLIS, metropolis->sweep, particles->id[k], 0);
     int32_t to[3] = {0};
     double moved[3];
     for (int d = 0; d < box->dimensions; d++) {
         moved[d] =
-            particles->position[d][k] + metropolis->step * (2 * rng_uniform(random.word[d], 0) - 1);
+            particles->position[d][k] + metropolis->step * (2 * mf_rng_uniform(random.word[d], 0) - 1);
         to[d] = box_fraction(moved[d], 1 / box->length[d]);
     }
     const double change =
-        move_energy_change(&metropolis->law, particles, &metropolis->neighbours, k, to);
+        mf_move_energy_change(&metropolis->law, particles, &metropolis->neighbours, k, to);
     metropolis->tried++;
     // Written so that a NaN is refused.
-    if (!(rng_uniform(random.word[3], 0) < exp(-change / metropolis->law.temperature)))
+    if (!(mf_rng_uniform(random.word[3], 0) < exp(-change / metropolis->law.temperature)))
         return;
     metropolis->accepted++;
     for (int d = 0; d < box->dimensions; d++) {
@@ -106,9 +106,9 @@ static enum status refresh_if_needed(struct metropolis *metropolis) {
     const double reach = sqrt(metropolis->particles.box.dimensions) * metropolis->step;
     const double skin = neighbours->skin;
     neighbours->skin = fmax(0, skin - 2 * reach);
-    const bool stale = neighbours_are_stale(neighbours, &metropolis->particles);
+    const bool stale = mf_neighbours_are_stale(neighbours, &metropolis->particles);
     neighbours->skin = skin;
-    return stale ? metropolis_refresh(metropolis) : STATUS_OK;
+    return stale ? mf_metropolis_refresh(metropolis) : STATUS_OK;
 }
 
 /// In an order that stays the same. Each move leaves the canonical distribution as it is, and so do
@@ -118,8 +118,8 @@ static enum status refresh_if_needed(struct metropolis *metropolis) {
 /// an energy 0.4 % too high and single states off by 16 % of the largest probability.
 static enum status sweep(struct metropolis *metropolis) {
     const struct particles *particles = &metropolis->particles;
-    if (interrupt_requested())
-        return status_fail(STATUS_INTERRUPTED, "interrupted");
+    if (mf_interrupt_requested())
+        return mf_status_fail(STATUS_INTERRUPTED, "interrupted");
     TRY(refresh_if_needed(metropolis));
     uint32_t *place = particles->spare_words; // of each id
     for (size_t k = 0; k < particles->count; k++)
@@ -130,13 +130,13 @@ static enum status sweep(struct metropolis *metropolis) {
     return STATUS_OK;
 }
 
-enum status metropolis_run(struct metropolis *metropolis, uint32_t sweeps) {
+enum status mf_metropolis_run(struct metropolis *metropolis, uint32_t sweeps) {
     for (uint32_t s = 0; s < sweeps; s++)
         TRY(sweep(metropolis));
     return STATUS_OK;
 }
 
-enum status metropolis_equilibrate(struct metropolis *metropolis, uint32_t sweeps) {
+enum status mf_metropolis_equilibrate(struct metropolis *metropolis, uint32_t sweeps) {
     memcpy(metropolis->order, metropolis->particles.id,
            metropolis->particles.count * sizeof *metropolis->order);
     for (uint32_t s = 0; s < sweeps; s++) {
@@ -150,9 +150,9 @@ enum status metropolis_equilibrate(struct metropolis *metropolis, uint32_t sweep
     return STATUS_OK;
 }
 
-void metropolis_count(const struct metropolis *metropolis, const struct pair_histogram *histogram,
+void mf_metropolis_count(const struct metropolis *metropolis, const struct pair_histogram *histogram,
                       struct pair_sums *sums) {
     struct pair_law law = metropolis->law;
     law.histogram = histogram;
-    move_count_pairs(&law, &metropolis->particles, &metropolis->neighbours, sums);
+    mf_move_count_pairs(&law, &metropolis->particles, &metropolis->neighbours, sums);
 }

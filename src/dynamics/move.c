@@ -9,25 +9,25 @@ static const struct move_kernels *choose(const struct pair_law *law,
                                          const struct particles *particles) {
     const int flat = particles->box.dimensions == 2,
               mixed = composition_is_mixed(&law->composition);
-    switch (simd_used()) {
+    switch (mf_simd_used()) {
 #if SIMD_X86
     case SIMD_AVX512:
-        return &move_avx512[!flat][mixed];
+        return &mf_move_avx512[!flat][mixed];
     case SIMD_AVX2:
-        return &move_avx2[!flat][mixed];
+        return &mf_move_avx2[!flat][mixed];
 #endif
     default:
-        return &move_portable[!flat][mixed];
+        return &mf_move_portable[!flat][mixed];
     }
 }
 
-double move_energy_change(const struct pair_law *law, const struct particles *particles,
+double mf_move_energy_change(const struct pair_law *law, const struct particles *particles,
                           const struct neighbours *neighbours, size_t particle,
                           const int32_t to[3]) {
     return choose(law, particles)->energy_change(law, particles, neighbours, particle, to);
 }
 
-void move_count_pairs(const struct pair_law *law, const struct particles *particles,
+void mf_move_count_pairs(const struct pair_law *law, const struct particles *particles,
                       const struct neighbours *neighbours, struct pair_sums *sums) {
     choose(law, particles)->count_pairs(law, particles, neighbours, sums);
 }

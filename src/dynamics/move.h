@@ -11,7 +11,7 @@
 /// @param[in] law         its potential and composition are read
 /// @param[in] neighbours  a full list, complete for the cutoff from both places
 /// Tested: test_move.
-double move_energy_change(const struct pair_law *law, const struct particles *particles,
+double mf_move_energy_change(const struct pair_law *law, const struct particles *particles,
                           const struct neighbours *neighbours, size_t particle,
                           const int32_t to[3]);
 
@@ -19,5 +19,5 @@ double move_energy_change(const struct pair_law *law, const struct particles *pa
 /// and r·F.
 /// @param[in] neighbours  a full list
 /// Tested: test_move.
-void move_count_pairs(const struct pair_law *law, const struct particles *particles,
+void mf_move_count_pairs(const struct pair_law *law, const struct particles *particles,
                       const struct neighbours *neighbours, struct pair_sums *sums);

@@ -5,5 +5,5 @@
 #pragma GCC target("avx2,bmi2,fma,popcnt")
 #include "move_loop.h"
 
-MOVE_INSTANCES(move_avx2)
+MOVE_INSTANCES(mf_move_avx2)
 #endif

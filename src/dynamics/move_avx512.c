@@ -6,5 +6,5 @@
     "avx512f,avx512dq,avx512bw,avx512vl,avx2,bmi2,fma,popcnt,prefer-vector-width=512")
 #include "move_loop.h"
 
-MOVE_INSTANCES(move_avx512)
+MOVE_INSTANCES(mf_move_avx512)
 #endif

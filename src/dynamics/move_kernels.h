@@ -13,4 +13,4 @@ struct move_kernels {
 };
 
 /// By dimensions − 2 and whether the beads are a mixture.
-extern const struct move_kernels move_portable[2][2], move_avx2[2][2], move_avx512[2][2];
+extern const struct move_kernels mf_move_portable[2][2], mf_move_avx2[2][2], mf_move_avx512[2][2];

@@ -24,17 +24,17 @@ static void shift(struct particles *particles, double enough, double cap) {
     }
 }
 
-enum status relax_overlaps(struct simulation *simulation) {
+enum status mf_relax_overlaps(struct simulation *simulation) {
     struct particles *particles = &simulation->particles;
     const double enough = sqrt(simulation->setup.temperature) / simulation->setup.time_step;
-    const double spacing = pow(particles_density(particles), -1.0 / particles->box.dimensions);
-    TRY(simulation_compute_potential(simulation));
-    if (!(particles_largest_force(particles) > overlap * enough))
+    const double spacing = pow(mf_particles_density(particles), -1.0 / particles->box.dimensions);
+    TRY(mf_simulation_compute_potential(simulation));
+    if (!(mf_particles_largest_force(particles) > overlap * enough))
         return STATUS_OK;
     for (int step = 0; step < MOST_STEPS; step++) {
         shift(particles, enough, first_shift * spacing * (1 - (double)step / MOST_STEPS));
-        TRY(simulation_compute_potential(simulation));
-        if (!(particles_largest_force(particles) > enough)) // NaN ends it, too
+        TRY(mf_simulation_compute_potential(simulation));
+        if (!(mf_particles_largest_force(particles) > enough)) // NaN ends it, too
             break;
     }
     return STATUS_OK;

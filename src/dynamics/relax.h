@@ -8,5 +8,5 @@
 /// their mean spacing at most, until no force changes a velocity by more than a thermal one in a
 /// time step, or 500 times: steepest descent with capped displacements. Leaves anything else as it
 /// is; the same bits for any number of threads. The forces are then those of the potential alone.
-/// Fails: NO_MEMORY, as simulation_compute_potential. Tested: test_relax.
-enum status relax_overlaps(struct simulation *simulation) MUST_USE;
+/// Fails: NO_MEMORY, as mf_simulation_compute_potential. Tested: test_relax.
+enum status mf_relax_overlaps(struct simulation *simulation) MUST_USE;

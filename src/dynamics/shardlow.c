@@ -20,16 +20,16 @@ static const struct friction_method halves = {.damping = damping, .square = squa
 /// end of the last step.
 static enum status step(struct simulation *simulation) {
     if (simulation->setup.weight)
-        friction_sweep(&simulation->friction, &simulation->particles);
-    simulation_kick_and_drift(simulation);
-    TRY(simulation_compute_forces(simulation, 0));
-    simulation_kick(simulation);
+        mf_friction_sweep(&simulation->friction, &simulation->particles);
+    mf_simulation_kick_and_drift(simulation);
+    TRY(mf_simulation_compute_forces(simulation, 0));
+    mf_simulation_kick(simulation);
     return STATUS_OK;
 }
 
 static const struct field fields[] = {FIELD_END};
 
-const struct integrator shardlow = {
+const struct integrator mf_shardlow = {
     .name = "shardlow",
     .summary = "S1 splitting; T. Shardlow, SIAM J. Sci. Comput. 24, 1267 (2003)",
     .fields = fields,

@@ -13,12 +13,12 @@ static enum status place(struct simulation *simulation, const struct simulation_
     struct particles *particles = &simulation->particles;
     switch ((enum placement_kind)setup->placement.kind) {
     case PLACEMENT_LATTICE:
-        placement_lattice(particles, setup->placement.jitter, setup->seed);
+        mf_placement_lattice(particles, setup->placement.jitter, setup->seed);
         if (composition_is_mixed(&setup->composition))
-            placement_mix(particles, setup->seed);
+            mf_placement_mix(particles, setup->seed);
         break;
     case PLACEMENT_RANDOM:
-        TRY(placement_random(particles, setup->placement.separation, setup->seed));
+        TRY(mf_placement_random(particles, setup->placement.separation, setup->seed));
         break;
     case PLACEMENT_FILE:
         for (int d = 0; d < setup->box.dimensions; d++)
@@ -27,7 +27,7 @@ static enum status place(struct simulation *simulation, const struct simulation_
         break;
     }
     if (start == NULL || start->velocity[0] == NULL) {
-        particles_draw_velocities(particles, setup->temperature, setup->seed);
+        mf_particles_draw_velocities(particles, setup->temperature, setup->seed);
         return STATUS_OK;
     }
     for (int d = 0; d < setup->box.dimensions; d++)
@@ -36,7 +36,7 @@ static enum status place(struct simulation *simulation, const struct simulation_
     return STATUS_OK;
 }
 
-struct skin_scene simulation_skin_scene(const struct simulation_setup *setup, double cutoff) {
+struct skin_scene mf_simulation_skin_scene(const struct simulation_setup *setup, double cutoff) {
     return (struct skin_scene){.box = &setup->box,
                                .count = (size_t)setup->placement.count,
                                .cutoff = cutoff,
@@ -46,11 +46,11 @@ struct skin_scene simulation_skin_scene(const struct simulation_setup *setup, do
 
 static double find_skin(const struct simulation *simulation) {
     const struct skin_scene scene =
-        simulation_skin_scene(&simulation->setup, pair_cutoff(&simulation->law));
-    return simulation->setup.skin > 0 ? simulation->setup.skin : skin_choose(&scene);
+        mf_simulation_skin_scene(&simulation->setup, mf_pair_cutoff(&simulation->law));
+    return simulation->setup.skin > 0 ? simulation->setup.skin : mf_skin_choose(&scene);
 }
 
-enum status simulation_init(struct simulation *simulation, const struct simulation_setup *setup,
+enum status mf_simulation_init(struct simulation *simulation, const struct simulation_setup *setup,
                             const struct simulation_start *start) {
     enum status status = STATUS_OK;
     *simulation = (struct simulation){
@@ -64,31 +64,31 @@ enum status simulation_init(struct simulation *simulation, const struct simulati
                 .precision = (enum pair_precision)setup->precision},
     };
     const size_t count = (size_t)setup->placement.count;
-    CHECK(particles_init(&simulation->particles, &setup->box, count));
+    CHECK(mf_particles_init(&simulation->particles, &setup->box, count));
     if (simulation->law.precision == PAIR_DOUBLE)
-        CHECK(particles_keep_precise(&simulation->particles));
-    crew_init(&simulation->crew, setup->threads > 1 ? setup->threads : 1);
+        CHECK(mf_particles_keep_precise(&simulation->particles));
+    mf_crew_init(&simulation->crew, setup->threads > 1 ? setup->threads : 1);
     simulation->particles.threads = simulation->crew.now;
-    CHECK(neighbours_init(&simulation->neighbours, NEIGHBOURS_HALF, &setup->box, count,
-                          pair_cutoff(&simulation->law), find_skin(simulation)));
+    CHECK(mf_neighbours_init(&simulation->neighbours, NEIGHBOURS_HALF, &setup->box, count,
+                          mf_pair_cutoff(&simulation->law), find_skin(simulation)));
     if (setup->weight && setup->integrator->friction)
-        CHECK(friction_init(&simulation->friction, setup->weight, setup->time_step,
+        CHECK(mf_friction_init(&simulation->friction, setup->weight, setup->time_step,
                             setup->temperature, setup->integrator->friction));
     CHECK(place(simulation, start));
-    CHECK(neighbours_sort_and_build(&simulation->neighbours, &simulation->particles));
+    CHECK(mf_neighbours_sort_and_build(&simulation->neighbours, &simulation->particles));
     if (setup->placement.kind == PLACEMENT_RANDOM && setup->potential)
-        CHECK(relax_overlaps(simulation));
-    CHECK(simulation_compute_forces(simulation, 0));
+        CHECK(mf_relax_overlaps(simulation));
+    CHECK(mf_simulation_compute_forces(simulation, 0));
 done:
     if (status != STATUS_OK)
-        simulation_clear(simulation);
+        mf_simulation_clear(simulation);
     return status;
 }
 
-void simulation_clear(struct simulation *simulation) {
-    particles_clear(&simulation->particles);
-    neighbours_clear(&simulation->neighbours);
-    friction_clear(&simulation->friction);
+void mf_simulation_clear(struct simulation *simulation) {
+    mf_particles_clear(&simulation->particles);
+    mf_neighbours_clear(&simulation->neighbours);
+    mf_friction_clear(&simulation->friction);
 }
 
 SIMD_CLONES static void kick_and_drift(void *context, size_t begin, size_t end) {
@@ -105,9 +105,9 @@ SIMD_CLONES static void kick_and_drift(void *context, size_t begin, size_t end) 
     }
 }
 
-void simulation_kick_and_drift(struct simulation *simulation) {
+void mf_simulation_kick_and_drift(struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
-    parallel_for(particles->count, particles->threads, kick_and_drift, simulation);
+    mf_parallel_for(particles->count, particles->threads, kick_and_drift, simulation);
 }
 
 SIMD_CLONES static void kick(void *context, size_t begin, size_t end) {
@@ -122,9 +122,9 @@ SIMD_CLONES static void kick(void *context, size_t begin, size_t end) {
     }
 }
 
-void simulation_kick(struct simulation *simulation) {
+void mf_simulation_kick(struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
-    parallel_for(particles->count, particles->threads, kick, simulation);
+    mf_parallel_for(particles->count, particles->threads, kick, simulation);
 }
 
 SIMD_CLONES static void drift_half(void *context, size_t begin, size_t end) {
@@ -136,32 +136,32 @@ SIMD_CLONES static void drift_half(void *context, size_t begin, size_t end) {
             particles->position[d][k] += 0.5 * dt * particles->velocity[d][k];
 }
 
-void simulation_drift_half(struct simulation *simulation) {
+void mf_simulation_drift_half(struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
-    parallel_for(particles->count, particles->threads, drift_half, simulation);
+    mf_parallel_for(particles->count, particles->threads, drift_half, simulation);
 }
 
-void simulation_take_temperature(struct simulation *simulation) {
+void mf_simulation_take_temperature(struct simulation *simulation) {
     if (simulation->wants == PAIR_FORCES_AND_SUMS)
-        simulation->temperature = particles_temperature(&simulation->particles);
+        simulation->temperature = mf_particles_temperature(&simulation->particles);
 }
 
-double simulation_temperature(const struct simulation *simulation) {
+double mf_simulation_temperature(const struct simulation *simulation) {
     return isfinite(simulation->temperature) ? simulation->temperature
-                                             : particles_temperature(&simulation->particles);
+                                             : mf_particles_temperature(&simulation->particles);
 }
 
 static enum status fail_unstable(const struct simulation *simulation, double square_velocities) {
     const struct simulation_setup *setup = &simulation->setup;
     const struct particles *particles = &simulation->particles;
     const double degrees = particles->box.dimensions * ((double)particles->count - 1);
-    return status_fail(STATUS_UNSTABLE,
+    return mf_status_fail(STATUS_UNSTABLE,
                        "unstable at step %llu: kinetic temperature %.3g (limit %g), largest force "
                        "%.3g; lower \"time_step\" or soften the potential",
                        (unsigned long long)simulation->step,
-                       visible_number(square_velocities / degrees),
+                       mf_visible_number(square_velocities / degrees),
                        setup->temperature_limit * setup->temperature,
-                       visible_number(particles_largest_force(particles)));
+                       mf_visible_number(mf_particles_largest_force(particles)));
 }
 
 /// Before a list is built: particles flung beyond the reach of box_fraction would meet on a few
@@ -169,15 +169,15 @@ static enum status fail_unstable(const struct simulation *simulation, double squ
 static enum status watch_flight(const struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
     const double flight = simulation->setup.time_step *
-                          sqrt(particles_square_velocities(particles)) /
-                          box_shortest(&particles->box);
+                          sqrt(mf_particles_square_velocities(particles)) /
+                          mf_box_shortest(&particles->box);
     if (flight <= 0x1p18)
         return STATUS_OK;
-    return status_fail(STATUS_UNSTABLE,
+    return mf_status_fail(STATUS_UNSTABLE,
                        "unstable at step %llu: particles fly %.3g times the edge of the box in a "
                        "step, largest force %.3g; lower \"time_step\" or soften the potential",
-                       (unsigned long long)simulation->step, visible_number(flight),
-                       visible_number(particles_largest_force(particles)));
+                       (unsigned long long)simulation->step, mf_visible_number(flight),
+                       mf_visible_number(mf_particles_largest_force(particles)));
 }
 
 /// Count the time since `begin` to a phase; returns the present time.
@@ -190,17 +190,17 @@ static uint64_t count_ticks(struct simulation *simulation, enum simulation_phase
 
 static enum status refresh_list(struct simulation *simulation) {
     struct particles *particles = &simulation->particles;
-    if (!neighbours_are_stale(&simulation->neighbours, particles)) {
-        particles_update_fractions(particles);
+    if (!mf_neighbours_are_stale(&simulation->neighbours, particles)) {
+        mf_particles_update_fractions(particles);
         return STATUS_OK;
     }
     TRY(watch_flight(simulation));
-    TRY(neighbours_sort_and_build(&simulation->neighbours, particles));
+    TRY(mf_neighbours_sort_and_build(&simulation->neighbours, particles));
     simulation->list_builds++;
     return STATUS_OK;
 }
 
-enum status simulation_compute_forces(struct simulation *simulation, double ahead) {
+enum status mf_simulation_compute_forces(struct simulation *simulation, double ahead) {
     struct particles *particles = &simulation->particles;
     struct neighbours *neighbours = &simulation->neighbours;
     struct pair_law law = simulation->law;
@@ -208,22 +208,22 @@ enum status simulation_compute_forces(struct simulation *simulation, double ahea
     if (simulation->friction.single)
         law.friction = &simulation->friction;
     else if (law.weight)
-        particles_update_motion(particles, ahead); // before a sort, which does not move the forces
+        mf_particles_update_motion(particles, ahead); // before a sort, which does not move the forces
     TRY(refresh_list(simulation));
     if (law.friction)
-        TRY(friction_reserve(law.friction, neighbours));
+        TRY(mf_friction_reserve(law.friction, neighbours));
     begin = count_ticks(simulation, SIMULATION_LIST, begin);
-    pair_forces(&law, particles, neighbours, simulation->step, simulation->wants,
+    mf_pair_forces(&law, particles, neighbours, simulation->step, simulation->wants,
                 &simulation->sums);
     count_ticks(simulation, SIMULATION_FORCES, begin);
     return STATUS_OK;
 }
 
-enum status simulation_compute_potential(struct simulation *simulation) {
+enum status mf_simulation_compute_potential(struct simulation *simulation) {
     struct pair_law law = simulation->law;
     law.weight = NULL;
     TRY(refresh_list(simulation));
-    pair_forces(&law, &simulation->particles, &simulation->neighbours, simulation->step,
+    mf_pair_forces(&law, &simulation->particles, &simulation->neighbours, simulation->step,
                 PAIR_FORCES_AND_SUMS, &simulation->sums);
     return STATUS_OK;
 }
@@ -233,16 +233,16 @@ static enum status watch(const struct simulation *simulation) {
     const struct simulation_setup *setup = &simulation->setup;
     const struct particles *particles = &simulation->particles;
     const double degrees = particles->box.dimensions * ((double)particles->count - 1);
-    const double squares = particles_square_velocities(particles);
+    const double squares = mf_particles_square_velocities(particles);
     if (squares / degrees <= setup->temperature_limit * setup->temperature)
         return STATUS_OK;
     return fail_unstable(simulation, squares);
 }
 
-enum status simulation_run(struct simulation *simulation, uint64_t steps) {
+enum status mf_simulation_run(struct simulation *simulation, uint64_t steps) {
     for (uint64_t k = 0; k < steps; k++) {
-        if (interrupt_requested())
-            return status_fail(STATUS_INTERRUPTED, "interrupted");
+        if (mf_interrupt_requested())
+            return mf_status_fail(STATUS_INTERRUPTED, "interrupted");
         const uint64_t begin = clock_ticks();
         const uint64_t other =
             simulation->ticks[SIMULATION_LIST] + simulation->ticks[SIMULATION_FORCES];
@@ -251,22 +251,22 @@ enum status simulation_run(struct simulation *simulation, uint64_t steps) {
         simulation->particles.threads = simulation->crew.now;
         TRY(simulation->setup.integrator->step(simulation));
         TRY(watch(simulation));
-        crew_end_turn(&simulation->crew, count_ticks(simulation, SIMULATION_MOTION, begin) - begin);
+        mf_crew_end_turn(&simulation->crew, count_ticks(simulation, SIMULATION_MOTION, begin) - begin);
         simulation->ticks[SIMULATION_MOTION] -=
             simulation->ticks[SIMULATION_LIST] + simulation->ticks[SIMULATION_FORCES] - other;
     }
     return STATUS_OK;
 }
 
-double simulation_pressure(const struct simulation *simulation) {
+double mf_simulation_pressure(const struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
     const double temperature =
-        simulation->law.weight ? simulation->setup.temperature : simulation_temperature(simulation);
-    return particles_density(particles) * temperature +
-           simulation->sums.virial / (particles->box.dimensions * box_volume(&particles->box));
+        simulation->law.weight ? simulation->setup.temperature : mf_simulation_temperature(simulation);
+    return mf_particles_density(particles) * temperature +
+           simulation->sums.virial / (particles->box.dimensions * mf_box_volume(&particles->box));
 }
 
-size_t simulation_spans(struct simulation *simulation, struct memory_span *spans) {
+size_t mf_simulation_spans(struct simulation *simulation, struct memory_span *spans) {
     struct particles *particles = &simulation->particles;
     const size_t numbers = particles->count * sizeof(double), words = particles->count * 4;
     size_t n = 0;
@@ -283,10 +283,10 @@ size_t simulation_spans(struct simulation *simulation, struct memory_span *spans
     return n;
 }
 
-enum status simulation_restore(struct simulation *simulation) {
-    TRY(neighbours_rebuild(&simulation->neighbours, &simulation->particles));
+enum status mf_simulation_restore(struct simulation *simulation) {
+    TRY(mf_neighbours_rebuild(&simulation->neighbours, &simulation->particles));
     // Kept pairs are not saved; another pass at the same step keeps the same.
     if (simulation->setup.integrator->friction_first)
-        return simulation_compute_forces(simulation, 0);
+        return mf_simulation_compute_forces(simulation, 0);
     return STATUS_OK;
 }

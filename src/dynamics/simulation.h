@@ -58,55 +58,55 @@ struct simulation_start {
 };
 
 /// Place the particles, draw their velocities and compute the first forces. Particles placed at
-/// random are parted where they overlap (relax_overlaps).
+/// random are parted where they overlap (mf_relax_overlaps).
 /// @param[in] start  for PLACEMENT_FILE, else NULL
 /// Fails: BAD_INPUT (box below twice the cutoff, no room), NO_MEMORY, UNSTABLE.
-enum status simulation_init(struct simulation *simulation, const struct simulation_setup *setup,
+enum status mf_simulation_init(struct simulation *simulation, const struct simulation_setup *setup,
                             const struct simulation_start *start) MUST_USE;
-void simulation_clear(struct simulation *simulation);
+void mf_simulation_clear(struct simulation *simulation);
 
 /// Advance by `steps` steps.
 /// Fails: UNSTABLE with the step and the largest force in the message as soon as a velocity is not
 /// finite or the temperature passes its limit; INTERRUPTED if the user asked to stop.
-enum status simulation_run(struct simulation *simulation, uint64_t steps) MUST_USE;
+enum status mf_simulation_run(struct simulation *simulation, uint64_t steps) MUST_USE;
 
-/// @name For integrator_list
+/// @name For mf_integrator_list
 /// v += ½ Δt F, then x += Δt v.
-void simulation_kick_and_drift(struct simulation *simulation);
+void mf_simulation_kick_and_drift(struct simulation *simulation);
 
 /// v += ½ Δt F.
-void simulation_kick(struct simulation *simulation);
+void mf_simulation_kick(struct simulation *simulation);
 
 /// x += ½ Δt v.
-void simulation_drift_half(struct simulation *simulation);
+void mf_simulation_drift_half(struct simulation *simulation);
 
 /// Take the kinetic temperature here, if this step's is wanted.
-void simulation_take_temperature(struct simulation *simulation);
+void mf_simulation_take_temperature(struct simulation *simulation);
 
 /// Rebuild the list if it is stale, set kernel velocities to
 /// velocity + ahead · force, and replace the forces by those at the present positions.
-enum status simulation_compute_forces(struct simulation *simulation, double ahead) MUST_USE;
+enum status mf_simulation_compute_forces(struct simulation *simulation, double ahead) MUST_USE;
 
 /// Energy, virial and forces of the potential at the present positions, for an integrator whose
 /// forces belong to the middle of the step.
-enum status simulation_compute_potential(struct simulation *simulation) MUST_USE;
+enum status mf_simulation_compute_potential(struct simulation *simulation) MUST_USE;
 
 /// Kinetic temperature of the last step [k_B T_0], taken where in the step the integrator keeps it
 /// best, if the step was asked for its sums, and at the end of the step otherwise.
-double simulation_temperature(const struct simulation *simulation);
+double mf_simulation_temperature(const struct simulation *simulation);
 
 /// What the choice of a skin depends on.
-struct skin_scene simulation_skin_scene(const struct simulation_setup *setup, double cutoff);
+struct skin_scene mf_simulation_skin_scene(const struct simulation_setup *setup, double cutoff);
 
 /// Pressure [k_B T_0 / λ^d] from the sums of the last step: ρ k_B T + conservative virial / (d V).
 /// T is the set temperature in a dissipative simulation and the kinetic one otherwise.
-double simulation_pressure(const struct simulation *simulation);
+double mf_simulation_pressure(const struct simulation *simulation);
 
 /// @name Restart
 /// The state that, loaded into a simulation made with the same setup and followed by
-/// simulation_restore, goes on with the same bits.
+/// mf_simulation_restore, goes on with the same bits.
 enum { SIMULATION_SPANS = 18 };
-size_t simulation_spans(struct simulation *simulation, struct memory_span *spans);
+size_t mf_simulation_spans(struct simulation *simulation, struct memory_span *spans);
 
 /// Rebuild the list as it was when the state was saved. Fails: NO_MEMORY.
-enum status simulation_restore(struct simulation *simulation) MUST_USE;
+enum status mf_simulation_restore(struct simulation *simulation) MUST_USE;

@@ -10,11 +10,11 @@ static const double particle_cost = 40, entry_cost = 1.3;
 
 /// Entries of a particle on a half list.
 static double entries(const struct skin_scene *scene, double skin) {
-    const double density = (double)scene->count / box_volume(scene->box);
-    return density * box_shell_volume(scene->box, 0, scene->cutoff + skin) / 2;
+    const double density = (double)scene->count / mf_box_volume(scene->box);
+    return density * mf_box_shell_volume(scene->box, 0, scene->cutoff + skin) / 2;
 }
 
-double skin_interval(const struct skin_scene *scene, double skin) {
+double mf_skin_interval(const struct skin_scene *scene, double skin) {
     const double speed = sqrt(2 * scene->temperature * log((double)scene->count + 1));
     // Half a step on average from the moment when the list runs out to its replacement.
     return fmax(1, skin / (2 * speed * scene->time_step) + 0.5);
@@ -22,13 +22,13 @@ double skin_interval(const struct skin_scene *scene, double skin) {
 
 static double step_cost(const struct skin_scene *scene, double skin) {
     const double listed = entries(scene, skin);
-    return listed + (particle_cost + entry_cost * listed) / skin_interval(scene, skin);
+    return listed + (particle_cost + entry_cost * listed) / mf_skin_interval(scene, skin);
 }
 
-double skin_choose(const struct skin_scene *scene) {
+double mf_skin_choose(const struct skin_scene *scene) {
     enum { CANDIDATES = 64 };
     // No wider than the cutoff, nor than the nearest images allow.
-    const double widest = fmin(scene->cutoff, box_shortest(scene->box) / 2 - scene->cutoff);
+    const double widest = fmin(scene->cutoff, mf_box_shortest(scene->box) / 2 - scene->cutoff);
     double best = 0;
     for (int k = 1; k <= CANDIDATES; k++) {
         const double skin = widest * k / CANDIDATES;

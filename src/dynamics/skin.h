@@ -21,7 +21,7 @@ struct skin_scene {
 /// The list lasts until the fastest of N particles has moved by half the skin, at a speed of about
 /// sqrt(2 ln N) thermal ones, as if it met nobody. Depends on the scene alone, never on a clock, so
 /// that runs can be repeated to the bit.
-double skin_choose(const struct skin_scene *scene);
+double mf_skin_choose(const struct skin_scene *scene);
 
 /// Steps that a list with this skin is expected to last, at least 1.
-double skin_interval(const struct skin_scene *scene, double skin);
+double mf_skin_interval(const struct skin_scene *scene, double skin);

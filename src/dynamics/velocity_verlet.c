@@ -2,15 +2,15 @@
 #include "dynamics/simulation.h"
 
 static enum status step(struct simulation *simulation) {
-    simulation_kick_and_drift(simulation);
-    TRY(simulation_compute_forces(simulation, 0));
-    simulation_kick(simulation);
+    mf_simulation_kick_and_drift(simulation);
+    TRY(mf_simulation_compute_forces(simulation, 0));
+    mf_simulation_kick(simulation);
     return STATUS_OK;
 }
 
 static const struct field fields[] = {FIELD_END};
 
-const struct integrator velocity_verlet = {
+const struct integrator mf_velocity_verlet = {
     .name = "velocity-verlet",
     .summary = "NVE; W. C. Swope et al., J. Chem. Phys. 76, 637 (1982)",
     .fields = fields,

@@ -6,7 +6,7 @@
 #include "base/parallel.h"
 #include "base/simd.h"
 
-struct friction_factors friction_factors_of(const struct friction_method *method, double omega,
+struct friction_factors mf_friction_factors_of(const struct friction_method *method, double omega,
                                             double time_step, double temperature) {
     const double d = method->damping(omega, time_step);
     const double square =
@@ -14,14 +14,14 @@ struct friction_factors friction_factors_of(const struct friction_method *method
     return (struct friction_factors){d, sqrt(square)};
 }
 
-enum status friction_init(struct friction *friction, const struct table *weight, double time_step,
+enum status mf_friction_init(struct friction *friction, const struct table *weight, double time_step,
                           double temperature, const struct friction_method *method) {
     enum status status = STATUS_OK;
     *friction =
         (struct friction){.method = method,
                           .kick = method->square ? sqrt(method->square(time_step, temperature)) : 0,
                           .bound = method->bound};
-    normal_table_init(&friction->normal);
+    mf_normal_table_init(&friction->normal);
     const int rows = (TABLE_INTERVALS + 1) * weight->curves;
     NEW_ARRAY(friction->precise, rows);
     NEW_ARRAY(friction->single, rows);
@@ -40,7 +40,7 @@ done:
     return status;
 }
 
-enum status friction_reserve_work(struct friction *friction, size_t count) {
+enum status mf_friction_reserve_work(struct friction *friction, size_t count) {
     enum status status = STATUS_OK;
     for (int n = 0; n < FRICTION_WORK; n++)
         if (friction->work[n] == NULL)
@@ -49,28 +49,28 @@ done:
     return status;
 }
 
-void friction_clear(struct friction *friction) {
-    memory_free(friction->precise);
-    memory_free(friction->single);
-    memory_free(friction->direction);
-    memory_free(friction->pair);
+void mf_friction_clear(struct friction *friction) {
+    mf_memory_free(friction->precise);
+    mf_memory_free(friction->single);
+    mf_memory_free(friction->direction);
+    mf_memory_free(friction->pair);
     for (int n = 0; n < FRICTION_WORK; n++)
-        memory_free(friction->work[n]);
+        mf_memory_free(friction->work[n]);
     *friction = (struct friction){0};
 }
 
-enum status friction_reserve(struct friction *friction, const struct neighbours *neighbours) {
+enum status mf_friction_reserve(struct friction *friction, const struct neighbours *neighbours) {
     friction->parts = neighbours->parts;
     for (int p = 0; p < neighbours->parts; p++)
         friction->begin[p] = friction->end[p] = neighbours->part[p].begin;
     if (neighbours->list_capacity <= friction->capacity)
         return STATUS_OK;
-    memory_free(friction->direction);
-    memory_free(friction->pair);
+    mf_memory_free(friction->direction);
+    mf_memory_free(friction->pair);
     friction->capacity = 0;
     // Most of the room is never touched, and so takes no memory.
-    friction->direction = memory_uncleared(neighbours->list_capacity, sizeof *friction->direction);
-    friction->pair = memory_uncleared(neighbours->list_capacity, sizeof *friction->pair);
+    friction->direction = mf_memory_uncleared(neighbours->list_capacity, sizeof *friction->direction);
+    friction->pair = mf_memory_uncleared(neighbours->list_capacity, sizeof *friction->pair);
     if (friction->direction == NULL || friction->pair == NULL)
         return STATUS_NO_MEMORY;
     friction->capacity = neighbours->list_capacity;
@@ -131,14 +131,14 @@ SIMD_CLONES static void sweep_pairs(const float (*direction)[4], const struct fr
         change_pair(direction[k], &pair[k], v);
 }
 
-void friction_sweep(const struct friction *friction, struct particles *particles) {
+void mf_friction_sweep(const struct friction *friction, struct particles *particles) {
     lanes_double4 *v = (lanes_double4 *)particles->kernel_force;
     const int threads = particles->threads;
-    parallel_for(particles->count, threads, load_velocities, particles);
+    mf_parallel_for(particles->count, threads, load_velocities, particles);
 #define SWEEP(direction, pair, count) sweep_pairs(direction, pair, count, v)
     FOR_ALL_PARTS(friction, threads, SWEEP)
 #undef SWEEP
-    parallel_for(particles->count, threads, store_velocities, particles);
+    mf_parallel_for(particles->count, threads, store_velocities, particles);
 }
 
 SIMD_CLONES static void apply_pairs(const float (*direction)[4], const struct friction_pair *pair,
@@ -153,7 +153,7 @@ SIMD_CLONES static void apply_pairs(const float (*direction)[4], const struct fr
     }
 }
 
-void friction_apply(const struct friction *friction, const struct particles *particles,
+void mf_friction_apply(const struct friction *friction, const struct particles *particles,
                     const double (*from)[4], double (*to)[4], bool kicks) {
     const int threads = particles->threads;
     memset(to, 0, particles->count * sizeof *to);
@@ -184,12 +184,12 @@ static void add_to_forces(void *context, size_t begin, size_t end) {
             a->particles->force[d][k] += a->to[k][d];
 }
 
-enum status friction_add_to_forces(struct friction *friction, struct particles *particles,
+enum status mf_friction_add_to_forces(struct friction *friction, struct particles *particles,
                                    double *const source[3], double scale, bool kicks) {
-    TRY(friction_reserve_work(friction, particles->count));
+    TRY(mf_friction_reserve_work(friction, particles->count));
     struct addition addition = {particles, source, scale, friction->work[0], friction->work[1]};
-    parallel_for(particles->count, particles->threads, scale_source, &addition);
-    friction_apply(friction, particles, (const double(*)[4])addition.from, addition.to, kicks);
-    parallel_for(particles->count, particles->threads, add_to_forces, &addition);
+    mf_parallel_for(particles->count, particles->threads, scale_source, &addition);
+    mf_friction_apply(friction, particles, (const double(*)[4])addition.from, addition.to, kicks);
+    mf_parallel_for(particles->count, particles->threads, add_to_forces, &addition);
     return STATUS_OK;
 }

@@ -33,7 +33,7 @@ struct friction_factors {
     double damping;
     double amplitude; ///< standard deviation of the kick [λ/τ]
 };
-struct friction_factors friction_factors_of(const struct friction_method *method, double omega,
+struct friction_factors mf_friction_factors_of(const struct friction_method *method, double omega,
                                             double time_step, double temperature);
 
 enum { FRICTION_WORK = 4 };
@@ -52,41 +52,41 @@ struct friction {
     size_t capacity;
     size_t begin[NEIGHBOURS_MOST_PARTS], end[NEIGHBOURS_MOST_PARTS]; ///< pairs of each part
     int parts;
-    double (*work[FRICTION_WORK])[4]; ///< of friction_solve; shape [count, 4] each
+    double (*work[FRICTION_WORK])[4]; ///< of mf_friction_solve; shape [count, 4] each
 };
 
 /// Tabulate a method for a weight. Fails: NO_MEMORY.
-enum status friction_init(struct friction *friction, const struct table *weight, double time_step,
+enum status mf_friction_init(struct friction *friction, const struct table *weight, double time_step,
                           double temperature, const struct friction_method *method) MUST_USE;
-void friction_clear(struct friction *friction);
+void mf_friction_clear(struct friction *friction);
 
 /// Make room for all pairs of a list, and forget those kept. Fails: NO_MEMORY.
-enum status friction_reserve(struct friction *friction,
+enum status mf_friction_reserve(struct friction *friction,
                              const struct neighbours *neighbours) MUST_USE;
 
 /// Make room for what is done with all pairs at once, of `count` particles. Fails: NO_MEMORY.
-enum status friction_reserve_work(struct friction *friction, size_t count) MUST_USE;
+enum status mf_friction_reserve_work(struct friction *friction, size_t count) MUST_USE;
 
 /// Change the velocities pair after pair, in an order that depends on the list alone: the same bits
 /// for any number of threads.
-void friction_sweep(const struct friction *friction, struct particles *particles);
+void mf_friction_sweep(const struct friction *friction, struct particles *particles);
 
 /// to_i = Σ_j (kick − damping·u) e for all pairs at once, u from the velocities `from`.
 /// @param[in]  from   shape [count, 4], the last of each 0
 /// @param[out] to     shape [count, 4]
 /// @param[in]  kicks  whether to include them
-void friction_apply(const struct friction *friction, const struct particles *particles,
+void mf_friction_apply(const struct friction *friction, const struct particles *particles,
                     const double (*from)[4], double (*to)[4], bool kicks);
 
 /// The same added to the forces of the particles, with velocities scale · source[d].
 /// @param[in] source  shape [count] for each dimension
 /// Fails: NO_MEMORY.
-enum status friction_add_to_forces(struct friction *friction, struct particles *particles,
+enum status mf_friction_add_to_forces(struct friction *friction, struct particles *particles,
                                    double *const source[3], double scale, bool kicks) MUST_USE;
 
 /// Solve (1 + G) v' = (1 − G) v + kicks, G v = Σ damping·u e, by conjugate gradients, to a
 /// residual of `tolerance` times the change that friction and noise make; v' replaces the
 /// velocities. The same bits for any number of threads. Fails: NO_MEMORY; UNSTABLE if 1000
 /// iterations are too few for so large a friction, and the velocities stay.
-enum status friction_solve(struct friction *friction, struct particles *particles,
+enum status mf_friction_solve(struct friction *friction, struct particles *particles,
                            double tolerance) MUST_USE;

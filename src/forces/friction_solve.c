@@ -30,7 +30,7 @@ SIMD_CLONES static double square_residual(const void *context, size_t begin, siz
     return (sum[0] + sum[1]) + sum[2];
 }
 
-/// p·q, after what friction_apply has left out of q = (1 + G) p.
+/// p·q, after what mf_friction_apply has left out of q = (1 + G) p.
 SIMD_CLONES static double complete_product(const void *context, size_t begin, size_t end) {
     const struct solution *s = context;
     double sum[4] = {0};
@@ -65,10 +65,10 @@ static void finish(void *context, size_t begin, size_t end) {
             s->particles->velocity[d][k] += s->x[k][d];
 }
 
-enum status friction_solve(struct friction *friction, struct particles *particles,
+enum status mf_friction_solve(struct friction *friction, struct particles *particles,
                            double tolerance) {
     enum { MOST_ITERATIONS = 1000 };
-    TRY(friction_reserve_work(friction, particles->count));
+    TRY(mf_friction_reserve_work(friction, particles->count));
     struct solution s = {.particles = particles,
                          .x = friction->work[0],
                          .r = friction->work[1],
@@ -76,25 +76,25 @@ enum status friction_solve(struct friction *friction, struct particles *particle
                          .q = friction->work[3]};
     const size_t count = particles->count;
     const int threads = particles->threads;
-    parallel_for(count, threads, begin, &s);
-    friction_apply(friction, particles, (const double(*)[4])s.p, s.r, true);
+    mf_parallel_for(count, threads, begin, &s);
+    mf_friction_apply(friction, particles, (const double(*)[4])s.p, s.r, true);
     memcpy(s.p, s.r, count * sizeof *s.p);
-    double squares = parallel_sum(count, threads, square_residual, &s);
+    double squares = mf_parallel_sum(count, threads, square_residual, &s);
     const double enough = tolerance * tolerance * squares;
     for (int iteration = 0; squares > enough && iteration < MOST_ITERATIONS; iteration++) {
-        friction_apply(friction, particles, (const double(*)[4])s.p, s.q, false);
-        s.along = squares / parallel_sum(count, threads, complete_product, &s);
-        parallel_for(count, threads, advance, &s);
+        mf_friction_apply(friction, particles, (const double(*)[4])s.p, s.q, false);
+        s.along = squares / mf_parallel_sum(count, threads, complete_product, &s);
+        mf_parallel_for(count, threads, advance, &s);
         const double before = squares;
-        squares = parallel_sum(count, threads, square_residual, &s);
+        squares = mf_parallel_sum(count, threads, square_residual, &s);
         s.along = squares / before;
-        parallel_for(count, threads, turn, &s);
+        mf_parallel_for(count, threads, turn, &s);
     }
     if (squares > enough)
-        return status_fail(STATUS_UNSTABLE,
+        return mf_status_fail(STATUS_UNSTABLE,
                            "the implicit friction is not solved after %d iterations; lower "
                            "\"time_step\" or raise \"tolerance\"",
                            MOST_ITERATIONS);
-    parallel_for(count, threads, finish, &s);
+    mf_parallel_for(count, threads, finish, &s);
     return STATUS_OK;
 }

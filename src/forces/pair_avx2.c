@@ -5,5 +5,5 @@
 #pragma GCC target("avx2,bmi2,fma,popcnt")
 #include "pair_loop.h"
 
-PAIR_INSTANCES(pair_avx2)
+PAIR_INSTANCES(mf_pair_avx2)
 #endif

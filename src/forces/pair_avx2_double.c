@@ -6,5 +6,5 @@
 #define LANES_DOUBLE
 #include "pair_loop.h"
 
-PAIR_INSTANCES(pair_avx2_double)
+PAIR_INSTANCES(mf_pair_avx2_double)
 #endif

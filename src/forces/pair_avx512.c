@@ -7,5 +7,5 @@
     "avx512f,avx512dq,avx512bw,avx512vl,avx2,bmi2,fma,popcnt,prefer-vector-width=512")
 #include "pair_loop.h"
 
-PAIR_INSTANCES(pair_avx512)
+PAIR_INSTANCES(mf_pair_avx512)
 #endif

@@ -8,5 +8,5 @@
 #define LANES_DOUBLE
 #include "pair_loop.h"
 
-PAIR_INSTANCES(pair_avx512_double)
+PAIR_INSTANCES(mf_pair_avx512_double)
 #endif

@@ -6,21 +6,21 @@
 #include "base/parallel.h"
 #include "base/simd.h"
 
-double pair_cutoff(const struct pair_law *law) {
+double mf_pair_cutoff(const struct pair_law *law) {
     return fmax(law->potential ? law->potential->cutoff : 0, law->weight ? law->weight->cutoff : 0);
 }
 
 /// Kernels for the instruction set in use.
 static pair_kernels *choose_set(bool is_double) {
-    switch (simd_used()) {
+    switch (mf_simd_used()) {
 #if SIMD_X86
     case SIMD_AVX512:
-        return is_double ? &pair_avx512_double : &pair_avx512;
+        return is_double ? &mf_pair_avx512_double : &mf_pair_avx512;
     case SIMD_AVX2:
-        return is_double ? &pair_avx2_double : &pair_avx2;
+        return is_double ? &mf_pair_avx2_double : &mf_pair_avx2;
 #endif
     default:
-        return is_double ? &pair_portable_double : &pair_portable;
+        return is_double ? &mf_pair_portable_double : &mf_pair_portable;
     }
 }
 
@@ -46,20 +46,20 @@ static void gather_forces(void *context, size_t begin, size_t end) {
             particles->force[d][k] = particles->kernel_force[k][d];
 }
 
-void pair_forces(const struct pair_law *law, struct particles *particles,
+void mf_pair_forces(const struct pair_law *law, struct particles *particles,
                  const struct neighbours *neighbours, uint64_t step, enum pair_wants wants,
                  struct pair_sums *sums) {
     const pair_kernel kernel = choose(law, particles->box.dimensions, wants);
     const int parts = kernel ? neighbours->parts : 0, threads = particles->threads;
     struct pair_sums part_sums[NEIGHBOURS_MOST_PARTS] = {{0}};
-    parallel_for(particles->count, threads, clear_forces, particles);
+    mf_parallel_for(particles->count, threads, clear_forces, particles);
     // A part adds to its own particles and to those of the next one: even parts never meet.
     for (int first = 0; first < 2; first++) {
 #pragma omp parallel for schedule(dynamic) num_threads(threads) if (threads > 1)
         for (int p = first; p < parts; p += 2)
             kernel(law, particles, neighbours, p, step, &part_sums[p]);
     }
-    parallel_for(particles->count, threads, gather_forces, particles);
+    mf_parallel_for(particles->count, threads, gather_forces, particles);
     if (sums == NULL)
         return;
     *sums = (struct pair_sums){0};

@@ -22,5 +22,5 @@ typedef void (*pair_kernel)(PAIR_KERNEL_ARGUMENTS);
 /// [dimensions − 2][potential][friction][sums][mixed]
 typedef const pair_kernel pair_kernels[2][2][PAIR_FRICTIONS][2][2];
 
-extern pair_kernels pair_portable, pair_avx2, pair_avx512;
-extern pair_kernels pair_portable_double, pair_avx2_double, pair_avx512_double;
+extern pair_kernels mf_pair_portable, mf_pair_avx2, mf_pair_avx512;
+extern pair_kernels mf_pair_portable_double, mf_pair_avx2_double, mf_pair_avx512_double;

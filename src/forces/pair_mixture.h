@@ -21,13 +21,13 @@ LANES_INLINE struct pair_mixture pair_mixture_of(const struct pair_law *law) {
     struct pair_mixture mixture = {.types = composition->types};
     for (int t = 1; t < composition->types; t++)
         mixture.first[t] = mixture.first[t - 1] + (int32_t)composition->count[t - 1];
-    for (int p = 0; p < composition_pairs(composition); p++) {
+    for (int p = 0; p < mf_composition_pairs(composition); p++) {
         if (law->potential) {
-            mixture.grid[p][0] = (REAL)table_inverse_spacing(law->potential, p);
-            mixture.grid[p][2] = (REAL)(1 / table_inverse_spacing(law->potential, p));
+            mixture.grid[p][0] = (REAL)mf_table_inverse_spacing(law->potential, p);
+            mixture.grid[p][2] = (REAL)(1 / mf_table_inverse_spacing(law->potential, p));
         }
         if (law->weight)
-            mixture.grid[p][1] = (REAL)table_inverse_spacing(law->weight, p);
+            mixture.grid[p][1] = (REAL)mf_table_inverse_spacing(law->weight, p);
     }
     mixture.potential_stride = law->potential ? table_stride(law->potential) : 0;
     mixture.weight_stride = law->weight ? table_stride(law->weight) : 0;
@@ -44,7 +44,7 @@ LANES_INLINE lanes_int pair_type(const struct pair_mixture *mixture, lanes_int i
     return type;
 }
 
-/// Kinds of the pairs of particles, as composition_pair numbers them.
+/// Kinds of the pairs of particles, as mf_composition_pair numbers them.
 LANES_INLINE lanes_int pair_kind(const struct pair_mixture *mixture, lanes_int id_i,
                                  lanes_int id_j) {
     const int32_t twice = 2 * mixture->types - 1;

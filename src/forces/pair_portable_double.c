@@ -2,4 +2,4 @@
 #define LANES_DOUBLE
 #include "pair_loop.h"
 
-PAIR_INSTANCES(pair_portable_double)
+PAIR_INSTANCES(mf_pair_portable_double)

@@ -14,7 +14,7 @@ struct pair_places {
 struct pair_columns {
     REAL r[PAIR_BATCH], inverse_r[PAIR_BATCH];
     struct pair_places potential, weight;
-    int32_t kind[PAIR_BATCH]; ///< of a mixture: composition_pair
+    int32_t kind[PAIR_BATCH]; ///< of a mixture: mf_composition_pair
     REAL force_over_r[PAIR_BATCH];
     REAL r_dot_v[PAIR_BATCH];
     int32_t low_id[PAIR_BATCH], high_id[PAIR_BATCH], noise[PAIR_BATCH];
@@ -230,7 +230,7 @@ INLINE void pair_ids(struct pair_columns *columns, const struct pair_batch *batc
     }
 }
 
-/// ζ of the words: normal_of_word of each.
+/// ζ of the words: mf_normal_of_word of each.
 INLINE void pair_normal(struct pair_columns *columns, int count, const struct normal_table *table) {
     for (int k = 0; k < count; k += LANES) {
         const lanes_int word = lanes_load_int(columns->noise + k);

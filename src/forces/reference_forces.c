@@ -21,7 +21,7 @@ static double pair_noise(const struct pair_law *law, uint32_t a, uint32_t b, uin
     const uint32_t word =
         rng_philox_lane((uint32_t)law->seed, (uint32_t)(law->seed >> 32), (uint32_t)step, low, high,
                         rng_stream_word(RNG_PAIR_NOISE, (uint32_t)(step >> 32)));
-    return law->friction ? normal_of_word(&law->friction->normal, word)
+    return law->friction ? mf_normal_of_word(&law->friction->normal, word)
                          : sqrt(12) * (double)(int32_t)word * 0x1p-32;
 }
 
@@ -30,15 +30,15 @@ static double friction_and_noise(const struct pair_law *law, const struct partic
                                  size_t i, size_t j, const double r_ij[3], double r,
                                  uint64_t step) {
     double omega, speed = 0;
-    const int pair = composition_pair_of_ids(&law->composition, particles->id[i], particles->id[j]);
-    table_evaluate_pair(law->weight, pair, r, &omega, NULL, NULL);
+    const int pair = mf_composition_pair_of_ids(&law->composition, particles->id[i], particles->id[j]);
+    mf_table_evaluate_pair(law->weight, pair, r, &omega, NULL, NULL);
     for (int d = 0; d < particles->box.dimensions; d++)
         speed += r_ij[d] / r * (particles->velocity[d][i] - particles->velocity[d][j]);
     const double zeta = pair_noise(law, particles->id[i], particles->id[j], step);
     return -omega * omega * speed + sqrt(2 * law->temperature / law->time_step) * omega * zeta;
 }
 
-void reference_forces(const struct pair_law *law, struct particles *particles, uint64_t step,
+void mf_reference_forces(const struct pair_law *law, struct particles *particles, uint64_t step,
                       struct pair_sums *sums) {
     const int dimensions = particles->box.dimensions;
     for (int d = 0; d < dimensions; d++)
@@ -52,8 +52,8 @@ void reference_forces(const struct pair_law *law, struct particles *particles, u
             if (law->potential && r < law->potential->cutoff) {
                 double phi, slope;
                 const int pair =
-                    composition_pair_of_ids(&law->composition, particles->id[i], particles->id[j]);
-                table_evaluate_pair(law->potential, pair, r, &phi, &slope, NULL);
+                    mf_composition_pair_of_ids(&law->composition, particles->id[i], particles->id[j]);
+                mf_table_evaluate_pair(law->potential, pair, r, &phi, &slope, NULL);
                 force -= slope;
                 total.energy += phi;
                 total.virial -= slope * r;
@@ -78,7 +78,7 @@ static double density_at_cutoff(const struct table *potential, int pair, double 
                                 double temperature, int dimensions) {
     const double cutoff = table_reach(potential, pair);
     double phi;
-    table_evaluate_pair(potential, pair, r, &phi, NULL, NULL);
+    mf_table_evaluate_pair(potential, pair, r, &phi, NULL, NULL);
     return pow(cutoff / r, dimensions - 1) * exp(phi / temperature) / (shell * cutoff);
 }
 
@@ -86,12 +86,12 @@ static double density_at_cutoff(const struct table *potential, int pair, double 
 /// Φ'' seen by the pairs that are just there.
 static double edge_laplacian(const struct table *potential, int pair, double density) {
     double slope;
-    table_evaluate_pair(potential, pair, table_reach(potential, pair) * (1 - 1e-9), NULL, &slope,
+    mf_table_evaluate_pair(potential, pair, table_reach(potential, pair) * (1 - 1e-9), NULL, &slope,
                         NULL);
     return -2 * slope * density;
 }
 
-enum status reference_configurational(const struct table *potential,
+enum status mf_reference_configurational(const struct table *potential,
                                       const struct composition *composition, double temperature,
                                       const struct particles *particles,
                                       const struct neighbours *neighbours, double *squares,
@@ -110,11 +110,11 @@ enum status reference_configurational(const struct table *potential,
             double r_ij[3], slope, curvature;
             const double r = separation(particles, i, j, r_ij);
             const int pair =
-                composition_pair_of_ids(composition, particles->id[i], particles->id[j]);
+                mf_composition_pair_of_ids(composition, particles->id[i], particles->id[j]);
             const double cutoff = table_reach(potential, pair);
             if (r >= cutoff)
                 continue;
-            table_evaluate_pair(potential, pair, r, NULL, &slope, &curvature);
+            mf_table_evaluate_pair(potential, pair, r, NULL, &slope, &curvature);
             if (r > (1 - shell) * cutoff)
                 density[pair] += density_at_cutoff(potential, pair, r, temperature, dimensions);
             *laplacian += 2 * (curvature + (dimensions - 1) * slope / r);
@@ -123,11 +123,11 @@ enum status reference_configurational(const struct table *potential,
                 force[3 * j + (size_t)d] += slope * r_ij[d] / r;
             }
         }
-    for (int pair = 0; pair < composition_pairs(composition); pair++)
+    for (int pair = 0; pair < mf_composition_pairs(composition); pair++)
         *laplacian += edge_laplacian(potential, pair, density[pair]);
     for (size_t k = 0; k < 3 * particles->count; k++)
         *squares += force[k] * force[k];
 done:
-    memory_free(force);
+    mf_memory_free(force);
     return status;
 }

@@ -8,7 +8,7 @@
 /// Forces from all pairs, nearest image by division, double precision, library random numbers.
 /// Reads `velocity` (not kernel_velocity) and writes `force` [k_B T_0 / λ].
 /// @param[out] sums  energy and virial, or NULL
-void reference_forces(const struct pair_law *law, struct particles *particles, uint64_t step,
+void mf_reference_forces(const struct pair_law *law, struct particles *particles, uint64_t step,
                       struct pair_sums *sums);
 
 /// Configurational temperature Σ_i |F_i|² / Σ_i ∇_i² U [k_B T_0] from the potential alone.
@@ -21,7 +21,7 @@ void reference_forces(const struct pair_law *law, struct particles *particles, u
 /// @param[out] squares    Σ |F_i|² [(k_B T_0/λ)²]
 /// @param[out] laplacian  Σ ∇_i² U [k_B T_0/λ²]; the temperature is ⟨squares⟩ / ⟨laplacian⟩
 /// Fails: NO_MEMORY.
-enum status reference_configurational(const struct table *potential,
+enum status mf_reference_configurational(const struct table *potential,
                                       const struct composition *composition, double temperature,
                                       const struct particles *particles,
                                       const struct neighbours *neighbours, double *squares,

@@ -13,13 +13,13 @@ struct fit_core {
     double threshold, stiffness;
 };
 
-extern const struct field fit_core_fields[];
+extern const struct field mf_fit_core_fields[];
 
 /// What "unknowns" says of one of them.
 struct fit_unknown {
     bool wanted;
     struct unknown_parameters parameters;
-    struct scene_law start; ///< without a curve: as decoder_start says
+    struct scene_law start; ///< without a curve: as mf_decoder_start says
     struct scene_law truth; ///< the true curves where they are known
 };
 
@@ -39,14 +39,14 @@ struct fit_file {
 
 /// Read a run file and those that it names, each for itself. Fails: BAD_INPUT with all faults; IO;
 /// NO_MEMORY. Tested: tests/fuzz.
-enum status fit_file_parse(struct fit_file *fit, const char *file,
+enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
                            const struct run_options *options) MUST_USE;
 
 /// Read a run file and check how its parts fit together, by beginning a simulation. Fails:
 /// BAD_INPUT with all faults; IO; NO_MEMORY.
-enum status fit_file_read(struct fit_file *fit, const char *file,
+enum status mf_fit_file_read(struct fit_file *fit, const char *file,
                           const struct run_options *options) MUST_USE;
-void fit_file_clear(struct fit_file *fit);
+void mf_fit_file_clear(struct fit_file *fit);
 
 /// Write all values, defaults filled in, so that running the written file gives the same bits.
-enum status fit_file_write(const struct fit_file *fit, const char *path) MUST_USE;
+enum status mf_fit_file_write(const struct fit_file *fit, const char *path) MUST_USE;

@@ -2,7 +2,7 @@
 #include "input/heading.h"
 
 #define MEMBER(name) .offset = offsetof(struct heading, name)
-const struct field heading_fields[] = {
+const struct field mf_heading_fields[] = {
     {"title", FIELD_TEXT, MEMBER(title), .unit = "", .help = "one line for people"},
     {"seed", FIELD_SEED, MEMBER(seed), .initial = 1, .minimum = 0, .maximum = FIELD_LARGEST_INTEGER,
      .unit = "", .help = "of all random numbers"},
@@ -11,21 +11,21 @@ const struct field heading_fields[] = {
 
 /// Without the reader learning of the key.
 static bool has(struct json_object root, const char *key) {
-    return json_has(&root, key);
+    return mf_json_has(&root, key);
 }
 
-enum status heading_check_scene(const struct json_object *root, const char *file) {
+enum status mf_heading_check_scene(const struct json_object *root, const char *file) {
     if (!has(*root, "scene") || !has(*root, "target"))
         return STATUS_OK;
-    return status_fail(STATUS_BAD_INPUT,
+    return mf_status_fail(STATUS_BAD_INPUT,
                        "%s: this is a run file, with a scene and a target; use: mesofit fit %s",
                        file, file);
 }
 
-enum status heading_check_run(const struct json_object *root, const char *file) {
+enum status mf_heading_check_run(const struct json_object *root, const char *file) {
     if (has(*root, "scene") || has(*root, "target") || !has(*root, "box"))
         return STATUS_OK;
-    return status_fail(STATUS_BAD_INPUT,
+    return mf_status_fail(STATUS_BAD_INPUT,
                        "%s: this is a scene file, without a target; use: mesofit simulate %s", file,
                        file);
 }

@@ -10,10 +10,10 @@ struct heading {
     uint64_t seed;
 };
 
-extern const struct field heading_fields[];
+extern const struct field mf_heading_fields[];
 
 /// A run file has a "scene" and a "target"; what is no run file and has a "box" is a scene file.
 /// One line that says which command takes it, instead of a fault for each key. Fails: BAD_INPUT.
 /// Tested: test_bad_input.
-enum status heading_check_scene(const struct json_object *root, const char *file) MUST_USE;
-enum status heading_check_run(const struct json_object *root, const char *file) MUST_USE;
+enum status mf_heading_check_scene(const struct json_object *root, const char *file) MUST_USE;
+enum status mf_heading_check_run(const struct json_object *root, const char *file) MUST_USE;

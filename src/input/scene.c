@@ -21,7 +21,7 @@ static const char *const precisions[] = {"mixed", "double", NULL}; // enum pair_
 #define LARGEST_BOX 1e6
 
 #define MEMBER(name) .offset = offsetof(struct top, name)
-const struct field scene_fields[] = {
+const struct field mf_scene_fields[] = {
     {"dimensions", FIELD_INTEGER, MEMBER(dimensions), .initial = 3, .minimum = 2, .maximum = 3,
      .unit = "", .help = "of space"},
     {"box", FIELD_LENGTHS, MEMBER(box), .required = true, .minimum = FIELD_ABOVE_ZERO,
@@ -48,21 +48,21 @@ static void check_weight(const struct scene *scene, struct json_object *object) 
     for (int row = 0; row < table->curves * (TABLE_INTERVALS + 1); row++)
         if (table->coefficient[2 * row] < 0) {
             const int pair = row / (TABLE_INTERVALS + 1), k = row % (TABLE_INTERVALS + 1);
-            json_fault(object, "dissipative", "omega is negative at r = %g",
-                       k / table_inverse_spacing(table, pair));
+            mf_json_fault(object, "dissipative", "omega is negative at r = %g",
+                       k / mf_table_inverse_spacing(table, pair));
             return;
         }
 }
 
 static void read_top(struct scene *scene, struct json_object *object) {
     struct top top;
-    json_fields(object, scene_fields, &top);
+    mf_json_fields(object, mf_scene_fields, &top);
     struct simulation_setup *setup = &scene->setup;
     setup->box.dimensions = (int)top.dimensions;
     for (int d = 0; d < 3; d++)
         setup->box.length[d] = d < top.dimensions ? top.box[d] : 1;
     if (top.box[0] > 0 && (top.box[2] > 0) != (top.dimensions == 3))
-        json_fault(object, "box", "has %d edges, but the scene has %d dimensions",
+        mf_json_fault(object, "box", "has %d edges, but the scene has %d dimensions",
                    top.box[2] > 0 ? 3 : 2, (int)top.dimensions);
     setup->temperature = top.temperature;
     setup->time_step = top.time_step;
@@ -75,25 +75,25 @@ static void read_top(struct scene *scene, struct json_object *object) {
 static void read_dynamics(struct scene *scene, struct json_object *object, int unknown) {
     enum { MOST = 16 };
     const char *names[MOST] = {NULL};
-    for (size_t k = 0; integrator_list[k] && k + 1 < MOST; k++)
-        names[k] = integrator_list[k]->name;
-    struct json_object dynamics = json_child(object, "dynamics", false);
+    for (size_t k = 0; mf_integrator_list[k] && k + 1 < MOST; k++)
+        names[k] = mf_integrator_list[k]->name;
+    struct json_object dynamics = mf_json_child(object, "dynamics", false);
     const bool dissipative = scene->weight.curves > 0 || (unknown & SCENE_FITS_WEIGHT);
-    const char *name = dissipative ? aboba.name : velocity_verlet.name;
+    const char *name = dissipative ? mf_aboba.name : mf_velocity_verlet.name;
     if (dynamics.item)
-        name = json_choice(&dynamics, "integrator", names, name);
+        name = mf_json_choice(&dynamics, "integrator", names, name);
     const struct integrator *integrator = NULL;
-    for (size_t k = 0; name && integrator_list[k]; k++)
-        if (strcmp(integrator_list[k]->name, name) == 0)
-            integrator = integrator_list[k];
+    for (size_t k = 0; name && mf_integrator_list[k]; k++)
+        if (strcmp(mf_integrator_list[k]->name, name) == 0)
+            integrator = mf_integrator_list[k];
     if (integrator == NULL)
         return;
     scene->setup.integrator = integrator;
-    json_fields(&dynamics, integrator->fields, &scene->setup.integrator_parameters);
+    mf_json_fields(&dynamics, integrator->fields, &scene->setup.integrator_parameters);
     if (dynamics.item)
-        json_finish(&dynamics);
+        mf_json_finish(&dynamics);
     if (dissipative && !integrator->dissipative)
-        json_fault(object, "dynamics", "%s knows no friction; use \"aboba\" with \"dissipative\"",
+        mf_json_fault(object, "dynamics", "%s knows no friction; use \"aboba\" with \"dissipative\"",
                    integrator->name);
 }
 
@@ -110,7 +110,7 @@ static bool are_near(const struct scene *scene, const struct data_table *table,
             const double x = table->values[k * table->columns + (size_t)d];
             if (fabs(x) <= most_boxes * box->length[d])
                 continue;
-            json_fault(particles, "file",
+            mf_json_fault(particles, "file",
                        "%s:%zu: the coordinate %g is more than %g boxes of %g away; are the units "
                        "those of \"box\"?",
                        scene->setup.placement.file, table->line[k], x, most_boxes, box->length[d]);
@@ -124,14 +124,14 @@ static enum status read_positions(struct scene *scene, struct json_object *parti
     const struct placement *placement = &scene->setup.placement;
     const size_t dimensions = (size_t)scene->setup.box.dimensions;
     struct data_table table = {0};
-    enum status status = data_table_read(&table, placement->file, dimensions);
+    enum status status = mf_data_table_read(&table, placement->file, dimensions);
     if (status != STATUS_OK) {
-        json_fault(particles, "file", "%s", status_message());
+        mf_json_fault(particles, "file", "%s", mf_status_message());
         return status == STATUS_NO_MEMORY ? status : STATUS_OK;
     }
     if (table.rows != (size_t)placement->count ||
         (table.columns != dimensions && table.columns != 2 * dimensions)) {
-        json_fault(particles, "file", "%s: %zu rows of %zu numbers, not %lld of %zu or %zu",
+        mf_json_fault(particles, "file", "%s: %zu rows of %zu numbers, not %lld of %zu or %zu",
                    placement->file, table.rows, table.columns, (long long)placement->count,
                    dimensions, 2 * dimensions);
         goto done;
@@ -149,69 +149,69 @@ static enum status read_positions(struct scene *scene, struct json_object *parti
             scene->start.velocity[column - dimensions] = values;
     }
 done:
-    data_table_clear(&table);
+    mf_data_table_clear(&table);
     return status;
 }
 
 static void read_count(struct scene *scene, struct json_object *particles) {
-    json_fields(particles, placement_count_fields, &scene->setup.placement);
-    scene->setup.composition = composition_of_one(scene->setup.placement.count);
+    mf_json_fields(particles, mf_placement_count_fields, &scene->setup.placement);
+    scene->setup.composition = mf_composition_of_one(scene->setup.placement.count);
 }
 
 /// One type of a mixture and how many beads there are of it, after those that were read before.
 static void read_type(struct scene *scene, struct json_object *types, const char *name) {
     struct composition *composition = &scene->setup.composition;
-    struct field fields[] = {placement_count_fields[0], FIELD_END};
+    struct field fields[] = {mf_placement_count_fields[0], FIELD_END};
     int64_t *count = &composition->count[composition->types];
     fields[0].name = name;
     fields[0].offset = 0;
-    json_fields(types, fields, count);
+    mf_json_fields(types, fields, count);
     scene->setup.placement.count += *count;
-    if (!composition_is_name(name))
-        json_fault(types, name, "a type is called by up to %d letters, digits and _",
+    if (!mf_composition_is_name(name))
+        mf_json_fault(types, name, "a type is called by up to %d letters, digits and _",
                    COMPOSITION_NAME_SIZE - 1);
     snprintf(composition->name[composition->types++], COMPOSITION_NAME_SIZE, "%s", name);
 }
 
 /// "types": {"A": 500, "B": 300} in the place of "count".
 static void read_types(struct scene *scene, struct json_object *particles) {
-    struct json_object types = json_child(particles, "types", true);
-    const size_t faults = json_fault_count(types.document);
+    struct json_object types = mf_json_child(particles, "types", true);
+    const size_t faults = mf_json_fault_count(types.document);
     size_t n = 0;
-    for (const char *name; (name = json_key(&types, n)); n++)
+    for (const char *name; (name = mf_json_key(&types, n)); n++)
         if (n < COMPOSITION_MOST_TYPES)
             read_type(scene, &types, name);
     if (types.item && (n < 2 || n > COMPOSITION_MOST_TYPES))
-        json_fault(particles, "types", "a mixture has 2 to %d types, not %zu; \"count\" is for one",
+        mf_json_fault(particles, "types", "a mixture has 2 to %d types, not %zu; \"count\" is for one",
                    COMPOSITION_MOST_TYPES, n);
-    if (types.item == NULL || json_fault_count(types.document) > faults)
+    if (types.item == NULL || mf_json_fault_count(types.document) > faults)
         scene->setup.composition.types = 0; // not known
 }
 
 static enum status read_particles(struct scene *scene, struct json_object *object) {
-    struct json_object particles = json_child(object, "particles", true);
+    struct json_object particles = mf_json_child(object, "particles", true);
     struct placement *placement = &scene->setup.placement;
-    if (json_has(&particles, "types"))
+    if (mf_json_has(&particles, "types"))
         read_types(scene, &particles);
     else
         read_count(scene, &particles);
-    json_fields(&particles, placement_fields, placement);
+    mf_json_fields(&particles, mf_placement_fields, placement);
     if (particles.item == NULL)
         return STATUS_OK;
-    json_finish(&particles);
+    mf_json_finish(&particles);
     if (placement->kind != PLACEMENT_FILE)
         return STATUS_OK;
     if (placement->file[0] == '\0') {
-        json_fault(&particles, "file", "is required with \"placement\": \"file\"");
+        mf_json_fault(&particles, "file", "is required with \"placement\": \"file\"");
         return STATUS_OK;
     }
     return read_positions(scene, &particles);
 }
 
-double scene_mass_density(const struct scene *scene) {
+double mf_scene_mass_density(const struct scene *scene) {
     const double metres = scene->units.length * 1e-9;
     const double kilograms = scene->units.mass * (double)scene->setup.placement.count;
-    return 1e-3 * kilograms / (box_volume(&scene->setup.box) * pow(metres, 3));
+    return 1e-3 * kilograms / (mf_box_volume(&scene->setup.box) * pow(metres, 3));
 }
 
 /// Masses that are not in kg and temperatures that are in K.
@@ -220,42 +220,42 @@ static void check_units(const struct scene *scene, struct json_object *object) {
     static const double hottest = 50, atomic_mass = 1e-3 / UNITS_AVOGADRO;
     const struct simulation_setup *setup = &scene->setup;
     const double mass = scene->units.mass;
-    if (!units_known(&scene->units) || json_fault_count(object->document) > 0)
+    if (!mf_units_known(&scene->units) || mf_json_fault_count(object->document) > 0)
         return;
-    struct json_object units = json_child(object, "units", false);
+    struct json_object units = mf_json_child(object, "units", false);
     if (setup->temperature > hottest)
-        json_fault(object, "temperature",
+        mf_json_fault(object, "temperature",
                    "%g is in units of T_0, %g K in \"units\": it would be %g K; 1 is T_0",
                    setup->temperature, scene->units.temperature,
                    setup->temperature * scene->units.temperature);
-    const double density = setup->box.dimensions == 3 ? scene_mass_density(scene) : 0;
+    const double density = setup->box.dimensions == 3 ? mf_scene_mass_density(scene) : 0;
     if (density > densest && mass >= 1)
-        json_fault(&units, "mass", "it is in kg: %g u would be %.6g", mass, mass * atomic_mass);
+        mf_json_fault(&units, "mass", "it is in kg: %g u would be %.6g", mass, mass * atomic_mass);
     else if (density > densest)
-        json_fault(
+        mf_json_fault(
             &units, "mass",
             "%g kg a bead, 1 u being %.6g, make %.3g g/cm^3: the mass, the unit of length, the "
             "box or the number of particles is wrong",
             mass, atomic_mass, density);
 }
 
-enum status scene_read(struct scene *scene, struct json_object *object, int unknown) {
+enum status mf_scene_read(struct scene *scene, struct json_object *object, int unknown) {
     *scene = (struct scene){.unknown = unknown};
-    units_read(&scene->units, object);
+    mf_units_read(&scene->units, object);
     read_top(scene, object);
     TRY(read_particles(scene, object));
     check_units(scene, object);
     if (unknown == SCENE_FITS_WEIGHT) // between what particles, a fit would ask in vain
-        json_child(object, "conservative", true);
+        mf_json_child(object, "conservative", true);
     if (!(unknown & SCENE_FITS_POTENTIAL)) {
-        TRY(scene_law_read(&scene->potential, object, "conservative", curve_potentials,
+        TRY(mf_scene_law_read(&scene->potential, object, "conservative", mf_curve_potentials,
                            &scene->setup.composition, &scene->units));
-        TRY(scene_law_tabulate(&scene->potential, table_init_potential));
+        TRY(mf_scene_law_tabulate(&scene->potential, mf_table_init_potential));
     }
     if (!(unknown & SCENE_FITS_WEIGHT)) {
-        TRY(scene_law_read(&scene->weight, object, "dissipative", curve_weights,
+        TRY(mf_scene_law_read(&scene->weight, object, "dissipative", mf_curve_weights,
                            &scene->setup.composition, &scene->units));
-        TRY(scene_law_tabulate(&scene->weight, table_init_weight));
+        TRY(mf_scene_law_tabulate(&scene->weight, mf_table_init_weight));
         check_weight(scene, object);
     }
     read_dynamics(scene, object, unknown);
@@ -264,26 +264,26 @@ enum status scene_read(struct scene *scene, struct json_object *object, int unkn
     return STATUS_OK;
 }
 
-void scene_clear(struct scene *scene) {
-    scene_law_clear(&scene->potential);
-    scene_law_clear(&scene->weight);
-    memory_free(scene->start_values);
+void mf_scene_clear(struct scene *scene) {
+    mf_scene_law_clear(&scene->potential);
+    mf_scene_law_clear(&scene->weight);
+    mf_memory_free(scene->start_values);
     *scene = (struct scene){0};
 }
 
 static void write_count(const struct simulation_setup *setup, struct json_writer *writer) {
     const struct composition *composition = &setup->composition;
     if (!composition_is_mixed(composition)) {
-        json_put_fields(writer, placement_count_fields, &setup->placement);
+        mf_json_put_fields(writer, mf_placement_count_fields, &setup->placement);
         return;
     }
-    json_begin(writer, "types");
+    mf_json_begin(writer, "types");
     for (int type = 0; type < composition->types; type++)
-        json_put_number(writer, composition->name[type], (double)composition->count[type]);
-    json_end(writer);
+        mf_json_put_number(writer, composition->name[type], (double)composition->count[type]);
+    mf_json_end(writer);
 }
 
-void scene_write(const struct scene *scene, struct json_writer *writer) {
+void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
     const struct simulation_setup *setup = &scene->setup;
     struct top top = {.dimensions = setup->box.dimensions,
                       .temperature = setup->temperature,
@@ -293,32 +293,32 @@ void scene_write(const struct scene *scene, struct json_writer *writer) {
                       .precision = setup->precision};
     for (int d = 0; d < setup->box.dimensions; d++)
         top.box[d] = setup->box.length[d];
-    json_put_fields(writer, scene_fields, &top);
-    json_begin(writer, "particles");
+    mf_json_put_fields(writer, mf_scene_fields, &top);
+    mf_json_begin(writer, "particles");
     write_count(setup, writer);
-    json_put_fields(writer, placement_fields, &setup->placement);
-    json_end(writer);
+    mf_json_put_fields(writer, mf_placement_fields, &setup->placement);
+    mf_json_end(writer);
     if (scene->potential.curves || scene->unknown == SCENE_FITS_WEIGHT)
-        scene_law_write(&scene->potential, &setup->composition, writer, "conservative");
+        mf_scene_law_write(&scene->potential, &setup->composition, writer, "conservative");
     if (scene->weight.curves)
-        scene_law_write(&scene->weight, &setup->composition, writer, "dissipative");
-    json_begin(writer, "dynamics");
-    json_put_text(writer, "integrator", setup->integrator->name);
-    json_put_fields(writer, setup->integrator->fields, &setup->integrator_parameters);
-    json_end(writer);
-    if (units_known(&scene->units)) {
-        json_begin(writer, "units");
-        json_put_fields(writer, units_fields, &scene->units);
-        json_end(writer);
+        mf_scene_law_write(&scene->weight, &setup->composition, writer, "dissipative");
+    mf_json_begin(writer, "dynamics");
+    mf_json_put_text(writer, "integrator", setup->integrator->name);
+    mf_json_put_fields(writer, setup->integrator->fields, &setup->integrator_parameters);
+    mf_json_end(writer);
+    if (mf_units_known(&scene->units)) {
+        mf_json_begin(writer, "units");
+        mf_json_put_fields(writer, mf_units_fields, &scene->units);
+        mf_json_end(writer);
     }
 }
 
-void scene_digest(const struct scene *scene, uint64_t *digest) {
-    scene_law_digest(&scene->potential, digest);
-    scene_law_digest(&scene->weight, digest);
+void mf_scene_digest(const struct scene *scene, uint64_t *digest) {
+    mf_scene_law_digest(&scene->potential, digest);
+    mf_scene_law_digest(&scene->weight, digest);
     const size_t count = (size_t)scene->setup.placement.count;
     for (int d = 0; d < scene->setup.box.dimensions; d++) {
-        checkpoint_digest_add(digest, scene->start.position[d], count * sizeof(double));
-        checkpoint_digest_add(digest, scene->start.velocity[d], count * sizeof(double));
+        mf_checkpoint_digest_add(digest, scene->start.position[d], count * sizeof(double));
+        mf_checkpoint_digest_add(digest, scene->start.velocity[d], count * sizeof(double));
     }
 }

@@ -23,20 +23,20 @@ struct scene {
 };
 
 /// Fields of the scene itself, for `mesofit describe`.
-extern const struct field scene_fields[];
+extern const struct field mf_scene_fields[];
 
 /// Read the objects of a scene from `object`, but for what `unknown`, a sum of scene_unknown, says.
 /// With units, a mass density or a temperature that no matter has is a fault.
 /// Faults go to its document; *scene may then be incomplete but is safe to clear. Fails: NO_MEMORY.
-enum status scene_read(struct scene *scene, struct json_object *object, int unknown) MUST_USE;
-void scene_clear(struct scene *scene);
+enum status mf_scene_read(struct scene *scene, struct json_object *object, int unknown) MUST_USE;
+void mf_scene_clear(struct scene *scene);
 
 /// Mass of the beads over the volume of the box [g/cm³], for a scene of three dimensions with
 /// units.
-double scene_mass_density(const struct scene *scene);
+double mf_scene_mass_density(const struct scene *scene);
 
-/// Write everything that scene_read reads, defaults filled in.
-void scene_write(const struct scene *scene, struct json_writer *writer);
+/// Write everything that mf_scene_read reads, defaults filled in.
+void mf_scene_write(const struct scene *scene, struct json_writer *writer);
 
 /// Add the tables that a scene only names to the digest of a checkpoint.
-void scene_digest(const struct scene *scene, uint64_t *digest);
+void mf_scene_digest(const struct scene *scene, uint64_t *digest);

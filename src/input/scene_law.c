@@ -15,8 +15,8 @@
 static enum status read_columns(const char *file, double **r, double **value, size_t *count) {
     struct data_table table = {0};
     enum status status = STATUS_OK;
-    CHECK(data_table_read(&table, file, 2));
-    CHECK(data_table_check_increasing(&table, file, 0, 0));
+    CHECK(mf_data_table_read(&table, file, 2));
+    CHECK(mf_data_table_check_increasing(&table, file, 0, 0));
     NEW_ARRAY(*r, table.rows);
     NEW_ARRAY(*value, table.rows);
     for (size_t k = 0; k < table.rows; k++) {
@@ -25,7 +25,7 @@ static enum status read_columns(const char *file, double **r, double **value, si
     }
     *count = table.rows;
 done:
-    data_table_clear(&table);
+    mf_data_table_clear(&table);
     return status;
 }
 
@@ -34,21 +34,21 @@ static enum status read_votca(const char *file, const struct units *units, doubl
                               double **value, size_t *count) {
     struct votca_table table = {0};
     enum status status = STATUS_OK;
-    CHECK(votca_read(&table, file));
+    CHECK(mf_votca_read(&table, file));
     NEW_ARRAY(*r, table.rows);
     NEW_ARRAY(*value, table.rows);
     for (size_t k = 0; k < table.rows; k++) {
         if (table.x[k] < 0) {
-            status = status_fail(STATUS_BAD_INPUT, "%s:%zu: r = %g is negative", file,
+            status = mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: r = %g is negative", file,
                                  table.line[k], table.x[k]);
             goto done;
         }
         (*r)[k] = table.x[k] / units->length;
-        (*value)[k] = table.y[k] / units_energy_kj_per_mol(units);
+        (*value)[k] = table.y[k] / mf_units_energy_kj_per_mol(units);
     }
     *count = table.rows;
 done:
-    votca_clear(&table);
+    mf_votca_clear(&table);
     return status;
 }
 
@@ -59,59 +59,59 @@ static enum status load_points(struct curve *curve, struct json_object *object,
     double *r = NULL, *value = NULL;
     size_t count = 0;
     enum status status = STATUS_OK;
-    if (parameters->format == SAMPLED_VOTCA && !units_known(units)) {
-        json_fault(object, "format", "VOTCA's nm and kJ/mol need \"units\" in the scene");
+    if (parameters->format == SAMPLED_VOTCA && !mf_units_known(units)) {
+        mf_json_fault(object, "format", "VOTCA's nm and kJ/mol need \"units\" in the scene");
         return STATUS_OK;
     }
     status = parameters->format == SAMPLED_VOTCA
                  ? read_votca(parameters->file, units, &r, &value, &count)
                  : read_columns(parameters->file, &r, &value, &count);
     if (status != STATUS_OK)
-        json_fault(object, "file", "%s", status_message());
-    else if (sampled_set_points(curve, r, value, count) != STATUS_OK)
-        json_fault(object, "file", "%s: %s", parameters->file, status_message());
-    memory_free(r);
-    memory_free(value);
+        mf_json_fault(object, "file", "%s", mf_status_message());
+    else if (mf_sampled_set_points(curve, r, value, count) != STATUS_OK)
+        mf_json_fault(object, "file", "%s: %s", parameters->file, mf_status_message());
+    mf_memory_free(r);
+    mf_memory_free(value);
     return status == STATUS_NO_MEMORY ? status : STATUS_OK;
 }
 
 /// A table that could not be loaded has no points: forget the curve, the fault is recorded.
 static bool is_usable(const struct curve *curve) {
-    return curve->family != &sampled_family ||
+    return curve->family != &mf_sampled_family ||
            ((const struct sampled_parameters *)curve->parameters)->spline != NULL;
 }
 
-enum status scene_read_curve(struct curve *curve, struct json_object *parent, const char *key,
+enum status mf_scene_read_curve(struct curve *curve, struct json_object *parent, const char *key,
                              const struct curve_family *const *list, const struct units *units) {
     enum { MOST = 16 };
     const char *names[MOST] = {"none"};
     for (size_t k = 0; list[k] && k + 2 < MOST; k++)
         names[k + 1] = list[k]->name;
-    struct json_object object = json_child(parent, key, false);
+    struct json_object object = mf_json_child(parent, key, false);
     if (object.item == NULL)
         return STATUS_OK;
-    const char *law = json_choice(&object, "law", names, NULL);
-    const struct curve_family *family = law ? curve_find(list, law) : NULL;
+    const char *law = mf_json_choice(&object, "law", names, NULL);
+    const struct curve_family *family = law ? mf_curve_find(list, law) : NULL;
     if (family) {
-        const size_t faults = json_fault_count(object.document);
-        TRY(curve_create(curve, family));
-        json_fields(&object, family->fields, curve->parameters);
-        if (family == &sampled_family && json_fault_count(object.document) == faults)
+        const size_t faults = mf_json_fault_count(object.document);
+        TRY(mf_curve_create(curve, family));
+        mf_json_fields(&object, family->fields, curve->parameters);
+        if (family == &mf_sampled_family && mf_json_fault_count(object.document) == faults)
             TRY(load_points(curve, &object, units));
         if (!is_usable(curve))
-            curve_clear(curve);
+            mf_curve_clear(curve);
     }
     if (law)
-        json_finish(&object);
+        mf_json_finish(&object);
     return STATUS_OK;
 }
 
-void scene_write_curve(const struct curve *curve, struct json_writer *writer, const char *key) {
-    json_begin(writer, key);
-    json_put_text(writer, "law", curve->family ? curve->family->name : "none");
+void mf_scene_write_curve(const struct curve *curve, struct json_writer *writer, const char *key) {
+    mf_json_begin(writer, key);
+    mf_json_put_text(writer, "law", curve->family ? curve->family->name : "none");
     if (curve->family)
-        json_put_fields(writer, curve->family->fields, curve->parameters);
-    json_end(writer);
+        mf_json_put_fields(writer, curve->family->fields, curve->parameters);
+    mf_json_end(writer);
 }
 
 // A curve for all pairs, or one for each kind
@@ -124,7 +124,7 @@ static void fault_unknown_pair(struct json_object *object, const struct composit
         strcat(names, type ? ", " : "");
         strcat(names, composition->name[type]);
     }
-    json_fault(object, key, "is no pair of the types %s; write \"A-B\"", names);
+    mf_json_fault(object, key, "is no pair of the types %s; write \"A-B\"", names);
 }
 
 /// {"A-A": {"law": …}, "A-B": {"law": …}, …}, each kind of pairs once, in any order.
@@ -133,49 +133,49 @@ static enum status read_pairs(struct scene_law *law, struct json_object *object,
                               const struct composition *composition, const struct units *units) {
     bool given[COMPOSITION_MOST_PAIRS] = {false};
     const char *key;
-    for (size_t n = 0; (key = json_key(object, n)); n++) {
-        const int pair = composition_find_pair(composition, key);
+    for (size_t n = 0; (key = mf_json_key(object, n)); n++) {
+        const int pair = mf_composition_find_pair(composition, key);
         if (pair < 0) {
             fault_unknown_pair(object, composition, key);
             continue;
         }
         if (given[pair])
-            json_fault(object, key, "the pair stands here twice, in both orders");
+            mf_json_fault(object, key, "the pair stands here twice, in both orders");
         else
-            TRY(scene_read_curve(&law->curve[pair], object, key, list, units));
+            TRY(mf_scene_read_curve(&law->curve[pair], object, key, list, units));
         given[pair] = true;
         if (law->curve[pair].family)
-            law->curves = composition_pairs(composition);
+            law->curves = mf_composition_pairs(composition);
     }
-    for (int pair = 0; pair < composition_pairs(composition); pair++) {
+    for (int pair = 0; pair < mf_composition_pairs(composition); pair++) {
         char name[COMPOSITION_PAIR_NAME_SIZE];
-        composition_pair_name(composition, pair, name);
+        mf_composition_pair_name(composition, pair, name);
         if (!given[pair])
-            json_fault(object, name, "missing: an object is required; \"law\": \"none\" is one");
+            mf_json_fault(object, name, "missing: an object is required; \"law\": \"none\" is one");
     }
     return STATUS_OK;
 }
 
-enum status scene_law_read(struct scene_law *law, struct json_object *parent, const char *key,
+enum status mf_scene_law_read(struct scene_law *law, struct json_object *parent, const char *key,
                            const struct curve_family *const *list,
                            const struct composition *composition, const struct units *units) {
     if (composition->types == 0) {
-        json_has(parent, key); // a fault of the types is told, those of their pairs would mislead
+        mf_json_has(parent, key); // a fault of the types is told, those of their pairs would mislead
         return STATUS_OK;
     }
     if (composition_is_mixed(composition)) {
-        struct json_object object = json_child(parent, key, false);
+        struct json_object object = mf_json_child(parent, key, false);
         if (object.item == NULL)
             return STATUS_OK;
-        if (!json_has(&object, "law"))
+        if (!mf_json_has(&object, "law"))
             return read_pairs(law, &object, list, composition, units);
     }
-    TRY(scene_read_curve(&law->curve[0], parent, key, list, units));
+    TRY(mf_scene_read_curve(&law->curve[0], parent, key, list, units));
     law->curves = law->curve[0].family != NULL;
     return STATUS_OK;
 }
 
-enum status scene_law_tabulate(struct scene_law *law, scene_law_table *tabulate) {
+enum status mf_scene_law_tabulate(struct scene_law *law, scene_law_table *tabulate) {
     struct table part[COMPOSITION_MOST_PAIRS] = {{0}};
     enum status status = STATUS_OK;
     if (law->curves <= 1)
@@ -183,41 +183,41 @@ enum status scene_law_tabulate(struct scene_law *law, scene_law_table *tabulate)
     for (int pair = 0; pair < law->curves; pair++)
         if (law->curve[pair].family)
             CHECK(tabulate(&part[pair], &law->curve[pair]));
-    CHECK(table_stack(&law->table, part, law->curves));
+    CHECK(mf_table_stack(&law->table, part, law->curves));
 done:
     for (int pair = 0; pair < law->curves; pair++)
-        table_clear(&part[pair]);
+        mf_table_clear(&part[pair]);
     return status;
 }
 
-const struct curve *scene_law_curve(const struct scene_law *law, int pair) {
+const struct curve *mf_scene_law_curve(const struct scene_law *law, int pair) {
     const struct curve *curve = &law->curve[law->curves > 1 ? pair : 0];
     return curve->family ? curve : NULL;
 }
 
-void scene_law_clear(struct scene_law *law) {
+void mf_scene_law_clear(struct scene_law *law) {
     for (int pair = 0; pair < COMPOSITION_MOST_PAIRS; pair++)
-        curve_clear(&law->curve[pair]);
-    table_clear(&law->table);
+        mf_curve_clear(&law->curve[pair]);
+    mf_table_clear(&law->table);
 }
 
-void scene_law_write(const struct scene_law *law, const struct composition *composition,
+void mf_scene_law_write(const struct scene_law *law, const struct composition *composition,
                      struct json_writer *writer, const char *key) {
     if (law->curves <= 1) {
-        scene_write_curve(&law->curve[0], writer, key);
+        mf_scene_write_curve(&law->curve[0], writer, key);
         return;
     }
-    json_begin(writer, key);
+    mf_json_begin(writer, key);
     for (int pair = 0; pair < law->curves; pair++) {
         char name[COMPOSITION_PAIR_NAME_SIZE];
-        composition_pair_name(composition, pair, name);
-        scene_write_curve(&law->curve[pair], writer, name);
+        mf_composition_pair_name(composition, pair, name);
+        mf_scene_write_curve(&law->curve[pair], writer, name);
     }
-    json_end(writer);
+    mf_json_end(writer);
 }
 
-void scene_law_digest(const struct scene_law *law, uint64_t *digest) {
+void mf_scene_law_digest(const struct scene_law *law, uint64_t *digest) {
     const struct table *table = &law->table;
     const size_t rows = (size_t)table->curves * (TABLE_INTERVALS + 1);
-    checkpoint_digest_add(digest, table->coefficient, rows * (size_t)table->terms * sizeof(double));
+    mf_checkpoint_digest_add(digest, table->coefficient, rows * (size_t)table->terms * sizeof(double));
 }

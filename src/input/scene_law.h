@@ -18,33 +18,33 @@ struct scene_law {
     struct table table;                         ///< of the curves, if there are any
 };
 
-/// table_init_potential or table_init_weight.
+/// mf_table_init_potential or mf_table_init_weight.
 typedef enum status scene_law_table(struct table *table, const struct curve *curve);
 
 /// Read the curves at `key` of `parent`; an absent object leaves none, and so do types that could
 /// not be read (a composition of none). Faults, among them pairs that are missing, unknown or twice
 /// there, go to the document. Fails: NO_MEMORY.
-enum status scene_law_read(struct scene_law *law, struct json_object *parent, const char *key,
+enum status mf_scene_law_read(struct scene_law *law, struct json_object *parent, const char *key,
                            const struct curve_family *const *list,
                            const struct composition *composition,
                            const struct units *units) MUST_USE;
 
 /// Make the table of the curves. Fails: NO_MEMORY.
-enum status scene_law_tabulate(struct scene_law *law, scene_law_table *tabulate) MUST_USE;
+enum status mf_scene_law_tabulate(struct scene_law *law, scene_law_table *tabulate) MUST_USE;
 
 /// The curve of a kind of pairs, or NULL.
-const struct curve *scene_law_curve(const struct scene_law *law, int pair);
+const struct curve *mf_scene_law_curve(const struct scene_law *law, int pair);
 
-void scene_law_clear(struct scene_law *law);
-void scene_law_write(const struct scene_law *law, const struct composition *composition,
+void mf_scene_law_clear(struct scene_law *law);
+void mf_scene_law_write(const struct scene_law *law, const struct composition *composition,
                      struct json_writer *writer, const char *key);
 
 /// Add the table to the digest of a checkpoint.
-void scene_law_digest(const struct scene_law *law, uint64_t *digest);
+void mf_scene_law_digest(const struct scene_law *law, uint64_t *digest);
 
 /// Read {"law": …} at `key` into a curve; an absent object or "none" leaves it empty. `units`
 /// convert VOTCA's tables.
-enum status scene_read_curve(struct curve *curve, struct json_object *parent, const char *key,
+enum status mf_scene_read_curve(struct curve *curve, struct json_object *parent, const char *key,
                              const struct curve_family *const *list,
                              const struct units *units) MUST_USE;
-void scene_write_curve(const struct curve *curve, struct json_writer *writer, const char *key);
+void mf_scene_write_curve(const struct curve *curve, struct json_writer *writer, const char *key);

@@ -21,7 +21,7 @@ static const char *const formats[] = {"columns", "votca", NULL};
 
 #define MEMBER(name) .offset = offsetof(struct target_parameters, name)
 #define COLUMN .maximum = 1000, .unit = ""
-const struct field target_fields[] = {
+const struct field mf_target_fields[] = {
     {"file", FIELD_FILE, MEMBER(file), .required = true, .unit = "",
      .help = "g(r) at equally spaced bin centres, in units of the scene"},
     {"format", FIELD_CHOICE, MEMBER(format), .choices = formats, .initial = TARGET_COLUMNS,
@@ -61,13 +61,13 @@ static double cell(const struct data_table *table, size_t row, int64_t column) {
     return table->values[row * table->columns + (size_t)column - 1];
 }
 
-enum status target_error_column(int64_t asked, int64_t first, int64_t second,
+enum status mf_target_error_column(int64_t asked, int64_t first, int64_t second,
                                 const struct data_table *table, const char *file, int64_t *column) {
     enum { USUAL = 3 };
     const int64_t columns = (int64_t)table->columns;
     *column = asked;
     if (asked > columns)
-        return status_fail(
+        return mf_status_fail(
             STATUS_BAD_INPUT,
             "%s:%zu: %zu columns, at least %lld are needed for \"error_column\"; 0 if "
             "the file has no errors",
@@ -85,7 +85,7 @@ static enum status check_errors(const struct target_parameters *p, const struct 
     bool grows = rows->error[rows->count - 1] > 1;
     for (size_t k = 0; k < rows->count; k++) {
         if (!isfinite(rows->error[k]))
-            return status_fail(STATUS_BAD_INPUT,
+            return mf_status_fail(STATUS_BAD_INPUT,
                                "%s:%zu: column %lld: \"nan\" is not a finite number", p->file,
                                rows->line[k], (long long)column);
         grows = grows && (k == 0 || rows->error[k] >= rows->error[k - 1]);
@@ -93,7 +93,7 @@ static enum status check_errors(const struct target_parameters *p, const struct 
         large += rows->g[k] > structure && rows->error[k] > largest_share * rows->g[k];
     }
     if (grows || 2 * large > seen)
-        return status_fail(STATUS_BAD_INPUT,
+        return mf_status_fail(STATUS_BAD_INPUT,
                            "%s: column %lld cannot be the standard error of g: it %s; "
                            "\"error_column\" names another, or 0 for none",
                            p->file, (long long)column,
@@ -107,12 +107,12 @@ static enum status read_columns(const struct target_parameters *p, struct target
     enum status status = STATUS_OK;
     struct data_table table = {0};
     int64_t error_column;
-    CHECK(data_table_read(&table, p->file,
+    CHECK(mf_data_table_read(&table, p->file,
                           (size_t)(p->r_column > p->g_column ? p->r_column : p->g_column)));
-    CHECK(target_error_column(p->error_column, p->r_column, p->g_column, &table, p->file,
+    CHECK(mf_target_error_column(p->error_column, p->r_column, p->g_column, &table, p->file,
                               &error_column));
-    CHECK(data_table_check_increasing(&table, p->file, (size_t)p->r_column - 1, 0));
-    CHECK(target_rows_allocate(rows, table.rows));
+    CHECK(mf_data_table_check_increasing(&table, p->file, (size_t)p->r_column - 1, 0));
+    CHECK(mf_target_rows_allocate(rows, table.rows));
     for (size_t k = 0; k < table.rows; k++) {
         rows->r[k] = cell(&table, k, p->r_column);
         rows->g[k] = cell(&table, k, p->g_column);
@@ -123,7 +123,7 @@ static enum status read_columns(const struct target_parameters *p, struct target
     if (*has_errors)
         status = check_errors(p, rows, error_column);
 done:
-    data_table_clear(&table);
+    mf_data_table_clear(&table);
     return status;
 }
 
@@ -132,8 +132,8 @@ static enum status read_votca(const struct target_parameters *p, const struct un
                               struct target_rows *rows, bool *has_errors) {
     enum status status = STATUS_OK;
     struct votca_table table = {0};
-    CHECK(votca_read(&table, p->file));
-    CHECK(target_rows_allocate(rows, table.rows));
+    CHECK(mf_votca_read(&table, p->file));
+    CHECK(mf_target_rows_allocate(rows, table.rows));
     for (size_t k = 0; k < table.rows; k++) {
         rows->r[k] = table.x[k] / units->length;
         rows->g[k] = table.y[k];
@@ -143,12 +143,12 @@ static enum status read_votca(const struct target_parameters *p, const struct un
     *has_errors = table.has_error;
     for (size_t k = 1; k < rows->count; k++)
         if (!(rows->r[k] > rows->r[k - 1])) {
-            status = status_fail(STATUS_BAD_INPUT, "%s:%zu: column 1 does not grow", p->file,
+            status = mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column 1 does not grow", p->file,
                                  rows->line[k]);
             goto done;
         }
 done:
-    votca_clear(&table);
+    mf_votca_clear(&table);
     return status;
 }
 
@@ -190,20 +190,20 @@ static size_t oddest_row(const struct target_rows *rows, double width, double *s
 static enum status find_bins(const struct target_rows *rows, const char *file,
                              struct rdf_bins *bins) {
     if (rows->count < 4)
-        return status_fail(STATUS_BAD_INPUT, "%s: only %zu bins", file, rows->count);
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu bins", file, rows->count);
     const double first = rows->r[0];
     const double width = (rows->r[rows->count - 1] - first) / (double)(rows->count - 1);
     double step;
     const size_t oddest = oddest_row(rows, width, &step);
     if (fabs(step / width - 1) > 0.01)
-        return status_fail(STATUS_BAD_INPUT,
+        return mf_status_fail(STATUS_BAD_INPUT,
                            "%s:%zu: the bins are not equally spaced: a step of %g where the mean "
                            "is %g (a gap in the target?)",
                            file, rows->line[oddest], step, width);
     // First edges come out as 0 but for the file's rounding.
     const double low = first - 0.5 * width;
     if (low < -0.01 * width)
-        return status_fail(STATUS_BAD_INPUT,
+        return mf_status_fail(STATUS_BAD_INPUT,
                            "%s:%zu: r = %g is not the centre of a bin of width %g%s", file,
                            rows->line[0], first, width,
                            first == 0 ? ": half a bin that is not empty; leave the row out" : "");
@@ -215,11 +215,11 @@ static enum status find_bins(const struct target_rows *rows, const char *file,
 static enum status check_values(const struct target_rows *rows, const char *file) {
     for (size_t k = 0; k < rows->count; k++) {
         if (rows->g[k] < 0)
-            return status_fail(STATUS_BAD_INPUT,
+            return mf_status_fail(STATUS_BAD_INPUT,
                                "%s:%zu: a negative g, %g: a potential, or another column than g?",
                                file, rows->line[k], rows->g[k]);
         if (rows->error[k] < 0)
-            return status_fail(STATUS_BAD_INPUT, "%s:%zu: a negative error of g, %g", file,
+            return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: a negative error of g, %g", file,
                                rows->line[k], rows->error[k]);
     }
     return STATUS_OK;
@@ -230,14 +230,14 @@ static enum status check_values(const struct target_rows *rows, const char *file
 static enum status join(struct target *target, struct target_rows *rows, bool has_errors) {
     double scatter = NAN;
     if (!has_errors)
-        TRY(target_rows_scatter(rows, &scatter));
+        TRY(mf_target_rows_scatter(rows, &scatter));
     if (!isnan(scatter))
-        target_rows_set_errors(rows, scatter);
+        mf_target_rows_set_errors(rows, scatter);
     if (target->joined > 1)
-        target_rows_join(rows, target->joined);
+        mf_target_rows_join(rows, target->joined);
     target->assumed = !has_errors && isnan(scatter);
     if (target->assumed)
-        target_rows_set_errors(rows, assumed_error);
+        mf_target_rows_set_errors(rows, assumed_error);
     if (!has_errors)
         target->estimated_error =
             target->assumed ? assumed_error : scatter / sqrt((double)target->joined);
@@ -260,7 +260,7 @@ static enum status load(struct target *target, const struct units *units, int di
     CHECK(p->format == TARGET_VOTCA ? read_votca(p, units, &rows, &has_errors)
                                     : read_columns(p, &rows, &has_errors));
     leave_out_half_bin(&rows);
-    target->tail = target_rows_tail(&rows);
+    target->tail = mf_target_rows_tail(&rows);
     cut(p, &rows);
     CHECK(find_bins(&rows, p->file, &bins));
     CHECK(check_values(&rows, p->file));
@@ -271,42 +271,42 @@ static enum status load(struct target *target, const struct units *units, int di
     target->error = rows.error;
     rows.g = rows.error = NULL;
 done:
-    target_rows_clear(&rows);
+    mf_target_rows_clear(&rows);
     return status;
 }
 
-enum status target_read(struct target *target, struct json_object *object,
+enum status mf_target_read(struct target *target, struct json_object *object,
                         const struct units *units, int dimensions) {
     *target = (struct target){0};
-    const size_t faults = json_fault_count(object->document);
-    json_fields(object, target_fields, &target->parameters);
-    json_finish(object);
-    if (json_fault_count(object->document) > faults)
+    const size_t faults = mf_json_fault_count(object->document);
+    mf_json_fields(object, mf_target_fields, &target->parameters);
+    mf_json_finish(object);
+    if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
-    if (target->parameters.format == TARGET_VOTCA && !units_known(units)) {
-        json_fault(object, "format", "VOTCA's nm need \"units\" in the scene");
+    if (target->parameters.format == TARGET_VOTCA && !mf_units_known(units)) {
+        mf_json_fault(object, "format", "VOTCA's nm need \"units\" in the scene");
         return STATUS_OK;
     }
     const enum status status = load(target, units, dimensions);
     if (status == STATUS_NO_MEMORY)
         return status;
     if (status != STATUS_OK)
-        json_fault(object, "file", "%s", status_message());
+        mf_json_fault(object, "file", "%s", mf_status_message());
     return STATUS_OK;
 }
 
 /// Of N_a (N_a − 1) in N_a², in the system that was measured.
 static double possible_share(const struct composition *composition, int pair, double particles) {
     int type[2];
-    composition_pair_types(composition, pair, type);
-    const double share = particles / (double)composition_particles(composition);
+    mf_composition_pair_types(composition, pair, type);
+    const double share = particles / (double)mf_composition_particles(composition);
     return type[0] == type[1] ? 1 - 1 / (share * (double)composition->count[type[0]]) : 1;
 }
 
-void target_convert(const struct target *target, const struct box *box,
+void mf_target_convert(const struct target *target, const struct box *box,
                     const struct composition *composition, int pair, double *g, double *error) {
     const struct target_parameters *p = &target->parameters;
-    const double to = (double)composition_particles(composition);
+    const double to = (double)mf_composition_particles(composition);
     const double from = p->particles > 0 ? (double)p->particles : to;
     const double votca =
         p->format == TARGET_VOTCA ? 1 / possible_share(composition, pair, from) : 1;
@@ -315,15 +315,15 @@ void target_convert(const struct target *target, const struct box *box,
         error[k] = votca * target->error[k];
     }
     const double factor =
-        finite_size_factor_of(&target->bins, g, error, box, composition, pair, from, to);
+        mf_finite_size_factor_of(&target->bins, g, error, box, composition, pair, from, to);
     for (size_t k = 0; k < target->bins.count; k++) {
         g[k] *= factor;
         error[k] *= factor;
     }
 }
 
-void target_clear(struct target *target) {
-    memory_free(target->g);
-    memory_free(target->error);
+void mf_target_clear(struct target *target) {
+    mf_memory_free(target->g);
+    mf_memory_free(target->error);
     *target = (struct target){0};
 }

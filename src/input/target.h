@@ -22,7 +22,7 @@ struct target_parameters {
     double normalisation, normalisation_error; ///< of g; 0: found, with this width about 1
 };
 
-extern const struct field target_fields[];
+extern const struct field mf_target_fields[];
 
 struct target {
     struct target_parameters parameters;
@@ -38,24 +38,24 @@ struct target {
 /// the target empty. `units` convert VOTCA's nm; `dimensions` are those of space. Errors that the
 /// file does not give are estimated from the scatter of its rows, which are then joined to bins.
 /// Fails: NO_MEMORY. Tested: test_target.
-enum status target_read(struct target *target, struct json_object *object,
+enum status mf_target_read(struct target *target, struct json_object *object,
                         const struct units *units, int dimensions) MUST_USE;
 
 /// The column with the errors of a table whose values stand in the columns `first` and `second`.
 /// @param[in]  asked   in the run file; −1: 3 if there are so many columns, else none
 /// @param[out] column  from 1; 0: there is none
 /// Fails: BAD_INPUT if the table has fewer columns than `asked`.
-enum status target_error_column(int64_t asked, int64_t first, int64_t second,
+enum status mf_target_error_column(int64_t asked, int64_t first, int64_t second,
                                 const struct data_table *table, const char *file,
                                 int64_t *column) MUST_USE;
 
-/// g and its errors in the numbers of the scene, by finite_size_factor_of. VOTCA's g of like pairs
+/// g and its errors in the numbers of the scene, by mf_finite_size_factor_of. VOTCA's g of like pairs
 /// is normalised by N_a², and needs 1/(1 − 1/N_a) with the N_a that was measured.
 /// @param[in]  box, composition  of the scene
 /// @param[in]  pair              the kind of pairs of this target
 /// @param[out] g, error          shape [bins.count]
 /// Tested: test_target, test_targets_mixture.
-void target_convert(const struct target *target, const struct box *box,
+void mf_target_convert(const struct target *target, const struct box *box,
                     const struct composition *composition, int pair, double *g, double *error);
 
-void target_clear(struct target *target);
+void mf_target_clear(struct target *target);

@@ -8,7 +8,7 @@
 
 #define MEMBER(name) .offset = offsetof(struct target_etd_parameters, name)
 #define COLUMN .maximum = 1000, .unit = ""
-const struct field target_etd_fields[] = {
+const struct field mf_target_etd_fields[] = {
     {"file", FIELD_FILE, MEMBER(file), .required = true, .unit = "",
      .help = "E(t, r_0): a time in each row, a bin of r_0 in each column, in units of the scene"},
     {"error_file", FIELD_FILE, MEMBER(error_file), .unit = "",
@@ -41,27 +41,27 @@ static double time_of(const struct data_table *table, const struct target_etd_pa
 
 static enum status check_parameters(const struct target_etd_parameters *p) {
     if (p->time_column >= p->first_column)
-        return status_fail(STATUS_BAD_INPUT, "first_column %lld is not behind time_column %lld",
+        return mf_status_fail(STATUS_BAD_INPUT, "first_column %lld is not behind time_column %lld",
                            (long long)p->first_column, (long long)p->time_column);
     if (!(p->r_maximum > p->r_minimum))
-        return status_fail(STATUS_BAD_INPUT, "r_maximum %g is not above r_minimum %g", p->r_maximum,
+        return mf_status_fail(STATUS_BAD_INPUT, "r_maximum %g is not above r_minimum %g", p->r_maximum,
                            p->r_minimum);
     return STATUS_OK;
 }
 
 static enum status find_interval(const struct data_table *table, const char *file,
                                  const struct target_etd_parameters *p, double *interval) {
-    TRY(data_table_check_increasing(table, file, (size_t)p->time_column - 1, 0));
+    TRY(mf_data_table_check_increasing(table, file, (size_t)p->time_column - 1, 0));
     if (table->rows < 2)
-        return status_fail(STATUS_BAD_INPUT, "%s: only one time", file);
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: only one time", file);
     if (time_of(table, p, 0) != 0)
-        return status_fail(STATUS_BAD_INPUT, "%s:%zu: the times begin at %g, not at 0", file,
+        return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: the times begin at %g, not at 0", file,
                            table->line[0], time_of(table, p, 0));
     *interval = time_of(table, p, table->rows - 1) / (double)(table->rows - 1);
     for (size_t row = 1; row < table->rows; row++) {
         const double step = time_of(table, p, row) - time_of(table, p, row - 1);
         if (fabs(step / *interval - 1) > time_tolerance)
-            return status_fail(STATUS_BAD_INPUT,
+            return mf_status_fail(STATUS_BAD_INPUT,
                                "%s:%zu: the times are not equally spaced: a step of %g where the "
                                "mean is %g",
                                file, table->line[row], step, *interval);
@@ -73,15 +73,15 @@ static enum status find_interval(const struct data_table *table, const char *fil
 static enum status read_table(struct data_table *table, const char *file,
                               const struct target_etd_parameters *p, double largest) {
     const size_t before = (size_t)p->first_column - 1;
-    TRY(data_table_read(table, file, before));
+    TRY(mf_data_table_read(table, file, before));
     if (table->columns == before)
-        return status_fail(STATUS_BAD_INPUT, "%s:%zu: %zu columns, at least %zu are needed", file,
+        return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: %zu columns, at least %zu are needed", file,
                            table->line[0], before, before + 1);
     for (size_t row = 0; row < table->rows; row++)
         for (size_t column = before; column < table->columns; column++) {
             const double value = table->values[row * table->columns + column];
             if (value < 0 || value > largest)
-                return status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: %g is not %s", file,
+                return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: %g is not %s", file,
                                    table->line[row], column + 1, value,
                                    largest == 1 ? "from 0 to 1" : "a standard error");
         }
@@ -93,7 +93,7 @@ static enum status check_beginning(const struct data_table *table,
                                    const struct target_etd_parameters *p) {
     for (size_t column = (size_t)p->first_column - 1; column < table->columns; column++)
         if (fabs(table->values[column] - 1) > digits)
-            return status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: %g is not 1 at time 0",
+            return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: %g is not 1 at time 0",
                                p->file, table->line[0], column + 1, table->values[column]);
     return STATUS_OK;
 }
@@ -102,13 +102,13 @@ static enum status check_same(const struct data_table *table, const struct data_
                               const struct target_etd *target) {
     const struct target_etd_parameters *p = &target->parameters;
     if (errors->rows != table->rows || errors->columns != table->columns)
-        return status_fail(STATUS_BAD_INPUT, "%s: %zu rows and %zu columns, but %zu and %zu in %s",
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: %zu rows and %zu columns, but %zu and %zu in %s",
                            p->error_file, errors->rows, errors->columns, table->rows,
                            table->columns, p->file);
     for (size_t row = 0; row < table->rows; row++)
         if (!(fabs(time_of(errors, p, row) - time_of(table, p, row)) <=
               time_tolerance * target->interval))
-            return status_fail(STATUS_BAD_INPUT, "%s:%zu: time %g, but %g in %s", p->error_file,
+            return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: time %g, but %g in %s", p->error_file,
                                errors->line[row], time_of(errors, p, row), time_of(table, p, row),
                                p->file);
     return STATUS_OK;
@@ -134,7 +134,7 @@ static enum status take_values(struct target_etd *target, const struct data_tabl
             target->left_out += !known;
         }
     if (target->left_out == table->rows * bins)
-        status = status_fail(STATUS_BAD_INPUT, "%s: nothing but nan", p->file);
+        status = mf_status_fail(STATUS_BAD_INPUT, "%s: nothing but nan", p->file);
 done:
     return status;
 }
@@ -153,33 +153,33 @@ static enum status load(struct target_etd *target, struct data_table *table,
     return take_values(target, table, errors);
 }
 
-enum status target_etd_read(struct target_etd *target, struct json_object *object) {
+enum status mf_target_etd_read(struct target_etd *target, struct json_object *object) {
     *target = (struct target_etd){0};
-    const size_t faults = json_fault_count(object->document);
-    json_fields(object, target_etd_fields, &target->parameters);
-    json_finish(object);
-    if (json_fault_count(object->document) > faults)
+    const size_t faults = mf_json_fault_count(object->document);
+    mf_json_fields(object, mf_target_etd_fields, &target->parameters);
+    mf_json_finish(object);
+    if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
     struct data_table table = {0}, errors = {0};
     const enum status status = load(target, &table, &errors);
-    data_table_clear(&table);
-    data_table_clear(&errors);
+    mf_data_table_clear(&table);
+    mf_data_table_clear(&errors);
     if (status == STATUS_OK)
         return STATUS_OK;
-    target_etd_clear(target);
+    mf_target_etd_clear(target);
     if (status == STATUS_NO_MEMORY)
         return status;
-    json_fault(object, NULL, "%s", status_message());
+    mf_json_fault(object, NULL, "%s", mf_status_message());
     return STATUS_OK;
 }
 
-void target_etd_clear(struct target_etd *target) {
-    memory_free(target->survival);
-    memory_free(target->error);
+void mf_target_etd_clear(struct target_etd *target) {
+    mf_memory_free(target->survival);
+    mf_memory_free(target->error);
     *target = (struct target_etd){0};
 }
 
-enum status target_etd_steps(const struct target_etd *target, double time_step, int64_t *every) {
+enum status mf_target_etd_steps(const struct target_etd *target, double time_step, int64_t *every) {
     const double steps = target->interval / time_step, whole = rint(steps);
     if (whole >= 1 && fabs(whole / steps - 1) <= step_tolerance) {
         *every = (int64_t)whole;
@@ -188,7 +188,7 @@ enum status target_etd_steps(const struct target_etd *target, double time_step, 
     char above[64] = "";
     if (steps >= 1)
         snprintf(above, sizeof above, " or %.6g", target->interval / floor(steps));
-    return status_fail(STATUS_BAD_INPUT,
+    return mf_status_fail(STATUS_BAD_INPUT,
                        "the times of %s are %.6g apart, %.4g time steps of %g: not a whole number, "
                        "as it would be with a time step of %.6g%s",
                        target->parameters.file, target->interval, steps, time_step,

@@ -12,7 +12,7 @@ struct target_etd_parameters {
     double r_minimum, r_maximum;                             ///< [λ]
 };
 
-extern const struct field target_etd_fields[];
+extern const struct field mf_target_etd_fields[];
 
 struct target_etd {
     struct target_etd_parameters parameters;
@@ -29,12 +29,12 @@ struct target_etd {
 ///
 /// Faults (shape, times, values that are no survival probability, …) go to the document and leave
 /// the target empty. Fails: NO_MEMORY. Tested: test_target_etd, test_simulate_pairs.
-enum status target_etd_read(struct target_etd *target, struct json_object *object) MUST_USE;
-void target_etd_clear(struct target_etd *target);
+enum status mf_target_etd_read(struct target_etd *target, struct json_object *object) MUST_USE;
+void mf_target_etd_clear(struct target_etd *target);
 
 /// Steps of length `time_step` [τ] between the target's times, for etd_plan.every: escapes between
 /// samples go unseen, so that a simulation must look as often as the measurement did.
 /// Fails: BAD_INPUT, with the nearest time steps that would do, if the interval is not a whole
 /// number of steps to 0.1 %. Tested: test_target_etd.
-enum status target_etd_steps(const struct target_etd *target, double time_step,
+enum status mf_target_etd_steps(const struct target_etd *target, double time_step,
                              int64_t *every) MUST_USE;

@@ -18,15 +18,15 @@ static const double taps[TAPS] = {1, -4, 6, -4, 1};
 /// distribution has within them, and the median square of all of it.
 static const double clip = 9, clipped_mean = 0.9733, median_square = 0.4549;
 
-void target_rows_clear(struct target_rows *rows) {
-    memory_free(rows->r);
-    memory_free(rows->g);
-    memory_free(rows->error);
-    memory_free(rows->line);
+void mf_target_rows_clear(struct target_rows *rows) {
+    mf_memory_free(rows->r);
+    mf_memory_free(rows->g);
+    mf_memory_free(rows->error);
+    mf_memory_free(rows->line);
     *rows = (struct target_rows){0};
 }
 
-enum status target_rows_allocate(struct target_rows *rows, size_t count) {
+enum status mf_target_rows_allocate(struct target_rows *rows, size_t count) {
     enum status status = STATUS_OK;
     rows->count = count;
     NEW_ARRAY(rows->r, count);
@@ -37,7 +37,7 @@ done:
     return status;
 }
 
-struct target_tail target_rows_tail(const struct target_rows *rows) {
+struct target_tail mf_target_rows_tail(const struct target_rows *rows) {
     const double from = 0.75 * rows->r[rows->count - 1];
     double count = 0, sum = 0, squares = 0;
     struct target_tail tail = {.grows = rows->g[rows->count - 1] > rows->g[0]};
@@ -61,7 +61,7 @@ static double width_of(const struct target_rows *rows) {
 /// Of the shell of row k; a centre that the file rounds may bring its begin below 0.
 static double volume(const struct target_rows *rows, size_t k, double width) {
     const struct box space = {.dimensions = rows->dimensions == 2 ? 2 : 3};
-    return box_shell_volume(&space, fmax(0, rows->r[k] - 0.5 * width), rows->r[k] + 0.5 * width);
+    return mf_box_shell_volume(&space, fmax(0, rows->r[k] - 0.5 * width), rows->r[k] + 0.5 * width);
 }
 
 /// d²/Σ b_j² g_j/v_j of all differences where g is large enough; returns how many.
@@ -101,7 +101,7 @@ static double robust_mean(double *square, size_t count) {
     return variance;
 }
 
-enum status target_rows_scatter(const struct target_rows *rows, double *error) {
+enum status mf_target_rows_scatter(const struct target_rows *rows, double *error) {
     enum status status = STATUS_OK;
     double *square = NULL;
     *error = NAN;
@@ -113,17 +113,17 @@ enum status target_rows_scatter(const struct target_rows *rows, double *error) {
     if (variance > 0)
         *error = sqrt(variance / volume(rows, rows->count - 1, width_of(rows)));
 done:
-    memory_free(square);
+    mf_memory_free(square);
     return status;
 }
 
-void target_rows_set_errors(struct target_rows *rows, double error) {
+void mf_target_rows_set_errors(struct target_rows *rows, double error) {
     const double width = width_of(rows), last = volume(rows, rows->count - 1, width);
     for (size_t k = 0; k < rows->count; k++)
         rows->error[k] = error * sqrt(rows->g[k] * last / volume(rows, k, width));
 }
 
-void target_rows_join(struct target_rows *rows, size_t of) {
+void mf_target_rows_join(struct target_rows *rows, size_t of) {
     const double width = width_of(rows);
     const size_t count = rows->count / of;
     for (size_t n = 0; n < count; n++) {

@@ -15,8 +15,8 @@ struct target_rows {
     size_t *line; ///< in the file, for messages
 };
 
-enum status target_rows_allocate(struct target_rows *rows, size_t count) MUST_USE;
-void target_rows_clear(struct target_rows *rows);
+enum status mf_target_rows_allocate(struct target_rows *rows, size_t count) MUST_USE;
+void mf_target_rows_clear(struct target_rows *rows);
 
 /// How g ends.
 struct target_tail {
@@ -26,7 +26,7 @@ struct target_tail {
 };
 
 /// Needs at least one row. Tested: test_target_rows.
-struct target_tail target_rows_tail(const struct target_rows *rows);
+struct target_tail mf_target_rows_tail(const struct target_rows *rows);
 
 /// The standard error of g at g = 1 in the last bin, from the scatter of neighbouring bins.
 ///
@@ -39,12 +39,12 @@ struct target_tail target_rows_tail(const struct target_rows *rows);
 /// targets/, whose errors are known from blocks of time, 0.79 to 1.23 of it is found. NaN if there
 /// are fewer than 12 differences or most are 0. Needs bins of the same width. Fails: NO_MEMORY.
 /// Tested: test_target_rows.
-enum status target_rows_scatter(const struct target_rows *rows, double *error) MUST_USE;
+enum status mf_target_rows_scatter(const struct target_rows *rows, double *error) MUST_USE;
 
 /// Set the errors that follow from `error`, that of the last bin at g = 1: σ_k = error sqrt(g_k
 /// v/v_k), v the volume of the last bin. Tested: test_target_rows.
-void target_rows_set_errors(struct target_rows *rows, double error);
+void mf_target_rows_set_errors(struct target_rows *rows, double error);
 
 /// Join each `of` rows to one: r in the middle, g and the variance averaged by the volumes of the
 /// shells. A rest at the end is dropped. Needs bins of the same width. Tested: test_target_rows.
-void target_rows_join(struct target_rows *rows, size_t of);
+void mf_target_rows_join(struct target_rows *rows, size_t of);

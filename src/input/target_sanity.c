@@ -54,13 +54,13 @@ static struct view view_of(const struct targets *targets, const struct scene *sc
                         .error = targets->rdf_error + pair * bins,
                         .scene = scene};
     int type[2];
-    composition_pair_types(composition, (int)pair, type);
+    mf_composition_pair_types(composition, (int)pair, type);
     if (type[0] == type[1])
         view.like = (size_t)composition->count[type[0]];
-    view.density = (double)composition_particles(composition) / box_volume(&scene->setup.box);
+    view.density = (double)mf_composition_particles(composition) / mf_box_volume(&scene->setup.box);
     if (composition_is_mixed(composition)) {
         char pair_name[COMPOSITION_PAIR_NAME_SIZE];
-        composition_pair_name(composition, (int)pair, pair_name);
+        mf_composition_pair_name(composition, (int)pair, pair_name);
         snprintf(view.name, sizeof view.name, "rdf.%s", pair_name);
     }
     return view;
@@ -70,20 +70,20 @@ static struct view view_of(const struct targets *targets, const struct scene *sc
 static void print_density(const struct view *view, char *text, size_t size) {
     const struct units *units = &view->scene->units;
     const int dimensions = view->scene->setup.box.dimensions;
-    if (!units_known(units))
+    if (!mf_units_known(units))
         snprintf(text, size, "%.4g lambda^-%d", view->density, dimensions);
     else if (dimensions == 2)
         snprintf(text, size, "%.4g nm^-2", view->density / pow(units->length, 2));
     else
         snprintf(text, size, "%.4g nm^-3 = %.3g g/cm^3", view->density / pow(units->length, 3),
-                 scene_mass_density(view->scene));
+                 mf_scene_mass_density(view->scene));
 }
 
 /// ∫ (g − 1) d³r of the pairs of two types.
 static double integral_of(const struct view *view, int a, int b) {
-    const int pair = composition_pair(&view->targets->composition, a, b);
+    const int pair = mf_composition_pair(&view->targets->composition, a, b);
     const struct view own = view_of(view->targets, view->scene, (size_t)pair);
-    return kirkwood_buff_integrate(own.bins, own.g, own.error, &own.scene->setup.box, 0).integral;
+    return mf_kirkwood_buff_integrate(own.bins, own.g, own.error, &own.scene->setup.box, 0).integral;
 }
 
 /// What a fault goes on with if two types look demixed, else "": each has more beads of its own
@@ -113,7 +113,7 @@ static enum status check_tail(const struct view *view, const char *file) {
         return STATUS_OK;
     char demixing[256];
     print_demixing(view, demixing, sizeof demixing);
-    return status_fail(
+    return mf_status_fail(
         STATUS_BAD_INPUT,
         "%s: target.%s.%s: the mean of g over the last quarter of %s is %.4g, not 1: %s%s", file,
         view->name, votca ? "file" : "g_column", p->file, tail->mean,
@@ -130,7 +130,7 @@ static double reach_below(const struct view *view, double level) {
     size_t k = 0;
     while (k < view->bins->count && view->g[k] <= level)
         k++;
-    return rdf_bins_edge(view->bins, k);
+    return mf_rdf_bins_edge(view->bins, k);
 }
 
 static enum status check_packing(const struct view *view, const char *file) {
@@ -138,12 +138,12 @@ static enum status check_packing(const struct view *view, const char *file) {
     const double closest = box->dimensions == 2 ? 2 / sqrt(3) : sqrt(2);
     const double apart = view->g[0] <= empty ? reach_below(view, empty) : 0;
     const double filled =
-        (double)view->like / box_volume(box) * pow(apart, (double)box->dimensions);
+        (double)view->like / mf_box_volume(box) * pow(apart, (double)box->dimensions);
     char density[80];
     if (filled <= closest)
         return STATUS_OK;
     print_density(view, density, sizeof density);
-    return status_fail(STATUS_BAD_INPUT,
+    return mf_status_fail(STATUS_BAD_INPUT,
                        "%s: target.%s: it has no pairs nearer than %.3g lambda, and the scene a "
                        "density of %s: rho d^%d = %.3g, while the closest packing has %.3g; is the "
                        "unit of length, scene.box or the number of particles wrong?",
@@ -171,11 +171,11 @@ static enum status largest_compressibility(const struct view *view, double facto
     for (struct rdf_bins part = *view->bins; 2 * part.count >= view->bins->count;
          part.count -= step_of_ranges(view)) {
         const struct kirkwood_buff kb =
-            kirkwood_buff_integrate(&part, g, view->error, &view->scene->setup.box, view->like);
+            mf_kirkwood_buff_integrate(&part, g, view->error, &view->scene->setup.box, view->like);
         *largest = fmax(*largest, kb.compressibility + standard_errors * kb.compressibility_error);
     }
 done:
-    memory_free(g);
+    mf_memory_free(g);
     return status;
 }
 
@@ -186,7 +186,7 @@ static void print_compressibility(const struct view *view, char *text, size_t si
     struct kirkwood_buff whole = {0};
     double least = INFINITY, largest = -INFINITY;
     for (; 4 * part.count >= 3 * view->bins->count; part.count -= step_of_ranges(view)) {
-        const struct kirkwood_buff kb = kirkwood_buff_integrate(
+        const struct kirkwood_buff kb = mf_kirkwood_buff_integrate(
             &part, view->g, view->error, &view->scene->setup.box, view->like);
         if (part.count == view->bins->count)
             whole = kb;
@@ -206,7 +206,7 @@ static enum status check_compressibility(const struct view *view, const char *fi
     print_density(view, density, sizeof density);
     print_compressibility(view, value, sizeof value);
     print_demixing(view, demixing, sizeof demixing);
-    return status_fail(STATUS_BAD_INPUT,
+    return mf_status_fail(STATUS_BAD_INPUT,
                        "%s: target.%s: at the density of the scene, %s, it asks for a negative "
                        "compressibility, %s: the density (scene.box, the number of particles, the "
                        "unit of length) or the normalisation of g is wrong%s",
@@ -217,7 +217,7 @@ static size_t views(const struct targets *targets) {
     return targets->given[GOAL_RDF] ? targets->pairs : 0;
 }
 
-enum status target_sanity_check(const struct targets *targets, const struct scene *scene,
+enum status mf_target_sanity_check(const struct targets *targets, const struct scene *scene,
                                 const char *file) {
     for (size_t pair = 0; pair < views(targets); pair++) {
         const struct view view = view_of(targets, scene, pair);
@@ -249,8 +249,8 @@ static size_t highest_bin(const struct view *view) {
 /// What lengths are told in.
 static const char *unit_of(const struct view *view, double *length) {
     const struct units *units = &view->scene->units;
-    *length = units_known(units) ? units->length : 1;
-    return units_known(units) ? "nm" : "lambda";
+    *length = mf_units_known(units) ? units->length : 1;
+    return mf_units_known(units) ? "nm" : "lambda";
 }
 
 /// "target rdf: g from 0.005 to 0.995 nm, peak 2.79 at 0.275 nm, tail 0.998(6); density …".
@@ -266,9 +266,9 @@ static void tell_view(const struct view *view, const struct target_sanity_listen
         print_compressibility(view, compressibility, sizeof compressibility);
     say(listener,
         "target %s: g from %.4g to %.4g %s, peak %.3g at %.4g %s, tail %.3f(%.0f); density %s%s%s",
-        view->name, rdf_bins_centre(bins, 0) * length,
-        rdf_bins_centre(bins, bins->count - 1) * length, unit, view->g[peak],
-        rdf_bins_centre(bins, peak) * length, unit, tail->mean, ceil(1e3 * tail->scatter), density,
+        view->name, mf_rdf_bins_centre(bins, 0) * length,
+        mf_rdf_bins_centre(bins, bins->count - 1) * length, unit, view->g[peak],
+        mf_rdf_bins_centre(bins, peak) * length, unit, tail->mean, ceil(1e3 * tail->scatter), density,
         compressibility[0] ? ", " : "", compressibility);
 }
 
@@ -308,8 +308,8 @@ static double neighbours_in_layers(const struct view *view) {
     double sum = 0;
     for (size_t n = 0; n <= second; n++)
         sum += view->density * view->g[n] *
-               box_shell_volume(&view->scene->setup.box, rdf_bins_edge(bins, n),
-                                rdf_bins_edge(bins, n + 1));
+               mf_box_shell_volume(&view->scene->setup.box, mf_rdf_bins_edge(bins, n),
+                                mf_rdf_bins_edge(bins, n + 1));
     return sum;
 }
 
@@ -361,7 +361,7 @@ static void tell_normalisation(const struct normalisation *n,
             n->factor > 1 ? "large" : "small", n->factor, ceil(n->error * 1e4));
 }
 
-enum status target_sanity_tell(const struct targets *targets, const struct scene *scene,
+enum status mf_target_sanity_tell(const struct targets *targets, const struct scene *scene,
                                const struct target_sanity_listener *listener) {
     for (size_t pair = 0; pair < views(targets); pair++) {
         const struct view view = view_of(targets, scene, pair);
@@ -371,7 +371,7 @@ enum status target_sanity_tell(const struct targets *targets, const struct scene
         warn_of_density(&view, listener);
     }
     tell_normalisation(&targets->normalisation, listener);
-    if (scene->setup.temperature > hot && !units_known(&scene->units))
+    if (scene->setup.temperature > hot && !mf_units_known(&scene->units))
         say(listener,
             "mesofit: warning: scene.temperature: %g in units of k_B T_0, which is 1 as a rule; "
             "kelvins "

@@ -17,7 +17,7 @@ enum { DEFAULT_LAGS = 50 };
 
 #define CURVE(name) .offset = offsetof(struct target_curve_parameters, name)
 #define COLUMN .maximum = 1000, .unit = ""
-const struct field targets_curve_fields[] = {
+const struct field mf_targets_curve_fields[] = {
     {"file", FIELD_FILE, CURVE(file), .required = true, .unit = "",
      .help = "values at equally spaced times from 0 on, in units of the scene"},
     {"time_column", FIELD_INTEGER, CURVE(time_column), .initial = 1, .minimum = 1, COLUMN,
@@ -31,7 +31,7 @@ const struct field targets_curve_fields[] = {
 };
 
 #define NUMBER(name) .offset = offsetof(struct target_number, name)
-const struct field targets_number_fields[] = {
+const struct field mf_targets_number_fields[] = {
     {"value", FIELD_NUMBER, NUMBER(value), .required = true, .minimum = -DBL_MAX,
      .maximum = DBL_MAX, .unit = "reduced", .help = "measured"},
     {"error", FIELD_NUMBER, NUMBER(error), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
@@ -39,7 +39,7 @@ const struct field targets_number_fields[] = {
     FIELD_END,
 };
 
-const struct field targets_diffusion_fields[] = {
+const struct field mf_targets_diffusion_fields[] = {
     {"window", FIELD_NUMBER, NUMBER(window), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "tau",
      .help =
@@ -50,7 +50,7 @@ const struct field targets_diffusion_fields[] = {
 
 #define GOAL(name) .offset = offsetof(struct target_goal, name)
 static const char *const no_or_yes[] = {"no", "yes", NULL};
-const struct field targets_goal_fields[] = {
+const struct field mf_targets_goal_fields[] = {
     {"weight", FIELD_NUMBER, GOAL(weight), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "",
      .help = "of its error beside those of other targets; 0: one over its statistical error"},
@@ -69,7 +69,7 @@ static enum status check_times(const struct target_curve *curve, const struct da
     for (size_t k = 0; k < table->rows; k++)
         if (fabs(cell(table, k, p->time_column) - (double)k * curve->interval) >
             0.01 * curve->interval)
-            return status_fail(STATUS_BAD_INPUT, "%s:%zu: the times are not equally spaced from 0",
+            return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: the times are not equally spaced from 0",
                                p->file, table->line[k]);
     return STATUS_OK;
 }
@@ -77,15 +77,15 @@ static enum status check_times(const struct target_curve *curve, const struct da
 static enum status load_curve(struct target_curve *curve, struct data_table *table) {
     enum status status = STATUS_OK;
     const struct target_curve_parameters *p = &curve->parameters;
-    CHECK(data_table_read(
+    CHECK(mf_data_table_read(
         table, p->file,
         (size_t)(p->time_column > p->value_column ? p->time_column : p->value_column)));
     int64_t error_column;
-    CHECK(target_error_column(p->error_column, p->time_column, p->value_column, table, p->file,
+    CHECK(mf_target_error_column(p->error_column, p->time_column, p->value_column, table, p->file,
                               &error_column));
     if (table->rows < 3)
-        return status_fail(STATUS_BAD_INPUT, "%s: only %zu times", p->file, table->rows);
-    CHECK(data_table_check_increasing(table, p->file, (size_t)p->time_column - 1, 0));
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu times", p->file, table->rows);
+    CHECK(mf_data_table_check_increasing(table, p->file, (size_t)p->time_column - 1, 0));
     curve->interval = cell(table, table->rows - 1, p->time_column) / (double)(table->rows - 1);
     CHECK(check_times(curve, table));
     NEW_ARRAY(curve->value, table->rows);
@@ -96,7 +96,7 @@ static enum status load_curve(struct target_curve *curve, struct data_table *tab
         curve->error[k] = error_column ? cell(table, k, error_column) : 0;
         if (!(curve->error[k] >= 0)) {
             status =
-                status_fail(STATUS_BAD_INPUT, "%s:%zu: column %lld: %g is not a standard error",
+                mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %lld: %g is not a standard error",
                             p->file, table->line[k], (long long)error_column, curve->error[k]);
             goto done;
         }
@@ -106,24 +106,24 @@ done:
 }
 
 static enum status read_curve(struct target_curve *curve, struct json_object *object) {
-    const size_t faults = json_fault_count(object->document);
-    json_fields(object, targets_curve_fields, &curve->parameters);
-    json_finish(object);
-    if (json_fault_count(object->document) > faults)
+    const size_t faults = mf_json_fault_count(object->document);
+    mf_json_fields(object, mf_targets_curve_fields, &curve->parameters);
+    mf_json_finish(object);
+    if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
     struct data_table table = {0};
     const enum status status = load_curve(curve, &table);
-    data_table_clear(&table);
+    mf_data_table_clear(&table);
     if (status == STATUS_NO_MEMORY)
         return status;
     if (status != STATUS_OK)
-        json_fault(object, "file", "%s", status_message());
+        mf_json_fault(object, "file", "%s", mf_status_message());
     return STATUS_OK;
 }
 
 static enum status read_number(struct target_number *number, struct json_object *object) {
-    json_fields(object, targets_number_fields, number);
-    json_finish(object);
+    mf_json_fields(object, mf_targets_number_fields, number);
+    mf_json_finish(object);
     return STATUS_OK;
 }
 
@@ -133,13 +133,13 @@ static void check_bins(const struct targets *targets, struct json_object *object
     for (size_t pair = 1; pair < targets->pairs; pair++) {
         const struct rdf_bins *bins = &targets->rdf[pair].bins;
         char name[COMPOSITION_PAIR_NAME_SIZE], first_name[COMPOSITION_PAIR_NAME_SIZE];
-        composition_pair_name(&targets->composition, (int)pair, name);
-        composition_pair_name(&targets->composition, 0, first_name);
+        mf_composition_pair_name(&targets->composition, (int)pair, name);
+        mf_composition_pair_name(&targets->composition, 0, first_name);
         // A file that could not be read has its own fault.
         if (first->count > 0 && bins->count > 0 &&
             (bins->count != first->count || fabs(bins->width / first->width - 1) > 1e-6 ||
              fabs(bins->low - first->low) > 1e-6 * first->width))
-            json_fault(object, name, "must have the bins of \"%s\"", first_name);
+            mf_json_fault(object, name, "must have the bins of \"%s\"", first_name);
     }
 }
 
@@ -148,9 +148,9 @@ static const char *pair_key(const struct composition *composition, int pair,
                             const struct json_object *object,
                             char name[COMPOSITION_PAIR_NAME_SIZE]) {
     const char *key;
-    composition_pair_name(composition, pair, name);
-    for (size_t n = 0; (key = json_key(object, n)); n++)
-        if (composition_find_pair(composition, key) == pair)
+    mf_composition_pair_name(composition, pair, name);
+    for (size_t n = 0; (key = mf_json_key(object, n)); n++)
+        if (mf_composition_find_pair(composition, key) == pair)
             return key;
     return name;
 }
@@ -167,7 +167,7 @@ static enum status collect_rdf(struct targets *targets, const struct box *box) {
     NEW_ARRAY(targets->rdf_error, targets->pairs * bins);
     NEW_ARRAY(targets->rdf_given, targets->pairs * bins);
     for (size_t pair = 0; pair < targets->pairs; pair++)
-        target_convert(&targets->rdf[pair], box, &targets->composition, (int)pair,
+        mf_target_convert(&targets->rdf[pair], box, &targets->composition, (int)pair,
                        targets->rdf_g + pair * bins, targets->rdf_error + pair * bins);
     memcpy(targets->rdf_given, targets->rdf_g, targets->pairs * bins * sizeof(double));
 done:
@@ -180,18 +180,18 @@ static enum status read_rdf(struct targets *targets, struct json_object *object,
     if (targets->composition.types == 0)
         return STATUS_OK; // a fault of the types is told, those of their pairs would mislead
     if (!composition_is_mixed(&targets->composition)) {
-        TRY(target_read(&targets->rdf[0], object, units, box->dimensions));
+        TRY(mf_target_read(&targets->rdf[0], object, units, box->dimensions));
         return collect_rdf(targets, box);
     }
     // The object remembers what it was asked for until it is finished.
     char name[COMPOSITION_MOST_PAIRS][COMPOSITION_PAIR_NAME_SIZE];
     for (size_t pair = 0; pair < targets->pairs; pair++) {
-        struct json_object child = json_child(
+        struct json_object child = mf_json_child(
             object, pair_key(&targets->composition, (int)pair, object, name[pair]), true);
         if (child.item)
-            TRY(target_read(&targets->rdf[pair], &child, units, box->dimensions));
+            TRY(mf_target_read(&targets->rdf[pair], &child, units, box->dimensions));
     }
-    json_finish(object);
+    mf_json_finish(object);
     check_bins(targets, object);
     return collect_rdf(targets, box);
 }
@@ -204,13 +204,13 @@ static enum status read_kind(struct targets *targets, enum goal_kind kind,
     case GOAL_RDF:
         return read_rdf(targets, object, box, units);
     case GOAL_ETD:
-        return target_etd_read(&targets->etd, object);
+        return mf_target_etd_read(&targets->etd, object);
     case GOAL_VACF:
         return read_curve(&targets->vacf, object);
     case GOAL_MSD:
         return read_curve(&targets->msd, object);
     case GOAL_DIFFUSION:
-        json_fields(object, targets_diffusion_fields, &targets->diffusion);
+        mf_json_fields(object, mf_targets_diffusion_fields, &targets->diffusion);
         return read_number(&targets->diffusion, object);
     case GOAL_PRESSURE:
         return read_number(&targets->pressure, object);
@@ -224,7 +224,7 @@ static enum status read_kind(struct targets *targets, enum goal_kind kind,
 static void check_window(const struct targets *targets, struct json_object *object) {
     if (targets->diffusion.window > 0 &&
         (targets->vacf.times > 0 || targets->msd.times > 0 || targets->given[GOAL_ETD]))
-        json_fault(object, "diffusion",
+        mf_json_fault(object, "diffusion",
                    "has a \"window\" of its own beside \"vacf\", \"msd\" or \"etd\", which say it");
 }
 
@@ -233,92 +233,92 @@ static void check_motion(const struct targets *targets, struct json_object *obje
     const struct target_curve *vacf = &targets->vacf, *msd = &targets->msd;
     if (vacf->times > 0 && msd->times > 0 &&
         (vacf->times != msd->times || fabs(vacf->interval / msd->interval - 1) > 1e-3))
-        json_fault(object, "msd", "must have the times of \"vacf\"");
+        mf_json_fault(object, "msd", "must have the times of \"vacf\"");
 }
 
-enum status targets_read(struct targets *targets, struct json_object *root, const struct box *box,
+enum status mf_targets_read(struct targets *targets, struct json_object *root, const struct box *box,
                          const struct composition *composition, const struct units *units) {
     *targets = (struct targets){.composition = *composition,
-                                .pairs = (size_t)composition_pairs(composition)};
-    struct json_object object = json_child(root, "target", true);
+                                .pairs = (size_t)mf_composition_pairs(composition)};
+    struct json_object object = mf_json_child(root, "target", true);
     if (object.item == NULL)
         return STATUS_OK;
     for (int kind = 0; kind < GOALS; kind++) {
-        struct json_object child = json_child(&object, goals_names[kind], false);
+        struct json_object child = mf_json_child(&object, mf_goals_names[kind], false);
         targets->given[kind] = child.item != NULL;
-        json_fields(&child, targets_goal_fields, &targets->goal[kind]);
+        mf_json_fields(&child, mf_targets_goal_fields, &targets->goal[kind]);
         if (!targets->given[kind])
             continue;
         TRY(read_kind(targets, kind, &child, box, units));
     }
-    json_finish(&object);
+    mf_json_finish(&object);
     check_motion(targets, &object);
     check_window(targets, &object);
     return STATUS_OK;
 }
 
-void targets_clear(struct targets *targets) {
+void mf_targets_clear(struct targets *targets) {
     for (size_t pair = 0; pair < targets->pairs; pair++)
-        target_clear(&targets->rdf[pair]);
-    memory_free(targets->rdf_g);
-    memory_free(targets->rdf_error);
-    memory_free(targets->rdf_given);
-    target_etd_clear(&targets->etd);
-    memory_free(targets->vacf.value);
-    memory_free(targets->vacf.error);
-    memory_free(targets->msd.value);
-    memory_free(targets->msd.error);
+        mf_target_clear(&targets->rdf[pair]);
+    mf_memory_free(targets->rdf_g);
+    mf_memory_free(targets->rdf_error);
+    mf_memory_free(targets->rdf_given);
+    mf_target_etd_clear(&targets->etd);
+    mf_memory_free(targets->vacf.value);
+    mf_memory_free(targets->vacf.error);
+    mf_memory_free(targets->msd.value);
+    mf_memory_free(targets->msd.error);
     *targets = (struct targets){0};
 }
 
 static void write_rdf(const struct targets *targets, struct json_writer *writer) {
     if (!composition_is_mixed(&targets->composition)) {
-        json_put_fields(writer, target_fields, &targets->rdf[0].parameters);
+        mf_json_put_fields(writer, mf_target_fields, &targets->rdf[0].parameters);
         return;
     }
     for (size_t pair = 0; pair < targets->pairs; pair++) {
         char name[COMPOSITION_PAIR_NAME_SIZE];
-        composition_pair_name(&targets->composition, (int)pair, name);
-        json_begin(writer, name);
-        json_put_fields(writer, target_fields, &targets->rdf[pair].parameters);
-        json_end(writer);
+        mf_composition_pair_name(&targets->composition, (int)pair, name);
+        mf_json_begin(writer, name);
+        mf_json_put_fields(writer, mf_target_fields, &targets->rdf[pair].parameters);
+        mf_json_end(writer);
     }
 }
 
-void targets_write(const struct targets *targets, struct json_writer *writer) {
+void mf_targets_write(const struct targets *targets, struct json_writer *writer) {
     const struct {
         const struct field *fields;
         const void *parameters;
     } parts[GOALS] = {
-        [GOAL_ETD] = {target_etd_fields, &targets->etd.parameters},
-        [GOAL_VACF] = {targets_curve_fields, &targets->vacf.parameters},
-        [GOAL_MSD] = {targets_curve_fields, &targets->msd.parameters},
-        [GOAL_DIFFUSION] = {targets_number_fields, &targets->diffusion},
-        [GOAL_PRESSURE] = {targets_number_fields, &targets->pressure},
+        [GOAL_ETD] = {mf_target_etd_fields, &targets->etd.parameters},
+        [GOAL_VACF] = {mf_targets_curve_fields, &targets->vacf.parameters},
+        [GOAL_MSD] = {mf_targets_curve_fields, &targets->msd.parameters},
+        [GOAL_DIFFUSION] = {mf_targets_number_fields, &targets->diffusion},
+        [GOAL_PRESSURE] = {mf_targets_number_fields, &targets->pressure},
     };
-    json_begin(writer, "target");
+    mf_json_begin(writer, "target");
     for (int kind = 0; kind < GOALS; kind++) {
         if (!targets->given[kind])
             continue;
-        json_begin(writer, goals_names[kind]);
+        mf_json_begin(writer, mf_goals_names[kind]);
         if (kind == GOAL_RDF)
             write_rdf(targets, writer);
         else
-            json_put_fields(writer, parts[kind].fields, parts[kind].parameters);
+            mf_json_put_fields(writer, parts[kind].fields, parts[kind].parameters);
         if (kind == GOAL_DIFFUSION)
-            json_put_fields(writer, targets_diffusion_fields, &targets->diffusion);
-        json_put_fields(writer, targets_goal_fields, &targets->goal[kind]);
-        json_end(writer);
+            mf_json_put_fields(writer, mf_targets_diffusion_fields, &targets->diffusion);
+        mf_json_put_fields(writer, mf_targets_goal_fields, &targets->goal[kind]);
+        mf_json_end(writer);
     }
-    json_end(writer);
+    mf_json_end(writer);
 }
 
 static void digest(const double *values, size_t count, uint64_t *digest) {
     if (values)
-        checkpoint_digest_add(digest, values, count * sizeof *values);
+        mf_checkpoint_digest_add(digest, values, count * sizeof *values);
 }
 
-void targets_digest(const struct targets *targets, uint64_t *into) {
+void mf_targets_digest(const struct targets *targets, uint64_t *into) {
     const size_t cells = (size_t)(targets->etd.grid.times * targets->etd.grid.bins);
     digest(targets->rdf_g, targets->pairs * targets->rdf[0].bins.count, into);
     digest(targets->rdf_error, targets->pairs * targets->rdf[0].bins.count, into);
@@ -356,7 +356,7 @@ static void divide(struct targets *targets, size_t pair, double factor) {
     }
 }
 
-enum status targets_normalise(struct targets *targets, const struct box *box) {
+enum status mf_targets_normalise(struct targets *targets, const struct box *box) {
     size_t given = 0;
     double width = 0;
     targets->normalisation = (struct normalisation){.factor = 1};
@@ -372,14 +372,14 @@ enum status targets_normalise(struct targets *targets, const struct box *box) {
     // What all together say tells nothing of a part of them.
     if (given > 0)
         return STATUS_OK;
-    TRY(normalisation_find(&targets->rdf[0].bins, box, &targets->composition, targets->rdf_g,
+    TRY(mf_normalisation_find(&targets->rdf[0].bins, box, &targets->composition, targets->rdf_g,
                            targets->rdf_error, width, &targets->normalisation));
     for (size_t pair = 0; pair < targets->pairs; pair++)
         divide(targets, pair, targets->normalisation.factor);
     return STATUS_OK;
 }
 
-void targets_goals(struct targets *targets, bool moves, struct goals *fitted,
+void mf_targets_goals(struct targets *targets, bool moves, struct goals *fitted,
                    struct goals *compared) {
     static const double unknown = NAN;
     const struct target_etd *etd = &targets->etd;
@@ -419,17 +419,17 @@ static enum status check_interval(const struct target_curve *curve, double time_
     const double steps = curve->interval / time_step;
     if (curve->times == 0 || (steps > 0.5 && fabs(steps / fmax(1, round(steps)) - 1) < 1e-3))
         return STATUS_OK;
-    return status_fail(STATUS_BAD_INPUT,
+    return mf_status_fail(STATUS_BAD_INPUT,
                        "%s: its interval %.6g is not a whole number of time steps of %g; %.6g "
                        "would do",
                        curve->parameters.file, curve->interval, time_step,
                        curve->interval / fmax(1, ceil(steps)));
 }
 
-enum status targets_check_steps(const struct targets *targets, double time_step) {
+enum status mf_targets_check_steps(const struct targets *targets, double time_step) {
     int64_t every;
     if (targets->given[GOAL_ETD])
-        TRY(target_etd_steps(&targets->etd, time_step, &every));
+        TRY(mf_target_etd_steps(&targets->etd, time_step, &every));
     TRY(check_interval(&targets->vacf, time_step));
     return check_interval(&targets->msd, time_step);
 }

@@ -16,23 +16,23 @@ struct units {
     double mass;        ///< μ [kg]
 };
 
-extern const struct field units_fields[];
+extern const struct field mf_units_fields[];
 
 /// Read "units" of a scene; units whose time, energy, pressure or diffusion no number can hold are
 /// a fault. Tested: test_units.
-void units_read(struct units *units, struct json_object *scene);
+void mf_units_read(struct units *units, struct json_object *scene);
 
-bool units_known(const struct units *units);
-double units_energy_kj_per_mol(const struct units *units);   ///< k_B T_0 [kJ/mol]
-double units_time_ps(const struct units *units);             ///< λ sqrt(μ / k_B T_0) [ps]
-double units_pressure_bar(const struct units *units);        ///< k_B T_0 / λ³ [bar]
-double units_diffusion_cm2_per_s(const struct units *units); ///< λ²/τ [cm²/s]
+bool mf_units_known(const struct units *units);
+double mf_units_energy_kj_per_mol(const struct units *units);   ///< k_B T_0 [kJ/mol]
+double mf_units_time_ps(const struct units *units);             ///< λ sqrt(μ / k_B T_0) [ps]
+double mf_units_pressure_bar(const struct units *units);        ///< k_B T_0 / λ³ [bar]
+double mf_units_diffusion_cm2_per_s(const struct units *units); ///< λ²/τ [cm²/s]
 
 /// A column of a table in another unit: factor · values; the caller frees it. NULL: no memory.
-double *units_column(const double *values, size_t count, double factor);
+double *mf_units_column(const double *values, size_t count, double factor);
 
 /// Add an object "physical" with the units and the given results in them; nothing if not known.
 /// @param[in] energy    of a particle [k_B T_0]
 /// @param[in] pressure  [k_B T_0/λ³]
-void units_put(const struct units *units, struct json_writer *writer, double energy,
+void mf_units_put(const struct units *units, struct json_writer *writer, double energy,
                double pressure);

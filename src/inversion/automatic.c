@@ -56,8 +56,8 @@ static bool in_basin(const struct inversion *inversion) {
 
 static enum status careful_step(const struct inversion *inversion, double *step) {
     if (inversion->box.dimensions == 3)
-        return hnc_step(inversion, ridge, step);
-    ibi_step(inversion, step);
+        return mf_hnc_step(inversion, ridge, step);
+    mf_ibi_step(inversion, step);
     return STATUS_OK;
 }
 
@@ -68,21 +68,21 @@ static enum status update(struct inversion *inversion, double *extra) {
     if (!in_basin(inversion))
         return careful_step(inversion, inversion->step);
     TRY(careful_step(inversion, inversion->other_step));
-    TRY(imc_step(inversion, &noise, inversion->step, newton));
+    TRY(mf_imc_step(inversion, &noise, inversion->step, newton));
     extra[0] = 1;
     extra[1] = newton[1];
     extra[2] = newton[2];
     return STATUS_OK;
 }
 
-const struct inverse_method automatic = {
+const struct inverse_method mf_automatic = {
     .name = "auto",
     .summary = "hypernetted-chain steps (Delbary et al. 2020; in 2-D Boltzmann inversion, Reith et "
                "al. 2003) until their linear response holds, then inverse Monte Carlo (Lyubartsev "
                "and Laaksonen 1995)",
-    .tables = (const struct field *const[]){inversion_fields, NULL},
+    .tables = (const struct field *const[]){mf_inversion_fields, NULL},
     .columns = columns,
     .update = update,
-    .create = inversion_create,
+    .create = mf_inversion_create,
     INVERSION_RECORD,
 };

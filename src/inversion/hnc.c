@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Newton steps with the slope of the hypernetted-chain potential: F. Delbary, M. Hanke and D.
-// Ivanizki, J. Inverse Ill-Posed Probl. 28 (2020). With K the slope of h − c (hnc_closure_slope),
+// Ivanizki, J. Inverse Ill-Posed Probl. 28 (2020). With K the slope of h − c (mf_hnc_closure_slope),
 //   Φ ← Φ + k_B T [ln(g/g*) − K (g − g*)],
 // where ibi takes the first term alone. Differs from it: K is that of the target, at all steps. The
 // whole of h − c instead of its slope (D. Levesque, J. J. Weis and L. Reatto, Phys. Rev. Lett. 54,
@@ -27,7 +27,7 @@ static const struct field own_fields[] = {
 
 static const char *const columns[] = {INVERSION_COLUMNS, NULL};
 
-enum status hnc_step(const struct inversion *inversion, double ridge, double *step) {
+enum status mf_hnc_step(const struct inversion *inversion, double ridge, double *step) {
     enum status status = STATUS_OK;
     const struct potential_grid *grid = &inversion->grid;
     double *target = NULL, *difference = NULL, *indirect = NULL;
@@ -35,41 +35,41 @@ enum status hnc_step(const struct inversion *inversion, double ridge, double *st
     NEW_ARRAY(difference, inversion->bins);
     NEW_ARRAY(indirect, inversion->bins);
     for (size_t k = 0; k < inversion->bins; k++) {
-        target[k] = inversion_target_g(inversion, k);
-        difference[k] = inversion_g(inversion, k) - target[k];
+        target[k] = mf_inversion_target_g(inversion, k);
+        difference[k] = mf_inversion_g(inversion, k) - target[k];
     }
-    CHECK(hnc_closure_slope(&inversion->problem->goals.bins, &inversion->box,
+    CHECK(mf_hnc_closure_slope(&inversion->problem->goals.bins, &inversion->box,
                             &inversion->composition, target, difference, ridge, indirect));
-    ibi_logarithms(inversion, step);
+    mf_ibi_logarithms(inversion, step);
     for (size_t n = 0; n < grid->known; n++)
         step[grid->known_point[n]] -=
             inversion->problem->scene.temperature * indirect[grid->known_bin[n]];
-    inversion_pressure_add_ramp(inversion, step);
+    mf_inversion_pressure_add_ramp(inversion, step);
 done:
-    memory_free(target);
-    memory_free(difference);
-    memory_free(indirect);
+    mf_memory_free(target);
+    mf_memory_free(difference);
+    mf_memory_free(indirect);
     return status;
 }
 
 static enum status update(struct inversion *inversion, double *extra) {
     (void)extra;
     const struct own *own = (const void *)inversion->settings.own;
-    return hnc_step(inversion, own->ridge, inversion->step);
+    return mf_hnc_step(inversion, own->ridge, inversion->step);
 }
 
 static enum status create(void *inversion, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters) {
     if (problem->scene.box.dimensions != 3)
-        return status_fail(STATUS_BAD_INPUT, "method.name: \"hnc\" is for three dimensions");
-    return inversion_create(inversion, method, problem, parameters);
+        return mf_status_fail(STATUS_BAD_INPUT, "method.name: \"hnc\" is for three dimensions");
+    return mf_inversion_create(inversion, method, problem, parameters);
 }
 
-const struct inverse_method hnc = {
+const struct inverse_method mf_hnc = {
     .name = "hnc",
     .summary = "Newton steps by the hypernetted chain; F. Delbary, M. Hanke and D. Ivanizki, J. "
                "Inverse Ill-Posed Probl. 28 (2020)",
-    .tables = (const struct field *const[]){inversion_fields, own_fields, NULL},
+    .tables = (const struct field *const[]){mf_inversion_fields, own_fields, NULL},
     .columns = columns,
     .update = update,
     .create = create,

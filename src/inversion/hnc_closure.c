@@ -20,9 +20,9 @@ static const double pi = 3.14159265358979323846;
 /// Transform at q of `values` − `zero` in the bins and of `core` below the first.
 static double transform(const struct rdf_bins *bins, const double *values, double zero, double core,
                         double q) {
-    double inner = ornstein_zernike_ball(q, rdf_bins_edge(bins, 0)), sum = core * inner;
+    double inner = mf_ornstein_zernike_ball(q, mf_rdf_bins_edge(bins, 0)), sum = core * inner;
     for (size_t k = 0; k < bins->count; k++) {
-        const double outer = ornstein_zernike_ball(q, rdf_bins_edge(bins, k + 1));
+        const double outer = mf_ornstein_zernike_ball(q, mf_rdf_bins_edge(bins, k + 1));
         sum += (values[k] - zero) * (outer - inner);
         inner = outer;
     }
@@ -59,23 +59,23 @@ static enum status wave_init(struct wave *wave, const struct box *box,
                           .values = gsl_vector_alloc(types),
                           .work = gsl_eigen_symmv_alloc(types)};
     for (size_t a = 0; a < types; a++)
-        wave->density[a] = (double)composition->count[a] / box_volume(box);
+        wave->density[a] = (double)composition->count[a] / mf_box_volume(box);
     if (wave->structure && wave->vectors && wave->result && wave->scratch && wave->values &&
         wave->work)
         return STATUS_OK;
-    return status_fail(STATUS_NO_MEMORY, "no memory for the hypernetted chain");
+    return mf_status_fail(STATUS_NO_MEMORY, "no memory for the hypernetted chain");
 }
 
 /// Geometric mean of the densities of a kind of pairs, and its types.
 static double pair_density(const struct wave *wave, int pair, int type[2]) {
-    composition_pair_types(wave->composition, pair, type);
+    mf_composition_pair_types(wave->composition, pair, type);
     return sqrt(wave->density[type[0]] * wave->density[type[1]]);
 }
 
 /// Transforms of all kinds of pairs at q.
 static void fill_matrix(const struct wave *wave, const struct rdf_bins *bins, const double *values,
                         double zero, double core, double q, gsl_matrix *matrix) {
-    for (int pair = 0; pair < composition_pairs(wave->composition); pair++) {
+    for (int pair = 0; pair < mf_composition_pairs(wave->composition); pair++) {
         int type[2];
         const double density = pair_density(wave, pair, type);
         const double value =
@@ -128,13 +128,13 @@ static void find_slope(struct wave *wave, const struct rdf_bins *bins, const dou
 /// Add a wave to all bins.
 static void add_wave(const struct wave *wave, const struct rdf_bins *bins, double q, double spacing,
                      double *indirect) {
-    for (int pair = 0; pair < composition_pairs(wave->composition); pair++) {
+    for (int pair = 0; pair < mf_composition_pairs(wave->composition); pair++) {
         int type[2];
         const double density = pair_density(wave, pair, type);
         const double gamma =
             gsl_matrix_get(wave->result, (size_t)type[0], (size_t)type[1]) / density;
         for (size_t k = 0; k < bins->count; k++) {
-            const double r = rdf_bins_centre(bins, k);
+            const double r = mf_rdf_bins_centre(bins, k);
             indirect[(size_t)pair * bins->count + k] +=
                 q * gamma * sin(q * r) / r * spacing / (2 * pi * pi);
         }
@@ -148,11 +148,11 @@ static enum status solve(const struct rdf_bins *bins, const struct box *box,
     enum status status = STATUS_OK;
     struct wave wave = {0};
     if (box->dimensions != 3)
-        return status_fail(STATUS_BAD_INPUT, "the hypernetted chain is for three dimensions");
+        return mf_status_fail(STATUS_BAD_INPUT, "the hypernetted chain is for three dimensions");
     CHECK(wave_init(&wave, box, composition));
-    const double spacing = pi / (ranges * rdf_bins_range(bins));
+    const double spacing = pi / (ranges * mf_rdf_bins_range(bins));
     const size_t waves = (size_t)(pi / bins->width / spacing);
-    for (size_t k = 0; k < (size_t)composition_pairs(composition) * bins->count; k++)
+    for (size_t k = 0; k < (size_t)mf_composition_pairs(composition) * bins->count; k++)
         indirect[k] = 0;
     for (size_t n = 1; n <= waves; n++) {
         const double q = (double)n * spacing;
@@ -168,12 +168,12 @@ done:
     return status;
 }
 
-enum status hnc_closure(const struct rdf_bins *bins, const struct box *box,
+enum status mf_hnc_closure(const struct rdf_bins *bins, const struct box *box,
                         const struct composition *composition, const double *g, double *indirect) {
     return solve(bins, box, composition, g, NULL, 0, indirect);
 }
 
-enum status hnc_closure_slope(const struct rdf_bins *bins, const struct box *box,
+enum status mf_hnc_closure_slope(const struct rdf_bins *bins, const struct box *box,
                               const struct composition *composition, const double *g,
                               const double *difference, double ridge, double *indirect) {
     return solve(bins, box, composition, g, difference, ridge, indirect);

@@ -16,7 +16,7 @@
 /// @param[in]  g         shape [pairs, bins.count]
 /// @param[out] indirect  shape [pairs, bins.count]
 /// Fails: BAD_INPUT but in three dimensions; NO_MEMORY. Tested: test_hnc_closure.
-enum status hnc_closure(const struct rdf_bins *bins, const struct box *box,
+enum status mf_hnc_closure(const struct rdf_bins *bins, const struct box *box,
                         const struct composition *composition, const double *g,
                         double *indirect) MUST_USE;
 
@@ -28,7 +28,7 @@ enum status hnc_closure(const struct rdf_bins *bins, const struct box *box,
 /// @param[in]  g           shape [pairs, bins.count], where S is taken
 /// @param[in]  difference  of g, the same shape
 /// @param[out] indirect    the same shape
-/// Fails: as hnc_closure. Tested: test_hnc_closure.
-enum status hnc_closure_slope(const struct rdf_bins *bins, const struct box *box,
+/// Fails: as mf_hnc_closure. Tested: test_hnc_closure.
+enum status mf_hnc_closure_slope(const struct rdf_bins *bins, const struct box *box,
                               const struct composition *composition, const double *g,
                               const double *difference, double ridge, double *indirect) MUST_USE;

@@ -8,37 +8,37 @@
 
 static const char *const columns[] = {INVERSION_COLUMNS, NULL};
 
-void ibi_logarithms(const struct inversion *inversion, double *step) {
+void mf_ibi_logarithms(const struct inversion *inversion, double *step) {
     const struct potential_grid *grid = &inversion->grid;
     const double least = inversion->problem->core_threshold;
     for (size_t n = 0; n < grid->known; n++) {
         // An empty bin is as full as one with the threshold's few pairs.
         const size_t bin = grid->known_bin[n];
-        const double g = fmax(inversion_g(inversion, bin), least);
-        const double target = fmax(inversion_target_g(inversion, bin), least);
+        const double g = fmax(mf_inversion_g(inversion, bin), least);
+        const double target = fmax(mf_inversion_target_g(inversion, bin), least);
         step[grid->known_point[n]] = inversion->problem->scene.temperature * log(g / target);
     }
 }
 
-void ibi_step(const struct inversion *inversion, double *step) {
-    ibi_logarithms(inversion, step);
-    inversion_pressure_add_ramp(inversion, step);
+void mf_ibi_step(const struct inversion *inversion, double *step) {
+    mf_ibi_logarithms(inversion, step);
+    mf_inversion_pressure_add_ramp(inversion, step);
 }
 
 static enum status update(struct inversion *inversion, double *extra) {
     (void)extra;
-    ibi_step(inversion, inversion->step);
+    mf_ibi_step(inversion, inversion->step);
     return STATUS_OK;
 }
 
-const struct inverse_method ibi = {
+const struct inverse_method mf_ibi = {
     .name = "ibi",
     .summary =
         "iterative Boltzmann inversion; D. Reith, M. Puetz and F. Mueller-Plathe, J. Comput. "
         "Chem. 24, 1624 (2003)",
-    .tables = (const struct field *const[]){inversion_fields, NULL},
+    .tables = (const struct field *const[]){mf_inversion_fields, NULL},
     .columns = columns,
     .update = update,
-    .create = inversion_create,
+    .create = mf_inversion_create,
     INVERSION_RECORD,
 };

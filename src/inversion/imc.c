@@ -11,8 +11,8 @@ static_assert(sizeof(struct imc_parameters) <= sizeof((struct inversion_settings
 
 /// How the linear equations are solved, in the order of `regularisations`.
 static enum status (*const solvers[])(const struct imc_system *, double, double *,
-                                      struct imc_solution *) = {imc_solve, imc_truncated,
-                                                                imc_votca};
+                                      struct imc_solution *) = {mf_imc_solve, mf_imc_truncated,
+                                                                mf_imc_votca};
 static const char *const regularisations[] = {"noise", "truncated", "votca", NULL};
 
 #define MEMBER(name)                                                                               \
@@ -32,7 +32,7 @@ static const struct field own_fields[] = {
 static const char *const columns[] = {INVERSION_COLUMNS, "regularisation[1]", "misfit[1]",
                                       "directions", NULL};
 
-enum status imc_step(const struct inversion *inversion, const struct imc_parameters *parameters,
+enum status mf_imc_step(const struct inversion *inversion, const struct imc_parameters *parameters,
                      double *step, double extra[3]) {
     const struct inverse_problem *problem = inversion->problem;
     const struct goal *pressure = &problem->goals.goal[GOAL_PRESSURE];
@@ -41,7 +41,7 @@ enum status imc_step(const struct inversion *inversion, const struct imc_paramet
     enum status status = STATUS_OK;
     struct imc_solution solution;
     double *x = NULL;
-    struct imc_system system = inversion_system(inversion);
+    struct imc_system system = mf_inversion_system(inversion);
     if (constrained) {
         system.constraint = inversion->pressure.slope;
         system.wanted = *pressure->value - inversion->pressure.value;
@@ -54,21 +54,21 @@ enum status imc_step(const struct inversion *inversion, const struct imc_paramet
     extra[1] = solution.misfit;
     extra[2] = solution.directions;
 done:
-    memory_free(x);
+    mf_memory_free(x);
     return status;
 }
 
 static enum status update(struct inversion *inversion, double *extra) {
-    return imc_step(inversion, (const void *)inversion->settings.own, inversion->step, extra);
+    return mf_imc_step(inversion, (const void *)inversion->settings.own, inversion->step, extra);
 }
 
-const struct inverse_method imc = {
+const struct inverse_method mf_imc = {
     .name = "imc",
     .summary = "inverse Monte Carlo; A. P. Lyubartsev and A. Laaksonen, Phys. Rev. E 52, 3730 "
                "(1995)",
-    .tables = (const struct field *const[]){inversion_fields, own_fields, NULL},
+    .tables = (const struct field *const[]){mf_inversion_fields, own_fields, NULL},
     .columns = columns,
     .update = update,
-    .create = inversion_create,
+    .create = mf_inversion_create,
     INVERSION_RECORD,
 };

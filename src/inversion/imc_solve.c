@@ -55,10 +55,10 @@ static enum status workspace_allocate(struct workspace *w, const struct imc_syst
     w->meet = gsl_vector_alloc(n);
     if (w->rows && w->factor && w->rhs && w->reflect && w->x && w->residual && w->meet)
         return STATUS_OK;
-    return status_fail(STATUS_NO_MEMORY, "no memory for %zu linear equations", n);
+    return mf_status_fail(STATUS_NO_MEMORY, "no memory for %zu linear equations", n);
 }
 
-void imc_solve_response(const struct imc_system *s, gsl_matrix *response) {
+void mf_imc_solve_response(const struct imc_system *s, gsl_matrix *response) {
     for (size_t a = 0; a < s->size; a++) {
         const double weight = 1 / sqrt(s->variance[a]);
         for (size_t b = 0; b < s->size; b++)
@@ -69,7 +69,7 @@ void imc_solve_response(const struct imc_system *s, gsl_matrix *response) {
 
 static void fill_equations(struct workspace *w, const struct imc_system *s) {
     gsl_matrix_view response = gsl_matrix_submatrix(w->rows, 0, 0, s->size, s->size);
-    imc_solve_response(s, &response.matrix);
+    mf_imc_solve_response(s, &response.matrix);
     for (size_t a = 0; a < s->size; a++)
         gsl_vector_set(w->rhs, a, 1 / sqrt(s->variance[a]) * s->excess[a]);
 }
@@ -86,7 +86,7 @@ static void fill_differences(gsl_matrix *rows, size_t begin, size_t end, double 
     gsl_matrix_set(rows, end - 2, end - 1, -4 * scale);
 }
 
-void imc_solve_prior(double spacing, const size_t *block, size_t blocks, gsl_matrix *rows) {
+void mf_imc_solve_prior(double spacing, const size_t *block, size_t blocks, gsl_matrix *rows) {
     const size_t n = rows->size2;
     const double scale = pow(smooth_length / spacing, 2);
     gsl_matrix_set_zero(rows);
@@ -107,7 +107,7 @@ static double square_rows(const gsl_matrix *rows, size_t begin, size_t end) {
     return sum;
 }
 
-double imc_solve_misfit(const struct imc_system *s, const double *x) {
+double mf_imc_solve_misfit(const struct imc_system *s, const double *x) {
     double sum = 0;
     for (size_t a = 0; a < s->size; a++) {
         double left = s->excess[a];
@@ -118,7 +118,7 @@ double imc_solve_misfit(const struct imc_system *s, const double *x) {
     return sum / (double)s->size;
 }
 
-void imc_solve_meet(const struct imc_system *s, const double *u, double *x) {
+void mf_imc_solve_meet(const struct imc_system *s, const double *u, double *x) {
     double missing = s->wanted, response = 0;
     for (size_t k = 0; k < s->size; k++) {
         missing -= s->constraint[k] * x[k];
@@ -131,7 +131,7 @@ void imc_solve_meet(const struct imc_system *s, const double *u, double *x) {
         x[k] += u[k] * missing / response;
 }
 
-double imc_solve_discrepancy(double least) {
+double mf_imc_solve_discrepancy(double least) {
     return fmax(1, least + noise_share);
 }
 
@@ -154,9 +154,9 @@ static double solve_at(struct workspace *w, double strength) {
     gsl_linalg_QR_lssolve(w->factor, w->reflect, w->rhs, w->x, w->residual);
     if (w->system->constraint) {
         find_meet(w);
-        imc_solve_meet(w->system, w->meet->data, w->x->data);
+        mf_imc_solve_meet(w->system, w->meet->data, w->x->data);
     }
-    return imc_solve_misfit(w->system, w->x->data);
+    return mf_imc_solve_misfit(w->system, w->x->data);
 }
 
 /// Largest strength whose misfit is within the noise, by bisection of its logarithm.
@@ -164,7 +164,7 @@ static double find_strength(struct workspace *w) {
     const size_t n = w->size;
     const double unit = square_rows(w->rows, 0, n) / square_rows(w->rows, n, 3 * n - 1);
     double low = -12, high = 6;
-    const double wanted = imc_solve_discrepancy(solve_at(w, unit * pow(10, low)));
+    const double wanted = mf_imc_solve_discrepancy(solve_at(w, unit * pow(10, low)));
     for (int k = 0; k < 40; k++) {
         const double middle = 0.5 * (low + high);
         if (solve_at(w, unit * pow(10, middle)) > wanted)
@@ -188,7 +188,7 @@ static double count_directions(struct workspace *w) {
     return trace;
 }
 
-enum status imc_solve(const struct imc_system *system, double strength, double *x,
+enum status mf_imc_solve(const struct imc_system *system, double strength, double *x,
                       struct imc_solution *solution) {
     enum status status = STATUS_OK;
     struct workspace w = {0};
@@ -196,7 +196,7 @@ enum status imc_solve(const struct imc_system *system, double strength, double *
     CHECK(workspace_allocate(&w, system));
     fill_equations(&w, system);
     gsl_matrix_view prior = gsl_matrix_submatrix(w.rows, n, 0, 2 * n - 1, n);
-    imc_solve_prior(system->spacing, system->block, system->blocks, &prior.matrix);
+    mf_imc_solve_prior(system->spacing, system->block, system->blocks, &prior.matrix);
     solution->strength = strength > 0 ? strength : find_strength(&w);
     solution->misfit = solve_at(&w, solution->strength);
     solution->directions = count_directions(&w);

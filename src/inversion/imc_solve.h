@@ -30,7 +30,7 @@ struct imc_solution {
 
 /// Change of the potential that removes the excess as far as it is more than noise:
 ///   minimise  Σ_a (excess_a − Σ_b C_ab x_b / k_B T)² / variance_a + α (|Dx|² + ρ|x|²)
-/// (Tikhonov) with D and ρ of imc_solve_prior, subject to the constraint if there is one. The
+/// (Tikhonov) with D and ρ of mf_imc_solve_prior, subject to the constraint if there is one. The
 /// strength α is the largest whose predicted excess is within the noise, χ² = size (discrepancy
 /// principle: V. A. Morozov, Soviet Math. Dokl. 7, 414 (1966)), unless `strength` > 0 gives it.
 /// Excess that no x removes, as where C is singular, is left: then χ² is what remains at the
@@ -39,7 +39,7 @@ struct imc_solution {
 /// amplified into the potential.
 /// @param[out] x  shape [size] [k_B T_0]
 /// Fails: NO_MEMORY. Tested: test_imc_solve.
-enum status imc_solve(const struct imc_system *system, double strength, double *x,
+enum status mf_imc_solve(const struct imc_system *system, double strength, double *x,
                       struct imc_solution *solution) MUST_USE;
 
 /// The step as VOTCA's csg_imc_solve takes it, for those who come from there:
@@ -48,37 +48,37 @@ enum status imc_solve(const struct imc_system *system, double strength, double *
 /// where eigenvalues of AᵀA + λ below 1e-12 are left out. The unit of λ is that of S⁴: what is
 /// right depends on the number of particles. Interactions of several kinds are blocks of one C. D.
 /// Rosenberger, M. Hanke and N. F. A. van der Vegt, Eur. Phys. J. Spec. Top. 225, 1323 (2016).
-/// Parameters and failures as imc_solve; `spacing` is not read. Tested: test_imc_votca.
-enum status imc_votca(const struct imc_system *system, double strength, double *x,
+/// Parameters and failures as mf_imc_solve; `spacing` is not read. Tested: test_imc_votca.
+enum status mf_imc_votca(const struct imc_system *system, double strength, double *x,
                       struct imc_solution *solution) MUST_USE;
 
 /// The step by truncated singular values of the whitened response B_ab = C_ab/(k_B T σ_a) = U s Vᵀ:
 ///   x = Σ_{k ≤ K} v_k (u_k · excess/σ) / s_k,
 /// each of which is determined within 1/s_k [k_B T_0]. K is the least whose predicted excess is
-/// within the noise, as the strength of imc_solve is the largest; `strength` > 0 keeps those with
+/// within the noise, as the strength of mf_imc_solve is the largest; `strength` > 0 keeps those with
 /// s_k > strength · s_1 instead. P. C. Hansen, BIT 27, 534 (1987). With the constraint, x meets it
 /// within the span of the v_k kept, of which there is then one at least.
-/// Parameters and failures as imc_solve; `spacing` is not read. Tested: test_imc_truncated.
-enum status imc_truncated(const struct imc_system *system, double strength, double *x,
+/// Parameters and failures as mf_imc_solve; `spacing` is not read. Tested: test_imc_truncated.
+enum status mf_imc_truncated(const struct imc_system *system, double strength, double *x,
                           struct imc_solution *solution) MUST_USE;
 
 /// The whitened response B_ab = C_ab/(k_B T σ_a), shape [size, size].
-void imc_solve_response(const struct imc_system *system, gsl_matrix *response);
+void mf_imc_solve_response(const struct imc_system *system, gsl_matrix *response);
 
 /// χ² by bin of what x leaves.
-double imc_solve_misfit(const struct imc_system *system, const double *x);
+double mf_imc_solve_misfit(const struct imc_system *system, const double *x);
 
 /// Meet the constraint: x ← x + u (wanted − p·x)/(p·u), which is the constrained minimum if x is
 /// the free one and u = H⁻¹ p, H the matrix of the normal equations.
-void imc_solve_meet(const struct imc_system *system, const double *u, double *x);
+void mf_imc_solve_meet(const struct imc_system *system, const double *u, double *x);
 
 /// What is left in a discrepancy principle: 1, or more where not even the weakest regularisation,
 /// which leaves `least`, comes so far. To follow the excess down to that would make the potential
 /// large in directions that do not matter.
-double imc_solve_discrepancy(double least);
+double mf_imc_solve_discrepancy(double least);
 
 /// Rows of the smoothness prior in `rows`, shape [2 size − 1, size]: D, the second difference over
 /// a tenth of λ, and sqrt(ρ). The curve ends at 0 half a spacing beyond its last bin, at the
 /// cutoff, so that D of the ramp 1 − r/r_c is 0 and the ramp is free but for ρ; below its first bin
 /// it is free: no row reaches there. Each of several curves, `block` as in the system, has its own.
-void imc_solve_prior(double spacing, const size_t *block, size_t blocks, gsl_matrix *rows);
+void mf_imc_solve_prior(double spacing, const size_t *block, size_t blocks, gsl_matrix *rows);

@@ -20,8 +20,8 @@ static void workspace_free(struct workspace *w) {
     gsl_matrix_free(w->v);
     gsl_vector_free(w->values);
     gsl_vector_free(w->weight);
-    memory_free(w->free);
-    memory_free(w->meet);
+    mf_memory_free(w->free);
+    mf_memory_free(w->meet);
 }
 
 static enum status workspace_allocate(struct workspace *w, size_t n) {
@@ -38,7 +38,7 @@ done:
 }
 
 static void decompose(struct workspace *w, const struct imc_system *s) {
-    imc_solve_response(s, w->u);
+    mf_imc_solve_response(s, w->u);
     gsl_linalg_SV_decomp(w->u, w->v, w->values, w->weight);
     for (size_t k = 0; k < s->size; k++) {
         double product = 0;
@@ -75,8 +75,8 @@ static double finish(const struct workspace *w, const struct imc_system *s, doub
     for (size_t a = 0; a < s->size; a++)
         x[a] = w->free[a];
     if (s->constraint)
-        imc_solve_meet(s, w->meet, x);
-    return imc_solve_misfit(s, x);
+        mf_imc_solve_meet(s, w->meet, x);
+    return mf_imc_solve_misfit(s, x);
 }
 
 /// By the first directions, `most` or as many of them as bring the misfit down to `enough`.
@@ -95,7 +95,7 @@ static void solve(struct workspace *w, const struct imc_system *s, size_t most, 
         count > 0 ? gsl_vector_get(w->values, count - 1) / gsl_vector_get(w->values, 0) : 1;
 }
 
-enum status imc_truncated(const struct imc_system *system, double strength, double *x,
+enum status mf_imc_truncated(const struct imc_system *system, double strength, double *x,
                           struct imc_solution *solution) {
     enum status status = STATUS_OK;
     struct workspace w = {0};
@@ -106,7 +106,7 @@ enum status imc_truncated(const struct imc_system *system, double strength, doub
     if (strength > 0)
         solution->strength = strength;
     else
-        solve(&w, system, most, imc_solve_discrepancy(solution->misfit), x, solution);
+        solve(&w, system, most, mf_imc_solve_discrepancy(solution->misfit), x, solution);
 done:
     workspace_free(&w);
     return status;

@@ -37,7 +37,7 @@ static enum status workspace_allocate(struct workspace *w, size_t n) {
     w->share = gsl_vector_alloc(n);
     if (w->u && w->v && w->inverse && w->values && w->work && w->share)
         return STATUS_OK;
-    return status_fail(STATUS_NO_MEMORY, "no memory for %zu linear equations", n);
+    return mf_status_fail(STATUS_NO_MEMORY, "no memory for %zu linear equations", n);
 }
 
 static void invert(struct workspace *w, const struct imc_system *s, double strength) {
@@ -70,13 +70,13 @@ static enum status meet(const struct workspace *w, const struct imc_system *syst
         for (size_t a = 0; share > 0 && a < n; a++)
             u[a] += gsl_matrix_get(w->v, a, k) * product / share;
     }
-    imc_solve_meet(system, u, x);
+    mf_imc_solve_meet(system, u, x);
 done:
-    memory_free(u);
+    mf_memory_free(u);
     return status;
 }
 
-enum status imc_votca(const struct imc_system *system, double strength, double *x,
+enum status mf_imc_votca(const struct imc_system *system, double strength, double *x,
                       struct imc_solution *solution) {
     enum status status = STATUS_OK;
     struct workspace w = {0};
@@ -91,7 +91,7 @@ enum status imc_votca(const struct imc_system *system, double strength, double *
     }
     if (system->constraint)
         CHECK(meet(&w, system, x));
-    solution->misfit = imc_solve_misfit(system, x);
+    solution->misfit = mf_imc_solve_misfit(system, x);
 done:
     workspace_free(&w);
     return status;

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-const double inversion_least_damping = 1.0 / 64;
+const double mf_inversion_least_damping = 1.0 / 64;
 
 /// Largest change of the potential in one iteration where the target is well known [k_B T_0].
 static const double largest_change = 1;
@@ -18,11 +18,11 @@ enum { MOST_DOUBLINGS = 7 };
 /// Replicas that are placed anew are equilibrated so many times as long.
 enum { ANEW_EQUILIBRATION = 5 };
 
-double inversion_g(const struct inversion *inversion, size_t bin) {
+double mf_inversion_g(const struct inversion *inversion, size_t bin) {
     return inversion->replicas.counts.mean[bin] / inversion->ideal[bin];
 }
 
-double inversion_target_g(const struct inversion *inversion, size_t bin) {
+double mf_inversion_target_g(const struct inversion *inversion, size_t bin) {
     return inversion->target_counts[bin] / inversion->ideal[bin];
 }
 
@@ -31,20 +31,20 @@ static void assess_rdf(struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
     const struct comoments *counts = &inversion->replicas.counts;
     inversion->inefficiency =
-        replicas_inefficiency(&inversion->replicas, inversion->ideal, grid->known_bin, grid->known);
+        mf_replicas_inefficiency(&inversion->replicas, inversion->ideal, grid->known_bin, grid->known);
     inversion->disagreement =
-        replicas_disagreement(&inversion->replicas, inversion->ideal, grid->known_bin, grid->known);
+        mf_replicas_disagreement(&inversion->replicas, inversion->ideal, grid->known_bin, grid->known);
     const double independent = counts->count / inversion->inefficiency;
     double sum = 0, own = 0, both = 0;
     for (size_t n = 0; n < inversion->bins; n++)
-        sum += pow(inversion_g(inversion, n) - inversion_target_g(inversion, n), 2);
+        sum += pow(mf_inversion_g(inversion, n) - mf_inversion_target_g(inversion, n), 2);
     for (size_t a = 0; a < grid->known; a++) {
         const size_t bin = grid->known_bin[a];
         const double ideal = inversion->ideal[bin];
         const double target_error = ideal * inversion->problem->goals.goal[GOAL_RDF].error[bin];
         // An empty bin still has the uncertainty of one pair.
         const double sampled =
-            fmax(comoments_covariance(counts, bin, bin), 1 / counts->count) / independent;
+            fmax(mf_comoments_covariance(counts, bin, bin), 1 / counts->count) / independent;
         inversion->excess[a] = counts->mean[bin] - inversion->target_counts[bin];
         inversion->variance[a] = sampled + target_error * target_error;
         own += sampled / (ideal * ideal);
@@ -56,7 +56,7 @@ static void assess_rdf(struct inversion *inversion) {
     inversion->own_noise = sqrt(own / bins);
 }
 
-struct imc_system inversion_system(const struct inversion *inversion) {
+struct imc_system mf_inversion_system(const struct inversion *inversion) {
     return (struct imc_system){.size = inversion->grid.known,
                                .block = inversion->grid.known_of,
                                .blocks = inversion->grid.pairs,
@@ -73,15 +73,15 @@ static enum status assess_response(struct inversion *inversion) {
     const struct goals *goals = &inversion->problem->goals;
     const struct potential_grid *grid = &inversion->grid;
     const struct comoments *counts = &inversion->replicas.counts;
-    inversion_pressure_measure(inversion);
+    mf_inversion_pressure_measure(inversion);
     if (goals_ask(goals, GOAL_PRESSURE))
-        inversion->distance[GOAL_PRESSURE] = goals_distance(
+        inversion->distance[GOAL_PRESSURE] = mf_goals_distance(
             &goals->goal[GOAL_PRESSURE], &inversion->pressure.value, &inversion->pressure.error);
     for (size_t a = 0; a < grid->known; a++)
         for (size_t b = 0; b < grid->known; b++)
             inversion->covariance[a * grid->known + b] =
-                comoments_covariance(counts, grid->known_bin[a], grid->known_bin[b]);
-    return inversion_pressure_slopes(inversion);
+                mf_comoments_covariance(counts, grid->known_bin[a], grid->known_bin[b]);
+    return mf_inversion_pressure_slopes(inversion);
 }
 
 /// phi = best + damping · best_step, with a bound where the target is well known.
@@ -89,14 +89,14 @@ static void take_step(struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
     double largest = 0;
     for (size_t a = 0; a < grid->known; a++)
-        if (potential_grid_well_known(inversion->problem, grid->known_bin[a]))
+        if (mf_potential_grid_well_known(inversion->problem, grid->known_bin[a]))
             largest = fmax(largest, fabs(inversion->best_step[grid->known_point[a]]));
     const double share = fmin(inversion->progress.damping, largest_change / fmax(largest, 1e-300));
     for (size_t a = 0; a < grid->known; a++) {
         const size_t point = grid->known_point[a];
         inversion->phi[point] = inversion->best[point] + share * inversion->best_step[point];
     }
-    potential_grid_complete(grid, inversion->phi);
+    mf_potential_grid_complete(grid, inversion->phi);
 }
 
 /// Keep the present potential as the best, with the steps that lead on from it.
@@ -111,7 +111,7 @@ static enum status keep(struct inversion *inversion) {
     memcpy(progress->best, inversion->distance, sizeof progress->best);
     progress->best_own_noise = inversion->own_noise;
     progress->best_disagreement = inversion->disagreement;
-    return inversion_band_find(inversion);
+    return mf_inversion_band_find(inversion);
 }
 
 /// The sweeps and least samples of this iteration.
@@ -142,17 +142,17 @@ static enum status sample(struct inversion *inversion, const struct inverse_list
     const struct inverse_progress progress = {
         .iteration = state->iteration,
         .iterations = (uint32_t)inversion->settings.common.iterations,
-        .best = goals_error(&inversion->problem->goals, state->best),
+        .best = mf_goals_error(&inversion->problem->goals, state->best),
         .least = NAN,
         .mean = NAN,
     };
-    table_clear(&inversion->table);
-    TRY(potential_grid_table(&inversion->grid, inversion->phi, &inversion->table));
+    mf_table_clear(&inversion->table);
+    TRY(mf_potential_grid_table(&inversion->grid, inversion->phi, &inversion->table));
     state->evaluations += replicas;
-    TRY(replicas_run(&inversion->replicas, &now, threads, &progress, listener));
+    TRY(mf_replicas_run(&inversion->replicas, &now, threads, &progress, listener));
     assess_rdf(inversion);
     for (int n = 0; needs_samples(inversion, n); n++) {
-        TRY(replicas_double(&inversion->replicas, &now, threads, &progress, listener));
+        TRY(mf_replicas_double(&inversion->replicas, &now, threads, &progress, listener));
         assess_rdf(inversion);
     }
     state->sweeps +=
@@ -183,7 +183,7 @@ static void go_back(struct inversion *inversion) {
     progress->damping = inversion->settings.common.damping;
 }
 
-bool inversion_keeps(struct inversion *inversion) {
+bool mf_inversion_keeps(struct inversion *inversion) {
     struct inversion_progress *progress = &inversion->progress;
     const double now = count_noises(inversion, inversion->distance);
     const double least =
@@ -199,7 +199,7 @@ static enum status judge(struct inversion *inversion, bool *kept) {
     struct inversion_progress *progress = &inversion->progress;
     const double error = inversion->distance[GOAL_RDF].rms;
     const bool start = isinf(progress->best[GOAL_RDF].rms);
-    *kept = inversion_keeps(inversion);
+    *kept = mf_inversion_keeps(inversion);
     progress->anew = !*kept;
     if (start)
         progress->first_error = progress->second_error = error;
@@ -217,7 +217,7 @@ static enum status judge(struct inversion *inversion, bool *kept) {
 /// The next potential to be sampled: the other start, or a step from the best.
 static enum status go_on(struct inversion *inversion, bool kept) {
     struct inversion_progress *progress = &inversion->progress;
-    if (!inversion_start_is_poor(inversion, kept)) {
+    if (!mf_inversion_start_is_poor(inversion, kept)) {
         take_step(inversion);
         return STATUS_OK;
     }
@@ -225,21 +225,21 @@ static enum status go_on(struct inversion *inversion, bool kept) {
     progress->drift.count = 0;
     progress->damping = inversion->settings.common.damping;
     progress->anew = true;
-    return inversion_start_again(inversion);
+    return mf_inversion_start_again(inversion);
 }
 
 /// Whether the present potential meets all targets as far as their noise lets see.
 static bool meets_targets(const struct inversion *inversion) {
     for (int kind = 0; kind < GOALS; kind++)
         if (goals_ask(&inversion->problem->goals, kind) &&
-            inversion->distance[kind].rms > inverse_noise_margin * inversion->distance[kind].noise)
+            inversion->distance[kind].rms > mf_inverse_noise_margin * inversion->distance[kind].noise)
             return false;
     return true;
 }
 
-bool inversion_runs_away(const struct inversion *inversion) {
+bool mf_inversion_runs_away(const struct inversion *inversion) {
     return !goals_ask(&inversion->problem->goals, GOAL_PRESSURE) &&
-           inversion_drifts(&inversion->progress.drift, inversion->problem->scene.temperature);
+           mf_inversion_drifts(&inversion->progress.drift, inversion->problem->scene.temperature);
 }
 
 /// Amplitude A of the present potential's ramp over the well-known bins.
@@ -248,8 +248,8 @@ static double find_ramp(const struct inversion *inversion) {
     double product = 0, squares = 0;
     for (size_t a = 0; a < grid->known; a++) {
         const size_t point = grid->known_point[a];
-        const double ramp = potential_grid_ramp(grid, point);
-        if (!potential_grid_well_known(inversion->problem, grid->known_bin[a]))
+        const double ramp = mf_potential_grid_ramp(grid, point);
+        if (!mf_potential_grid_well_known(inversion->problem, grid->known_bin[a]))
             continue;
         product += ramp * inversion->phi[point];
         squares += ramp * ramp;
@@ -261,13 +261,13 @@ static void describe(const struct inversion *inversion, const double *own, bool 
                      struct inverse_step *step) {
     const struct inversion_progress *progress = &inversion->progress;
     const struct inversion_parameters *p = &inversion->settings.common;
-    const bool stuck = progress->damping < inversion_least_damping * p->damping;
+    const bool stuck = progress->damping < mf_inversion_least_damping * p->damping;
     *step = (struct inverse_step){
         .iteration = progress->iteration,
         .evaluations = progress->evaluations,
         .engine_steps = progress->sweeps,
-        .error = goals_error(&inversion->problem->goals, progress->best),
-        .noise = goals_noise(&inversion->problem->goals, progress->best),
+        .error = mf_goals_error(&inversion->problem->goals, progress->best),
+        .noise = mf_goals_noise(&inversion->problem->goals, progress->best),
         .extra = {progress->damping, inversion->own_noise, inversion->disagreement,
                   inversion->distance[GOAL_RDF].rms, inversion->pressure.value,
                   inversion->pressure.error},
@@ -277,15 +277,15 @@ static void describe(const struct inversion *inversion, const double *own, bool 
         .without_ramp = inversion->band.without_ramp,
         .ramp = inversion->band.ramp,
         .converged = converged,
-        .finished = converged || stuck || inversion_runs_away(inversion) ||
+        .finished = converged || stuck || mf_inversion_runs_away(inversion) ||
                     progress->iteration + 1 >= p->iterations,
     };
     memcpy(step->extra + INVERSION_SHARED_COLUMNS, own, INVERSION_OWN_COLUMNS * sizeof *own);
     if (step->finished && !converged)
-        inversion_reason_tell(inversion, step->reason);
+        mf_inversion_reason_tell(inversion, step->reason);
 }
 
-enum status inversion_iterate(void *memory, struct inverse_step *step,
+enum status mf_inversion_iterate(void *memory, struct inverse_step *step,
                               const struct inverse_listener *listener) {
     struct inversion *inversion = memory;
     struct inversion_progress *progress = &inversion->progress;
@@ -295,7 +295,7 @@ enum status inversion_iterate(void *memory, struct inverse_step *step,
     TRY(assess_response(inversion));
     inversion->other_step[inversion->grid.known_point[0]] = NAN;
     TRY(inversion->method->update(inversion, own));
-    inversion_drift_add(&progress->drift, find_ramp(inversion), inversion->distance[GOAL_RDF].rms);
+    mf_inversion_drift_add(&progress->drift, find_ramp(inversion), inversion->distance[GOAL_RDF].rms);
     TRY(judge(inversion, &kept));
     const bool precise = inversion->own_noise <= inversion->settings.common.precision;
     describe(inversion, own, kept && precise && meets_targets(inversion), step);

@@ -8,7 +8,7 @@
 /// until their noise is small against the error, or as small as was asked for: then the fit has
 /// converged when all errors are within their noise.
 ///
-/// It starts from the hypernetted-chain inversion (hnc_closure): for water the error of g is then a
+/// It starts from the hypernetted-chain inversion (mf_hnc_closure): for water the error of g is then a
 /// quarter of that of −k_B T ln g. Where that is far off and puts the liquid under tension, or the
 /// first step from there makes it worse, as with targets that end before their oscillations do, it
 /// starts again from −k_B T ln g. Replicas begin from disorder, and again after a potential that
@@ -45,7 +45,7 @@ struct inversion_settings {
     double own[INVERSION_OWN];
 };
 
-extern const struct field inversion_fields[];
+extern const struct field mf_inversion_fields[];
 
 struct inversion {
     struct inversion_settings settings;
@@ -61,7 +61,7 @@ struct inversion {
     double *excess, *variance;            ///< of S in the known bins, shape [known]
     double *covariance;                   ///< C of S in the known bins, shape [known, known]
     double inefficiency;                  ///< samples that count as one independent
-    double disagreement;                  ///< of the replicas, replicas_disagreement
+    double disagreement;                  ///< of the replicas, mf_replicas_disagreement
     struct goal_distance distance[GOALS]; ///< of the samples from what is asked for
     double own_noise;                     ///< of g by the samples alone, rms
     struct inversion_pressure pressure;
@@ -86,23 +86,23 @@ struct inversion {
 
 /// @name For the records of the methods: struct inverse_method has a word on each.
 
-struct inverse_sampling inversion_sampling(const void *parameters);
-uint32_t inversion_most_iterations(const struct inverse_method *method,
+struct inverse_sampling mf_inversion_sampling(const void *parameters);
+uint32_t mf_inversion_most_iterations(const struct inverse_method *method,
                                    const struct inverse_problem *problem, const void *parameters);
-enum status inversion_create(void *inversion, const struct inverse_method *method,
+enum status mf_inversion_create(void *inversion, const struct inverse_method *method,
                              const struct inverse_problem *problem,
                              const void *parameters) MUST_USE;
-void inversion_destroy(void *inversion);
-enum status inversion_iterate(void *inversion, struct inverse_step *step,
+void mf_inversion_destroy(void *inversion);
+enum status mf_inversion_iterate(void *inversion, struct inverse_step *step,
                               const struct inverse_listener *listener) MUST_USE;
-size_t inversion_spans(void *inversion, struct memory_span *span);
+size_t mf_inversion_spans(void *inversion, struct memory_span *span);
 
 /// What the records of the inversions have in common.
 #define INVERSION_RECORD                                                                           \
     .parameters_size = sizeof(struct inversion_settings), .state_size = sizeof(struct inversion),  \
-    .fits = {[UNKNOWN_POTENTIAL] = true}, .most_iterations = inversion_most_iterations,            \
-    .sampling = inversion_sampling, .destroy = inversion_destroy, .iterate = inversion_iterate,    \
-    .spans = inversion_spans
+    .fits = {[UNKNOWN_POTENTIAL] = true}, .most_iterations = mf_inversion_most_iterations,            \
+    .sampling = mf_inversion_sampling, .destroy = mf_inversion_destroy, .iterate = mf_inversion_iterate,    \
+    .spans = mf_inversion_spans
 
 /// The first of a method's columns; the others may be its own.
 #define INVERSION_COLUMNS                                                                          \
@@ -110,54 +110,54 @@ size_t inversion_spans(void *inversion, struct memory_span *span);
 enum { INVERSION_SHARED_COLUMNS = 6, INVERSION_OWN_COLUMNS = INVERSE_EXTRA - 6 };
 
 /// g of the samples in a bin, and of the target in the same system.
-double inversion_g(const struct inversion *inversion, size_t bin);
-double inversion_target_g(const struct inversion *inversion, size_t bin);
+double mf_inversion_g(const struct inversion *inversion, size_t bin);
+double mf_inversion_target_g(const struct inversion *inversion, size_t bin);
 
 /// The linear equations of the present samples, for g(r) alone.
-struct imc_system inversion_system(const struct inversion *inversion);
+struct imc_system mf_inversion_system(const struct inversion *inversion);
 
 /// Whether the present potential is kept: unless it is farther from the targets than the nearest so
 /// far, by two of the present noises. The nearest, not the last: samples are no more precise than a
 /// third of the error, so that each could be 1.67 times as far as the one before, and so on.
 /// Remembers the nearest. Tested: test_inversion_keeps.
-bool inversion_keeps(struct inversion *inversion);
+bool mf_inversion_keeps(struct inversion *inversion);
 
 /// Fill phi with the start of the fit: the problem's own, the hypernetted chain's, or −k_B T ln g;
-/// what is made of the target is as smooth as its errors allow (imc_solve), since noise of bins
+/// what is made of the target is as smooth as its errors allow (mf_imc_solve), since noise of bins
 /// beside one another is a force. Fails: NO_MEMORY. Tested: test_inversion_start.
-enum status inversion_start(struct inversion *inversion) MUST_USE;
+enum status mf_inversion_start(struct inversion *inversion) MUST_USE;
 
 /// Whether the start was the hypernetted chain's and leads nowhere, after an iteration whose
 /// potential was kept or not.
-bool inversion_start_is_poor(const struct inversion *inversion, bool kept);
+bool mf_inversion_start_is_poor(const struct inversion *inversion, bool kept);
 
-/// Fill phi with −k_B T ln g. As inversion_start.
-enum status inversion_start_again(struct inversion *inversion) MUST_USE;
+/// Fill phi with −k_B T ln g. As mf_inversion_start.
+enum status mf_inversion_start_again(struct inversion *inversion) MUST_USE;
 
 /// Why a fit that has finished did not converge, in words.
-void inversion_reason_tell(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]);
+void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]);
 
 /// Whether the ramp of the potential grows without end; never with a pressure, which holds it.
-bool inversion_runs_away(const struct inversion *inversion);
+bool mf_inversion_runs_away(const struct inversion *inversion);
 
 /// Damping below this part of the first: the step leads nowhere, and the fit ends.
-extern const double inversion_least_damping;
+extern const double mf_inversion_least_damping;
 
 /// k_B T ln(g/g*) of the known bins.
-void ibi_logarithms(const struct inversion *inversion, double *step);
+void mf_ibi_logarithms(const struct inversion *inversion, double *step);
 
 /// @name The steps of the methods, for the known bins; each meets the pressure if it is asked for.
 
 /// The logarithms.
-void ibi_step(const struct inversion *inversion, double *step);
+void mf_ibi_step(const struct inversion *inversion, double *step);
 
 /// The same with the slope of the hypernetted chain. Fails: NO_MEMORY.
-enum status hnc_step(const struct inversion *inversion, double ridge, double *step) MUST_USE;
+enum status mf_hnc_step(const struct inversion *inversion, double ridge, double *step) MUST_USE;
 
 /// The regularised Newton step; `extra` are strength, misfit and directions. Fails: NO_MEMORY.
 struct imc_parameters {
     double strength;
     int regularisation;
 };
-enum status imc_step(const struct inversion *inversion, const struct imc_parameters *parameters,
+enum status mf_imc_step(const struct inversion *inversion, const struct imc_parameters *parameters,
                      double *step, double extra[3]) MUST_USE;

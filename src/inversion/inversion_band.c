@@ -6,7 +6,7 @@
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 
-enum status inversion_band_init(struct inversion_band *band, size_t known, size_t points) {
+enum status mf_inversion_band_init(struct inversion_band *band, size_t known, size_t points) {
     enum status status = STATUS_OK;
     *band = (struct inversion_band){0};
     NEW_ARRAY(band->covariance, known * known);
@@ -17,15 +17,15 @@ done:
     return status;
 }
 
-void inversion_band_clear(struct inversion_band *band) {
-    memory_free(band->covariance);
-    memory_free(band->error);
-    memory_free(band->without_ramp);
-    memory_free(band->flat);
+void mf_inversion_band_clear(struct inversion_band *band) {
+    mf_memory_free(band->covariance);
+    mf_memory_free(band->error);
+    mf_memory_free(band->without_ramp);
+    mf_memory_free(band->flat);
     *band = (struct inversion_band){0};
 }
 
-size_t inversion_band_spans(struct inversion_band *band, size_t points, struct memory_span *span) {
+size_t mf_inversion_band_spans(struct inversion_band *band, size_t points, struct memory_span *span) {
     span[0] = (struct memory_span){band->error, points * sizeof(double)};
     span[1] = (struct memory_span){band->without_ramp, points * sizeof(double)};
     span[2] = (struct memory_span){band->flat, INVERSE_FLAT * points * sizeof(double)};
@@ -33,7 +33,7 @@ size_t inversion_band_spans(struct inversion_band *band, size_t points, struct m
     return INVERSION_BAND_SPANS;
 }
 
-enum status inversion_band_covariance(const struct imc_system *system, double *covariance,
+enum status mf_inversion_band_covariance(const struct imc_system *system, double *covariance,
                                       double *directions) {
     enum status status = STATUS_OK;
     const size_t size = system->size;
@@ -42,8 +42,8 @@ enum status inversion_band_covariance(const struct imc_system *system, double *c
     gsl_matrix *response = gsl_matrix_alloc(size, size), *known = gsl_matrix_calloc(size, size);
     gsl_matrix_view to = gsl_matrix_view_array(covariance, size, size);
     CHECK(prior && response && known ? STATUS_OK : STATUS_NO_MEMORY);
-    imc_solve_response(system, response);
-    imc_solve_prior(system->spacing, system->block, system->blocks, prior);
+    mf_imc_solve_response(system, response);
+    mf_imc_solve_prior(system->spacing, system->block, system->blocks, prior);
     gsl_blas_dsyrk(CblasLower, CblasTrans, 1, response, 0, known);
     gsl_matrix_memcpy(&to.matrix, known);
     gsl_blas_dsyrk(CblasLower, CblasTrans, unit, prior, 1, &to.matrix);
@@ -69,8 +69,8 @@ static void weigh_ramp(const struct inversion *inversion, double *weight) {
     const struct potential_grid *grid = &inversion->grid;
     double squares = 0;
     for (size_t a = 0; a < grid->known; a++) {
-        const bool known = potential_grid_well_known(inversion->problem, grid->known_bin[a]);
-        weight[a] = known ? potential_grid_ramp(grid, grid->known_point[a]) : 0;
+        const bool known = mf_potential_grid_well_known(inversion->problem, grid->known_bin[a]);
+        weight[a] = known ? mf_potential_grid_ramp(grid, grid->known_point[a]) : 0;
         squares += weight[a] * weight[a];
     }
     for (size_t a = 0; a < grid->known; a++)
@@ -117,7 +117,7 @@ static void find_errors(struct inversion *inversion, const double *weight, doubl
             sqrt(fmax(0, variance - scratch[a] * scratch[a] / ramp_variance));
     }
     band->ramp.error = sqrt(ramp_variance);
-    band->ramp.pressure = inversion_pressure_ramp_slope(inversion);
+    band->ramp.pressure = mf_inversion_pressure_ramp_slope(inversion);
     band->ramp.bins = (double)n;
 }
 
@@ -133,8 +133,8 @@ static enum status find_flat(struct inversion *inversion) {
     CHECK(part && vectors && values && work ? STATUS_OK : STATUS_NO_MEMORY);
     for (size_t a = 0; a < n; a++)
         for (size_t b = 0; b < n; b++)
-            if (potential_grid_well_known(inversion->problem, grid->known_bin[a]) &&
-                potential_grid_well_known(inversion->problem, grid->known_bin[b]))
+            if (mf_potential_grid_well_known(inversion->problem, grid->known_bin[a]) &&
+                mf_potential_grid_well_known(inversion->problem, grid->known_bin[b]))
                 gsl_matrix_set(part, a, b, band->covariance[a * n + b]);
     gsl_eigen_symmv(part, values, vectors, work);
     gsl_eigen_symmv_sort(values, vectors, GSL_EIGEN_SORT_VAL_DESC);
@@ -142,7 +142,7 @@ static enum status find_flat(struct inversion *inversion) {
         for (size_t a = 0; a < n; a++) {
             double sum = 0;
             for (size_t b = 0; b < n; b++)
-                if (potential_grid_well_known(inversion->problem, grid->known_bin[b]))
+                if (mf_potential_grid_well_known(inversion->problem, grid->known_bin[b]))
                     sum += band->covariance[a * n + b] * gsl_matrix_get(vectors, b, k);
             band->flat[k * grid->points + grid->known_point[a]] =
                 sum / sqrt(gsl_vector_get(values, k));
@@ -159,12 +159,12 @@ done:
 /// R. T. Birge, Phys. Rev. 40, 207 (1932).
 static void find_variance(const struct imc_system *system, const double *nothing,
                           double *variance) {
-    const double chi2 = fmax(1, imc_solve_misfit(system, nothing));
+    const double chi2 = fmax(1, mf_imc_solve_misfit(system, nothing));
     for (size_t a = 0; a < system->size; a++)
         variance[a] = chi2 * system->variance[a];
 }
 
-enum status inversion_band_find(struct inversion *inversion) {
+enum status mf_inversion_band_find(struct inversion *inversion) {
     enum status status = STATUS_OK;
     const struct potential_grid *grid = &inversion->grid;
     struct inversion_band *band = &inversion->band;
@@ -172,18 +172,18 @@ enum status inversion_band_find(struct inversion *inversion) {
     NEW_ARRAY(weight, grid->known);
     NEW_ARRAY(scratch, grid->known);
     NEW_ARRAY(variance, grid->known);
-    struct imc_system system = inversion_system(inversion);
+    struct imc_system system = mf_inversion_system(inversion);
     find_variance(&system, scratch, variance);
     system.variance = variance;
-    CHECK(inversion_band_covariance(&system, band->covariance, &band->ramp.directions));
+    CHECK(mf_inversion_band_covariance(&system, band->covariance, &band->ramp.directions));
     add_pressure(inversion, scratch);
     weigh_ramp(inversion, weight);
     find_errors(inversion, weight, scratch);
     if (!isnan(band->covariance[0]))
         CHECK(find_flat(inversion));
 done:
-    memory_free(weight);
-    memory_free(scratch);
-    memory_free(variance);
+    mf_memory_free(weight);
+    mf_memory_free(scratch);
+    mf_memory_free(variance);
     return status;
 }

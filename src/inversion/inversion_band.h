@@ -3,7 +3,7 @@
 ///
 /// The excess of S, with the variances σ_a² by target and samples, determines the potential by
 ///   F = Bᵀ B,   B_ab = C_ab/(σ_a k_B T),
-/// as in imc_solve, whatever step led there. What the data leave open is held by the smoothness
+/// as in mf_imc_solve, whatever step led there. What the data leave open is held by the smoothness
 /// prior there with the weight 1/(k_B T)²: a bend by k_B T within a tenth of λ, or ten k_B T in
 /// all, is as wide as one standard error. The covariance of Φ is (F + prior)⁻¹.
 ///
@@ -40,17 +40,17 @@ struct inversion_band {
 /// @param[out] covariance  shape [size, size]
 /// @param[out] directions  that the data determine: trace of F (F + prior)⁻¹
 /// Fails: NO_MEMORY. Tested: test_inversion_band.
-enum status inversion_band_covariance(const struct imc_system *system, double *covariance,
+enum status mf_inversion_band_covariance(const struct imc_system *system, double *covariance,
                                       double *directions) MUST_USE;
 
-enum status inversion_band_init(struct inversion_band *band, size_t known, size_t points) MUST_USE;
-void inversion_band_clear(struct inversion_band *band);
+enum status mf_inversion_band_init(struct inversion_band *band, size_t known, size_t points) MUST_USE;
+void mf_inversion_band_clear(struct inversion_band *band);
 
 /// Fill the band of the present potential. Ramp and flat directions are those of the bins that the
 /// target knows well: A is the best ramp over them, and a flat direction is what the whole curve
 /// does, on average, when a principal component of them is off by one standard error.
 /// Fails: NO_MEMORY.
-enum status inversion_band_find(struct inversion *inversion) MUST_USE;
+enum status mf_inversion_band_find(struct inversion *inversion) MUST_USE;
 
 enum { INVERSION_BAND_SPANS = 4 };
-size_t inversion_band_spans(struct inversion_band *band, size_t points, struct memory_span *span);
+size_t mf_inversion_band_spans(struct inversion_band *band, size_t points, struct memory_span *span);

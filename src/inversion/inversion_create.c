@@ -10,10 +10,10 @@
 static const char *const starts[] = {"auto", "mean-force", NULL};
 
 #define MEMBER(name) .offset = offsetof(struct inversion_settings, common.name)
-const struct field inversion_fields[] = {
+const struct field mf_inversion_fields[] = {
     {"particles", FIELD_INTEGER, MEMBER(particles), .initial = 0, .minimum = 0, .maximum = 1e7,
      .unit = "", .help = "of the Monte Carlo system, at the scene's density; 0 means the scene's"},
-    {"sampler", FIELD_CHOICE, MEMBER(sampler), .choices = sampler_kinds,
+    {"sampler", FIELD_CHOICE, MEMBER(sampler), .choices = mf_sampler_kinds,
      .initial = SAMPLER_MONTE_CARLO, .unit = "",
      .help = "single moves, or short trajectories of all particles"},
     {"replicas", FIELD_INTEGER, MEMBER(replicas), .initial = 8, .minimum = 2,
@@ -42,30 +42,30 @@ const struct field inversion_fields[] = {
     FIELD_END,
 };
 
-struct inverse_sampling inversion_sampling(const void *parameters) {
+struct inverse_sampling mf_inversion_sampling(const void *parameters) {
     (void)parameters;
     return (struct inverse_sampling){0};
 }
 
-uint32_t inversion_most_iterations(const struct inverse_method *method,
+uint32_t mf_inversion_most_iterations(const struct inverse_method *method,
                                    const struct inverse_problem *problem, const void *parameters) {
     (void)method, (void)problem;
     return (uint32_t)((const struct inversion_settings *)parameters)->common.iterations;
 }
 
-void inversion_destroy(void *memory) {
+void mf_inversion_destroy(void *memory) {
     struct inversion *inversion = memory;
-    replicas_clear(&inversion->replicas);
-    table_clear(&inversion->table);
-    potential_grid_clear(&inversion->grid);
-    inversion_band_clear(&inversion->band);
+    mf_replicas_clear(&inversion->replicas);
+    mf_table_clear(&inversion->table);
+    mf_potential_grid_clear(&inversion->grid);
+    mf_inversion_band_clear(&inversion->band);
     double *arrays[] = {inversion->ideal,      inversion->target_counts, inversion->excess,
                         inversion->variance,   inversion->covariance,    inversion->pressure.slope,
                         inversion->phi,        inversion->step,          inversion->other_step,
                         inversion->best,       inversion->best_step,     inversion->best_other,
                         inversion->best_counts};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
-        memory_free(arrays[k]);
+        mf_memory_free(arrays[k]);
 }
 
 static enum status allocate(struct inversion *inversion) {
@@ -85,7 +85,7 @@ static enum status allocate(struct inversion *inversion) {
     NEW_ARRAY(inversion->best_step, points);
     NEW_ARRAY(inversion->best_other, points);
     NEW_ARRAY(inversion->best_counts, bins);
-    CHECK(inversion_band_init(&inversion->band, known, points));
+    CHECK(mf_inversion_band_init(&inversion->band, known, points));
 done:
     return status;
 }
@@ -99,19 +99,19 @@ static enum status choose_size(struct inversion *inversion) {
     const struct simulation_setup *scene = &inversion->problem->scene;
     const int64_t wanted = inversion->settings.common.particles;
     inversion->composition =
-        wanted > 0 ? composition_scaled(&scene->composition, wanted) : scene->composition;
+        wanted > 0 ? mf_composition_scaled(&scene->composition, wanted) : scene->composition;
     inversion->box =
-        box_scaled(&scene->box, (double)composition_particles(&inversion->composition) /
-                                    (double)composition_particles(&scene->composition));
-    const double distortion = composition_distortion(&scene->composition, &inversion->composition);
+        mf_box_scaled(&scene->box, (double)mf_composition_particles(&inversion->composition) /
+                                    (double)mf_composition_particles(&scene->composition));
+    const double distortion = mf_composition_distortion(&scene->composition, &inversion->composition);
     if (distortion <= most_distortion)
         return STATUS_OK;
-    return status_fail(
+    return mf_status_fail(
         STATUS_BAD_INPUT,
         "method.particles: %lld change the share of a type by %.0f %%; %lld are the "
         "next that keep all shares",
         (long long)wanted, 100 * distortion,
-        (long long)composition_least_particles(&scene->composition, wanted, most_distortion));
+        (long long)mf_composition_least_particles(&scene->composition, wanted, most_distortion));
 }
 
 /// S if g were 1, and of the target.
@@ -120,16 +120,16 @@ static void count_target(struct inversion *inversion) {
     const struct simulation_setup *scene = &problem->scene;
     const struct rdf_bins *bins = &problem->goals.bins;
     const struct goal *goal = &problem->goals.goal[GOAL_RDF];
-    const double from = (double)composition_particles(&scene->composition);
-    const double to = (double)composition_particles(&inversion->composition);
+    const double from = (double)mf_composition_particles(&scene->composition);
+    const double to = (double)mf_composition_particles(&inversion->composition);
     for (size_t first = 0; first < inversion->bins; first += bins->count) {
         const int pair = (int)(first / bins->count);
         const double factor =
-            finite_size_factor_of(bins, goal->value + first, goal->error + first, &scene->box,
+            mf_finite_size_factor_of(bins, goal->value + first, goal->error + first, &scene->box,
                                   &scene->composition, pair, from, to);
         for (size_t k = 0; k < bins->count; k++) {
             inversion->ideal[first + k] =
-                rdf_ideal_pairs_of(bins, k, &inversion->box, &inversion->composition, pair);
+                mf_rdf_ideal_pairs_of(bins, k, &inversion->box, &inversion->composition, pair);
             inversion->target_counts[first + k] =
                 inversion->ideal[first + k] * goal->value[first + k] * factor;
         }
@@ -143,13 +143,13 @@ static enum status refuse_holes(const struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
     for (size_t n = 0; n < grid->known; n++) {
         const size_t bin = grid->known_bin[n], next = grid->known_bin[n] + 1;
-        if (next % grid->bins == 0 || !potential_grid_well_known(problem, bin) ||
+        if (next % grid->bins == 0 || !mf_potential_grid_well_known(problem, bin) ||
             problem->goals.goal[GOAL_RDF].value[next] > problem->core_threshold)
             continue;
-        const double r = rdf_bins_centre(&problem->goals.bins, next % grid->bins);
+        const double r = mf_rdf_bins_centre(&problem->goals.bins, next % grid->bins);
         char kind[COMPOSITION_PAIR_NAME_SIZE];
-        composition_pair_name(&problem->scene.composition, (int)(bin / grid->bins), kind);
-        return status_fail(
+        mf_composition_pair_name(&problem->scene.composition, (int)(bin / grid->bins), kind);
+        return mf_status_fail(
             STATUS_BAD_INPUT,
             "%s%sthe target is empty at r = %g, where the bin before it has g = %.3g: no "
             "potential of pairs makes such a hole; mend the target there, or end "
@@ -159,7 +159,7 @@ static enum status refuse_holes(const struct inversion *inversion) {
     return STATUS_OK;
 }
 
-enum status inversion_create(void *memory, const struct inverse_method *method,
+enum status mf_inversion_create(void *memory, const struct inverse_method *method,
                              const struct inverse_problem *problem, const void *parameters) {
     struct inversion *inversion = memory;
     const struct rdf_bins *bins = &problem->goals.bins;
@@ -169,13 +169,13 @@ enum status inversion_create(void *memory, const struct inverse_method *method,
     inversion->bins = problem->goals.goal[GOAL_RDF].count;
     const struct inversion_parameters *p = &inversion->settings.common;
     TRY(choose_size(inversion));
-    TRY(potential_grid_init(&inversion->grid, problem));
+    TRY(mf_potential_grid_init(&inversion->grid, problem));
     TRY(refuse_holes(inversion));
     TRY(allocate(inversion));
     count_target(inversion);
-    TRY(inversion_start(inversion));
-    TRY(potential_grid_table(&inversion->grid, inversion->phi, &inversion->table));
-    TRY(replicas_init(&inversion->replicas, (size_t)p->replicas, (enum sampler_kind)p->sampler,
+    TRY(mf_inversion_start(inversion));
+    TRY(mf_potential_grid_table(&inversion->grid, inversion->phi, &inversion->table));
+    TRY(mf_replicas_init(&inversion->replicas, (size_t)p->replicas, (enum sampler_kind)p->sampler,
                       &(struct sampler_system){.box = &inversion->box,
                                                .composition = &inversion->composition,
                                                .potential = &inversion->table,
@@ -189,7 +189,7 @@ enum status inversion_create(void *memory, const struct inverse_method *method,
     return STATUS_OK;
 }
 
-size_t inversion_spans(void *memory, struct memory_span *span) {
+size_t mf_inversion_spans(void *memory, struct memory_span *span) {
     struct inversion *inversion = memory;
     const size_t bytes = inversion->grid.points * sizeof(double);
     size_t n = 0;
@@ -199,6 +199,6 @@ size_t inversion_spans(void *memory, struct memory_span *span) {
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         span[n++] = (struct memory_span){arrays[k], bytes};
     span[n++] = (struct memory_span){inversion->best_counts, inversion->bins * sizeof(double)};
-    n += inversion_band_spans(&inversion->band, inversion->grid.points, span + n);
-    return n + replicas_spans(&inversion->replicas, span + n);
+    n += mf_inversion_band_spans(&inversion->band, inversion->grid.points, span + n);
+    return n + mf_replicas_spans(&inversion->replicas, span + n);
 }

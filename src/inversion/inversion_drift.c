@@ -10,7 +10,7 @@ static const double long_way = 2;
 /// The error of g that was left, as a part of that at the begin of the memory, if the way helps.
 static const double helped = 0.75;
 
-void inversion_drift_add(struct inversion_drift *drift, double amplitude, double error) {
+void mf_inversion_drift_add(struct inversion_drift *drift, double amplitude, double error) {
     const int place = drift->count++ % INVERSION_DRIFT_MEMORY;
     drift->amplitude[place] = amplitude;
     drift->error[place] = error;
@@ -21,7 +21,7 @@ static int place_of(const struct inversion_drift *drift, int ago) {
     return (drift->count - 1 - ago) % INVERSION_DRIFT_MEMORY;
 }
 
-double inversion_drift_way(const struct inversion_drift *drift) {
+double mf_inversion_drift_way(const struct inversion_drift *drift) {
     double way = 0;
     if (drift->count < INVERSION_DRIFT_MEMORY)
         return 0;
@@ -35,8 +35,8 @@ double inversion_drift_way(const struct inversion_drift *drift) {
     return way;
 }
 
-bool inversion_drifts(const struct inversion_drift *drift, double temperature) {
-    if (!(fabs(inversion_drift_way(drift)) > long_way * temperature))
+bool mf_inversion_drifts(const struct inversion_drift *drift, double temperature) {
+    if (!(fabs(mf_inversion_drift_way(drift)) > long_way * temperature))
         return false;
     return drift->error[place_of(drift, 0)] >
            helped * drift->error[place_of(drift, INVERSION_DRIFT_MEMORY - 1)];

@@ -16,11 +16,11 @@ struct inversion_drift {
     double amplitude[INVERSION_DRIFT_MEMORY], error[INVERSION_DRIFT_MEMORY];
 };
 
-void inversion_drift_add(struct inversion_drift *drift, double amplitude, double error);
+void mf_inversion_drift_add(struct inversion_drift *drift, double amplitude, double error);
 
 /// How far the ramp has gone over the iterations in memory, if always the same way.
-double inversion_drift_way(const struct inversion_drift *drift);
+double mf_inversion_drift_way(const struct inversion_drift *drift);
 
 /// Whether it has gone by several k_B T and the error of g has not become less by a quarter.
 /// Tested: test_inversion_drift.
-bool inversion_drifts(const struct inversion_drift *drift, double temperature);
+bool mf_inversion_drifts(const struct inversion_drift *drift, double temperature);

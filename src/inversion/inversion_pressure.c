@@ -18,50 +18,50 @@ static double virial_error(const struct replicas *replicas, double inefficiency)
     const size_t virial = replicas->bins;
     struct running_mean chains = {0};
     for (size_t k = 0; k < replicas->count; k++)
-        statistics_add(&chains, replicas->member[k].counts.mean[virial]);
-    const double sampled = comoments_covariance(&replicas->counts, virial, virial) * inefficiency /
+        mf_statistics_add(&chains, replicas->member[k].counts.mean[virial]);
+    const double sampled = mf_comoments_covariance(&replicas->counts, virial, virial) * inefficiency /
                            replicas->counts.count;
-    return fmax(statistics_standard_error(&chains), sqrt(sampled));
+    return fmax(mf_statistics_standard_error(&chains), sqrt(sampled));
 }
 
-void inversion_pressure_measure(struct inversion *inversion) {
+void mf_inversion_pressure_measure(struct inversion *inversion) {
     const struct replicas *replicas = &inversion->replicas;
     const double unit = virial_unit(inversion), mean = replicas->counts.mean[replicas->bins];
-    const double ideal = (double)composition_particles(&inversion->composition) *
+    const double ideal = (double)mf_composition_particles(&inversion->composition) *
                          inversion->problem->scene.temperature;
     inversion->pressure.value = (inversion->box.dimensions * ideal + mean) / unit;
     inversion->pressure.error = virial_error(replicas, inversion->inefficiency) / unit;
 }
 
-enum status inversion_pressure_slopes(struct inversion *inversion) {
+enum status mf_inversion_pressure_slopes(struct inversion *inversion) {
     enum status status = STATUS_OK;
     const struct potential_grid *grid = &inversion->grid;
     const struct comoments *counts = &inversion->replicas.counts;
     double *virial = NULL;
     NEW_ARRAY(virial, inversion->bins * grid->known);
-    CHECK(potential_grid_virials(grid, &inversion->problem->goals.bins, inversion->box.dimensions,
+    CHECK(mf_potential_grid_virials(grid, &inversion->problem->goals.bins, inversion->box.dimensions,
                                  inversion->phi, virial));
     for (size_t b = 0; b < grid->known; b++) {
-        double slope = -comoments_covariance(counts, inversion->bins, grid->known_bin[b]) /
+        double slope = -mf_comoments_covariance(counts, inversion->bins, grid->known_bin[b]) /
                        inversion->problem->scene.temperature;
         for (size_t a = 0; a < inversion->bins; a++)
             slope += counts->mean[a] * virial[a * grid->known + b];
         inversion->pressure.slope[b] = slope / virial_unit(inversion);
     }
 done:
-    memory_free(virial);
+    mf_memory_free(virial);
     return status;
 }
 
-double inversion_pressure_ramp_slope(const struct inversion *inversion) {
+double mf_inversion_pressure_ramp_slope(const struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
     double slope = 0;
     for (size_t b = 0; b < grid->known; b++)
-        slope += inversion->pressure.slope[b] * potential_grid_ramp(grid, grid->known_point[b]);
+        slope += inversion->pressure.slope[b] * mf_potential_grid_ramp(grid, grid->known_point[b]);
     return slope;
 }
 
-void inversion_pressure_add_ramp(const struct inversion *inversion, double *step) {
+void mf_inversion_pressure_add_ramp(const struct inversion *inversion, double *step) {
     const struct potential_grid *grid = &inversion->grid;
     const struct goals *goals = &inversion->problem->goals;
     if (!goals_ask(goals, GOAL_PRESSURE))
@@ -69,7 +69,7 @@ void inversion_pressure_add_ramp(const struct inversion *inversion, double *step
     double missing = *goals->goal[GOAL_PRESSURE].value - inversion->pressure.value;
     for (size_t b = 0; b < grid->known; b++)
         missing -= inversion->pressure.slope[b] * step[grid->known_point[b]];
-    const double amplitude = missing / inversion_pressure_ramp_slope(inversion);
+    const double amplitude = missing / mf_inversion_pressure_ramp_slope(inversion);
     for (size_t n = 0; n < grid->known; n++)
-        step[grid->known_point[n]] += amplitude * potential_grid_ramp(grid, grid->known_point[n]);
+        step[grid->known_point[n]] += amplitude * mf_potential_grid_ramp(grid, grid->known_point[n]);
 }

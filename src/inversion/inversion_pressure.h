@@ -13,16 +13,16 @@ struct inversion_pressure {
 
 /// Value and error. The error is the scatter of the chains' means, or what that of the samples
 /// makes of as many independent ones as g(r) sees, if that is more: few chains may agree by chance.
-void inversion_pressure_measure(struct inversion *inversion);
+void mf_inversion_pressure_measure(struct inversion *inversion);
 
 /// Slopes, from how the virial W = −Σ r Φ'(r) over all pairs depends on the potential itself, and
 /// on the pairs that it makes:
 ///   ∂P/∂Φ_b = [⟨∂W/∂Φ_b⟩ − cov(W, S_b)/k_B T]/(dV).
 /// Fails: NO_MEMORY. Tested: test_inversion_pressure, against differences of simulations.
-enum status inversion_pressure_slopes(struct inversion *inversion) MUST_USE;
+enum status mf_inversion_pressure_slopes(struct inversion *inversion) MUST_USE;
 
 /// ∂P/∂A of the ramp A (1 − r/r_c) [1/λ^d].
-double inversion_pressure_ramp_slope(const struct inversion *inversion);
+double mf_inversion_pressure_ramp_slope(const struct inversion *inversion);
 
 /// Add to a step the ramp A (1 − r/r_c) that makes up for the pressure, if the problem asks for
 /// one:
@@ -33,4 +33,4 @@ double inversion_pressure_ramp_slope(const struct inversion *inversion);
 /// 1. Differs because a step towards g has a pressure of its own: with theirs, tried at P* = 0 for
 /// water, hypernetted-chain steps stayed between 0.8 and 1.2. What is too much for the linear
 /// response is damped as the whole step is.
-void inversion_pressure_add_ramp(const struct inversion *inversion, double *step);
+void mf_inversion_pressure_add_ramp(const struct inversion *inversion, double *step);

@@ -9,20 +9,20 @@
 static const double frozen = 4;
 
 /// The first reason that applies.
-void inversion_reason_tell(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]) {
+void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]) {
     const struct inversion_progress *p = &inversion->progress;
     const struct inversion_parameters *settings = &inversion->settings.common;
     const struct goal_distance *rdf = &p->best[GOAL_RDF], *pressure = &p->best[GOAL_PRESSURE];
-    const bool stuck = p->damping < inversion_least_damping * settings->damping;
-    const bool agrees = rdf->rms <= inverse_noise_margin * rdf->noise;
+    const bool stuck = p->damping < mf_inversion_least_damping * settings->damping;
+    const bool agrees = rdf->rms <= mf_inverse_noise_margin * rdf->noise;
     const double improved = rdf->rms / p->first_error;
-    if (!agrees && inversion_runs_away(inversion))
+    if (!agrees && mf_inversion_runs_away(inversion))
         snprintf(
             reason, INVERSE_REASON_SIZE,
             "the ramp A (1 - r/cutoff) of the potential goes on and on, by %.2g k_B T_0 in four "
             "iterations, and the error of g stays at %.2g: no potential makes this target; its "
             "\"normalisation\", density or cutoff is wrong",
-            inversion_drift_way(&p->drift), rdf->rms);
+            mf_inversion_drift_way(&p->drift), rdf->rms);
     else if (!agrees && p->best_disagreement > frozen)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "the error of g is %.2g, and the replicas do not agree on it: their means scatter "
@@ -36,7 +36,7 @@ void inversion_reason_tell(const struct inversion *inversion, char reason[INVERS
                  "another start may lead there",
                  p->first_error, p->second_error, inversion->method->name);
     else if (agrees && goals_ask(&inversion->problem->goals, GOAL_PRESSURE) &&
-             pressure->rms > inverse_noise_margin * pressure->noise)
+             pressure->rms > mf_inverse_noise_margin * pressure->noise)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "g agrees, but the pressure is %.3g off, with an error of %.2g", pressure->rms,
                  pressure->noise);

@@ -47,7 +47,7 @@ static enum status smooth(struct inversion *inversion) {
     enum status status = STATUS_OK;
     const struct potential_grid *grid = &inversion->grid;
     const size_t known = grid->known;
-    struct imc_system system = inversion_system(inversion);
+    struct imc_system system = mf_inversion_system(inversion);
     struct imc_solution solution;
     double *variance = NULL, *phi = NULL, *x = NULL;
     NEW_ARRAY(variance, known);
@@ -62,14 +62,14 @@ static enum status smooth(struct inversion *inversion) {
     }
     system.excess = phi;
     system.variance = variance;
-    CHECK(imc_solve(&system, 0, x, &solution));
+    CHECK(mf_imc_solve(&system, 0, x, &solution));
     for (size_t a = 0; a < known; a++)
         inversion->phi[grid->known_point[a]] = x[a];
-    potential_grid_complete(grid, inversion->phi);
+    mf_potential_grid_complete(grid, inversion->phi);
 done:
-    memory_free(variance);
-    memory_free(phi);
-    memory_free(x);
+    mf_memory_free(variance);
+    mf_memory_free(phi);
+    mf_memory_free(x);
     return status;
 }
 
@@ -82,21 +82,21 @@ static enum status add_indirect(struct inversion *inversion) {
     NEW_ARRAY(g, inversion->bins);
     NEW_ARRAY(indirect, inversion->bins);
     for (size_t k = 0; k < inversion->bins; k++)
-        g[k] = inversion_target_g(inversion, k);
-    CHECK(hnc_closure(&problem->goals.bins, &inversion->box, &inversion->composition, g, indirect));
+        g[k] = mf_inversion_target_g(inversion, k);
+    CHECK(mf_hnc_closure(&problem->goals.bins, &inversion->box, &inversion->composition, g, indirect));
     for (size_t n = 0; n < grid->known; n++)
         inversion->phi[grid->known_point[n]] +=
             problem->scene.temperature * indirect[grid->known_bin[n]];
 done:
-    memory_free(g);
-    memory_free(indirect);
+    mf_memory_free(g);
+    mf_memory_free(indirect);
     return status;
 }
 
-enum status inversion_start(struct inversion *inversion) {
+enum status mf_inversion_start(struct inversion *inversion) {
     if (!is_from_hnc(inversion))
-        return inversion_start_again(inversion);
-    potential_grid_start(&inversion->grid, inversion->problem, inversion->phi);
+        return mf_inversion_start_again(inversion);
+    mf_potential_grid_start(&inversion->grid, inversion->problem, inversion->phi);
     TRY(add_indirect(inversion));
     return smooth(inversion);
 }
@@ -105,11 +105,11 @@ enum status inversion_start(struct inversion *inversion) {
 static double find_structure(const struct inversion *inversion) {
     double sum = 0;
     for (size_t n = 0; n < inversion->bins; n++)
-        sum += pow(inversion_target_g(inversion, n) - 1, 2);
+        sum += pow(mf_inversion_target_g(inversion, n) - 1, 2);
     return sqrt(sum / (double)inversion->bins);
 }
 
-bool inversion_start_is_poor(const struct inversion *inversion, bool kept) {
+bool mf_inversion_start_is_poor(const struct inversion *inversion, bool kept) {
     const uint32_t iteration = inversion->progress.iteration;
     if (!is_from_hnc(inversion) || iteration > 1)
         return false;
@@ -119,7 +119,7 @@ bool inversion_start_is_poor(const struct inversion *inversion, bool kept) {
            inversion->pressure.value < 0;
 }
 
-enum status inversion_start_again(struct inversion *inversion) {
-    potential_grid_start(&inversion->grid, inversion->problem, inversion->phi);
+enum status mf_inversion_start_again(struct inversion *inversion) {
+    mf_potential_grid_start(&inversion->grid, inversion->problem, inversion->phi);
     return has_own(inversion) ? STATUS_OK : smooth(inversion);
 }

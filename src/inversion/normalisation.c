@@ -60,18 +60,18 @@ struct work {
 };
 
 static void work_clear(struct work *work) {
-    ornstein_zernike_clear(&work->oz);
-    memory_free(work->g);
-    memory_free(work->error);
-    memory_free(work->h);
+    mf_ornstein_zernike_clear(&work->oz);
+    mf_memory_free(work->g);
+    mf_memory_free(work->error);
+    mf_memory_free(work->h);
 }
 
 /// Mean over the pairs of all beads of what is given for a bin of each kind.
 static double total(const struct rdf_bins *bins, const struct composition *composition,
                     const double *values, size_t bin) {
     double sum = 0, pairs = 0;
-    for (int pair = 0; pair < composition_pairs(composition); pair++) {
-        const double possible = composition_possible_pairs(composition, pair);
+    for (int pair = 0; pair < mf_composition_pairs(composition); pair++) {
+        const double possible = mf_composition_possible_pairs(composition, pair);
         sum += possible * values[(size_t)pair * bins->count + bin];
         pairs += possible;
     }
@@ -83,11 +83,11 @@ static double total(const struct rdf_bins *bins, const struct composition *compo
 static void fill_cell(struct work *work, size_t cell, const struct rdf_bins *bins, size_t first,
                       size_t last, const struct box *box, const struct composition *composition,
                       const double *g, const double *error) {
-    const double infinite = 1 - 1 / (double)composition_particles(composition);
+    const double infinite = 1 - 1 / (double)mf_composition_particles(composition);
     double sum = 0, squares = 0, volume = 0;
     for (size_t bin = first; bin < last; bin++) {
         const double shell =
-            box_shell_volume(box, rdf_bins_edge(bins, bin), rdf_bins_edge(bins, bin + 1));
+            mf_box_shell_volume(box, mf_rdf_bins_edge(bins, bin), mf_rdf_bins_edge(bins, bin + 1));
         const double noise = total(bins, composition, error, bin);
         sum += shell * total(bins, composition, g, bin);
         squares += isfinite(noise) ? pow(shell * noise, 2) : 0;
@@ -105,7 +105,7 @@ static enum status fill_cells(struct work *work, const struct rdf_bins *bins, co
     const size_t join = (bins->count - 1) / MOST_CELLS + 1;
     const size_t core = (size_t)ceil(bins->low / (bins->width * (double)join) - 1e-6);
     work->cells = core + (bins->count - 1) / join + 1;
-    const double density = (double)composition_particles(composition) / box_volume(box);
+    const double density = (double)mf_composition_particles(composition) / mf_box_volume(box);
     double *edge = NULL;
     NEW_ARRAY(edge, work->cells + 1);
     NEW_ARRAY(work->g, work->cells);
@@ -115,14 +115,14 @@ static enum status fill_cells(struct work *work, const struct rdf_bins *bins, co
         edge[k] = bins->low * (double)k / (double)core;
     for (size_t k = core; k < work->cells; k++) {
         const size_t first = (k - core) * join, last = first + join;
-        edge[k] = rdf_bins_edge(bins, first);
+        edge[k] = mf_rdf_bins_edge(bins, first);
         fill_cell(work, k, bins, first, last < bins->count ? last : bins->count, box, composition,
                   g, error);
     }
-    edge[work->cells] = rdf_bins_range(bins);
-    CHECK(ornstein_zernike_init(&work->oz, edge, work->cells, density));
+    edge[work->cells] = mf_rdf_bins_range(bins);
+    CHECK(mf_ornstein_zernike_init(&work->oz, edge, work->cells, density));
 done:
-    memory_free(edge);
+    mf_memory_free(edge);
     return status;
 }
 
@@ -154,7 +154,7 @@ static double mean_beyond(const struct work *work, double part) {
 static enum status solve(struct work *work, double factor, double *tail) {
     for (size_t k = 0; k < work->cells; k++)
         work->h[k] = work->g[k] / factor - 1;
-    TRY(ornstein_zernike_solve(&work->oz, work->h, &work->compressibility));
+    TRY(mf_ornstein_zernike_solve(&work->oz, work->h, &work->compressibility));
     *tail = mean_beyond(work, tail_end) - parabola * mean_beyond(work, tail_begin);
     return STATUS_OK;
 }
@@ -185,14 +185,14 @@ static enum status find_noise(struct work *work, double factor) {
         double tail;
         for (size_t k = 0; k < work->cells; k++) {
             double normal[4];
-            rng_normal4(rng_philox(1, RNG_INITIAL, draw, (uint32_t)k, 0), normal);
+            mf_rng_normal4(mf_rng_philox(1, RNG_INITIAL, draw, (uint32_t)k, 0), normal);
             work->g[k] = fmax(0, g[k] + work->error[k] * normal[0]);
         }
         CHECK(solve(work, factor, &tail));
         if (!(work->compressibility > 0) || !isfinite(tail))
             continue;
-        statistics_add(&tails, tail);
-        statistics_add(&logarithms, log(work->compressibility));
+        mf_statistics_add(&tails, tail);
+        mf_statistics_add(&logarithms, log(work->compressibility));
     }
     // Where noise alone leaves no liquid, the target tells nothing.
     const bool told = tails.count > DRAWS / 2;
@@ -201,7 +201,7 @@ static enum status find_noise(struct work *work, double factor) {
 done:
     if (g)
         memcpy(work->g, g, work->cells * sizeof *g);
-    memory_free(g);
+    mf_memory_free(g);
     return status;
 }
 
@@ -281,15 +281,15 @@ static enum status judge(struct work *work, struct normalisation *normalisation)
     return STATUS_OK;
 }
 
-enum status normalisation_find(const struct rdf_bins *bins, const struct box *box,
+enum status mf_normalisation_find(const struct rdf_bins *bins, const struct box *box,
                                const struct composition *composition, const double *g,
                                const double *error, double width,
                                struct normalisation *normalisation) {
     enum status status = STATUS_OK;
     struct work work = {.width = width};
     *normalisation = (struct normalisation){.factor = 1, .error = width, .compressibility = NAN};
-    const double density = (double)composition_particles(composition) / box_volume(box);
-    if (box->dimensions != 3 || rdf_bins_range(bins) < least_range / cbrt(density))
+    const double density = (double)mf_composition_particles(composition) / mf_box_volume(box);
+    if (box->dimensions != 3 || mf_rdf_bins_range(bins) < least_range / cbrt(density))
         return STATUS_OK;
     CHECK(fill_cells(&work, bins, box, composition, g, error));
     work.expected = expect_compressibility(&work);

@@ -19,7 +19,7 @@ struct normalisation {
 
 /// The factor of a target:
 ///   minimise  [(ν − 1)/width]² + [ln(S(0)/S_0)/s]² + [Φ_tail/(t k_B T)]²
-/// with S(0) and the hypernetted chain's Φ of g/ν (ornstein_zernike_solve), Φ_tail its mean over
+/// with S(0) and the hypernetted chain's Φ of g/ν (mf_ornstein_zernike_solve), Φ_tail its mean over
 /// the last tenth of the range but for that of a parabola, and S_0 that of hard spheres as large as
 /// the core (N. F. Carnahan and K. E. Starling, J. Chem. Phys. 51, 635 (1969)). ν = 1 is kept
 /// unless this is larger there by more than six and ν two of its standard errors away. Of a mixture
@@ -28,7 +28,7 @@ struct normalisation {
 /// @param[in] g, error  shape [pairs, bins.count], of the system in the box
 /// @param[in] width  standard deviation of ν about 1 before any measurement
 /// Fails: NO_MEMORY. Tested: test_normalisation.
-enum status normalisation_find(const struct rdf_bins *bins, const struct box *box,
+enum status mf_normalisation_find(const struct rdf_bins *bins, const struct box *box,
                                const struct composition *composition, const double *g,
                                const double *error, double width,
                                struct normalisation *normalisation) MUST_USE;

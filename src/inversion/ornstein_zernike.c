@@ -19,14 +19,14 @@ static const double tolerance = 1e-6;
 
 enum { MOST_STEPS = 40, MOST_HALVINGS = 12 };
 
-double ornstein_zernike_ball(double q, double edge) {
+double mf_ornstein_zernike_ball(double q, double edge) {
     const double x = q * edge;
     if (x < 1e-2) // the difference cancels; the series is exact to 1e-13 there
         return 4 * pi / 3 * edge * edge * edge * (1 - x * x / 10 + x * x * x * x / 280);
     return 4 * pi * (sin(x) - x * cos(x)) / (q * q * q);
 }
 
-enum status ornstein_zernike_init(struct ornstein_zernike *oz, const double *edge, size_t cells,
+enum status mf_ornstein_zernike_init(struct ornstein_zernike *oz, const double *edge, size_t cells,
                                   double density) {
     enum status status = STATUS_OK;
     const double range = edge[cells], spacing = pi / (ranges * range);
@@ -45,18 +45,18 @@ enum status ornstein_zernike_init(struct ornstein_zernike *oz, const double *edg
         oz->weight[n] = q * q * spacing / (2 * pi * pi);
         for (size_t k = 0; k < cells; k++)
             oz->transform[n * cells + k] =
-                ornstein_zernike_ball(q, edge[k + 1]) - ornstein_zernike_ball(q, edge[k]);
+                mf_ornstein_zernike_ball(q, edge[k + 1]) - mf_ornstein_zernike_ball(q, edge[k]);
     }
 done:
     return status;
 }
 
-void ornstein_zernike_clear(struct ornstein_zernike *oz) {
-    memory_free(oz->edge);
-    memory_free(oz->volume);
-    memory_free(oz->transform);
-    memory_free(oz->weight);
-    memory_free(oz->c);
+void mf_ornstein_zernike_clear(struct ornstein_zernike *oz) {
+    mf_memory_free(oz->edge);
+    mf_memory_free(oz->volume);
+    mf_memory_free(oz->transform);
+    mf_memory_free(oz->weight);
+    mf_memory_free(oz->c);
     *oz = (struct ornstein_zernike){0};
 }
 
@@ -120,7 +120,7 @@ static void shrink(struct ornstein_zernike *oz, const double *h, double *rest) {
             oz->c[k] *= 0.8;
 }
 
-enum status ornstein_zernike_solve(struct ornstein_zernike *oz, const double *h,
+enum status mf_ornstein_zernike_solve(struct ornstein_zernike *oz, const double *h,
                                    double *compressibility) {
     enum status status = STATUS_OK;
     const size_t cells = oz->cells;
@@ -156,11 +156,11 @@ enum status ornstein_zernike_solve(struct ornstein_zernike *oz, const double *h,
         *compressibility = 1 / (1 - oz->density * sum);
     }
 done:
-    memory_free(rest);
-    memory_free(step);
-    memory_free(next);
-    memory_free(squares);
-    memory_free(scaled);
-    memory_free(jacobian);
+    mf_memory_free(rest);
+    mf_memory_free(step);
+    mf_memory_free(next);
+    mf_memory_free(squares);
+    mf_memory_free(scaled);
+    mf_memory_free(jacobian);
     return status;
 }

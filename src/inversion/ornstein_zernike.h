@@ -8,7 +8,7 @@
 #include <stddef.h>
 
 /// Transform of 1 for r < edge, 0 beyond: 4π (sin x − x cos x)/q³, x = q edge.
-double ornstein_zernike_ball(double q, double edge);
+double mf_ornstein_zernike_ball(double q, double edge);
 
 /// Cells of constant h and c, from r = 0 to the range.
 struct ornstein_zernike {
@@ -23,9 +23,9 @@ struct ornstein_zernike {
 
 /// @param[in] edge  shape [cells + 1], from 0 on
 /// Must be cleared, also after a failure. Fails: NO_MEMORY.
-enum status ornstein_zernike_init(struct ornstein_zernike *oz, const double *edge, size_t cells,
+enum status mf_ornstein_zernike_init(struct ornstein_zernike *oz, const double *edge, size_t cells,
                                   double density) MUST_USE;
-void ornstein_zernike_clear(struct ornstein_zernike *oz);
+void mf_ornstein_zernike_clear(struct ornstein_zernike *oz);
 
 /// Find c in the cells from h there, with c = 0 beyond the range and h beyond it as it follows from
 /// Ornstein and Zernike's equation ĥ = ĉ + ρ ĉ ĥ: a g(r) that ends before its oscillations do is so
@@ -37,5 +37,5 @@ void ornstein_zernike_clear(struct ornstein_zernike *oz);
 /// @param[out] compressibility  S(0) = 1/(1 − ρ ĉ(0)) = ρ k_B T κ_T; not positive, or NaN, if there
 ///                              is no stable liquid with this h
 /// Fails: NO_MEMORY. Tested: test_ornstein_zernike, against the exact solution for hard spheres.
-enum status ornstein_zernike_solve(struct ornstein_zernike *oz, const double *h,
+enum status mf_ornstein_zernike_solve(struct ornstein_zernike *oz, const double *h,
                                    double *compressibility) MUST_USE;

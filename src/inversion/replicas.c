@@ -8,34 +8,34 @@
 #include <stdio.h>
 #include <string.h>
 
-enum status replicas_init(struct replicas *replicas, size_t count, enum sampler_kind kind,
+enum status mf_replicas_init(struct replicas *replicas, size_t count, enum sampler_kind kind,
                           const struct sampler_system *system) {
     enum status status = STATUS_OK;
-    const size_t bins = (size_t)composition_pairs(system->composition) * system->bins;
+    const size_t bins = (size_t)mf_composition_pairs(system->composition) * system->bins;
     struct sampler_system own = *system;
     *replicas = (struct replicas){.bins = bins, .count = count};
-    CHECK(comoments_init(&replicas->counts, bins + 1));
+    CHECK(mf_comoments_init(&replicas->counts, bins + 1));
     for (size_t k = 0; k < count; k++) {
         struct replica *replica = &replicas->member[k];
         NEW_ARRAY(replica->sample, bins + 1);
         NEW_ARRAY(replica->block, REPLICAS_BLOCKS * bins);
-        CHECK(comoments_init(&replica->counts, bins + 1));
-        own.seed = rng_child_seed(system->seed, RNG_EVALUATION, (uint32_t)k, 0);
-        CHECK(sampler_init(&replica->sampler, kind, &own));
+        CHECK(mf_comoments_init(&replica->counts, bins + 1));
+        own.seed = mf_rng_child_seed(system->seed, RNG_EVALUATION, (uint32_t)k, 0);
+        CHECK(mf_sampler_init(&replica->sampler, kind, &own));
     }
 done:
     return status;
 }
 
-void replicas_clear(struct replicas *replicas) {
+void mf_replicas_clear(struct replicas *replicas) {
     for (size_t k = 0; k < replicas->count; k++) {
         struct replica *replica = &replicas->member[k];
-        sampler_clear(&replica->sampler);
-        comoments_clear(&replica->counts);
-        memory_free(replica->sample);
-        memory_free(replica->block);
+        mf_sampler_clear(&replica->sampler);
+        mf_comoments_clear(&replica->counts);
+        mf_memory_free(replica->sample);
+        mf_memory_free(replica->block);
     }
-    comoments_clear(&replicas->counts);
+    mf_comoments_clear(&replicas->counts);
     *replicas = (struct replicas){0};
 }
 
@@ -47,8 +47,8 @@ static enum status fill_blocks(struct replica *replica, size_t bins, size_t firs
         double *mean = replica->block + block * bins;
         memset(mean, 0, bins * sizeof *mean);
         for (int64_t sample = 0; sample < plan->block_samples; sample++) {
-            TRY(sampler_sample(&replica->sampler, (uint64_t)plan->every, replica->sample));
-            comoments_add(&replica->counts, replica->sample);
+            TRY(mf_sampler_sample(&replica->sampler, (uint64_t)plan->every, replica->sample));
+            mf_comoments_add(&replica->counts, replica->sample);
             for (size_t a = 0; a < bins; a++)
                 mean[a] += replica->sample[a] / each;
         }
@@ -58,11 +58,11 @@ static enum status fill_blocks(struct replica *replica, size_t bins, size_t firs
 
 /// Equilibrate one sampler, then take its samples.
 static enum status run_one(struct replica *replica, size_t bins, const struct replicas_plan *plan) {
-    comoments_reset(&replica->counts);
+    mf_comoments_reset(&replica->counts);
     if (plan->scatter)
-        TRY(sampler_scatter(&replica->sampler));
-    TRY(sampler_begin(&replica->sampler));
-    TRY(sampler_equilibrate(&replica->sampler, (uint64_t)plan->equilibration));
+        TRY(mf_sampler_scatter(&replica->sampler));
+    TRY(mf_sampler_begin(&replica->sampler));
+    TRY(mf_sampler_equilibrate(&replica->sampler, (uint64_t)plan->equilibration));
     return fill_blocks(replica, bins, 0, REPLICAS_BLOCKS, plan);
 }
 
@@ -93,7 +93,7 @@ run_all(struct replicas *replicas, const struct replicas_plan *plan, int threads
             // Messages belong to threads.
             if (status != STATUS_OK && worst != STATUS_INTERRUPTED) {
                 worst = status;
-                snprintf(message, sizeof message, "%s", status_message());
+                snprintf(message, sizeof message, "%s", mf_status_message());
             }
             struct inverse_progress now = *progress;
             now.done = ++done;
@@ -102,27 +102,27 @@ run_all(struct replicas *replicas, const struct replicas_plan *plan, int threads
         }
     }
     if (worst != STATUS_OK)
-        return status_fail(worst, "%s", message);
-    comoments_reset(&replicas->counts);
+        return mf_status_fail(worst, "%s", message);
+    mf_comoments_reset(&replicas->counts);
     for (size_t k = 0; k < replicas->count; k++)
-        comoments_merge(&replicas->counts, &replicas->member[k].counts);
+        mf_comoments_merge(&replicas->counts, &replicas->member[k].counts);
     return STATUS_OK;
 }
 
-enum status replicas_run(struct replicas *replicas, const struct replicas_plan *plan, int threads,
+enum status mf_replicas_run(struct replicas *replicas, const struct replicas_plan *plan, int threads,
                          const struct inverse_progress *progress,
                          const struct inverse_listener *listener) {
     return run_all(replicas, plan, threads, progress, listener, run_one);
 }
 
-enum status replicas_double(struct replicas *replicas, struct replicas_plan *plan, int threads,
+enum status mf_replicas_double(struct replicas *replicas, struct replicas_plan *plan, int threads,
                             const struct inverse_progress *progress,
                             const struct inverse_listener *listener) {
     plan->block_samples *= 2;
     return run_all(replicas, plan, threads, progress, listener, double_one);
 }
 
-double replicas_inefficiency(const struct replicas *replicas, const double *ideal,
+double mf_replicas_inefficiency(const struct replicas *replicas, const double *ideal,
                              const size_t *seen, size_t count) {
     const size_t bins = replicas->bins;
     double scatter = 0, variance = 0;
@@ -131,18 +131,18 @@ double replicas_inefficiency(const struct replicas *replicas, const double *idea
         struct running_mean blocks = {0};
         for (size_t k = 0; k < replicas->count; k++)
             for (size_t b = 0; b < REPLICAS_BLOCKS; b++)
-                statistics_add(&blocks, replicas->member[k].block[b * bins + a]);
+                mf_statistics_add(&blocks, replicas->member[k].block[b * bins + a]);
         // Weighted by 1/S²: bins with many pairs would drown the others.
         const double weight = 1 / (ideal[a] * ideal[a]);
         scatter += weight * blocks.squares / (blocks.count - 1);
-        variance += weight * comoments_covariance(&replicas->counts, a, a);
+        variance += weight * mf_comoments_covariance(&replicas->counts, a, a);
     }
     const double block_samples =
         replicas->counts.count / (double)(replicas->count * REPLICAS_BLOCKS);
     return variance > 0 ? fmax(1, scatter / variance * block_samples) : 1;
 }
 
-double replicas_disagreement(const struct replicas *replicas, const double *ideal,
+double mf_replicas_disagreement(const struct replicas *replicas, const double *ideal,
                              const size_t *seen, size_t count) {
     double between = 0, within = 0;
     for (size_t n = 0; n < count; n++) {
@@ -152,8 +152,8 @@ double replicas_disagreement(const struct replicas *replicas, const double *idea
         for (size_t k = 0; k < replicas->count; k++) {
             struct running_mean blocks = {0};
             for (size_t b = 0; b < REPLICAS_BLOCKS; b++)
-                statistics_add(&blocks, replicas->member[k].block[b * replicas->bins + a]);
-            statistics_add(&means, blocks.mean);
+                mf_statistics_add(&blocks, replicas->member[k].block[b * replicas->bins + a]);
+            mf_statistics_add(&means, blocks.mean);
             within += weight * blocks.squares / (blocks.count - 1) / (double)replicas->count;
         }
         between += weight * means.squares / (means.count - 1);
@@ -163,9 +163,9 @@ double replicas_disagreement(const struct replicas *replicas, const double *idea
     return REPLICAS_BLOCKS * between / within;
 }
 
-size_t replicas_spans(struct replicas *replicas, struct memory_span *span) {
+size_t mf_replicas_spans(struct replicas *replicas, struct memory_span *span) {
     size_t n = 0;
     for (size_t k = 0; k < replicas->count; k++)
-        n += sampler_spans(&replicas->member[k].sampler, span + n);
+        n += mf_sampler_spans(&replicas->member[k].sampler, span + n);
     return n;
 }

@@ -3,9 +3,9 @@
 
 #include <string.h>
 
-const char *const sampler_kinds[] = {"monte-carlo", "dynamics", NULL};
+const char *const mf_sampler_kinds[] = {"monte-carlo", "dynamics", NULL};
 
-enum status sampler_init(struct sampler *sampler, enum sampler_kind kind,
+enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
                          const struct sampler_system *system) {
     enum status status = STATUS_OK;
     *sampler =
@@ -13,55 +13,55 @@ enum status sampler_init(struct sampler *sampler, enum sampler_kind kind,
                          .histogram = {.low = system->low,
                                        .width = system->width,
                                        .bins = system->bins,
-                                       .pairs = (size_t)composition_pairs(system->composition)}};
+                                       .pairs = (size_t)mf_composition_pairs(system->composition)}};
     if (kind == SAMPLER_DYNAMICS)
-        return hybrid_init(&sampler->hybrid, system->box, system->composition, system->potential,
+        return mf_hybrid_init(&sampler->hybrid, system->box, system->composition, system->potential,
                            &sampler->histogram, system->temperature, system->seed);
     NEW_ARRAY(sampler->histogram.counts, pair_histogram_size(&sampler->histogram));
-    CHECK(metropolis_init(&sampler->chain, system->box, system->composition, system->potential,
+    CHECK(mf_metropolis_init(&sampler->chain, system->box, system->composition, system->potential,
                           system->temperature, system->seed));
 done:
     if (status != STATUS_OK)
-        sampler_clear(sampler);
+        mf_sampler_clear(sampler);
     return status;
 }
 
-void sampler_clear(struct sampler *sampler) {
-    metropolis_clear(&sampler->chain);
-    hybrid_clear(&sampler->hybrid);
-    memory_free(sampler->histogram.counts);
+void mf_sampler_clear(struct sampler *sampler) {
+    mf_metropolis_clear(&sampler->chain);
+    mf_hybrid_clear(&sampler->hybrid);
+    mf_memory_free(sampler->histogram.counts);
     *sampler = (struct sampler){0};
 }
 
-enum status sampler_scatter(struct sampler *sampler) {
-    return sampler->kind == SAMPLER_DYNAMICS ? hybrid_scatter(&sampler->hybrid)
-                                             : metropolis_scatter(&sampler->chain);
+enum status mf_sampler_scatter(struct sampler *sampler) {
+    return sampler->kind == SAMPLER_DYNAMICS ? mf_hybrid_scatter(&sampler->hybrid)
+                                             : mf_metropolis_scatter(&sampler->chain);
 }
 
-enum status sampler_begin(struct sampler *sampler) {
+enum status mf_sampler_begin(struct sampler *sampler) {
     if (sampler->kind == SAMPLER_DYNAMICS)
-        return hybrid_refresh(&sampler->hybrid);
-    return metropolis_refresh(&sampler->chain);
+        return mf_hybrid_refresh(&sampler->hybrid);
+    return mf_metropolis_refresh(&sampler->chain);
 }
 
-enum status sampler_equilibrate(struct sampler *sampler, uint64_t sweeps) {
+enum status mf_sampler_equilibrate(struct sampler *sampler, uint64_t sweeps) {
     if (sampler->kind == SAMPLER_DYNAMICS)
-        return hybrid_equilibrate(&sampler->hybrid, sweeps);
-    return metropolis_equilibrate(&sampler->chain, (uint32_t)sweeps);
+        return mf_hybrid_equilibrate(&sampler->hybrid, sweeps);
+    return mf_metropolis_equilibrate(&sampler->chain, (uint32_t)sweeps);
 }
 
-enum status sampler_sample(struct sampler *sampler, uint64_t sweeps, double *sample) {
+enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *sample) {
     const size_t bins = pair_histogram_size(&sampler->histogram) - 1;
     const uint32_t *counts = sampler->histogram.counts;
     struct pair_sums sums;
     if (sampler->kind == SAMPLER_DYNAMICS) {
-        TRY(hybrid_run(&sampler->hybrid, sweeps));
+        TRY(mf_hybrid_run(&sampler->hybrid, sweeps));
         counts = sampler->hybrid.counts;
         sums = sampler->hybrid.sums;
     } else {
-        TRY(metropolis_run(&sampler->chain, (uint32_t)sweeps));
+        TRY(mf_metropolis_run(&sampler->chain, (uint32_t)sweeps));
         memset(sampler->histogram.counts, 0, (bins + 1) * sizeof *counts);
-        metropolis_count(&sampler->chain, &sampler->histogram, &sums);
+        mf_metropolis_count(&sampler->chain, &sampler->histogram, &sums);
     }
     for (size_t a = 0; a < bins; a++)
         sample[a] = counts[a];
@@ -96,7 +96,7 @@ static size_t hybrid_spans(struct hybrid *hybrid, struct memory_span *span) {
     return n;
 }
 
-size_t sampler_spans(struct sampler *sampler, struct memory_span *span) {
+size_t mf_sampler_spans(struct sampler *sampler, struct memory_span *span) {
     return sampler->kind == SAMPLER_DYNAMICS ? hybrid_spans(&sampler->hybrid, span)
                                              : chain_spans(&sampler->chain, span);
 }

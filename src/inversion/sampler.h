@@ -12,7 +12,7 @@
 enum sampler_kind { SAMPLER_MONTE_CARLO, SAMPLER_DYNAMICS };
 
 /// Names in the order of enum sampler_kind, NULL-terminated.
-extern const char *const sampler_kinds[];
+extern const char *const mf_sampler_kinds[];
 
 struct sampler {
     enum sampler_kind kind;
@@ -21,7 +21,7 @@ struct sampler {
     struct pair_histogram histogram; ///< of the chain's configuration
 };
 
-/// What is to be sampled. Borrowed: the potential, which may be exchanged before sampler_begin.
+/// What is to be sampled. Borrowed: the potential, which may be exchanged before mf_sampler_begin.
 struct sampler_system {
     const struct box *box;
     const struct composition *composition;
@@ -32,28 +32,28 @@ struct sampler_system {
     uint64_t seed;
 };
 
-/// Particles on a lattice. Must be cleared. Fails: as metropolis_init and hybrid_init.
-enum status sampler_init(struct sampler *sampler, enum sampler_kind kind,
+/// Particles on a lattice. Must be cleared. Fails: as mf_metropolis_init and mf_hybrid_init.
+enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
                          const struct sampler_system *system) MUST_USE;
-void sampler_clear(struct sampler *sampler);
+void mf_sampler_clear(struct sampler *sampler);
 
 /// Forget the configuration: the particles are placed anew, without order. From a lattice, a
 /// potential that favours a crystal would keep one. Fails: NO_MEMORY.
-enum status sampler_scatter(struct sampler *sampler) MUST_USE;
+enum status mf_sampler_scatter(struct sampler *sampler) MUST_USE;
 
 /// Begin with the potential as it is now: a run that continues and one that was reloaded go on with
 /// the same bits. Fails: NO_MEMORY.
-enum status sampler_begin(struct sampler *sampler) MUST_USE;
+enum status mf_sampler_begin(struct sampler *sampler) MUST_USE;
 
 /// Sweeps that are not counted and that tune the moves, or the time step. Fails: NO_MEMORY,
 /// INTERRUPTED.
-enum status sampler_equilibrate(struct sampler *sampler, uint64_t sweeps) MUST_USE;
+enum status mf_sampler_equilibrate(struct sampler *sampler, uint64_t sweeps) MUST_USE;
 
 /// Sweeps, then a sample: S of each bin of each kind of pairs, and behind them the virial Σ r·F
 /// [k_B T_0].
 /// @param[out] sample  shape [pairs · bins + 1]
 /// Fails: NO_MEMORY, INTERRUPTED. Tested: test_monte_carlo_mixture.
-enum status sampler_sample(struct sampler *sampler, uint64_t sweeps, double *sample) MUST_USE;
+enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *sample) MUST_USE;
 
 /// What a checkpoint keeps between runs; returns the number of spans.
-size_t sampler_spans(struct sampler *sampler, struct memory_span *span);
+size_t mf_sampler_spans(struct sampler *sampler, struct memory_span *span);

@@ -19,16 +19,16 @@ struct writer {
     uint64_t checksum;
 };
 
-/// Write errors are remembered by the stream and found by output_commit.
+/// Write errors are remembered by the stream and found by mf_output_commit.
 static void put(struct writer *writer, const void *memory, size_t bytes) {
     fwrite(memory, 1, bytes, writer->stream);
-    checkpoint_digest_add(&writer->checksum, memory, bytes);
+    mf_checkpoint_digest_add(&writer->checksum, memory, bytes);
 }
 
-enum status checkpoint_save(const char *file, uint64_t digest, const struct memory_span *spans,
+enum status mf_checkpoint_save(const char *file, uint64_t digest, const struct memory_span *spans,
                             size_t count) {
     struct output output;
-    TRY(output_open(&output, file));
+    TRY(mf_output_open(&output, file));
     struct writer writer = {output.stream, offset_basis};
     put(&writer, magic, sizeof magic);
     put(&writer, &digest, sizeof digest);
@@ -38,7 +38,7 @@ enum status checkpoint_save(const char *file, uint64_t digest, const struct memo
         put(&writer, spans[k].memory, spans[k].bytes);
     }
     fwrite(&writer.checksum, sizeof writer.checksum, 1, output.stream);
-    return output_commit(&output);
+    return mf_output_commit(&output);
 }
 
 static bool read_exactly(FILE *stream, void *memory, size_t bytes) {
@@ -49,14 +49,14 @@ static enum status check_magic(FILE *stream, const char *file) {
     char found[sizeof magic];
     if (read_exactly(stream, found, sizeof found) && memcmp(found, magic, sizeof magic) == 0)
         return STATUS_OK;
-    return status_fail(STATUS_BAD_INPUT, "%s: not a checkpoint of this version", file);
+    return mf_status_fail(STATUS_BAD_INPUT, "%s: not a checkpoint of this version", file);
 }
 
 static enum status check_digest(FILE *stream, const char *file, uint64_t digest) {
     uint64_t found;
     if (read_exactly(stream, &found, sizeof found) && found == digest)
         return STATUS_OK;
-    return status_fail(STATUS_BAD_INPUT,
+    return mf_status_fail(STATUS_BAD_INPUT,
                        "%s: the run's settings have changed since it was written; begin anew with "
                        "--force instead of --resume",
                        file);
@@ -75,16 +75,16 @@ static enum status check_sum(FILE *stream, const char *file, uint64_t *bytes) {
     rewind(stream);
     while ((more = fread(piece + kept, 1, PIECE, stream)) > 0) {
         const size_t held = kept + more, done = held > sizeof found ? held - sizeof found : 0;
-        checkpoint_digest_add(&checksum, piece, done);
+        mf_checkpoint_digest_add(&checksum, piece, done);
         memmove(piece, piece + done, held - done);
         *bytes += done;
         kept = held - done;
     }
     memcpy(&found, piece, sizeof found);
     if (ferror(stream))
-        return status_fail(STATUS_IO, "%s: %s", file, strerror(errno));
+        return mf_status_fail(STATUS_IO, "%s: %s", file, strerror(errno));
     if (kept != sizeof found || *bytes < head || found != checksum)
-        return status_fail(STATUS_BAD_INPUT,
+        return mf_status_fail(STATUS_BAD_INPUT,
                            "%s: the checkpoint is damaged: its checksum is not that of its bytes; "
                            "begin anew with --force, or put back a copy of it",
                            file);
@@ -93,14 +93,14 @@ static enum status check_sum(FILE *stream, const char *file, uint64_t *bytes) {
 }
 
 static enum status fail_shape(const char *file) {
-    return status_fail(STATUS_BAD_INPUT, "%s: the checkpoint is of another shape", file);
+    return mf_status_fail(STATUS_BAD_INPUT, "%s: the checkpoint is of another shape", file);
 }
 
 /// Open a checkpoint of these settings whose bytes are those that were written, behind its head.
 /// @param[out] bytes  of what follows, without the checksum
 static enum status open_checked(FILE **stream, const char *file, uint64_t digest, uint64_t *bytes) {
     enum status status = STATUS_OK;
-    TRY(input_open(stream, file));
+    TRY(mf_input_open(stream, file));
     CHECK(check_magic(*stream, file));
     CHECK(check_sum(*stream, file, bytes));
     rewind(*stream);
@@ -142,7 +142,7 @@ static bool read_span(FILE *stream, const struct memory_span *span, uint64_t *le
            read_exactly(stream, span->memory, bytes);
 }
 
-enum status checkpoint_load_span(const char *file, uint64_t digest, size_t number,
+enum status mf_checkpoint_load_span(const char *file, uint64_t digest, size_t number,
                                  const struct memory_span *span) {
     FILE *stream;
     uint64_t left, bytes;
@@ -155,7 +155,7 @@ enum status checkpoint_load_span(const char *file, uint64_t digest, size_t numbe
     return fits ? STATUS_OK : fail_shape(file);
 }
 
-enum status checkpoint_load(const char *file, uint64_t digest, const struct memory_span *spans,
+enum status mf_checkpoint_load(const char *file, uint64_t digest, const struct memory_span *spans,
                             size_t count) {
     FILE *stream;
     uint64_t left;
@@ -169,20 +169,20 @@ enum status checkpoint_load(const char *file, uint64_t digest, const struct memo
     return fits ? STATUS_OK : fail_shape(file);
 }
 
-void checkpoint_digest_add(uint64_t *digest, const void *memory, size_t bytes) {
+void mf_checkpoint_digest_add(uint64_t *digest, const void *memory, size_t bytes) {
     const unsigned char *byte = memory;
     for (size_t k = 0; memory && k < bytes; k++)
         *digest = (*digest ^ byte[k]) * 0x100000001b3u;
 }
 
-enum status checkpoint_digest(const char *file, uint64_t *digest) {
+enum status mf_checkpoint_digest(const char *file, uint64_t *digest) {
     FILE *stream;
     unsigned char piece[4096];
     size_t bytes;
-    TRY(input_open(&stream, file));
+    TRY(mf_input_open(&stream, file));
     *digest = offset_basis;
     while ((bytes = fread(piece, 1, sizeof piece, stream)) > 0)
-        checkpoint_digest_add(digest, piece, bytes);
+        mf_checkpoint_digest_add(digest, piece, bytes);
     fclose(stream);
     return STATUS_OK;
 }

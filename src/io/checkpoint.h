@@ -11,21 +11,21 @@
 #include <stdint.h>
 
 /// Save spans, whole or not at all.
-enum status checkpoint_save(const char *file, uint64_t digest, const struct memory_span *spans,
+enum status mf_checkpoint_save(const char *file, uint64_t digest, const struct memory_span *spans,
                             size_t count) MUST_USE;
 
 /// Load into the same spans. BAD_INPUT if the file is of other settings (digest), another version
 /// or shape, or if its checksum is not that of its bytes; nothing is loaded then.
-enum status checkpoint_load(const char *file, uint64_t digest, const struct memory_span *spans,
+enum status mf_checkpoint_load(const char *file, uint64_t digest, const struct memory_span *spans,
                             size_t count) MUST_USE;
 
 /// Load one span alone: number `number`, from 0, of a state whose other lengths depend on it.
-/// Fails: as checkpoint_load; IO.
-enum status checkpoint_load_span(const char *file, uint64_t digest, size_t number,
+/// Fails: as mf_checkpoint_load; IO.
+enum status mf_checkpoint_load_span(const char *file, uint64_t digest, size_t number,
                                  const struct memory_span *span) MUST_USE;
 
 /// Digest of a file's bytes (FNV-1a, 64 bits).
-enum status checkpoint_digest(const char *file, uint64_t *digest) MUST_USE;
+enum status mf_checkpoint_digest(const char *file, uint64_t *digest) MUST_USE;
 
 /// Go on with a digest over what the settings only name: a target, a table.
-void checkpoint_digest_add(uint64_t *digest, const void *memory, size_t bytes);
+void mf_checkpoint_digest_add(uint64_t *digest, const void *memory, size_t bytes);

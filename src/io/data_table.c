@@ -166,13 +166,13 @@ static enum status measure(struct data_table *table, const char *file, const cha
         if (table->rows++ == 0)
             table->columns = count_words(&line, demand->separator);
         if (table->columns < least)
-            return status_fail(STATUS_BAD_INPUT,
+            return mf_status_fail(STATUS_BAD_INPUT,
                                "%s:%zu: %zu columns, at least %zu are needed (blanks, commas or "
                                "semicolons separate columns)",
                                file, line.number, table->columns, least);
     } while (next_line(&line));
     if (table->rows == 0)
-        return status_fail(STATUS_BAD_INPUT, "%s:%zu: the file ends without a row of numbers", file,
+        return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: the file ends without a row of numbers", file,
                            line.number);
     table->columns -= demand->flagged;
     return STATUS_OK;
@@ -185,7 +185,7 @@ static enum status read_number(const char *file, size_t line, size_t column, siz
         return STATUS_OK;
     const bool comma = word->length > 0 && memchr(word->begin, ',', word->length) &&
                        strspn(word->begin, "0123456789+-.,eE") >= word->length;
-    return status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: \"%.*s\" is not a finite number%s",
+    return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: \"%.*s\" is not a finite number%s",
                        file, line, column + 1, word->length > 40 ? 40 : (int)word->length,
                        word->begin,
                        comma ? ": a decimal comma? decimals begin with a point here" : "");
@@ -198,7 +198,7 @@ static enum status read_flag(const char *file, const struct line *line, const st
     *flag = *word;
     if (of->length == 1 && ((*word >= 'a' && *word <= 'z') || (*word >= 'A' && *word <= 'Z')))
         return STATUS_OK;
-    return status_fail(STATUS_BAD_INPUT, "%s:%zu: the row does not end with a letter", file,
+    return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: the row does not end with a letter", file,
                        line->number);
 }
 
@@ -216,7 +216,7 @@ static enum status read_row(const struct data_table *table, const char *file,
         next_word(line, &word);
     }
     if (words != wanted)
-        return status_fail(STATUS_BAD_INPUT, "%s:%zu: %zu columns, the first row has %zu", file,
+        return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: %zu columns, the first row has %zu", file,
                            line->number, words, wanted);
     return STATUS_OK;
 }
@@ -265,7 +265,7 @@ static enum status read_table(struct data_table *table, const char *file, struct
     char *text = NULL;
     size_t length = 0;
     *table = (struct data_table){0};
-    CHECK(text_file_read(file, &text, &length));
+    CHECK(mf_text_file_read(file, &text, &length));
     recognise(demand, text);
     CHECK(measure(table, file, text, demand));
     NEW_ARRAY(table->values, table->rows * table->columns);
@@ -277,43 +277,43 @@ static enum status read_table(struct data_table *table, const char *file, struct
     CHECK(read_rows(table, file, demand, text));
     read_comments(table, text);
 done:
-    memory_free(text);
+    mf_memory_free(text);
     if (status != STATUS_OK)
-        data_table_clear(table);
+        mf_data_table_clear(table);
     return status;
 }
 
-enum status data_table_read(struct data_table *table, const char *file, size_t least_columns) {
+enum status mf_data_table_read(struct data_table *table, const char *file, size_t least_columns) {
     return read_table(table, file, &(struct demand){.columns = least_columns});
 }
 
-enum status data_table_read_flagged(struct data_table *table, const char *file,
+enum status mf_data_table_read_flagged(struct data_table *table, const char *file,
                                     size_t least_columns) {
     return read_table(table, file, &(struct demand){.columns = least_columns, .flagged = true});
 }
 
-void data_table_clear(struct data_table *table) {
-    memory_free(table->flags);
-    memory_free(table->values);
-    memory_free(table->line);
-    memory_free(table->header);
-    memory_free(table->comments);
+void mf_data_table_clear(struct data_table *table) {
+    mf_memory_free(table->flags);
+    mf_memory_free(table->values);
+    mf_memory_free(table->line);
+    mf_memory_free(table->header);
+    mf_memory_free(table->comments);
     *table = (struct data_table){0};
 }
 
-enum status data_table_check_increasing(const struct data_table *table, const char *file,
+enum status mf_data_table_check_increasing(const struct data_table *table, const char *file,
                                         size_t column, double least) {
     if (column >= table->columns)
-        return status_fail(STATUS_BAD_INPUT, "%s: there is no column %zu", file, column + 1);
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: there is no column %zu", file, column + 1);
     for (size_t row = 0; row < table->rows; row++) {
         const double value = table->values[row * table->columns + column];
         const size_t line = table->line[row];
         if (row == 0 && !(value >= least))
-            return status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: %.15g is below %.15g", file,
+            return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: %.15g is below %.15g", file,
                                line, column + 1, value, least);
         const double before = row ? table->values[(row - 1) * table->columns + column] : -INFINITY;
         if (!(value > before))
-            return status_fail(STATUS_BAD_INPUT,
+            return mf_status_fail(STATUS_BAD_INPUT,
                                "%s:%zu: column %zu: %.15g does not grow from %.15g in line %zu",
                                file, line, column + 1, value, before, table->line[row - 1]);
     }
@@ -348,14 +348,14 @@ static void write_row(FILE *stream, const struct data_column *columns, size_t co
     fputc('\n', stream);
 }
 
-enum status data_table_write(const char *file, const char *comment,
+enum status mf_data_table_write(const char *file, const char *comment,
                              const struct data_column *columns, size_t column_count, size_t rows) {
     struct output output;
-    TRY(output_open(&output, file));
+    TRY(mf_output_open(&output, file));
     if (comment)
         write_comment(output.stream, comment);
     write_header(output.stream, columns, column_count);
     for (size_t row = 0; row < rows; row++)
         write_row(output.stream, columns, column_count, row);
-    return output_commit(&output);
+    return mf_output_commit(&output);
 }

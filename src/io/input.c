@@ -16,14 +16,14 @@ static const char *wrong_kind(const struct stat *about) {
                                       : "a device";
 }
 
-enum status input_open(FILE **stream, const char *file) {
+enum status mf_input_open(FILE **stream, const char *file) {
     struct stat about;
     *stream = NULL;
     // Before it is opened, since opening can do something to a device, and again of what was
     // opened.
     const char *kind = stat(file, &about) == 0 ? wrong_kind(&about) : NULL;
     if (kind == NULL && (*stream = fopen(file, "rbe")) == NULL)
-        return status_fail(STATUS_IO, "%s: %s", file, strerror(errno));
+        return mf_status_fail(STATUS_IO, "%s: %s", file, strerror(errno));
     if (kind == NULL && fstat(fileno(*stream), &about) == 0)
         kind = wrong_kind(&about);
     if (kind == NULL)
@@ -31,7 +31,7 @@ enum status input_open(FILE **stream, const char *file) {
     if (*stream)
         fclose(*stream);
     *stream = NULL;
-    return status_fail(STATUS_IO, "%s: is %s, not a file", file, kind);
+    return mf_status_fail(STATUS_IO, "%s: is %s, not a file", file, kind);
 }
 
 static enum status make_room(struct input_files *inputs) {
@@ -43,19 +43,19 @@ static enum status make_room(struct input_files *inputs) {
     NEW_ARRAY(larger, room);
     if (inputs->count > 0)
         memcpy(larger, inputs->file, inputs->count * sizeof *larger);
-    memory_free(inputs->file);
+    mf_memory_free(inputs->file);
     inputs->file = larger;
     inputs->room = room;
 done:
     return status;
 }
 
-enum status input_files_add(struct input_files *inputs, const char *name) {
+enum status mf_input_files_add(struct input_files *inputs, const char *name) {
     struct stat about;
     if (stat(name, &about) != 0)
         return STATUS_OK;
     TRY(make_room(inputs));
-    char *copy = memory_zeroed(strlen(name) + 1, 1);
+    char *copy = mf_memory_zeroed(strlen(name) + 1, 1);
     if (copy == NULL)
         return STATUS_NO_MEMORY;
     strcpy(copy, name);
@@ -63,14 +63,14 @@ enum status input_files_add(struct input_files *inputs, const char *name) {
     return STATUS_OK;
 }
 
-enum status input_files_spare(const struct input_files *inputs, const char *path) {
+enum status mf_input_files_spare(const struct input_files *inputs, const char *path) {
     struct stat about;
     if (stat(path, &about) != 0)
         return STATUS_OK;
     for (size_t k = 0; k < inputs->count; k++) {
         const struct input_file *input = &inputs->file[k];
         if (input->device == about.st_dev && input->number == about.st_ino)
-            return status_fail(STATUS_BAD_INPUT,
+            return mf_status_fail(STATUS_BAD_INPUT,
                                "%s would be replaced, but the run reads it as %s: write elsewhere "
                                "with -o",
                                path, input->name);
@@ -78,9 +78,9 @@ enum status input_files_spare(const struct input_files *inputs, const char *path
     return STATUS_OK;
 }
 
-void input_files_clear(struct input_files *inputs) {
+void mf_input_files_clear(struct input_files *inputs) {
     for (size_t k = 0; k < inputs->count; k++)
-        memory_free(inputs->file[k].name);
-    memory_free(inputs->file);
+        mf_memory_free(inputs->file[k].name);
+    mf_memory_free(inputs->file);
     *inputs = (struct input_files){0};
 }

@@ -10,7 +10,7 @@
 
 /// Open a file or a pipe for reading. Fails: IO if it cannot be read, or is a folder, a device or a
 /// socket: a device such as /dev/zero has no end. Tested: test_data_table, test_checkpoint.
-enum status input_open(FILE **stream, const char *file) MUST_USE;
+enum status mf_input_open(FILE **stream, const char *file) MUST_USE;
 
 /// The files that a run reads, known by what they are and not by their names: whatever a path to
 /// them looks like, the run must not remove or replace them.
@@ -24,9 +24,9 @@ struct input_files {
 };
 
 /// Add a file; one that is not there is none. Fails: NO_MEMORY.
-enum status input_files_add(struct input_files *inputs, const char *name) MUST_USE;
+enum status mf_input_files_add(struct input_files *inputs, const char *name) MUST_USE;
 
 /// Fails: BAD_INPUT, naming both, if `path` is one of the files, or a link to one.
-enum status input_files_spare(const struct input_files *inputs, const char *path) MUST_USE;
+enum status mf_input_files_spare(const struct input_files *inputs, const char *path) MUST_USE;
 
-void input_files_clear(struct input_files *inputs);
+void mf_input_files_clear(struct input_files *inputs);

@@ -35,7 +35,7 @@ static void join_path(char *text, size_t size, const char *path, const char *key
         memcpy(text + size - 4, "...", 4);
 }
 
-void json_fault(struct json_object *object, const char *key, const char *format, ...) {
+void mf_json_fault(struct json_object *object, const char *key, const char *format, ...) {
     char path[2 * JSON_PATH_SIZE], message[LINE_SIZE / 2], line[LINE_SIZE], visible[LINE_SIZE];
     join_path(path, sizeof path, object->path, key ? key : "");
     va_list arguments;
@@ -44,8 +44,8 @@ void json_fault(struct json_object *object, const char *key, const char *format,
     va_end(arguments);
     snprintf(line, sizeof line, "%.1024s: %s%s%s", object->document->file, path,
              path[0] ? ": " : "", message);
-    visible_copy(visible, sizeof visible, line, ""); // one line a fault, whatever it quotes
-    faults_add(&object->document->faults, visible);
+    mf_visible_copy(visible, sizeof visible, line, ""); // one line a fault, whatever it quotes
+    mf_faults_add(&object->document->faults, visible);
 }
 
 static void describe_item(const cJSON *item, char *text, size_t size) {
@@ -66,7 +66,7 @@ static void fault_wrong_type(struct json_object *object, const char *key, const 
                              const cJSON *item) {
     char found[64];
     describe_item(item, found, sizeof found);
-    json_fault(object, key, "expected %s, found %s", expected, found);
+    mf_json_fault(object, key, "expected %s, found %s", expected, found);
 }
 
 // Documents and objects ---------------------------------------------------------------------------
@@ -82,7 +82,7 @@ static void find_duplicates(struct json_object *object) {
     int index = 0;
     cJSON_ArrayForEach(member, item) {
         if (member->string && cJSON_GetObjectItemCaseSensitive(item, member->string) != member)
-            json_fault(object, member->string, "the key stands here twice");
+            mf_json_fault(object, member->string, "the key stands here twice");
         if (member->child) {
             struct json_object inner = view(object->document, member);
             char place[32];
@@ -106,7 +106,7 @@ static enum status check_members(const char *file, const cJSON *item) {
             TRY(check_members(file, member));
     }
     if (cJSON_IsObject(item) && count > JSON_MOST_MEMBERS)
-        return status_fail(STATUS_BAD_INPUT, "%s: an object has %d keys; %d are the most", file,
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: an object has %d keys; %d are the most", file,
                            count, JSON_MOST_MEMBERS);
     return STATUS_OK;
 }
@@ -119,19 +119,19 @@ static enum status parse(struct json_document *document, const char *text) {
     if (document->root)
         return STATUS_OK;
     if (errno == ENOMEM)
-        return status_fail(STATUS_NO_MEMORY, "%s: out of memory", document->file);
-    const struct text_place place = text_file_place(text, end);
-    return status_fail(STATUS_BAD_INPUT, "%s:%zu:%zu: expected a valid \\u escape", document->file,
+        return mf_status_fail(STATUS_NO_MEMORY, "%s: out of memory", document->file);
+    const struct text_place place = mf_text_file_place(text, end);
+    return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu:%zu: expected a valid \\u escape", document->file,
                        place.line, place.column);
 }
 
 static void free_document(struct json_document *document) {
     cJSON_Delete(document->root);
-    memory_free(document->file);
-    memory_free(document);
+    mf_memory_free(document->file);
+    mf_memory_free(document);
 }
 
-enum status json_open(struct json_document **document, const char *file) {
+enum status mf_json_open(struct json_document **document, const char *file) {
     enum status status = STATUS_OK;
     struct json_document *opened = NULL;
     char *text = NULL;
@@ -140,26 +140,26 @@ enum status json_open(struct json_document **document, const char *file) {
     NEW_ARRAY(opened, 1);
     NEW_ARRAY(opened->file, strlen(file) + 1);
     memcpy(opened->file, file, strlen(file) + 1);
-    CHECK(text_file_read(file, &text, &length));
-    CHECK(json_syntax_check(file, text));
+    CHECK(mf_text_file_read(file, &text, &length));
+    CHECK(mf_json_syntax_check(file, text));
     CHECK(parse(opened, text));
     CHECK(check_members(file, opened->root));
     struct json_object root = view(opened, opened->root);
     find_duplicates(&root);
     *document = opened;
 done:
-    memory_free(text);
+    mf_memory_free(text);
     if (status != STATUS_OK && opened)
         free_document(opened);
     return status;
 }
 
-enum status json_collect_files(struct json_document *document, struct input_files *inputs) {
+enum status mf_json_collect_files(struct json_document *document, struct input_files *inputs) {
     document->inputs = inputs;
-    return input_files_add(inputs, document->file);
+    return mf_input_files_add(inputs, document->file);
 }
 
-struct json_object json_root(struct json_document *document) {
+struct json_object mf_json_root(struct json_document *document) {
     struct json_object root = view(document, document->root);
     if (!cJSON_IsObject(document->root)) {
         fault_wrong_type(&root, NULL, "an object", document->root);
@@ -181,12 +181,12 @@ static const cJSON *ask(struct json_object *object, const char *key) {
         if (object->asked_count < JSON_MAX_KEYS)
             object->asked[object->asked_count++] = key;
         else
-            json_fault(object, key, "the reader knows more than %d keys here", JSON_MAX_KEYS);
+            mf_json_fault(object, key, "the reader knows more than %d keys here", JSON_MAX_KEYS);
     }
     return cJSON_GetObjectItemCaseSensitive(object->item, key);
 }
 
-struct json_object json_child(struct json_object *parent, const char *key, bool required) {
+struct json_object mf_json_child(struct json_object *parent, const char *key, bool required) {
     const cJSON *item = ask(parent, key);
     struct json_object child = view(parent->document, NULL);
     join_path(child.path, sizeof child.path, parent->path, key);
@@ -195,15 +195,15 @@ struct json_object json_child(struct json_object *parent, const char *key, bool 
     else if (item)
         fault_wrong_type(parent, key, "an object", item);
     else if (required && parent->item)
-        json_fault(parent, key, "missing: an object is required");
+        mf_json_fault(parent, key, "missing: an object is required");
     return child;
 }
 
-bool json_has(struct json_object *object, const char *key) {
+bool mf_json_has(struct json_object *object, const char *key) {
     return ask(object, key) != NULL;
 }
 
-const char *json_key(const struct json_object *object, size_t n) {
+const char *mf_json_key(const struct json_object *object, size_t n) {
     const cJSON *member;
     cJSON_ArrayForEach(member, (const cJSON *)object->item) {
         if (n-- == 0)
@@ -212,26 +212,26 @@ const char *json_key(const struct json_object *object, size_t n) {
     return NULL;
 }
 
-void json_finish(struct json_object *object) {
+void mf_json_finish(struct json_object *object) {
     const cJSON *member;
     cJSON_ArrayForEach(member, (const cJSON *)object->item) {
         if (was_asked(object, member->string))
             continue;
         char hint[LINE_SIZE / 4];
-        nearest_hint(member->string, object->asked, object->asked_count, hint, sizeof hint);
-        json_fault(object, member->string, "unknown key; %s", hint);
+        mf_nearest_hint(member->string, object->asked, object->asked_count, hint, sizeof hint);
+        mf_json_fault(object, member->string, "unknown key; %s", hint);
     }
 }
 
-size_t json_fault_count(const struct json_document *document) {
+size_t mf_json_fault_count(const struct json_document *document) {
     return document->faults.count;
 }
 
-enum status json_close(struct json_document *document, enum status status) {
+enum status mf_json_close(struct json_document *document, enum status status) {
     if (document == NULL)
         return status;
     if (status != STATUS_NO_MEMORY && document->faults.count > 0)
-        status = faults_status(&document->faults);
+        status = mf_faults_status(&document->faults);
     free_document(document);
     return status;
 }
@@ -253,7 +253,7 @@ static bool read_finite(struct json_object *object, const char *key, const char 
         return false;
     }
     if (!isfinite(item->valuedouble)) {
-        json_fault(object, key, "the number is too large; the largest is %.3g", DBL_MAX);
+        mf_json_fault(object, key, "the number is too large; the largest is %.3g", DBL_MAX);
         return false;
     }
     *value = item->valuedouble;
@@ -270,7 +270,7 @@ static bool read_whole(struct json_object *object, const char *key, const cJSON 
         return false;
     }
     if (fabs(*value) >= FIELD_LARGEST_INTEGER) {
-        json_fault(object, key,
+        mf_json_fault(object, key,
                    "%.0f is out of range: whole numbers of 2^53 (%.0f) and beyond lose digits",
                    *value, FIELD_LARGEST_INTEGER);
         return false;
@@ -283,8 +283,8 @@ static bool is_in_range(struct json_object *object, const char *key, const struc
     if (value >= field->minimum && value <= field->maximum)
         return true;
     char range[64];
-    fields_range_text(field, range, sizeof range);
-    json_fault(object, key, "%.15g is out of range; allowed: %s%s%s", value, range,
+    mf_fields_range_text(field, range, sizeof range);
+    mf_json_fault(object, key, "%.15g is out of range; allowed: %s%s%s", value, range,
                field->unit && field->unit[0] ? " " : "", field->unit ? field->unit : "");
     return false;
 }
@@ -295,7 +295,7 @@ static void read_lengths(struct json_object *object, const struct field *field, 
     const int count = cJSON_IsArray(item) ? cJSON_GetArraySize(item) : 0;
     if (count < 2 || count > 3) {
         if (cJSON_IsArray(item))
-            json_fault(object, field->name, "expected 2 or 3 numbers, found %d", count);
+            mf_json_fault(object, field->name, "expected 2 or 3 numbers, found %d", count);
         else
             fault_wrong_type(object, field->name, expected_name[FIELD_LENGTHS], item);
         return;
@@ -317,7 +317,7 @@ static const char *read_text(struct json_object *object, const char *key, const 
     if (!cJSON_IsString(item))
         fault_wrong_type(object, key, expected, item);
     else if (item->valuestring[0] == '\0')
-        json_fault(object, key, "the text is empty");
+        mf_json_fault(object, key, "the text is empty");
     else
         return item->valuestring;
     return NULL;
@@ -332,14 +332,14 @@ static void read_text_field(struct json_object *object, const struct field *fiel
     const bool joined = field->type == FIELD_FILE && text[0] != '/' && slash;
     const size_t folder = joined ? (size_t)(slash + 1 - file) : 0;
     if (folder + strlen(text) >= FIELD_TEXT_SIZE) {
-        json_fault(object, field->name, "the text is longer than %d bytes", FIELD_TEXT_SIZE - 1);
+        mf_json_fault(object, field->name, "the text is longer than %d bytes", FIELD_TEXT_SIZE - 1);
         return;
     }
     memcpy(member, file, folder);
     strcpy(member + folder, text);
     if (field->type == FIELD_FILE && object->document->inputs &&
-        input_files_add(object->document->inputs, member) != STATUS_OK)
-        json_fault(object, field->name, "%s", status_message());
+        mf_input_files_add(object->document->inputs, member) != STATUS_OK)
+        mf_json_fault(object, field->name, "%s", mf_status_message());
 }
 
 static void read_field(struct json_object *object, const struct field *field, const cJSON *item,
@@ -360,7 +360,7 @@ static void read_field(struct json_object *object, const struct field *field, co
         if (!read_whole(object, key, item, &value))
             break;
         if (value < 0)
-            json_fault(object, key, "%.0f is out of range; allowed: at least 0", value);
+            mf_json_fault(object, key, "%.0f is out of range; allowed: at least 0", value);
         else
             memcpy(member, &(uint64_t){(uint64_t)value}, sizeof(uint64_t));
         break;
@@ -372,14 +372,14 @@ static void read_field(struct json_object *object, const struct field *field, co
         read_text_field(object, field, item, member);
         break;
     case FIELD_CHOICE:
-        if (json_choice(object, key, field->choices, NULL))
-            memcpy(member, &(int){fields_choice_index(field, item->valuestring)}, sizeof(int));
+        if (mf_json_choice(object, key, field->choices, NULL))
+            memcpy(member, &(int){mf_fields_choice_index(field, item->valuestring)}, sizeof(int));
         break;
     }
 }
 
-void json_fields(struct json_object *object, const struct field *fields, void *parameters) {
-    fields_set_defaults(fields, parameters);
+void mf_json_fields(struct json_object *object, const struct field *fields, void *parameters) {
+    mf_fields_set_defaults(fields, parameters);
     for (const struct field *field = fields; field->name; field++) {
         const cJSON *item = ask(object, field->name);
         // A number that is not known is written as null.
@@ -388,17 +388,17 @@ void json_fields(struct json_object *object, const struct field *fields, void *p
         if (item)
             read_field(object, field, item, (char *)parameters + field->offset);
         else if (field->required && object->item)
-            json_fault(object, field->name, "missing: %s is required (%s)",
+            mf_json_fault(object, field->name, "missing: %s is required (%s)",
                        expected_name[field->type], field->help ? field->help : field->name);
     }
 }
 
-const char *json_choice(struct json_object *object, const char *key, const char *const *known,
+const char *mf_json_choice(struct json_object *object, const char *key, const char *const *known,
                         const char *fallback) {
     const cJSON *item = ask(object, key);
     if (item == NULL) {
         if (fallback == NULL && object->item)
-            json_fault(object, key, "missing: a text is required");
+            mf_json_fault(object, key, "missing: a text is required");
         return fallback;
     }
     const char *text = read_text(object, key, "a text", item);
@@ -409,7 +409,7 @@ const char *json_choice(struct json_object *object, const char *key, const char 
         if (strcmp(known[count], text) == 0)
             return text;
     char hint[LINE_SIZE / 4];
-    nearest_hint(text, known, count, hint, sizeof hint);
-    json_fault(object, key, "\"%.60s\" is unknown; %s", text, hint);
+    mf_nearest_hint(text, known, count, hint, sizeof hint);
+    mf_json_fault(object, key, "\"%.60s\" is unknown; %s", text, hint);
     return NULL;
 }

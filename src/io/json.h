@@ -31,50 +31,50 @@ struct json_object {
 
 /// Parse `file`. Malformed text is BAD_INPUT with file:line:column, an object of more than
 /// JSON_MOST_MEMBERS keys is BAD_INPUT.
-/// On success the caller owns *document (json_close).
-enum status json_open(struct json_document **document, const char *file) MUST_USE;
+/// On success the caller owns *document (mf_json_close).
+enum status mf_json_open(struct json_document **document, const char *file) MUST_USE;
 
 /// Put the document's own file into `inputs`, and from now on every file that a FIELD_FILE names.
 /// Both live as long as the document. Fails: NO_MEMORY. Tested: test_json.
-enum status json_collect_files(struct json_document *document, struct input_files *inputs) MUST_USE;
+enum status mf_json_collect_files(struct json_document *document, struct input_files *inputs) MUST_USE;
 
 /// View of the document's root, which must be an object.
-struct json_object json_root(struct json_document *document);
+struct json_object mf_json_root(struct json_document *document);
 
 /// View of the object at `key`; absent optional objects give a view with item NULL, from which
-/// json_fields reads the defaults.
-struct json_object json_child(struct json_object *parent, const char *key, bool required);
+/// mf_json_fields reads the defaults.
+struct json_object mf_json_child(struct json_object *parent, const char *key, bool required);
 
 /// True if `key` is present, with any value. Counts as asked for.
-bool json_has(struct json_object *object, const char *key);
+bool mf_json_has(struct json_object *object, const char *key);
 
 /// The key of member number n of an object whose keys the file chooses, or NULL beyond the last.
 /// The text lives with the document. Counts as nothing: the reader asks for the keys that it takes.
-const char *json_key(const struct json_object *object, size_t n);
+const char *mf_json_key(const struct json_object *object, size_t n);
 
 /// Read the members described by `fields` into `parameters`, defaults where absent.
 /// FIELD_FILE values are joined to the folder of the document's file unless absolute. An absent
-/// object gives the defaults and no faults: that it is missing was json_child's to say. null, as
-/// json_put_number writes what is not known, is allowed for numbers whose default is NAN.
-void json_fields(struct json_object *object, const struct field *fields, void *parameters);
+/// object gives the defaults and no faults: that it is missing was mf_json_child's to say. null, as
+/// mf_json_put_number writes what is not known, is allowed for numbers whose default is NAN.
+void mf_json_fields(struct json_object *object, const struct field *fields, void *parameters);
 
 /// Read a required text such as the name of a law: NULL (and a fault) if absent or not a text.
 /// `known` lists the allowed values, NULL-terminated, or is NULL; others are a fault that names
 /// the nearest. With `fallback` not NULL the key is optional. The text lives with the document.
-const char *json_choice(struct json_object *object, const char *key, const char *const *known,
+const char *mf_json_choice(struct json_object *object, const char *key, const char *const *known,
                         const char *fallback);
 
 /// Record a fault of the object's own making; `key` may be NULL. The message is printed as
 /// "file: path.key: message".
-void json_fault(struct json_object *object, const char *key, const char *format, ...)
+void mf_json_fault(struct json_object *object, const char *key, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 /// Record every key of the object that nobody asked for as unknown, with the nearest asked one.
-void json_finish(struct json_object *object);
+void mf_json_finish(struct json_object *object);
 
 /// Number of faults so far.
-size_t json_fault_count(const struct json_document *document);
+size_t mf_json_fault_count(const struct json_document *document);
 
 /// Free the document. `status` is what became of reading it: returned if it is NO_MEMORY, and if
 /// there was no fault. Else BAD_INPUT with all faults, one a line.
-enum status json_close(struct json_document *document, enum status status) MUST_USE;
+enum status mf_json_close(struct json_document *document, enum status status) MUST_USE;

@@ -22,7 +22,7 @@ struct checker {
 static enum status check_value(struct checker *checker);
 
 static enum status expected(const struct checker *checker, const char *what) {
-    const struct text_place place = text_file_place(checker->text, checker->at);
+    const struct text_place place = mf_text_file_place(checker->text, checker->at);
     const unsigned char c = (unsigned char)*checker->at;
     char found[32];
     if (c == '\0')
@@ -33,7 +33,7 @@ static enum status expected(const struct checker *checker, const char *what) {
         snprintf(found, sizeof found, "'%c'", c);
     else
         snprintf(found, sizeof found, "byte 0x%02x", c);
-    return status_fail(STATUS_BAD_INPUT, "%s:%zu:%zu: expected %s, found %s", checker->file,
+    return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu:%zu: expected %s, found %s", checker->file,
                        place.line, place.column, what, found);
 }
 
@@ -158,7 +158,7 @@ static enum status check_value(struct checker *checker) {
     return check_word(checker, c == 't' ? "true" : c == 'f' ? "false" : "null");
 }
 
-enum status json_syntax_check(const char *file, const char *text) {
+enum status mf_json_syntax_check(const char *file, const char *text) {
     struct checker checker = {.file = file, .text = text, .at = text};
     skip_space(&checker);
     TRY(check_value(&checker));

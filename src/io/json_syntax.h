@@ -9,4 +9,4 @@
 
 /// Check that `text` is one JSON value of RFC 8259 and nothing after it.
 /// BAD_INPUT with "file:line:column: expected …, found …". Tested: test_json_syntax.
-enum status json_syntax_check(const char *file, const char *text) MUST_USE;
+enum status mf_json_syntax_check(const char *file, const char *text) MUST_USE;

@@ -23,29 +23,29 @@ struct json_writer {
 };
 
 static struct json_writer *create(cJSON *root) {
-    struct json_writer *writer = memory_zeroed(1, sizeof *writer);
+    struct json_writer *writer = mf_memory_zeroed(1, sizeof *writer);
     if (writer && root) {
         writer->object[0] = root;
         return writer;
     }
     cJSON_Delete(root);
-    memory_free(writer);
-    status_fail(STATUS_NO_MEMORY, "out of memory");
+    mf_memory_free(writer);
+    mf_status_fail(STATUS_NO_MEMORY, "out of memory");
     return NULL;
 }
 
-struct json_writer *json_writer_create(void) {
+struct json_writer *mf_json_writer_create(void) {
     return create(cJSON_CreateObject());
 }
 
-struct json_writer *json_writer_create_list(void) {
+struct json_writer *mf_json_writer_create_list(void) {
     return create(cJSON_CreateArray());
 }
 
-void json_writer_free(struct json_writer *writer) {
+void mf_json_writer_free(struct json_writer *writer) {
     if (writer)
         cJSON_Delete(writer->object[0]);
-    memory_free(writer);
+    mf_memory_free(writer);
 }
 
 static void note_problem(struct json_writer *writer, const char *key, const char *problem) {
@@ -79,7 +79,7 @@ static void begin_in_list(struct json_writer *writer) {
     writer->object[++writer->depth] = item;
 }
 
-void json_begin(struct json_writer *writer, const char *key) {
+void mf_json_begin(struct json_writer *writer, const char *key) {
     if (key == NULL) {
         begin_in_list(writer);
         return;
@@ -93,7 +93,7 @@ void json_begin(struct json_writer *writer, const char *key) {
     writer->object[++writer->depth] = object;
 }
 
-void json_end(struct json_writer *writer) {
+void mf_json_end(struct json_writer *writer) {
     if (writer->depth > 0)
         writer->depth--;
 }
@@ -110,11 +110,11 @@ static cJSON *create_number(double value) {
     return cJSON_CreateRaw(text);
 }
 
-void json_put_number(struct json_writer *writer, const char *key, double value) {
+void mf_json_put_number(struct json_writer *writer, const char *key, double value) {
     put(writer, key, create_number(value));
 }
 
-void json_put_integer(struct json_writer *writer, const char *key, int64_t value) {
+void mf_json_put_integer(struct json_writer *writer, const char *key, int64_t value) {
     char text[32];
     snprintf(text, sizeof text, "%" PRId64, value);
     put(writer, key, cJSON_CreateRaw(text));
@@ -126,11 +126,11 @@ static void put_seed(struct json_writer *writer, const char *key, uint64_t value
     put(writer, key, cJSON_CreateRaw(text));
 }
 
-void json_put_text(struct json_writer *writer, const char *key, const char *value) {
+void mf_json_put_text(struct json_writer *writer, const char *key, const char *value) {
     put(writer, key, cJSON_CreateString(value));
 }
 
-void json_put_numbers(struct json_writer *writer, const char *key, const double *values,
+void mf_json_put_numbers(struct json_writer *writer, const char *key, const double *values,
                       size_t count) {
     cJSON *array = cJSON_CreateArray();
     for (size_t k = 0; array && k < count; k++) {
@@ -144,14 +144,14 @@ void json_put_numbers(struct json_writer *writer, const char *key, const double 
 static void put_file(struct json_writer *writer, const char *key, const char *file) {
     char folder[OUTPUT_PATH_SIZE], path[OUTPUT_PATH_SIZE + FIELD_TEXT_SIZE];
     if (file[0] == '/') {
-        json_put_text(writer, key, file);
+        mf_json_put_text(writer, key, file);
         return;
     }
     if (getcwd(folder, sizeof folder) == NULL)
         note_problem(writer, key, "lies in a folder without a name");
     else {
         snprintf(path, sizeof path, "%s/%s", folder, file);
-        json_put_text(writer, key, path);
+        mf_json_put_text(writer, key, path);
     }
 }
 
@@ -163,11 +163,11 @@ static void put_field(struct json_writer *writer, const struct field *field, con
     switch (field->type) {
     case FIELD_NUMBER:
         memcpy(number, member, sizeof *number);
-        json_put_number(writer, field->name, number[0]);
+        mf_json_put_number(writer, field->name, number[0]);
         break;
     case FIELD_INTEGER:
         memcpy(&integer, member, sizeof integer);
-        json_put_integer(writer, field->name, integer);
+        mf_json_put_integer(writer, field->name, integer);
         break;
     case FIELD_SEED:
         memcpy(&seed, member, sizeof seed);
@@ -176,11 +176,11 @@ static void put_field(struct json_writer *writer, const struct field *field, con
     case FIELD_LENGTHS:
         memcpy(number, member, sizeof number);
         if (number[0] != 0 || number[1] != 0 || number[2] != 0)
-            json_put_numbers(writer, field->name, number, number[2] != 0 ? 3 : 2);
+            mf_json_put_numbers(writer, field->name, number, number[2] != 0 ? 3 : 2);
         break;
     case FIELD_TEXT:
         if (member[0])
-            json_put_text(writer, field->name, member);
+            mf_json_put_text(writer, field->name, member);
         break;
     case FIELD_FILE:
         if (member[0])
@@ -188,12 +188,12 @@ static void put_field(struct json_writer *writer, const struct field *field, con
         break;
     case FIELD_CHOICE:
         memcpy(&choice, member, sizeof choice);
-        json_put_text(writer, field->name, field->choices[choice]);
+        mf_json_put_text(writer, field->name, field->choices[choice]);
         break;
     }
 }
 
-void json_put_fields(struct json_writer *writer, const struct field *fields,
+void mf_json_put_fields(struct json_writer *writer, const struct field *fields,
                      const void *parameters) {
     for (const struct field *field = fields; field->name; field++)
         put_field(writer, field, (const char *)parameters + field->offset);
@@ -203,30 +203,30 @@ void json_put_fields(struct json_writer *writer, const struct field *fields,
 static enum status print(const struct json_writer *writer, const char *name, char **text) {
     *text = NULL;
     if (writer->problem[0])
-        return status_fail(STATUS_IO, "cannot write %s: %s", name, writer->problem);
+        return mf_status_fail(STATUS_IO, "cannot write %s: %s", name, writer->problem);
     *text = cJSON_Print(writer->object[0]);
     if (*text == NULL)
-        return status_fail(STATUS_NO_MEMORY, "cannot write %s: out of memory", name);
+        return mf_status_fail(STATUS_NO_MEMORY, "cannot write %s: out of memory", name);
     return STATUS_OK;
 }
 
-enum status json_write(const struct json_writer *writer, const char *file) {
+enum status mf_json_write(const struct json_writer *writer, const char *file) {
     char *text;
     TRY(print(writer, file, &text));
     struct output output;
-    const enum status status = output_open(&output, file);
+    const enum status status = mf_output_open(&output, file);
     if (status == STATUS_OK)
         fprintf(output.stream, "%s\n", text);
     cJSON_free(text);
-    return status == STATUS_OK ? output_commit(&output) : status;
+    return status == STATUS_OK ? mf_output_commit(&output) : status;
 }
 
-enum status json_write_stream(const struct json_writer *writer, FILE *stream, const char *name) {
+enum status mf_json_write_stream(const struct json_writer *writer, FILE *stream, const char *name) {
     char *text;
     TRY(print(writer, name, &text));
     const bool written = fprintf(stream, "%s\n", text) >= 0 && fflush(stream) == 0;
     const int error = errno;
     cJSON_free(text);
     return written ? STATUS_OK
-                   : status_fail(STATUS_IO, "cannot write %s: %s", name, strerror(error));
+                   : mf_status_fail(STATUS_IO, "cannot write %s: %s", name, strerror(error));
 }

@@ -2,7 +2,7 @@
 /// @file Writing of JSON.
 ///
 /// A tree is built and then written whole. The first problem (no memory, a key given twice) is
-/// remembered and reported by json_write, so that building needs no checks. A number that is not
+/// remembered and reported by mf_json_write, so that building needs no checks. A number that is not
 /// finite is written as null. Other numbers get the fewest digits of %.15g and %.17g that read back
 /// to the same bits.
 #pragma once
@@ -16,31 +16,31 @@
 
 struct json_writer;
 
-struct json_writer *json_writer_create(void);      ///< NULL if there is no memory
-struct json_writer *json_writer_create_list(void); ///< the tree is a list of objects
-void json_writer_free(struct json_writer *writer);
+struct json_writer *mf_json_writer_create(void);      ///< NULL if there is no memory
+struct json_writer *mf_json_writer_create_list(void); ///< the tree is a list of objects
+void mf_json_writer_free(struct json_writer *writer);
 
 /// Enter a new object at `key` of the current object, or with `key` NULL a new last object of the
-/// list; leave it with json_end.
-void json_begin(struct json_writer *writer, const char *key);
-void json_end(struct json_writer *writer);
+/// list; leave it with mf_json_end.
+void mf_json_begin(struct json_writer *writer, const char *key);
+void mf_json_end(struct json_writer *writer);
 
-void json_put_number(struct json_writer *writer, const char *key, double value);
-/// All digits are written, but json_fields refuses 2^53 and beyond.
-void json_put_integer(struct json_writer *writer, const char *key, int64_t value);
-void json_put_text(struct json_writer *writer, const char *key, const char *value);
-void json_put_numbers(struct json_writer *writer, const char *key, const double *values,
+void mf_json_put_number(struct json_writer *writer, const char *key, double value);
+/// All digits are written, but mf_json_fields refuses 2^53 and beyond.
+void mf_json_put_integer(struct json_writer *writer, const char *key, int64_t value);
+void mf_json_put_text(struct json_writer *writer, const char *key, const char *value);
+void mf_json_put_numbers(struct json_writer *writer, const char *key, const double *values,
                       size_t count);
 
 /// Write every member that `fields` describes; FIELD_TEXT and FIELD_FILE that are empty, and
 /// FIELD_LENGTHS that are all 0, are left out. Reading the result back gives the same bits, except
 /// that a relative FIELD_FILE is written absolute, so that it names the same file from any folder.
-void json_put_fields(struct json_writer *writer, const struct field *fields,
+void mf_json_put_fields(struct json_writer *writer, const struct field *fields,
                      const void *parameters);
 
 /// Write the tree to `file`, whole or not at all (output.h).
-enum status json_write(const struct json_writer *writer, const char *file) MUST_USE;
+enum status mf_json_write(const struct json_writer *writer, const char *file) MUST_USE;
 
 /// Print the tree to an open stream, which `name` names in messages. Fails: IO, NO_MEMORY.
-enum status json_write_stream(const struct json_writer *writer, FILE *stream,
+enum status mf_json_write_stream(const struct json_writer *writer, FILE *stream,
                               const char *name) MUST_USE;

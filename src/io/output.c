@@ -34,11 +34,11 @@ static int close_file(void *context) {
     return result;
 }
 
-enum status output_open(struct output *output, const char *path) {
+enum status mf_output_open(struct output *output, const char *path) {
     *output = (struct output){.file = -1};
     const int length = snprintf(output->path, sizeof output->path, "%s", path);
     if (length < 0 || (size_t)length >= sizeof output->path)
-        return status_fail(STATUS_IO, "%.60s…: the path is longer than %d bytes", path,
+        return mf_status_fail(STATUS_IO, "%.60s…: the path is longer than %d bytes", path,
                            OUTPUT_PATH_SIZE - 1);
     snprintf(output->temporary, sizeof output->temporary, "%s.%ld" OUTPUT_PARTIAL, output->path,
              (long)getpid());
@@ -56,7 +56,7 @@ enum status output_open(struct output *output, const char *path) {
         close_file(output);
         unlink(output->temporary);
     }
-    return status_fail(STATUS_IO, "cannot write %s: %s", output->path, strerror(error));
+    return mf_status_fail(STATUS_IO, "cannot write %s: %s", output->path, strerror(error));
 }
 
 /// Close the stream, its bytes on the disk; 0 or the error number of the first write that failed.
@@ -90,7 +90,7 @@ static void sync_folder(const char *path) {
     close(file);
 }
 
-enum status output_commit(struct output *output) {
+enum status mf_output_commit(struct output *output) {
     int error = close_stream(output);
     if (error == 0 && rename(output->temporary, output->path) != 0)
         error = errno;
@@ -99,10 +99,10 @@ enum status output_commit(struct output *output) {
         return STATUS_OK;
     }
     remove(output->temporary);
-    return status_fail(STATUS_IO, "cannot write %s: %s", output->path, strerror(error));
+    return mf_status_fail(STATUS_IO, "cannot write %s: %s", output->path, strerror(error));
 }
 
-void output_abandon(struct output *output) {
+void mf_output_abandon(struct output *output) {
     if (output->stream == NULL)
         return;
     fclose(output->stream);
@@ -123,15 +123,15 @@ static enum status make_one_folder(const char *folder, const char *path) {
     if (is_folder(folder))
         return STATUS_OK;
     if (error == EEXIST)
-        return status_fail(STATUS_IO, "cannot make folder %s: %s is not a folder", path, folder);
-    return status_fail(STATUS_IO, "cannot make folder %s: %s: %s", path, folder, strerror(error));
+        return mf_status_fail(STATUS_IO, "cannot make folder %s: %s is not a folder", path, folder);
+    return mf_status_fail(STATUS_IO, "cannot make folder %s: %s: %s", path, folder, strerror(error));
 }
 
-enum status output_make_folder(const char *path) {
+enum status mf_output_make_folder(const char *path) {
     char folder[OUTPUT_PATH_SIZE];
     const int length = snprintf(folder, sizeof folder, "%s", path);
     if (length <= 0 || (size_t)length >= sizeof folder)
-        return status_fail(STATUS_IO, "cannot make folder \"%.60s\": its length is %d bytes", path,
+        return mf_status_fail(STATUS_IO, "cannot make folder \"%.60s\": its length is %d bytes", path,
                            length);
     for (char *slash = strchr(folder + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
         *slash = '\0';

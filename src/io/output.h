@@ -23,15 +23,15 @@ struct output {
 
 /// Open "path.PROCESS.partial" for writing, a new file: one of that name is removed, and a link is
 /// not followed.
-enum status output_open(struct output *output, const char *path) MUST_USE;
+enum status mf_output_open(struct output *output, const char *path) MUST_USE;
 
 /// Flush, check every write, bring the bytes to the disk and rename to the final path, so that
 /// after a power cut the file is whole, or the old one is; on any error (disk full, …) the
 /// temporary file is removed and the status is STATUS_IO. Tested: test_output.
-enum status output_commit(struct output *output) MUST_USE;
+enum status mf_output_commit(struct output *output) MUST_USE;
 
 /// Give up: remove the temporary file. Allowed after a failed commit.
-void output_abandon(struct output *output);
+void mf_output_abandon(struct output *output);
 
 /// Make a folder and its missing parents; an existing folder is fine.
-enum status output_make_folder(const char *path) MUST_USE;
+enum status mf_output_make_folder(const char *path) MUST_USE;

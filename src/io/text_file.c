@@ -8,7 +8,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-struct text_place text_file_place(const char *text, const char *at) {
+struct text_place mf_text_file_place(const char *text, const char *at) {
     struct text_place place = {1, 1};
     for (const char *c = text; c < at; c++) {
         if (*c == '\n')
@@ -20,7 +20,7 @@ struct text_place text_file_place(const char *text, const char *at) {
 }
 
 static enum status fail_large(const char *file) {
-    return status_fail(STATUS_BAD_INPUT, "%s: the file is larger than 1 GiB", file);
+    return mf_status_fail(STATUS_BAD_INPUT, "%s: the file is larger than 1 GiB", file);
 }
 
 /// Read to the end of the stream rather than trust its size: pipes have none.
@@ -29,15 +29,15 @@ static enum status read_all(FILE *stream, const char *file, char **text, size_t 
     char *bytes = NULL;
     while (!feof(stream)) {
         if (used > TEXT_FILE_LARGEST) {
-            memory_free(bytes);
+            mf_memory_free(bytes);
             return fail_large(file);
         }
         if (used + 1 >= capacity) {
             const size_t larger = capacity ? 2 * capacity : 65536;
-            char *grown = memory_uncleared(larger, 1);
+            char *grown = mf_memory_uncleared(larger, 1);
             if (grown && used)
                 memcpy(grown, bytes, used);
-            memory_free(bytes);
+            mf_memory_free(bytes);
             if (grown == NULL)
                 return STATUS_NO_MEMORY;
             bytes = grown;
@@ -45,8 +45,8 @@ static enum status read_all(FILE *stream, const char *file, char **text, size_t 
         }
         used += fread(bytes + used, 1, capacity - 1 - used, stream);
         if (ferror(stream)) {
-            memory_free(bytes);
-            return status_fail(STATUS_IO, "%s: %s", file, strerror(errno));
+            mf_memory_free(bytes);
+            return mf_status_fail(STATUS_IO, "%s: %s", file, strerror(errno));
         }
     }
     bytes[used] = '\0';
@@ -64,22 +64,22 @@ static void drop_byte_order_mark(char *text, size_t *length) {
 
 static enum status check_is_text(const char *file, const char *text, size_t length) {
     if (length == 0)
-        return status_fail(STATUS_BAD_INPUT, "%s: the file is empty", file);
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: the file is empty", file);
     const char *nul = memchr(text, '\0', length);
     if (nul == NULL)
         return STATUS_OK;
-    const struct text_place place = text_file_place(text, nul);
-    return status_fail(STATUS_BAD_INPUT, "%s:%zu:%zu: a NUL byte: this is not a UTF-8 text file",
+    const struct text_place place = mf_text_file_place(text, nul);
+    return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu:%zu: a NUL byte: this is not a UTF-8 text file",
                        file, place.line, place.column);
 }
 
-enum status text_file_read(const char *file, char **text, size_t *length) {
+enum status mf_text_file_read(const char *file, char **text, size_t *length) {
     enum status status = STATUS_OK;
     *text = NULL;
     *length = 0;
     FILE *stream;
     struct stat about;
-    TRY(input_open(&stream, file));
+    TRY(mf_input_open(&stream, file));
     if (fstat(fileno(stream), &about) == 0 && about.st_size > (off_t)TEXT_FILE_LARGEST)
         CHECK(fail_large(file));
     CHECK(read_all(stream, file, text, length));
@@ -88,7 +88,7 @@ enum status text_file_read(const char *file, char **text, size_t *length) {
 done:
     fclose(stream);
     if (status != STATUS_OK) {
-        memory_free(*text);
+        mf_memory_free(*text);
         *text = NULL;
     }
     return status;

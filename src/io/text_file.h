@@ -10,15 +10,15 @@
 #define TEXT_FILE_LARGEST ((size_t)1 << 30)
 
 /// Read `file` into a new NUL-terminated text; a byte order mark at its start is dropped.
-/// @param[out] text    to be freed with memory_free; NULL on failure
+/// @param[out] text    to be freed with mf_memory_free; NULL on failure
 /// @param[out] length  bytes without the terminating NUL
-/// Fails: IO as input_open; BAD_INPUT if it is larger than TEXT_FILE_LARGEST, empty or holds a NUL
+/// Fails: IO as mf_input_open; BAD_INPUT if it is larger than TEXT_FILE_LARGEST, empty or holds a NUL
 /// byte, so that the text ends where the file ends. Tested: test_data_table, test_json.
-enum status text_file_read(const char *file, char **text, size_t *length) MUST_USE;
+enum status mf_text_file_read(const char *file, char **text, size_t *length) MUST_USE;
 
 /// Where a byte of a text stands; both count from 1, columns in characters of UTF-8.
 struct text_place {
     size_t line, column;
 };
 
-struct text_place text_file_place(const char *text, const char *at);
+struct text_place mf_text_file_place(const char *text, const char *at);

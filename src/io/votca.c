@@ -12,11 +12,11 @@
 static enum status check_row(const struct data_table *table, const char *file, size_t row) {
     const char flag = table->flags[row];
     if (strchr("iou", flag) == NULL)
-        return status_fail(STATUS_BAD_INPUT, "%s:%zu: the flag \"%c\" is none of i, o, u", file,
+        return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: the flag \"%c\" is none of i, o, u", file,
                            table->line[row], flag);
     for (size_t column = 0; flag == 'i' && column < table->columns; column++)
         if (!isfinite(table->values[row * table->columns + column]))
-            return status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: nan in a row flagged i", file,
+            return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: nan in a row flagged i", file,
                                table->line[row], column + 1);
     return STATUS_OK;
 }
@@ -34,10 +34,10 @@ static enum status find_range(const struct data_table *table, const char *file, 
         *end = row + 1;
     }
     if (*end == 0)
-        return status_fail(STATUS_BAD_INPUT, "%s: no row is flagged i", file);
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: no row is flagged i", file);
     for (size_t row = *begin; row < *end; row++)
         if (table->flags[row] != 'i')
-            return status_fail(STATUS_BAD_INPUT,
+            return mf_status_fail(STATUS_BAD_INPUT,
                                "%s:%zu: flagged %c between rows that are flagged i", file,
                                table->line[row], table->flags[row]);
     return STATUS_OK;
@@ -45,10 +45,10 @@ static enum status find_range(const struct data_table *table, const char *file, 
 
 /// A table of two columns without flags is in range from end to end.
 static enum status read_table(struct data_table *table, const char *file) {
-    enum status status = data_table_read(table, file, 2);
+    enum status status = mf_data_table_read(table, file, 2);
     if (status != STATUS_OK || table->columns != 2) {
-        data_table_clear(table);
-        return data_table_read_flagged(table, file, 1);
+        mf_data_table_clear(table);
+        return mf_data_table_read_flagged(table, file, 1);
     }
     NEW_ARRAY(table->flags, table->rows);
     memset(table->flags, 'i', table->rows);
@@ -56,14 +56,14 @@ done:
     return status;
 }
 
-enum status votca_read(struct votca_table *votca, const char *file) {
+enum status mf_votca_read(struct votca_table *votca, const char *file) {
     enum status status = STATUS_OK;
     struct data_table table = {0};
     size_t begin, end;
     *votca = (struct votca_table){0};
     CHECK(read_table(&table, file));
     if (table.columns != 2 && table.columns != 3) {
-        status = status_fail(STATUS_BAD_INPUT,
+        status = mf_status_fail(STATUS_BAD_INPUT,
                              "%s:%zu: not \"x y flag\" or \"x y error flag\" as VOTCA writes it",
                              file, table.line[0]);
         goto done;
@@ -83,25 +83,25 @@ enum status votca_read(struct votca_table *votca, const char *file) {
         votca->line[k] = table.line[begin + k];
     }
 done:
-    data_table_clear(&table);
+    mf_data_table_clear(&table);
     if (status != STATUS_OK)
-        votca_clear(votca);
+        mf_votca_clear(votca);
     return status;
 }
 
-void votca_clear(struct votca_table *table) {
-    memory_free(table->x);
-    memory_free(table->y);
-    memory_free(table->error);
-    memory_free(table->line);
+void mf_votca_clear(struct votca_table *table) {
+    mf_memory_free(table->x);
+    mf_memory_free(table->y);
+    mf_memory_free(table->error);
+    mf_memory_free(table->line);
     *table = (struct votca_table){0};
 }
 
-enum status votca_write(const char *file, const double *x, const double *y, size_t rows,
+enum status mf_votca_write(const char *file, const double *x, const double *y, size_t rows,
                         size_t first) {
     struct output output;
-    TRY(output_open(&output, file));
+    TRY(mf_output_open(&output, file));
     for (size_t k = 0; k < rows; k++)
         fprintf(output.stream, "%.10g %.10g %c\n", x[k], y[k], k < first ? 'o' : 'i');
-    return output_commit(&output);
+    return mf_output_commit(&output);
 }

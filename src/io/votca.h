@@ -19,9 +19,9 @@ struct votca_table {
 };
 
 /// Fails: IO; BAD_INPUT with file:line; NO_MEMORY. Tested: test_votca.
-enum status votca_read(struct votca_table *table, const char *file) MUST_USE;
-void votca_clear(struct votca_table *table);
+enum status mf_votca_read(struct votca_table *table, const char *file) MUST_USE;
+void mf_votca_clear(struct votca_table *table);
 
 /// Write rows "x y flag": o before row `first`, i from there on. Fails: IO.
-enum status votca_write(const char *file, const double *x, const double *y, size_t rows,
+enum status mf_votca_write(const char *file, const double *x, const double *y, size_t rows,
                         size_t first) MUST_USE;

@@ -10,10 +10,10 @@
 /// An error that has not been measured yet.
 #define UNMEASURED (-1.0)
 
-const char *const candidates_no_or_yes[] = {"no", "yes", NULL};
+const char *const mf_candidates_no_or_yes[] = {"no", "yes", NULL};
 
 #define MEMBER(name) .offset = offsetof(struct candidates_settings, name)
-const struct field candidates_fields[] = {
+const struct field mf_candidates_fields[] = {
     {"equilibration", FIELD_INTEGER, MEMBER(candidates.evaluate.plan.equilibration), .initial = 350,
      .minimum = 10, .maximum = 1e9, .unit = "steps", .help = "of a candidate's simulation"},
     {"samples", FIELD_INTEGER, MEMBER(candidates.evaluate.plan.samples), .initial = 45,
@@ -25,7 +25,7 @@ const struct field candidates_fields[] = {
      .initial = 0.1, .minimum = FIELD_ABOVE_ZERO, .maximum = 1, .unit = "",
      .help = "relative deviation at the end of equilibration with which a candidate fails"},
     {"estimator", FIELD_CHOICE, MEMBER(candidates.evaluate.estimator),
-     .choices = rdf_force_estimators, .initial = RDF_FORCE_NOT_USED, .unit = "",
+     .choices = mf_rdf_force_estimators, .initial = RDF_FORCE_NOT_USED, .unit = "",
      .help = "of g(r): force is worth twice the samples, but a large time step puts it off"},
     {"racing", FIELD_NUMBER, MEMBER(candidates.evaluate.patience), .initial = 0, .minimum = 0,
      .maximum = 100, .unit = "standard errors",
@@ -33,14 +33,14 @@ const struct field candidates_fields[] = {
     {"precision", FIELD_NUMBER, MEMBER(candidates.evaluate.precision), .initial = 0, .minimum = 0,
      .maximum = 1, .unit = "",
      .help = "relative standard error of an error with which its simulation stops; 0: never"},
-    {"warm_start", FIELD_CHOICE, MEMBER(candidates.warm_start), .choices = candidates_no_or_yes,
+    {"warm_start", FIELD_CHOICE, MEMBER(candidates.warm_start), .choices = mf_candidates_no_or_yes,
      .initial = 0, .unit = "", .help = "begin where the best simulation of the last round ended"},
-    {"common_noise", FIELD_CHOICE, MEMBER(candidates.common_noise), .choices = candidates_no_or_yes,
+    {"common_noise", FIELD_CHOICE, MEMBER(candidates.common_noise), .choices = mf_candidates_no_or_yes,
      .initial = 0, .unit = "", .help = "the same random numbers for all candidates of a round"},
     FIELD_END,
 };
 
-struct inverse_sampling candidates_sampling(const void *settings) {
+struct inverse_sampling mf_candidates_sampling(const void *settings) {
     const struct evaluate_parameters *evaluate =
         &((const struct candidates_settings *)settings)->candidates.evaluate;
     return (struct inverse_sampling){.every = evaluate->plan.every,
@@ -53,7 +53,7 @@ static size_t coordinates(const struct candidates *candidates) {
     return (size_t)scene->box.dimensions * (size_t)scene->placement.count;
 }
 
-enum status candidates_init(struct candidates *candidates, const struct decoder *decoder,
+enum status mf_candidates_init(struct candidates *candidates, const struct decoder *decoder,
                             const struct candidates_parameters *parameters) {
     enum status status = STATUS_OK;
     *candidates = (struct candidates){.decoder = decoder, .parameters = *parameters, .best = NAN};
@@ -62,37 +62,37 @@ enum status candidates_init(struct candidates *candidates, const struct decoder 
     NEW_ARRAY(candidates->distances, CANDIDATES_MOST * GOALS);
     NEW_ARRAY(candidates->first, decoder->genes);
     const struct goals *goals = &decoder->problem->goals;
-    const size_t features = goals_features(goals);
+    const size_t features = mf_goals_features(goals);
     NEW_ARRAY(candidates->features, CANDIDATES_MOST * features);
     NEW_ARRAY(candidates->target, features);
     NEW_ARRAY(candidates->target_error, features);
-    goals_take_features(goals, NULL, candidates->target, candidates->target_error);
-    CHECK(surrogate_init(&candidates->surrogate, decoder->genes, features, CANDIDATES_MOST,
+    mf_goals_take_features(goals, NULL, candidates->target, candidates->target_error);
+    CHECK(mf_surrogate_init(&candidates->surrogate, decoder->genes, features, CANDIDATES_MOST,
                          candidates->target, candidates->target_error));
     NEW_ARRAY(candidates->position, coordinates(candidates));
     NEW_ARRAY(candidates->best_position, coordinates(candidates));
-    candidates_next_round(candidates);
-    candidates_forget_survey(candidates);
+    mf_candidates_next_round(candidates);
+    mf_candidates_forget_survey(candidates);
     candidates->totals.rounds = 0;
 done:
     return status;
 }
 
-void candidates_clear(struct candidates *candidates) {
-    memory_free(candidates->errors);
-    memory_free(candidates->variances);
-    memory_free(candidates->distances);
-    memory_free(candidates->first);
-    memory_free(candidates->features);
-    memory_free(candidates->target);
-    memory_free(candidates->target_error);
-    surrogate_clear(&candidates->surrogate);
-    memory_free(candidates->position);
-    memory_free(candidates->best_position);
+void mf_candidates_clear(struct candidates *candidates) {
+    mf_memory_free(candidates->errors);
+    mf_memory_free(candidates->variances);
+    mf_memory_free(candidates->distances);
+    mf_memory_free(candidates->first);
+    mf_memory_free(candidates->features);
+    mf_memory_free(candidates->target);
+    mf_memory_free(candidates->target_error);
+    mf_surrogate_clear(&candidates->surrogate);
+    mf_memory_free(candidates->position);
+    mf_memory_free(candidates->best_position);
     *candidates = (struct candidates){0};
 }
 
-void candidates_next_round(struct candidates *candidates) {
+void mf_candidates_next_round(struct candidates *candidates) {
     struct candidates_totals *totals = &candidates->totals;
     for (size_t k = 0; k < CANDIDATES_MOST; k++)
         candidates->errors[k] = UNMEASURED;
@@ -105,11 +105,11 @@ void candidates_next_round(struct candidates *candidates) {
     totals->rounds++;
 }
 
-void candidates_forget_survey(struct candidates *candidates) {
+void mf_candidates_forget_survey(struct candidates *candidates) {
     candidates->survey = (struct candidates_survey){.least = INFINITY};
 }
 
-void candidates_tell_failure(const struct candidates *candidates, const char *why,
+void mf_candidates_tell_failure(const struct candidates *candidates, const char *why,
                              char reason[INVERSE_REASON_SIZE]) {
     if (candidates->surrogate.rows.added > 0)
         snprintf(reason, INVERSE_REASON_SIZE, "%llu of %llu simulations succeeded, %s",
@@ -132,7 +132,7 @@ static enum status measure(const struct candidates *candidates, const double *ge
     double *begin_column[3] = {NULL}, *end_column[3] = {NULL};
     split(candidates, candidates->position, begin_column);
     split(candidates, end, end_column);
-    enum status status = decoder_laws(candidates->decoder, genes, &laws);
+    enum status status = mf_decoder_laws(candidates->decoder, genes, &laws);
     const struct evaluate_candidate candidate = {
         .potential = laws.table[UNKNOWN_POTENTIAL],
         .weight = laws.table[UNKNOWN_WEIGHT],
@@ -142,14 +142,14 @@ static enum status measure(const struct candidates *candidates, const double *ge
         .seed = seed,
     };
     if (status == STATUS_OK)
-        status = evaluate(candidates->decoder->problem, &candidate,
+        status = mf_evaluate(candidates->decoder->problem, &candidate,
                           &candidates->parameters.evaluate, features, end_column, result);
     if (status == STATUS_UNSTABLE || (status == STATUS_OK && !isfinite(result->error))) {
         result->error = OPTIMISER_FAILED;
         result->variance = 0;
         status = STATUS_OK;
     }
-    decoder_laws_clear(&laws);
+    mf_decoder_laws_clear(&laws);
     return status;
 }
 
@@ -159,7 +159,7 @@ static void add(struct candidates_survey *survey, double error) {
     if (error >= OPTIMISER_FAILED)
         survey->failures++;
     else
-        statistics_add(&survey->alive, error);
+        mf_statistics_add(&survey->alive, error);
     if (error < OPTIMISER_FAILED)
         survey->least = fmin(survey->least, error);
 }
@@ -215,7 +215,7 @@ static uint64_t seed_of(const struct candidates *candidates, const struct optimi
     const uint32_t number = candidates->parameters.common_noise
                                 ? copies_before(round, candidates->decoder->genes, index)
                                 : (uint32_t)index;
-    return rng_child_seed(candidates->decoder->problem->seed, RNG_EVALUATION,
+    return mf_rng_child_seed(candidates->decoder->problem->seed, RNG_EVALUATION,
                           (uint32_t)candidates->totals.rounds, number);
 }
 
@@ -238,7 +238,7 @@ static enum status measure_one(struct candidates *candidates, const struct optim
         report(candidates, round->count, listener);
     }
 done:
-    memory_free(end);
+    mf_memory_free(end);
     return status;
 }
 
@@ -256,16 +256,16 @@ static int threads_inside(const struct inverse_problem *problem) {
 static void remember(struct candidates *candidates, const double *genes, double error,
                      const double *features) {
     if (error < OPTIMISER_FAILED)
-        surrogate_add(&candidates->surrogate, genes, features);
+        mf_surrogate_add(&candidates->surrogate, genes, features);
 }
 
-enum status candidates_measure(struct candidates *candidates, const struct optimiser_round *round,
+enum status mf_candidates_measure(struct candidates *candidates, const struct optimiser_round *round,
                                double hopeless, const struct inverse_listener *listener) {
     enum status status = STATUS_OK;
     char reason[512] = "";
     const int threads = candidates->decoder->problem->threads;
     if (round->count > CANDIDATES_MOST)
-        return status_fail(STATUS_BAD_INPUT, "a round of %zu candidates: at most %d", round->count,
+        return mf_status_fail(STATUS_BAD_INPUT, "a round of %zu candidates: at most %d", round->count,
                            CANDIDATES_MOST);
     const int inside = round->count == 1 ? threads_inside(candidates->decoder->problem) : 1;
     memcpy(candidates->first, round->genes, candidates->decoder->genes * sizeof *round->genes);
@@ -276,11 +276,11 @@ enum status candidates_measure(struct candidates *candidates, const struct optim
 #pragma omp critical
         {
             status = here;
-            snprintf(reason, sizeof reason, "%s", status_message());
+            snprintf(reason, sizeof reason, "%s", mf_status_message());
         }
     }
     if (status != STATUS_OK)
-        return status_fail(status, "%s", reason);
+        return mf_status_fail(status, "%s", reason);
     for (size_t k = 0; k < round->count; k++) {
         add(&candidates->survey, candidates->errors[k]);
         remember(candidates, round->genes + k * candidates->decoder->genes, candidates->errors[k],
@@ -299,7 +299,7 @@ static struct goal_distance mean_distance(const struct evaluate_result *results,
     return mean;
 }
 
-enum status candidates_remeasure(struct candidates *candidates, const double *genes, size_t count,
+enum status mf_candidates_remeasure(struct candidates *candidates, const double *genes, size_t count,
                                  double *error, double *noise, double *variance,
                                  struct goal_distance *distance) {
     enum status status = STATUS_OK;
@@ -313,7 +313,7 @@ enum status candidates_remeasure(struct candidates *candidates, const double *ge
     NEW_ARRAY(features, count * each);
 #pragma omp parallel for schedule(dynamic) num_threads(problem->threads)
     for (size_t k = 0; k < count; k++) {
-        const uint64_t seed = rng_child_seed(problem->seed, RNG_REMEASUREMENT,
+        const uint64_t seed = mf_rng_child_seed(problem->seed, RNG_REMEASUREMENT,
                                              (uint32_t)candidates->totals.remeasured, (uint32_t)k);
         const enum status here = measure(candidates, genes, seed, HUGE_VAL, 1, features + k * each,
                                          end + k * size, &results[k]);
@@ -321,11 +321,11 @@ enum status candidates_remeasure(struct candidates *candidates, const double *ge
 #pragma omp critical
         {
             status = here;
-            snprintf(reason, sizeof reason, "%s", status_message());
+            snprintf(reason, sizeof reason, "%s", mf_status_message());
         }
     }
     if (status != STATUS_OK) {
-        status_fail(status, "%s", reason);
+        mf_status_fail(status, "%s", reason);
         goto done;
     }
     candidates->totals.remeasured++;
@@ -343,13 +343,13 @@ enum status candidates_remeasure(struct candidates *candidates, const double *ge
             *error = OPTIMISER_FAILED * (double)count;
     }
 done:
-    memory_free(results);
-    memory_free(end);
-    memory_free(features);
+    mf_memory_free(results);
+    mf_memory_free(end);
+    mf_memory_free(features);
     return status;
 }
 
-size_t candidates_spans(struct candidates *candidates, struct memory_span *span) {
+size_t mf_candidates_spans(struct candidates *candidates, struct memory_span *span) {
     const size_t positions = coordinates(candidates) * sizeof(double);
     const size_t errors = CANDIDATES_MOST * sizeof(double);
     size_t n = 0;
@@ -365,6 +365,6 @@ size_t candidates_spans(struct candidates *candidates, struct memory_span *span)
         (struct memory_span){candidates->first, candidates->decoder->genes * sizeof(double)};
     span[n++] = (struct memory_span){
         candidates->features, CANDIDATES_MOST * candidates->surrogate.features * sizeof(double)};
-    n += surrogate_spans(&candidates->surrogate, span + n);
+    n += mf_surrogate_spans(&candidates->surrogate, span + n);
     return n;
 }

@@ -92,30 +92,30 @@ static size_t round_size(const struct state *state) {
     const size_t genes = state->decoder.genes;
     const size_t wanted = state->own.spread > 0 ? (size_t)state->own.spread : (3 * genes + 1) / 2;
     // Some may fail.
-    const size_t least = state->progress.iteration == 0 ? 11 * surrogate_least_rows(genes) / 10 : 4;
+    const size_t least = state->progress.iteration == 0 ? 11 * mf_surrogate_least_rows(genes) / 10 : 4;
     return ((wanted > least ? wanted : least) + 1) / 2 * 2;
 }
 
 static size_t most_candidates(const struct state *state) {
-    const size_t genes = state->decoder.genes, least = 11 * surrogate_least_rows(genes) / 10;
+    const size_t genes = state->decoder.genes, least = 11 * mf_surrogate_least_rows(genes) / 10;
     const size_t wanted = state->own.spread > 0 ? (size_t)state->own.spread : 2 * genes;
     return ((wanted > least ? wanted : least) + 1) / 2 * 2;
 }
 
 static void destroy(void *memory) {
     struct state *state = memory;
-    candidates_clear(&state->candidates);
-    decoder_clear(&state->decoder);
-    memory_free(state->round);
-    memory_free(state->proposal);
-    memory_free(state->best);
-    decoder_curves_clear(&state->curves);
+    mf_candidates_clear(&state->candidates);
+    mf_decoder_clear(&state->decoder);
+    mf_memory_free(state->round);
+    mf_memory_free(state->proposal);
+    mf_memory_free(state->best);
+    mf_decoder_curves_clear(&state->curves);
 }
 
 /// The pressure, the last of the features, is met exactly.
 static enum status constrain_pressure(struct state *state) {
     if (!goals_ask(&state->problem->goals, GOAL_PRESSURE))
-        return status_fail(
+        return mf_status_fail(
             STATUS_BAD_INPUT,
             "method.pressure: \"constraint\" needs a target.pressure that is fitted");
     state->candidates.surrogate.exact = state->candidates.surrogate.features - 1;
@@ -131,21 +131,21 @@ static enum status create(void *memory, const struct inverse_method *method,
     state->problem = problem;
     state->progress = (struct progress){
         .reach = state->own.reach, .error = NAN, .noise = NAN, .reference = INFINITY};
-    CHECK(decoder_init(&state->decoder, problem));
+    CHECK(mf_decoder_init(&state->decoder, problem));
     if (most_candidates(state) > CANDIDATES_MOST) {
-        status = status_fail(
+        status = mf_status_fail(
             STATUS_BAD_INPUT,
             "method.name: \"gauss-newton\" needs %zu candidates in a round for %zu "
             "genes, and %d are the most",
-            surrogate_least_rows(state->decoder.genes), state->decoder.genes, CANDIDATES_MOST);
+            mf_surrogate_least_rows(state->decoder.genes), state->decoder.genes, CANDIDATES_MOST);
         goto done;
     }
     NEW_ARRAY(state->round, most_candidates(state) * state->decoder.genes);
     NEW_ARRAY(state->proposal, state->decoder.genes);
     NEW_ARRAY(state->best, state->decoder.genes);
-    CHECK(decoder_curves_init(&state->decoder, &state->curves));
-    CHECK(decoder_start(&state->decoder, state->best));
-    CHECK(candidates_init(&state->candidates, &state->decoder, &settings->candidates));
+    CHECK(mf_decoder_curves_init(&state->decoder, &state->curves));
+    CHECK(mf_decoder_start(&state->decoder, state->best));
+    CHECK(mf_candidates_init(&state->candidates, &state->decoder, &settings->candidates));
     state->candidates.iterations = most_iterations(method, problem, parameters);
     if (state->own.pressure == PRESSURE_CONSTRAINT)
         CHECK(constrain_pressure(state));
@@ -159,7 +159,7 @@ static void spread(struct state *state, size_t count) {
     for (size_t pair = 0; pair < count / 2; pair++)
         for (size_t n = 0; n < genes; n++) {
             double normal[4];
-            rng_normal4(rng_philox(state->problem->seed, RNG_SELECTION, state->progress.iteration,
+            mf_rng_normal4(mf_rng_philox(state->problem->seed, RNG_SELECTION, state->progress.iteration,
                                    (uint32_t)pair, (uint32_t)n),
                         normal);
             const double step = spread_part * state->progress.reach * normal[0];
@@ -212,21 +212,21 @@ static enum status propose(struct state *state) {
     struct surrogate_model model = {0};
     bool known;
     double error, noise, variance;
-    CHECK(surrogate_fit(&state->candidates.surrogate, state->best, state->progress.reach, &model,
+    CHECK(mf_surrogate_fit(&state->candidates.surrogate, state->best, state->progress.reach, &model,
                         &known));
     if (known) {
         memcpy(state->proposal, model.best, state->decoder.genes * sizeof *model.best);
-        CHECK(candidates_remeasure(&state->candidates, state->proposal, (size_t)state->own.checks,
+        CHECK(mf_candidates_remeasure(&state->candidates, state->proposal, (size_t)state->own.checks,
                                    &error, &noise, &variance, NULL));
         judge(state, error, noise, variance);
         if (state->progress.known)
             watch(&state->progress);
     }
     state->has_model = known;
-    CHECK(decoder_curves_bands(&state->decoder, state->best, known ? model.covariance : NULL,
+    CHECK(mf_decoder_curves_bands(&state->decoder, state->best, known ? model.covariance : NULL,
                                &state->curves));
 done:
-    surrogate_model_clear(&model);
+    mf_surrogate_model_clear(&model);
     return status;
 }
 
@@ -248,8 +248,8 @@ static void tell_reason(const struct state *state, char reason[INVERSE_REASON_SI
         snprintf(why, sizeof why,
                  "too few for a linear model of %zu genes, which needs %zu: more \"iterations\" or "
                  "\"spread\" would do",
-                 state->decoder.genes, surrogate_least_rows(state->decoder.genes));
-    candidates_tell_failure(&state->candidates, why, reason);
+                 state->decoder.genes, mf_surrogate_least_rows(state->decoder.genes));
+    mf_candidates_tell_failure(&state->candidates, why, reason);
 }
 
 /// Whether some potential meets all that is fitted: g(r) and the pressure. What moves may be out of
@@ -257,7 +257,7 @@ static void tell_reason(const struct state *state, char reason[INVERSE_REASON_SI
 static bool can_be_met(const struct inverse_problem *problem) {
     const struct goals *goals = &problem->goals;
     return problem->unknown[UNKNOWN_POTENTIAL].wanted &&
-           goals_count(goals) ==
+           mf_goals_count(goals) ==
                (size_t)goals_ask(goals, GOAL_RDF) + (size_t)goals_ask(goals, GOAL_PRESSURE);
 }
 
@@ -270,12 +270,12 @@ static bool has_narrowed(const struct state *state) {
 static void settle(const struct state *state, struct inverse_step *step) {
     const struct progress *progress = &state->progress;
     const struct goals *goals = &state->problem->goals;
-    const char *what = goals_count(goals) > 1       ? "the weighted error of all targets is"
+    const char *what = mf_goals_count(goals) > 1       ? "the weighted error of all targets is"
                        : goals_ask(goals, GOAL_RDF) ? "g(r) is still off by"
                                                     : "the target is still off by";
     char why[64] = "its steps have become small";
     step->finished = true;
-    step->converged = progress->error <= inverse_noise_margin * progress->noise;
+    step->converged = progress->error <= mf_inverse_noise_margin * progress->noise;
     step->used_up = !step->converged && !can_be_met(state->problem);
     if (step->converged)
         return;
@@ -310,7 +310,7 @@ static void describe(struct state *state, struct inverse_step *step) {
         settle(state, step);
     else if (step->finished)
         tell_reason(state, step->reason);
-    decoder_curves_show(&state->decoder, state->best, &state->curves, step);
+    mf_decoder_curves_show(&state->decoder, state->best, &state->curves, step);
 }
 
 static enum status iterate(void *memory, struct inverse_step *step,
@@ -322,12 +322,12 @@ static enum status iterate(void *memory, struct inverse_step *step,
     candidates->best = state->progress.error;
     if (candidates->survey.evaluations == 0) {
         spread(state, round.count);
-        TRY(candidates_measure(candidates, &round, HUGE_VAL, listener));
+        TRY(mf_candidates_measure(candidates, &round, HUGE_VAL, listener));
     }
     TRY(propose(state));
     describe(state, step);
-    candidates_next_round(candidates);
-    candidates_forget_survey(candidates);
+    mf_candidates_next_round(candidates);
+    mf_candidates_forget_survey(candidates);
     state->progress.iteration++;
     return STATUS_OK;
 }
@@ -337,20 +337,20 @@ static size_t spans(void *memory, struct memory_span *span) {
     size_t n = 0;
     span[n++] = (struct memory_span){&state->progress, sizeof state->progress};
     span[n++] = (struct memory_span){state->best, state->decoder.genes * sizeof(double)};
-    n += decoder_curves_spans(&state->decoder, &state->curves, span + n);
-    return n + candidates_spans(&state->candidates, span + n);
+    n += mf_decoder_curves_spans(&state->decoder, &state->curves, span + n);
+    return n + mf_candidates_spans(&state->candidates, span + n);
 }
 
-const struct inverse_method gauss_newton = {
+const struct inverse_method mf_gauss_newton = {
     .name = "gauss-newton",
     .summary = "linear models of all observables in a trust region; J. Nocedal and S. J. Wright "
                "(2006)",
-    .tables = (const struct field *const[]){own_fields, candidates_fields, NULL},
+    .tables = (const struct field *const[]){own_fields, mf_candidates_fields, NULL},
     .parameters_size = sizeof(struct candidates_settings),
     .state_size = sizeof(struct state),
     .fits = {true, true},
     .most_iterations = most_iterations,
-    .sampling = candidates_sampling,
+    .sampling = mf_candidates_sampling,
     .keeps_parts = true,
     .columns = columns,
     .create = create,

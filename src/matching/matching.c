@@ -48,7 +48,7 @@ static const struct field own_fields[] = {
     {"checks", FIELD_INTEGER, MEMBER(checks), .initial = 2, .minimum = 1,
      .maximum = CANDIDATES_MOST, .unit = "",
      .help = "fresh measurements of what is thought best, before it is believed"},
-    {"surrogate", FIELD_CHOICE, MEMBER(surrogate), .choices = candidates_no_or_yes, .initial = 1,
+    {"surrogate", FIELD_CHOICE, MEMBER(surrogate), .choices = mf_candidates_no_or_yes, .initial = 1,
      .unit = "", .help = "whether to try what a linear model of all simulations thinks best, too"},
     FIELD_END,
 };
@@ -77,31 +77,31 @@ static void destroy(void *memory) {
     struct state *state = memory;
     if (state->created)
         state->optimiser->destroy(state->optimiser_state);
-    memory_free(state->optimiser_state);
-    candidates_clear(&state->candidates);
-    decoder_clear(&state->decoder);
-    memory_free(state->favourite);
-    memory_free(state->best);
-    decoder_curves_clear(&state->curves);
+    mf_memory_free(state->optimiser_state);
+    mf_candidates_clear(&state->candidates);
+    mf_decoder_clear(&state->decoder);
+    mf_memory_free(state->favourite);
+    mf_memory_free(state->best);
+    mf_decoder_curves_clear(&state->curves);
 }
 
 static enum status create_optimiser(struct state *state) {
     enum status status = STATUS_OK;
     double *start = NULL;
     NEW_ARRAY(start, state->decoder.genes);
-    CHECK(decoder_start(&state->decoder, start));
+    CHECK(mf_decoder_start(&state->decoder, start));
     const struct optimiser_space space = {.genes = state->decoder.genes,
                                           .minimum = 0,
                                           .maximum = 1,
                                           .start = start,
                                           .seed = state->problem->seed,
                                           .most = CANDIDATES_MOST};
-    state->optimiser_state = memory_zeroed(1, state->optimiser->state_size);
+    state->optimiser_state = mf_memory_zeroed(1, state->optimiser->state_size);
     CHECK(state->optimiser_state ? STATUS_OK : STATUS_NO_MEMORY);
     CHECK(state->optimiser->create(state->optimiser_state, &space, &state->parameters));
     state->created = true;
 done:
-    memory_free(start);
+    mf_memory_free(start);
     return status;
 }
 
@@ -113,12 +113,12 @@ static enum status create(void *memory, const struct inverse_method *method,
     state->problem = problem;
     state->optimiser = method->optimiser;
     state->progress.error = NAN;
-    CHECK(decoder_init(&state->decoder, problem));
+    CHECK(mf_decoder_init(&state->decoder, problem));
     NEW_ARRAY(state->favourite, state->decoder.genes);
     NEW_ARRAY(state->best, state->decoder.genes);
-    CHECK(decoder_curves_init(&state->decoder, &state->curves));
+    CHECK(mf_decoder_curves_init(&state->decoder, &state->curves));
     CHECK(create_optimiser(state));
-    CHECK(candidates_init(&state->candidates, &state->decoder,
+    CHECK(mf_candidates_init(&state->candidates, &state->decoder,
                           &state->parameters.settings.candidates));
     state->candidates.iterations = most_iterations(method, problem, parameters);
 done:
@@ -133,11 +133,11 @@ static bool is_full(const struct candidates_survey *survey, size_t next_round) {
 /// One round of the optimiser: measure what it asks for and tell it.
 static enum status take_round(struct state *state, const struct optimiser_round *round,
                               const struct inverse_listener *listener) {
-    TRY(candidates_measure(&state->candidates, round,
+    TRY(mf_candidates_measure(&state->candidates, round,
                            state->optimiser->hopeless(state->optimiser_state), listener));
     TRY(state->optimiser->tell(state->optimiser_state, state->candidates.errors,
                                state->candidates.variances));
-    candidates_next_round(&state->candidates);
+    mf_candidates_next_round(&state->candidates);
     return STATUS_OK;
 }
 
@@ -155,7 +155,7 @@ static bool wants_check(const struct state *state, bool last) {
 /// `slack` standard errors.
 static enum status check_favourite(struct state *state, double slack) {
     double error, noise, variance;
-    TRY(candidates_remeasure(&state->candidates, state->favourite, (size_t)state->parameters.checks,
+    TRY(mf_candidates_remeasure(&state->candidates, state->favourite, (size_t)state->parameters.checks,
                              &error, &noise, &variance, NULL));
     if (error >= OPTIMISER_FAILED ||
         (state->progress.known && error > state->progress.error + slack * sqrt(variance)))
@@ -177,15 +177,15 @@ static enum status try_surrogate(struct state *state) {
     struct surrogate_model model = {0};
     bool known = false;
     if (state->progress.known)
-        CHECK(surrogate_fit(&state->candidates.surrogate, state->best, reach, &model, &known));
-    CHECK(decoder_curves_bands(&state->decoder, state->best, known ? model.covariance : NULL,
+        CHECK(mf_surrogate_fit(&state->candidates.surrogate, state->best, reach, &model, &known));
+    CHECK(mf_decoder_curves_bands(&state->decoder, state->best, known ? model.covariance : NULL,
                                &state->curves));
     if (!known || !state->parameters.surrogate)
         goto done;
     memcpy(state->favourite, model.best, state->decoder.genes * sizeof(double));
     CHECK(check_favourite(state, 1));
 done:
-    surrogate_model_clear(&model);
+    mf_surrogate_model_clear(&model);
     return status;
 }
 
@@ -194,15 +194,15 @@ static void conclude(const struct state *state, struct inverse_step *step) {
     const struct optimiser *optimiser = state->optimiser;
     step->finished = true;
     if (!state->progress.known)
-        candidates_tell_failure(&state->candidates,
+        mf_candidates_tell_failure(&state->candidates,
                                 "but what seemed best failed when it was measured again",
                                 step->reason);
     else if (optimiser->settled && optimiser->settled(state->optimiser_state))
         step->converged = true;
     else if (optimiser->gave_up && optimiser->gave_up(state->optimiser_state))
-        inverse_give_up(step);
+        mf_inverse_give_up(step);
     else
-        inverse_use_up(step, optimiser->budget, state->progress.last_better);
+        mf_inverse_use_up(step, optimiser->budget, state->progress.last_better);
 }
 
 static void describe(struct state *state, struct inverse_step *step, bool finished) {
@@ -219,7 +219,7 @@ static void describe(struct state *state, struct inverse_step *step, bool finish
     };
     if (finished)
         conclude(state, step);
-    decoder_curves_show(&state->decoder,
+    mf_decoder_curves_show(&state->decoder,
                         state->progress.known ? state->best : state->candidates.first,
                         &state->curves, step);
 }
@@ -259,7 +259,7 @@ static enum status iterate(void *memory, struct inverse_step *step,
     const bool finished = round.count == 0;
     TRY(check(state, finished));
     describe(state, step, finished);
-    candidates_forget_survey(&state->candidates);
+    mf_candidates_forget_survey(&state->candidates);
     state->progress.iteration++;
     return STATUS_OK;
 }
@@ -270,8 +270,8 @@ static size_t spans(void *memory, struct memory_span *span) {
     size_t n = 0;
     span[n++] = (struct memory_span){&state->progress, sizeof state->progress};
     span[n++] = (struct memory_span){state->best, bytes};
-    n += decoder_curves_spans(&state->decoder, &state->curves, span + n);
-    n += candidates_spans(&state->candidates, span + n);
+    n += mf_decoder_curves_spans(&state->decoder, &state->curves, span + n);
+    n += mf_candidates_spans(&state->candidates, span + n);
     n += state->optimiser->spans(state->optimiser_state, span + n);
     return n;
 }
@@ -279,19 +279,19 @@ static size_t spans(void *memory, struct memory_span *span) {
 #define MATCHING(its_name, its_optimiser, its_fields, its_summary)                                 \
     {                                                                                              \
         .name = its_name, .summary = its_summary,                                                  \
-        .tables = (const struct field *const[]){its_fields, candidates_fields, own_fields, NULL},  \
+        .tables = (const struct field *const[]){its_fields, mf_candidates_fields, own_fields, NULL},  \
         .parameters_size = sizeof(struct parameters), .state_size = sizeof(struct state),          \
         .fits = {true, true}, .optimiser = &(its_optimiser), .most_iterations = most_iterations,   \
-        .sampling = candidates_sampling, .keeps_parts = true, .columns = columns,                  \
+        .sampling = mf_candidates_sampling, .keeps_parts = true, .columns = columns,                  \
         .create = create, .destroy = destroy, .iterate = iterate, .spans = spans,                  \
     }
 
-const struct inverse_method matching_genetic =
-    MATCHING("genetic", genetic_optimiser, genetic_fields,
+const struct inverse_method mf_matching_genetic =
+    MATCHING("genetic", mf_genetic_optimiser, mf_genetic_fields,
              "genetic algorithm over smooth curves; A. G. Baydin (2008)");
-const struct inverse_method matching_cmaes =
-    MATCHING("cma-es", cmaes_optimiser, cmaes_fields,
+const struct inverse_method mf_matching_cmaes =
+    MATCHING("cma-es", mf_cmaes_optimiser, mf_cmaes_fields,
              "evolution strategy with covariance matrix adaptation; N. Hansen, arXiv:1604.00772");
-const struct inverse_method matching_nlopt =
-    MATCHING("nlopt", nlopt_optimiser, nlopt_fields,
+const struct inverse_method mf_matching_nlopt =
+    MATCHING("nlopt", mf_nlopt_optimiser, mf_nlopt_fields,
              "algorithms of NLopt by name; S. G. Johnson, github.com/stevengj/nlopt");

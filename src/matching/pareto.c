@@ -39,15 +39,15 @@ static uint32_t most_iterations(const struct inverse_method *method,
 
 static void destroy(void *memory) {
     struct pareto_state *state = memory;
-    nsga2_clear(&state->nsga2);
-    candidates_clear(&state->candidates);
-    decoder_clear(&state->decoder);
-    memory_free(state->value);
-    memory_free(state->log);
-    decoder_curves_clear(&state->curves);
+    mf_nsga2_clear(&state->nsga2);
+    mf_candidates_clear(&state->candidates);
+    mf_decoder_clear(&state->decoder);
+    mf_memory_free(state->value);
+    mf_memory_free(state->log);
+    mf_decoder_curves_clear(&state->curves);
 }
 
-size_t pareto_log_width(const struct pareto_state *state) {
+size_t mf_pareto_log_width(const struct pareto_state *state) {
     return LOG_OBJECTIVES + state->objectives;
 }
 
@@ -60,14 +60,14 @@ static enum status create_nsga2(struct pareto_state *state) {
     enum status status = STATUS_OK;
     double *start = NULL;
     NEW_ARRAY(start, state->decoder.genes);
-    CHECK(decoder_start(&state->decoder, start));
+    CHECK(mf_decoder_start(&state->decoder, start));
     const struct nsga2_space space = {.genes = state->decoder.genes,
                                       .objectives = state->objectives,
                                       .start = start,
                                       .seed = state->problem->seed};
-    CHECK(nsga2_init(&state->nsga2, &state->own.nsga2, &space));
+    CHECK(mf_nsga2_init(&state->nsga2, &state->own.nsga2, &space));
 done:
-    memory_free(start);
+    mf_memory_free(start);
     return status;
 }
 
@@ -82,28 +82,28 @@ static enum status create(void *memory, const struct inverse_method *method,
         if (goals_ask(&problem->goals, kind))
             state->goal[state->objectives++] = kind;
     if (state->objectives < 2)
-        return status_fail(STATUS_BAD_INPUT,
+        return mf_status_fail(STATUS_BAD_INPUT,
                            "method.name: \"%s\" needs two fitted targets at least", method->name);
-    CHECK(decoder_init(&state->decoder, problem));
+    CHECK(mf_decoder_init(&state->decoder, problem));
     CHECK(create_nsga2(state));
     NEW_ARRAY(state->value, CANDIDATES_MOST * state->objectives);
-    NEW_ARRAY(state->log, log_rows(state) * pareto_log_width(state));
-    CHECK(decoder_curves_init(&state->decoder, &state->curves));
-    CHECK(candidates_init(&state->candidates, &state->decoder, &settings->candidates));
+    NEW_ARRAY(state->log, log_rows(state) * mf_pareto_log_width(state));
+    CHECK(mf_decoder_curves_init(&state->decoder, &state->curves));
+    CHECK(mf_candidates_init(&state->candidates, &state->decoder, &settings->candidates));
     state->candidates.iterations = most_iterations(method, problem, parameters);
     state->progress.least = OPTIMISER_FAILED;
 done:
     return status;
 }
 
-double pareto_error(const struct pareto_state *state, const double *value) {
+double mf_pareto_error(const struct pareto_state *state, const double *value) {
     struct goal_distance distance[GOALS] = {0};
     for (size_t m = 0; m < state->objectives; m++) {
         if (value[m] >= OPTIMISER_FAILED)
             return OPTIMISER_FAILED;
         distance[state->goal[m]].rms = value[m];
     }
-    return goals_error(&state->problem->goals, distance);
+    return mf_goals_error(&state->problem->goals, distance);
 }
 
 /// Distances of a measurement as a row of objectives.
@@ -113,17 +113,17 @@ static void take_distances(const struct pareto_state *state, double error,
         value[m] = error < OPTIMISER_FAILED ? distance[state->goal[m]].rms : OPTIMISER_FAILED;
 }
 
-const double *pareto_value(const struct pareto_state *state, size_t parent) {
+const double *mf_pareto_value(const struct pareto_state *state, size_t parent) {
     return state->nsga2.value + parent * state->objectives;
 }
 
-bool pareto_is_member(const struct pareto_state *state, size_t parent) {
-    return state->nsga2.rank[parent] == 1 && pareto_value(state, parent)[0] < OPTIMISER_FAILED;
+bool mf_pareto_is_member(const struct pareto_state *state, size_t parent) {
+    return state->nsga2.rank[parent] == 1 && mf_pareto_value(state, parent)[0] < OPTIMISER_FAILED;
 }
 
 static void add_to_log(struct pareto_state *state, enum pareto_log_kind kind, const double *value) {
-    double *row = state->log + state->progress.rows * pareto_log_width(state);
-    const double error = pareto_error(state, value);
+    double *row = state->log + state->progress.rows * mf_pareto_log_width(state);
+    const double error = mf_pareto_error(state, value);
     if (error >= OPTIMISER_FAILED || state->progress.rows >= log_rows(state))
         return;
     row[LOG_ITERATION] = state->progress.iteration;
@@ -134,16 +134,16 @@ static void add_to_log(struct pareto_state *state, enum pareto_log_kind kind, co
 }
 
 static enum status take_round(struct pareto_state *state, const struct inverse_listener *listener) {
-    const struct optimiser_round round = nsga2_ask(&state->nsga2);
+    const struct optimiser_round round = mf_nsga2_ask(&state->nsga2);
     struct candidates *candidates = &state->candidates;
-    TRY(candidates_measure(candidates, &round, HUGE_VAL, listener));
+    TRY(mf_candidates_measure(candidates, &round, HUGE_VAL, listener));
     for (size_t k = 0; k < round.count; k++) {
         double *value = state->value + k * state->objectives;
         take_distances(state, candidates->errors[k], candidates->distances + k * GOALS, value);
         add_to_log(state, LOG_MEASURED, value);
     }
-    TRY(nsga2_tell(&state->nsga2, state->value));
-    candidates_next_round(candidates);
+    TRY(mf_nsga2_tell(&state->nsga2, state->value));
+    mf_candidates_next_round(candidates);
     return STATUS_OK;
 }
 
@@ -154,9 +154,9 @@ static bool is_checked(const struct pareto_state *state, size_t parent) {
 /// Member of the front of the least error; false if there is none.
 static bool find_best(const struct pareto_state *state, size_t *best) {
     double least = OPTIMISER_FAILED;
-    for (size_t k = 0; k < nsga2_parents(&state->nsga2); k++) {
-        const double error = pareto_error(state, pareto_value(state, k));
-        if (!pareto_is_member(state, k) || error >= least)
+    for (size_t k = 0; k < mf_nsga2_parents(&state->nsga2); k++) {
+        const double error = mf_pareto_error(state, mf_pareto_value(state, k));
+        if (!mf_pareto_is_member(state, k) || error >= least)
             continue;
         least = error;
         *best = k;
@@ -168,7 +168,7 @@ static bool find_best(const struct pareto_state *state, size_t *best) {
 static enum status check_one(struct pareto_state *state, size_t parent) {
     struct goal_distance distance[GOALS];
     double error, noise, variance, value[GOALS];
-    TRY(candidates_remeasure(&state->candidates, nsga2_parent(&state->nsga2, parent),
+    TRY(mf_candidates_remeasure(&state->candidates, mf_nsga2_parent(&state->nsga2, parent),
                              (size_t)state->own.checks, &error, &noise, &variance, distance));
     take_distances(state, error, distance, value);
     for (size_t m = 0; m < state->objectives && error < OPTIMISER_FAILED; m++)
@@ -177,7 +177,7 @@ static enum status check_one(struct pareto_state *state, size_t parent) {
         state->progress.variance = variance;
     // The mean of some measurements counts as many times.
     for (int64_t k = 0; k < state->own.checks; k++)
-        TRY(nsga2_add_measurement(&state->nsga2, parent, value));
+        TRY(mf_nsga2_add_measurement(&state->nsga2, parent, value));
     return STATUS_OK;
 }
 
@@ -190,8 +190,8 @@ static enum status choose(struct pareto_state *state) {
     struct progress *progress = &state->progress;
     progress->known = find_best(state, &best);
     progress->chosen = best;
-    if (progress->known && pareto_error(state, pareto_value(state, best)) < progress->least) {
-        progress->least = pareto_error(state, pareto_value(state, best));
+    if (progress->known && mf_pareto_error(state, mf_pareto_value(state, best)) < progress->least) {
+        progress->least = mf_pareto_error(state, mf_pareto_value(state, best));
         progress->last_better = progress->iteration;
     }
     return STATUS_OK;
@@ -202,19 +202,19 @@ static enum status ask_surrogate(struct pareto_state *state) {
     enum status status = STATUS_OK;
     struct surrogate_model model = {0};
     bool known = state->progress.known;
-    const double *chosen = nsga2_parent(&state->nsga2, state->progress.chosen);
-    CHECK(decoder_curves_bands(&state->decoder, chosen, NULL, &state->curves));
+    const double *chosen = mf_nsga2_parent(&state->nsga2, state->progress.chosen);
+    CHECK(mf_decoder_curves_bands(&state->decoder, chosen, NULL, &state->curves));
     for (int64_t k = 0; known && (k == 0 || k < state->own.surrogate); k++) {
-        surrogate_model_clear(&model);
-        CHECK(surrogate_fit(&state->candidates.surrogate, chosen, ldexp(reach, (int)-k), &model,
+        mf_surrogate_model_clear(&model);
+        CHECK(mf_surrogate_fit(&state->candidates.surrogate, chosen, ldexp(reach, (int)-k), &model,
                             &known));
         if (known && k == 0)
-            CHECK(decoder_curves_bands(&state->decoder, chosen, model.covariance, &state->curves));
+            CHECK(mf_decoder_curves_bands(&state->decoder, chosen, model.covariance, &state->curves));
         if (known && k < state->own.surrogate)
-            nsga2_plant(&state->nsga2, model.best);
+            mf_nsga2_plant(&state->nsga2, model.best);
     }
 done:
-    surrogate_model_clear(&model);
+    mf_surrogate_model_clear(&model);
     return status;
 }
 
@@ -225,32 +225,32 @@ static void describe(struct pareto_state *state, struct inverse_step *step) {
         .iteration = progress->iteration,
         .evaluations = state->candidates.totals.evaluations,
         .engine_steps = state->candidates.totals.steps,
-        .error = progress->known ? pareto_error(state, pareto_value(state, progress->chosen)) : NAN,
-        .noise = progress->known ? pareto_error(state, progress->noise) : NAN,
+        .error = progress->known ? mf_pareto_error(state, mf_pareto_value(state, progress->chosen)) : NAN,
+        .noise = progress->known ? mf_pareto_error(state, progress->noise) : NAN,
         .variance = progress->variance,
         .extra = {survey->least, survey->alive.count > 0 ? survey->alive.mean : NAN,
-                  nsga2_diversity(&state->nsga2), (double)survey->failures},
-        .finished = nsga2_is_over(&state->nsga2),
+                  mf_nsga2_diversity(&state->nsga2), (double)survey->failures},
+        .finished = mf_nsga2_is_over(&state->nsga2),
     };
     if (step->finished && progress->known)
-        inverse_use_up(step, "generations", progress->last_better);
+        mf_inverse_use_up(step, "generations", progress->last_better);
     else if (step->finished)
-        candidates_tell_failure(&state->candidates,
+        mf_candidates_tell_failure(&state->candidates,
                                 "but what seemed best failed when it was measured again",
                                 step->reason);
-    decoder_curves_show(&state->decoder,
-                        progress->known ? nsga2_parent(&state->nsga2, progress->chosen)
+    mf_decoder_curves_show(&state->decoder,
+                        progress->known ? mf_nsga2_parent(&state->nsga2, progress->chosen)
                                         : state->candidates.first,
                         &state->curves, step);
 }
 
 static void log_front(struct pareto_state *state) {
-    for (size_t k = 0; k < nsga2_parents(&state->nsga2); k++)
-        if (pareto_is_member(state, k))
+    for (size_t k = 0; k < mf_nsga2_parents(&state->nsga2); k++)
+        if (mf_pareto_is_member(state, k))
             add_to_log(state,
                        state->progress.known && k == state->progress.chosen ? LOG_CHOSEN
                                                                             : LOG_FRONT,
-                       pareto_value(state, k));
+                       mf_pareto_value(state, k));
 }
 
 /// A round, and then the choice: each is done once, also if an interruption comes between them.
@@ -268,7 +268,7 @@ static enum status iterate(void *memory, struct inverse_step *step,
     TRY(ask_surrogate(state));
     log_front(state);
     describe(state, step);
-    candidates_forget_survey(&state->candidates);
+    mf_candidates_forget_survey(&state->candidates);
     state->progress.stage = ROUND;
     state->progress.iteration++;
     return STATUS_OK;
@@ -279,26 +279,26 @@ static size_t spans(void *memory, struct memory_span *span) {
     size_t n = 0;
     span[n++] = (struct memory_span){&state->progress, sizeof state->progress};
     span[n++] = (struct memory_span){state->log,
-                                     log_rows(state) * pareto_log_width(state) * sizeof(double)};
-    n += decoder_curves_spans(&state->decoder, &state->curves, span + n);
-    n += nsga2_spans(&state->nsga2, span + n);
-    return n + candidates_spans(&state->candidates, span + n);
+                                     log_rows(state) * mf_pareto_log_width(state) * sizeof(double)};
+    n += mf_decoder_curves_spans(&state->decoder, &state->curves, span + n);
+    n += mf_nsga2_spans(&state->nsga2, span + n);
+    return n + mf_candidates_spans(&state->candidates, span + n);
 }
 
-const struct inverse_method pareto = {
+const struct inverse_method mf_pareto = {
     .name = "pareto",
     .summary = "the front of all goals by NSGA-II, without weights; K. Deb et al. (2002)",
-    .tables = (const struct field *const[]){nsga2_fields, own_fields, candidates_fields, NULL},
+    .tables = (const struct field *const[]){mf_nsga2_fields, own_fields, mf_candidates_fields, NULL},
     .parameters_size = sizeof(struct candidates_settings),
     .state_size = sizeof(struct pareto_state),
     .fits = {true, true},
     .most_iterations = most_iterations,
-    .sampling = candidates_sampling,
+    .sampling = mf_candidates_sampling,
     .keeps_parts = true,
     .columns = columns,
     .create = create,
     .destroy = destroy,
     .iterate = iterate,
     .spans = spans,
-    .write = pareto_write_tables,
+    .write = mf_pareto_write_tables,
 };

@@ -41,16 +41,16 @@ struct pareto_state {
 };
 
 /// Numbers in a row of the log.
-size_t pareto_log_width(const struct pareto_state *state);
+size_t mf_pareto_log_width(const struct pareto_state *state);
 
 /// Weighted error of a row of objectives, or of their noise.
-double pareto_error(const struct pareto_state *state, const double *value);
+double mf_pareto_error(const struct pareto_state *state, const double *value);
 
 /// Objectives of a parent.
-const double *pareto_value(const struct pareto_state *state, size_t parent);
+const double *mf_pareto_value(const struct pareto_state *state, size_t parent);
 
 /// Whether a parent is a member of the front. Those that failed are a front when all have.
-bool pareto_is_member(const struct pareto_state *state, size_t parent);
+bool mf_pareto_is_member(const struct pareto_state *state, size_t parent);
 
 /// Write pareto.tsv, pareto_history.tsv, and the curves of the front. Fails: IO, NO_MEMORY.
-enum status pareto_write_tables(const void *state, const struct inverse_folder *folder) MUST_USE;
+enum status mf_pareto_write_tables(const void *state, const struct inverse_folder *folder) MUST_USE;

@@ -30,11 +30,11 @@ static int compare_lines(const void *a, const void *b) {
 static size_t sort_lines(const struct pareto_state *state, struct line *lines, size_t *members) {
     size_t count = 0;
     *members = 0;
-    for (size_t k = 0; k < nsga2_parents(&state->nsga2); k++) {
-        if (pareto_value(state, k)[0] >= OPTIMISER_FAILED)
+    for (size_t k = 0; k < mf_nsga2_parents(&state->nsga2); k++) {
+        if (mf_pareto_value(state, k)[0] >= OPTIMISER_FAILED)
             continue;
-        lines[count++] = (struct line){k, state->nsga2.rank[k], pareto_value(state, k)[0]};
-        *members += pareto_is_member(state, k);
+        lines[count++] = (struct line){k, state->nsga2.rank[k], mf_pareto_value(state, k)[0]};
+        *members += mf_pareto_is_member(state, k);
     }
     qsort(lines, count, sizeof *lines, compare_lines);
     return count;
@@ -64,7 +64,7 @@ static enum status write_front(const struct pareto_state *state,
     for (size_t c = 0; c < most; c++) {
         const size_t m = (c - EXTRA_COLUMNS) % objectives;
         if (c >= EXTRA_COLUMNS)
-            snprintf(names[c - EXTRA_COLUMNS], NAME_SIZE, "%s_%s[1]", goals_names[state->goal[m]],
+            snprintf(names[c - EXTRA_COLUMNS], NAME_SIZE, "%s_%s[1]", mf_goals_names[state->goal[m]],
                      c < EXTRA_COLUMNS + objectives ? "rmse" : "noise");
         value[c] = begin_column(&column[c], c < EXTRA_COLUMNS ? extra[c] : names[c - EXTRA_COLUMNS],
                                 memory + c * (rows + 1), NULL);
@@ -75,17 +75,17 @@ static enum status write_front(const struct pareto_state *state,
         value[1][k] = lines[k].rank;
         value[2][k] = state->progress.known && parent == state->progress.chosen;
         value[3][k] = state->nsga2.measured[parent];
-        value[4][k] = pareto_error(state, pareto_value(state, parent));
+        value[4][k] = mf_pareto_error(state, mf_pareto_value(state, parent));
         for (size_t m = 0; m < objectives; m++) {
-            value[EXTRA_COLUMNS + m][k] = pareto_value(state, parent)[m];
+            value[EXTRA_COLUMNS + m][k] = mf_pareto_value(state, parent)[m];
             value[EXTRA_COLUMNS + objectives + m][k] = state->progress.noise[m];
         }
     }
     folder->file(folder->context, "pareto.tsv", path);
-    CHECK(data_table_write(path, NULL, column, most, rows));
+    CHECK(mf_data_table_write(path, NULL, column, most, rows));
 done:
-    memory_free(column);
-    memory_free(memory);
+    mf_memory_free(column);
+    mf_memory_free(memory);
     return status;
 }
 
@@ -94,7 +94,7 @@ static enum status write_log(const struct pareto_state *state,
                              const struct inverse_folder *folder) {
     enum status status = STATUS_OK;
     static const char *const first[LOG_OBJECTIVES] = {"iteration", "front", "error[1]"};
-    const size_t rows = state->progress.rows, width = pareto_log_width(state);
+    const size_t rows = state->progress.rows, width = mf_pareto_log_width(state);
     char names[GOALS][NAME_SIZE], path[OUTPUT_PATH_SIZE];
     struct data_column column[LOG_OBJECTIVES + GOALS];
     double *memory = NULL;
@@ -102,7 +102,7 @@ static enum status write_log(const struct pareto_state *state,
     for (size_t c = 0; c < width; c++) {
         if (c >= LOG_OBJECTIVES)
             snprintf(names[c - LOG_OBJECTIVES], NAME_SIZE, "%s_rmse[1]",
-                     goals_names[state->goal[c - LOG_OBJECTIVES]]);
+                     mf_goals_names[state->goal[c - LOG_OBJECTIVES]]);
         double *value =
             begin_column(&column[c], c < LOG_OBJECTIVES ? first[c] : names[c - LOG_OBJECTIVES],
                          memory + c * (rows + 1), NULL);
@@ -110,9 +110,9 @@ static enum status write_log(const struct pareto_state *state,
             value[k] = state->log[k * width + c];
     }
     folder->file(folder->context, "pareto_history.tsv", path);
-    CHECK(data_table_write(path, NULL, column, width, rows));
+    CHECK(mf_data_table_write(path, NULL, column, width, rows));
 done:
-    memory_free(memory);
+    mf_memory_free(memory);
     return status;
 }
 
@@ -123,8 +123,8 @@ static enum status write_curve(const struct pareto_state *state, enum unknown_ki
                                const struct line *lines, size_t members) {
     enum status status = STATUS_OK;
     const struct decoder *decoder = &state->decoder;
-    const size_t points = decoder_points(decoder, kind);
-    const size_t each = points / decoder_curve_count(decoder, kind), first = curve * each;
+    const size_t points = mf_decoder_points(decoder, kind);
+    const size_t each = points / mf_decoder_curve_count(decoder, kind), first = curve * each;
     struct data_column *column = NULL;
     double *curves = NULL;
     char *names = NULL, name[DECODER_NAME_SIZE], file[DECODER_NAME_SIZE + 16];
@@ -132,26 +132,26 @@ static enum status write_curve(const struct pareto_state *state, enum unknown_ki
     NEW_ARRAY(column, members + 1);
     NEW_ARRAY(curves, (members + 1) * points);
     NEW_ARRAY(names, (members + 1) * NAME_SIZE);
-    column[0] = (struct data_column){"r[lambda]", decoder_r(decoder, kind) + first, NULL};
+    column[0] = (struct data_column){"r[lambda]", mf_decoder_r(decoder, kind) + first, NULL};
     for (size_t k = 0; k < members; k++) {
         snprintf(names + k * NAME_SIZE, NAME_SIZE, "%zu", k + 1);
-        decoder_curve(decoder, kind, nsga2_parent(&state->nsga2, lines[k].parent),
+        mf_decoder_curve(decoder, kind, mf_nsga2_parent(&state->nsga2, lines[k].parent),
                       curves + k * points);
         column[k + 1] =
             (struct data_column){names + k * NAME_SIZE, curves + k * points + first, "%.8g"};
     }
-    decoder_curve_name(decoder, kind, curve, name);
+    mf_decoder_curve_name(decoder, kind, curve, name);
     snprintf(file, sizeof file, "pareto_%s.tsv", name);
     folder->file(folder->context, file, path);
-    CHECK(data_table_write(path, NULL, column, members + 1, each));
+    CHECK(mf_data_table_write(path, NULL, column, members + 1, each));
 done:
-    memory_free(column);
-    memory_free(curves);
-    memory_free(names);
+    mf_memory_free(column);
+    mf_memory_free(curves);
+    mf_memory_free(names);
     return status;
 }
 
-enum status pareto_write_tables(const void *memory, const struct inverse_folder *folder) {
+enum status mf_pareto_write_tables(const void *memory, const struct inverse_folder *folder) {
     enum status status = STATUS_OK;
     const struct pareto_state *state = memory;
     struct line *lines = NULL;
@@ -162,10 +162,10 @@ enum status pareto_write_tables(const void *memory, const struct inverse_folder 
     CHECK(write_log(state, folder));
     for (int kind = 0; kind < UNKNOWNS; kind++)
         for (size_t curve = 0; state->problem->unknown[kind].wanted &&
-                               curve < decoder_curve_count(&state->decoder, kind);
+                               curve < mf_decoder_curve_count(&state->decoder, kind);
              curve++)
             CHECK(write_curve(state, kind, curve, folder, lines, members));
 done:
-    memory_free(lines);
+    mf_memory_free(lines);
     return status;
 }

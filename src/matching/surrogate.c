@@ -15,7 +15,7 @@ static const double prior_width = 0.28867513459481287;
 /// Standard error below which a feature is not believed.
 static const double least_error = 1e-4;
 
-enum status surrogate_init(struct surrogate *surrogate, size_t genes, size_t features,
+enum status mf_surrogate_init(struct surrogate *surrogate, size_t genes, size_t features,
                            size_t capacity, const double *target, const double *target_error) {
     enum status status = STATUS_OK;
     *surrogate = (struct surrogate){.genes = genes,
@@ -30,20 +30,20 @@ done:
     return status;
 }
 
-void surrogate_clear(struct surrogate *surrogate) {
-    memory_free(surrogate->x);
-    memory_free(surrogate->y);
+void mf_surrogate_clear(struct surrogate *surrogate) {
+    mf_memory_free(surrogate->x);
+    mf_memory_free(surrogate->y);
     *surrogate = (struct surrogate){0};
 }
 
-void surrogate_add(struct surrogate *surrogate, const double *genes, const double *features) {
+void mf_surrogate_add(struct surrogate *surrogate, const double *genes, const double *features) {
     const size_t row = surrogate->rows.added++ % surrogate->capacity;
     memcpy(surrogate->x + row * surrogate->genes, genes, surrogate->genes * sizeof *genes);
     memcpy(surrogate->y + row * surrogate->features, features,
            surrogate->features * sizeof *features);
 }
 
-size_t surrogate_least_rows(size_t genes) {
+size_t mf_surrogate_least_rows(size_t genes) {
     return ROWS_PER_GENE * genes + MORE_ROWS;
 }
 
@@ -122,9 +122,9 @@ static void add_noise(const struct surrogate_work *work, double *covariance) {
         const double share =
             work->weight[k] / weights * (work->freedom + (double)work->terms) / work->freedom;
         solve(work, residual, work->scale);
-        surrogate_add_outer(covariance, work->delta, s->genes, share);
+        mf_surrogate_add_outer(covariance, work->delta, s->genes, share);
         solve(work, residual, NULL);
-        surrogate_add_outer(covariance, work->delta, s->genes, share * lever);
+        mf_surrogate_add_outer(covariance, work->delta, s->genes, share * lever);
     }
 }
 
@@ -149,7 +149,7 @@ static void add_open(const struct surrogate_work *work, double *covariance) {
     double *held = work->term, *delta = work->delta;
     attenuate(work, delta, held);
     divide(work, held);
-    surrogate_add_outer(covariance, held, genes, 1);
+    mf_surrogate_add_outer(covariance, held, genes, 1);
     for (size_t a = 0; a < genes; a++) {
         memset(delta, 0, genes * sizeof *delta);
         delta[a] = 1;
@@ -158,7 +158,7 @@ static void add_open(const struct surrogate_work *work, double *covariance) {
         attenuate(work, held, delta);
         delta[a] += 1 / (prior_width * prior_width);
         divide(work, delta);
-        surrogate_add_outer(covariance, delta, genes, prior_width * prior_width);
+        mf_surrogate_add_outer(covariance, delta, genes, prior_width * prior_width);
     }
 }
 
@@ -221,13 +221,13 @@ static enum status find_best(const struct surrogate *surrogate, const double *ce
     struct surrogate_work work = {0};
     const size_t most = MOST_ROWS_PER_GENE * surrogate->genes + MORE_ROWS;
     enum status status =
-        surrogate_fit_rows(&work, surrogate, centre, kept, kept < most ? kept : most);
+        mf_surrogate_fit_rows(&work, surrogate, centre, kept, kept < most ? kept : most);
     if (status == STATUS_OK) {
         take_step(&work, reach);
         for (size_t n = 0; n < surrogate->genes; n++)
             model->best[n] = fmin(1, fmax(0, centre[n] + work.delta[n]));
     }
-    surrogate_clear_rows(&work);
+    mf_surrogate_clear_rows(&work);
     return status;
 }
 
@@ -236,7 +236,7 @@ static enum status find_best(const struct surrogate *surrogate, const double *ce
 static enum status find_covariance(const struct surrogate *surrogate, const double *centre,
                                    size_t kept, struct surrogate_model *model) {
     struct surrogate_work work = {0};
-    enum status status = surrogate_fit_rows(&work, surrogate, centre, kept, kept);
+    enum status status = mf_surrogate_fit_rows(&work, surrogate, centre, kept, kept);
     if (status == STATUS_OK) {
         factor_hessian(&work, 1 / (prior_width * prior_width));
         solve(&work, work.miss, NULL);
@@ -245,17 +245,17 @@ static enum status find_covariance(const struct surrogate *surrogate, const doub
         add_open(&work, model->covariance);
         bound(work.hessian, model->covariance, surrogate->genes);
     }
-    surrogate_clear_rows(&work);
+    mf_surrogate_clear_rows(&work);
     return status;
 }
 
-enum status surrogate_fit(const struct surrogate *surrogate, const double *centre, double reach,
+enum status mf_surrogate_fit(const struct surrogate *surrogate, const double *centre, double reach,
                           struct surrogate_model *model, bool *known) {
     enum status status = STATUS_OK;
     const size_t genes = surrogate->genes, added = (size_t)surrogate->rows.added;
     const size_t kept = added < surrogate->capacity ? added : surrogate->capacity;
     *model = (struct surrogate_model){.genes = genes};
-    *known = kept >= surrogate_least_rows(genes);
+    *known = kept >= mf_surrogate_least_rows(genes);
     if (!*known)
         return STATUS_OK;
     NEW_ARRAY(model->best, genes);
@@ -266,13 +266,13 @@ done:
     return status;
 }
 
-void surrogate_model_clear(struct surrogate_model *model) {
-    memory_free(model->best);
-    memory_free(model->covariance);
+void mf_surrogate_model_clear(struct surrogate_model *model) {
+    mf_memory_free(model->best);
+    mf_memory_free(model->covariance);
     *model = (struct surrogate_model){0};
 }
 
-size_t surrogate_spans(struct surrogate *surrogate, struct memory_span *spans) {
+size_t mf_surrogate_spans(struct surrogate *surrogate, struct memory_span *spans) {
     const size_t capacity = surrogate->capacity;
     spans[0] = (struct memory_span){&surrogate->rows, sizeof surrogate->rows};
     spans[1] = (struct memory_span){surrogate->x, capacity * surrogate->genes * sizeof(double)};

@@ -2,7 +2,7 @@
 /// @file What the simulations of a fit have shown, as a linear model: where the goals would be met,
 /// and what they leave open.
 ///
-/// Every candidate that was measured is a row of genes x and features y (goals_take_features). Near
+/// Every candidate that was measured is a row of genes x and features y (mf_goals_take_features). Near
 /// a centre x_c the features are taken to be linear,
 ///   y = y_c + J (x − x_c) + noise,
 /// fitted to the nearest rows by least squares, so that the whole g(r) or E(t, r_0) of each
@@ -30,16 +30,16 @@ struct surrogate {
     double *y; ///< shape [capacity, features]
 };
 
-enum status surrogate_init(struct surrogate *surrogate, size_t genes, size_t features,
+enum status mf_surrogate_init(struct surrogate *surrogate, size_t genes, size_t features,
                            size_t capacity, const double *target,
                            const double *target_error) MUST_USE;
-void surrogate_clear(struct surrogate *surrogate);
+void mf_surrogate_clear(struct surrogate *surrogate);
 
 /// Remember a measurement.
-void surrogate_add(struct surrogate *surrogate, const double *genes, const double *features);
+void mf_surrogate_add(struct surrogate *surrogate, const double *genes, const double *features);
 
 /// Rows that a model of so many genes needs at least.
-size_t surrogate_least_rows(size_t genes);
+size_t mf_surrogate_least_rows(size_t genes);
 
 /// What the model says at a centre.
 struct surrogate_model {
@@ -54,9 +54,9 @@ struct surrogate_model {
 /// @param[in] centre  shape [genes]
 /// @param[in] reach   largest rms of the step over the genes
 /// Fails: NO_MEMORY. Tested: test_surrogate.
-enum status surrogate_fit(const struct surrogate *surrogate, const double *centre, double reach,
+enum status mf_surrogate_fit(const struct surrogate *surrogate, const double *centre, double reach,
                           struct surrogate_model *model, bool *known) MUST_USE;
-void surrogate_model_clear(struct surrogate_model *model);
+void mf_surrogate_model_clear(struct surrogate_model *model);
 
 enum { SURROGATE_SPANS = 3 };
-size_t surrogate_spans(struct surrogate *surrogate, struct memory_span *spans);
+size_t mf_surrogate_spans(struct surrogate *surrogate, struct memory_span *spans);

@@ -17,12 +17,12 @@ static int by_distance(const void *a, const void *b) {
     return p->row < q->row ? -1 : 1;
 }
 
-void surrogate_clear_rows(struct surrogate_work *work) {
+void mf_surrogate_clear_rows(struct surrogate_work *work) {
     void *arrays[] = {work->near,     work->weight,  work->design, work->normal, work->model,
                       work->residual, work->scatter, work->spread, work->term,   work->hessian,
                       work->miss,     work->scale,   work->delta};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
-        memory_free(arrays[k]);
+        mf_memory_free(arrays[k]);
 }
 
 static enum status work_init(struct surrogate_work *work, const struct surrogate *surrogate,
@@ -118,7 +118,7 @@ static void fit_features(struct surrogate_work *work) {
     }
 }
 
-void surrogate_add_outer(double *covariance, const double *delta, size_t size, double share) {
+void mf_surrogate_add_outer(double *covariance, const double *delta, size_t size, double share) {
     for (size_t a = 0; a < size; a++)
         for (size_t b = 0; b < size; b++)
             covariance[a * size + b] += share * delta[a] * delta[b];
@@ -134,11 +134,11 @@ static void find_spread(struct surrogate_work *work) {
         for (size_t a = 0; a < terms; a++)
             work->term[a] = work->weight[k] * work->design[k * terms + a];
         gsl_linalg_cholesky_svx(&factor.matrix, &view.vector);
-        surrogate_add_outer(work->spread, work->term, terms, 1);
+        mf_surrogate_add_outer(work->spread, work->term, terms, 1);
     }
 }
 
-enum status surrogate_fit_rows(struct surrogate_work *work, const struct surrogate *surrogate,
+enum status mf_surrogate_fit_rows(struct surrogate_work *work, const struct surrogate *surrogate,
                                const double *centre, size_t kept, size_t rows) {
     TRY(work_init(work, surrogate, kept, rows));
     choose_rows(work, centre, kept);

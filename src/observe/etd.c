@@ -7,7 +7,7 @@
 #include <string.h>
 
 #define GRID(name) .offset = offsetof(struct etd_grid, name)
-const struct field etd_grid_fields[] = {
+const struct field mf_etd_grid_fields[] = {
     {"r_minimum", FIELD_NUMBER, GRID(r_minimum), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "lambda", .help = "where the bins of the first separation r_0 begin"},
     {"r_maximum", FIELD_NUMBER, GRID(r_maximum), .required = true, .minimum = FIELD_ABOVE_ZERO,
@@ -20,7 +20,7 @@ const struct field etd_grid_fields[] = {
 };
 
 #define PLAN(name) .offset = offsetof(struct etd_plan, name)
-const struct field etd_plan_fields[] = {
+const struct field mf_etd_plan_fields[] = {
     {"every", FIELD_INTEGER, PLAN(every), .initial = 1, .minimum = 1, .maximum = 1e9,
      .unit = "steps", .help = "between times; escapes in between go unseen"},
     {"origin_every", FIELD_INTEGER, PLAN(origin_every), .initial = 10, .minimum = 1, .maximum = 1e6,
@@ -39,20 +39,20 @@ static const uint32_t no_record = UINT32_MAX;
 
 static enum status check(const struct etd_grid *grid, const struct box *box) {
     if (!(grid->r_maximum > grid->r_minimum))
-        return status_fail(STATUS_BAD_INPUT, "etd: r_maximum %g is not above r_minimum %g",
+        return mf_status_fail(STATUS_BAD_INPUT, "etd: r_maximum %g is not above r_minimum %g",
                            grid->r_maximum, grid->r_minimum);
-    if (box_shortest(box) < 2 * grid->r_maximum)
-        return status_fail(STATUS_BAD_INPUT,
+    if (mf_box_shortest(box) < 2 * grid->r_maximum)
+        return mf_status_fail(STATUS_BAD_INPUT,
                            "etd: the box is too small: its shortest edge %g is below twice "
                            "r_maximum, %g",
-                           box_shortest(box), grid->r_maximum);
+                           mf_box_shortest(box), grid->r_maximum);
     return STATUS_OK;
 }
 
 static enum status count_origins(struct etd *etd, int64_t steps) {
     const int64_t window = etd->grid.times - 1, samples = steps / etd->plan.every;
     if (samples < window)
-        return status_fail(STATUS_BAD_INPUT,
+        return mf_status_fail(STATUS_BAD_INPUT,
                            "etd: %lld times of %lld steps are longer than the %lld steps of the "
                            "measurement",
                            (long long)window, (long long)etd->plan.every, (long long)steps);
@@ -63,7 +63,7 @@ static enum status count_origins(struct etd *etd, int64_t steps) {
     return STATUS_OK;
 }
 
-enum status etd_init(struct etd *etd, const struct etd_grid *grid, const struct etd_plan *plan,
+enum status mf_etd_init(struct etd *etd, const struct etd_grid *grid, const struct etd_plan *plan,
                      const struct simulation *simulation, int64_t begin, int64_t steps) {
     enum status status = STATUS_OK;
     const struct box *box = &simulation->setup.box;
@@ -79,39 +79,39 @@ enum status etd_init(struct etd *etd, const struct etd_grid *grid, const struct 
         NEW_ARRAY(etd->listed[d], count);
     }
     NEW_ARRAY(etd->squares, count + BATCH);
-    CHECK(etd_make_room(etd));
-    CHECK(particles_init(&etd->own_particles, box, count));
-    CHECK(neighbours_init(&etd->own_list, NEIGHBOURS_HALF, box, count, grid->r_maximum, 0));
+    CHECK(mf_etd_make_room(etd));
+    CHECK(mf_particles_init(&etd->own_particles, box, count));
+    CHECK(mf_neighbours_init(&etd->own_list, NEIGHBOURS_HALF, box, count, grid->r_maximum, 0));
 done:
     if (status != STATUS_OK)
-        etd_clear(etd);
+        mf_etd_clear(etd);
     return status;
 }
 
 static void clear_records(struct etd *etd) {
-    memory_free(etd->first);
-    memory_free(etd->second);
-    memory_free(etd->bin);
-    memory_free(etd->bucket);
-    memory_free(etd->next);
+    mf_memory_free(etd->first);
+    mf_memory_free(etd->second);
+    mf_memory_free(etd->bin);
+    mf_memory_free(etd->bucket);
+    mf_memory_free(etd->next);
 }
 
-void etd_clear(struct etd *etd) {
+void mf_etd_clear(struct etd *etd) {
     clear_records(etd);
-    memory_free(etd->began);
-    memory_free(etd->open);
-    memory_free(etd->counts);
+    mf_memory_free(etd->began);
+    mf_memory_free(etd->open);
+    mf_memory_free(etd->counts);
     for (int d = 0; d < 3; d++) {
-        memory_free(etd->place[d]);
-        memory_free(etd->listed[d]);
+        mf_memory_free(etd->place[d]);
+        mf_memory_free(etd->listed[d]);
     }
-    memory_free(etd->squares);
-    particles_clear(&etd->own_particles);
-    neighbours_clear(&etd->own_list);
+    mf_memory_free(etd->squares);
+    mf_particles_clear(&etd->own_particles);
+    mf_neighbours_clear(&etd->own_list);
     *etd = (struct etd){0};
 }
 
-int64_t etd_due(const struct etd *etd) {
+int64_t mf_etd_due(const struct etd *etd) {
     const int64_t last = (int64_t)(etd->origins - 1) * etd->plan.origin_every + etd->grid.times - 1;
     const int64_t sample = (int64_t)etd->state.samples;
     return sample > last ? INT64_MAX : etd->begin + sample * etd->plan.every;
@@ -173,7 +173,7 @@ done:
     return status;
 }
 
-enum status etd_make_room(struct etd *etd) {
+enum status mf_etd_make_room(struct etd *etd) {
     while (etd->room == 0 || etd->state.followed > etd->room)
         TRY(grow(etd));
     return STATUS_OK;
@@ -346,7 +346,7 @@ static enum status search_own_list(struct etd *etd, size_t slot,
     for (int d = 0; d < particles->box.dimensions; d++)
         for (size_t k = 0; k < own->count; k++)
             own->position[d][k] = particles->position[d][order[own->id[k]]];
-    TRY(neighbours_sort_and_build(&etd->own_list, own));
+    TRY(mf_neighbours_sort_and_build(&etd->own_list, own));
     return search_list(etd, slot, &etd->own_list, own->id);
 }
 
@@ -366,7 +366,7 @@ static enum status open_window(struct etd *etd, const struct simulation *simulat
     return search_own_list(etd, slot, particles);
 }
 
-enum status etd_sample(struct etd *etd, const struct simulation *simulation) {
+enum status mf_etd_sample(struct etd *etd, const struct simulation *simulation) {
     gather(etd, &simulation->particles);
     find_escapes(etd);
     close_window(etd);
@@ -375,7 +375,7 @@ enum status etd_sample(struct etd *etd, const struct simulation *simulation) {
     return STATUS_OK;
 }
 
-size_t etd_spans(struct etd *etd, struct memory_span *spans) {
+size_t mf_etd_spans(struct etd *etd, struct memory_span *spans) {
     const size_t records = etd->state.followed, slots = etd->slots;
     size_t n = 0;
     spans[n++] = (struct memory_span){&etd->state, sizeof etd->state};

@@ -27,8 +27,8 @@ struct etd_plan {
     int64_t origin_every; ///< times between origins
 };
 
-extern const struct field etd_grid_fields[];
-extern const struct field etd_plan_fields[];
+extern const struct field mf_etd_grid_fields[];
+extern const struct field mf_etd_plan_fields[];
 
 /// Blocks of consecutive origins, for the errors; of fewer origins, each is a block.
 enum { ETD_BLOCKS = 10 };
@@ -69,20 +69,20 @@ static inline size_t etd_cells(const struct etd *etd) {
 /// within them are begun.
 /// Fails: BAD_INPUT if there is no whole window, r_maximum is not above r_minimum, or the box is
 /// below 2 r_maximum; NO_MEMORY.
-enum status etd_init(struct etd *etd, const struct etd_grid *grid, const struct etd_plan *plan,
+enum status mf_etd_init(struct etd *etd, const struct etd_grid *grid, const struct etd_plan *plan,
                      const struct simulation *simulation, int64_t begin, int64_t steps) MUST_USE;
-void etd_clear(struct etd *etd);
+void mf_etd_clear(struct etd *etd);
 
 /// The step of the next sample, or INT64_MAX after the last.
-int64_t etd_due(const struct etd *etd);
+int64_t mf_etd_due(const struct etd *etd);
 
-/// Add the present positions: those of step etd_due. The simulation is left alone.
+/// Add the present positions: those of step mf_etd_due. The simulation is left alone.
 ///
 /// Linear in the pairs within r_maximum, and at an origin in those of the list, which serves as it
 /// is if none of its particles has gone too far. The same counts for any number of threads, list,
 /// or order of particles: distances are in double precision of 32-bit fractions of the box (2e-9
 /// λ). Fails: NO_MEMORY. Tested: test_etd, test_etd_brute_force.
-enum status etd_sample(struct etd *etd, const struct simulation *simulation) MUST_USE;
+enum status mf_etd_sample(struct etd *etd, const struct simulation *simulation) MUST_USE;
 
 /// E and its standard error from the complete windows of independent replicas with the same grid.
 ///
@@ -98,13 +98,13 @@ enum status etd_sample(struct etd *etd, const struct simulation *simulation) MUS
 /// @param[out] survival, error  shape [times, bins]; NaN where no pair began; error may be NULL
 /// @param[out] pairs            shape [bins]: begun, sum over origins; may be NULL
 /// Fails: NO_MEMORY. Tested: test_etd, test_etd_brute_force.
-enum status etd_result(const struct etd *const *replicas, size_t count, double *survival,
+enum status mf_etd_result(const struct etd *const *replicas, size_t count, double *survival,
                        double *error, uint64_t *pairs) MUST_USE;
 
 /// What goes with a checkpoint. The first span is `state`: read it before the others and call
-/// etd_make_room, since their lengths depend on it.
+/// mf_etd_make_room, since their lengths depend on it.
 enum { ETD_SPANS = 7 };
-size_t etd_spans(struct etd *etd, struct memory_span *spans);
+size_t mf_etd_spans(struct etd *etd, struct memory_span *spans);
 
 /// Room for state.followed records. Fails: NO_MEMORY.
-enum status etd_make_room(struct etd *etd) MUST_USE;
+enum status mf_etd_make_room(struct etd *etd) MUST_USE;

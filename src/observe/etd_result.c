@@ -62,7 +62,7 @@ static struct tally advance(const struct etd *const *replicas, size_t count, siz
     return sum;
 }
 
-enum status etd_result(const struct etd *const *replicas, size_t count, double *survival,
+enum status mf_etd_result(const struct etd *const *replicas, size_t count, double *survival,
                        double *error, uint64_t *pairs) {
     enum status status = STATUS_OK;
     const size_t times = (size_t)replicas[0]->grid.times, bins = (size_t)replicas[0]->grid.bins;
@@ -84,6 +84,6 @@ enum status etd_result(const struct etd *const *replicas, size_t count, double *
                 pairs[bin] = (uint64_t)sum.begun;
         }
 done:
-    memory_free(blocks);
+    mf_memory_free(blocks);
     return status;
 }

@@ -21,9 +21,9 @@
 /// What g_ab of a system of `from` particles of all types is to be multiplied by to compare with
 /// one of `to` particles: (1 + (s − 1)/from) / (1 + (s − 1)/to).
 /// Tested against the exact g of N hard rods: test_finite_size.
-double finite_size_factor(double s, double from, double to);
+double mf_finite_size_factor(double s, double from, double to);
 
-/// The same with the s that g itself shows: 1 + ρG by kirkwood_buff_integrate, drawn towards 0, the
+/// The same with the s that g itself shows: 1 + ρG by mf_kirkwood_buff_integrate, drawn towards 0, the
 /// value of a liquid, by the share that its error has in it: s (1 − error²/s²), or 0. The error is
 /// that by statistics and the scatter of s with the range of the integral, since the last
 /// oscillations may be cut off. An s beyond N/20 is one of types that have parted, for which the
@@ -31,6 +31,6 @@ double finite_size_factor(double s, double from, double to);
 /// @param[in] g, error    shape [bins.count], of this kind of pairs in a system of `from` particles
 /// @param[in] box, composition  densities and shares of both systems
 /// @param[in] pair        kind of pairs
-double finite_size_factor_of(const struct rdf_bins *bins, const double *g, const double *error,
+double mf_finite_size_factor_of(const struct rdf_bins *bins, const double *g, const double *error,
                              const struct box *box, const struct composition *composition, int pair,
                              double from, double to);

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #define MEMBER(name) .offset = offsetof(struct force_covariance_plan, name)
-const struct field force_covariance_fields[] = {
+const struct field mf_force_covariance_fields[] = {
     {"range", FIELD_NUMBER, MEMBER(range), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "lambda", .help = "of the bins; 0 means the cutoff of the dissipative weight"},
     {"bins", FIELD_INTEGER, MEMBER(bins), .initial = 50, .minimum = 1, .maximum = 100000,
@@ -15,22 +15,22 @@ const struct field force_covariance_fields[] = {
 static enum status check(const struct simulation *simulation, double range) {
     const struct simulation_setup *setup = &simulation->setup;
     if (setup->weight == NULL)
-        return status_fail(STATUS_BAD_INPUT,
+        return mf_status_fail(STATUS_BAD_INPUT,
                            "force_covariance: the scene has no dissipative weight to be seen");
     if (setup->integrator->friction)
-        return status_fail(STATUS_BAD_INPUT,
+        return mf_status_fail(STATUS_BAD_INPUT,
                            "force_covariance: \"%s\" splits friction and noise off the forces; use "
                            "\"dynamics\": {\"integrator\": \"dpd-verlet\"}",
                            setup->integrator->name);
     // A part in 10⁹ forgives a range that was rounded in another unit.
-    if (range > pair_cutoff(&simulation->law) * (1 + 1e-9))
-        return status_fail(STATUS_BAD_INPUT,
+    if (range > mf_pair_cutoff(&simulation->law) * (1 + 1e-9))
+        return mf_status_fail(STATUS_BAD_INPUT,
                            "force_covariance: the range %g exceeds %g, that of the forces", range,
-                           pair_cutoff(&simulation->law));
+                           mf_pair_cutoff(&simulation->law));
     return STATUS_OK;
 }
 
-enum status force_covariance_init(struct force_covariance *covariance,
+enum status mf_force_covariance_init(struct force_covariance *covariance,
                                   const struct force_covariance_plan *plan,
                                   const struct simulation *simulation, size_t planned) {
     enum status status = STATUS_OK;
@@ -45,13 +45,13 @@ enum status force_covariance_init(struct force_covariance *covariance,
     NEW_ARRAY(covariance->pairs, FORCE_COVARIANCE_BLOCKS * covariance->bins);
 done:
     if (status != STATUS_OK)
-        force_covariance_clear(covariance);
+        mf_force_covariance_clear(covariance);
     return status;
 }
 
-void force_covariance_clear(struct force_covariance *covariance) {
-    memory_free(covariance->products);
-    memory_free(covariance->pairs);
+void mf_force_covariance_clear(struct force_covariance *covariance) {
+    mf_memory_free(covariance->products);
+    mf_memory_free(covariance->pairs);
     *covariance = (struct force_covariance){0};
 }
 
@@ -65,7 +65,7 @@ static double distance(const struct particles *particles, size_t i, size_t j) {
     return sqrt(square);
 }
 
-void force_covariance_sample(struct force_covariance *covariance,
+void mf_force_covariance_sample(struct force_covariance *covariance,
                              const struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
     const struct neighbours *neighbours = &simulation->neighbours;
@@ -105,7 +105,7 @@ static double find_error(const struct force_covariance *covariance, size_t bin, 
     return sqrt(fmax(0, squares - changes * changes / filled) * (filled - 1) / filled);
 }
 
-void force_covariance_result(const struct force_covariance *covariance, double *kappa,
+void mf_force_covariance_result(const struct force_covariance *covariance, double *kappa,
                              double *error) {
     for (size_t bin = 0; bin < covariance->bins; bin++) {
         double products = 0, pairs = 0;
@@ -118,7 +118,7 @@ void force_covariance_result(const struct force_covariance *covariance, double *
     }
 }
 
-void force_covariance_extrapolate(const double time_step[2], const double *const kappa[2],
+void mf_force_covariance_extrapolate(const double time_step[2], const double *const kappa[2],
                                   const double *const error[2], size_t bins, double *squared,
                                   double *squared_error) {
     const double first = time_step[1] / (time_step[1] - time_step[0]), second = 1 - first;
@@ -128,7 +128,7 @@ void force_covariance_extrapolate(const double time_step[2], const double *const
     }
 }
 
-size_t force_covariance_spans(struct force_covariance *covariance, struct memory_span *spans) {
+size_t mf_force_covariance_spans(struct force_covariance *covariance, struct memory_span *spans) {
     const size_t bytes = FORCE_COVARIANCE_BLOCKS * covariance->bins * sizeof(double);
     size_t n = 0;
     spans[n++] = (struct memory_span){&covariance->samples, sizeof covariance->samples};

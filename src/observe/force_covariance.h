@@ -28,7 +28,7 @@ struct force_covariance_plan {
     int64_t bins;
 };
 
-extern const struct field force_covariance_fields[];
+extern const struct field mf_force_covariance_fields[];
 
 enum { FORCE_COVARIANCE_BLOCKS = 20 };
 
@@ -43,19 +43,19 @@ struct force_covariance {
 /// Prepare for `planned` samples.
 /// Fails: BAD_INPUT if the simulation has no ω, if its integrator does not take friction as a
 /// force, or if the range exceeds that of the forces; NO_MEMORY.
-enum status force_covariance_init(struct force_covariance *covariance,
+enum status mf_force_covariance_init(struct force_covariance *covariance,
                                   const struct force_covariance_plan *plan,
                                   const struct simulation *simulation, size_t planned) MUST_USE;
-void force_covariance_clear(struct force_covariance *covariance);
+void mf_force_covariance_clear(struct force_covariance *covariance);
 
 /// Add the pairs of the present configuration, the forces being those of its step.
-void force_covariance_sample(struct force_covariance *covariance,
+void mf_force_covariance_sample(struct force_covariance *covariance,
                              const struct simulation *simulation);
 
 /// κ and its standard error, by jackknife over blocks of consecutive samples.
 /// @param[out] kappa, error  shape [bins]; NaN without pairs; [(k_B T_0)² τ/λ² = k_B T_0 μ/τ]
 /// Tested: test_force_covariance (unit, physics).
-void force_covariance_result(const struct force_covariance *covariance, double *kappa,
+void mf_force_covariance_result(const struct force_covariance *covariance, double *kappa,
                              double *error);
 
 /// Combine the results of two time steps; errors as of independent runs.
@@ -63,9 +63,9 @@ void force_covariance_result(const struct force_covariance *covariance, double *
 /// @param[in]  kappa, error of each, shape [bins]
 /// @param[out] squared, squared_error  2 k_B T ω², shape [bins]
 /// Tested: test_force_covariance.
-void force_covariance_extrapolate(const double time_step[2], const double *const kappa[2],
+void mf_force_covariance_extrapolate(const double time_step[2], const double *const kappa[2],
                                   const double *const error[2], size_t bins, double *squared,
                                   double *squared_error);
 
 enum { FORCE_COVARIANCE_SPANS = 3 };
-size_t force_covariance_spans(struct force_covariance *covariance, struct memory_span *spans);
+size_t mf_force_covariance_spans(struct force_covariance *covariance, struct memory_span *spans);

@@ -12,15 +12,15 @@ static double weight_below(double r, double range) {
            (1.0 / 3 + x3 * (-23.0 / 48 + x * (3.0 / 28 + x * 9.0 / 64)));
 }
 
-struct kirkwood_buff kirkwood_buff_integrate(const struct rdf_bins *bins, const double *g,
+struct kirkwood_buff mf_kirkwood_buff_integrate(const struct rdf_bins *bins, const double *g,
                                              const double *error, const struct box *box,
                                              size_t count) {
-    const double range = rdf_bins_range(bins);
+    const double range = mf_rdf_bins_range(bins);
     const double volume = box->length[0] * box->length[1] * box->length[2];
     const double density = (double)count / volume, all = weight_below(range, range);
-    double below = weight_below(rdf_bins_edge(bins, 0), range), sum = -below, squares = 0;
+    double below = weight_below(mf_rdf_bins_edge(bins, 0), range), sum = -below, squares = 0;
     for (size_t k = 0; k < bins->count; k++) {
-        const double above = weight_below(rdf_bins_edge(bins, k + 1), range);
+        const double above = weight_below(mf_rdf_bins_edge(bins, k + 1), range);
         const double own_error = isfinite(error[k]) ? error[k] : 0;
         sum += (g[k] - 1) * (above - below);
         squares += pow((above - below) * own_error, 2);

@@ -6,21 +6,21 @@
 
 #include <math.h>
 
-enum status maxwell_init(struct maxwell *maxwell) {
-    maxwell->counts = memory_zeroed(MAXWELL_BINS, sizeof *maxwell->counts);
+enum status mf_maxwell_init(struct maxwell *maxwell) {
+    maxwell->counts = mf_memory_zeroed(MAXWELL_BINS, sizeof *maxwell->counts);
     return maxwell->counts ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
-void maxwell_clear(struct maxwell *maxwell) {
-    memory_free(maxwell->counts);
+void mf_maxwell_clear(struct maxwell *maxwell) {
+    mf_memory_free(maxwell->counts);
     *maxwell = (struct maxwell){0};
 }
 
-void maxwell_sample(struct maxwell *maxwell, const struct particles *particles, double temperature,
+void mf_maxwell_sample(struct maxwell *maxwell, const struct particles *particles, double temperature,
                     uint64_t seed, uint64_t step) {
     const double count = (double)particles->count;
     double normal[4];
-    rng_normal4(rng_philox(seed, RNG_MEAN_VELOCITY, (uint32_t)step, (uint32_t)(step >> 32), 0),
+    mf_rng_normal4(mf_rng_philox(seed, RNG_MEAN_VELOCITY, (uint32_t)step, (uint32_t)(step >> 32), 0),
                 normal);
     for (int d = 0; d < particles->box.dimensions; d++) {
         // The order is that of the list, which is the same for any number of threads.
@@ -38,7 +38,7 @@ void maxwell_sample(struct maxwell *maxwell, const struct particles *particles, 
     }
 }
 
-struct maxwell_summary maxwell_result(const struct maxwell *maxwell) {
+struct maxwell_summary mf_maxwell_result(const struct maxwell *maxwell) {
     uint64_t total = 0, below = 0;
     double largest = 0;
     for (size_t k = 0; k < MAXWELL_BINS; k++)
@@ -51,10 +51,10 @@ struct maxwell_summary maxwell_result(const struct maxwell *maxwell) {
         largest = fmax(largest, fabs((double)below / (double)total - expected));
     }
     return (struct maxwell_summary){(double)total, largest,
-                                    maxwell_probability(largest, (double)total)};
+                                    mf_maxwell_probability(largest, (double)total)};
 }
 
-double maxwell_probability(double statistic, double n) {
+double mf_maxwell_probability(double statistic, double n) {
     const double lambda = (sqrt(n) + 0.12 + 0.11 / sqrt(n)) * statistic;
     double sum = 0;
     if (lambda < 1) { // the same function by its theta transform, which converges at small λ

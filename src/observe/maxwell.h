@@ -12,8 +12,8 @@ struct maxwell {
     uint64_t *counts; ///< shape [MAXWELL_BINS]: velocity components of all configurations
 };
 
-enum status maxwell_init(struct maxwell *maxwell) MUST_USE;
-void maxwell_clear(struct maxwell *maxwell);
+enum status mf_maxwell_init(struct maxwell *maxwell) MUST_USE;
+void mf_maxwell_clear(struct maxwell *maxwell);
 
 /// Add all velocity components of a configuration.
 ///
@@ -24,7 +24,7 @@ void maxwell_clear(struct maxwell *maxwell);
 /// momentum 0 is then exactly dN independent numbers N(0, T).
 /// @param[in] temperature  that was set [k_B T_0]
 /// @param[in] seed, step   of the drawn mean: the same for any order of particles or threads
-void maxwell_sample(struct maxwell *maxwell, const struct particles *particles, double temperature,
+void mf_maxwell_sample(struct maxwell *maxwell, const struct particles *particles, double temperature,
                     uint64_t seed, uint64_t step);
 
 struct maxwell_summary {
@@ -37,9 +37,9 @@ struct maxwell_summary {
 /// each other: correlated ones make it too small. Without a thermostat the total energy is
 /// remembered for ever.
 /// Tested: test_maxwell.
-struct maxwell_summary maxwell_result(const struct maxwell *maxwell);
+struct maxwell_summary mf_maxwell_result(const struct maxwell *maxwell);
 
 /// Probability that D exceeds `statistic` for n independent numbers of a known distribution:
 ///   Q(λ) = 2 Σ_k (−1)^(k−1) exp(−2 k² λ²),  λ = (√n + 0.12 + 0.11/√n) D,
 /// M. A. Stephens, J. R. Stat. Soc. B 32, 115 (1970); good to 0.001 from n = 5 on.
-double maxwell_probability(double statistic, double n);
+double mf_maxwell_probability(double statistic, double n);

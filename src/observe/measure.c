@@ -2,7 +2,7 @@
 #include "observe/measure.h"
 
 #define MEMBER(name) .offset = offsetof(struct measure_plan, name)
-const struct field measure_plan_fields[] = {
+const struct field mf_measure_plan_fields[] = {
     {"equilibration", FIELD_INTEGER, MEMBER(equilibration), .initial = 1000, .minimum = 0,
      .maximum = 1e12, .unit = "steps", .help = "before the first sample"},
     {"samples", FIELD_INTEGER, MEMBER(samples), .initial = 200, .minimum = 1, .maximum = 1e8,
@@ -12,14 +12,14 @@ const struct field measure_plan_fields[] = {
     FIELD_END,
 };
 
-uint64_t measure_steps(const struct measure_plan *plan) {
+uint64_t mf_measure_steps(const struct measure_plan *plan) {
     return (uint64_t)(plan->equilibration + plan->samples * plan->every);
 }
 
 static void tell(const struct measure_listener *listener, const struct simulation *simulation,
                  const struct measure_plan *plan) {
     if (listener)
-        listener->tell(listener->context, simulation, simulation->step, measure_steps(plan));
+        listener->tell(listener->context, simulation, simulation->step, mf_measure_steps(plan));
 }
 
 /// Bead-steps between two words to the listener: less than a second of one thread, whatever the
@@ -34,14 +34,14 @@ static enum status run_until(struct simulation *simulation, int64_t step,
     const int64_t piece = 1 + STEPS_A_WORD / (int64_t)simulation->particles.count;
     for (int64_t now; (now = (int64_t)simulation->step) < step;) {
         const int64_t steps = step - now <= piece ? step - now : piece;
-        TRY(simulation_run(simulation, (uint64_t)steps));
+        TRY(mf_simulation_run(simulation, (uint64_t)steps));
         if (now + steps < step)
             tell(listener, simulation, plan);
     }
     return STATUS_OK;
 }
 
-enum status measure_equilibrate(struct simulation *simulation, const struct measure_plan *plan,
+enum status mf_measure_equilibrate(struct simulation *simulation, const struct measure_plan *plan,
                                 double *temperature, const struct measure_listener *listener) {
     // Pieces short enough to tell of progress; their temperatures over the last tenth are averaged.
     enum { PIECES = 100, LAST = 10 };
@@ -53,7 +53,7 @@ enum status measure_equilibrate(struct simulation *simulation, const struct meas
         simulation->wants = piece > PIECES - LAST ? PAIR_FORCES_AND_SUMS : PAIR_FORCES;
         TRY(run_until(simulation, end, plan, listener));
         if (piece > PIECES - LAST)
-            sum += simulation_temperature(simulation);
+            sum += mf_simulation_temperature(simulation);
         tell(listener, simulation, plan);
     }
     *temperature = sum / LAST;
@@ -66,23 +66,23 @@ static enum status run_moving(struct simulation *simulation, int64_t step,
                               const struct measure_plan *plan,
                               const struct measure_listener *listener) {
     for (;;) {
-        const int64_t motion = targets->motion ? motion_due(targets->motion) : INT64_MAX;
-        const int64_t etd = targets->etd ? etd_due(targets->etd) : INT64_MAX;
+        const int64_t motion = targets->motion ? mf_motion_due(targets->motion) : INT64_MAX;
+        const int64_t etd = targets->etd ? mf_etd_due(targets->etd) : INT64_MAX;
         const int64_t due = motion < etd ? motion : etd;
         TRY(run_until(simulation, due < step ? due : step, plan, listener));
         if (due > step)
             return STATUS_OK;
         if (motion == due)
-            motion_sample(targets->motion, simulation);
+            mf_motion_sample(targets->motion, simulation);
         if (etd == due)
-            TRY(etd_sample(targets->etd, simulation));
+            TRY(mf_etd_sample(targets->etd, simulation));
     }
 }
 
 /// Whether the potential alone reaches as far as all forces, so that its pass sees every pair that
 /// a histogram wants.
 static bool potential_reaches(const struct pair_law *law) {
-    return law->potential && law->potential->cutoff >= pair_cutoff(law);
+    return law->potential && law->potential->cutoff >= mf_pair_cutoff(law);
 }
 
 /// The last step before a sample. The force pass counts and sums what the sample needs; if that
@@ -93,24 +93,24 @@ static enum status run_sampled_step(struct simulation *simulation, int64_t due,
     struct pair_law *law = &simulation->law;
     const bool midway = simulation->setup.integrator->forces_midway;
     const bool counts = targets.rdf && (!midway || potential_reaches(law));
-    const struct pair_histogram *histogram = counts ? rdf_histogram(targets.rdf) : NULL;
+    const struct pair_histogram *histogram = counts ? mf_rdf_histogram(targets.rdf) : NULL;
     simulation->wants = targets.thermodynamics ? PAIR_FORCES_AND_SUMS : PAIR_FORCES;
     law->histogram = midway ? NULL : histogram;
     enum status status = run_moving(simulation, due, &targets, plan, NULL);
     if (midway && status == STATUS_OK) {
         law->histogram = histogram;
-        status = simulation_compute_potential(simulation);
+        status = mf_simulation_compute_potential(simulation);
     }
     law->histogram = NULL;
     TRY(status);
     if (histogram)
-        rdf_sample_counted(targets.rdf);
+        mf_rdf_sample_counted(targets.rdf);
     else if (targets.rdf)
-        TRY(rdf_sample(targets.rdf, &simulation->particles, &simulation->neighbours));
+        TRY(mf_rdf_sample(targets.rdf, &simulation->particles, &simulation->neighbours));
     return STATUS_OK;
 }
 
-enum status measure_sample(struct simulation *simulation, const struct measure_plan *plan,
+enum status mf_measure_sample(struct simulation *simulation, const struct measure_plan *plan,
                            struct measure_targets targets,
                            const struct measure_listener *listener) {
     const int64_t begun = (int64_t)simulation->step - plan->equilibration;
@@ -120,12 +120,12 @@ enum status measure_sample(struct simulation *simulation, const struct measure_p
         TRY(run_moving(simulation, due - 1, &targets, plan, listener));
         TRY(run_sampled_step(simulation, due, targets, plan));
         if (targets.force_covariance) // while the forces are still those of the step
-            force_covariance_sample(targets.force_covariance, simulation);
+            mf_force_covariance_sample(targets.force_covariance, simulation);
         if (targets.rdf_force)
-            TRY(rdf_force_sample(targets.rdf_force, &simulation->particles,
+            TRY(mf_rdf_force_sample(targets.rdf_force, &simulation->particles,
                                  &simulation->neighbours));
         if (targets.thermodynamics)
-            TRY(thermodynamics_sample(targets.thermodynamics, simulation));
+            TRY(mf_thermodynamics_sample(targets.thermodynamics, simulation));
         tell(listener, simulation, plan);
     }
     return STATUS_OK;

@@ -16,10 +16,10 @@ struct measure_plan {
     int64_t every; ///< steps between samples
 };
 
-extern const struct field measure_plan_fields[];
+extern const struct field mf_measure_plan_fields[];
 
 /// Steps of a whole plan.
-uint64_t measure_steps(const struct measure_plan *plan);
+uint64_t mf_measure_steps(const struct measure_plan *plan);
 
 /// What to measure; NULL members are not computed.
 struct measure_targets {
@@ -40,13 +40,13 @@ struct measure_listener {
 
 /// Take the samples of a plan whose equilibration is over: all of them, or after a restart those
 /// that are still due by the number of the simulation's step.
-/// Fails: as simulation_run; NO_MEMORY. What was sampled before a failure stays.
-enum status measure_sample(struct simulation *simulation, const struct measure_plan *plan,
+/// Fails: as mf_simulation_run; NO_MEMORY. What was sampled before a failure stays.
+enum status mf_measure_sample(struct simulation *simulation, const struct measure_plan *plan,
                            struct measure_targets targets,
                            const struct measure_listener *listener) MUST_USE;
 
 /// Mean kinetic temperature over the last tenth of an equilibration of plan->equilibration steps,
 /// which it runs [k_B T_0].
-enum status measure_equilibrate(struct simulation *simulation, const struct measure_plan *plan,
+enum status mf_measure_equilibrate(struct simulation *simulation, const struct measure_plan *plan,
                                 double *temperature,
                                 const struct measure_listener *listener) MUST_USE;

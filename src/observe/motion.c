@@ -10,7 +10,7 @@
 #include <string.h>
 
 #define MEMBER(name) .offset = offsetof(struct motion_plan, name)
-const struct field motion_plan_fields[] = {
+const struct field mf_motion_plan_fields[] = {
     {"every", FIELD_INTEGER, MEMBER(every), .initial = 5, .minimum = 1, .maximum = 1e9,
      .unit = "steps", .help = "between samples; the velocities should change little meanwhile"},
     {"lags", FIELD_INTEGER, MEMBER(lags), .initial = 100, .minimum = 2, .maximum = 1e5,
@@ -31,7 +31,7 @@ static size_t complete_origins(const struct motion_plan *plan, size_t last) {
     return last < lags ? 0 : (last - lags) / (size_t)plan->origin_every + 1;
 }
 
-enum status motion_init(struct motion *motion, const struct motion_plan *plan,
+enum status mf_motion_init(struct motion *motion, const struct motion_plan *plan,
                         const struct simulation *simulation, int64_t begin, int64_t steps) {
     enum status status = STATUS_OK;
     *motion = (struct motion){.plan = *plan,
@@ -42,7 +42,7 @@ enum status motion_init(struct motion *motion, const struct motion_plan *plan,
                               .slots = (size_t)(plan->lags / plan->origin_every + 1)};
     const size_t origins = complete_origins(plan, (size_t)(steps / plan->every));
     if (origins == 0)
-        return status_fail(STATUS_BAD_INPUT,
+        return mf_status_fail(STATUS_BAD_INPUT,
                            "motion: %lld lags of %lld steps are longer than the %lld steps of the "
                            "measurement",
                            (long long)plan->lags, (long long)plan->every, (long long)steps);
@@ -54,23 +54,23 @@ enum status motion_init(struct motion *motion, const struct motion_plan *plan,
     NEW_ARRAY(motion->origins, motion->slots * state * motion->count);
     NEW_ARRAY(motion->squares, motion->blocks * curve);
     NEW_ARRAY(motion->products, motion->blocks * curve);
-    CHECK(maxwell_init(&motion->maxwell));
+    CHECK(mf_maxwell_init(&motion->maxwell));
 done:
     if (status != STATUS_OK)
-        motion_clear(motion);
+        mf_motion_clear(motion);
     return status;
 }
 
-void motion_clear(struct motion *motion) {
-    memory_free(motion->now);
-    memory_free(motion->origins);
-    memory_free(motion->squares);
-    memory_free(motion->products);
-    maxwell_clear(&motion->maxwell);
+void mf_motion_clear(struct motion *motion) {
+    mf_memory_free(motion->now);
+    mf_memory_free(motion->origins);
+    mf_memory_free(motion->squares);
+    mf_memory_free(motion->products);
+    mf_maxwell_clear(&motion->maxwell);
     *motion = (struct motion){0};
 }
 
-int64_t motion_due(const struct motion *motion) {
+int64_t mf_motion_due(const struct motion *motion) {
     const struct motion_plan *plan = &motion->plan;
     const int64_t last_origin = (int64_t)(motion->blocks * motion->each) - 1;
     const int64_t last = last_origin * plan->origin_every + plan->lags;
@@ -156,12 +156,12 @@ static void correlate(struct motion *motion, size_t origin, int threads) {
                                       motion->count};
     const size_t place = origin / motion->each * ((size_t)motion->plan.lags + 1) + lag;
     const double count = (double)motion->count;
-    motion->squares[place] += parallel_sum(motion->count, threads, sum_squares, &positions) / count;
+    motion->squares[place] += mf_parallel_sum(motion->count, threads, sum_squares, &positions) / count;
     motion->products[place] +=
-        parallel_sum(motion->count, threads, sum_products, &velocities) / count;
+        mf_parallel_sum(motion->count, threads, sum_products, &velocities) / count;
 }
 
-void motion_sample(struct motion *motion, const struct simulation *simulation) {
+void mf_motion_sample(struct motion *motion, const struct simulation *simulation) {
     const struct simulation_setup *setup = &simulation->setup;
     const struct particles *particles = &simulation->particles;
     const size_t every = (size_t)motion->plan.origin_every, lags = (size_t)motion->plan.lags;
@@ -175,12 +175,12 @@ void motion_sample(struct motion *motion, const struct simulation *simulation) {
     for (size_t origin = first; origin < all && origin * every <= sample; origin++)
         correlate(motion, origin, particles->threads);
     if (setup->weight && sample % lags == 0)
-        maxwell_sample(&motion->maxwell, particles, setup->temperature, setup->seed,
+        mf_maxwell_sample(&motion->maxwell, particles, setup->temperature, setup->seed,
                        simulation->step);
     motion->samples++;
 }
 
-size_t motion_spans(struct motion *motion, struct memory_span *spans) {
+size_t mf_motion_spans(struct motion *motion, struct memory_span *spans) {
     const size_t state = 2 * (size_t)motion->dimensions * motion->count * sizeof(double);
     const size_t curves = motion->blocks * ((size_t)motion->plan.lags + 1) * sizeof(double);
     size_t n = 0;
@@ -271,10 +271,10 @@ static void average(const struct motion *motion, const double *sums,
     const size_t blocks = complete_blocks(motion), curve = (size_t)motion->plan.lags + 1;
     for (size_t b = 0; b < blocks; b++) {
         values[b] = read(motion, sums + b * curve, lag) / (double)motion->each;
-        statistics_add(&all, values[b]);
+        mf_statistics_add(&all, values[b]);
     }
     *mean = blocks > 0 ? all.mean : NAN;
-    *error = statistics_correlated_error(values, blocks, 1);
+    *error = mf_statistics_correlated_error(values, blocks, 1);
 }
 
 /// What D of the VACF may be off besides its statistical error.
@@ -289,7 +289,7 @@ static void find_systematic(const struct motion *motion, struct motion_summary *
     s->vacf_drop = 1 - next / start;
 }
 
-struct motion_summary motion_result(const struct motion *motion,
+struct motion_summary mf_motion_result(const struct motion *motion,
                                     const struct motion_curves *curves) {
     struct motion_summary s = {0};
     const size_t lags = (size_t)motion->plan.lags;
@@ -304,27 +304,27 @@ struct motion_summary motion_result(const struct motion *motion,
     s.blocks = (double)complete_blocks(motion);
     s.fit_begin = lag_time(motion, fit_first(&motion->plan));
     s.fit_end = lag_time(motion, lags);
-    s.maxwell = maxwell_result(&motion->maxwell);
+    s.maxwell = mf_maxwell_result(&motion->maxwell);
     return s;
 }
 
-double motion_green_kubo_uncertainty(const struct motion_summary *summary) {
+double mf_motion_green_kubo_uncertainty(const struct motion_summary *summary) {
     return hypot(hypot(summary->green_kubo_error, summary->green_kubo_sampling),
                  summary->green_kubo_truncation);
 }
 
-enum status motion_judge(const struct motion_summary *summary) {
+enum status mf_motion_judge(const struct motion_summary *summary) {
     static const double coarse = 0.03, deviations = 4;
     const struct motion_summary *s = summary;
-    const double error = motion_green_kubo_uncertainty(s);
+    const double error = mf_motion_green_kubo_uncertainty(s);
     if (s->green_kubo_sampling > fmax(coarse * fabs(s->green_kubo), s->green_kubo_error))
-        return status_fail(STATUS_UNCONVERGED,
+        return mf_status_fail(STATUS_UNCONVERGED,
                            "D by Green and Kubo, %.3g, may be off by %.2g: the VACF falls by %.0f "
                            "%% from one sample to the next; lower \"motion.every\"",
                            s->green_kubo, s->green_kubo_sampling, 100 * s->vacf_drop);
     // An error of 0 is not known: there was one window.
     if (s->msd_error > 0 && fabs(s->msd - s->green_kubo) > deviations * hypot(s->msd_error, error))
-        return status_fail(STATUS_UNCONVERGED,
+        return mf_status_fail(STATUS_UNCONVERGED,
                            "D is %.3g by the MSD and %.3g by Green and Kubo, with errors of %.1g "
                            "and %.1g: a longer window (\"motion.lags\") may bring them together",
                            s->msd, s->green_kubo, s->msd_error, error);

@@ -22,7 +22,7 @@ struct motion_plan {
     double fit_from;      ///< where the line on the MSD begins, as a part of the window
 };
 
-extern const struct field motion_plan_fields[];
+extern const struct field mf_motion_plan_fields[];
 
 /// Cost of a sample: particles × lags / origin_every.
 struct motion {
@@ -45,19 +45,19 @@ struct motion {
 /// Prepare to sample a simulation from step `begin` on, for `steps` steps. Only windows that end
 /// within them are begun.
 /// Fails: BAD_INPUT if there is no whole window; NO_MEMORY.
-enum status motion_init(struct motion *motion, const struct motion_plan *plan,
+enum status mf_motion_init(struct motion *motion, const struct motion_plan *plan,
                         const struct simulation *simulation, int64_t begin, int64_t steps) MUST_USE;
-void motion_clear(struct motion *motion);
+void mf_motion_clear(struct motion *motion);
 
 /// The step of the next sample, or INT64_MAX after the last.
-int64_t motion_due(const struct motion *motion);
+int64_t mf_motion_due(const struct motion *motion);
 
-/// Add the present positions and velocities: those of step motion_due.
-void motion_sample(struct motion *motion, const struct simulation *simulation);
+/// Add the present positions and velocities: those of step mf_motion_due.
+void mf_motion_sample(struct motion *motion, const struct simulation *simulation);
 
 /// What goes with a checkpoint.
 enum { MOTION_SPANS = 5 };
-size_t motion_spans(struct motion *motion, struct memory_span *spans);
+size_t mf_motion_spans(struct motion *motion, struct memory_span *spans);
 
 /// Arrays of lags + 1 numbers, from time 0 on in steps of plan.every · time_step.
 struct motion_curves {
@@ -79,7 +79,7 @@ struct motion_summary {
 /// Results of all windows that are complete; `curves` may be NULL.
 ///
 /// Errors are those of the means over up to 64 consecutive blocks of time origins, by
-/// statistics_correlated_error, since windows of neighbouring blocks overlap. Blocks are of time
+/// mf_statistics_correlated_error, since windows of neighbouring blocks overlap. Blocks are of time
 /// and not of particles: particles drag their neighbours along, c(r) ∼ R_h/r of a displacement is
 /// shared, and groups of particles that look independent would give an error that is too small,
 /// by more in a larger box. The price: a run should be twenty windows long or more; from a shorter
@@ -91,13 +91,13 @@ struct motion_summary {
 /// `green_kubo_sampling` is that of Richardson's extrapolation, a third of what trapezoids of twice
 /// the width differ by; `green_kubo_truncation` what the second half of the window adds beyond its
 /// statistical error: a VACF that has decayed adds nothing there.
-struct motion_summary motion_result(const struct motion *motion,
+struct motion_summary mf_motion_result(const struct motion *motion,
                                     const struct motion_curves *curves);
 
 /// The error of D of the VACF with sampling and truncation [λ²/τ].
-double motion_green_kubo_uncertainty(const struct motion_summary *summary);
+double mf_motion_green_kubo_uncertainty(const struct motion_summary *summary);
 
 /// Whether D of the VACF can be trusted: its sampling is off by less than 3 % or its statistical
 /// error, and it agrees with D of the MSD within four combined errors. Fails: UNCONVERGED with the
 /// numbers in the message. Tested: test_motion.
-enum status motion_judge(const struct motion_summary *summary) MUST_USE;
+enum status mf_motion_judge(const struct motion_summary *summary) MUST_USE;

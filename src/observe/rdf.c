@@ -9,29 +9,29 @@
 /// Blocks for the standard error: 20 give the error to about 16 %.
 enum { BLOCKS = 20 };
 
-double rdf_bins_edge(const struct rdf_bins *bins, size_t k) {
+double mf_rdf_bins_edge(const struct rdf_bins *bins, size_t k) {
     return bins->low + bins->width * (double)k;
 }
 
-double rdf_bins_centre(const struct rdf_bins *bins, size_t k) {
+double mf_rdf_bins_centre(const struct rdf_bins *bins, size_t k) {
     return bins->low + bins->width * ((double)k + 0.5);
 }
 
-double rdf_bins_range(const struct rdf_bins *bins) {
-    return rdf_bins_edge(bins, bins->count);
+double mf_rdf_bins_range(const struct rdf_bins *bins) {
+    return mf_rdf_bins_edge(bins, bins->count);
 }
 
-double rdf_ideal_pairs(const struct rdf_bins *bins, size_t k, const struct box *box, size_t count) {
+double mf_rdf_ideal_pairs(const struct rdf_bins *bins, size_t k, const struct box *box, size_t count) {
     const double pairs = 0.5 * (double)count * ((double)count - 1);
-    return pairs * box_shell_volume(box, rdf_bins_edge(bins, k), rdf_bins_edge(bins, k + 1)) /
-           box_volume(box);
+    return pairs * mf_box_shell_volume(box, mf_rdf_bins_edge(bins, k), mf_rdf_bins_edge(bins, k + 1)) /
+           mf_box_volume(box);
 }
 
-double rdf_ideal_pairs_of(const struct rdf_bins *bins, size_t k, const struct box *box,
+double mf_rdf_ideal_pairs_of(const struct rdf_bins *bins, size_t k, const struct box *box,
                           const struct composition *composition, int pair) {
-    return composition_possible_pairs(composition, pair) *
-           box_shell_volume(box, rdf_bins_edge(bins, k), rdf_bins_edge(bins, k + 1)) /
-           box_volume(box);
+    return mf_composition_possible_pairs(composition, pair) *
+           mf_box_shell_volume(box, mf_rdf_bins_edge(bins, k), mf_rdf_bins_edge(bins, k + 1)) /
+           mf_box_volume(box);
 }
 
 struct counting {
@@ -51,10 +51,10 @@ static void count_batch(void *context, const float *squared_distances, size_t co
     }
 }
 
-void rdf_count_pairs(const struct rdf_bins *bins, const struct particles *particles,
+void mf_rdf_count_pairs(const struct rdf_bins *bins, const struct particles *particles,
                      const struct neighbours *neighbours, double *histogram) {
     struct counting counting = {bins, NULL, histogram};
-    neighbours_visit_distances(neighbours, particles, rdf_bins_range(bins), count_batch, &counting);
+    mf_neighbours_visit_distances(neighbours, particles, mf_rdf_bins_range(bins), count_batch, &counting);
 }
 
 static void count_batch_of(void *context, const struct neighbours_batch *batch) {
@@ -64,27 +64,27 @@ static void count_batch_of(void *context, const struct neighbours_batch *batch) 
     for (size_t k = 0; k < batch->count; k++) {
         const double place = (sqrt((double)batch->squared[k]) - bins->low) * inverse_width;
         const int pair =
-            composition_pair_of_ids(counting->composition, batch->id_i[k], batch->id_j[k]);
+            mf_composition_pair_of_ids(counting->composition, batch->id_i[k], batch->id_j[k]);
         if (place >= 0 && place < (double)bins->count)
             counting->histogram[(size_t)pair * bins->count + (size_t)place] += 1;
     }
 }
 
-void rdf_count_pairs_of(const struct rdf_bins *bins, const struct composition *composition,
+void mf_rdf_count_pairs_of(const struct rdf_bins *bins, const struct composition *composition,
                         const struct particles *particles, const struct neighbours *neighbours,
                         double *histogram) {
     struct counting counting = {bins, composition, histogram};
     if (composition_is_mixed(composition))
-        neighbours_visit_pairs(neighbours, particles, rdf_bins_range(bins), count_batch_of,
+        mf_neighbours_visit_pairs(neighbours, particles, mf_rdf_bins_range(bins), count_batch_of,
                                &counting);
     else
-        rdf_count_pairs(bins, particles, neighbours, histogram);
+        mf_rdf_count_pairs(bins, particles, neighbours, histogram);
 }
 
-enum status rdf_init(struct rdf *rdf, const struct rdf_bins *bins, const struct box *box,
+enum status mf_rdf_init(struct rdf *rdf, const struct rdf_bins *bins, const struct box *box,
                      size_t particle_count, double list_cutoff, size_t planned) {
-    const struct composition composition = composition_of_one((int64_t)particle_count);
-    return rdf_init_mixture(rdf, bins, box, &composition, list_cutoff, planned);
+    const struct composition composition = mf_composition_of_one((int64_t)particle_count);
+    return mf_rdf_init_mixture(rdf, bins, box, &composition, list_cutoff, planned);
 }
 
 static size_t count_all(const struct composition *composition) {
@@ -94,7 +94,7 @@ static size_t count_all(const struct composition *composition) {
     return count;
 }
 
-enum status rdf_init_mixture(struct rdf *rdf, const struct rdf_bins *bins, const struct box *box,
+enum status mf_rdf_init_mixture(struct rdf *rdf, const struct rdf_bins *bins, const struct box *box,
                              const struct composition *composition, double list_cutoff,
                              size_t planned) {
     enum status status = STATUS_OK;
@@ -103,39 +103,39 @@ enum status rdf_init_mixture(struct rdf *rdf, const struct rdf_bins *bins, const
                         .box = *box,
                         .particle_count = particle_count,
                         .composition = *composition,
-                        .pairs = (size_t)composition_pairs(composition),
+                        .pairs = (size_t)mf_composition_pairs(composition),
                         .planned = planned,
                         .blocks = planned < BLOCKS ? planned : BLOCKS,
                         // A part in 10⁹ forgives a range that was rounded in another unit.
-                        .needs_own_list = rdf_bins_range(bins) > list_cutoff * (1 + 1e-9)};
+                        .needs_own_list = mf_rdf_bins_range(bins) > list_cutoff * (1 + 1e-9)};
     NEW_ARRAY(rdf->histogram, rdf->blocks * rdf->pairs * bins->count);
     NEW_ARRAY(rdf->block_samples, rdf->blocks);
     rdf->counted = (struct pair_histogram){bins->low, bins->width, bins->count, rdf->pairs, NULL};
     NEW_ARRAY(rdf->counted.counts, NEIGHBOURS_MOST_PARTS * pair_histogram_size(&rdf->counted));
     if (rdf->needs_own_list) {
-        if (box_shortest(box) < 2 * rdf_bins_range(bins)) {
-            status = status_fail(STATUS_BAD_INPUT,
+        if (mf_box_shortest(box) < 2 * mf_rdf_bins_range(bins)) {
+            status = mf_status_fail(STATUS_BAD_INPUT,
                                  "the box is too small for the RDF: its shortest edge %g is below "
                                  "twice the range %g",
-                                 box_shortest(box), rdf_bins_range(bins));
+                                 mf_box_shortest(box), mf_rdf_bins_range(bins));
             goto done;
         }
-        CHECK(particles_init(&rdf->own_particles, box, particle_count));
-        CHECK(neighbours_init(&rdf->own_list, NEIGHBOURS_HALF, box, particle_count,
-                              rdf_bins_range(bins), 0));
+        CHECK(mf_particles_init(&rdf->own_particles, box, particle_count));
+        CHECK(mf_neighbours_init(&rdf->own_list, NEIGHBOURS_HALF, box, particle_count,
+                              mf_rdf_bins_range(bins), 0));
     }
 done:
     if (status != STATUS_OK)
-        rdf_clear(rdf);
+        mf_rdf_clear(rdf);
     return status;
 }
 
-void rdf_clear(struct rdf *rdf) {
-    memory_free(rdf->histogram);
-    memory_free(rdf->block_samples);
-    memory_free(rdf->counted.counts);
-    particles_clear(&rdf->own_particles);
-    neighbours_clear(&rdf->own_list);
+void mf_rdf_clear(struct rdf *rdf) {
+    mf_memory_free(rdf->histogram);
+    mf_memory_free(rdf->block_samples);
+    mf_memory_free(rdf->counted.counts);
+    mf_particles_clear(&rdf->own_particles);
+    mf_neighbours_clear(&rdf->own_list);
     *rdf = (struct rdf){0};
 }
 
@@ -150,7 +150,7 @@ static enum status make_own_list(struct rdf *rdf, const struct particles *partic
         memcpy(rdf->own_particles.position[d], particles->position[d],
                particles->count * sizeof *particles->position[d]);
     memcpy(rdf->own_particles.id, particles->id, particles->count * sizeof *particles->id);
-    return neighbours_sort_and_build(&rdf->own_list, &rdf->own_particles);
+    return mf_neighbours_sort_and_build(&rdf->own_list, &rdf->own_particles);
 }
 
 /// The histogram of the next sample's block.
@@ -163,7 +163,7 @@ static double *next_block(struct rdf *rdf) {
     return rdf->histogram + block * all_bins(rdf);
 }
 
-const struct pair_histogram *rdf_histogram(struct rdf *rdf) {
+const struct pair_histogram *mf_rdf_histogram(struct rdf *rdf) {
     if (rdf->needs_own_list)
         return NULL;
     memset(rdf->counted.counts, 0,
@@ -172,29 +172,29 @@ const struct pair_histogram *rdf_histogram(struct rdf *rdf) {
     return &rdf->counted;
 }
 
-void rdf_sample_counted(struct rdf *rdf) {
+void mf_rdf_sample_counted(struct rdf *rdf) {
     double *histogram = next_block(rdf);
     for (size_t part = 0; part < NEIGHBOURS_MOST_PARTS; part++)
         for (size_t k = 0; k < all_bins(rdf); k++)
             histogram[k] += rdf->counted.counts[part * pair_histogram_size(&rdf->counted) + k];
 }
 
-enum status rdf_sample(struct rdf *rdf, const struct particles *particles,
+enum status mf_rdf_sample(struct rdf *rdf, const struct particles *particles,
                        const struct neighbours *neighbours) {
     double *histogram = next_block(rdf);
     if (rdf->needs_own_list) {
         TRY(make_own_list(rdf, particles));
-        rdf_count_pairs_of(&rdf->bins, &rdf->composition, &rdf->own_particles, &rdf->own_list,
+        mf_rdf_count_pairs_of(&rdf->bins, &rdf->composition, &rdf->own_particles, &rdf->own_list,
                            histogram);
     } else {
-        rdf_count_pairs_of(&rdf->bins, &rdf->composition, particles, neighbours, histogram);
+        mf_rdf_count_pairs_of(&rdf->bins, &rdf->composition, particles, neighbours, histogram);
     }
     return STATUS_OK;
 }
 
 /// Expected pairs in place k of an array over kinds and bins.
 static double ideal_at(const struct rdf *rdf, size_t k) {
-    return rdf_ideal_pairs_of(&rdf->bins, k % rdf->bins.count, &rdf->box, &rdf->composition,
+    return mf_rdf_ideal_pairs_of(&rdf->bins, k % rdf->bins.count, &rdf->box, &rdf->composition,
                               (int)(k / rdf->bins.count));
 }
 
@@ -233,21 +233,21 @@ static enum status find_errors(const struct rdf *replicas, size_t count, double 
     CHECK(find_series(replicas, count, blocks, &series));
     for (size_t pair = 0; pair < replicas->pairs; pair++) {
         const double *first = series + pair * bins * values;
-        const double inefficiency = statistics_inefficiency(first, blocks, count, bins);
+        const double inefficiency = mf_statistics_inefficiency(first, blocks, count, bins);
         for (size_t k = 0; k < bins; k++) {
             struct running_mean mean = {0};
             for (size_t n = 0; n < values; n++)
-                statistics_add(&mean, first[k * values + n]);
+                mf_statistics_add(&mean, first[k * values + n]);
             error[pair * bins + k] =
                 values < 2 ? 0 : sqrt(mean.squares * inefficiency) / (double)values;
         }
     }
 done:
-    memory_free(series);
+    mf_memory_free(series);
     return status;
 }
 
-enum status rdf_result(const struct rdf *replicas, size_t count, double *g, double *error) {
+enum status mf_rdf_result(const struct rdf *replicas, size_t count, double *g, double *error) {
     const size_t all = all_bins(replicas);
     for (size_t k = 0; k < all; k++) {
         double pairs = 0, samples = 0;
@@ -261,7 +261,7 @@ enum status rdf_result(const struct rdf *replicas, size_t count, double *g, doub
     return error ? find_errors(replicas, count, error) : STATUS_OK;
 }
 
-double rdf_rmse(const double *g, const double *target, size_t count) {
+double mf_rdf_rmse(const double *g, const double *target, size_t count) {
     double sum = 0;
     for (size_t k = 0; k < count; k++)
         sum += (g[k] - target[k]) * (g[k] - target[k]);
@@ -285,12 +285,12 @@ static double jackknife(const struct rdf *replicas, size_t count, const double *
                 without[k] =
                     (g[k] * samples - replicas[r].histogram[b * all + k] / ideal_at(replicas, k)) /
                     (samples - here);
-            statistics_add(&rms, rdf_rmse(without, target, all));
+            mf_statistics_add(&rms, mf_rdf_rmse(without, target, all));
         }
     return rms.count < 2 ? 0 : sqrt(rms.squares * (rms.count - 1) / rms.count);
 }
 
-enum status rdf_distance(const struct rdf *replicas, size_t count, const double *target,
+enum status mf_rdf_distance(const struct rdf *replicas, size_t count, const double *target,
                          double *rmse, double *error) {
     enum status status = STATUS_OK;
     const size_t all = all_bins(replicas), blocks = filled_blocks(replicas, count);
@@ -298,18 +298,18 @@ enum status rdf_distance(const struct rdf *replicas, size_t count, const double 
     double *g = NULL, *without = NULL, *series = NULL;
     NEW_ARRAY(g, all);
     NEW_ARRAY(without, all);
-    CHECK(rdf_result(replicas, count, g, NULL));
-    *rmse = rdf_rmse(g, target, all);
+    CHECK(mf_rdf_result(replicas, count, g, NULL));
+    *rmse = mf_rdf_rmse(g, target, all);
     if (error == NULL)
         goto done;
     CHECK(find_series(replicas, count, blocks, &series));
     // The jackknife of independent values has n/(n − 1) already.
     *error = jackknife(replicas, count, g, target, without) *
-             sqrt(statistics_inefficiency(series, blocks, count, all) * fmax(values - 1, 0) /
+             sqrt(mf_statistics_inefficiency(series, blocks, count, all) * fmax(values - 1, 0) /
                   fmax(values, 1));
 done:
-    memory_free(g);
-    memory_free(without);
-    memory_free(series);
+    mf_memory_free(g);
+    mf_memory_free(without);
+    mf_memory_free(series);
     return status;
 }

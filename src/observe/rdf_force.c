@@ -16,23 +16,23 @@ enum { PIECE = 64 };
 /// is so uncertain that a tenth of the gain is lost; neighbours have nearly the same.
 enum { POOLED = 2 };
 
-const char *const rdf_force_estimators[] = {"histogram", "force", NULL};
+const char *const mf_rdf_force_estimators[] = {"histogram", "force", NULL};
 
 static const double least_barrier = 10; // [k_B T]
 
-bool rdf_force_applies(const struct table *potential, double temperature) {
+bool mf_rdf_force_applies(const struct table *potential, double temperature) {
     double barrier = 0;
     if (potential)
-        table_evaluate(potential, 0, &barrier, NULL, NULL);
+        mf_table_evaluate(potential, 0, &barrier, NULL, NULL);
     return barrier >= least_barrier * temperature;
 }
 
-enum status rdf_force_init(struct rdf_force *force, const struct rdf_bins *bins,
+enum status mf_rdf_force_init(struct rdf_force *force, const struct rdf_bins *bins,
                            const struct box *box, size_t particle_count,
                            const struct table *potential, double temperature, double list_cutoff,
                            size_t planned) {
     enum status status = STATUS_OK;
-    const double range = rdf_bins_range(bins);
+    const double range = mf_rdf_bins_range(bins);
     *force = (struct rdf_force){.bins = *bins,
                                 .box = *box,
                                 .particle_count = particle_count,
@@ -41,32 +41,32 @@ enum status rdf_force_init(struct rdf_force *force, const struct rdf_bins *bins,
                                 .planned = planned,
                                 .blocks = planned < BLOCKS ? planned : BLOCKS,
                                 .needs_own_list = range > list_cutoff * (1 + 1e-9)};
-    if (box_shortest(box) < 2 * range)
-        return status_fail(STATUS_BAD_INPUT,
+    if (mf_box_shortest(box) < 2 * range)
+        return mf_status_fail(STATUS_BAD_INPUT,
                            "the box is too small for the RDF: its shortest edge %g is below twice "
                            "the range %g",
-                           box_shortest(box), range);
+                           mf_box_shortest(box), range);
     NEW_ARRAY(force->sums, force->blocks * RDF_FORCE_SUMS * bins->count);
     NEW_ARRAY(force->totals, force->blocks);
     NEW_ARRAY(force->pairs, bins->count + 2);
     NEW_ARRAY(force->force, particle_count);
-    CHECK(particles_init(&force->own_particles, box, particle_count));
+    CHECK(mf_particles_init(&force->own_particles, box, particle_count));
     if (force->needs_own_list)
-        CHECK(neighbours_init(&force->own_list, NEIGHBOURS_HALF, box, particle_count,
+        CHECK(mf_neighbours_init(&force->own_list, NEIGHBOURS_HALF, box, particle_count,
                               fmax(range, potential->cutoff), 0));
 done:
     if (status != STATUS_OK)
-        rdf_force_clear(force);
+        mf_rdf_force_clear(force);
     return status;
 }
 
-void rdf_force_clear(struct rdf_force *force) {
-    memory_free(force->sums);
-    memory_free(force->totals);
-    memory_free(force->pairs);
-    memory_free(force->force);
-    particles_clear(&force->own_particles);
-    neighbours_clear(&force->own_list);
+void mf_rdf_force_clear(struct rdf_force *force) {
+    mf_memory_free(force->sums);
+    mf_memory_free(force->totals);
+    mf_memory_free(force->pairs);
+    mf_memory_free(force->force);
+    mf_particles_clear(&force->own_particles);
+    mf_neighbours_clear(&force->own_list);
     *force = (struct rdf_force){0};
 }
 
@@ -82,7 +82,7 @@ static void swap_forces(struct particles *a, struct particles *b) {
 static void find_forces(struct rdf_force *force, struct particles *particles,
                         const struct neighbours *neighbours) {
     const struct pair_law law = {.potential = force->potential};
-    pair_forces(&law, particles, neighbours, 0, PAIR_FORCES, NULL);
+    mf_pair_forces(&law, particles, neighbours, 0, PAIR_FORCES, NULL);
     for (int d = 0; d < force->box.dimensions; d++)
         for (size_t i = 0; i < particles->count; i++)
             force->force[i][d] = (float)particles->force[d][i];
@@ -160,7 +160,7 @@ static enum status add_own_pairs(struct rdf_force *force, const struct particles
         memcpy(own->position[d], particles->position[d],
                particles->count * sizeof *particles->position[d]);
     own->threads = particles->threads;
-    TRY(neighbours_sort_and_build(&force->own_list, own));
+    TRY(mf_neighbours_sort_and_build(&force->own_list, own));
     find_forces(force, own, &force->own_list);
     add_pairs(force, own, &force->own_list);
     return STATUS_OK;
@@ -169,8 +169,8 @@ static enum status add_own_pairs(struct rdf_force *force, const struct particles
 /// Ω I [1/λ^d].
 static double solid_density(const struct rdf_force *force) {
     const double count = (double)force->particle_count;
-    return force->box.dimensions * box_shell_volume(&force->box, 0, 1) * count * (count - 1) /
-           (2 * box_volume(&force->box));
+    return force->box.dimensions * mf_box_shell_volume(&force->box, 0, 1) * count * (count - 1) /
+           (2 * mf_box_volume(&force->box));
 }
 
 /// Add the h, z, L and D of `pairs` and their products to a block.
@@ -179,7 +179,7 @@ static void add_sample(const struct rdf_force *force, double *sums,
     const struct rdf_bins *bins = &force->bins;
     const int dimensions = force->box.dimensions;
     const double density = solid_density(force), factor = 1 / (force->temperature * density);
-    const double ball = pow(rdf_bins_range(bins), dimensions);
+    const double ball = pow(mf_rdf_bins_range(bins), dimensions);
     double pairs = 0, flux = 0, virial = 0;
     for (size_t k = 0; k <= bins->count; k++) {
         pairs += force->pairs[k].pairs;
@@ -194,8 +194,8 @@ static void add_sample(const struct rdf_force *force, double *sums,
     double below = force->pairs[0].flux;
     for (size_t k = 0; k < bins->count; k++) {
         const struct rdf_force_bin *here = &force->pairs[k + 1];
-        const double low = pow(rdf_bins_edge(bins, k), dimensions);
-        const double high = pow(rdf_bins_edge(bins, k + 1), dimensions), volume = high - low;
+        const double low = pow(mf_rdf_bins_edge(bins, k), dimensions);
+        const double high = pow(mf_rdf_bins_edge(bins, k + 1), dimensions), volume = high - low;
         const double h = dimensions * here->pairs / (density * volume);
         const double z = factor * (below + (high * here->flux - here->virial) / volume);
         const double terms[RDF_FORCE_SUMS] = {[RDF_FORCE_H] = h,
@@ -211,7 +211,7 @@ static void add_sample(const struct rdf_force *force, double *sums,
     }
 }
 
-enum status rdf_force_sample(struct rdf_force *force, struct particles *particles,
+enum status mf_rdf_force_sample(struct rdf_force *force, struct particles *particles,
                              const struct neighbours *neighbours) {
     if (force->needs_own_list) {
         TRY(add_own_pairs(force, particles));
@@ -330,21 +330,21 @@ static enum status find_errors(const struct rdf_force *replicas, size_t count,
             without[k * values + n] = estimate(pool, version, k);
         pool_add(pool, &replicas[n / blocks], n % blocks, 1);
     }
-    const double inefficiency = statistics_inefficiency(without, blocks, count, pool->bins);
+    const double inefficiency = mf_statistics_inefficiency(without, blocks, count, pool->bins);
     for (size_t k = 0; k < pool->bins; k++) {
         struct running_mean mean = {0};
         for (size_t n = 0; n < values; n++)
-            statistics_add(&mean, without[k * values + n]);
+            mf_statistics_add(&mean, without[k * values + n]);
         error[k] = values < 2
                        ? 0
                        : ((double)values - 1) / (double)values * sqrt(mean.squares * inefficiency);
     }
 done:
-    memory_free(without);
+    mf_memory_free(without);
     return status;
 }
 
-enum status rdf_force_result(const struct rdf_force *replicas, size_t count,
+enum status mf_rdf_force_result(const struct rdf_force *replicas, size_t count,
                              enum rdf_force_version version, double *g, double *error) {
     enum status status = STATUS_OK;
     struct pool pool = {.bins = replicas->bins.count};
@@ -357,11 +357,11 @@ enum status rdf_force_result(const struct rdf_force *replicas, size_t count,
     if (error)
         CHECK(find_errors(replicas, count, version, &pool, error));
 done:
-    memory_free(pool.sums);
+    mf_memory_free(pool.sums);
     return status;
 }
 
-size_t rdf_force_spans(struct rdf_force *force, struct memory_span *spans) {
+size_t mf_rdf_force_spans(struct rdf_force *force, struct memory_span *spans) {
     spans[0] = (struct memory_span){&force->samples, sizeof force->samples};
     spans[1] = (struct memory_span){force->sums, force->blocks * RDF_FORCE_SUMS *
                                                      force->bins.count * sizeof *force->sums};

@@ -38,7 +38,7 @@
 
 /// How g is measured, and the names of that in files.
 enum rdf_force_estimator { RDF_FORCE_NOT_USED, RDF_FORCE_USED };
-extern const char *const rdf_force_estimators[]; ///< "histogram", "force", NULL
+extern const char *const mf_rdf_force_estimators[]; ///< "histogram", "force", NULL
 
 enum rdf_force_version {
     RDF_FORCE_FROM_ZERO,
@@ -88,22 +88,22 @@ struct rdf_force {
 
 /// Whether a potential keeps particles apart, so that g(0) = 0: Φ(0) ≥ 10 k_B T. Groot and Warren's
 /// fluid, with 12.5, has a g(0) below 0.004.
-bool rdf_force_applies(const struct table *potential, double temperature);
+bool mf_rdf_force_applies(const struct table *potential, double temperature);
 
 /// Prepare for `planned` samples of a system whose list is complete up to `list_cutoff`.
 /// Fails: NO_MEMORY; BAD_INPUT if the box is shorter than twice the range of the bins.
-enum status rdf_force_init(struct rdf_force *force, const struct rdf_bins *bins,
+enum status mf_rdf_force_init(struct rdf_force *force, const struct rdf_bins *bins,
                            const struct box *box, size_t particle_count,
                            const struct table *potential, double temperature, double list_cutoff,
                            size_t planned) MUST_USE;
-void rdf_force_clear(struct rdf_force *force);
+void mf_rdf_force_clear(struct rdf_force *force);
 
 /// Add the present configuration. Its conservative forces are computed by a pass of its own; the
 /// forces of the particles come back as they were. The fractions must be those of the positions.
-/// @param[in] neighbours  half list, complete for the range, the same as in rdf_force_init; not
+/// @param[in] neighbours  half list, complete for the range, the same as in mf_rdf_force_init; not
 ///                        read if that was beyond the list
 /// Fails: NO_MEMORY. Tested: test_rdf_force_brute_force.
-enum status rdf_force_sample(struct rdf_force *force, struct particles *particles,
+enum status mf_rdf_force_sample(struct rdf_force *force, struct particles *particles,
                              const struct neighbours *neighbours) MUST_USE;
 
 /// g and its standard error by leaving out blocks of all replicas (jackknife), the combination's
@@ -111,9 +111,9 @@ enum status rdf_force_sample(struct rdf_force *force, struct particles *particle
 /// @param[in]  replicas  shape [count], same bins, box and particle number
 /// @param[out] g, error  shape [bins.count]; error may be NULL
 /// Fails: NO_MEMORY. Tested: test_rdf_force (physics).
-enum status rdf_force_result(const struct rdf_force *replicas, size_t count,
+enum status mf_rdf_force_result(const struct rdf_force *replicas, size_t count,
                              enum rdf_force_version version, double *g, double *error) MUST_USE;
 
 /// @name Restart
 enum { RDF_FORCE_SPANS = 3 };
-size_t rdf_force_spans(struct rdf_force *force, struct memory_span *spans);
+size_t mf_rdf_force_spans(struct rdf_force *force, struct memory_span *spans);

@@ -10,27 +10,27 @@
 /// Longer series are averaged in blocks first, so that their autocovariances stay cheap.
 enum { MOST_BLOCKS = 4096 };
 
-enum status thermodynamics_init(struct thermodynamics *thermodynamics, size_t planned) {
+enum status mf_thermodynamics_init(struct thermodynamics *thermodynamics, size_t planned) {
     *thermodynamics = (struct thermodynamics){.planned = planned};
-    thermodynamics->values = memory_zeroed(THERMODYNAMICS_QUANTITIES * planned, sizeof(double));
+    thermodynamics->values = mf_memory_zeroed(THERMODYNAMICS_QUANTITIES * planned, sizeof(double));
     return thermodynamics->values ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
-void thermodynamics_clear(struct thermodynamics *thermodynamics) {
-    memory_free(thermodynamics->values);
+void mf_thermodynamics_clear(struct thermodynamics *thermodynamics) {
+    mf_memory_free(thermodynamics->values);
     *thermodynamics = (struct thermodynamics){0};
 }
 
-enum status thermodynamics_sample(struct thermodynamics *thermodynamics,
+enum status mf_thermodynamics_sample(struct thermodynamics *thermodynamics,
                                   const struct simulation *simulation) {
     double *here = thermodynamics->values + thermodynamics->samples;
     const size_t stride = thermodynamics->planned;
     const double count = (double)simulation->particles.count;
-    here[THERMODYNAMICS_TEMPERATURE * stride] = simulation_temperature(simulation);
+    here[THERMODYNAMICS_TEMPERATURE * stride] = mf_simulation_temperature(simulation);
     here[THERMODYNAMICS_POTENTIAL_ENERGY * stride] = simulation->sums.energy / count;
-    here[THERMODYNAMICS_PRESSURE * stride] = simulation_pressure(simulation);
+    here[THERMODYNAMICS_PRESSURE * stride] = mf_simulation_pressure(simulation);
     if (simulation->law.potential)
-        TRY(reference_configurational(simulation->law.potential, &simulation->law.composition,
+        TRY(mf_reference_configurational(simulation->law.potential, &simulation->law.composition,
                                       simulation->setup.temperature, &simulation->particles,
                                       &simulation->neighbours,
                                       &here[THERMODYNAMICS_FORCE_SQUARES * stride],
@@ -39,7 +39,7 @@ enum status thermodynamics_sample(struct thermodynamics *thermodynamics,
     return STATUS_OK;
 }
 
-const double *thermodynamics_series(const struct thermodynamics *thermodynamics,
+const double *mf_thermodynamics_series(const struct thermodynamics *thermodynamics,
                                     enum thermodynamics_quantity quantity) {
     return thermodynamics->values + (size_t)quantity * thermodynamics->planned;
 }
@@ -47,7 +47,7 @@ const double *thermodynamics_series(const struct thermodynamics *thermodynamics,
 /// Mean of a quantity over the samples begin … end − 1 of one replica.
 static double block_mean(const struct thermodynamics *replica,
                          enum thermodynamics_quantity quantity, size_t begin, size_t end) {
-    const double *series = thermodynamics_series(replica, quantity);
+    const double *series = mf_thermodynamics_series(replica, quantity);
     double sum = 0;
     for (size_t k = begin; k < end; k++)
         sum += series[k];
@@ -59,7 +59,7 @@ static double mean_of(const struct thermodynamics *replicas, size_t count, int q
     struct running_mean mean = {0};
     for (size_t r = 0; quantity >= 0 && r < count; r++)
         for (size_t k = 0; k < replicas[r].samples; k++)
-            statistics_add(&mean, thermodynamics_series(&replicas[r],
+            mf_statistics_add(&mean, mf_thermodynamics_series(&replicas[r],
                                                         (enum thermodynamics_quantity)quantity)[k]);
     return quantity < 0 ? 1 : mean.mean;
 }
@@ -88,11 +88,11 @@ static size_t ratio(const struct thermodynamics *replicas, size_t count,
                                              (enum thermodynamics_quantity)denominator, begin, end);
             deviations[r * blocks + b] = (top - *mean * bottom) / below;
         }
-    *error = statistics_correlated_error(deviations, blocks, count);
+    *error = mf_statistics_correlated_error(deviations, blocks, count);
     return blocks * count;
 }
 
-struct thermodynamics_summary thermodynamics_result(const struct thermodynamics *replicas,
+struct thermodynamics_summary mf_thermodynamics_result(const struct thermodynamics *replicas,
                                                     size_t count) {
     struct thermodynamics_summary s;
     s.blocks = ratio(replicas, count, THERMODYNAMICS_TEMPERATURE, -1, &s.temperature,
@@ -117,7 +117,7 @@ static bool agrees(double temperature, double error, double wanted) {
     return fabs(temperature - wanted) <= band * wanted + deviations * error;
 }
 
-enum status thermodynamics_judge(const struct thermodynamics_summary *summary,
+enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary,
                                  const struct simulation_setup *setup) {
     const struct thermodynamics_summary *s = summary;
     const double wanted = setup->weight ? setup->temperature : s->temperature;
@@ -127,23 +127,23 @@ enum status thermodynamics_judge(const struct thermodynamics_summary *summary,
         (isnan(s->temperature_configurational) ||
          agrees(s->temperature_configurational, s->temperature_configurational_error, wanted)))
         return STATUS_OK;
-    return status_fail(STATUS_UNSTABLE,
+    return mf_status_fail(STATUS_UNSTABLE,
                        "the temperature is %.3g by the velocities and %.3g by the positions, not "
                        "%.3g: lower \"time_step\", or equilibrate for longer",
                        s->temperature, s->temperature_configurational, wanted);
 }
 
-enum status thermodynamics_judge_fit(const struct thermodynamics_summary *summary,
+enum status mf_thermodynamics_judge_fit(const struct thermodynamics_summary *summary,
                                      const struct simulation_setup *setup) {
     static const double least = 0.025, errors = 3;
     const struct thermodynamics_summary *s = summary;
-    TRY(thermodynamics_judge(summary, setup));
+    TRY(mf_thermodynamics_judge(summary, setup));
     const double wanted = setup->weight ? setup->temperature : s->temperature;
     const double off = s->temperature_configurational - wanted;
     if (s->blocks < LEAST_BLOCKS ||
         !(fabs(off) > fmax(least * wanted, errors * s->temperature_configurational_error)))
         return STATUS_OK;
-    return status_fail(STATUS_UNSTABLE,
+    return mf_status_fail(STATUS_UNSTABLE,
                        "the temperature by the positions is %.3f(%.0f), %.1f %% off: the time step "
                        "is coarse for this potential, or its force ends abruptly; a shorter "
                        "\"verification.time_step\" tells which",

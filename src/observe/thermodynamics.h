@@ -8,7 +8,7 @@
 enum thermodynamics_quantity {
     THERMODYNAMICS_TEMPERATURE,      ///< kinetic, momentum removed            [k_B T_0]
     THERMODYNAMICS_POTENTIAL_ENERGY, ///< of a particle                        [k_B T_0]
-    THERMODYNAMICS_PRESSURE,         ///< simulation_pressure                  [k_B T_0/λ^d]
+    THERMODYNAMICS_PRESSURE,         ///< mf_simulation_pressure                  [k_B T_0/λ^d]
     THERMODYNAMICS_FORCE_SQUARES,    ///< Σ|F|² of the potential, numerator of the configurational
     THERMODYNAMICS_LAPLACIAN,        ///< Σ∇²U, its denominator
     THERMODYNAMICS_QUANTITIES
@@ -19,19 +19,19 @@ struct thermodynamics {
     double *values; ///< shape [THERMODYNAMICS_QUANTITIES, planned]
 };
 
-enum status thermodynamics_init(struct thermodynamics *thermodynamics, size_t planned) MUST_USE;
-void thermodynamics_clear(struct thermodynamics *thermodynamics);
+enum status mf_thermodynamics_init(struct thermodynamics *thermodynamics, size_t planned) MUST_USE;
+void mf_thermodynamics_clear(struct thermodynamics *thermodynamics);
 
 /// Add a sample; the simulation's last step must have wanted its sums. Fails: NO_MEMORY.
-enum status thermodynamics_sample(struct thermodynamics *thermodynamics,
+enum status mf_thermodynamics_sample(struct thermodynamics *thermodynamics,
                                   const struct simulation *simulation) MUST_USE;
 
 /// The series of one quantity, shape [samples].
-const double *thermodynamics_series(const struct thermodynamics *thermodynamics,
+const double *mf_thermodynamics_series(const struct thermodynamics *thermodynamics,
                                     enum thermodynamics_quantity quantity);
 
 /// Means over all replicas with standard errors that see the correlation of each series, by
-/// statistics_correlated_error.
+/// mf_statistics_correlated_error.
 struct thermodynamics_summary {
     size_t blocks; ///< behind the errors, of all replicas
     double temperature, temperature_error;
@@ -39,7 +39,7 @@ struct thermodynamics_summary {
     double potential_energy, potential_energy_error;
     double pressure, pressure_error;
 };
-struct thermodynamics_summary thermodynamics_result(const struct thermodynamics *replicas,
+struct thermodynamics_summary mf_thermodynamics_result(const struct thermodynamics *replicas,
                                                     size_t count);
 
 /// Whether the temperatures of a summary agree with the set one of a simulation: kinetic and
@@ -50,12 +50,12 @@ struct thermodynamics_summary thermodynamics_result(const struct thermodynamics 
 /// the structure wrong: velocity Verlet (λ = ½) of the standard fluid with γ = 200 and Δt = 0.01
 /// has 1.03 and 0.75. Fails: UNSTABLE with the temperatures in the message. Tested:
 /// test_thermodynamics.
-enum status thermodynamics_judge(const struct thermodynamics_summary *summary,
+enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary,
                                  const struct simulation_setup *setup) MUST_USE;
 
 /// A stricter look at what was fitted: the configurational temperature off by more than 2.5 % and
 /// three standard errors says that the potential and its time step do not belong together, though
 /// the velocities look right. Fails: UNSTABLE with the numbers in the message. Tested:
 /// test_thermodynamics.
-enum status thermodynamics_judge_fit(const struct thermodynamics_summary *summary,
+enum status mf_thermodynamics_judge_fit(const struct thermodynamics_summary *summary,
                                      const struct simulation_setup *setup) MUST_USE;

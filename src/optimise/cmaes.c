@@ -3,7 +3,7 @@
 // CMA-ES by ask and tell. Inside, genes are fractions of their range.
 //
 // Bounds: the distribution knows none; a candidate beyond one is measured at its mirror image
-// inside (optimiser_reflect). To the strategy the error is an even, periodic function, so there is
+// inside (mf_optimiser_reflect). To the strategy the error is an even, periodic function, so there is
 // no penalty to scale, which noise and failed candidates would spoil, and an optimum at a bound is
 // in the middle of its neighbourhood.
 //
@@ -31,7 +31,7 @@ struct parameters {
 };
 
 #define MEMBER(name) .offset = offsetof(struct parameters, name)
-const struct field cmaes_fields[] = {
+const struct field mf_cmaes_fields[] = {
     {"population", FIELD_INTEGER, MEMBER(population), .initial = 0, .minimum = 0, .maximum = 1e5,
      .unit = "", .help = "candidates of a round, at least 4; 0 for 4 + 3 ln(genes)"},
     {"step", FIELD_NUMBER, MEMBER(step), .initial = 0.3, .minimum = FIELD_ABOVE_ZERO, .maximum = 1,
@@ -98,13 +98,13 @@ static uint32_t most_rounds(const void *parameters, size_t genes) {
 
 static void destroy(void *memory) {
     struct state *state = memory;
-    cmaes_clear(&state->distribution);
-    memory_free(state->strategy.weights);
-    memory_free(state->steps);
-    memory_free(state->genes);
-    memory_free(state->errors);
-    memory_free(state->record);
-    memory_free(state->history);
+    mf_cmaes_clear(&state->distribution);
+    mf_memory_free(state->strategy.weights);
+    mf_memory_free(state->steps);
+    mf_memory_free(state->genes);
+    mf_memory_free(state->errors);
+    mf_memory_free(state->record);
+    mf_memory_free(state->history);
     *state = (struct state){0};
 }
 
@@ -124,7 +124,7 @@ static void follow_population(struct state *state) {
     if (state->strategy.population == (size_t)state->progress.population)
         return;
     state->strategy.population = (size_t)state->progress.population;
-    cmaes_strategy_set(&state->strategy, state->space.genes);
+    mf_cmaes_strategy_set(&state->strategy, state->space.genes);
 }
 
 /// Begin a descent; the mean is to be set.
@@ -133,7 +133,7 @@ static void begin_descent(struct state *state) {
     p->population = (double)descent_population(state);
     p->history_count = 0;
     p->noise = 0;
-    cmaes_begin(&state->distribution, state->parameters.step);
+    mf_cmaes_begin(&state->distribution, state->parameters.step);
 }
 
 /// This round's candidates: a function of the distribution, the seed and the round, so no
@@ -146,12 +146,12 @@ static void sample(struct state *state) {
     follow_population(state);
     for (size_t row = 0; row < state->strategy.population; row++) {
         double *step = state->steps + row * n;
-        cmaes_sample(&state->distribution, state->space.seed, (uint32_t)state->progress.rounds,
+        mf_cmaes_sample(&state->distribution, state->space.seed, (uint32_t)state->progress.rounds,
                      (uint32_t)row, step);
         for (size_t k = 0; k < n; k++) {
             const double x =
                 state->distribution.mean[k] + state->distribution.moments.sigma * step[k];
-            state->genes[row * n + k] = optimiser_gene(&state->space, optimiser_reflect(x));
+            state->genes[row * n + k] = optimiser_gene(&state->space, mf_optimiser_reflect(x));
         }
     }
 }
@@ -161,14 +161,14 @@ static enum status create(void *memory, const struct optimiser_space *space,
     enum status status = STATUS_OK;
     struct state *state = memory;
     state->parameters = *(const struct parameters *)parameters;
-    CHECK(optimiser_check_space(space));
+    CHECK(mf_optimiser_check_space(space));
     if (state->parameters.population > 0 && state->parameters.population < 4)
-        CHECK(status_fail(STATUS_BAD_INPUT, "cma-es: a population of %d is below 4",
+        CHECK(mf_status_fail(STATUS_BAD_INPUT, "cma-es: a population of %d is below 4",
                           (int)state->parameters.population));
     state->space = *space;
     state->space.start = NULL;
     const size_t usual = usual_population(&state->parameters, space->genes);
-    CHECK(optimiser_check_round(space, usual));
+    CHECK(mf_optimiser_check_round(space, usual));
     state->most = limit(state, MOST_GROWTH * (usual << state->parameters.restarts));
     NEW_ARRAY(state->strategy.weights, state->most);
     NEW_ARRAY(state->steps, state->most * space->genes);
@@ -176,11 +176,11 @@ static enum status create(void *memory, const struct optimiser_space *space,
     NEW_ARRAY(state->errors, state->most);
     NEW_ARRAY(state->record, space->genes);
     NEW_ARRAY(state->history, most_history(state));
-    CHECK(cmaes_init(&state->distribution, space->genes));
+    CHECK(mf_cmaes_init(&state->distribution, space->genes));
     state->progress.record_error = state->progress.hopeless = HUGE_VAL;
     begin_descent(state);
     for (size_t k = 0; k < space->genes; k++)
-        state->distribution.mean[k] = optimiser_start(space, k);
+        state->distribution.mean[k] = mf_optimiser_start(space, k);
 done:
     return status;
 }
@@ -206,8 +206,8 @@ static void watch_noise(struct state *state, const double *variances) {
     for (size_t k = 0; k < state->strategy.population; k++) {
         if (state->errors[k] >= OPTIMISER_FAILED)
             continue;
-        statistics_add(&errors, state->errors[k]);
-        statistics_add(&noise, variances[k] > 0 && variances[k] < HUGE_VAL ? variances[k] : 0);
+        mf_statistics_add(&errors, state->errors[k]);
+        mf_statistics_add(&noise, variances[k] > 0 && variances[k] < HUGE_VAL ? variances[k] : 0);
     }
     if (errors.count < 2)
         return;
@@ -240,7 +240,7 @@ static void keep_best(struct state *state) {
 
 static void mean_genes(const struct state *state, double *genes) {
     for (size_t k = 0; k < state->space.genes; k++)
-        genes[k] = optimiser_gene(&state->space, optimiser_reflect(state->distribution.mean[k]));
+        genes[k] = optimiser_gene(&state->space, mf_optimiser_reflect(state->distribution.mean[k]));
 }
 
 /// Least, median and hopeless error of the round; sorts the errors.
@@ -272,7 +272,7 @@ static bool stands_still(const struct state *state) {
 static double widest(const struct state *state) {
     double most = 0;
     for (size_t k = 0; k < state->space.genes; k++)
-        most = fmax(most, cmaes_deviation(&state->distribution, k));
+        most = fmax(most, mf_cmaes_deviation(&state->distribution, k));
     return most;
 }
 
@@ -285,7 +285,7 @@ static void limit_step(struct state *state) {
 
 /// Whether the distribution has become too narrow or too oblong for double precision.
 static bool is_degenerate(const struct state *state) {
-    return widest(state) < 1e-12 || cmaes_axis_ratio(&state->distribution) > 1e7;
+    return widest(state) < 1e-12 || mf_cmaes_axis_ratio(&state->distribution) > 1e7;
 }
 
 /// With noise the record is the mean of the descent whose last errors were lowest.
@@ -300,10 +300,10 @@ static void keep_descent(struct state *state) {
 /// A new descent from anywhere.
 static void restart(struct state *state) {
     struct rng_sequence random =
-        rng_sequence_begin(state->space.seed, RNG_INITIAL, (uint32_t)++state->progress.descents, 0);
+        mf_rng_sequence_begin(state->space.seed, RNG_INITIAL, (uint32_t)++state->progress.descents, 0);
     begin_descent(state);
     for (size_t k = 0; k < state->space.genes; k++)
-        state->distribution.mean[k] = rng_sequence_uniform(&random);
+        state->distribution.mean[k] = mf_rng_sequence_uniform(&random);
 }
 
 /// What follows a round, whose errors are sorted.
@@ -332,7 +332,7 @@ static enum status tell(void *memory, const double *errors, const double *varian
         least = fmin(least, state->errors[k]);
     }
     if (least < OPTIMISER_FAILED) { // a round in which all failed says nothing
-        TRY(cmaes_update(&state->distribution, &state->strategy, state->steps, state->errors));
+        TRY(mf_cmaes_update(&state->distribution, &state->strategy, state->steps, state->errors));
         limit_step(state);
         state->progress.known = true;
     }
@@ -363,7 +363,7 @@ static double spread(const void *memory) {
     const struct state *state = memory;
     double sum = 0;
     for (size_t k = 0; k < state->space.genes; k++)
-        sum += cmaes_deviation(&state->distribution, k);
+        sum += mf_cmaes_deviation(&state->distribution, k);
     return sum / (double)state->space.genes;
 }
 
@@ -394,11 +394,11 @@ static size_t spans(void *memory, struct memory_span *span) {
     return count;
 }
 
-const struct optimiser cmaes_optimiser = {
+const struct optimiser mf_cmaes_optimiser = {
     .name = "cma-es",
     .summary = "evolution strategy with covariance matrix adaptation; N. Hansen, "
                "arXiv:1604.00772 (2016)",
-    .tables = (const struct field *const[]){cmaes_fields, NULL},
+    .tables = (const struct field *const[]){mf_cmaes_fields, NULL},
     .parameters_size = sizeof(struct parameters),
     .state_size = sizeof(struct state),
     .budget = "rounds",

@@ -2,7 +2,7 @@
 /// @file The normal distribution that CMA-ES samples and adapts.
 ///
 /// N. Hansen, The CMA evolution strategy: a tutorial, arXiv:1604.00772 (2016); numbers of equations
-/// are those of its version 2. `cmaes_optimiser` (cmaes.c) drives it.
+/// are those of its version 2. `mf_cmaes_optimiser` (cmaes.c) drives it.
 #pragma once
 
 #include "base/status.h"
@@ -27,7 +27,7 @@ struct cmaes_strategy {
 };
 
 /// Fill all but `population`; `weights` has room for it.
-void cmaes_strategy_set(struct cmaes_strategy *strategy, size_t genes);
+void mf_cmaes_strategy_set(struct cmaes_strategy *strategy, size_t genes);
 
 /// N(mean, sigma² covariance).
 struct cmaes_distribution {
@@ -46,17 +46,17 @@ struct cmaes_distribution {
     struct cmaes_workspace *scratch; ///< of the decomposition
 };
 
-/// Memory of a distribution. Fails: NO_MEMORY; cmaes_clear is then still to be called.
-enum status cmaes_init(struct cmaes_distribution *distribution, size_t genes) MUST_USE;
-void cmaes_clear(struct cmaes_distribution *distribution);
+/// Memory of a distribution. Fails: NO_MEMORY; mf_cmaes_clear is then still to be called.
+enum status mf_cmaes_init(struct cmaes_distribution *distribution, size_t genes) MUST_USE;
+void mf_cmaes_clear(struct cmaes_distribution *distribution);
 
 /// Begin a descent: covariance 1, paths 0. The mean is the caller's to set.
-void cmaes_begin(struct cmaes_distribution *distribution, double sigma);
+void mf_cmaes_begin(struct cmaes_distribution *distribution, double sigma);
 
 /// A step y = B D z of individual (round, row), so that its candidate is mean + σ y.
 /// @param[in]  seed, round, row  of its random numbers
 /// @param[out] step              shape [genes]
-void cmaes_sample(const struct cmaes_distribution *distribution, uint64_t seed, uint32_t round,
+void mf_cmaes_sample(const struct cmaes_distribution *distribution, uint64_t seed, uint32_t round,
                   uint32_t row, double *step);
 
 /// Move and reshape the distribution by the steps of a round (eq. 38–47): both evolution paths,
@@ -65,12 +65,12 @@ void cmaes_sample(const struct cmaes_distribution *distribution, uint64_t seed, 
 /// @param[in] steps   shape [population, genes]
 /// @param[in] errors  shape [population]
 /// Fails: NO_MEMORY.
-enum status cmaes_update(struct cmaes_distribution *distribution,
+enum status mf_cmaes_update(struct cmaes_distribution *distribution,
                          const struct cmaes_strategy *strategy, const double *steps,
                          const double *errors) MUST_USE;
 
 /// Standard deviation of a gene.
-double cmaes_deviation(const struct cmaes_distribution *distribution, size_t gene);
+double mf_cmaes_deviation(const struct cmaes_distribution *distribution, size_t gene);
 
 /// Ratio of the longest to the shortest axis.
-double cmaes_axis_ratio(const struct cmaes_distribution *distribution);
+double mf_cmaes_axis_ratio(const struct cmaes_distribution *distribution);

@@ -27,12 +27,12 @@ static enum status workspace_init(struct cmaes_workspace *w, size_t genes) {
     NEW_ARRAY(w->mean_step, genes);
     NEW_ARRAY(w->white, genes);
     if (w->eigen == NULL || w->matrix == NULL || w->vectors == NULL || w->values == NULL)
-        status = status_fail(STATUS_NO_MEMORY, "out of memory for %zu genes", genes);
+        status = mf_status_fail(STATUS_NO_MEMORY, "out of memory for %zu genes", genes);
 done:
     return status;
 }
 
-enum status cmaes_init(struct cmaes_distribution *d, size_t genes) {
+enum status mf_cmaes_init(struct cmaes_distribution *d, size_t genes) {
     enum status status = STATUS_OK;
     *d = (struct cmaes_distribution){.genes = genes};
     NEW_ARRAY(d->mean, genes);
@@ -47,27 +47,27 @@ done:
     return status;
 }
 
-void cmaes_clear(struct cmaes_distribution *d) {
+void mf_cmaes_clear(struct cmaes_distribution *d) {
     if (d->scratch) {
         if (d->scratch->eigen)
             gsl_eigen_symmv_free(d->scratch->eigen);
         gsl_matrix_free(d->scratch->matrix);
         gsl_matrix_free(d->scratch->vectors);
         gsl_vector_free(d->scratch->values);
-        memory_free(d->scratch->mean_step);
-        memory_free(d->scratch->white);
+        mf_memory_free(d->scratch->mean_step);
+        mf_memory_free(d->scratch->white);
     }
-    memory_free(d->scratch);
-    memory_free(d->mean);
-    memory_free(d->path_sigma);
-    memory_free(d->path);
-    memory_free(d->covariance);
-    memory_free(d->axes);
-    memory_free(d->lengths);
+    mf_memory_free(d->scratch);
+    mf_memory_free(d->mean);
+    mf_memory_free(d->path_sigma);
+    mf_memory_free(d->path);
+    mf_memory_free(d->covariance);
+    mf_memory_free(d->axes);
+    mf_memory_free(d->lengths);
     *d = (struct cmaes_distribution){0};
 }
 
-void cmaes_begin(struct cmaes_distribution *d, double sigma) {
+void mf_cmaes_begin(struct cmaes_distribution *d, double sigma) {
     const size_t n = d->genes;
     d->moments = (struct cmaes_moments){.sigma = sigma};
     memset(d->path_sigma, 0, n * sizeof(double));
@@ -78,14 +78,14 @@ void cmaes_begin(struct cmaes_distribution *d, double sigma) {
         d->covariance[k * n + k] = d->axes[k * n + k] = d->lengths[k] = 1;
 }
 
-void cmaes_sample(const struct cmaes_distribution *d, uint64_t seed, uint32_t round, uint32_t row,
+void mf_cmaes_sample(const struct cmaes_distribution *d, uint64_t seed, uint32_t round, uint32_t row,
                   double *step) {
     const size_t n = d->genes;
     double normal[4];
     memset(step, 0, n * sizeof *step);
     for (size_t axis = 0; axis < n; axis++) {
         if (axis % 4 == 0)
-            rng_normal4(rng_philox(seed, RNG_SELECTION, round, row, (uint32_t)(axis / 4)), normal);
+            mf_rng_normal4(mf_rng_philox(seed, RNG_SELECTION, round, row, (uint32_t)(axis / 4)), normal);
         const double length = d->lengths[axis] * normal[axis % 4];
         for (size_t k = 0; k < n; k++)
             step[k] += d->axes[k * n + axis] * length;
@@ -224,10 +224,10 @@ static void decompose(struct cmaes_distribution *d, const struct cmaes_strategy 
     memcpy(d->axes, w->vectors->data, n * n * sizeof(double));
 }
 
-enum status cmaes_update(struct cmaes_distribution *d, const struct cmaes_strategy *s,
+enum status mf_cmaes_update(struct cmaes_distribution *d, const struct cmaes_strategy *s,
                          const double *steps, const double *errors) {
     bool goes_on;
-    struct ranked *ranked = memory_zeroed(s->population, sizeof *ranked);
+    struct ranked *ranked = mf_memory_zeroed(s->population, sizeof *ranked);
     if (ranked == NULL)
         return STATUS_NO_MEMORY;
     rank(ranked, s, errors);
@@ -237,15 +237,15 @@ enum status cmaes_update(struct cmaes_distribution *d, const struct cmaes_strate
     d->moments.sigma *= exp(fmin(1, s->path_sigma / s->damping * (length / s->length - 1)));
     d->moments.updates++;
     decompose(d, s);
-    memory_free(ranked);
+    mf_memory_free(ranked);
     return STATUS_OK;
 }
 
-double cmaes_deviation(const struct cmaes_distribution *d, size_t gene) {
+double mf_cmaes_deviation(const struct cmaes_distribution *d, size_t gene) {
     return d->moments.sigma * sqrt(d->covariance[gene * d->genes + gene]);
 }
 
-double cmaes_axis_ratio(const struct cmaes_distribution *d) {
+double mf_cmaes_axis_ratio(const struct cmaes_distribution *d) {
     double least = d->lengths[0], most = d->lengths[0];
     for (size_t k = 1; k < d->genes; k++) {
         least = fmin(least, d->lengths[k]);

@@ -44,7 +44,7 @@ static void scale_weights(struct cmaes_strategy *s, double n, double effective_n
     }
 }
 
-void cmaes_strategy_set(struct cmaes_strategy *s, size_t genes) {
+void mf_cmaes_strategy_set(struct cmaes_strategy *s, size_t genes) {
     const double n = (double)genes;
     s->parents = s->population / 2;
     for (size_t k = 0; k < s->population; k++)

@@ -39,9 +39,9 @@ static void *run(void *memory) {
     return NULL;
 }
 
-struct coroutine *coroutine_begin(void (*body)(struct coroutine *self, void *context),
+struct coroutine *mf_coroutine_begin(void (*body)(struct coroutine *self, void *context),
                                   void *context) {
-    struct coroutine *coroutine = memory_zeroed(1, sizeof *coroutine);
+    struct coroutine *coroutine = mf_memory_zeroed(1, sizeof *coroutine);
     if (coroutine == NULL)
         return NULL;
     coroutine->body = body;
@@ -51,14 +51,14 @@ struct coroutine *coroutine_begin(void (*body)(struct coroutine *self, void *con
     pthread_cond_init(&coroutine->changed, NULL);
     if (pthread_create(&coroutine->thread, NULL, run, coroutine) == 0)
         return coroutine;
-    (void)status_fail(STATUS_NO_MEMORY, "no thread is left for an optimiser");
+    (void)mf_status_fail(STATUS_NO_MEMORY, "no thread is left for an optimiser");
     pthread_cond_destroy(&coroutine->changed);
     pthread_mutex_destroy(&coroutine->lock);
-    memory_free(coroutine);
+    mf_memory_free(coroutine);
     return NULL;
 }
 
-const double *coroutine_question(struct coroutine *coroutine) {
+const double *mf_coroutine_question(struct coroutine *coroutine) {
     pthread_mutex_lock(&coroutine->lock);
     wait_for_turn(coroutine, CALLER);
     const double *question = coroutine->question;
@@ -66,7 +66,7 @@ const double *coroutine_question(struct coroutine *coroutine) {
     return question;
 }
 
-void coroutine_answer(struct coroutine *coroutine, double answer) {
+void mf_coroutine_answer(struct coroutine *coroutine, double answer) {
     pthread_mutex_lock(&coroutine->lock);
     wait_for_turn(coroutine, CALLER);
     coroutine->answer = answer;
@@ -75,7 +75,7 @@ void coroutine_answer(struct coroutine *coroutine, double answer) {
     pthread_mutex_unlock(&coroutine->lock);
 }
 
-void coroutine_end(struct coroutine *coroutine) {
+void mf_coroutine_end(struct coroutine *coroutine) {
     if (coroutine == NULL)
         return;
     pthread_mutex_lock(&coroutine->lock);
@@ -86,10 +86,10 @@ void coroutine_end(struct coroutine *coroutine) {
     pthread_join(coroutine->thread, NULL);
     pthread_cond_destroy(&coroutine->changed);
     pthread_mutex_destroy(&coroutine->lock);
-    memory_free(coroutine);
+    mf_memory_free(coroutine);
 }
 
-bool coroutine_measure(struct coroutine *self, const double *question, double *answer) {
+bool mf_coroutine_measure(struct coroutine *self, const double *question, double *answer) {
     pthread_mutex_lock(&self->lock);
     if (!self->stopping) {
         self->question = question;

@@ -11,21 +11,21 @@
 
 struct coroutine;
 
-/// Begin `body`, which calls coroutine_measure as often as it likes and returns.
-/// @return NULL if there is no memory or no thread; the message is set. End it by coroutine_end.
-struct coroutine *coroutine_begin(void (*body)(struct coroutine *self, void *context),
+/// Begin `body`, which calls mf_coroutine_measure as often as it likes and returns.
+/// @return NULL if there is no memory or no thread; the message is set. End it by mf_coroutine_end.
+struct coroutine *mf_coroutine_begin(void (*body)(struct coroutine *self, void *context),
                                   void *context) MUST_USE;
 
 /// Wait until the body asks.
-/// @return what it gave coroutine_measure, valid until the answer; NULL if it has returned.
-const double *coroutine_question(struct coroutine *coroutine);
+/// @return what it gave mf_coroutine_measure, valid until the answer; NULL if it has returned.
+const double *mf_coroutine_question(struct coroutine *coroutine);
 
 /// Answer a question, so that the body goes on.
-void coroutine_answer(struct coroutine *coroutine, double answer);
+void mf_coroutine_answer(struct coroutine *coroutine, double answer);
 
 /// Stop the body wherever it is, and free everything; NULL is allowed.
-void coroutine_end(struct coroutine *coroutine);
+void mf_coroutine_end(struct coroutine *coroutine);
 
 /// From inside the body: the answer to a question. false, and at once for ever after, when the body
 /// is to return.
-bool coroutine_measure(struct coroutine *self, const double *question, double *answer) MUST_USE;
+bool mf_coroutine_measure(struct coroutine *self, const double *question, double *answer) MUST_USE;

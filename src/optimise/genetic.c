@@ -13,7 +13,7 @@ static const char *const mutations[] = {"scale", "correlated", NULL};
 
 #define MEMBER(name) .offset = offsetof(struct genetic_parameters, name)
 #define PROBABILITY .minimum = 0, .maximum = 1, .unit = ""
-const struct field genetic_fields[] = {
+const struct field mf_genetic_fields[] = {
     {"population", FIELD_INTEGER, MEMBER(population), .initial = 250, .minimum = 2, .maximum = 1e6,
      .unit = "", .help = "individuals of a generation"},
     {"crossover", FIELD_NUMBER, MEMBER(crossover), .initial = 0.91, PROBABILITY,
@@ -48,7 +48,7 @@ static size_t total_genes(const struct genetic *genetic) {
     return (size_t)(genetic->parameters.population * genetic->parameters.genes);
 }
 
-enum status genetic_init(struct genetic *genetic, const struct genetic_parameters *parameters,
+enum status mf_genetic_init(struct genetic *genetic, const struct genetic_parameters *parameters,
                          uint64_t seed) {
     enum status status = STATUS_OK;
     *genetic = (struct genetic){.parameters = *parameters,
@@ -60,34 +60,34 @@ enum status genetic_init(struct genetic *genetic, const struct genetic_parameter
     // Children come in pairs: one place more for the last of an odd population.
     NEW_ARRAY(genetic->offspring, total_genes(genetic) + (size_t)parameters->genes);
     NEW_ARRAY(genetic->elite, (size_t)parameters->genes);
-    struct rng_sequence random = rng_sequence_begin(seed, RNG_INITIAL, 0, 0);
+    struct rng_sequence random = mf_rng_sequence_begin(seed, RNG_INITIAL, 0, 0);
     for (size_t k = 0; k < total_genes(genetic); k++)
         genetic->population[k] =
             parameters->gene_minimum +
-            (parameters->gene_maximum - parameters->gene_minimum) * rng_sequence_uniform(&random);
+            (parameters->gene_maximum - parameters->gene_minimum) * mf_rng_sequence_uniform(&random);
 done:
     if (status != STATUS_OK)
-        genetic_clear(genetic);
+        mf_genetic_clear(genetic);
     return status;
 }
 
-void genetic_clear(struct genetic *genetic) {
-    memory_free(genetic->population);
-    memory_free(genetic->offspring);
-    memory_free(genetic->elite);
+void mf_genetic_clear(struct genetic *genetic) {
+    mf_memory_free(genetic->population);
+    mf_memory_free(genetic->offspring);
+    mf_memory_free(genetic->elite);
     *genetic = (struct genetic){0};
 }
 
-const double *genetic_individual(const struct genetic *genetic, int64_t index) {
+const double *mf_genetic_individual(const struct genetic *genetic, int64_t index) {
     return genetic->population + index * genetic->parameters.genes;
 }
 
-void genetic_remeasure_elite(struct genetic *genetic, double error) {
+void mf_genetic_remeasure_elite(struct genetic *genetic, double error) {
     genetic->elite_measured += 1;
     genetic->elite_error += (error - genetic->elite_error) / genetic->elite_measured;
 }
 
-bool genetic_offer(struct genetic *genetic, const double *genes, double error, double measured) {
+bool mf_genetic_offer(struct genetic *genetic, const double *genes, double error, double measured) {
     if (error >= genetic->elite_error)
         return false;
     memcpy(genetic->elite, genes, (size_t)genetic->parameters.genes * sizeof *genes);
@@ -100,9 +100,9 @@ bool genetic_offer(struct genetic *genetic, const double *genes, double error, d
 static void copy_winner(const struct genetic *genetic, const double *errors, double *child,
                         struct rng_sequence *random) {
     const struct genetic_parameters *p = &genetic->parameters;
-    const int64_t winner = genetic_tournament(errors, genetic->rows, p->tournament_size,
+    const int64_t winner = mf_genetic_tournament(errors, genetic->rows, p->tournament_size,
                                               p->tournament_probability, random);
-    memcpy(child, genetic_individual(genetic, winner), (size_t)p->genes * sizeof *child);
+    memcpy(child, mf_genetic_individual(genetic, winner), (size_t)p->genes * sizeof *child);
 }
 
 /// The gene itself, or its mirror image if it left its range.
@@ -110,23 +110,23 @@ static double within_range(double gene, const struct genetic_parameters *p) {
     if (gene >= p->gene_minimum && gene <= p->gene_maximum)
         return gene;
     const double range = p->gene_maximum - p->gene_minimum;
-    const double mirrored = optimiser_reflect((gene - p->gene_minimum) / range);
+    const double mirrored = mf_optimiser_reflect((gene - p->gene_minimum) / range);
     return fmin(fmax(p->gene_minimum + range * mirrored, p->gene_minimum), p->gene_maximum);
 }
 
-void genetic_next_generation(struct genetic *genetic, const double *errors) {
+void mf_genetic_next_generation(struct genetic *genetic, const double *errors) {
     const struct genetic_parameters *p = &genetic->parameters;
     genetic->generation++;
     for (int64_t pair = 0; pair < p->population; pair += 2) {
         struct rng_sequence random =
-            rng_sequence_begin(genetic->seed, RNG_SELECTION, genetic->generation, (uint32_t)pair);
+            mf_rng_sequence_begin(genetic->seed, RNG_SELECTION, genetic->generation, (uint32_t)pair);
         double *first = genetic->offspring + pair * p->genes, *second = first + p->genes;
         copy_winner(genetic, errors, first, &random);
         copy_winner(genetic, errors, second, &random);
-        if (rng_sequence_uniform(&random) < p->crossover)
-            genetic_recombine(first, second, p, &random);
-        genetic_mutate(first, p, &random);
-        genetic_mutate(second, p, &random);
+        if (mf_rng_sequence_uniform(&random) < p->crossover)
+            mf_genetic_recombine(first, second, p, &random);
+        mf_genetic_mutate(first, p, &random);
+        mf_genetic_mutate(second, p, &random);
     }
     for (size_t k = 0; k < total_genes(genetic); k++)
         genetic->population[k] = within_range(genetic->offspring[k], p);
@@ -135,13 +135,13 @@ void genetic_next_generation(struct genetic *genetic, const double *errors) {
         memcpy(genetic->population, genetic->elite, (size_t)p->genes * sizeof(double));
 }
 
-double genetic_diversity(const struct genetic *genetic) {
+double mf_genetic_diversity(const struct genetic *genetic) {
     const struct genetic_parameters *p = &genetic->parameters;
     double sum = 0;
     for (int64_t gene = 0; gene < p->genes; gene++) {
         struct running_mean over = {0};
         for (int64_t k = 0; k < p->population; k++)
-            statistics_add(&over, genetic_individual(genetic, k)[gene]);
+            mf_statistics_add(&over, mf_genetic_individual(genetic, k)[gene]);
         sum += sqrt(over.squares / over.count);
     }
     return sum / (double)p->genes / (p->gene_maximum - p->gene_minimum);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file Genetic algorithm over real genes; knows nothing of what they mean.
 ///
-/// Read `population`, measure each individual, hand the errors to genetic_next_generation;
-/// `genetic_optimiser` (genetic_optimiser.c) does it by ask and tell. The elite is kept apart from
+/// Read `population`, measure each individual, hand the errors to mf_genetic_next_generation;
+/// `mf_genetic_optimiser` (genetic_optimiser.c) does it by ask and tell. The elite is kept apart from
 /// the population with the mean of all its measurements, and a challenger replaces it only by fresh
-/// measurements (genetic_offer), so that no individual survives by one lucky draw of a noisy error.
+/// measurements (mf_genetic_offer), so that no individual survives by one lucky draw of a noisy error.
 ///
 /// Operators: A. G. Baydin (thesis, 2008), as its text describes them; D. E. Goldberg, Genetic
 /// Algorithms in Search, Optimization and Machine Learning (1989).
@@ -38,7 +38,7 @@ struct genetic_parameters {
 };
 
 /// All but genes and their range, which belong to the problem.
-extern const struct field genetic_fields[];
+extern const struct field mf_genetic_fields[];
 
 struct genetic {
     struct genetic_parameters parameters;
@@ -56,28 +56,28 @@ struct genetic {
 
 /// First generation: genes uniform in their range.
 /// Fails: NO_MEMORY.
-enum status genetic_init(struct genetic *genetic, const struct genetic_parameters *parameters,
+enum status mf_genetic_init(struct genetic *genetic, const struct genetic_parameters *parameters,
                          uint64_t seed) MUST_USE;
-void genetic_clear(struct genetic *genetic);
+void mf_genetic_clear(struct genetic *genetic);
 
 /// Genes of one individual, shape [genes].
-const double *genetic_individual(const struct genetic *genetic, int64_t index);
+const double *mf_genetic_individual(const struct genetic *genetic, int64_t index);
 
 /// Add a fresh measurement of the elite to its mean.
-void genetic_remeasure_elite(struct genetic *genetic, double error);
+void mf_genetic_remeasure_elite(struct genetic *genetic, double error);
 
 /// Make `genes` the elite if `error`, the mean of `measured` fresh measurements, is below the
 /// elite's. Returns whether it did.
-bool genetic_offer(struct genetic *genetic, const double *genes, double error, double measured);
+bool mf_genetic_offer(struct genetic *genetic, const double *genes, double error, double measured);
 
 /// Replace the population by the offspring of all rows; individual 0 becomes the elite. Genes that
 /// left their range are reflected into it.
 /// @param[in] errors  shape [rows]
-void genetic_next_generation(struct genetic *genetic, const double *errors);
+void mf_genetic_next_generation(struct genetic *genetic, const double *errors);
 
 /// Mean over genes of the standard deviation over individuals, as a fraction of the first
 /// generation's range.
-double genetic_diversity(const struct genetic *genetic);
+double mf_genetic_diversity(const struct genetic *genetic);
 
 /// @name Operators (genetic_operators.c)
 struct rng_sequence;
@@ -90,28 +90,28 @@ enum { GENETIC_LARGEST_TOURNAMENT = 64 };
 /// Tried instead: each drawn one in turn meets the winner so far, and the better wins with p. Even
 /// the worst then wins in one tournament of four if it is drawn last, and with the thesis's
 /// parameters the error of a generation's best stood still at 0.14.
-int64_t genetic_tournament(const double *errors, int64_t population, int64_t size,
+int64_t mf_genetic_tournament(const double *errors, int64_t population, int64_t size,
                            double probability, struct rng_sequence *random);
 
 /// Cross two individuals in place, in the way that `crossover_kind` names.
-void genetic_recombine(double *a, double *b, const struct genetic_parameters *parameters,
+void mf_genetic_recombine(double *a, double *b, const struct genetic_parameters *parameters,
                        struct rng_sequence *random);
 
 /// Exchange the genes beyond one random point of two individuals, in place.
-void genetic_crossover(double *a, double *b, int64_t genes, struct rng_sequence *random);
+void mf_genetic_crossover(double *a, double *b, int64_t genes, struct rng_sequence *random);
 
 /// Exchange the genes between two random points, in place.
-void genetic_crossover_two_points(double *a, double *b, int64_t genes, struct rng_sequence *random);
+void mf_genetic_crossover_two_points(double *a, double *b, int64_t genes, struct rng_sequence *random);
 
 /// Blend two curves along their genes without a step:
 ///   a_k ← w_k a_k + (1 − w_k) b_k,  b_k the other way round,  w_k = 1/(1 + exp((k − c)/s)),
 /// c uniform along the genes and s uniform up to an eighth of their number. One-point crossover is
 /// the limit of s → 0; its step between neighbouring genes is a kink that curves pay for, or that
 /// a Bezier curve smooths away. a_k + b_k stays.
-void genetic_blend(double *a, double *b, int64_t genes, struct rng_sequence *random);
+void mf_genetic_blend(double *a, double *b, int64_t genes, struct rng_sequence *random);
 
 /// A child mutates with probability `mutation`, in the way that `mutation_kind` names.
-void genetic_mutate(double *genes, const struct genetic_parameters *parameters,
+void mf_genetic_mutate(double *genes, const struct genetic_parameters *parameters,
                     struct rng_sequence *random);
 
 /// Each gene, with probability `mutated_genes`, is scaled by 2^u, u uniform in (−1, 1), which has
@@ -121,7 +121,7 @@ void genetic_mutate(double *genes, const struct genetic_parameters *parameters,
 /// The thesis's rate of 0.1, taken for every gene of every child, moves 10 of 100 genes each time:
 /// the individuals then never come closer to each other (measured: diversity grows over 15
 /// generations).
-void genetic_mutate_scale(double *genes, const struct genetic_parameters *parameters,
+void mf_genetic_mutate_scale(double *genes, const struct genetic_parameters *parameters,
                           struct rng_sequence *random);
 
 /// A smooth bump is added: range · 0.1 z · 2^(−6u) · exp(−((k − c)/s)²/2), z normal, u uniform in
@@ -129,5 +129,5 @@ void genetic_mutate_scale(double *genes, const struct genetic_parameters *parame
 /// Neighbours move together, as those of a smooth curve must. Steps over six octaves, as in
 /// H. Mühlenbein and D. Schlierkamp-Voosen, Evol. Comput. 1, 25 (1993), explore at first and refine
 /// in the end.
-void genetic_mutate_correlated(double *genes, const struct genetic_parameters *parameters,
+void mf_genetic_mutate_correlated(double *genes, const struct genetic_parameters *parameters,
                                struct rng_sequence *random);

@@ -4,18 +4,18 @@
 
 #include <math.h>
 
-int64_t genetic_tournament(const double *errors, int64_t population, int64_t size,
+int64_t mf_genetic_tournament(const double *errors, int64_t population, int64_t size,
                            double probability, struct rng_sequence *random) {
     int64_t ranked[GENETIC_LARGEST_TOURNAMENT] = {0};
     for (int64_t drawn = 0; drawn < size; drawn++) {
-        const int64_t rival = rng_sequence_below(random, (uint32_t)population);
+        const int64_t rival = mf_rng_sequence_below(random, (uint32_t)population);
         int64_t rank = drawn;
         for (; rank > 0 && errors[rival] < errors[ranked[rank - 1]]; rank--)
             ranked[rank] = ranked[rank - 1];
         ranked[rank] = rival;
     }
     int64_t winner = 0;
-    while (winner + 1 < size && rng_sequence_uniform(random) >= probability)
+    while (winner + 1 < size && mf_rng_sequence_uniform(random) >= probability)
         winner++;
     return ranked[winner];
 }
@@ -26,31 +26,31 @@ static void exchange(double *a, double *b) {
     *b = gene;
 }
 
-void genetic_crossover(double *a, double *b, int64_t genes, struct rng_sequence *random) {
+void mf_genetic_crossover(double *a, double *b, int64_t genes, struct rng_sequence *random) {
     if (genes < 2)
         return;
-    const int64_t point = 1 + rng_sequence_below(random, (uint32_t)(genes - 1));
+    const int64_t point = 1 + mf_rng_sequence_below(random, (uint32_t)(genes - 1));
     for (int64_t k = point; k < genes; k++)
         exchange(&a[k], &b[k]);
 }
 
-void genetic_crossover_two_points(double *a, double *b, int64_t genes,
+void mf_genetic_crossover_two_points(double *a, double *b, int64_t genes,
                                   struct rng_sequence *random) {
     if (genes < 2)
         return;
     // Two different places before genes. So the last gene stays: to exchange a stretch that ends
     // with it gives the same two children as to exchange all the rest.
-    const int64_t first = rng_sequence_below(random, (uint32_t)genes);
-    const int64_t other = rng_sequence_below(random, (uint32_t)(genes - 1));
+    const int64_t first = mf_rng_sequence_below(random, (uint32_t)genes);
+    const int64_t other = mf_rng_sequence_below(random, (uint32_t)(genes - 1));
     const int64_t second = other < first ? other : other + 1;
     const int64_t begin = first < second ? first : second, end = first + second - begin;
     for (int64_t k = begin; k < end; k++)
         exchange(&a[k], &b[k]);
 }
 
-void genetic_blend(double *a, double *b, int64_t genes, struct rng_sequence *random) {
-    const double centre = (double)genes * rng_sequence_uniform(random) - 0.5;
-    const double width = (double)genes / 8 * rng_sequence_uniform(random);
+void mf_genetic_blend(double *a, double *b, int64_t genes, struct rng_sequence *random) {
+    const double centre = (double)genes * mf_rng_sequence_uniform(random) - 0.5;
+    const double width = (double)genes / 8 * mf_rng_sequence_uniform(random);
     for (int64_t k = 0; k < genes; k++) {
         const double weight = 1 / (1 + exp(((double)k - centre) / width));
         const double first = a[k], second = b[k];
@@ -59,17 +59,17 @@ void genetic_blend(double *a, double *b, int64_t genes, struct rng_sequence *ran
     }
 }
 
-void genetic_recombine(double *a, double *b, const struct genetic_parameters *parameters,
+void mf_genetic_recombine(double *a, double *b, const struct genetic_parameters *parameters,
                        struct rng_sequence *random) {
     switch ((enum genetic_crossover_kind)parameters->crossover_kind) {
     case GENETIC_ONE_POINT:
-        genetic_crossover(a, b, parameters->genes, random);
+        mf_genetic_crossover(a, b, parameters->genes, random);
         break;
     case GENETIC_TWO_POINT:
-        genetic_crossover_two_points(a, b, parameters->genes, random);
+        mf_genetic_crossover_two_points(a, b, parameters->genes, random);
         break;
     case GENETIC_BLEND:
-        genetic_blend(a, b, parameters->genes, random);
+        mf_genetic_blend(a, b, parameters->genes, random);
         break;
     }
 }
@@ -82,27 +82,27 @@ static double normal(double u, double v) {
 /// Largest usual step of what is added, as a share of the range.
 static const double added = 0.1;
 
-void genetic_mutate_scale(double *genes, const struct genetic_parameters *parameters,
+void mf_genetic_mutate_scale(double *genes, const struct genetic_parameters *parameters,
                           struct rng_sequence *random) {
     const double range = parameters->gene_maximum - parameters->gene_minimum;
     for (int64_t k = 0; k < parameters->genes; k++) {
-        if (rng_sequence_uniform(random) >= parameters->mutated_genes)
+        if (mf_rng_sequence_uniform(random) >= parameters->mutated_genes)
             continue;
-        const double u = rng_sequence_uniform(random), v = rng_sequence_uniform(random);
-        if (rng_sequence_uniform(random) < parameters->additive)
+        const double u = mf_rng_sequence_uniform(random), v = mf_rng_sequence_uniform(random);
+        if (mf_rng_sequence_uniform(random) < parameters->additive)
             genes[k] += added * range * normal(u, v);
         else
             genes[k] *= exp2(2 * u - 1);
     }
 }
 
-void genetic_mutate_correlated(double *genes, const struct genetic_parameters *parameters,
+void mf_genetic_mutate_correlated(double *genes, const struct genetic_parameters *parameters,
                                struct rng_sequence *random) {
     const double count = (double)parameters->genes;
     const double range = parameters->gene_maximum - parameters->gene_minimum;
-    const double u = rng_sequence_uniform(random), v = rng_sequence_uniform(random);
-    const double height = range * added * normal(u, v) * exp2(-6 * rng_sequence_uniform(random));
-    const double centre = count * rng_sequence_uniform(random) - 0.5;
+    const double u = mf_rng_sequence_uniform(random), v = mf_rng_sequence_uniform(random);
+    const double height = range * added * normal(u, v) * exp2(-6 * mf_rng_sequence_uniform(random));
+    const double centre = count * mf_rng_sequence_uniform(random) - 0.5;
     const double width = fmax(0.5, 0.5 * parameters->mutated_genes * count);
     for (int64_t k = 0; k < parameters->genes; k++) {
         const double away = ((double)k - centre) / width;
@@ -110,16 +110,16 @@ void genetic_mutate_correlated(double *genes, const struct genetic_parameters *p
     }
 }
 
-void genetic_mutate(double *genes, const struct genetic_parameters *parameters,
+void mf_genetic_mutate(double *genes, const struct genetic_parameters *parameters,
                     struct rng_sequence *random) {
-    if (rng_sequence_uniform(random) >= parameters->mutation)
+    if (mf_rng_sequence_uniform(random) >= parameters->mutation)
         return;
     switch ((enum genetic_mutation_kind)parameters->mutation_kind) {
     case GENETIC_SCALE:
-        genetic_mutate_scale(genes, parameters, random);
+        mf_genetic_mutate_scale(genes, parameters, random);
         break;
     case GENETIC_CORRELATED:
-        genetic_mutate_correlated(genes, parameters, random);
+        mf_genetic_mutate_correlated(genes, parameters, random);
         break;
     }
 }

@@ -25,9 +25,9 @@ static uint32_t most_rounds(const void *parameters, size_t genes) {
 
 static void destroy(void *memory) {
     struct state *state = memory;
-    genetic_clear(&state->genetic);
-    memory_free(state->errors);
-    memory_free(state->challenger);
+    mf_genetic_clear(&state->genetic);
+    mf_memory_free(state->errors);
+    mf_memory_free(state->challenger);
     *state = (struct state){0};
 }
 
@@ -36,17 +36,17 @@ static enum status create(void *memory, const struct optimiser_space *space,
     enum status status = STATUS_OK;
     struct state *state = memory;
     struct genetic_parameters p = *(const struct genetic_parameters *)parameters;
-    CHECK(optimiser_check_space(space));
-    CHECK(optimiser_check_round(space, (size_t)(p.population + p.remeasurements)));
+    CHECK(mf_optimiser_check_space(space));
+    CHECK(mf_optimiser_check_round(space, (size_t)(p.population + p.remeasurements)));
     p.genes = (int64_t)space->genes;
     p.gene_minimum = space->minimum;
     p.gene_maximum = space->maximum;
     state->hopeless = HUGE_VAL;
     NEW_ARRAY(state->errors, (size_t)(p.population + p.remeasurements));
     NEW_ARRAY(state->challenger, space->genes);
-    CHECK(genetic_init(&state->genetic, &p, space->seed));
+    CHECK(mf_genetic_init(&state->genetic, &p, space->seed));
     for (size_t k = 0; space->start && k < space->genes; k++)
-        state->genetic.population[k] = optimiser_gene(space, optimiser_start(space, k));
+        state->genetic.population[k] = optimiser_gene(space, mf_optimiser_start(space, k));
 done:
     return status;
 }
@@ -66,13 +66,13 @@ static bool has_challenger(const struct genetic *genetic) {
 }
 
 static const double *last_challenger(const struct genetic *genetic) {
-    return genetic_individual(genetic, genetic->parameters.population);
+    return mf_genetic_individual(genetic, genetic->parameters.population);
 }
 
 static enum status ask(void *memory, struct optimiser_round *round) {
     const struct genetic *genetic = &((struct state *)memory)->genetic;
     const int64_t first = first_row(genetic);
-    *round = (struct optimiser_round){genetic_individual(genetic, first),
+    *round = (struct optimiser_round){mf_genetic_individual(genetic, first),
                                       (size_t)(genetic->rows - first)};
     return STATUS_OK;
 }
@@ -83,12 +83,12 @@ static void judge_challenger(struct genetic *genetic, const double *fresh) {
     double mean = 0;
     for (int64_t k = 0; k < count; k++)
         mean += fresh[k] / (double)count;
-    genetic_offer(genetic, last_challenger(genetic), mean, (double)count);
+    mf_genetic_offer(genetic, last_challenger(genetic), mean, (double)count);
 }
 
 static bool is_elite(const struct genetic *genetic, int64_t row) {
     return genetic->elite_measured > 0 &&
-           memcmp(genetic_individual(genetic, row), genetic->elite,
+           memcmp(mf_genetic_individual(genetic, row), genetic->elite,
                   (size_t)genetic->parameters.genes * sizeof(double)) == 0;
 }
 
@@ -132,14 +132,14 @@ static void tell_generation(struct state *state) {
     struct genetic *genetic = &state->genetic;
     const int64_t population = genetic->parameters.population;
     if (genetic->elite_measured > 0)
-        genetic_remeasure_elite(genetic, state->errors[0]);
+        mf_genetic_remeasure_elite(genetic, state->errors[0]);
     if (has_challenger(genetic))
         judge_challenger(genetic, state->errors + population);
     const int64_t challenger = find_challenger(genetic, state->errors);
     if (challenger >= 0)
-        memcpy(state->challenger, genetic_individual(genetic, challenger),
+        memcpy(state->challenger, mf_genetic_individual(genetic, challenger),
                (size_t)genetic->parameters.genes * sizeof(double));
-    genetic_next_generation(genetic, state->errors);
+    mf_genetic_next_generation(genetic, state->errors);
     if (challenger >= 0)
         add_challenger(state);
     state->hopeless = median(state->errors, population);
@@ -172,7 +172,7 @@ static bool favourite(const void *memory, double *genes) {
 }
 
 static double spread(const void *memory) {
-    return genetic_diversity(&((const struct state *)memory)->genetic);
+    return mf_genetic_diversity(&((const struct state *)memory)->genetic);
 }
 
 static double hopeless(const void *memory) {
@@ -196,10 +196,10 @@ static size_t spans(void *memory, struct memory_span *span) {
     return n;
 }
 
-const struct optimiser genetic_optimiser = {
+const struct optimiser mf_genetic_optimiser = {
     .name = "genetic",
     .summary = "genetic algorithm, its elite measured again and again; A. G. Baydin (2008)",
-    .tables = (const struct field *const[]){genetic_fields, NULL},
+    .tables = (const struct field *const[]){mf_genetic_fields, NULL},
     .parameters_size = sizeof(struct genetic_parameters),
     .state_size = sizeof(struct state),
     .budget = "generations",

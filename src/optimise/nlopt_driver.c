@@ -39,7 +39,7 @@ struct parameters {
 };
 
 #define MEMBER(name) .offset = offsetof(struct parameters, name)
-const struct field nlopt_fields[] = {
+const struct field mf_nlopt_fields[] = {
     {"algorithm", FIELD_CHOICE, MEMBER(algorithm), .choices = names, .initial = SBPLX, .unit = "",
      .help = "of NLopt: GN_ searches everywhere, LN_ around the start"},
     {"evaluations", FIELD_INTEGER, MEMBER(evaluations), .initial = 1000, .minimum = 1,
@@ -99,7 +99,7 @@ static double measure(unsigned genes, const double *x, double *gradient, void *c
     double error = OPTIMISER_FAILED;
     (void)genes;
     (void)gradient;
-    if (!coroutine_measure(call->self, x, &error))
+    if (!mf_coroutine_measure(call->self, x, &error))
         nlopt_force_stop(call->optimiser);
     return seen_error(call, error);
 }
@@ -129,14 +129,14 @@ static void body(struct coroutine *self, void *context) {
     struct state *state = context;
     struct call call = {.self = self, .least = HUGE_VAL, .most = -HUGE_VAL};
     nlopt_opt optimiser = prepare(state, &call);
-    const struct rng_block seed = rng_philox(state->space.seed, RNG_INITIAL, 0, 0, 0);
-    double *x = memory_zeroed(state->space.genes, sizeof *x), least;
+    const struct rng_block seed = mf_rng_philox(state->space.seed, RNG_INITIAL, 0, 0, 0);
+    double *x = mf_memory_zeroed(state->space.genes, sizeof *x), least;
     if (optimiser && x) {
         memcpy(x, state->start, state->space.genes * sizeof *x);
         nlopt_srand(seed.word[0]); // it takes 32 bits: all 64 are mixed into them
         state->result = nlopt_optimize(optimiser, x, &least);
     }
-    memory_free(x);
+    mf_memory_free(x);
     nlopt_destroy(optimiser);
 }
 
@@ -149,12 +149,12 @@ static uint32_t most_rounds(const void *parameters, size_t genes) {
 
 static void destroy(void *memory) {
     struct state *state = memory;
-    coroutine_end(state->loop);
-    memory_free(state->start);
-    memory_free(state->told);
-    memory_free(state->genes);
-    memory_free(state->best);
-    memory_free(state->recent);
+    mf_coroutine_end(state->loop);
+    mf_memory_free(state->start);
+    mf_memory_free(state->told);
+    mf_memory_free(state->genes);
+    mf_memory_free(state->best);
+    mf_memory_free(state->recent);
     *state = (struct state){0};
 }
 
@@ -163,7 +163,7 @@ static enum status create(void *memory, const struct optimiser_space *space,
     enum status status = STATUS_OK;
     struct state *state = memory;
     state->parameters = *(const struct parameters *)parameters;
-    CHECK(optimiser_check_space(space));
+    CHECK(mf_optimiser_check_space(space));
     state->space = *space;
     state->space.start = NULL;
     state->progress.best_error = OPTIMISER_FAILED;
@@ -173,7 +173,7 @@ static enum status create(void *memory, const struct optimiser_space *space,
     NEW_ARRAY(state->best, space->genes);
     NEW_ARRAY(state->recent, RECENT * space->genes);
     for (size_t k = 0; k < space->genes; k++)
-        state->start[k] = optimiser_start(space, k);
+        state->start[k] = mf_optimiser_start(space, k);
 done:
     return status;
 }
@@ -182,17 +182,17 @@ done:
 /// has not begun, and tells it what it has not been told: the last error, or, after a restart, all.
 static enum status catch_up(struct state *state, const double **question) {
     if (state->loop == NULL)
-        state->loop = coroutine_begin(body, state);
+        state->loop = mf_coroutine_begin(body, state);
     if (state->loop == NULL)
         return STATUS_NO_MEMORY;
-    for (*question = coroutine_question(state->loop); *question != NULL;
-         *question = coroutine_question(state->loop)) {
+    for (*question = mf_coroutine_question(state->loop); *question != NULL;
+         *question = mf_coroutine_question(state->loop)) {
         if (state->played == state->progress.told)
             break;
-        coroutine_answer(state->loop, state->told[state->played++]);
+        mf_coroutine_answer(state->loop, state->told[state->played++]);
     }
     if (*question == NULL && state->played == 0)
-        return status_fail(STATUS_BAD_INPUT, "nlopt: %s cannot begin with %zu genes",
+        return mf_status_fail(STATUS_BAD_INPUT, "nlopt: %s cannot begin with %zu genes",
                            names[state->parameters.algorithm], state->space.genes);
     return STATUS_OK;
 }
@@ -288,10 +288,10 @@ static size_t spans(void *memory, struct memory_span *span) {
     return n;
 }
 
-const struct optimiser nlopt_optimiser = {
+const struct optimiser mf_nlopt_optimiser = {
     .name = "nlopt",
     .summary = "an algorithm of NLopt; S. G. Johnson, github.com/stevengj/nlopt",
-    .tables = (const struct field *const[]){nlopt_fields, NULL},
+    .tables = (const struct field *const[]){mf_nlopt_fields, NULL},
     .parameters_size = sizeof(struct parameters),
     .state_size = sizeof(struct state),
     .budget = "evaluations",

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #define MEMBER(name) .offset = offsetof(struct nsga2_parameters, name)
-const struct field nsga2_fields[] = {
+const struct field mf_nsga2_fields[] = {
     {"population", FIELD_INTEGER, MEMBER(population), .initial = 40, .minimum = 4, .maximum = 512,
      .unit = "", .help = "parents, and children of a generation"},
     {"generations", FIELD_INTEGER, MEMBER(generations), .initial = 50, .minimum = 1,
@@ -44,15 +44,15 @@ static size_t first_row(const struct nsga2 *nsga2) {
     return nsga2->progress.generation == 0 ? nsga2->population : 0;
 }
 
-size_t nsga2_parents(const struct nsga2 *nsga2) {
+size_t mf_nsga2_parents(const struct nsga2 *nsga2) {
     return nsga2->population - first_row(nsga2);
 }
 
-const double *nsga2_parent(const struct nsga2 *nsga2, size_t parent) {
+const double *mf_nsga2_parent(const struct nsga2 *nsga2, size_t parent) {
     return row(nsga2, parent);
 }
 
-bool nsga2_is_over(const struct nsga2 *nsga2) {
+bool mf_nsga2_is_over(const struct nsga2 *nsga2) {
     return nsga2->progress.generation >= (uint32_t)nsga2->parameters.generations;
 }
 
@@ -60,20 +60,20 @@ bool nsga2_is_over(const struct nsga2 *nsga2) {
 static void make_first(struct nsga2 *nsga2, const double *start) {
     const double spread = nsga2->parameters.spread;
     for (size_t k = 0; k < nsga2->population; k++) {
-        struct rng_sequence random = rng_sequence_begin(nsga2->seed, RNG_INITIAL, (uint32_t)k, 0);
-        const double width = spread * pow(least_spread, rng_sequence_uniform(&random));
+        struct rng_sequence random = mf_rng_sequence_begin(nsga2->seed, RNG_INITIAL, (uint32_t)k, 0);
+        const double width = spread * pow(least_spread, mf_rng_sequence_uniform(&random));
         double *x = row(nsga2, nsga2->population + k);
         for (size_t n = 0; n < nsga2->genes; n++) {
-            const double u = rng_sequence_uniform(&random), v = rng_sequence_uniform(&random);
+            const double u = mf_rng_sequence_uniform(&random), v = mf_rng_sequence_uniform(&random);
             const double normal = sqrt(-2 * log(u)) * cos(2 * M_PI * v);
-            x[n] = start && spread > 0 ? optimiser_reflect(start[n] + width * normal) : u;
+            x[n] = start && spread > 0 ? mf_optimiser_reflect(start[n] + width * normal) : u;
             if (start && k == 0)
                 x[n] = fmin(1, fmax(0, start[n]));
         }
     }
 }
 
-enum status nsga2_init(struct nsga2 *nsga2, const struct nsga2_parameters *parameters,
+enum status mf_nsga2_init(struct nsga2 *nsga2, const struct nsga2_parameters *parameters,
                        const struct nsga2_space *space) {
     enum status status = STATUS_OK;
     const size_t population = (size_t)parameters->population;
@@ -83,7 +83,7 @@ enum status nsga2_init(struct nsga2 *nsga2, const struct nsga2_parameters *param
                             .population = population,
                             .seed = space->seed};
     if (space->genes < 1 || space->objectives < 1)
-        return status_fail(STATUS_BAD_INPUT, "nothing to optimise: %zu genes, %zu objectives",
+        return mf_status_fail(STATUS_BAD_INPUT, "nothing to optimise: %zu genes, %zu objectives",
                            space->genes, space->objectives);
     NEW_ARRAY(nsga2->x, 3 * population * space->genes);
     NEW_ARRAY(nsga2->value, 2 * population * space->objectives);
@@ -98,14 +98,14 @@ done:
     return status;
 }
 
-void nsga2_clear(struct nsga2 *nsga2) {
-    memory_free(nsga2->x);
-    memory_free(nsga2->value);
-    memory_free(nsga2->measured);
-    memory_free(nsga2->rank);
-    memory_free(nsga2->crowding);
-    memory_free(nsga2->again);
-    memory_free(nsga2->planted);
+void mf_nsga2_clear(struct nsga2 *nsga2) {
+    mf_memory_free(nsga2->x);
+    mf_memory_free(nsga2->value);
+    mf_memory_free(nsga2->measured);
+    mf_memory_free(nsga2->rank);
+    mf_memory_free(nsga2->crowding);
+    mf_memory_free(nsga2->again);
+    mf_memory_free(nsga2->planted);
     *nsga2 = (struct nsga2){0};
 }
 
@@ -120,8 +120,8 @@ static bool is_better(const struct nsga2 *nsga2, size_t a, size_t b) {
 
 /// A copy of the better of two parents.
 static void copy_winner(const struct nsga2 *nsga2, double *child, struct rng_sequence *random) {
-    const size_t a = rng_sequence_below(random, (uint32_t)nsga2->population);
-    const size_t b = rng_sequence_below(random, (uint32_t)nsga2->population);
+    const size_t a = mf_rng_sequence_below(random, (uint32_t)nsga2->population);
+    const size_t b = mf_rng_sequence_below(random, (uint32_t)nsga2->population);
     memcpy(child, row(nsga2, is_better(nsga2, b, a) ? b : a), nsga2->genes * sizeof *child);
 }
 
@@ -137,25 +137,25 @@ static bool is_twin(const struct nsga2 *nsga2, const double *child) {
 static void mutate(const struct nsga2 *nsga2, double *child, struct rng_sequence *random) {
     const struct nsga2_parameters *p = &nsga2->parameters;
     for (size_t n = 0; n < nsga2->genes; n++)
-        if (rng_sequence_uniform(random) * (double)nsga2->genes < p->mutation)
-            child[n] = nsga2_mutate(child[n], p->mutation_exponent, random);
+        if (mf_rng_sequence_uniform(random) * (double)nsga2->genes < p->mutation)
+            child[n] = mf_nsga2_mutate(child[n], p->mutation_exponent, random);
     if (!is_twin(nsga2, child))
         return;
-    const size_t n = rng_sequence_below(random, (uint32_t)nsga2->genes);
-    child[n] = nsga2_mutate(child[n], p->mutation_exponent, random);
+    const size_t n = mf_rng_sequence_below(random, (uint32_t)nsga2->genes);
+    child[n] = mf_nsga2_mutate(child[n], p->mutation_exponent, random);
 }
 
 static void make_children(struct nsga2 *nsga2) {
     const struct nsga2_parameters *p = &nsga2->parameters;
     for (size_t k = 0; k < nsga2->population; k += 2) {
         struct rng_sequence random =
-            rng_sequence_begin(nsga2->seed, RNG_SELECTION, nsga2->progress.generation, (uint32_t)k);
+            mf_rng_sequence_begin(nsga2->seed, RNG_SELECTION, nsga2->progress.generation, (uint32_t)k);
         // The second of the last pair of an odd population stands where `again` is copied to.
         double *a = row(nsga2, nsga2->population + k), *b = a + nsga2->genes;
         copy_winner(nsga2, a, &random);
         copy_winner(nsga2, b, &random);
-        if (rng_sequence_uniform(&random) < p->crossover)
-            nsga2_cross(a, b, nsga2->genes, p->crossover_exponent, &random);
+        if (mf_rng_sequence_uniform(&random) < p->crossover)
+            mf_nsga2_cross(a, b, nsga2->genes, p->crossover_exponent, &random);
         mutate(nsga2, a, &random);
         mutate(nsga2, b, &random);
     }
@@ -197,8 +197,8 @@ static void choose_again(struct nsga2 *nsga2) {
     }
 }
 
-struct optimiser_round nsga2_ask(struct nsga2 *nsga2) {
-    if (nsga2_is_over(nsga2))
+struct optimiser_round mf_nsga2_ask(struct nsga2 *nsga2) {
+    if (mf_nsga2_is_over(nsga2))
         return (struct optimiser_round){0};
     if (!nsga2->progress.is_made) {
         make_children(nsga2);
@@ -209,7 +209,7 @@ struct optimiser_round nsga2_ask(struct nsga2 *nsga2) {
                                     nsga2->population + nsga2->progress.again};
 }
 
-void nsga2_plant(struct nsga2 *nsga2, const double *genes) {
+void mf_nsga2_plant(struct nsga2 *nsga2, const double *genes) {
     const size_t planted = nsga2->progress.planted;
     if (planted >= NSGA2_PLANTED || planted >= nsga2->population / 2)
         return;
@@ -235,14 +235,14 @@ static void add(struct nsga2 *nsga2, size_t index, const double *value) {
 
 static enum status sort(struct nsga2 *nsga2, size_t first, size_t count) {
     const double *value = value_of(nsga2, first);
-    TRY(nsga2_sort(value, count, nsga2->objectives, nsga2->rank + first));
-    return nsga2_crowd(value, count, nsga2->objectives, nsga2->rank + first,
+    TRY(mf_nsga2_sort(value, count, nsga2->objectives, nsga2->rank + first));
+    return mf_nsga2_crowd(value, count, nsga2->objectives, nsga2->rank + first,
                        nsga2->crowding + first);
 }
 
-enum status nsga2_add_measurement(struct nsga2 *nsga2, size_t parent, const double *value) {
+enum status mf_nsga2_add_measurement(struct nsga2 *nsga2, size_t parent, const double *value) {
     add(nsga2, parent, value);
-    return sort(nsga2, 0, nsga2_parents(nsga2));
+    return sort(nsga2, 0, mf_nsga2_parents(nsga2));
 }
 
 struct rival {
@@ -287,12 +287,12 @@ static enum status select_parents(struct nsga2 *nsga2) {
     }
     CHECK(sort(nsga2, 0, nsga2->population));
 done:
-    memory_free(rivals);
-    memory_free(copy);
+    mf_memory_free(rivals);
+    mf_memory_free(copy);
     return status;
 }
 
-enum status nsga2_tell(struct nsga2 *nsga2, const double *value) {
+enum status mf_nsga2_tell(struct nsga2 *nsga2, const double *value) {
     for (size_t k = 0; k < nsga2->population; k++) {
         nsga2->measured[nsga2->population + k] = 0;
         add(nsga2, nsga2->population + k, value + k * nsga2->objectives);
@@ -306,19 +306,19 @@ enum status nsga2_tell(struct nsga2 *nsga2, const double *value) {
     return STATUS_OK;
 }
 
-double nsga2_diversity(const struct nsga2 *nsga2) {
+double mf_nsga2_diversity(const struct nsga2 *nsga2) {
     const size_t first = first_row(nsga2);
     double sum = 0;
     for (size_t n = 0; n < nsga2->genes; n++) {
         struct running_mean over = {0};
         for (size_t k = first; k < first + nsga2->population; k++)
-            statistics_add(&over, row(nsga2, k)[n]);
+            mf_statistics_add(&over, row(nsga2, k)[n]);
         sum += sqrt(over.squares / over.count);
     }
     return sum / (double)nsga2->genes;
 }
 
-size_t nsga2_spans(struct nsga2 *nsga2, struct memory_span *span) {
+size_t mf_nsga2_spans(struct nsga2 *nsga2, struct memory_span *span) {
     const size_t rows = 2 * nsga2->population;
     size_t n = 0;
     span[n++] = (struct memory_span){&nsga2->progress, sizeof nsga2->progress};

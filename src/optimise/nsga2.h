@@ -22,7 +22,7 @@ struct nsga2_parameters {
     double remeasured;                    ///< part of the population, in every round
 };
 
-extern const struct field nsga2_fields[];
+extern const struct field mf_nsga2_fields[];
 
 /// Genes are in [0, 1].
 struct nsga2_space {
@@ -51,61 +51,61 @@ struct nsga2 {
     } progress;
 };
 
-/// Fails: NO_MEMORY; BAD_INPUT without genes or objectives. nsga2_clear must follow all the same.
-enum status nsga2_init(struct nsga2 *nsga2, const struct nsga2_parameters *parameters,
+/// Fails: NO_MEMORY; BAD_INPUT without genes or objectives. mf_nsga2_clear must follow all the same.
+enum status mf_nsga2_init(struct nsga2 *nsga2, const struct nsga2_parameters *parameters,
                        const struct nsga2_space *space) MUST_USE;
-void nsga2_clear(struct nsga2 *nsga2);
+void mf_nsga2_clear(struct nsga2 *nsga2);
 
 /// The candidates of the next round; asking again gives the same.
-struct optimiser_round nsga2_ask(struct nsga2 *nsga2);
+struct optimiser_round mf_nsga2_ask(struct nsga2 *nsga2);
 
 /// What they measured. A candidate is failed if one of its objectives is OPTIMISER_FAILED, beyond
 /// that or not finite: all others dominate it.
 /// @param[in] value  shape [count, objectives]
 /// Fails: NO_MEMORY. Tested: test_nsga2.
-enum status nsga2_tell(struct nsga2 *nsga2, const double *value) MUST_USE;
+enum status mf_nsga2_tell(struct nsga2 *nsga2, const double *value) MUST_USE;
 
 /// Add a measurement to the means of a parent, and sort the parents anew. Fails: NO_MEMORY.
-enum status nsga2_add_measurement(struct nsga2 *nsga2, size_t parent, const double *value) MUST_USE;
+enum status mf_nsga2_add_measurement(struct nsga2 *nsga2, size_t parent, const double *value) MUST_USE;
 
 /// Let the next round have a child of these genes; once the round has been asked for, the one
 /// after. More than NSGA2_PLANTED, or than half the population, are forgotten.
-void nsga2_plant(struct nsga2 *nsga2, const double *genes);
+void mf_nsga2_plant(struct nsga2 *nsga2, const double *genes);
 
 /// Parents: none before the first tell. And the genes of one, shape [genes].
-size_t nsga2_parents(const struct nsga2 *nsga2);
-const double *nsga2_parent(const struct nsga2 *nsga2, size_t parent);
+size_t mf_nsga2_parents(const struct nsga2 *nsga2);
+const double *mf_nsga2_parent(const struct nsga2 *nsga2, size_t parent);
 
-bool nsga2_is_over(const struct nsga2 *nsga2);
+bool mf_nsga2_is_over(const struct nsga2 *nsga2);
 
 /// Mean over genes of the standard deviation over the parents.
-double nsga2_diversity(const struct nsga2 *nsga2);
+double mf_nsga2_diversity(const struct nsga2 *nsga2);
 
 /// The state between rounds, for a checkpoint.
 enum { NSGA2_SPANS = 8 };
-size_t nsga2_spans(struct nsga2 *nsga2, struct memory_span *spans);
+size_t mf_nsga2_spans(struct nsga2 *nsga2, struct memory_span *spans);
 
 /// @name Parts (nsga2_sort.c, nsga2_operators.c)
 struct rng_sequence;
 
 /// Whether a is nowhere worse than b, and somewhere better.
-bool nsga2_dominates(const double *a, const double *b, size_t objectives);
+bool mf_nsga2_dominates(const double *a, const double *b, size_t objectives);
 
 /// Fronts: rank 1 for those that nobody dominates, 2 for those that only rank 1 dominates, …
 /// @param[in]  value  shape [count, objectives]
 /// @param[out] rank   shape [count]
 /// Fails: NO_MEMORY.
-enum status nsga2_sort(const double *value, size_t count, size_t objectives,
+enum status mf_nsga2_sort(const double *value, size_t count, size_t objectives,
                        uint32_t *rank) MUST_USE;
 
 /// Crowding distances: the sum over objectives of the difference between both neighbours on the
 /// front, as a part of the front's range. Fails: NO_MEMORY.
-enum status nsga2_crowd(const double *value, size_t count, size_t objectives, const uint32_t *rank,
+enum status mf_nsga2_crowd(const double *value, size_t count, size_t objectives, const uint32_t *rank,
                         double *crowding) MUST_USE;
 
 /// Simulated binary crossover of two individuals in place, within [0, 1]: K. Deb and R. B. Agrawal,
 /// Complex Systems 9, 115 (1995). Children are as near to their parents as the exponent is large.
-void nsga2_cross(double *a, double *b, size_t genes, double exponent, struct rng_sequence *random);
+void mf_nsga2_cross(double *a, double *b, size_t genes, double exponent, struct rng_sequence *random);
 
 /// A gene moved by polynomial mutation within [0, 1].
-double nsga2_mutate(double gene, double exponent, struct rng_sequence *random);
+double mf_nsga2_mutate(double gene, double exponent, struct rng_sequence *random);

@@ -14,12 +14,12 @@ static double within(double x) {
     return fmin(1, fmax(0, x));
 }
 
-void nsga2_cross(double *a, double *b, size_t genes, double exponent, struct rng_sequence *random) {
+void mf_nsga2_cross(double *a, double *b, size_t genes, double exponent, struct rng_sequence *random) {
     static const double same = 1e-14;
     for (size_t k = 0; k < genes; k++) {
         const double low = fmin(a[k], b[k]), high = fmax(a[k], b[k]), apart = high - low;
-        const double chance = rng_sequence_uniform(random), u = rng_sequence_uniform(random);
-        const bool swapped = rng_sequence_uniform(random) < 0.5;
+        const double chance = mf_rng_sequence_uniform(random), u = mf_rng_sequence_uniform(random);
+        const bool swapped = mf_rng_sequence_uniform(random) < 0.5;
         if (chance >= 0.5 || apart < same)
             continue;
         const double below = spread_factor(u, 1 + 2 * low / apart, exponent);
@@ -31,8 +31,8 @@ void nsga2_cross(double *a, double *b, size_t genes, double exponent, struct rng
     }
 }
 
-double nsga2_mutate(double gene, double exponent, struct rng_sequence *random) {
-    const double u = rng_sequence_uniform(random), power = exponent + 1;
+double mf_nsga2_mutate(double gene, double exponent, struct rng_sequence *random) {
+    const double u = mf_rng_sequence_uniform(random), power = exponent + 1;
     const bool down = u < 0.5;
     const double room = pow(down ? 1 - gene : gene, power);
     if (down)

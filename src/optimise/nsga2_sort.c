@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-bool nsga2_dominates(const double *a, const double *b, size_t objectives) {
+bool mf_nsga2_dominates(const double *a, const double *b, size_t objectives) {
     bool better = false;
     for (size_t m = 0; m < objectives; m++) {
         if (a[m] > b[m])
@@ -13,7 +13,7 @@ bool nsga2_dominates(const double *a, const double *b, size_t objectives) {
     return better;
 }
 
-enum status nsga2_sort(const double *value, size_t count, size_t objectives, uint32_t *rank) {
+enum status mf_nsga2_sort(const double *value, size_t count, size_t objectives, uint32_t *rank) {
     enum status status = STATUS_OK;
     size_t *above = NULL; // those on no front yet that dominate each
     size_t left = count;
@@ -21,7 +21,7 @@ enum status nsga2_sort(const double *value, size_t count, size_t objectives, uin
     for (size_t a = 0; a < count; a++) {
         rank[a] = 0;
         for (size_t b = 0; b < count; b++)
-            above[a] += nsga2_dominates(value + b * objectives, value + a * objectives, objectives);
+            above[a] += mf_nsga2_dominates(value + b * objectives, value + a * objectives, objectives);
     }
     for (uint32_t front = 1; left > 0; front++) {
         for (size_t a = 0; a < count; a++)
@@ -32,10 +32,10 @@ enum status nsga2_sort(const double *value, size_t count, size_t objectives, uin
         for (size_t a = 0; a < count; a++)
             for (size_t b = 0; rank[a] == front && b < count; b++)
                 above[b] -=
-                    nsga2_dominates(value + a * objectives, value + b * objectives, objectives);
+                    mf_nsga2_dominates(value + a * objectives, value + b * objectives, objectives);
     }
 done:
-    memory_free(above);
+    mf_memory_free(above);
     return status;
 }
 
@@ -60,7 +60,7 @@ static void crowd_along(struct place *place, size_t count, double *crowding) {
         crowding[place[k].index] += (place[k + 1].value - place[k - 1].value) / range;
 }
 
-enum status nsga2_crowd(const double *value, size_t count, size_t objectives, const uint32_t *rank,
+enum status mf_nsga2_crowd(const double *value, size_t count, size_t objectives, const uint32_t *rank,
                         double *crowding) {
     enum status status = STATUS_OK;
     struct place *place = NULL;
@@ -82,6 +82,6 @@ enum status nsga2_crowd(const double *value, size_t count, size_t objectives, co
         done_with += members;
     }
 done:
-    memory_free(place);
+    mf_memory_free(place);
     return status;
 }

@@ -3,45 +3,45 @@
 
 #include <string.h>
 
-const struct optimiser *const optimisers[] = {&genetic_optimiser, &cmaes_optimiser,
-                                              &nlopt_optimiser, NULL};
+const struct optimiser *const mf_optimisers[] = {&mf_genetic_optimiser, &mf_cmaes_optimiser,
+                                              &mf_nlopt_optimiser, NULL};
 
-const struct optimiser *optimiser_find(const char *name) {
-    for (const struct optimiser *const *known = optimisers; *known; known++)
+const struct optimiser *mf_optimiser_find(const char *name) {
+    for (const struct optimiser *const *known = mf_optimisers; *known; known++)
         if (strcmp((*known)->name, name) == 0)
             return *known;
     return NULL;
 }
 
-enum status optimiser_check_space(const struct optimiser_space *space) {
+enum status mf_optimiser_check_space(const struct optimiser_space *space) {
     const double range = space->maximum - space->minimum;
     if (space->genes < 1)
-        return status_fail(STATUS_BAD_INPUT, "an optimiser needs at least one gene");
+        return mf_status_fail(STATUS_BAD_INPUT, "an optimiser needs at least one gene");
     if (!(range > 0 && range < HUGE_VAL))
-        return status_fail(STATUS_BAD_INPUT, "genes from %g to %g have no range to search",
+        return mf_status_fail(STATUS_BAD_INPUT, "genes from %g to %g have no range to search",
                            space->minimum, space->maximum);
     for (size_t k = 0; space->start && k < space->genes; k++)
         if (!isfinite(space->start[k]))
-            return status_fail(STATUS_BAD_INPUT, "gene %zu of the start is %g", k, space->start[k]);
+            return mf_status_fail(STATUS_BAD_INPUT, "gene %zu of the start is %g", k, space->start[k]);
     return STATUS_OK;
 }
 
-enum status optimiser_check_round(const struct optimiser_space *space, size_t count) {
+enum status mf_optimiser_check_round(const struct optimiser_space *space, size_t count) {
     if (space->most == 0 || count <= space->most)
         return STATUS_OK;
-    return status_fail(STATUS_BAD_INPUT,
+    return mf_status_fail(STATUS_BAD_INPUT,
                        "\"population\" makes rounds of %zu candidates, and %zu are the most", count,
                        space->most);
 }
 
-double optimiser_reflect(double x) {
+double mf_optimiser_reflect(double x) {
     if (!isfinite(x))
         return 0;
     const double within = fabs(fmod(x, 2));
     return within <= 1 ? within : 2 - within;
 }
 
-double optimiser_start(const struct optimiser_space *space, size_t gene) {
+double mf_optimiser_start(const struct optimiser_space *space, size_t gene) {
     if (space->start == NULL)
         return 0.5;
     const double x = (space->start[gene] - space->minimum) / (space->maximum - space->minimum);

@@ -73,21 +73,21 @@ struct optimiser {
 };
 
 /// All optimisers, NULL-terminated.
-extern const struct optimiser *const optimisers[];
+extern const struct optimiser *const mf_optimisers[];
 
 /// The one of that name, or NULL.
-const struct optimiser *optimiser_find(const char *name);
+const struct optimiser *mf_optimiser_find(const char *name);
 
 /// @name For those who write one
 
-extern const struct optimiser genetic_optimiser, cmaes_optimiser, nlopt_optimiser;
+extern const struct optimiser mf_genetic_optimiser, mf_cmaes_optimiser, mf_nlopt_optimiser;
 
 /// Fails with BAD_INPUT unless there are genes and a box of finite, positive size, and the start,
 /// if there is one, is finite.
-enum status optimiser_check_space(const struct optimiser_space *space) MUST_USE;
+enum status mf_optimiser_check_space(const struct optimiser_space *space) MUST_USE;
 
 /// Fails with BAD_INPUT if a round of `count` candidates is more than there may be.
-enum status optimiser_check_round(const struct optimiser_space *space, size_t count) MUST_USE;
+enum status mf_optimiser_check_round(const struct optimiser_space *space, size_t count) MUST_USE;
 
 /// An error as it was told, or OPTIMISER_FAILED if it is not finite or beyond that.
 static inline double optimiser_error(double told) {
@@ -96,7 +96,7 @@ static inline double optimiser_error(double told) {
 
 /// `x` folded into [0, 1] by mirrors at both ends, so that what is beyond is as far inside.
 /// Fails: never; what is not finite becomes 0.
-double optimiser_reflect(double x);
+double mf_optimiser_reflect(double x);
 
 /// Gene at a fraction of the range, never beyond its ends by rounding.
 static inline double optimiser_gene(const struct optimiser_space *space, double fraction) {
@@ -105,7 +105,7 @@ static inline double optimiser_gene(const struct optimiser_space *space, double 
 }
 
 /// Where `space->start` is as a fraction of the range, the middle if there is none.
-double optimiser_start(const struct optimiser_space *space, size_t gene);
+double mf_optimiser_start(const struct optimiser_space *space, size_t gene);
 
 /// @name Parameters, for those who drive one by its name
-extern const struct field genetic_fields[], cmaes_fields[], nlopt_fields[];
+extern const struct field mf_genetic_fields[], mf_cmaes_fields[], mf_nlopt_fields[];

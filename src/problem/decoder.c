@@ -12,22 +12,22 @@ static const struct unknown *unknown_of(const struct decoder *decoder, enum unkn
     return &decoder->problem->unknown[kind];
 }
 
-size_t decoder_curve_count(const struct decoder *decoder, enum unknown_kind kind) {
+size_t mf_decoder_curve_count(const struct decoder *decoder, enum unknown_kind kind) {
     return kind == UNKNOWN_POTENTIAL ? decoder->potential.pairs : 1;
 }
 
-bool decoder_fits(const struct decoder *decoder, enum unknown_kind kind, size_t point) {
-    const size_t each = decoder_points(decoder, kind) / decoder_curve_count(decoder, kind);
+bool mf_decoder_fits(const struct decoder *decoder, enum unknown_kind kind, size_t point) {
+    const size_t each = mf_decoder_points(decoder, kind) / mf_decoder_curve_count(decoder, kind);
     return point % each + 1 < each &&
-           !(kind == UNKNOWN_POTENTIAL && potential_grid_in_core(&decoder->potential, point));
+           !(kind == UNKNOWN_POTENTIAL && mf_potential_grid_in_core(&decoder->potential, point));
 }
 
-void decoder_curve_name(const struct decoder *decoder, enum unknown_kind kind, size_t curve,
+void mf_decoder_curve_name(const struct decoder *decoder, enum unknown_kind kind, size_t curve,
                         char name[DECODER_NAME_SIZE]) {
     char pair[COMPOSITION_PAIR_NAME_SIZE] = "";
     if (kind == UNKNOWN_POTENTIAL)
-        composition_pair_name(&decoder->problem->scene.composition, (int)curve, pair);
-    snprintf(name, DECODER_NAME_SIZE, "%s%s%s", inverse_unknown_names[kind], pair[0] ? "_" : "",
+        mf_composition_pair_name(&decoder->problem->scene.composition, (int)curve, pair);
+    snprintf(name, DECODER_NAME_SIZE, "%s%s%s", mf_inverse_unknown_names[kind], pair[0] ? "_" : "",
              pair);
 }
 
@@ -35,9 +35,9 @@ static size_t genes_of_curve(const struct decoder *decoder, enum unknown_kind ki
     return (size_t)unknown_of(decoder, kind)->parameters.genes;
 }
 
-size_t decoder_genes(const struct decoder *decoder, enum unknown_kind kind) {
+size_t mf_decoder_genes(const struct decoder *decoder, enum unknown_kind kind) {
     return unknown_of(decoder, kind)->wanted
-               ? decoder_curve_count(decoder, kind) * genes_of_curve(decoder, kind)
+               ? mf_decoder_curve_count(decoder, kind) * genes_of_curve(decoder, kind)
                : 0;
 }
 
@@ -46,17 +46,17 @@ static size_t first_point(const struct decoder *decoder, enum unknown_kind kind,
     return kind == UNKNOWN_POTENTIAL ? decoder->potential.core[curve] : 0;
 }
 
-size_t decoder_points(const struct decoder *decoder, enum unknown_kind kind) {
+size_t mf_decoder_points(const struct decoder *decoder, enum unknown_kind kind) {
     if (!unknown_of(decoder, kind)->wanted)
         return 0;
     return kind == UNKNOWN_POTENTIAL ? decoder->potential.points : WEIGHT_POINTS;
 }
 
 static size_t points_of_curve(const struct decoder *decoder, enum unknown_kind kind) {
-    return decoder_points(decoder, kind) / decoder_curve_count(decoder, kind);
+    return mf_decoder_points(decoder, kind) / mf_decoder_curve_count(decoder, kind);
 }
 
-const double *decoder_r(const struct decoder *decoder, enum unknown_kind kind) {
+const double *mf_decoder_r(const struct decoder *decoder, enum unknown_kind kind) {
     return kind == UNKNOWN_POTENTIAL ? decoder->potential.r : decoder->weight.r;
 }
 
@@ -65,7 +65,7 @@ static void find_places(const struct decoder *decoder, enum unknown_kind kind, s
                         double *place) {
     const size_t points = points_of_curve(decoder, kind);
     const size_t first = first_point(decoder, kind, curve);
-    const double *r = decoder_r(decoder, kind) + curve * points;
+    const double *r = mf_decoder_r(decoder, kind) + curve * points;
     for (size_t k = first; k < points; k++)
         place[k - first] = (r[k] - r[first]) / (r[points - 1] - r[first]);
 }
@@ -77,21 +77,21 @@ static bool is_formula(const struct decoder *decoder, enum unknown_kind kind) {
 /// Basis of one curve: its block of the whole.
 static enum status fill_block(struct decoder *decoder, enum unknown_kind kind, size_t curve) {
     enum status status = STATUS_OK;
-    const size_t genes = decoder_genes(decoder, kind), own = genes_of_curve(decoder, kind);
+    const size_t genes = mf_decoder_genes(decoder, kind), own = genes_of_curve(decoder, kind);
     const size_t points = points_of_curve(decoder, kind);
     const size_t first = first_point(decoder, kind, curve), moving = points - first;
     double *place = NULL, *block = NULL;
     NEW_ARRAY(place, moving);
     NEW_ARRAY(block, moving * own);
     find_places(decoder, kind, curve, place);
-    CHECK(shape_basis(shapes[unknown_of(decoder, kind)->parameters.shape], own, place, moving,
+    CHECK(mf_shape_basis(mf_shapes[unknown_of(decoder, kind)->parameters.shape], own, place, moving,
                       block));
     for (size_t k = 0; k < moving; k++)
         memcpy(decoder->basis[kind] + (curve * points + first + k) * genes + curve * own,
                block + k * own, own * sizeof *block);
 done:
-    memory_free(place);
-    memory_free(block);
+    mf_memory_free(place);
+    mf_memory_free(block);
     return status;
 }
 
@@ -99,32 +99,32 @@ static enum status make_basis(struct decoder *decoder, enum unknown_kind kind) {
     enum status status = STATUS_OK;
     if (is_formula(decoder, kind))
         return STATUS_OK;
-    NEW_ARRAY(decoder->basis[kind], decoder_points(decoder, kind) * decoder_genes(decoder, kind));
-    for (size_t curve = 0; curve < decoder_curve_count(decoder, kind); curve++)
+    NEW_ARRAY(decoder->basis[kind], mf_decoder_points(decoder, kind) * mf_decoder_genes(decoder, kind));
+    for (size_t curve = 0; curve < mf_decoder_curve_count(decoder, kind); curve++)
         CHECK(fill_block(decoder, kind, curve));
 done:
     return status;
 }
 
-enum status decoder_init(struct decoder *decoder, const struct inverse_problem *problem) {
+enum status mf_decoder_init(struct decoder *decoder, const struct inverse_problem *problem) {
     *decoder = (struct decoder){.problem = problem};
     if (problem->unknown[UNKNOWN_POTENTIAL].wanted)
-        TRY(potential_grid_init(&decoder->potential, problem));
+        TRY(mf_potential_grid_init(&decoder->potential, problem));
     const struct unknown_parameters *weight = &problem->unknown[UNKNOWN_WEIGHT].parameters;
-    weight_grid_init(&decoder->weight, weight->inner_cutoff, weight->cutoff);
+    mf_weight_grid_init(&decoder->weight, weight->inner_cutoff, weight->cutoff);
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         decoder->first[kind] = decoder->genes;
-        decoder->genes += decoder_genes(decoder, kind);
+        decoder->genes += mf_decoder_genes(decoder, kind);
         if (problem->unknown[kind].wanted)
             TRY(make_basis(decoder, kind));
     }
     return STATUS_OK;
 }
 
-void decoder_clear(struct decoder *decoder) {
-    potential_grid_clear(&decoder->potential);
+void mf_decoder_clear(struct decoder *decoder) {
+    mf_potential_grid_clear(&decoder->potential);
     for (int kind = 0; kind < UNKNOWNS; kind++)
-        memory_free(decoder->basis[kind]);
+        mf_memory_free(decoder->basis[kind]);
     *decoder = (struct decoder){0};
 }
 
@@ -132,8 +132,8 @@ void decoder_clear(struct decoder *decoder) {
 static void linear_curve(const struct decoder *decoder, enum unknown_kind kind, const double *x,
                          double *curve) {
     const struct unknown_parameters *p = &unknown_of(decoder, kind)->parameters;
-    const size_t count = decoder_genes(decoder, kind);
-    for (size_t k = 0; k < decoder_points(decoder, kind); k++) {
+    const size_t count = mf_decoder_genes(decoder, kind);
+    for (size_t k = 0; k < mf_decoder_points(decoder, kind); k++) {
         const double *row = decoder->basis[kind] + k * count;
         double sum = 0;
         for (size_t n = 0; n < count; n++)
@@ -158,7 +158,7 @@ static struct span parameter_span(const struct unknown_parameters *p, int parame
     return spans[parameter];
 }
 
-const char *decoder_parameter_bound(const struct unknown_parameters *p, int parameter,
+const char *mf_decoder_parameter_bound(const struct unknown_parameters *p, int parameter,
                                     double value) {
     static const double near = 1e-3;
     const struct span span = parameter_span(p, parameter);
@@ -168,7 +168,7 @@ const char *decoder_parameter_bound(const struct unknown_parameters *p, int para
     return part < near ? "minimum" : part > 1 - near ? "maximum" : NULL;
 }
 
-void decoder_parameters(const struct decoder *decoder, const double *genes,
+void mf_decoder_parameters(const struct decoder *decoder, const double *genes,
                         const double *covariance,
                         struct inverse_parameter parameter[INVERSE_PARAMETERS]) {
     const struct unknown_parameters *p = &unknown_of(decoder, UNKNOWN_WEIGHT)->parameters;
@@ -193,34 +193,34 @@ void decoder_parameters(const struct decoder *decoder, const double *genes,
 
 static void power_curve(const struct decoder *decoder, const double *genes, double *curve) {
     struct inverse_parameter found[INVERSE_PARAMETERS];
-    decoder_parameters(decoder, genes, NULL, found);
+    mf_decoder_parameters(decoder, genes, NULL, found);
     struct formula_power_weight_parameters formula = {
         .sigma = found[INVERSE_SIGMA].value,
         .exponent = found[INVERSE_EXPONENT].value,
         .inner_cutoff = found[INVERSE_INNER_CUTOFF].value,
         .cutoff = unknown_of(decoder, UNKNOWN_WEIGHT)->parameters.cutoff};
-    const struct curve power = {&formula_power_weight, &formula};
+    const struct curve power = {&mf_formula_power_weight, &formula};
     for (size_t k = 0; k < WEIGHT_POINTS; k++)
-        curve[k] = fmax(0, curve_value(&power, decoder->weight.r[k]));
+        curve[k] = fmax(0, mf_curve_value(&power, decoder->weight.r[k]));
 }
 
-void decoder_curve(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
+void mf_decoder_curve(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
                    double *curve) {
     if (is_formula(decoder, kind))
         power_curve(decoder, genes, curve);
     else
         linear_curve(decoder, kind, genes + decoder->first[kind], curve);
     if (kind == UNKNOWN_POTENTIAL)
-        potential_grid_complete(&decoder->potential, curve);
+        mf_potential_grid_complete(&decoder->potential, curve);
 }
 
-enum status decoder_table(const struct decoder *decoder, enum unknown_kind kind,
+enum status mf_decoder_table(const struct decoder *decoder, enum unknown_kind kind,
                           const double *curve, struct table *table) {
-    return kind == UNKNOWN_POTENTIAL ? potential_grid_table(&decoder->potential, curve, table)
-                                     : weight_grid_table(&decoder->weight, curve, table);
+    return kind == UNKNOWN_POTENTIAL ? mf_potential_grid_table(&decoder->potential, curve, table)
+                                     : mf_weight_grid_table(&decoder->weight, curve, table);
 }
 
-enum status decoder_laws(const struct decoder *decoder, const double *genes,
+enum status mf_decoder_laws(const struct decoder *decoder, const double *genes,
                          struct decoder_laws *laws) {
     enum status status = STATUS_OK;
     const struct simulation_setup *scene = &decoder->problem->scene;
@@ -229,33 +229,33 @@ enum status decoder_laws(const struct decoder *decoder, const double *genes,
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         if (!unknown_of(decoder, kind)->wanted)
             continue;
-        memory_free(curve);
-        NEW_ARRAY(curve, decoder_points(decoder, kind));
-        decoder_curve(decoder, kind, genes, curve);
-        CHECK(decoder_table(decoder, kind, curve, &laws->own[kind]));
+        mf_memory_free(curve);
+        NEW_ARRAY(curve, mf_decoder_points(decoder, kind));
+        mf_decoder_curve(decoder, kind, genes, curve);
+        CHECK(mf_decoder_table(decoder, kind, curve, &laws->own[kind]));
         laws->table[kind] = &laws->own[kind];
     }
 done:
-    memory_free(curve);
+    mf_memory_free(curve);
     return status;
 }
 
-void decoder_laws_clear(struct decoder_laws *laws) {
+void mf_decoder_laws_clear(struct decoder_laws *laws) {
     for (int kind = 0; kind < UNKNOWNS; kind++)
-        table_clear(&laws->own[kind]);
+        mf_table_clear(&laws->own[kind]);
 }
 
 /// The curve that a fit begins with, on the points of the unknown.
 static void start_curve(const struct decoder *decoder, enum unknown_kind kind, double *curve) {
     const struct unknown *unknown = unknown_of(decoder, kind);
     if (kind == UNKNOWN_POTENTIAL) {
-        potential_grid_start(&decoder->potential, decoder->problem, curve);
+        mf_potential_grid_start(&decoder->potential, decoder->problem, curve);
         return;
     }
     const struct weight_grid *grid = &decoder->weight;
     const double middle = 0.5 * (unknown->parameters.minimum + unknown->parameters.maximum);
     for (int k = 0; k < WEIGHT_POINTS; k++)
-        curve[k] = unknown->start[0] ? curve_value(unknown->start[0], grid->r[k])
+        curve[k] = unknown->start[0] ? mf_curve_value(unknown->start[0], grid->r[k])
                                      : middle * (1 - grid->r[k] / grid->cutoff);
 }
 
@@ -267,7 +267,7 @@ static void start_power(const struct decoder *decoder, double *genes) {
     double value[INVERSE_PARAMETERS] = {[INVERSE_SIGMA] = 0.5 * (p->minimum + p->maximum),
                                         [INVERSE_EXPONENT] = 1,
                                         [INVERSE_INNER_CUTOFF] = p->inner_cutoff};
-    if (unknown->start[0] && unknown->start[0]->family == &formula_power_weight) {
+    if (unknown->start[0] && unknown->start[0]->family == &mf_formula_power_weight) {
         const struct formula_power_weight_parameters *start = unknown->start[0]->parameters;
         value[INVERSE_SIGMA] = start->sigma;
         value[INVERSE_EXPONENT] = start->exponent;
@@ -285,7 +285,7 @@ static enum status start_of_curve(const struct decoder *decoder, enum unknown_ki
                                   size_t number, double *curve, double *genes) {
     enum status status = STATUS_OK;
     const struct unknown_parameters *p = &unknown_of(decoder, kind)->parameters;
-    const size_t count = genes_of_curve(decoder, kind), all = decoder_genes(decoder, kind);
+    const size_t count = genes_of_curve(decoder, kind), all = mf_decoder_genes(decoder, kind);
     const size_t first = first_point(decoder, kind, number),
                  points = points_of_curve(decoder, kind);
     const double *block = decoder->basis[kind] + number * (points * all + count);
@@ -297,11 +297,11 @@ static enum status start_of_curve(const struct decoder *decoder, enum unknown_ki
     for (size_t k = first; k < points; k++)
         for (size_t n = 0; n < count; n++)
             curve[k] -= middle * block[k * all + n];
-    CHECK(shape_fit(shapes[p->shape], place, curve + first, NULL, points - first, genes, count));
+    CHECK(mf_shape_fit(mf_shapes[p->shape], place, curve + first, NULL, points - first, genes, count));
     for (size_t k = 0; k < count; k++)
         genes[k] = fmin(1, fmax(0, 0.5 + genes[k] / range));
 done:
-    memory_free(place);
+    mf_memory_free(place);
     return status;
 }
 
@@ -312,17 +312,17 @@ static enum status start_of(const struct decoder *decoder, enum unknown_kind kin
         start_power(decoder, genes);
         return STATUS_OK;
     }
-    NEW_ARRAY(curve, decoder_points(decoder, kind));
+    NEW_ARRAY(curve, mf_decoder_points(decoder, kind));
     start_curve(decoder, kind, curve);
-    for (size_t n = 0; n < decoder_curve_count(decoder, kind); n++)
+    for (size_t n = 0; n < mf_decoder_curve_count(decoder, kind); n++)
         CHECK(start_of_curve(decoder, kind, n, curve + n * points_of_curve(decoder, kind),
                              genes + n * genes_of_curve(decoder, kind)));
 done:
-    memory_free(curve);
+    mf_memory_free(curve);
     return status;
 }
 
-enum status decoder_start(const struct decoder *decoder, double *genes) {
+enum status mf_decoder_start(const struct decoder *decoder, double *genes) {
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (unknown_of(decoder, kind)->wanted)
             TRY(start_of(decoder, kind, genes + decoder->first[kind]));

@@ -18,41 +18,41 @@ struct decoder {
     double *basis[UNKNOWNS]; ///< shape [points, genes of it]: curve = basis · x; NULL: a formula
 };
 
-/// Fails: NO_MEMORY; BAD_INPUT as potential_grid_init.
-enum status decoder_init(struct decoder *decoder, const struct inverse_problem *problem) MUST_USE;
-void decoder_clear(struct decoder *decoder);
+/// Fails: NO_MEMORY; BAD_INPUT as mf_potential_grid_init.
+enum status mf_decoder_init(struct decoder *decoder, const struct inverse_problem *problem) MUST_USE;
+void mf_decoder_clear(struct decoder *decoder);
 
 /// Genes of an unknown; 0 if it is known.
-size_t decoder_genes(const struct decoder *decoder, enum unknown_kind kind);
+size_t mf_decoder_genes(const struct decoder *decoder, enum unknown_kind kind);
 
 /// Points of an unknown's curve; 0 if it is known. And where they are [λ].
-size_t decoder_points(const struct decoder *decoder, enum unknown_kind kind);
-const double *decoder_r(const struct decoder *decoder, enum unknown_kind kind);
+size_t mf_decoder_points(const struct decoder *decoder, enum unknown_kind kind);
+const double *mf_decoder_r(const struct decoder *decoder, enum unknown_kind kind);
 
 /// The curves that an unknown is made of, one behind the other with as many points each: potentials
 /// are one for each kind of pairs. And whether a point of them is fitted: not in a core, and not at
 /// the cutoff.
-size_t decoder_curve_count(const struct decoder *decoder, enum unknown_kind kind);
-bool decoder_fits(const struct decoder *decoder, enum unknown_kind kind, size_t point);
+size_t mf_decoder_curve_count(const struct decoder *decoder, enum unknown_kind kind);
+bool mf_decoder_fits(const struct decoder *decoder, enum unknown_kind kind, size_t point);
 
 /// What files call one of them: "potential", or "potential_A-B" in a mixture.
 enum { DECODER_NAME_SIZE = COMPOSITION_PAIR_NAME_SIZE + 16 };
-void decoder_curve_name(const struct decoder *decoder, enum unknown_kind kind, size_t curve,
+void mf_decoder_curve_name(const struct decoder *decoder, enum unknown_kind kind, size_t curve,
                         char name[DECODER_NAME_SIZE]);
 
 /// Curve of some genes, shape [points]. A weight that would be negative is 0.
-void decoder_curve(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
+void mf_decoder_curve(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
                    double *curve);
 
 /// Parameters of a weight that is a formula, and their standard errors from the covariance of the
-/// genes as in decoder_band; that may be NULL. Tested: test_decoder.
-void decoder_parameters(const struct decoder *decoder, const double *genes,
+/// genes as in mf_decoder_band; that may be NULL. Tested: test_decoder.
+void mf_decoder_parameters(const struct decoder *decoder, const double *genes,
                         const double *covariance,
                         struct inverse_parameter parameter[INVERSE_PARAMETERS]);
 
 /// The end of its range, "minimum" or "maximum", that a parameter of the formula has come to within
 /// a thousandth of the range; NULL if none, or if it is held fixed. Tested: test_decoder.
-const char *decoder_parameter_bound(const struct unknown_parameters *p, int parameter,
+const char *mf_decoder_parameter_bound(const struct unknown_parameters *p, int parameter,
                                     double value);
 
 /// Standard errors of the curve of some genes, shape [points], from the covariance of the genes,
@@ -60,11 +60,11 @@ const char *decoder_parameter_bound(const struct unknown_parameters *p, int para
 /// @param[out] flat  as curve_flat of an inverse_step: principal components of the curve's errors,
 ///                   each upwards where it is largest; NaN as the errors
 /// Fails: NO_MEMORY.
-enum status decoder_band(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
+enum status mf_decoder_band(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
                          const double *covariance, double *error, double *flat) MUST_USE;
 
 /// Table for the kernels from a curve. Fails: NO_MEMORY.
-enum status decoder_table(const struct decoder *decoder, enum unknown_kind kind,
+enum status mf_decoder_table(const struct decoder *decoder, enum unknown_kind kind,
                           const double *curve, struct table *table) MUST_USE;
 
 /// Tables of all unknowns from genes, and those of the scene for what is known. What was made must
@@ -73,14 +73,14 @@ struct decoder_laws {
     struct table own[UNKNOWNS]; ///< zero for what is known
     const struct table *table[UNKNOWNS];
 };
-enum status decoder_laws(const struct decoder *decoder, const double *genes,
+enum status mf_decoder_laws(const struct decoder *decoder, const double *genes,
                          struct decoder_laws *laws) MUST_USE;
-void decoder_laws_clear(struct decoder_laws *laws);
+void mf_decoder_laws_clear(struct decoder_laws *laws);
 
 /// Genes nearest to the curves that the fit begins with: those of the run file, or the potential of
 /// mean force and a weight that falls linearly from the middle of its range.
 /// Fails: NO_MEMORY.
-enum status decoder_start(const struct decoder *decoder, double *genes) MUST_USE;
+enum status mf_decoder_start(const struct decoder *decoder, double *genes) MUST_USE;
 
 /// The unknowns' curves with their standard errors, for a method to show.
 struct decoder_curves {
@@ -88,18 +88,18 @@ struct decoder_curves {
     double *flat[UNKNOWNS];                    ///< as curve_flat of an inverse_step
     struct inverse_parameter parameter[INVERSE_PARAMETERS];
 };
-enum status decoder_curves_init(const struct decoder *decoder,
+enum status mf_decoder_curves_init(const struct decoder *decoder,
                                 struct decoder_curves *curves) MUST_USE;
-void decoder_curves_clear(struct decoder_curves *curves);
+void mf_decoder_curves_clear(struct decoder_curves *curves);
 
 /// Put the curves of some genes into a step.
-void decoder_curves_show(const struct decoder *decoder, const double *genes,
+void mf_decoder_curves_show(const struct decoder *decoder, const double *genes,
                          struct decoder_curves *curves, struct inverse_step *step);
 
-/// Standard errors of all curves and parameters, as decoder_band. Fails: NO_MEMORY.
-enum status decoder_curves_bands(const struct decoder *decoder, const double *genes,
+/// Standard errors of all curves and parameters, as mf_decoder_band. Fails: NO_MEMORY.
+enum status mf_decoder_curves_bands(const struct decoder *decoder, const double *genes,
                                  const double *covariance, struct decoder_curves *curves) MUST_USE;
 
 /// The errors, for a checkpoint.
-size_t decoder_curves_spans(const struct decoder *decoder, struct decoder_curves *curves,
+size_t mf_decoder_curves_spans(const struct decoder *decoder, struct decoder_curves *curves,
                             struct memory_span *spans);

@@ -9,7 +9,7 @@ static enum status find_slopes(const struct decoder *decoder, enum unknown_kind 
                                const double *genes, double *slopes) {
     enum status status = STATUS_OK;
     const struct unknown_parameters *p = &decoder->problem->unknown[kind].parameters;
-    const size_t count = decoder_genes(decoder, kind), points = decoder_points(decoder, kind);
+    const size_t count = mf_decoder_genes(decoder, kind), points = mf_decoder_points(decoder, kind);
     double *moved = NULL, *curve = NULL;
     if (decoder->basis[kind]) {
         for (size_t k = 0; k < points * count; k++)
@@ -23,14 +23,14 @@ static enum status find_slopes(const struct decoder *decoder, enum unknown_kind 
         for (int side = 0; side < 2; side++) {
             memcpy(moved, genes, decoder->genes * sizeof *genes);
             moved[decoder->first[kind] + n] += side ? step : -step;
-            decoder_curve(decoder, kind, moved, curve + (size_t)side * points);
+            mf_decoder_curve(decoder, kind, moved, curve + (size_t)side * points);
         }
         for (size_t k = 0; k < points; k++)
             slopes[k * count + n] = (curve[points + k] - curve[k]) / (2 * step);
     }
 done:
-    memory_free(moved);
-    memory_free(curve);
+    mf_memory_free(moved);
+    mf_memory_free(curve);
     return status;
 }
 
@@ -95,8 +95,8 @@ static enum status find_flat(const double *slopes, const double *covariance, siz
     for (size_t k = 0; k < points; k++)
         flat[k] *= sqrt(length);
 done:
-    memory_free(gene);
-    memory_free(moved);
+    mf_memory_free(gene);
+    mf_memory_free(moved);
     return status;
 }
 
@@ -115,16 +115,16 @@ static void find_errors(const double *slopes, const double *covariance, size_t p
 
 /// A core is set: it has no error.
 static void forget_core(const struct decoder *decoder, enum unknown_kind kind, double *values) {
-    for (size_t k = 0; k < decoder_points(decoder, kind); k++)
-        if (kind == UNKNOWN_POTENTIAL && potential_grid_in_core(&decoder->potential, k))
+    for (size_t k = 0; k < mf_decoder_points(decoder, kind); k++)
+        if (kind == UNKNOWN_POTENTIAL && mf_potential_grid_in_core(&decoder->potential, k))
             values[k] = NAN;
 }
 
-enum status decoder_band(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
+enum status mf_decoder_band(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
                          const double *covariance, double *error, double *flat) {
     enum status status = STATUS_OK;
-    const size_t count = decoder_genes(decoder, kind), at = decoder->first[kind];
-    const size_t points = decoder_points(decoder, kind);
+    const size_t count = mf_decoder_genes(decoder, kind), at = decoder->first[kind];
+    const size_t points = mf_decoder_points(decoder, kind);
     double *slopes = NULL, *own = NULL;
     for (size_t k = 0; k < points; k++)
         error[k] = NAN;
@@ -145,7 +145,7 @@ enum status decoder_band(const struct decoder *decoder, enum unknown_kind kind, 
     for (size_t n = 0; n < INVERSE_FLAT; n++)
         forget_core(decoder, kind, flat + n * points);
 done:
-    memory_free(slopes);
-    memory_free(own);
+    mf_memory_free(slopes);
+    mf_memory_free(own);
     return status;
 }

@@ -13,32 +13,32 @@ enum { PARTS = 16, LEAST_SAMPLES = 4 };
 static bool has_collapsed(const struct simulation *simulation) {
     const struct neighbours *neighbours = &simulation->neighbours;
     const double count = (double)simulation->particles.count;
-    const double uniform = 0.5 * count * particles_density(&simulation->particles) *
-                           box_shell_volume(&simulation->particles.box, 0, neighbours->range);
-    return (double)neighbours_listed(neighbours) > collapse_factor * uniform;
+    const double uniform = 0.5 * count * mf_particles_density(&simulation->particles) *
+                           mf_box_shell_volume(&simulation->particles.box, 0, neighbours->range);
+    return (double)mf_neighbours_listed(neighbours) > collapse_factor * uniform;
 }
 
 static enum status equilibrate(struct simulation *simulation, const struct measure_plan *plan,
                                double tolerance) {
     double temperature;
-    TRY(measure_equilibrate(simulation, plan, &temperature, NULL));
+    TRY(mf_measure_equilibrate(simulation, plan, &temperature, NULL));
     const double wanted = simulation->setup.temperature;
     if (!(fabs(temperature / wanted - 1) <= tolerance))
-        return status_fail(STATUS_UNSTABLE, "the temperature is %.3g after equilibration, not %.3g",
+        return mf_status_fail(STATUS_UNSTABLE, "the temperature is %.3g after equilibration, not %.3g",
                            temperature, wanted);
     if (has_collapsed(simulation))
-        return status_fail(STATUS_UNSTABLE, "the particles have collapsed into a drop");
+        return mf_status_fail(STATUS_UNSTABLE, "the particles have collapsed into a drop");
     return STATUS_OK;
 }
 
 static enum status score(const struct observation *observation, struct observed *observed,
                          struct evaluate_result *result) {
     const struct goals *goals = observation->goals;
-    TRY(observation_result(observation, 1, observed));
-    observation_distance(observed, goals, result->distance);
-    result->error = goals_error(goals, result->distance);
-    result->noise = goals_noise(goals, result->distance);
-    result->variance = goals_variance(goals, result->distance);
+    TRY(mf_observation_result(observation, 1, observed));
+    mf_observation_distance(observed, goals, result->distance);
+    result->error = mf_goals_error(goals, result->distance);
+    result->noise = mf_goals_noise(goals, result->distance);
+    result->variance = mf_goals_variance(goals, result->distance);
     return STATUS_OK;
 }
 
@@ -64,13 +64,13 @@ static enum status sample(struct observation *observation, double hopeless,
         so_far.samples = plan->samples * part / PARTS;
         if (so_far.samples < LEAST_SAMPLES)
             continue;
-        TRY(measure_sample(&observation->simulation, &so_far, observation->targets, NULL));
+        TRY(mf_measure_sample(&observation->simulation, &so_far, observation->targets, NULL));
         TRY(score(observation, observed, result));
         result->stopped = says_enough(result, hopeless, parameters);
         if (result->stopped)
             return STATUS_OK;
     }
-    TRY(measure_sample(&observation->simulation, plan, observation->targets, NULL));
+    TRY(mf_measure_sample(&observation->simulation, plan, observation->targets, NULL));
     return score(observation, observed, result);
 }
 
@@ -86,7 +86,7 @@ static void copy_positions(const struct particles *particles, double *const *pos
     }
 }
 
-enum status evaluate(const struct inverse_problem *problem,
+enum status mf_evaluate(const struct inverse_problem *problem,
                      const struct evaluate_candidate *candidate,
                      const struct evaluate_parameters *parameters, double *features,
                      double *const *position, struct evaluate_result *result) {
@@ -104,17 +104,17 @@ enum status evaluate(const struct inverse_problem *problem,
                                                 parameters->estimator == RDF_FORCE_USED,
                                             .threads = candidate->threads,
                                             .seed = candidate->seed};
-    CHECK(observation_values_init(&observed, &problem->goals));
-    CHECK(observation_init(&observation, problem, &setup));
+    CHECK(mf_observation_values_init(&observed, &problem->goals));
+    CHECK(mf_observation_init(&observation, problem, &setup));
     CHECK(equilibrate(&observation.simulation, &plan, parameters->temperature_tolerance));
     CHECK(sample(&observation, candidate->hopeless, parameters, &observed, result));
     if (features)
-        goals_take_features(&problem->goals, observed.value, features, NULL);
+        mf_goals_take_features(&problem->goals, observed.value, features, NULL);
     if (position)
         copy_positions(&observation.simulation.particles, position);
 done:
     result->engine_steps = observation.simulation.step;
-    observation_clear(&observation);
-    observation_values_clear(&observed);
+    mf_observation_clear(&observation);
+    mf_observation_values_clear(&observed);
     return status;
 }

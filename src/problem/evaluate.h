@@ -8,7 +8,7 @@
 struct evaluate_parameters {
     struct measure_plan plan;
     double temperature_tolerance; ///< largest |T/T_set − 1| at the end of the equilibration
-    int estimator;    ///< of g(r), enum rdf_force_estimator; without a barrier (rdf_force_applies)
+    int estimator;    ///< of g(r), enum rdf_force_estimator; without a barrier (mf_rdf_force_applies)
                       ///< the histogram
     double patience;  ///< standard errors by which a running error must be beyond `hopeless` before
                       ///< a simulation is stopped; 0: never
@@ -27,7 +27,7 @@ struct evaluate_candidate {
 /// Result of one short simulation.
 struct evaluate_result {
     struct goal_distance distance[GOALS];
-    double error;          ///< goals_error
+    double error;          ///< mf_goals_error
     double noise;          ///< expected from the statistical errors of both
     double variance;       ///< of the error
     bool stopped;          ///< before its time
@@ -35,12 +35,12 @@ struct evaluate_result {
 };
 
 /// One simulation of the problem's scene.
-/// @param[out] features  of what was measured, shape [goals_features], or NULL
+/// @param[out] features  of what was measured, shape [mf_goals_features], or NULL
 /// @param[out] position  where the particles were at the end, shape [dimensions][count] by particle
 ///                       number, or NULL
 /// Fails: UNSTABLE if it blows up, leaves its temperature or collapses into a drop (which would
-/// also be slow); INTERRUPTED; NO_MEMORY; BAD_INPUT as observation_init.
-enum status evaluate(const struct inverse_problem *problem,
+/// also be slow); INTERRUPTED; NO_MEMORY; BAD_INPUT as mf_observation_init.
+enum status mf_evaluate(const struct inverse_problem *problem,
                      const struct evaluate_candidate *candidate,
                      const struct evaluate_parameters *parameters, double *features,
                      double *const *position, struct evaluate_result *result) MUST_USE;

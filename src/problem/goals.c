@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-const char *const goals_names[GOALS] = {"rdf", "etd", "vacf", "msd", "diffusion", "pressure"};
+const char *const mf_goals_names[GOALS] = {"rdf", "etd", "vacf", "msd", "diffusion", "pressure"};
 
 /// Values of an observable that count as independent, for the variance of its rms: bins of g(r) and
 /// cells of E(t, r_0) next to each other see the same pairs.
@@ -12,7 +12,7 @@ static const double most_independent = 10;
 /// Weight of a goal without errors: as if they were this [unit of the goal].
 static const double assumed_error = 0.01;
 
-size_t goals_count(const struct goals *goals) {
+size_t mf_goals_count(const struct goals *goals) {
     size_t count = 0;
     for (int kind = 0; kind < GOALS; kind++)
         count += goals_ask(goals, kind);
@@ -26,7 +26,7 @@ static double rms_variance(double rms, double square, double count) {
     return (square + 0.5 * square * square / fmax(rms * rms, 1e-300)) / independent;
 }
 
-struct goal_distance goals_distance(const struct goal *goal, const double *value,
+struct goal_distance mf_goals_distance(const struct goal *goal, const double *value,
                                     const double *error) {
     struct goal_distance distance = {0};
     double squares = 0, noise = 0, own = 0;
@@ -51,7 +51,7 @@ struct goal_distance goals_distance(const struct goal *goal, const double *value
     return distance;
 }
 
-double goals_weight(const struct goal *goal) {
+double mf_goals_weight(const struct goal *goal) {
     if (goal->weight > 0)
         return goal->weight;
     double sum = 0, count = 0;
@@ -65,26 +65,26 @@ double goals_weight(const struct goal *goal) {
 
 static double combine(const struct goals *goals, const struct goal_distance *distance,
                       double (*part)(const struct goal_distance *)) {
-    const size_t count = goals_count(goals);
+    const size_t count = mf_goals_count(goals);
     double sum = 0;
     for (int kind = 0; kind < GOALS; kind++) {
         if (!goals_ask(goals, kind))
             continue;
-        const double weight = count > 1 ? goals_weight(&goals->goal[kind]) : 1;
+        const double weight = count > 1 ? mf_goals_weight(&goals->goal[kind]) : 1;
         const double term = weight * part(&distance[kind]);
         sum += term * term / (double)count;
     }
     return sqrt(sum);
 }
 
-double goals_variance(const struct goals *goals, const struct goal_distance *distance) {
-    const size_t count = goals_count(goals);
-    const double error = goals_error(goals, distance);
+double mf_goals_variance(const struct goals *goals, const struct goal_distance *distance) {
+    const size_t count = mf_goals_count(goals);
+    const double error = mf_goals_error(goals, distance);
     double sum = 0;
     for (int kind = 0; kind < GOALS; kind++) {
         if (!goals_ask(goals, kind))
             continue;
-        const double weight = count > 1 ? goals_weight(&goals->goal[kind]) : 1;
+        const double weight = count > 1 ? mf_goals_weight(&goals->goal[kind]) : 1;
         const double slope =
             error > 0 ? weight * weight * distance[kind].rms / ((double)count * error) : weight;
         sum += slope * slope * distance[kind].variance;
@@ -100,11 +100,11 @@ static double noise_of(const struct goal_distance *distance) {
     return distance->noise;
 }
 
-double goals_error(const struct goals *goals, const struct goal_distance *distance) {
+double mf_goals_error(const struct goals *goals, const struct goal_distance *distance) {
     return combine(goals, distance, rms_of);
 }
 
-double goals_noise(const struct goals *goals, const struct goal_distance *distance) {
+double mf_goals_noise(const struct goals *goals, const struct goal_distance *distance) {
     return combine(goals, distance, noise_of);
 }
 
@@ -115,7 +115,7 @@ static size_t features_of(const struct goals *goals, enum goal_kind kind) {
     return kind == GOAL_ETD && goals_ask(goals, kind) ? BLOCKS * BLOCKS : goals->goal[kind].count;
 }
 
-size_t goals_features(const struct goals *goals) {
+size_t mf_goals_features(const struct goals *goals) {
     size_t count = 0;
     for (int kind = 0; kind < GOALS; kind++)
         count += features_of(goals, kind);
@@ -151,7 +151,7 @@ static struct feature block_of(const struct goals *goals, const double *observed
     return feature;
 }
 
-void goals_take_features(const struct goals *goals, double *const *observed, double *value,
+void mf_goals_take_features(const struct goals *goals, double *const *observed, double *value,
                          double *error) {
     size_t n = 0;
     for (int kind = 0; kind < GOALS; kind++)

@@ -9,9 +9,9 @@
 /// errors of a target are themselves known to 10 to 20 %. Measured for SPC water: of twelve
 /// iterations of imc that changed no more than noise, one came within 1.5 times the noise, six
 /// within 1.7.
-const double inverse_noise_margin = 1.7;
+const double mf_inverse_noise_margin = 1.7;
 
-const char *const inverse_unknown_names[UNKNOWNS] = {"potential", "weight"};
+const char *const mf_inverse_unknown_names[UNKNOWNS] = {"potential", "weight"};
 
 static const char *const potential_curves[] = {"bezier", "bspline", NULL};
 static const char *const weight_curves[] = {"bezier", "bspline", "power", NULL};
@@ -39,12 +39,12 @@ static const char *const weight_curves[] = {"bezier", "bspline", "power", NULL};
         {"maximum",           FIELD_NUMBER,       MEMBER(maximum),  .initial = its_maximum,        \
          .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = its_unit, .help = "largest gene"},
 
-const struct field inverse_potential_fields[] = {
+const struct field mf_inverse_potential_fields[] = {
     CURVE(potential_curves, 6.5, "k_B T_0") // ends at the target's range
     FIELD_END,
 };
 
-const struct field inverse_weight_fields[] = {
+const struct field mf_inverse_weight_fields[] = {
     CURVE(weight_curves, 6.5, "sqrt(mu/tau)"){"inner_cutoff", FIELD_NUMBER, MEMBER(inner_cutoff),
                                               .initial = 0, .minimum = 0, .maximum = DBL_MAX,
                                               .unit = "lambda", .help = "below which omega is 0"},
@@ -53,7 +53,7 @@ const struct field inverse_weight_fields[] = {
     FIELD_END,
 };
 
-const struct field inverse_fixed_fields[] = {
+const struct field mf_inverse_fixed_fields[] = {
     {"sigma", FIELD_NUMBER, INVERSE_SIGMA * sizeof(double), .initial = NAN, .minimum = 0,
      .maximum = DBL_MAX, .unit = "sqrt(mu/tau)", .help = "omega extrapolated to r = 0"},
     {"exponent", FIELD_NUMBER, INVERSE_EXPONENT * sizeof(double), .initial = NAN, .minimum = 0,
@@ -63,21 +63,21 @@ const struct field inverse_fixed_fields[] = {
     FIELD_END,
 };
 
-int inverse_free_parameters(const double fixed[INVERSE_PARAMETERS]) {
+int mf_inverse_free_parameters(const double fixed[INVERSE_PARAMETERS]) {
     int count = 0;
     for (int k = 0; k < INVERSE_PARAMETERS; k++)
         count += isnan(fixed[k]);
     return count;
 }
 
-const struct inverse_method *const inverse_methods[] = {
-    &automatic,      &imc,          &ibi,    &hnc, &matching_genetic, &matching_cmaes,
-    &matching_nlopt, &gauss_newton, &pareto, NULL};
+const struct inverse_method *const mf_inverse_methods[] = {
+    &mf_automatic,      &mf_imc,          &mf_ibi,    &mf_hnc, &mf_matching_genetic, &mf_matching_cmaes,
+    &mf_matching_nlopt, &mf_gauss_newton, &mf_pareto, NULL};
 
 /// An error that has fallen in this last part of the iterations still falls.
 static const double recent = 0.25;
 
-void inverse_give_up(struct inverse_step *step) {
+void mf_inverse_give_up(struct inverse_step *step) {
     step->used_up = true;
     snprintf(
         step->reason, sizeof step->reason,
@@ -86,7 +86,7 @@ void inverse_give_up(struct inverse_step *step) {
         step->error, step->noise);
 }
 
-void inverse_use_up(struct inverse_step *step, const char *parameter, uint32_t last_better) {
+void mf_inverse_use_up(struct inverse_step *step, const char *parameter, uint32_t last_better) {
     const uint32_t iterations = step->iteration + 1, since = step->iteration - last_better;
     step->used_up = true;
     if (since <= recent * iterations)

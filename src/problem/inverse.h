@@ -14,7 +14,7 @@
 enum unknown_kind { UNKNOWN_POTENTIAL, UNKNOWN_WEIGHT, UNKNOWNS };
 
 /// Names in run files, shape [UNKNOWNS].
-extern const char *const inverse_unknown_names[UNKNOWNS];
+extern const char *const mf_inverse_unknown_names[UNKNOWNS];
 
 /// What genes make: the shapes of curves/shape.h in their order, or the formula of a weight,
 /// ω = σ(1 − r/r_c)^s beyond r_0, of which the genes are σ in [minimum, maximum], s in [0, 4] and
@@ -34,13 +34,13 @@ struct unknown_parameters {
     double fixed[INVERSE_PARAMETERS]; ///< of the formula; NaN: to be found
 };
 
-extern const struct field inverse_potential_fields[], inverse_weight_fields[];
+extern const struct field mf_inverse_potential_fields[], mf_inverse_weight_fields[];
 
 /// The parameters of the formula, of an array shape [INVERSE_PARAMETERS]; the default is NaN.
-extern const struct field inverse_fixed_fields[];
+extern const struct field mf_inverse_fixed_fields[];
 
 /// Parameters of the formula that are to be found.
-int inverse_free_parameters(const double fixed[INVERSE_PARAMETERS]);
+int mf_inverse_free_parameters(const double fixed[INVERSE_PARAMETERS]);
 
 /// A parameter of a formula as it was found.
 struct inverse_parameter {
@@ -63,13 +63,13 @@ struct inverse_problem {
     struct unknown unknown[UNKNOWNS];
     struct simulation_setup scene; ///< all but the unknowns; its composition is set
     double core_threshold;         ///< bins below the first with g* above this are the hard core
-    double core_stiffness;         ///< of the core (core_fill) [k_B T_0/λ²]
+    double core_stiffness;         ///< of the core (mf_core_fill) [k_B T_0/λ²]
     uint64_t seed;
     int threads;
 };
 
 /// Error at or below this many times the noise of target and measurement counts as none.
-extern const double inverse_noise_margin;
+extern const double mf_inverse_noise_margin;
 
 /// Directions of a curve that the data say least of.
 enum { INVERSE_FLAT = 2 };
@@ -91,7 +91,7 @@ struct inverse_step {
     uint32_t iteration;    ///< from 0
     uint64_t evaluations;  ///< simulations so far
     uint64_t engine_steps; ///< time steps or Monte Carlo sweeps so far, over all replicas
-    double error;          ///< goals_error of the best curves so far, as the method measured it
+    double error;          ///< mf_goals_error of the best curves so far, as the method measured it
     double noise;          ///< what the statistical errors alone would give
     double variance;       ///< of error by the noise of what was measured; 0: not known
     double extra[INVERSE_EXTRA];         ///< columns of the method's own
@@ -113,12 +113,12 @@ struct inverse_step {
 };
 
 /// The same for an optimiser that gave up before that.
-void inverse_give_up(struct inverse_step *step);
+void mf_inverse_give_up(struct inverse_step *step);
 
 /// Finish a step of a method that uses up what "parameter" gives it: `used_up`, and a reason that
 /// says whether the error still fell.
 /// @param[in] last_better  iteration in which it fell last
-void inverse_use_up(struct inverse_step *step, const char *parameter, uint32_t last_better);
+void mf_inverse_use_up(struct inverse_step *step, const char *parameter, uint32_t last_better);
 
 /// Told from time to time inside an iteration, from one thread at a time.
 struct inverse_progress {
@@ -184,9 +184,9 @@ struct inverse_method {
 };
 
 /// All methods, NULL-terminated.
-extern const struct inverse_method *const inverse_methods[];
+extern const struct inverse_method *const mf_inverse_methods[];
 
-extern const struct inverse_method imc, ibi, hnc, automatic;
-extern const struct inverse_method gauss_newton;
-extern const struct inverse_method pareto;
-extern const struct inverse_method matching_genetic, matching_cmaes, matching_nlopt;
+extern const struct inverse_method mf_imc, mf_ibi, mf_hnc, mf_automatic;
+extern const struct inverse_method mf_gauss_newton;
+extern const struct inverse_method mf_pareto;
+extern const struct inverse_method mf_matching_genetic, mf_matching_cmaes, mf_matching_nlopt;

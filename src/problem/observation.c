@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-bool observation_moves(const struct goals *goals) {
+bool mf_observation_moves(const struct goals *goals) {
     return goals_ask(goals, GOAL_VACF) || goals_ask(goals, GOAL_MSD) ||
            goals_ask(goals, GOAL_DIFFUSION);
 }
@@ -24,7 +24,7 @@ static int64_t lags_of(const struct goals *goals, double time_step) {
     return lags > 2 ? lags : 2;
 }
 
-void observation_plans(const struct goals *goals, double time_step, struct etd_plan *etd,
+void mf_observation_plans(const struct goals *goals, double time_step, struct etd_plan *etd,
                        struct motion_plan *motion) {
     *etd = (struct etd_plan){.every = steps_of(goals->etd_interval, time_step)};
     if (goals_ask(goals, GOAL_ETD))
@@ -35,7 +35,7 @@ void observation_plans(const struct goals *goals, double time_step, struct etd_p
                                    .fit_from = 0.5};
 }
 
-int64_t observation_window(const struct goals *goals, double time_step, enum goal_kind *longest) {
+int64_t mf_observation_window(const struct goals *goals, double time_step, enum goal_kind *longest) {
     int64_t window = 0;
     *longest = GOALS;
     if (goals_ask(goals, GOAL_ETD)) {
@@ -61,13 +61,13 @@ static enum status begin_rdf(struct observation *observation, const struct simul
     if (!goals_ask(goals, GOAL_RDF))
         return STATUS_OK;
     if (setup->force_estimator && scene->potential && !composition_is_mixed(&scene->composition) &&
-        rdf_force_applies(scene->potential, scene->temperature)) {
+        mf_rdf_force_applies(scene->potential, scene->temperature)) {
         observation->targets.rdf_force = &observation->rdf_force;
-        return rdf_force_init(&observation->rdf_force, &goals->bins, &scene->box, count,
+        return mf_rdf_force_init(&observation->rdf_force, &goals->bins, &scene->box, count,
                               scene->potential, scene->temperature, cutoff, samples);
     }
     observation->targets.rdf = &observation->rdf;
-    return rdf_init_mixture(&observation->rdf, &goals->bins, &scene->box, &scene->composition,
+    return mf_rdf_init_mixture(&observation->rdf, &goals->bins, &scene->box, &scene->composition,
                             cutoff, samples);
 }
 
@@ -80,19 +80,19 @@ static enum status begin_dynamics(struct observation *observation,
     const int64_t steps = setup->plan.samples * setup->plan.every;
     struct etd_plan etd;
     struct motion_plan motion;
-    observation_plans(goals, time_step, &etd, &motion);
+    mf_observation_plans(goals, time_step, &etd, &motion);
     if (goals_ask(goals, GOAL_ETD)) {
-        TRY(etd_init(&observation->etd, &goals->etd, &etd, simulation, begin, steps));
+        TRY(mf_etd_init(&observation->etd, &goals->etd, &etd, simulation, begin, steps));
         observation->targets.etd = &observation->etd;
     }
-    if (observation_moves(goals)) {
-        TRY(motion_init(&observation->motion, &motion, simulation, begin, steps));
+    if (mf_observation_moves(goals)) {
+        TRY(mf_motion_init(&observation->motion, &motion, simulation, begin, steps));
         observation->targets.motion = &observation->motion;
     }
     return STATUS_OK;
 }
 
-enum status observation_init(struct observation *observation, const struct inverse_problem *problem,
+enum status mf_observation_init(struct observation *observation, const struct inverse_problem *problem,
                              const struct observation_setup *setup) {
     *observation = (struct observation){.goals = setup->goals};
     struct simulation_setup scene = problem->scene;
@@ -109,23 +109,23 @@ enum status observation_init(struct observation *observation, const struct inver
         scene.placement.kind = PLACEMENT_FILE;
     TRY(begin_rdf(observation, &scene, setup));
     if (setup->thermodynamics || goals_ask(setup->goals, GOAL_PRESSURE)) {
-        TRY(thermodynamics_init(&observation->thermodynamics, (size_t)setup->plan.samples));
+        TRY(mf_thermodynamics_init(&observation->thermodynamics, (size_t)setup->plan.samples));
         observation->targets.thermodynamics = &observation->thermodynamics;
     }
-    TRY(simulation_init(&observation->simulation, &scene, setup->position ? &start : NULL));
+    TRY(mf_simulation_init(&observation->simulation, &scene, setup->position ? &start : NULL));
     return begin_dynamics(observation, setup);
 }
 
-void observation_clear(struct observation *observation) {
-    simulation_clear(&observation->simulation);
-    rdf_clear(&observation->rdf);
-    rdf_force_clear(&observation->rdf_force);
-    etd_clear(&observation->etd);
-    motion_clear(&observation->motion);
-    thermodynamics_clear(&observation->thermodynamics);
+void mf_observation_clear(struct observation *observation) {
+    mf_simulation_clear(&observation->simulation);
+    mf_rdf_clear(&observation->rdf);
+    mf_rdf_force_clear(&observation->rdf_force);
+    mf_etd_clear(&observation->etd);
+    mf_motion_clear(&observation->motion);
+    mf_thermodynamics_clear(&observation->thermodynamics);
 }
 
-enum status observation_values_init(struct observed *observed, const struct goals *goals) {
+enum status mf_observation_values_init(struct observed *observed, const struct goals *goals) {
     enum status status = STATUS_OK;
     *observed = (struct observed){0};
     for (int kind = 0; kind < GOALS; kind++) {
@@ -138,10 +138,10 @@ done:
     return status;
 }
 
-void observation_values_clear(struct observed *observed) {
+void mf_observation_values_clear(struct observed *observed) {
     for (int kind = 0; kind < GOALS; kind++) {
-        memory_free(observed->value[kind]);
-        memory_free(observed->error[kind]);
+        mf_memory_free(observed->value[kind]);
+        mf_memory_free(observed->error[kind]);
     }
     *observed = (struct observed){0};
 }
@@ -158,13 +158,13 @@ static enum status result_rdf(const struct observation *replicas, size_t count,
         force[k] = replicas[k].rdf_force;
     }
     if (replicas->targets.rdf_force)
-        CHECK(rdf_force_result(force, count, RDF_FORCE_COUNTED, observed->value[GOAL_RDF],
+        CHECK(mf_rdf_force_result(force, count, RDF_FORCE_COUNTED, observed->value[GOAL_RDF],
                                observed->error[GOAL_RDF]));
     else
-        CHECK(rdf_result(rdf, count, observed->value[GOAL_RDF], observed->error[GOAL_RDF]));
+        CHECK(mf_rdf_result(rdf, count, observed->value[GOAL_RDF], observed->error[GOAL_RDF]));
 done:
-    memory_free(rdf);
-    memory_free(force);
+    mf_memory_free(rdf);
+    mf_memory_free(force);
     return status;
 }
 
@@ -175,12 +175,12 @@ static enum status result_etd(const struct observation *replicas, size_t count,
     NEW_ARRAY(etd, count);
     for (size_t k = 0; k < count; k++)
         etd[k] = &replicas[k].etd;
-    CHECK(etd_result(etd, count, observed->value[GOAL_ETD], observed->error[GOAL_ETD], NULL));
+    CHECK(mf_etd_result(etd, count, observed->value[GOAL_ETD], observed->error[GOAL_ETD], NULL));
     // At time 0 all are there: no measurement.
     for (size_t k = 0; k < (size_t)replicas->goals->etd.bins; k++)
         observed->value[GOAL_ETD][k] = NAN;
 done:
-    memory_free(etd);
+    mf_memory_free(etd);
     return status;
 }
 
@@ -249,7 +249,7 @@ static enum status result_motion(const struct observation *replicas, size_t coun
     for (size_t k = 0; k < count; k++) {
         double *own = memory + 4 * values * k;
         const struct motion_curves curves = {own, own + values, own + 2 * values, own + 3 * values};
-        summary[k] = motion_result(&replicas[k].motion, &curves);
+        summary[k] = mf_motion_result(&replicas[k].motion, &curves);
         const double blocks = summary[k].blocks;
         vacf[k] = (struct replica_curve){curves.vacf, curves.vacf_error, blocks};
         msd[k] = (struct replica_curve){curves.msd, curves.msd_error, blocks};
@@ -259,15 +259,15 @@ static enum status result_motion(const struct observation *replicas, size_t coun
     combine(observed, GOAL_MSD, values, msd, count);
     combine(observed, GOAL_DIFFUSION, 1, diffusion, count);
 done:
-    memory_free(summary);
-    memory_free(vacf);
-    memory_free(msd);
-    memory_free(diffusion);
-    memory_free(memory);
+    mf_memory_free(summary);
+    mf_memory_free(vacf);
+    mf_memory_free(msd);
+    mf_memory_free(diffusion);
+    mf_memory_free(memory);
     return status;
 }
 
-enum status observation_result(const struct observation *replicas, size_t count,
+enum status mf_observation_result(const struct observation *replicas, size_t count,
                                struct observed *observed) {
     const struct goals *goals = replicas->goals;
     clear_values(observed, goals);
@@ -275,21 +275,21 @@ enum status observation_result(const struct observation *replicas, size_t count,
         TRY(result_rdf(replicas, count, observed));
     if (goals_ask(goals, GOAL_ETD))
         TRY(result_etd(replicas, count, observed));
-    if (observation_moves(goals))
+    if (mf_observation_moves(goals))
         TRY(result_motion(replicas, count, observed));
     for (size_t k = 0; k < count && goals_ask(goals, GOAL_PRESSURE); k++) {
         const struct thermodynamics_summary t =
-            thermodynamics_result(&replicas[k].thermodynamics, 1);
+            mf_thermodynamics_result(&replicas[k].thermodynamics, 1);
         add_mean(observed, GOAL_PRESSURE, 1, &t.pressure, &t.pressure_error, (double)count);
     }
     return STATUS_OK;
 }
 
-void observation_distance(const struct observed *observed, const struct goals *goals,
+void mf_observation_distance(const struct observed *observed, const struct goals *goals,
                           struct goal_distance distance[GOALS]) {
     for (int kind = 0; kind < GOALS; kind++)
         distance[kind] =
             goals_ask(goals, kind)
-                ? goals_distance(&goals->goal[kind], observed->value[kind], observed->error[kind])
+                ? mf_goals_distance(&goals->goal[kind], observed->value[kind], observed->error[kind])
                 : (struct goal_distance){0};
 }

@@ -15,8 +15,8 @@ static enum status find_core(struct potential_grid *grid, const struct inverse_p
         (*core)++;
     if (*core + 3 > grid->bins) {
         char name[COMPOSITION_PAIR_NAME_SIZE];
-        composition_pair_name(&problem->scene.composition, (int)pair, name);
-        return status_fail(STATUS_BAD_INPUT, "the target%s%s is nowhere above %g",
+        mf_composition_pair_name(&problem->scene.composition, (int)pair, name);
+        return mf_status_fail(STATUS_BAD_INPUT, "the target%s%s is nowhere above %g",
                            name[0] ? " of " : "", name, problem->core_threshold);
     }
     grid->known_of[pair] = grid->bins - *core;
@@ -29,16 +29,16 @@ static void index_known(struct potential_grid *grid) {
     size_t n = 0;
     for (size_t pair = 0; pair < grid->pairs; pair++)
         for (size_t k = grid->core[pair]; k < grid->bins; k++, n++) {
-            grid->known_point[n] = potential_grid_block(grid, pair) + k;
+            grid->known_point[n] = mf_potential_grid_block(grid, pair) + k;
             grid->known_bin[n] = pair * grid->bins + k;
         }
 }
 
-enum status potential_grid_init(struct potential_grid *grid,
+enum status mf_potential_grid_init(struct potential_grid *grid,
                                 const struct inverse_problem *problem) {
     enum status status = STATUS_OK;
     const struct rdf_bins *bins = &problem->goals.bins;
-    *grid = (struct potential_grid){.pairs = (size_t)composition_pairs(&problem->scene.composition),
+    *grid = (struct potential_grid){.pairs = (size_t)mf_composition_pairs(&problem->scene.composition),
                                     .bins = bins->count,
                                     .stiffness = problem->core_stiffness};
     grid->points = grid->pairs * (bins->count + 1);
@@ -51,41 +51,41 @@ enum status potential_grid_init(struct potential_grid *grid,
     index_known(grid);
     NEW_ARRAY(grid->r, grid->points);
     for (size_t pair = 0; pair < grid->pairs; pair++) {
-        double *r = grid->r + potential_grid_block(grid, pair);
+        double *r = grid->r + mf_potential_grid_block(grid, pair);
         for (size_t k = 0; k < bins->count; k++)
-            r[k] = rdf_bins_centre(bins, k);
-        r[bins->count] = rdf_bins_range(bins);
+            r[k] = mf_rdf_bins_centre(bins, k);
+        r[bins->count] = mf_rdf_bins_range(bins);
     }
 done:
     if (status != STATUS_OK)
-        potential_grid_clear(grid);
+        mf_potential_grid_clear(grid);
     return status;
 }
 
-void potential_grid_clear(struct potential_grid *grid) {
-    memory_free(grid->core);
-    memory_free(grid->known_of);
-    memory_free(grid->known_point);
-    memory_free(grid->known_bin);
-    memory_free(grid->r);
+void mf_potential_grid_clear(struct potential_grid *grid) {
+    mf_memory_free(grid->core);
+    mf_memory_free(grid->known_of);
+    mf_memory_free(grid->known_point);
+    mf_memory_free(grid->known_bin);
+    mf_memory_free(grid->r);
     *grid = (struct potential_grid){0};
 }
 
-size_t potential_grid_block(const struct potential_grid *grid, size_t pair) {
+size_t mf_potential_grid_block(const struct potential_grid *grid, size_t pair) {
     return pair * (grid->bins + 1);
 }
 
-bool potential_grid_in_core(const struct potential_grid *grid, size_t point) {
+bool mf_potential_grid_in_core(const struct potential_grid *grid, size_t point) {
     return point % (grid->bins + 1) < grid->core[point / (grid->bins + 1)];
 }
 
-void potential_grid_complete(const struct potential_grid *grid, double *phi) {
+void mf_potential_grid_complete(const struct potential_grid *grid, double *phi) {
     for (size_t pair = 0; pair < grid->pairs; pair++) {
-        const size_t begin = potential_grid_block(grid, pair), first = grid->core[pair];
+        const size_t begin = mf_potential_grid_block(grid, pair), first = grid->core[pair];
         const double *r = grid->r + begin;
         double *block = phi + begin;
         const double slope = (block[first + 1] - block[first]) / (r[first + 1] - r[first]);
-        core_fill(r, block, first, slope, grid->stiffness);
+        mf_core_fill(r, block, first, slope, grid->stiffness);
         block[grid->bins] = 0;
     }
 }
@@ -93,15 +93,15 @@ void potential_grid_complete(const struct potential_grid *grid, double *phi) {
 /// Of one block.
 static enum status make_part(const struct potential_grid *grid, const double *phi, size_t pair,
                              struct table *part) {
-    const size_t begin = potential_grid_block(grid, pair);
+    const size_t begin = mf_potential_grid_block(grid, pair);
     struct curve curve;
-    TRY(sampled_create(&curve, grid->r + begin, phi + begin, grid->bins + 1));
-    const enum status status = table_init_potential(part, &curve);
-    curve_clear(&curve);
+    TRY(mf_sampled_create(&curve, grid->r + begin, phi + begin, grid->bins + 1));
+    const enum status status = mf_table_init_potential(part, &curve);
+    mf_curve_clear(&curve);
     return status;
 }
 
-enum status potential_grid_table(const struct potential_grid *grid, const double *phi,
+enum status mf_potential_grid_table(const struct potential_grid *grid, const double *phi,
                                  struct table *table) {
     enum status status = STATUS_OK;
     struct table part[COMPOSITION_MOST_PAIRS] = {{0}};
@@ -109,14 +109,14 @@ enum status potential_grid_table(const struct potential_grid *grid, const double
         return make_part(grid, phi, 0, table);
     for (size_t pair = 0; pair < grid->pairs; pair++)
         CHECK(make_part(grid, phi, pair, &part[pair]));
-    CHECK(table_stack(table, part, (int)grid->pairs));
+    CHECK(mf_table_stack(table, part, (int)grid->pairs));
 done:
     for (size_t pair = 0; pair < grid->pairs; pair++)
-        table_clear(&part[pair]);
+        mf_table_clear(&part[pair]);
     return status;
 }
 
-void potential_grid_start(const struct potential_grid *grid, const struct inverse_problem *problem,
+void mf_potential_grid_start(const struct potential_grid *grid, const struct inverse_problem *problem,
                           double *phi) {
     for (size_t n = 0; n < grid->known; n++) {
         const size_t point = grid->known_point[n], pair = point / (grid->bins + 1);
@@ -125,16 +125,16 @@ void potential_grid_start(const struct potential_grid *grid, const struct invers
         const double g =
             fmax(problem->goals.goal[GOAL_RDF].value[grid->known_bin[n]], problem->core_threshold);
         phi[point] =
-            start ? curve_value(start, grid->r[point]) : -problem->scene.temperature * log(g);
+            start ? mf_curve_value(start, grid->r[point]) : -problem->scene.temperature * log(g);
     }
-    potential_grid_complete(grid, phi);
+    mf_potential_grid_complete(grid, phi);
 }
 
-bool potential_grid_well_known(const struct inverse_problem *problem, size_t bin) {
+bool mf_potential_grid_well_known(const struct inverse_problem *problem, size_t bin) {
     return problem->goals.goal[GOAL_RDF].value[bin] > 0.1;
 }
 
-double potential_grid_ramp(const struct potential_grid *grid, size_t point) {
+double mf_potential_grid_ramp(const struct potential_grid *grid, size_t point) {
     return 1 - grid->r[point] / grid->r[grid->points - 1];
 }
 
@@ -146,10 +146,10 @@ static double shell_virial(const struct table *table, const struct rdf_bins *bin
                            int dimensions) {
     double sum = 0, volume = 0;
     for (int k = 0; k < PLACES; k++) {
-        const double r = rdf_bins_edge(bins, bin) + (k + 0.5) / PLACES * bins->width;
+        const double r = mf_rdf_bins_edge(bins, bin) + (k + 0.5) / PLACES * bins->width;
         const double shell = pow(r, dimensions - 1);
         double slope;
-        table_evaluate(table, r, NULL, &slope, NULL);
+        mf_table_evaluate(table, r, NULL, &slope, NULL);
         sum -= shell * r * slope;
         volume += shell;
     }
@@ -166,16 +166,16 @@ static enum status add_virials(const struct potential_grid *grid, const struct r
     for (size_t k = 0; k < grid->points; k++)
         changed[k] = phi[k];
     changed[point] += change;
-    potential_grid_complete(grid, changed);
+    mf_potential_grid_complete(grid, changed);
     TRY(make_part(grid, changed, pair, &table));
     for (size_t a = 0; a < bins->count; a++)
         virial[(pair * bins->count + a) * grid->known] +=
             factor * shell_virial(&table, bins, a, dimensions);
-    table_clear(&table);
+    mf_table_clear(&table);
     return STATUS_OK;
 }
 
-enum status potential_grid_virials(const struct potential_grid *grid, const struct rdf_bins *bins,
+enum status mf_potential_grid_virials(const struct potential_grid *grid, const struct rdf_bins *bins,
                                    int dimensions, const double *phi, double *virial) {
     // The table is linear in its values but for the kink of the core: any small step will do.
     const double change = 1e-3;
@@ -189,6 +189,6 @@ enum status potential_grid_virials(const struct potential_grid *grid, const stru
             CHECK(add_virials(grid, bins, dimensions, phi, grid->known_point[b], sign * change,
                               sign / (2 * change), changed, virial + b));
 done:
-    memory_free(changed);
+    mf_memory_free(changed);
     return status;
 }

@@ -7,7 +7,7 @@
 #include <math.h>
 
 #define MEMBER(name) .offset = offsetof(struct verify_parameters, name)
-const struct field verify_fields[] = {
+const struct field mf_verify_fields[] = {
     {"replicas", FIELD_INTEGER, MEMBER(replicas), .initial = 4, .minimum = 1, .maximum = 1024,
      .unit = "", .help = "independent simulations"},
     {"time_step", FIELD_NUMBER, MEMBER(time_step), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
@@ -37,10 +37,10 @@ static enum status run_replica(const struct inverse_problem *problem, const stru
         .plan = parameters->plan,
         .thermodynamics = true,
         .threads = 1,
-        .seed = rng_child_seed(problem->seed, RNG_VERIFICATION, number, 0)};
-    TRY(observation_init(replica, problem, &setup));
-    TRY(measure_equilibrate(&replica->simulation, &parameters->plan, &temperature, NULL));
-    return measure_sample(&replica->simulation, &parameters->plan, replica->targets, NULL);
+        .seed = mf_rng_child_seed(problem->seed, RNG_VERIFICATION, number, 0)};
+    TRY(mf_observation_init(replica, problem, &setup));
+    TRY(mf_measure_equilibrate(&replica->simulation, &parameters->plan, &temperature, NULL));
+    return mf_measure_sample(&replica->simulation, &parameters->plan, replica->targets, NULL);
 }
 
 /// All replicas in parallel.
@@ -61,7 +61,7 @@ static enum status run_replicas(const struct inverse_problem *problem,
         {
             if (here != STATUS_OK) {
                 status = here;
-                snprintf(reason, sizeof reason, "%s", status_message());
+                snprintf(reason, sizeof reason, "%s", mf_status_message());
             }
             done++;
             const struct inverse_progress progress = {
@@ -69,7 +69,7 @@ static enum status run_replicas(const struct inverse_problem *problem,
             listener->tell(listener->context, &progress);
         }
     }
-    return status == STATUS_OK ? STATUS_OK : status_fail(status, "%s", reason);
+    return status == STATUS_OK ? STATUS_OK : mf_status_fail(status, "%s", reason);
 }
 
 /// Exchange the last replica and that at `k`.
@@ -86,14 +86,14 @@ static enum status find_errors(struct observation *replicas, size_t count,
     const struct goals *goals = replicas->goals;
     struct observed without = {0};
     double squares[GOALS] = {0};
-    CHECK(observation_values_init(&without, goals));
+    CHECK(mf_observation_values_init(&without, goals));
     for (size_t k = 0; k < count && count > 1; k++) {
         struct goal_distance distance[GOALS];
         exchange_with_last(replicas, count, k);
-        status = observation_result(replicas, count - 1, &without);
+        status = mf_observation_result(replicas, count - 1, &without);
         exchange_with_last(replicas, count, k);
         CHECK(status);
-        observation_distance(&without, goals, distance);
+        mf_observation_distance(&without, goals, distance);
         for (int kind = 0; kind < GOALS; kind++) {
             const double difference = distance[kind].rms - verification->distance[kind].rms;
             squares[kind] += difference * difference;
@@ -103,7 +103,7 @@ static enum status find_errors(struct observation *replicas, size_t count,
         verification->distance_error[kind] =
             count > 1 ? sqrt(squares[kind] * (double)(count - 1) / (double)count) : NAN;
 done:
-    observation_values_clear(&without);
+    mf_observation_values_clear(&without);
     return status;
 }
 
@@ -118,11 +118,11 @@ static enum status find_rdf_error(const struct observation *replicas, size_t cou
     NEW_ARRAY(rdf, count);
     for (size_t k = 0; k < count; k++)
         rdf[k] = replicas[k].rdf;
-    CHECK(rdf_distance(rdf, count, goals->goal[GOAL_RDF].value,
+    CHECK(mf_rdf_distance(rdf, count, goals->goal[GOAL_RDF].value,
                        &verification->distance[GOAL_RDF].rms,
                        &verification->distance_error[GOAL_RDF]));
 done:
-    memory_free(rdf);
+    mf_memory_free(rdf);
     return status;
 }
 
@@ -137,26 +137,26 @@ static enum status summarise(struct observation *replicas, size_t count,
         thermodynamics[k] = replicas[k].thermodynamics;
         verification->engine_steps += replicas[k].simulation.step;
     }
-    verification->thermodynamics = thermodynamics_result(thermodynamics, count);
-    if (thermodynamics_judge_fit(&verification->thermodynamics, &replicas->simulation.setup) !=
+    verification->thermodynamics = mf_thermodynamics_result(thermodynamics, count);
+    if (mf_thermodynamics_judge_fit(&verification->thermodynamics, &replicas->simulation.setup) !=
         STATUS_OK)
-        snprintf(verification->warning, sizeof verification->warning, "%s", status_message());
-    if (observation_moves(goals)) {
-        const struct motion_summary motion = motion_result(&replicas->motion, NULL);
+        snprintf(verification->warning, sizeof verification->warning, "%s", mf_status_message());
+    if (mf_observation_moves(goals)) {
+        const struct motion_summary motion = mf_motion_result(&replicas->motion, NULL);
         verification->diffusion_begin = motion.fit_begin;
         verification->diffusion_end = motion.fit_end;
     }
-    CHECK(observation_values_init(&verification->observed, goals));
-    CHECK(observation_result(replicas, count, &verification->observed));
-    observation_distance(&verification->observed, goals, verification->distance);
+    CHECK(mf_observation_values_init(&verification->observed, goals));
+    CHECK(mf_observation_result(replicas, count, &verification->observed));
+    mf_observation_distance(&verification->observed, goals, verification->distance);
     CHECK(find_errors(replicas, count, verification));
     CHECK(find_rdf_error(replicas, count, verification));
 done:
-    memory_free(thermodynamics);
+    mf_memory_free(thermodynamics);
     return status;
 }
 
-enum status verify(const struct inverse_problem *problem, const struct table *potential,
+enum status mf_verify(const struct inverse_problem *problem, const struct table *potential,
                    const struct table *weight, const struct verify_parameters *parameters,
                    const struct inverse_listener *listener, struct verification *verification) {
     enum status status = STATUS_OK;
@@ -168,12 +168,12 @@ enum status verify(const struct inverse_problem *problem, const struct table *po
     CHECK(summarise(replicas, count, verification));
 done:
     for (size_t k = 0; replicas && k < count; k++)
-        observation_clear(&replicas[k]);
-    memory_free(replicas);
+        mf_observation_clear(&replicas[k]);
+    mf_memory_free(replicas);
     return status;
 }
 
-void verify_clear(struct verification *verification) {
-    observation_values_clear(&verification->observed);
+void mf_verify_clear(struct verification *verification) {
+    mf_observation_values_clear(&verification->observed);
     *verification = (struct verification){0};
 }

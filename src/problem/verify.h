@@ -10,7 +10,7 @@ struct verify_parameters {
     struct measure_plan plan;
 };
 
-extern const struct field verify_fields[];
+extern const struct field mf_verify_fields[];
 
 struct verification {
     struct observed observed;
@@ -24,9 +24,9 @@ struct verification {
 };
 
 /// Simulate the problem's scene with new seeds; replicas in parallel.
-/// Fails: as simulation_run.
-enum status verify(const struct inverse_problem *problem, const struct table *potential,
+/// Fails: as mf_simulation_run.
+enum status mf_verify(const struct inverse_problem *problem, const struct table *potential,
                    const struct table *weight, const struct verify_parameters *parameters,
                    const struct inverse_listener *listener,
                    struct verification *verification) MUST_USE;
-void verify_clear(struct verification *verification);
+void mf_verify_clear(struct verification *verification);

@@ -3,13 +3,13 @@
 
 #include <math.h>
 
-void weight_grid_init(struct weight_grid *grid, double inner_cutoff, double cutoff) {
+void mf_weight_grid_init(struct weight_grid *grid, double inner_cutoff, double cutoff) {
     *grid = (struct weight_grid){.inner_cutoff = inner_cutoff, .cutoff = cutoff};
     for (int k = 0; k < WEIGHT_POINTS; k++)
         grid->r[k] = inner_cutoff + (cutoff - inner_cutoff) * k / (WEIGHT_POINTS - 1);
 }
 
-double weight_grid_value(const struct weight_grid *grid, const double *omega, double r) {
+double mf_weight_grid_value(const struct weight_grid *grid, const double *omega, double r) {
     if (r < grid->inner_cutoff || r >= grid->cutoff)
         return 0;
     const double place =
@@ -18,7 +18,7 @@ double weight_grid_value(const struct weight_grid *grid, const double *omega, do
     return omega[k] + (place - k) * (omega[k + 1] - omega[k]);
 }
 
-/// A weight on its grid as a curve, for table_init_weight.
+/// A weight on its grid as a curve, for mf_table_init_weight.
 struct points {
     const struct weight_grid *grid;
     const double *omega;
@@ -26,18 +26,18 @@ struct points {
 
 static double value(const void *parameters, double r) {
     const struct points *points = parameters;
-    return weight_grid_value(points->grid, points->omega, r);
+    return mf_weight_grid_value(points->grid, points->omega, r);
 }
 
 static double cutoff(const void *parameters) {
     return ((const struct points *)parameters)->grid->cutoff;
 }
 
-enum status weight_grid_table(const struct weight_grid *grid, const double *omega,
+enum status mf_weight_grid_table(const struct weight_grid *grid, const double *omega,
                               struct table *table) {
     static const struct curve_family family = {
         .name = "points", .size = sizeof(struct points), .value = value, .cutoff = cutoff};
     struct points points = {grid, omega};
     const struct curve curve = {&family, &points};
-    return table_init_weight(table, &curve);
+    return mf_table_init_weight(table, &curve);
 }

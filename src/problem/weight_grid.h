@@ -14,12 +14,12 @@ struct weight_grid {
     double r[WEIGHT_POINTS];     ///< [λ]
 };
 
-void weight_grid_init(struct weight_grid *grid, double inner_cutoff, double cutoff);
+void mf_weight_grid_init(struct weight_grid *grid, double inner_cutoff, double cutoff);
 
 /// Straight pieces between the points; 0 below the first.
 /// @param[in] omega  shape [WEIGHT_POINTS], ≥ 0 [sqrt(mass/time)]
-double weight_grid_value(const struct weight_grid *grid, const double *omega, double r);
+double mf_weight_grid_value(const struct weight_grid *grid, const double *omega, double r);
 
 /// Table for the kernels. Fails: NO_MEMORY.
-enum status weight_grid_table(const struct weight_grid *grid, const double *omega,
+enum status mf_weight_grid_table(const struct weight_grid *grid, const double *omega,
                               struct table *table) MUST_USE;

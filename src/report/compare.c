@@ -20,7 +20,7 @@ enum { PATH_SIZE = OUTPUT_PATH_SIZE + 64 };
 static enum status find_path(struct compared *fit, const char *folder) {
     char *path = realpath(folder, NULL);
     if (path == NULL)
-        return status_fail(STATUS_IO, "%s: %s", folder, strerror(errno));
+        return mf_status_fail(STATUS_IO, "%s: %s", folder, strerror(errno));
     char *slash = strrchr(path, '/');
     if (slash > path && strcmp(slash, "/out") == 0)
         *slash = '\0';
@@ -61,7 +61,7 @@ static void name_fits(struct compared *fits, size_t count) {
                      same);
         else
             snprintf(fits[k].name, sizeof fits[k].name, "%s", name);
-        compare_table_clean(fits[k].name);
+        mf_compare_table_clean(fits[k].name);
     }
 }
 
@@ -118,19 +118,19 @@ static enum status write_blocks(const char *out, const struct block *block,
     if (rows == 0)
         return remove(file) == 0 || errno == ENOENT
                    ? STATUS_OK
-                   : status_fail(STATUS_IO, "%s: %s", file, strerror(errno));
-    TRY(output_open(&output, file));
+                   : mf_status_fail(STATUS_IO, "%s: %s", file, strerror(errno));
+    TRY(mf_output_open(&output, file));
     for (size_t k = 0; k < count; k++) {
         fprintf(output.stream, "%s# %zu\t%s\n# %s\n", k ? "\n\n" : "", k, fits[k].name,
                 block->header);
         write_rows(output.stream, table_of(&fits[k], block), block->columns);
     }
-    return output_commit(&output);
+    return mf_output_commit(&output);
 }
 
 static enum status write_tables(const char *out, const struct compared *fits, size_t count) {
-    TRY(output_make_folder(out));
-    TRY(compare_table_write(out, fits, count));
+    TRY(mf_output_make_folder(out));
+    TRY(mf_compare_table_write(out, fits, count));
     for (size_t k = 0; k < sizeof blocks / sizeof blocks[0]; k++)
         TRY(write_blocks(out, &blocks[k], fits, count));
     return STATUS_OK;
@@ -147,7 +147,7 @@ static enum status check_lengths(const struct compared *fits, size_t count,
         if (isnan(*length))
             continue;
         if (first && fabs(*length / *first - 1) > rounding)
-            return status_fail(STATUS_BAD_INPUT,
+            return mf_status_fail(STATUS_BAD_INPUT,
                                "compare: the unit of length is %.6g nm in %s and %.6g nm in %s: "
                                "tables over r in it do not go together",
                                *first, folders[at], *length, folders[k]);
@@ -159,26 +159,26 @@ static enum status check_lengths(const struct compared *fits, size_t count,
     return STATUS_OK;
 }
 
-enum status compare_folders(const char *const *folders, size_t count, const char *out, bool quiet) {
+enum status mf_compare_folders(const char *const *folders, size_t count, const char *out, bool quiet) {
     enum status status = STATUS_OK;
     struct compared *fits = NULL;
     if (count == 0)
-        return status_fail(STATUS_BAD_INPUT, "compare: give the folder of at least one fit");
+        return mf_status_fail(STATUS_BAD_INPUT, "compare: give the folder of at least one fit");
     NEW_ARRAY(fits, count);
     for (size_t k = 0; k < count; k++) {
-        CHECK(result_read(&fits[k].result, folders[k]));
+        CHECK(mf_result_read(&fits[k].result, folders[k]));
         CHECK(find_path(&fits[k], folders[k]));
     }
     CHECK(check_lengths(fits, count, folders));
     name_fits(fits, count);
     CHECK(write_tables(out, fits, count));
     if (!quiet)
-        CHECK(compare_table_print(fits, count));
-    if (figures_draw_comparison(out) != STATUS_OK)
-        fprintf(stderr, "mesofit: warning: %s\n", status_message());
+        CHECK(mf_compare_table_print(fits, count));
+    if (mf_figures_draw_comparison(out) != STATUS_OK)
+        fprintf(stderr, "mesofit: warning: %s\n", mf_status_message());
 done:
     for (size_t k = 0; fits && k < count; k++)
-        result_clear(&fits[k].result);
-    memory_free(fits);
+        mf_result_clear(&fits[k].result);
+    mf_memory_free(fits);
     return status;
 }

@@ -23,5 +23,5 @@
 /// `out` may be the folder of a run: nothing there is replaced but an earlier comparison.
 /// Fails: BAD_INPUT, also if two units of length differ, or IO with one line that names the file. A
 /// figure that fails is a warning on stderr. Tested: test_compare.
-enum status compare_folders(const char *const *folders, size_t count, const char *out,
+enum status mf_compare_folders(const char *const *folders, size_t count, const char *out,
                             bool quiet) MUST_USE;

@@ -44,7 +44,7 @@ static void print_number(char *cell, const char *format, double value) {
 static void print_text(char *cell, const char *text) {
     char beginning[61];
     snprintf(beginning, sizeof beginning, "%s", text[0] ? text : "-");
-    visible_copy(cell, CELL_SIZE, beginning, "");
+    mf_visible_copy(cell, CELL_SIZE, beginning, "");
 }
 
 /// One column: a text, or a number with its format or its error.
@@ -140,7 +140,7 @@ static void print_column(char (*cells)[CELL_SIZE], const struct column *column,
         fill_cell(cells[k + 1], column, &fits[k].result.summary);
 }
 
-enum status compare_table_print(const struct compared *fits, size_t count) {
+enum status mf_compare_table_print(const struct compared *fits, size_t count) {
     enum status status = STATUS_OK;
     char(*cells)[CELL_SIZE] = NULL; // shape [COLUMN_COUNT][count + 1]
     size_t widths[COLUMN_COUNT] = {0}, name_width = width_of("name");
@@ -164,13 +164,13 @@ enum status compare_table_print(const struct compared *fits, size_t count) {
         printf("\n");
     }
 done:
-    memory_free(cells);
+    mf_memory_free(cells);
     return status;
 }
 
 // compare.tsv -------------------------------------------------------------------------------------
 
-void compare_table_clean(char *text) {
+void mf_compare_table_clean(char *text) {
     for (; *text; text++)
         if ((unsigned char)*text < ' ')
             *text = '?';
@@ -185,9 +185,9 @@ static enum status list_names(char **comment, const struct compared *fits, size_
     end += sprintf(end, "index\tname\tmethod\tstatus\tversion");
     for (size_t k = 0; k < count; k++) {
         struct result_summary texts = fits[k].result.summary;
-        compare_table_clean(texts.method);
-        compare_table_clean(texts.status);
-        compare_table_clean(texts.version);
+        mf_compare_table_clean(texts.method);
+        mf_compare_table_clean(texts.status);
+        mf_compare_table_clean(texts.version);
         end += sprintf(end, "\n%zu\t%s\t%s\t%s\t%s", k, fits[k].name, texts.method, texts.status,
                        texts.version);
     }
@@ -206,7 +206,7 @@ static bool fill_numbers(double *values, const struct field *field, const struct
     return any;
 }
 
-enum status compare_table_write(const char *out, const struct compared *fits, size_t count) {
+enum status mf_compare_table_write(const char *out, const struct compared *fits, size_t count) {
     enum status status = STATUS_OK;
     char file[PATH_SIZE], headers[MOST_NUMBERS][HEADER_SIZE], *comment = NULL;
     struct data_column written[MOST_NUMBERS] = {{.name = "index[1]"}};
@@ -216,7 +216,7 @@ enum status compare_table_write(const char *out, const struct compared *fits, si
     for (size_t k = 0; k < count; k++)
         values[k] = (double)k;
     written[0].values = values;
-    for (const struct field *field = result_summary_fields; field->name; field++) {
+    for (const struct field *field = mf_result_summary_fields; field->name; field++) {
         if (used == MOST_NUMBERS || !fill_numbers(values + used * count, field, fits, count))
             continue;
         snprintf(headers[used], HEADER_SIZE, "%s[%s]", field->name, field->unit);
@@ -225,9 +225,9 @@ enum status compare_table_write(const char *out, const struct compared *fits, si
     }
     CHECK(list_names(&comment, fits, count));
     snprintf(file, sizeof file, "%s/compare.tsv", out);
-    CHECK(data_table_write(file, comment, written, used, count));
+    CHECK(mf_data_table_write(file, comment, written, used, count));
 done:
-    memory_free(comment);
-    memory_free(values);
+    mf_memory_free(comment);
+    mf_memory_free(values);
     return status;
 }

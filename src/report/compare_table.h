@@ -13,14 +13,14 @@ struct compared {
 };
 
 /// Replace control characters: tabs and line ends have a meaning in the comment lines of tables.
-void compare_table_clean(char *text);
+void mf_compare_table_clean(char *text);
 
 /// Print a table of one row a fit. A number that no fit has gets no column.
 /// Fails: NO_MEMORY. Tested: test_compare.
-enum status compare_table_print(const struct compared *fits, size_t count) MUST_USE;
+enum status mf_compare_table_print(const struct compared *fits, size_t count) MUST_USE;
 
 /// Write compare.tsv to the folder `out`: the numbers that any summary has, under their names
 /// there, nan where one does not have them. Comment lines give each index its name and texts.
 /// Fails: NO_MEMORY, IO. Tested: test_compare.
-enum status compare_table_write(const char *out, const struct compared *fits,
+enum status mf_compare_table_write(const char *out, const struct compared *fits,
                                 size_t count) MUST_USE;

@@ -88,15 +88,15 @@ static bool has_tables(const char *folder, const struct figure *figure) {
 // Drawing -----------------------------------------------------------------------------------------
 
 static enum status find_plots(char plots[PATH_SIZE]) {
-    const enum status status = program_find_folder(plots, PATH_SIZE, "plots", "style.gp");
-    return status == STATUS_OK ? status : status_prefix(status, "no figures");
+    const enum status status = mf_program_find_folder(plots, PATH_SIZE, "plots", "style.gp");
+    return status == STATUS_OK ? status : mf_status_prefix(status, "no figures");
 }
 
 static enum status run_gnuplot(const char *folder, const char *script) {
     // -d: the settings of the user's own gnuplot must not change the figures.
     const char *const words[] = {"gnuplot", "-d", script, NULL};
     char errors[ERRORS_SIZE];
-    return program_run(folder, words, PROGRAM_ERRORS, drawing_time, errors, sizeof errors);
+    return mf_program_run(folder, words, PROGRAM_ERRORS, drawing_time, errors, sizeof errors);
 }
 
 /// A figure that was begun and not finished would look like one.
@@ -113,7 +113,7 @@ static void remove_figure(const char *folder, const char *name) {
 static bool ends_with(const char *path, const char *end, size_t length) {
     char tail[64];
     FILE *stream;
-    if (input_open(&stream, path) != STATUS_OK)
+    if (mf_input_open(&stream, path) != STATUS_OK)
         return false;
     const bool long_enough = fseek(stream, -(long)sizeof tail, SEEK_END) == 0;
     size_t bytes = long_enough ? fread(tail, 1, sizeof tail, stream) : 0;
@@ -131,7 +131,7 @@ static enum status check_figure(const char *folder, const char *name) {
     snprintf(path, sizeof path, "%s/figures/%s.png", folder, name);
     whole = whole && ends_with(path, png_end, sizeof png_end - 1);
     return whole ? STATUS_OK
-                 : status_fail(STATUS_IO, "gnuplot left it unfinished; is the disk full?");
+                 : mf_status_fail(STATUS_IO, "gnuplot left it unfinished; is the disk full?");
 }
 
 /// Draw a figure with a script; an earlier one of that name goes first, and with it a link that
@@ -140,10 +140,10 @@ static enum status draw_to(const char *folder, const char *plots, const char *na
                            const char *drawn) {
     char path[PATH_SIZE], script[PATH_SIZE + 64];
     snprintf(path, sizeof path, "%s/figures", folder);
-    TRY(output_make_folder(path));
+    TRY(mf_output_make_folder(path));
     snprintf(script, sizeof script, "%s/%s.gp", plots, name);
     if (setenv("MESOFIT_PLOTS", plots, 1) != 0)
-        return status_fail(STATUS_NO_MEMORY, "out of memory");
+        return mf_status_fail(STATUS_NO_MEMORY, "out of memory");
     remove_figure(folder, drawn);
     enum status status = run_gnuplot(folder, script);
     if (status == STATUS_OK)
@@ -151,14 +151,14 @@ static enum status draw_to(const char *folder, const char *plots, const char *na
     if (status == STATUS_OK)
         return STATUS_OK;
     remove_figure(folder, drawn);
-    return status_prefix(status, "no figure %s/%s", path, drawn);
+    return mf_status_prefix(status, "no figure %s/%s", path, drawn);
 }
 
 /// Draw a figure, of the kind of pairs `pair`, as "_A-B", or of all.
 static enum status draw(const char *folder, const char *plots, const char *name, const char *pair) {
     char drawn[128];
     if (setenv("MESOFIT_PAIR", pair, 1) != 0)
-        return status_fail(STATUS_NO_MEMORY, "out of memory");
+        return mf_status_fail(STATUS_NO_MEMORY, "out of memory");
     snprintf(drawn, sizeof drawn, "%s%s", name, pair);
     return draw_to(folder, plots, name, drawn);
 }
@@ -178,7 +178,7 @@ static bool take_pair(const char *name, const char *table, char pair[PAIR_SIZE])
         return false;
     snprintf(first, sizeof first, "%.*s", (int)dash - 1, pair + 1);
     snprintf(second, sizeof second, "%s", pair + dash + 1);
-    return composition_is_name(first) && composition_is_name(second);
+    return mf_composition_is_name(first) && mf_composition_is_name(second);
 }
 
 /// Draw a figure from a table of one kind of pairs, like rdf_A-B.tsv, if `name` is one.
@@ -203,7 +203,7 @@ static enum status draw_pairs(const char *folder, const char *plots, const struc
     enum status first = STATUS_OK;
     const int files = scandir(folder, &entries, NULL, alphasort);
     if (files < 0)
-        return status_fail(STATUS_IO, "%s: %s", folder, strerror(errno));
+        return mf_status_fail(STATUS_IO, "%s: %s", folder, strerror(errno));
     for (int k = 0; k < files; k++) {
         const enum status status = draw_pair(folder, plots, figure, entries[k]->d_name, count);
         first = first == STATUS_OK ? status : first;
@@ -218,7 +218,7 @@ static enum status draw_all(const char *folder, size_t *count) {
     enum status first = STATUS_OK;
     char message[ERRORS_SIZE], plots[PATH_SIZE];
     if (access(folder, X_OK) != 0)
-        return status_fail(STATUS_IO, "%s: %s", folder, strerror(errno));
+        return mf_status_fail(STATUS_IO, "%s: %s", folder, strerror(errno));
     TRY(find_plots(plots));
     for (size_t k = 0; k < sizeof figures / sizeof figures[0]; k++) {
         enum status status = STATUS_OK;
@@ -231,48 +231,48 @@ static enum status draw_all(const char *folder, size_t *count) {
         if (first != STATUS_OK || status == STATUS_OK)
             continue;
         first = status;
-        snprintf(message, sizeof message, "%s", status_message());
+        snprintf(message, sizeof message, "%s", mf_status_message());
     }
-    return first == STATUS_OK ? STATUS_OK : status_fail(first, "%s", message);
+    return first == STATUS_OK ? STATUS_OK : mf_status_fail(first, "%s", message);
 }
 
-enum status figures_draw(const char *folder) {
+enum status mf_figures_draw(const char *folder) {
     size_t count = 0;
     return draw_all(folder, &count);
 }
 
-enum status figures_draw_again(const char *folder) {
+enum status mf_figures_draw_again(const char *folder) {
     size_t count = 0;
     TRY(draw_all(folder, &count));
     return count > 0 ? STATUS_OK
-                     : status_fail(STATUS_BAD_INPUT,
+                     : mf_status_fail(STATUS_BAD_INPUT,
                                    "%s: there is nothing to draw: no table that a fit or a "
                                    "simulation leaves",
                                    folder);
 }
 
-enum status figures_draw_comparison(const char *folder) {
+enum status mf_figures_draw_comparison(const char *folder) {
     char plots[PATH_SIZE];
     if (!has_tables(folder, &comparison))
-        return status_fail(STATUS_IO, "no figure of a comparison: no compare.tsv in %s", folder);
+        return mf_status_fail(STATUS_IO, "no figure of a comparison: no compare.tsv in %s", folder);
     TRY(find_plots(plots));
     return draw(folder, plots, comparison.name, "");
 }
 
-enum status figures_draw_accuracy(const char *table) {
+enum status mf_figures_draw_accuracy(const char *table) {
     static const char ending[] = ".tsv";
     char plots[PATH_SIZE], folder[OUTPUT_PATH_SIZE - 256], name[256];
     const char *slash = strrchr(table, '/');
     snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - table) : 1, slash ? table : ".");
     snprintf(name, sizeof name, "%s", slash ? slash + 1 : table);
     if (strlen(slash ? slash + 1 : table) >= sizeof name || strlen(table) >= sizeof folder)
-        return status_fail(STATUS_IO, "no figure of %.60s…: its path is too long", table);
+        return mf_status_fail(STATUS_IO, "no figure of %.60s…: its path is too long", table);
     const size_t length = strlen(name), cut = sizeof ending - 1;
     if (length > cut && strcmp(name + length - cut, ending) == 0)
         name[length - cut] = '\0';
     TRY(find_plots(plots));
     if (setenv("MESOFIT_TABLE", slash ? slash + 1 : table, 1) != 0 ||
         setenv("MESOFIT_FIGURE", name, 1) != 0)
-        return status_fail(STATUS_NO_MEMORY, "out of memory");
+        return mf_status_fail(STATUS_NO_MEMORY, "out of memory");
     return draw_to(folder, plots, "accuracy", name);
 }

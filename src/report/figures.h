@@ -11,15 +11,15 @@
 /// Draw every figure whose tables are in `folder`, to figures/<name>.svg and .png in it.
 /// IO with one line if gnuplot is missing or a figure fails; the others are drawn all the same.
 /// Threads: one at a time, since the environment is changed. Tested: test_figures.
-enum status figures_draw(const char *folder) MUST_USE;
+enum status mf_figures_draw(const char *folder) MUST_USE;
 
 /// The same for a person who asks for them. BAD_INPUT if there is no table to draw.
 /// Tested: test_bad_lines_are_refused_with_a_hint.
-enum status figures_draw_again(const char *folder) MUST_USE;
+enum status mf_figures_draw_again(const char *folder) MUST_USE;
 
-/// Draw figures/compare.svg and .png from the tables that compare_folders wrote to `folder`.
-enum status figures_draw_comparison(const char *folder) MUST_USE;
+/// Draw figures/compare.svg and .png from the tables that mf_compare_folders wrote to `folder`.
+enum status mf_figures_draw_comparison(const char *folder) MUST_USE;
 
 /// Draw the work-precision diagram of a table of `mesofit bench accuracy`, folder/NAME.tsv, to
 /// folder/figures/NAME.svg and .png. Tested: test_bench_accuracy.
-enum status figures_draw_accuracy(const char *table);
+enum status mf_figures_draw_accuracy(const char *table);

@@ -12,7 +12,7 @@ struct fit_change {
     double first_well, first_well_at;
 };
 
-/// @param[in] first, last  of all curves of the unknown, shape [decoder_points]
+/// @param[in] first, last  of all curves of the unknown, shape [mf_decoder_points]
 /// Tested: test_fit_change.
-struct fit_change fit_change_find(const struct decoder *decoder, enum unknown_kind kind,
+struct fit_change mf_fit_change_find(const struct decoder *decoder, enum unknown_kind kind,
                                   size_t curve, const double *first, const double *last);

@@ -11,10 +11,10 @@
 /// frees it.
 static double *truth_at(const struct fit_file *fit, enum unknown_kind kind, size_t curve,
                         const double *r, size_t points) {
-    const struct curve *truth = scene_law_curve(&fit->unknown[kind].truth, (int)curve);
-    double *values = memory_zeroed(points, sizeof *values);
+    const struct curve *truth = mf_scene_law_curve(&fit->unknown[kind].truth, (int)curve);
+    double *values = mf_memory_zeroed(points, sizeof *values);
     for (size_t k = 0; values && truth && k < points; k++)
-        values[k] = curve_value(truth, r[k]);
+        values[k] = mf_curve_value(truth, r[k]);
     return values;
 }
 
@@ -22,9 +22,9 @@ static double *truth_at(const struct fit_file *fit, enum unknown_kind kind, size
 static void curve_file(const struct decoder *decoder, enum unknown_kind kind, size_t curve,
                        const char *ending, const struct run_folder *folder, char *path) {
     char name[DECODER_NAME_SIZE], file[DECODER_NAME_SIZE + 16];
-    decoder_curve_name(decoder, kind, curve, name);
+    mf_decoder_curve_name(decoder, kind, curve, name);
     snprintf(file, sizeof file, "%s%s", name, ending);
-    run_folder_file(folder, file, path);
+    mf_run_folder_file(folder, file, path);
 }
 
 /// Of one kind of pairs, from the table of all.
@@ -34,7 +34,7 @@ static enum status write_potential(const struct fit_file *fit, const struct deco
     enum status status = STATUS_OK;
     const struct units *units = &fit->scene.units;
     const size_t points = decoder->potential.bins + 1;
-    const size_t first = potential_grid_block(&decoder->potential, pair);
+    const size_t first = mf_potential_grid_block(&decoder->potential, pair);
     const double *r = decoder->potential.r + first;
     const double *phi = result->curve[UNKNOWN_POTENTIAL] + first;
     double *force = NULL, *truth = NULL, *nanometres = NULL, *energy = NULL;
@@ -42,11 +42,11 @@ static enum status write_potential(const struct fit_file *fit, const struct deco
     char path[OUTPUT_PATH_SIZE];
     NEW_ARRAY(force, points);
     for (size_t k = 0; k < points; k++) {
-        table_evaluate_pair(table, (int)pair, r[k], NULL, &force[k], NULL);
+        mf_table_evaluate_pair(table, (int)pair, r[k], NULL, &force[k], NULL);
         force[k] = -force[k];
     }
-    nanometres = units_column(r, points, units->length);
-    energy = units_column(phi, points, units_known(units) ? units_energy_kj_per_mol(units) : 0);
+    nanometres = mf_units_column(r, points, units->length);
+    energy = mf_units_column(phi, points, mf_units_known(units) ? mf_units_energy_kj_per_mol(units) : 0);
     truth = truth_at(fit, UNKNOWN_POTENTIAL, pair, r, points);
     CHECK(nanometres && energy && truth ? STATUS_OK : STATUS_NO_MEMORY);
     struct data_column columns[8] = {
@@ -58,23 +58,23 @@ static enum status write_potential(const struct fit_file *fit, const struct deco
     if (result->ramp.error > 0)
         columns[count++] = (struct data_column){"phi_error_without_ramp[k_B.T_0]",
                                                 result->without_ramp + first, "%.3g"};
-    if (scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair))
+    if (mf_scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair))
         columns[count++] = (struct data_column){"truth[k_B.T_0]", truth, "%.8g"};
-    if (units_known(units)) {
+    if (mf_units_known(units)) {
         columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
         columns[count++] = (struct data_column){"phi[kJ/mol]", energy, NULL};
     }
     curve_file(decoder, UNKNOWN_POTENTIAL, pair, ".tsv", folder, path);
-    CHECK(data_table_write(path, NULL, columns, count, points));
-    if (units_known(units)) {
+    CHECK(mf_data_table_write(path, NULL, columns, count, points));
+    if (mf_units_known(units)) {
         curve_file(decoder, UNKNOWN_POTENTIAL, pair, ".pot", folder, path);
-        CHECK(votca_write(path, nanometres, energy, points, decoder->potential.core[pair]));
+        CHECK(mf_votca_write(path, nanometres, energy, points, decoder->potential.core[pair]));
     }
 done:
-    memory_free(force);
-    memory_free(truth);
-    memory_free(nanometres);
-    memory_free(energy);
+    mf_memory_free(force);
+    mf_memory_free(truth);
+    mf_memory_free(nanometres);
+    mf_memory_free(energy);
     return status;
 }
 
@@ -83,11 +83,11 @@ static enum status write_potentials(const struct fit_file *fit, const struct dec
                                     const struct run_folder *folder) {
     enum status status = STATUS_OK;
     struct table table = {0};
-    CHECK(potential_grid_table(&decoder->potential, result->curve[UNKNOWN_POTENTIAL], &table));
+    CHECK(mf_potential_grid_table(&decoder->potential, result->curve[UNKNOWN_POTENTIAL], &table));
     for (size_t pair = 0; pair < decoder->potential.pairs; pair++)
         CHECK(write_potential(fit, decoder, result, &table, pair, folder));
 done:
-    table_clear(&table);
+    mf_table_clear(&table);
     return status;
 }
 
@@ -97,7 +97,7 @@ static enum status write_omega(const struct fit_file *fit, const struct decoder 
     const struct units *units = &fit->scene.units;
     enum status status = STATUS_NO_MEMORY;
     double *truth = truth_at(fit, UNKNOWN_WEIGHT, 0, decoder->weight.r, WEIGHT_POINTS);
-    double *nanometres = units_column(decoder->weight.r, WEIGHT_POINTS, units->length);
+    double *nanometres = mf_units_column(decoder->weight.r, WEIGHT_POINTS, units->length);
     char path[OUTPUT_PATH_SIZE];
     struct data_column columns[5] = {
         {"r[lambda]", decoder->weight.r, "%.17g"},
@@ -106,21 +106,21 @@ static enum status write_omega(const struct fit_file *fit, const struct decoder 
     size_t count = 3;
     if (truth_known)
         columns[count++] = (struct data_column){"truth[sqrt(mu/tau)]", truth, "%.8g"};
-    if (units_known(units))
+    if (mf_units_known(units))
         columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
-    run_folder_file(folder, "omega.tsv", path);
+    mf_run_folder_file(folder, "omega.tsv", path);
     if (truth && nanometres)
-        status = data_table_write(path, NULL, columns, count, WEIGHT_POINTS);
-    memory_free(truth);
-    memory_free(nanometres);
+        status = mf_data_table_write(path, NULL, columns, count, WEIGHT_POINTS);
+    mf_memory_free(truth);
+    mf_memory_free(nanometres);
     return status;
 }
 
 /// Changes that the data say least of; no table where the method does not tell.
 static enum status write_flat(enum unknown_kind kind, size_t curve, const struct decoder *decoder,
                               const struct fit_result *result, const struct run_folder *folder) {
-    const size_t all = decoder_points(decoder, kind);
-    const size_t points = all / decoder_curve_count(decoder, kind), first = curve * points;
+    const size_t all = mf_decoder_points(decoder, kind);
+    const size_t points = all / mf_decoder_curve_count(decoder, kind), first = curve * points;
     const double *flat = result->curve_flat[kind];
     char path[OUTPUT_PATH_SIZE];
     if (flat == NULL || isnan(flat[all - 1]))
@@ -128,22 +128,22 @@ static enum status write_flat(enum unknown_kind kind, size_t curve, const struct
     const char *unit = kind == UNKNOWN_POTENTIAL ? "k_B.T_0" : "sqrt(mu/tau)";
     char names[INVERSE_FLAT][64];
     struct data_column columns[1 + INVERSE_FLAT] = {
-        {"r[lambda]", decoder_r(decoder, kind) + first, NULL}};
+        {"r[lambda]", mf_decoder_r(decoder, kind) + first, NULL}};
     for (size_t n = 0; n < INVERSE_FLAT; n++) {
         snprintf(names[n], sizeof names[n], "flat_%zu[%s]", n + 1, unit);
         columns[n + 1] = (struct data_column){names[n], flat + n * all + first, "%.5g"};
     }
     curve_file(decoder, kind, curve, "_flat.tsv", folder, path);
-    return data_table_write(path,
+    return mf_data_table_write(path,
                             "changes of the curve that the data say least of, widest first; one "
                             "standard error each",
                             columns, 1 + INVERSE_FLAT, points);
 }
 
-enum status fit_output_curves(const struct fit_file *fit, const struct decoder *decoder,
+enum status mf_fit_output_curves(const struct fit_file *fit, const struct decoder *decoder,
                               const struct fit_result *result, const struct run_folder *folder) {
     for (int kind = 0; kind < UNKNOWNS; kind++)
-        for (size_t n = 0; result->curve[kind] && n < decoder_curve_count(decoder, kind); n++)
+        for (size_t n = 0; result->curve[kind] && n < mf_decoder_curve_count(decoder, kind); n++)
             TRY(write_flat(kind, n, decoder, result, folder));
     if (result->curve[UNKNOWN_POTENTIAL])
         TRY(write_potentials(fit, decoder, result, folder));
@@ -162,8 +162,8 @@ static enum status write_rdf(const struct fit_file *fit, const struct observed *
     char path[OUTPUT_PATH_SIZE];
     NEW_ARRAY(r, bins->count);
     for (size_t k = 0; k < bins->count; k++)
-        r[k] = rdf_bins_centre(bins, k);
-    nanometres = units_column(r, bins->count, units->length);
+        r[k] = mf_rdf_bins_centre(bins, k);
+    nanometres = mf_units_column(r, bins->count, units->length);
     CHECK(nanometres ? STATUS_OK : STATUS_NO_MEMORY);
     const struct data_column columns[] = {
         {"r[lambda]", r, NULL},
@@ -172,11 +172,11 @@ static enum status write_rdf(const struct fit_file *fit, const struct observed *
         {"result[1]", observed->value[GOAL_RDF] + first, "%.8g"},
         {"result_error[1]", observed->error[GOAL_RDF] + first, "%.3g"},
         {"r[nm]", nanometres, NULL}};
-    run_folder_rdf(folder, &targets->composition, (int)pair, path);
-    CHECK(data_table_write(path, NULL, columns, units_known(units) ? 6 : 5, bins->count));
+    mf_run_folder_rdf(folder, &targets->composition, (int)pair, path);
+    CHECK(mf_data_table_write(path, NULL, columns, mf_units_known(units) ? 6 : 5, bins->count));
 done:
-    memory_free(r);
-    memory_free(nanometres);
+    mf_memory_free(r);
+    mf_memory_free(nanometres);
     return status;
 }
 
@@ -196,9 +196,9 @@ static enum status write_etd(const struct fit_file *fit, const struct observed *
         time[k] = (double)(k / bins) * target->interval;
         r[k] = target->grid.r_minimum + ((double)(k % bins) + 0.5) * width;
     }
-    const bool known = units_known(units);
-    picoseconds = units_column(time, cells, known ? units_time_ps(units) : 0);
-    nanometres = units_column(r, cells, units->length);
+    const bool known = mf_units_known(units);
+    picoseconds = mf_units_column(time, cells, known ? mf_units_time_ps(units) : 0);
+    nanometres = mf_units_column(r, cells, units->length);
     CHECK(picoseconds && nanometres ? STATUS_OK : STATUS_NO_MEMORY);
     const struct data_column columns[] = {{"time[tau]", time, "%.6f"},
                                           {"r0[lambda]", r, "%.6f"},
@@ -208,13 +208,13 @@ static enum status write_etd(const struct fit_file *fit, const struct observed *
                                           {"result_error[1]", observed->error[GOAL_ETD], "%.3g"},
                                           {"time[ps]", picoseconds, "%.6g"},
                                           {"r0[nm]", nanometres, "%.6g"}};
-    run_folder_file(folder, "etd_cells.tsv", path);
-    CHECK(data_table_write(path, NULL, columns, known ? 8 : 6, cells));
+    mf_run_folder_file(folder, "etd_cells.tsv", path);
+    CHECK(mf_data_table_write(path, NULL, columns, known ? 8 : 6, cells));
 done:
-    memory_free(time);
-    memory_free(r);
-    memory_free(picoseconds);
-    memory_free(nanometres);
+    mf_memory_free(time);
+    mf_memory_free(r);
+    mf_memory_free(picoseconds);
+    mf_memory_free(nanometres);
     return status;
 }
 
@@ -232,7 +232,7 @@ static struct motion_names motion_names(enum goal_kind kind, const struct units 
              "result_error[lambda^2]"},
             {"target[nm^2]", "target_error[nm^2]", "result[nm^2]", "result_error[nm^2]"},
             nm2};
-    const double ps = units_known(units) ? units_time_ps(units) : 1;
+    const double ps = mf_units_known(units) ? mf_units_time_ps(units) : 1;
     return (struct motion_names){{"target[lambda^2/tau^2]", "target_error[lambda^2/tau^2]",
                                   "result[lambda^2/tau^2]", "result_error[lambda^2/tau^2]"},
                                  {"target[nm^2/ps^2]", "target_error[nm^2/ps^2]",
@@ -255,29 +255,29 @@ static enum status write_motion(const struct fit_file *fit, const struct target_
     NEW_ARRAY(time, target->times);
     for (size_t k = 0; k < target->times; k++)
         time[k] = (double)k * target->interval;
-    picoseconds = units_column(time, target->times, units_known(units) ? units_time_ps(units) : 0);
+    picoseconds = mf_units_column(time, target->times, mf_units_known(units) ? mf_units_time_ps(units) : 0);
     CHECK(picoseconds ? STATUS_OK : STATUS_NO_MEMORY);
     columns[0] = (struct data_column){"time[tau]", time, NULL};
     columns[5] = (struct data_column){"time[ps]", picoseconds, NULL};
     for (int k = 0; k < 4; k++) {
         const char *format = k % 2 ? "%.3g" : "%.8g";
-        physical[k] = units_column(values[k], target->times, names.unit);
+        physical[k] = mf_units_column(values[k], target->times, names.unit);
         CHECK(physical[k] ? STATUS_OK : STATUS_NO_MEMORY);
         columns[1 + k] = (struct data_column){names.columns[k], values[k], format};
         columns[6 + k] = (struct data_column){names.physical[k], physical[k], format};
     }
-    snprintf(name, sizeof name, "%s.tsv", goals_names[kind]);
-    run_folder_file(folder, name, path);
-    CHECK(data_table_write(path, NULL, columns, units_known(units) ? 10 : 5, target->times));
+    snprintf(name, sizeof name, "%s.tsv", mf_goals_names[kind]);
+    mf_run_folder_file(folder, name, path);
+    CHECK(mf_data_table_write(path, NULL, columns, mf_units_known(units) ? 10 : 5, target->times));
 done:
-    memory_free(time);
-    memory_free(picoseconds);
+    mf_memory_free(time);
+    mf_memory_free(picoseconds);
     for (int k = 0; k < 4; k++)
-        memory_free(physical[k]);
+        mf_memory_free(physical[k]);
     return status;
 }
 
-enum status fit_output_observables(const struct fit_file *fit, const struct fit_result *result,
+enum status mf_fit_output_observables(const struct fit_file *fit, const struct fit_result *result,
                                    const struct run_folder *folder) {
     const struct targets *targets = &fit->targets;
     const struct observed *observed = &result->verification->observed;

@@ -11,40 +11,40 @@ static void say_parameters(struct progress *to, const struct fit_file *fit,
                            const struct inverse_parameter *parameter) {
     const struct unknown_parameters *p = &fit->unknown[UNKNOWN_WEIGHT].parameters;
     char line[256];
-    int length = snprintf(line, sizeof line, "%s:", inverse_unknown_names[UNKNOWN_WEIGHT]);
+    int length = snprintf(line, sizeof line, "%s:", mf_inverse_unknown_names[UNKNOWN_WEIGHT]);
     if (!fit->unknown[UNKNOWN_WEIGHT].wanted || p->shape != INVERSE_CURVE_POWER)
         return;
     for (int k = 0; k < INVERSE_PARAMETERS; k++) {
         char text[NUMBER_TEXT_SIZE];
-        const char *bound = decoder_parameter_bound(p, k, parameter[k].value);
+        const char *bound = mf_decoder_parameter_bound(p, k, parameter[k].value);
         char mark[32] = "";
         if (!isnan(p->fixed[k]))
             snprintf(mark, sizeof mark, " (fixed)");
         else if (bound)
             snprintf(mark, sizeof mark, " (at its %s)", bound);
-        number_text(parameter[k].value, parameter[k].error, text);
+        mf_number_text(parameter[k].value, parameter[k].error, text);
         length += snprintf(line + length, sizeof line - (size_t)length, "%s %s = %s%s",
-                           k > 0 ? "," : "", inverse_fixed_fields[k].name, text, mark);
+                           k > 0 ? "," : "", mf_inverse_fixed_fields[k].name, text, mark);
     }
-    progress_say(to, "%s", line);
+    mf_progress_say(to, "%s", line);
 }
 
 /// "potential: well -0.354 k_B T_0 at 0.99 lambda (-0.451 at 0.99 at first), changed by 0.05 rms".
 static void say_changes(struct progress *to, const struct decoder *decoder,
                         const struct fit_result *result) {
-    progress_say(to, "error of the fit: %.4g at first, %.4g at the end", result->first_error,
+    mf_progress_say(to, "error of the fit: %.4g at first, %.4g at the end", result->first_error,
                  result->error);
     for (int kind = 0; kind < UNKNOWNS; kind++)
-        for (size_t n = 0; result->first[kind] && n < decoder_curve_count(decoder, kind); n++) {
+        for (size_t n = 0; result->first[kind] && n < mf_decoder_curve_count(decoder, kind); n++) {
             char name[DECODER_NAME_SIZE], well[128] = "";
             const struct fit_change change =
-                fit_change_find(decoder, kind, n, result->first[kind], result->curve[kind]);
-            decoder_curve_name(decoder, kind, n, name);
+                mf_fit_change_find(decoder, kind, n, result->first[kind], result->curve[kind]);
+            mf_decoder_curve_name(decoder, kind, n, name);
             if (kind == UNKNOWN_POTENTIAL && change.well < 0)
                 snprintf(well, sizeof well,
                          " well %.3f k_B T_0 at %.3g lambda (%.3f at %.3g at first),", change.well,
                          change.well_at, change.first_well, change.first_well_at);
-            progress_say(to, "%s:%s changed by %.2g rms", name, well, change.rms);
+            mf_progress_say(to, "%s:%s changed by %.2g rms", name, well, change.rms);
         }
 }
 
@@ -57,15 +57,15 @@ static void say_distances(struct progress *to, const struct fit_file *fit,
         char rms[NUMBER_TEXT_SIZE];
         if (!fit->targets.given[kind])
             continue;
-        number_text(v->distance[kind].rms, v->distance_error[kind], rms);
+        mf_number_text(v->distance[kind].rms, v->distance_error[kind], rms);
         const double noises = v->distance[kind].rms / v->distance[kind].noise;
-        progress_say(to, "verified: rms of %s - target = %s, statistics alone %.2g%s",
-                     goals_names[kind], rms, v->distance[kind].noise,
+        mf_progress_say(to, "verified: rms of %s - target = %s, statistics alone %.2g%s",
+                     mf_goals_names[kind], rms, v->distance[kind].noise,
                      noises > missed ? ": not met, though nothing better was found" : "");
     }
 }
 
-void fit_report_say(struct progress *to, const struct fit_file *fit, const struct decoder *decoder,
+void mf_fit_report_say(struct progress *to, const struct fit_file *fit, const struct decoder *decoder,
                     const struct fit_result *result) {
     const struct verification *v = result->verification;
     say_changes(to, decoder, result);
@@ -73,11 +73,11 @@ void fit_report_say(struct progress *to, const struct fit_file *fit, const struc
     say_distances(to, fit, v);
     if (goals_ask(&fit->problem.compared, GOAL_DIFFUSION)) {
         char diffusion[NUMBER_TEXT_SIZE];
-        number_text(*v->observed.value[GOAL_DIFFUSION], *v->observed.error[GOAL_DIFFUSION],
+        mf_number_text(*v->observed.value[GOAL_DIFFUSION], *v->observed.error[GOAL_DIFFUSION],
                     diffusion);
-        progress_say(to, "D = %s, the slope of the MSD from %.4g to %.4g tau", diffusion,
+        mf_progress_say(to, "D = %s, the slope of the MSD from %.4g to %.4g tau", diffusion,
                      v->diffusion_begin, v->diffusion_end);
     }
-    progress_say(to, "T = %.4f, configurational %.4f, pressure %.3f", v->thermodynamics.temperature,
+    mf_progress_say(to, "T = %.4f, configurational %.4f, pressure %.3f", v->thermodynamics.temperature,
                  v->thermodynamics.temperature_configurational, v->thermodynamics.pressure);
 }

@@ -7,18 +7,18 @@
 
 #include <math.h>
 
-struct fit_truth fit_output_truth(const struct fit_file *fit, const struct decoder *decoder,
+struct fit_truth mf_fit_output_truth(const struct fit_file *fit, const struct decoder *decoder,
                                   const double *phi, size_t pair) {
     const struct potential_grid *grid = &decoder->potential;
-    const struct curve *curve = scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair);
+    const struct curve *curve = mf_scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair);
     double count = 0, squares = 0, with_ramp = 0, ramp_squares = 0;
     for (size_t n = 0; n < grid->known; n++) {
         const size_t point = grid->known_point[n];
         if (point / (grid->bins + 1) != pair ||
-            !potential_grid_well_known(&fit->problem, grid->known_bin[n]))
+            !mf_potential_grid_well_known(&fit->problem, grid->known_bin[n]))
             continue;
-        const double difference = phi[point] - curve_value(curve, grid->r[point]);
-        const double ramp = potential_grid_ramp(grid, point);
+        const double difference = phi[point] - mf_curve_value(curve, grid->r[point]);
+        const double ramp = mf_potential_grid_ramp(grid, point);
         count += 1;
         squares += difference * difference;
         with_ramp += difference * ramp;
@@ -40,7 +40,7 @@ static double weight_truth(const struct fit_file *fit, const struct decoder *dec
     for (size_t k = 1; k + 1 < WEIGHT_POINTS; k++) {
         const double r = decoder->weight.r[k];
         const double truth =
-            curve_value(scene_law_curve(&fit->unknown[UNKNOWN_WEIGHT].truth, 0), r);
+            mf_curve_value(mf_scene_law_curve(&fit->unknown[UNKNOWN_WEIGHT].truth, 0), r);
         largest = fmax(largest, truth);
         // Closer pairs than the target follows do not exist.
         if (fit->targets.given[GOAL_ETD] && r < fit->targets.etd.grid.r_minimum)
@@ -54,7 +54,7 @@ static double weight_truth(const struct fit_file *fit, const struct decoder *dec
 /// A number that is not known is left out.
 static void put_known(struct json_writer *writer, const char *key, double value) {
     if (isfinite(value))
-        json_put_number(writer, key, value);
+        mf_json_put_number(writer, key, value);
 }
 
 /// "etd_rmse", "etd_rmse_error", "etd_noise", and so on for every target.
@@ -64,12 +64,12 @@ static void put_distances(struct json_writer *writer, const struct fit_file *fit
     for (int kind = 0; kind < GOALS; kind++) {
         if (!fit->targets.given[kind])
             continue;
-        snprintf(key, sizeof key, "%s_rmse", goals_names[kind]);
+        snprintf(key, sizeof key, "%s_rmse", mf_goals_names[kind]);
         put_known(writer, key, v->distance[kind].rms);
-        snprintf(key, sizeof key, "%s_rmse_error", goals_names[kind]);
+        snprintf(key, sizeof key, "%s_rmse_error", mf_goals_names[kind]);
         put_known(writer, key, v->distance_error[kind]);
-        snprintf(key, sizeof key, "%s_noise", goals_names[kind]);
-        json_put_number(writer, key, v->distance[kind].noise);
+        snprintf(key, sizeof key, "%s_noise", mf_goals_names[kind]);
+        mf_json_put_number(writer, key, v->distance[kind].noise);
     }
 }
 
@@ -83,11 +83,11 @@ static void put_diffusion(struct json_writer *writer, const struct fit_file *fit
     put_known(writer, "diffusion", value);
     if (error > 0) // one replica of one window has none
         put_known(writer, "diffusion_error", error);
-    json_put_number(writer, "diffusion_fit_begin", v->diffusion_begin);
-    json_put_number(writer, "diffusion_fit_end", v->diffusion_end);
-    if (units_known(units)) {
-        const double unit = units_diffusion_cm2_per_s(units);
-        json_put_number(writer, "diffusion_cm2_per_s", value * unit);
+    mf_json_put_number(writer, "diffusion_fit_begin", v->diffusion_begin);
+    mf_json_put_number(writer, "diffusion_fit_end", v->diffusion_end);
+    if (mf_units_known(units)) {
+        const double unit = mf_units_diffusion_cm2_per_s(units);
+        mf_json_put_number(writer, "diffusion_cm2_per_s", value * unit);
         if (error > 0)
             put_known(writer, "diffusion_error_cm2_per_s", error * unit);
     }
@@ -97,8 +97,8 @@ static void put_diffusion(struct json_writer *writer, const struct fit_file *fit
 /// is the ramp 1 − r/r_c, which moves the pressure and hardly g(r).
 static void put_flat(struct json_writer *writer, enum unknown_kind kind,
                      const struct decoder *decoder, const struct fit_result *result) {
-    const size_t points = decoder_points(decoder, kind);
-    const double *r = decoder_r(decoder, kind), *flat = result->curve_flat[kind];
+    const size_t points = mf_decoder_points(decoder, kind);
+    const double *r = mf_decoder_r(decoder, kind), *flat = result->curve_flat[kind];
     double all = 0, widest = 0, ramps = 0, product = 0;
     char key[64];
     for (size_t k = 0; flat && k < points; k++) {
@@ -112,10 +112,10 @@ static void put_flat(struct json_writer *writer, enum unknown_kind kind,
     }
     if (!(all > 0))
         return;
-    snprintf(key, sizeof key, "%s_flat_share", inverse_unknown_names[kind]);
-    json_put_number(writer, key, fmin(1, widest / all));
+    snprintf(key, sizeof key, "%s_flat_share", mf_inverse_unknown_names[kind]);
+    mf_json_put_number(writer, key, fmin(1, widest / all));
     if (kind == UNKNOWN_POTENTIAL)
-        json_put_number(writer, "potential_flat_is_ramp", product * product / (widest * ramps));
+        mf_json_put_number(writer, "potential_flat_is_ramp", product * product / (widest * ramps));
 }
 
 /// What g(r) leaves open.
@@ -136,22 +136,22 @@ static void put_parameters(struct json_writer *writer, const struct fit_file *fi
     const struct unknown_parameters *p = &fit->unknown[UNKNOWN_WEIGHT].parameters;
     if (!fit->unknown[UNKNOWN_WEIGHT].wanted || p->shape != INVERSE_CURVE_POWER)
         return;
-    json_begin(writer, "parameters");
-    json_begin(writer, inverse_unknown_names[UNKNOWN_WEIGHT]);
+    mf_json_begin(writer, "parameters");
+    mf_json_begin(writer, mf_inverse_unknown_names[UNKNOWN_WEIGHT]);
     for (int k = 0; k < INVERSE_PARAMETERS; k++) {
-        const char *bound = decoder_parameter_bound(p, k, parameter[k].value);
-        json_begin(writer, inverse_fixed_fields[k].name);
+        const char *bound = mf_decoder_parameter_bound(p, k, parameter[k].value);
+        mf_json_begin(writer, mf_inverse_fixed_fields[k].name);
         put_known(writer, "value", parameter[k].value);
         if (isnan(p->fixed[k]))
             put_known(writer, "error", parameter[k].error);
         else
-            json_put_text(writer, "fixed", "yes");
+            mf_json_put_text(writer, "fixed", "yes");
         if (bound)
-            json_put_text(writer, "bound", bound);
-        json_end(writer);
+            mf_json_put_text(writer, "bound", bound);
+        mf_json_end(writer);
     }
-    json_end(writer);
-    json_end(writer);
+    mf_json_end(writer);
+    mf_json_end(writer);
 }
 
 /// "start": {"error": 0.11, "potential": {"change": 0.05, "well": -0.45, "well_at": 0.99}, …}, the
@@ -159,14 +159,14 @@ static void put_parameters(struct json_writer *writer, const struct fit_file *fi
 static void put_start(struct json_writer *writer, const struct decoder *decoder,
                       const struct fit_result *result) {
     char name[DECODER_NAME_SIZE];
-    json_begin(writer, "start");
+    mf_json_begin(writer, "start");
     put_known(writer, "error", result->first_error);
     for (int kind = 0; kind < UNKNOWNS; kind++)
-        for (size_t n = 0; result->first[kind] && n < decoder_curve_count(decoder, kind); n++) {
+        for (size_t n = 0; result->first[kind] && n < mf_decoder_curve_count(decoder, kind); n++) {
             const struct fit_change change =
-                fit_change_find(decoder, kind, n, result->first[kind], result->curve[kind]);
-            decoder_curve_name(decoder, kind, n, name);
-            json_begin(writer, name);
+                mf_fit_change_find(decoder, kind, n, result->first[kind], result->curve[kind]);
+            mf_decoder_curve_name(decoder, kind, n, name);
+            mf_json_begin(writer, name);
             put_known(writer, "change", change.rms);
             if (kind == UNKNOWN_POTENTIAL) {
                 put_known(writer, "well", change.first_well);
@@ -174,19 +174,19 @@ static void put_start(struct json_writer *writer, const struct decoder *decoder,
                 put_known(writer, "well_now", change.well);
                 put_known(writer, "well_now_at", change.well_at);
             }
-            json_end(writer);
+            mf_json_end(writer);
         }
-    json_end(writer);
+    mf_json_end(writer);
 }
 
 /// "truth_rms" and so on, in a mixture "truth_rms_A-B".
 static void put_potential_truth(struct json_writer *writer, const struct fit_file *fit,
                                 const struct decoder *decoder, const double *phi, size_t pair) {
     static const char *const names[] = {"truth_rms", "truth_ramp", "truth_rms_without_ramp"};
-    const struct fit_truth truth = fit_output_truth(fit, decoder, phi, pair);
+    const struct fit_truth truth = mf_fit_output_truth(fit, decoder, phi, pair);
     const double values[] = {truth.rms, truth.ramp, truth.rms_without_ramp};
     char kind[COMPOSITION_PAIR_NAME_SIZE], key[COMPOSITION_PAIR_NAME_SIZE + 32];
-    composition_pair_name(&fit->scene.setup.composition, (int)pair, kind);
+    mf_composition_pair_name(&fit->scene.setup.composition, (int)pair, kind);
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         snprintf(key, sizeof key, "%s%s%s", names[k], kind[0] ? "_" : "", kind);
         put_known(writer, key, values[k]);
@@ -197,7 +197,7 @@ static void put_truth(struct json_writer *writer, const struct fit_file *fit,
                       const struct decoder *decoder, const struct fit_result *result) {
     const double *phi = result->curve[UNKNOWN_POTENTIAL], *omega = result->curve[UNKNOWN_WEIGHT];
     for (size_t pair = 0; phi && pair < decoder->potential.pairs; pair++)
-        if (scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair))
+        if (mf_scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair))
             put_potential_truth(writer, fit, decoder, phi, pair);
     if (omega && fit->unknown[UNKNOWN_WEIGHT].truth.curves > 0)
         put_known(writer, "truth_error", weight_truth(fit, decoder, omega));
@@ -210,8 +210,8 @@ static void put_normalisation(struct json_writer *writer, const struct fit_file 
     const bool mixed = composition_is_mixed(&fit->scene.setup.composition);
     if (!fit->targets.given[GOAL_RDF])
         return;
-    json_put_number(writer, "normalisation", !mixed && given > 0 ? given : found->factor);
-    json_put_number(writer, "normalisation_error", !mixed && given > 0 ? 0 : found->error);
+    mf_json_put_number(writer, "normalisation", !mixed && given > 0 ? given : found->factor);
+    mf_json_put_number(writer, "normalisation_error", !mixed && given > 0 ? 0 : found->error);
 }
 
 /// S(0) of the target and of the result, in three dimensions and of beads that are alike.
@@ -224,8 +224,8 @@ static void put_kirkwood_buff(struct json_writer *writer, const struct fit_file 
         composition_is_mixed(&fit->scene.setup.composition))
         return;
     const struct kirkwood_buff target =
-        kirkwood_buff_integrate(bins, fit->targets.rdf_g, fit->targets.rdf_error, box, count);
-    const struct kirkwood_buff found = kirkwood_buff_integrate(
+        mf_kirkwood_buff_integrate(bins, fit->targets.rdf_g, fit->targets.rdf_error, box, count);
+    const struct kirkwood_buff found = mf_kirkwood_buff_integrate(
         bins, v->observed.value[GOAL_RDF], v->observed.error[GOAL_RDF], box, count);
     put_known(writer, "target_kirkwood_buff", target.integral);
     put_known(writer, "target_kirkwood_buff_error", target.integral_error);
@@ -241,39 +241,39 @@ static void put_verification(struct json_writer *writer, const struct fit_file *
                              const struct verification *v) {
     const struct thermodynamics_summary *t = &v->thermodynamics;
     if (v->warning[0])
-        json_put_text(writer, "warning", v->warning);
+        mf_json_put_text(writer, "warning", v->warning);
     put_distances(writer, fit, v);
     put_diffusion(writer, fit, v);
     put_kirkwood_buff(writer, fit, v);
-    json_put_number(writer, "temperature", t->temperature);
-    json_put_number(writer, "temperature_error", t->temperature_error);
+    mf_json_put_number(writer, "temperature", t->temperature);
+    mf_json_put_number(writer, "temperature_error", t->temperature_error);
     put_known(writer, "temperature_configurational", t->temperature_configurational);
     put_known(writer, "temperature_configurational_error", t->temperature_configurational_error);
-    json_put_number(writer, "potential_energy", t->potential_energy);
-    json_put_number(writer, "potential_energy_error", t->potential_energy_error);
-    json_put_number(writer, "pressure", t->pressure);
-    json_put_number(writer, "pressure_error", t->pressure_error);
-    json_put_number(writer, "verification_steps", (double)v->engine_steps);
-    units_put(&fit->scene.units, writer, t->potential_energy, t->pressure);
+    mf_json_put_number(writer, "potential_energy", t->potential_energy);
+    mf_json_put_number(writer, "potential_energy_error", t->potential_energy_error);
+    mf_json_put_number(writer, "pressure", t->pressure);
+    mf_json_put_number(writer, "pressure_error", t->pressure_error);
+    mf_json_put_number(writer, "verification_steps", (double)v->engine_steps);
+    mf_units_put(&fit->scene.units, writer, t->potential_energy, t->pressure);
 }
 
-enum status fit_output_summary(const struct fit_file *fit, const struct decoder *decoder,
+enum status mf_fit_output_summary(const struct fit_file *fit, const struct decoder *decoder,
                                const struct fit_result *result, const struct run_folder *folder) {
-    struct json_writer *writer = json_writer_create();
+    struct json_writer *writer = mf_json_writer_create();
     char path[OUTPUT_PATH_SIZE];
-    json_put_text(writer, "status",
-                  result->status != STATUS_OK ? status_name(result->status)
+    mf_json_put_text(writer, "status",
+                  result->status != STATUS_OK ? mf_status_name(result->status)
                   : result->settled           ? "converged"
                                               : "finished");
     if (result->reason[0])
-        json_put_text(writer, "reason", result->reason);
-    json_put_text(writer, "method", fit->method->name);
-    json_put_text(writer, "method_summary", fit->method->summary);
-    json_put_number(writer, "seconds", result->seconds);
-    json_put_number(writer, "threads", fit->problem.threads);
-    json_put_number(writer, "iterations", (double)result->iterations);
-    json_put_number(writer, "evaluations", (double)result->evaluations);
-    json_put_number(writer, "engine_steps", (double)result->engine_steps);
+        mf_json_put_text(writer, "reason", result->reason);
+    mf_json_put_text(writer, "method", fit->method->name);
+    mf_json_put_text(writer, "method_summary", fit->method->summary);
+    mf_json_put_number(writer, "seconds", result->seconds);
+    mf_json_put_number(writer, "threads", fit->problem.threads);
+    mf_json_put_number(writer, "iterations", (double)result->iterations);
+    mf_json_put_number(writer, "evaluations", (double)result->evaluations);
+    mf_json_put_number(writer, "engine_steps", (double)result->engine_steps);
     put_known(writer, "error", result->error);
     if (result->verification)
         put_verification(writer, fit, result->verification);
@@ -286,11 +286,11 @@ enum status fit_output_summary(const struct fit_file *fit, const struct decoder 
     put_parameters(writer, fit, result->parameter);
     put_start(writer, decoder, result);
     if (fit->targets.given[GOAL_ETD])
-        json_put_number(writer, "etd_cells_left_out", (double)fit->targets.etd.left_out);
-    json_put_number(writer, "seed", (double)fit->heading.seed);
-    json_put_text(writer, "version", MESOFIT_VERSION);
-    run_folder_file(folder, "summary.json", path);
-    const enum status status = json_write(writer, path);
-    json_writer_free(writer);
+        mf_json_put_number(writer, "etd_cells_left_out", (double)fit->targets.etd.left_out);
+    mf_json_put_number(writer, "seed", (double)fit->heading.seed);
+    mf_json_put_text(writer, "version", MESOFIT_VERSION);
+    mf_run_folder_file(folder, "summary.json", path);
+    const enum status status = mf_json_write(writer, path);
+    mf_json_writer_free(writer);
     return status;
 }

@@ -23,7 +23,7 @@ static const char *find_cause(const struct thermodynamics_summary *found, double
     return "longer \"equilibration\" of either, or more \"particles\", may tell why";
 }
 
-bool fit_verdict_contradicts(const struct verification *verification, bool pressure_is_fitted,
+bool mf_fit_verdict_contradicts(const struct verification *verification, bool pressure_is_fitted,
                              double temperature, double noise_margin,
                              char reason[INVERSE_REASON_SIZE]) {
     const struct goal_distance *rdf = &verification->distance[GOAL_RDF];
@@ -46,11 +46,11 @@ bool fit_verdict_contradicts(const struct verification *verification, bool press
     return true;
 }
 
-bool fit_verdict_is_worse(const struct verification *verification, const struct goals *goals,
+bool mf_fit_verdict_is_worse(const struct verification *verification, const struct goals *goals,
                           double error, double variance, char reason[INVERSE_REASON_SIZE]) {
     static const double deviations = 5, part = 0.25;
-    const double verified = goals_error(goals, verification->distance);
-    const double own = goals_variance(goals, verification->distance);
+    const double verified = mf_goals_error(goals, verification->distance);
+    const double own = mf_goals_variance(goals, verification->distance);
     if (!(verified > error + deviations * sqrt(variance + own) && verified > (1 + part) * error))
         return false;
     snprintf(

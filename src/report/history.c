@@ -9,7 +9,7 @@
 
 enum { COMMON = 5, MOST_COLUMNS = COMMON + INVERSE_EXTRA };
 
-enum status history_init(struct history *history, const struct inverse_method *method,
+enum status mf_history_init(struct history *history, const struct inverse_method *method,
                          const size_t points[UNKNOWNS], size_t capacity) {
     enum status status = STATUS_OK;
     *history = (struct history){.capacity = capacity};
@@ -26,19 +26,19 @@ done:
     return status;
 }
 
-double history_first_error(const struct history *history) {
+double mf_history_first_error(const struct history *history) {
     return history->iterations > 0 ? history->rows[3] : NAN;
 }
 
-void history_clear(struct history *history) {
-    memory_free(history->rows);
-    memory_free(history->seconds);
+void mf_history_clear(struct history *history) {
+    mf_memory_free(history->rows);
+    mf_memory_free(history->seconds);
     for (int kind = 0; kind < UNKNOWNS; kind++)
-        memory_free(history->curve[kind]);
+        mf_memory_free(history->curve[kind]);
     *history = (struct history){0};
 }
 
-void history_add(struct history *history, const struct inverse_step *step, double seconds) {
+void mf_history_add(struct history *history, const struct inverse_step *step, double seconds) {
     const size_t k = history->iterations++;
     double *row = history->rows + k * (COMMON + history->extra);
     row[0] = (double)step->iteration;
@@ -70,10 +70,10 @@ static enum status write_transposed(const char *path, const double *values, size
             transposed[c * rows + k] = values[k * columns + c];
         column[first_count + c] = (struct data_column){names[c], transposed + c * rows, NULL};
     }
-    CHECK(data_table_write(path, NULL, column, first_count + columns, rows));
+    CHECK(mf_data_table_write(path, NULL, column, first_count + columns, rows));
 done:
-    memory_free(transposed);
-    memory_free(column);
+    mf_memory_free(transposed);
+    mf_memory_free(column);
     return status;
 }
 
@@ -84,7 +84,7 @@ static enum status write_history(const struct history *history, const struct inv
     char path[OUTPUT_PATH_SIZE];
     for (size_t k = 0; k < history->extra; k++)
         names[COMMON + k] = method->columns[k];
-    run_folder_file(folder, "history.tsv", path);
+    mf_run_folder_file(folder, "history.tsv", path);
     return write_transposed(path, history->rows, history->iterations, COMMON + history->extra, NULL,
                             0, names);
 }
@@ -98,10 +98,10 @@ static enum status write_timing(const struct history *history, const struct run_
         iteration[k] = history->rows[k * (COMMON + history->extra)];
     const struct data_column columns[] = {{"iteration", iteration, NULL},
                                           {"seconds[s]", history->seconds, "%.3f"}};
-    run_folder_file(folder, "timing.tsv", path);
-    CHECK(data_table_write(path, NULL, columns, 2, history->iterations));
+    mf_run_folder_file(folder, "timing.tsv", path);
+    CHECK(mf_data_table_write(path, NULL, columns, 2, history->iterations));
 done:
-    memory_free(iteration);
+    mf_memory_free(iteration);
     return status;
 }
 
@@ -111,41 +111,41 @@ static enum status write_curve(const struct history *history, const struct decod
                                const struct run_folder *folder) {
     enum { NAME_SIZE = 24 };
     enum status status = STATUS_OK;
-    const size_t points = history->points[kind] / decoder_curve_count(decoder, kind);
+    const size_t points = history->points[kind] / mf_decoder_curve_count(decoder, kind);
     struct data_column *columns = NULL;
     char *names = NULL;
     char path[OUTPUT_PATH_SIZE], name[DECODER_NAME_SIZE], file[DECODER_NAME_SIZE + 16];
     NEW_ARRAY(columns, history->iterations + 1);
     NEW_ARRAY(names, history->iterations * NAME_SIZE);
-    columns[0] = (struct data_column){"r[lambda]", decoder_r(decoder, kind) + curve * points, NULL};
+    columns[0] = (struct data_column){"r[lambda]", mf_decoder_r(decoder, kind) + curve * points, NULL};
     for (size_t k = 0; k < history->iterations; k++) {
         snprintf(names + k * NAME_SIZE, NAME_SIZE, "%zu", k);
         columns[k + 1] = (struct data_column){
             names + k * NAME_SIZE,
             history->curve[kind] + k * history->points[kind] + curve * points, "%.6g"};
     }
-    decoder_curve_name(decoder, kind, curve, name);
+    mf_decoder_curve_name(decoder, kind, curve, name);
     snprintf(file, sizeof file, "%s_history.tsv", name);
-    run_folder_file(folder, file, path);
-    CHECK(data_table_write(path, NULL, columns, history->iterations + 1, points));
+    mf_run_folder_file(folder, file, path);
+    CHECK(mf_data_table_write(path, NULL, columns, history->iterations + 1, points));
 done:
-    memory_free(columns);
-    memory_free(names);
+    mf_memory_free(columns);
+    mf_memory_free(names);
     return status;
 }
 
-enum status history_write(const struct history *history, const struct inverse_method *method,
+enum status mf_history_write(const struct history *history, const struct inverse_method *method,
                           const struct decoder *decoder, const struct run_folder *folder) {
     TRY(write_history(history, method, folder));
     TRY(write_timing(history, folder));
     for (int kind = 0; kind < UNKNOWNS; kind++)
         for (size_t curve = 0;
-             history->points[kind] > 0 && curve < decoder_curve_count(decoder, kind); curve++)
+             history->points[kind] > 0 && curve < mf_decoder_curve_count(decoder, kind); curve++)
             TRY(write_curve(history, decoder, kind, curve, folder));
     return STATUS_OK;
 }
 
-size_t history_spans(struct history *history, struct memory_span *spans) {
+size_t mf_history_spans(struct history *history, struct memory_span *spans) {
     const size_t columns = COMMON + history->extra, n = history->capacity;
     size_t count = 0;
     spans[count++] = (struct memory_span){&history->iterations, sizeof history->iterations};

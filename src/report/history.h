@@ -19,20 +19,20 @@ struct history {
 };
 
 /// Room for `capacity` iterations of a method. Fails: NO_MEMORY.
-enum status history_init(struct history *history, const struct inverse_method *method,
+enum status mf_history_init(struct history *history, const struct inverse_method *method,
                          const size_t points[UNKNOWNS], size_t capacity) MUST_USE;
 /// Error of the first iteration; NaN before it.
-double history_first_error(const struct history *history);
+double mf_history_first_error(const struct history *history);
 
-void history_clear(struct history *history);
+void mf_history_clear(struct history *history);
 
 /// Append an iteration.
-void history_add(struct history *history, const struct inverse_step *step, double seconds);
+void mf_history_add(struct history *history, const struct inverse_step *step, double seconds);
 
 /// Write the tables.
-enum status history_write(const struct history *history, const struct inverse_method *method,
+enum status mf_history_write(const struct history *history, const struct inverse_method *method,
                           const struct decoder *decoder, const struct run_folder *folder) MUST_USE;
 
 /// Pieces for a checkpoint.
 enum { HISTORY_SPANS = 3 + UNKNOWNS };
-size_t history_spans(struct history *history, struct memory_span *spans);
+size_t mf_history_spans(struct history *history, struct memory_span *spans);

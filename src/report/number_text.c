@@ -17,7 +17,7 @@ static int first_digit(double number) {
     return atoi(strchr(rounded, 'e') + 1);
 }
 
-void number_text(double value, double error, char text[NUMBER_TEXT_SIZE]) {
+void mf_number_text(double value, double error, char text[NUMBER_TEXT_SIZE]) {
     const double size = fmax(fabs(value), error);
     if (!(error > 0) || !isfinite(value + error)) {
         snprintf(text, NUMBER_TEXT_SIZE, "%.4g", value);

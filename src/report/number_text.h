@@ -7,4 +7,4 @@ enum { NUMBER_TEXT_SIZE = 48 };
 /// "2.581(34)": the error has two digits and stands in units of the last digit of the value.
 /// Without an error (0 or not finite) the value has four significant digits. Tested:
 /// test_number_text.
-void number_text(double value, double error, char text[NUMBER_TEXT_SIZE]);
+void mf_number_text(double value, double error, char text[NUMBER_TEXT_SIZE]);

@@ -96,18 +96,18 @@ static enum status judge(const char *name, int state, char *text) {
     if (WIFEXITED(state) && WEXITSTATUS(state) == 0)
         return STATUS_OK;
     if (WIFSIGNALED(state))
-        return status_fail(STATUS_IO, "%s was ended by signal %d", name, WTERMSIG(state));
+        return mf_status_fail(STATUS_IO, "%s was ended by signal %d", name, WTERMSIG(state));
     if (WEXITSTATUS(state) == EXIT_NOT_FOUND)
-        return status_fail(STATUS_IO, "%s is not installed", name);
-    return status_fail(STATUS_IO, "%s failed: %s", name, text[0] ? last_line(text) : "no reason");
+        return mf_status_fail(STATUS_IO, "%s is not installed", name);
+    return mf_status_fail(STATUS_IO, "%s failed: %s", name, text[0] ? last_line(text) : "no reason");
 }
 
-enum status program_run(const char *folder, const char *const *words, enum program_says says,
+enum status mf_program_run(const char *folder, const char *const *words, enum program_says says,
                         double seconds, char *text, size_t size) {
     int ends[2];
     text[0] = '\0';
     if (pipe(ends) != 0)
-        return status_fail(STATUS_IO, "cannot run %s: %s", words[0], strerror(errno));
+        return mf_status_fail(STATUS_IO, "cannot run %s: %s", words[0], strerror(errno));
     const double end = seconds > 0 ? clock_seconds() + seconds : INFINITY;
     const pid_t child = fork();
     if (child == 0)
@@ -119,11 +119,11 @@ enum status program_run(const char *folder, const char *const *words, enum progr
         child > 0 && read_tail(ends[0], end, text, size) && wait_for(child, end, &state);
     close(ends[0]);
     if (child < 0)
-        return status_fail(STATUS_IO, "cannot run %s: %s", words[0], strerror(error));
+        return mf_status_fail(STATUS_IO, "cannot run %s: %s", words[0], strerror(error));
     if (!ended) {
         kill(-child, SIGKILL); // with the programs that it has started
         wait_for(child, INFINITY, &state);
-        return status_fail(STATUS_IO, "%s had not ended after %g s and was stopped", words[0],
+        return mf_status_fail(STATUS_IO, "%s had not ended after %g s and was stopped", words[0],
                            seconds);
     }
     return judge(words[0], state, text);
@@ -137,11 +137,11 @@ static bool has_file(const char *folder, const char *file) {
     return access(path, R_OK) == 0;
 }
 
-enum status program_find_folder(char *path, size_t size, const char *name, const char *file) {
+enum status mf_program_find_folder(char *path, size_t size, const char *name, const char *file) {
     char folder[OUTPUT_PATH_SIZE];
     const ssize_t length = readlink("/proc/self/exe", folder, sizeof folder - 1);
     if (length < 0)
-        return status_fail(STATUS_IO, "cannot read /proc/self/exe: %s", strerror(errno));
+        return mf_status_fail(STATUS_IO, "cannot read /proc/self/exe: %s", strerror(errno));
     folder[length] = '\0';
     for (char *slash = strrchr(folder, '/'); slash; slash = strrchr(folder, '/')) {
         *slash = '\0';
@@ -152,10 +152,10 @@ enum status program_find_folder(char *path, size_t size, const char *name, const
         if (has_file(path, file))
             return STATUS_OK;
     }
-    return status_fail(STATUS_IO, "no folder %s with %s near the program", name, file);
+    return mf_status_fail(STATUS_IO, "no folder %s with %s near the program", name, file);
 }
 
-void program_begin_again(char **words) {
+void mf_program_begin_again(char **words) {
     if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT"))
         return;
     if (setenv("GOMP_SPINCOUNT", "1000", 1) == 0)

@@ -18,7 +18,7 @@ enum program_says {
 /// @param[in]  size  above 512
 /// Fails: IO with one line that names the program: not installed, ended by a signal, stopped as
 /// too slow, or failed with the last line that it said. Tested: test_program.
-enum status program_run(const char *folder, const char *const *words, enum program_says says,
+enum status mf_program_run(const char *folder, const char *const *words, enum program_says says,
                         double seconds, char *text, size_t size) MUST_USE;
 
 /// Find a folder that ships with this program, such as "plots", by a file that it must have.
@@ -28,7 +28,7 @@ enum status program_run(const char *folder, const char *const *words, enum progr
 /// in any folder above it.
 /// @param[out] path  of `size` bytes
 /// Fails: IO. Tested: test_program.
-enum status program_find_folder(char *path, size_t size, const char *name,
+enum status mf_program_find_folder(char *path, size_t size, const char *name,
                                 const char *file) MUST_USE;
 
 /// Begin this program again, with other waiting: threads of libgomp wait for each other turning in
@@ -37,4 +37,4 @@ enum status program_find_folder(char *path, size_t size, const char *name,
 /// another; then they sleep. libgomp reads this when it is loaded, so the program begins again,
 /// once, unless the user has chosen. Without /proc it goes on as it is. Tested: test_waiting;
 /// measured by tests/bench/busy_cores.sh.
-void program_begin_again(char **words);
+void mf_program_begin_again(char **words);

@@ -10,12 +10,12 @@
 /// Least time between two lines [s].
 static const double terminal_interval = 0.2, pipe_interval = 5;
 
-struct progress progress_begin(bool quiet) {
+struct progress mf_progress_begin(bool quiet) {
     return (struct progress){
         .quiet = quiet, .terminal = isatty(STDERR_FILENO), .started = clock_seconds()};
 }
 
-double progress_seconds(const struct progress *progress) {
+double mf_progress_seconds(const struct progress *progress) {
     return clock_seconds() - progress->started;
 }
 
@@ -28,7 +28,7 @@ static void format_duration(double seconds, char text[32]) {
         snprintf(text, 32, "%.1f h", seconds / 3600);
 }
 
-void progress_tell(struct progress *progress, uint64_t done, uint64_t total, const char *unit,
+void mf_progress_tell(struct progress *progress, uint64_t done, uint64_t total, const char *unit,
                    const char *text) {
     const double now = clock_seconds();
     const double interval = progress->terminal ? terminal_interval : pipe_interval;
@@ -48,7 +48,7 @@ void progress_tell(struct progress *progress, uint64_t done, uint64_t total, con
     progress->open_line = progress->terminal;
 }
 
-void progress_say(struct progress *progress, const char *format, ...) {
+void mf_progress_say(struct progress *progress, const char *format, ...) {
     if (progress->quiet)
         return;
     if (progress->open_line)

@@ -15,15 +15,15 @@ struct progress {
     const char *left_for; ///< what the time left is for, if not all of it may be needed; or NULL
 };
 
-struct progress progress_begin(bool quiet);
+struct progress mf_progress_begin(bool quiet);
 
-/// Seconds since progress_begin.
-double progress_seconds(const struct progress *progress);
+/// Seconds since mf_progress_begin.
+double mf_progress_seconds(const struct progress *progress);
 
 /// Tell that `done` of `total` parts are done; `text` says the rest. Adds rate and time left.
-void progress_tell(struct progress *progress, uint64_t done, uint64_t total, const char *unit,
+void mf_progress_tell(struct progress *progress, uint64_t done, uint64_t total, const char *unit,
                    const char *text);
 
 /// End the updating line, if there is one, and print a line of its own unless quiet.
-void progress_say(struct progress *progress, const char *format, ...)
+void mf_progress_say(struct progress *progress, const char *format, ...)
     __attribute__((format(printf, 2, 3)));

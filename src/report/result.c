@@ -31,7 +31,7 @@ enum { PATH_SIZE = OUTPUT_PATH_SIZE + 64 };
         NUMBER(kind##_noise, its_unit)
 #define MEAN(member, its_unit) NUMBER(member, its_unit), NUMBER(member##_error, its_unit)
 
-const struct field result_summary_fields[] = {
+const struct field mf_result_summary_fields[] = {
     TEXT(status),
     TEXT(method),
     TEXT(version),
@@ -71,11 +71,11 @@ const struct field result_summary_fields[] = {
 static enum status check_folder(const char *folder, const char *summary) {
     struct stat about;
     if (stat(folder, &about) != 0)
-        return status_fail(STATUS_IO, "%s: %s", folder, strerror(errno));
+        return mf_status_fail(STATUS_IO, "%s: %s", folder, strerror(errno));
     if (!S_ISDIR(about.st_mode))
-        return status_fail(STATUS_BAD_INPUT, "%s: not a folder", folder);
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: not a folder", folder);
     if (access(summary, F_OK) != 0)
-        return status_fail(STATUS_BAD_INPUT, "%s: missing, so this is no folder of a finished fit",
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: missing, so this is no folder of a finished fit",
                            summary);
     return STATUS_OK;
 }
@@ -85,8 +85,8 @@ static bool has_distance(struct json_object *root) {
     char key[64];
     bool found = false;
     for (int kind = 0; kind < GOALS; kind++) {
-        snprintf(key, sizeof key, "%s_rmse", goals_names[kind]);
-        found = json_has(root, key) || found;
+        snprintf(key, sizeof key, "%s_rmse", mf_goals_names[kind]);
+        found = mf_json_has(root, key) || found;
     }
     return found;
 }
@@ -114,29 +114,29 @@ static void read_simulated_diffusion(struct json_object *root, struct result_sum
          .unit = ""},
         FIELD_END,
     };
-    struct json_object motion = json_child(root, "motion", false);
-    json_fields(&motion, fields, summary);
+    struct json_object motion = mf_json_child(root, "motion", false);
+    mf_json_fields(&motion, fields, summary);
 }
 
 /// λ stands in an object of its own, if it is known.
 static void read_length_unit(struct json_object *root, struct result_summary *summary) {
     static const struct field fields[] = {NUMBER(length_unit_nm, "nm"), FIELD_END};
-    struct json_object physical = json_child(root, "physical", false);
-    json_fields(&physical, fields, summary);
+    struct json_object physical = mf_json_child(root, "physical", false);
+    mf_json_fields(&physical, fields, summary);
 }
 
 /// Keys that are not in the table are left alone: a later version may write more.
 static enum status read_summary(struct result_summary *summary, const char *file) {
     struct json_document *document;
-    TRY(json_open(&document, file));
-    struct json_object root = json_root(document);
-    json_fields(&root, result_summary_fields, summary);
+    TRY(mf_json_open(&document, file));
+    struct json_object root = mf_json_root(document);
+    mf_json_fields(&root, mf_result_summary_fields, summary);
     read_length_unit(&root, summary);
     if (is_simulation(summary))
         read_simulated_diffusion(&root, summary);
     else if (root.item && !has_distance(&root))
-        json_fault(&root, NULL, "not the result of a fit: there is no rdf_rmse or other rmse");
-    return json_close(document, STATUS_OK);
+        mf_json_fault(&root, NULL, "not the result of a fit: there is no rdf_rmse or other rmse");
+    return mf_json_close(document, STATUS_OK);
 }
 
 /// Cut `*text` behind its first line and step over it; NULL at the end.
@@ -189,7 +189,7 @@ static enum status read_row(double *row, const struct wish *wishes, size_t count
         char *end;
         const double value = strtod(line, &end);
         if (end == line || strchr(" \t\r", *end) == NULL)
-            return status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu is not a number", file, number,
+            return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu is not a number", file, number,
                                place);
         for (size_t k = 0; k < count; k++)
             if (wishes[k].place == place)
@@ -206,7 +206,7 @@ static enum status read_table(struct result_table *table, const char *folder, co
     char file[PATH_SIZE], *text = NULL, *line;
     size_t length = 0, most_rows = 1, number = 0;
     snprintf(file, sizeof file, "%s/%s", folder, name);
-    CHECK(text_file_read(file, &text, &length));
+    CHECK(mf_text_file_read(file, &text, &length));
     for (size_t k = 0; k < length; k++)
         most_rows += text[k] == '\n';
     table->columns = count;
@@ -220,9 +220,9 @@ static enum status read_table(struct result_table *table, const char *folder, co
             find_places(wishes, count, line);
     }
     if (table->rows == 0)
-        status = status_fail(STATUS_BAD_INPUT, "%s: there is no row of numbers", file);
+        status = mf_status_fail(STATUS_BAD_INPUT, "%s: there is no row of numbers", file);
 done:
-    memory_free(text);
+    mf_memory_free(text);
     return status;
 }
 
@@ -254,7 +254,7 @@ static enum status read_omega(struct result_table *table, const char *folder) {
         return STATUS_OK;
     TRY(read_table(table, folder, "omega.tsv", wishes, 4));
     if (wishes[2].place == 0) {
-        memory_free(table->values);
+        mf_memory_free(table->values);
         *table = (struct result_table){0};
     }
     return STATUS_OK;
@@ -281,11 +281,11 @@ static enum status read_course(struct result_table *table, const char *folder) {
         values[SECONDS] = seconds_at(&timing, values[0]);
     }
 done:
-    memory_free(timing.values);
+    mf_memory_free(timing.values);
     return status;
 }
 
-enum status result_read(struct result *result, const char *folder) {
+enum status mf_result_read(struct result *result, const char *folder) {
     enum status status = STATUS_OK;
     char summary[PATH_SIZE];
     snprintf(summary, sizeof summary, "%s/summary.json", folder);
@@ -300,14 +300,14 @@ enum status result_read(struct result *result, const char *folder) {
         CHECK(read_course(&result->course, folder));
 done:
     if (status != STATUS_OK)
-        result_clear(result);
+        mf_result_clear(result);
     return status;
 }
 
-void result_clear(struct result *result) {
-    memory_free(result->rdf.values);
-    memory_free(result->potential.values);
-    memory_free(result->omega.values);
-    memory_free(result->course.values);
+void mf_result_clear(struct result *result) {
+    mf_memory_free(result->rdf.values);
+    mf_memory_free(result->potential.values);
+    mf_memory_free(result->omega.values);
+    mf_memory_free(result->course.values);
     *result = (struct result){0};
 }

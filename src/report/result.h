@@ -30,7 +30,7 @@ struct result_summary {
     double length_unit_nm; ///< λ
 };
 
-extern const struct field result_summary_fields[];
+extern const struct field mf_result_summary_fields[];
 
 /// Some columns of a table; no rows if there is no such table. Unlike a measurement, a result may
 /// hold nan: not known.
@@ -51,6 +51,6 @@ struct result {
 /// rdf.tsv, potential.tsv and omega.tsv. Of a simulation's folder, summary.json and rdf.tsv, if it
 /// is there: its g(r) is a result without a target. BAD_INPUT or IO with one line that names the
 /// file; *result is then empty. Tested: test_compare.
-enum status result_read(struct result *result, const char *folder) MUST_USE;
+enum status mf_result_read(struct result *result, const char *folder) MUST_USE;
 
-void result_clear(struct result *result);
+void mf_result_clear(struct result *result);

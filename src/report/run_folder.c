@@ -101,17 +101,17 @@ static int is_left_behind(const struct dirent *entry) {
 static enum status remove_file(const char *path, const void *context) {
     (void)context;
     if (unlink(path) != 0 && errno != ENOENT)
-        return status_fail(STATUS_IO, "%s: %s", path, strerror(errno));
+        return mf_status_fail(STATUS_IO, "%s: %s", path, strerror(errno));
     return STATUS_OK;
 }
 
 static enum status spare_input(const char *path, const void *context) {
-    return input_files_spare(context, path);
+    return mf_input_files_spare(context, path);
 }
 
 static enum status refuse_stranger(const char *path, const void *context) {
     (void)context;
-    return status_fail(STATUS_BAD_INPUT,
+    return mf_status_fail(STATUS_BAD_INPUT,
                        "%s is there, but no used.json, so no run wrote it: -o OTHER keeps it, "
                        "--force replaces it",
                        path);
@@ -125,10 +125,10 @@ static enum status with_files(const struct run_folder *folder, int (*is_one)(con
     struct dirent **entries;
     const int count = scandir(folder->path, &entries, is_one, alphasort);
     if (count < 0)
-        return status_fail(STATUS_IO, "%s: %s", folder->path, strerror(errno));
+        return mf_status_fail(STATUS_IO, "%s: %s", folder->path, strerror(errno));
     for (int k = 0; k < count; k++) {
         char path[OUTPUT_PATH_SIZE];
-        run_folder_file(folder, entries[k]->d_name, path);
+        mf_run_folder_file(folder, entries[k]->d_name, path);
         if (status == STATUS_OK)
             status = act(path, context);
         free(entries[k]);
@@ -141,7 +141,7 @@ static enum status with_files(const struct run_folder *folder, int (*is_one)(con
 
 static bool has(const struct run_folder *folder, const char *name) {
     char path[OUTPUT_PATH_SIZE];
-    run_folder_file(folder, name, path);
+    mf_run_folder_file(folder, name, path);
     return access(path, F_OK) == 0;
 }
 
@@ -151,16 +151,16 @@ static bool says(const struct run_folder *folder, const char *name, const char *
                  const char *text) {
     char path[OUTPUT_PATH_SIZE];
     struct json_document *document;
-    run_folder_file(folder, name, path);
-    if (json_open(&document, path) != STATUS_OK)
+    mf_run_folder_file(folder, name, path);
+    if (mf_json_open(&document, path) != STATUS_OK)
         return false;
-    struct json_object root = json_root(document);
-    bool found = json_has(&root, key);
+    struct json_object root = mf_json_root(document);
+    bool found = mf_json_has(&root, key);
     if (found && text) {
-        const char *said = json_choice(&root, key, NULL, NULL);
+        const char *said = mf_json_choice(&root, key, NULL, NULL);
         found = said && strcmp(said, text) == 0;
     }
-    return json_close(document, STATUS_OK) == STATUS_OK && found;
+    return mf_json_close(document, STATUS_OK) == STATUS_OK && found;
 }
 
 /// Settings that cannot be read are taken for those of a fit, which is worth more.
@@ -178,42 +178,42 @@ static enum status check_replaced(const struct run_folder *folder, enum run_kind
     if (is_simulation(folder))
         return kind == RUN_SIMULATION
                    ? STATUS_OK
-                   : status_fail(STATUS_BAD_INPUT,
+                   : mf_status_fail(STATUS_BAD_INPUT,
                                  "%s holds a simulation: --force replaces it, -o OTHER keeps it",
                                  folder->path);
-    if (summary && !says(folder, "summary.json", "status", status_name(STATUS_INTERRUPTED)))
-        return status_fail(STATUS_BAD_INPUT,
+    if (summary && !says(folder, "summary.json", "status", mf_status_name(STATUS_INTERRUPTED)))
+        return mf_status_fail(STATUS_BAD_INPUT,
                            "%s holds a finished fit: --force replaces it, -o OTHER keeps it",
                            folder->path);
-    return status_fail(STATUS_BAD_INPUT,
+    return mf_status_fail(STATUS_BAD_INPUT,
                        "%s holds an unfinished fit: --resume goes on, --force begins anew",
                        folder->path);
 }
 
 static enum status check_resumed(const struct run_folder *folder) {
     char path[OUTPUT_PATH_SIZE];
-    run_folder_file(folder, "checkpoint.bin", path);
+    mf_run_folder_file(folder, "checkpoint.bin", path);
     if (access(path, F_OK) == 0)
         return STATUS_OK;
-    return status_fail(STATUS_IO, "%s: %s: there is nothing to resume", path, strerror(errno));
+    return mf_status_fail(STATUS_IO, "%s: %s: there is nothing to resume", path, strerror(errno));
 }
 
 /// Find out now, and not after an hour, that the folder cannot be written.
 static enum status check_writable(const struct run_folder *folder) {
     if (access(folder->path, W_OK | X_OK) == 0)
         return STATUS_OK;
-    return status_fail(STATUS_IO, "%s: %s", folder->path, strerror(errno));
+    return mf_status_fail(STATUS_IO, "%s: %s", folder->path, strerror(errno));
 }
 
 /// The system takes the lock back when the process ends, however it ends.
 static enum status lock(struct run_folder *folder) {
     folder->lock = open(folder->path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (folder->lock < 0)
-        return status_fail(STATUS_IO, "%s: %s", folder->path, strerror(errno));
+        return mf_status_fail(STATUS_IO, "%s: %s", folder->path, strerror(errno));
     folder->locked = true;
     if (flock(folder->lock, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
         return STATUS_OK;
-    return status_fail(STATUS_BAD_INPUT, "%s: another process is running in this folder",
+    return mf_status_fail(STATUS_BAD_INPUT, "%s: another process is running in this folder",
                        folder->path);
 }
 
@@ -226,14 +226,14 @@ static enum status choose(struct run_folder *folder, const char *input,
                                       slash ? (int)(slash - input + 1) : 0, input);
     if (length >= 0 && length <= LONGEST_FOLDER)
         return STATUS_OK;
-    return status_fail(STATUS_BAD_INPUT, "%.60s…: the path of a run's folder has at most %d bytes",
+    return mf_status_fail(STATUS_BAD_INPUT, "%.60s…: the path of a run's folder has at most %d bytes",
                        folder->path, LONGEST_FOLDER);
 }
 
-enum status run_folder_open(struct run_folder *folder, enum run_kind kind, const char *input,
+enum status mf_run_folder_open(struct run_folder *folder, enum run_kind kind, const char *input,
                             const struct input_files *inputs, const struct run_options *options) {
     TRY(choose(folder, input, options));
-    TRY(output_make_folder(folder->path));
+    TRY(mf_output_make_folder(folder->path));
     TRY(check_writable(folder));
     TRY(lock(folder));
     // A run that goes on leaves used.json alone, which may then be its input.
@@ -243,31 +243,31 @@ enum status run_folder_open(struct run_folder *folder, enum run_kind kind, const
     return options->force ? STATUS_OK : check_replaced(folder, kind);
 }
 
-enum status run_folder_begin(const struct run_folder *folder, bool resume) {
+enum status mf_run_folder_begin(const struct run_folder *folder, bool resume) {
     TRY(with_files(folder, is_left_behind, remove_file, NULL));
     return resume ? STATUS_OK : with_files(folder, is_earlier, remove_file, NULL);
 }
 
-void run_folder_close(struct run_folder *folder) {
+void mf_run_folder_close(struct run_folder *folder) {
     if (folder->locked)
         close(folder->lock);
     folder->locked = false;
 }
 
-void run_folder_file(const struct run_folder *folder, const char *name, char *path) {
+void mf_run_folder_file(const struct run_folder *folder, const char *name, char *path) {
     snprintf(path, OUTPUT_PATH_SIZE, "%.*s/%.*s", LONGEST_FOLDER, folder->path, NAME_ROOM - 2,
              name);
 }
 
-void run_folder_rdf(const struct run_folder *folder, const struct composition *composition,
+void mf_run_folder_rdf(const struct run_folder *folder, const struct composition *composition,
                     int pair, char *path) {
     char kind[COMPOSITION_PAIR_NAME_SIZE], name[COMPOSITION_PAIR_NAME_SIZE + 8];
-    composition_pair_name(composition, pair, kind);
+    mf_composition_pair_name(composition, pair, kind);
     snprintf(name, sizeof name, "rdf%s%s.tsv", kind[0] ? "_" : "", kind);
-    run_folder_file(folder, name, path);
+    mf_run_folder_file(folder, name, path);
 }
 
-void run_folder_draw(const struct run_folder *folder) {
-    if (figures_draw(folder->path) != STATUS_OK)
-        fprintf(stderr, "mesofit: warning: %s\n", status_message());
+void mf_run_folder_draw(const struct run_folder *folder) {
+    if (mf_figures_draw(folder->path) != STATUS_OK)
+        fprintf(stderr, "mesofit: warning: %s\n", mf_status_message());
 }

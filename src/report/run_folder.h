@@ -22,29 +22,29 @@ struct run_folder {
 };
 
 /// Choose, make and lock the folder of a run of `input`, in which nothing changes before
-/// run_folder_begin. Where files cannot be locked, it goes on without.
+/// mf_run_folder_begin. Where files cannot be locked, it goes on without.
 /// Fails: BAD_INPUT if the path is too long, another process runs in the folder, a file that the
 /// run reads has the name of a result, there is nothing to resume, or there are results that only
 /// --force may replace: those of an earlier fit, of a simulation if this is a fit, and files with
 /// such names that are of no run (there is no used.json); IO. Tested: test_folder.
-enum status run_folder_open(struct run_folder *folder, enum run_kind kind, const char *input,
+enum status mf_run_folder_open(struct run_folder *folder, enum run_kind kind, const char *input,
                             const struct input_files *inputs,
                             const struct run_options *options) MUST_USE;
 
 /// Remove what killed processes had begun to write and, unless the run goes on with them, the
 /// results of an earlier run, so that a folder never mixes two: once used.json and checkpoint.bin
 /// are those of the new run, which so has room to begin. Fails: IO.
-enum status run_folder_begin(const struct run_folder *folder, bool resume) MUST_USE;
+enum status mf_run_folder_begin(const struct run_folder *folder, bool resume) MUST_USE;
 
 /// Unlock it.
-void run_folder_close(struct run_folder *folder);
+void mf_run_folder_close(struct run_folder *folder);
 
 /// Path of a file in the folder, into `path` of OUTPUT_PATH_SIZE bytes.
-void run_folder_file(const struct run_folder *folder, const char *name, char *path);
+void mf_run_folder_file(const struct run_folder *folder, const char *name, char *path);
 
 /// Path of the g(r) of a kind of pairs: rdf.tsv, or rdf_A-B.tsv in a mixture.
-void run_folder_rdf(const struct run_folder *folder, const struct composition *composition,
+void mf_run_folder_rdf(const struct run_folder *folder, const struct composition *composition,
                     int pair, char *path);
 
 /// Draw the figures of the folder; what fails is a warning on stderr.
-void run_folder_draw(const struct run_folder *folder);
+void mf_run_folder_draw(const struct run_folder *folder);

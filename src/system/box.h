@@ -15,19 +15,19 @@ struct box {
 };
 
 /// Volume, or area in two dimensions [λ^d].
-double box_volume(const struct box *box);
+double mf_box_volume(const struct box *box);
 
 /// Shortest edge [λ].
-double box_shortest(const struct box *box);
+double mf_box_shortest(const struct box *box);
 
 /// Longest edge [λ].
-double box_longest(const struct box *box);
+double mf_box_longest(const struct box *box);
 
 /// The same shape with `volume_share` times the volume.
-struct box box_scaled(const struct box *box, double volume_share);
+struct box mf_box_scaled(const struct box *box, double volume_share);
 
 /// Volume of the shell (ring) low ≤ r < high: exact [λ^d].
-double box_shell_volume(const struct box *box, double low, double high);
+double mf_box_shell_volume(const struct box *box, double low, double high);
 
 /// Separation a − b of the nearest images along one axis [λ].
 static inline double box_nearest(double separation, double length) {

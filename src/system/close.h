@@ -23,9 +23,9 @@ struct close_rows {
 /// `start`, `stop` and rows of entries.
 /// @param[in] limit  first place of the list that must not be written
 /// @return the new length of the list, or SIZE_MAX if there might not be room
-size_t close_portable(struct neighbours *neighbours, const struct particles *particles,
+size_t mf_close_portable(struct neighbours *neighbours, const struct particles *particles,
                       const struct close_rows *rows, size_t used, size_t limit);
-size_t close_avx2(struct neighbours *neighbours, const struct particles *particles,
+size_t mf_close_avx2(struct neighbours *neighbours, const struct particles *particles,
                   const struct close_rows *rows, size_t used, size_t limit);
-size_t close_avx512(struct neighbours *neighbours, const struct particles *particles,
+size_t mf_close_avx512(struct neighbours *neighbours, const struct particles *particles,
                     const struct close_rows *rows, size_t used, size_t limit);

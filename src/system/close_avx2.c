@@ -5,5 +5,5 @@
 #pragma GCC target("avx2,bmi2,fma,popcnt")
 #include "close_loop.h"
 
-CLOSE_INSTANCE(close_avx2)
+CLOSE_INSTANCE(mf_close_avx2)
 #endif

@@ -7,5 +7,5 @@
     "avx512f,avx512dq,avx512bw,avx512vl,avx2,bmi2,fma,popcnt,prefer-vector-width=512")
 #include "close_loop.h"
 
-CLOSE_INSTANCE(close_avx512)
+CLOSE_INSTANCE(mf_close_avx512)
 #endif

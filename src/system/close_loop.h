@@ -108,7 +108,7 @@ LANES_INLINE int32_t *close_around(const struct close_search search, const struc
 
 LANES_INLINE struct close_search close_prepare(const struct neighbours *neighbours,
                                                const struct box *box) {
-    const double range = neighbours->range + wider * box_longest(box);
+    const double range = neighbours->range + wider * mf_box_longest(box);
     struct close_search search = {.particle = neighbours->rows.particle,
                                   .range2 = (float)(range * range)};
     for (int d = 0; d < 3; d++) {

@@ -1,4 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "close_loop.h"
 
-CLOSE_INSTANCE(close_portable)
+CLOSE_INSTANCE(mf_close_portable)

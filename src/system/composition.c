@@ -6,19 +6,19 @@
 #include <stdio.h>
 #include <string.h>
 
-struct composition composition_of_one(int64_t count) {
+struct composition mf_composition_of_one(int64_t count) {
     return (struct composition){.types = 1, .count = {count}};
 }
 
-int64_t composition_particles(const struct composition *composition) {
+int64_t mf_composition_particles(const struct composition *composition) {
     int64_t sum = 0;
     for (int type = 0; type < composition->types; type++)
         sum += composition->count[type];
     return sum;
 }
 
-struct composition composition_scaled(const struct composition *composition, int64_t particles) {
-    const double share = (double)particles / (double)composition_particles(composition);
+struct composition mf_composition_scaled(const struct composition *composition, int64_t particles) {
+    const double share = (double)particles / (double)mf_composition_particles(composition);
     struct composition scaled = *composition;
     for (int type = 0; type < scaled.types; type++) {
         const double count = (double)composition->count[type];
@@ -27,8 +27,8 @@ struct composition composition_scaled(const struct composition *composition, int
     return scaled;
 }
 
-double composition_distortion(const struct composition *from, const struct composition *to) {
-    const double scale = (double)composition_particles(from) / (double)composition_particles(to);
+double mf_composition_distortion(const struct composition *from, const struct composition *to) {
+    const double scale = (double)mf_composition_particles(from) / (double)mf_composition_particles(to);
     double largest = 0;
     for (int type = 0; type < from->types; type++)
         if (from->count[type] > 0)
@@ -37,76 +37,76 @@ double composition_distortion(const struct composition *from, const struct compo
     return largest;
 }
 
-int64_t composition_least_particles(const struct composition *composition, int64_t particles,
+int64_t mf_composition_least_particles(const struct composition *composition, int64_t particles,
                                     double distortion) {
     for (;; particles++) { // a multiple of the whole is exact
-        const struct composition scaled = composition_scaled(composition, particles);
-        if (composition_distortion(composition, &scaled) <= distortion)
+        const struct composition scaled = mf_composition_scaled(composition, particles);
+        if (mf_composition_distortion(composition, &scaled) <= distortion)
             return particles;
     }
 }
 
-int composition_pairs(const struct composition *composition) {
+int mf_composition_pairs(const struct composition *composition) {
     const int types = composition->types;
     return types > 1 ? types * (types + 1) / 2 : 1;
 }
 
-int composition_pair(const struct composition *composition, int a, int b) {
+int mf_composition_pair(const struct composition *composition, int a, int b) {
     const int low = a < b ? a : b, high = a < b ? b : a;
     return low * (2 * composition->types - 1 - low) / 2 + high;
 }
 
-int composition_type(const struct composition *composition, uint32_t id) {
+int mf_composition_type(const struct composition *composition, uint32_t id) {
     int type = 0;
     for (int64_t end = composition->count[0]; type + 1 < composition->types && id >= end;)
         end += composition->count[++type];
     return type;
 }
 
-int composition_pair_of_ids(const struct composition *composition, uint32_t i, uint32_t j) {
+int mf_composition_pair_of_ids(const struct composition *composition, uint32_t i, uint32_t j) {
     if (!composition_is_mixed(composition))
         return 0;
-    return composition_pair(composition, composition_type(composition, i),
-                            composition_type(composition, j));
+    return mf_composition_pair(composition, mf_composition_type(composition, i),
+                            mf_composition_type(composition, j));
 }
 
-void composition_pair_types(const struct composition *composition, int pair, int type[2]) {
+void mf_composition_pair_types(const struct composition *composition, int pair, int type[2]) {
     type[0] = type[1] = 0;
     for (int n = 0; n < pair; n++)
         if (++type[1] == composition->types)
             type[1] = ++type[0];
 }
 
-double composition_possible_pairs(const struct composition *composition, int pair) {
+double mf_composition_possible_pairs(const struct composition *composition, int pair) {
     int type[2];
-    composition_pair_types(composition, pair, type);
+    mf_composition_pair_types(composition, pair, type);
     const double a = (double)composition->count[type[0]], b = (double)composition->count[type[1]];
     return type[0] == type[1] ? 0.5 * a * (a - 1) : a * b;
 }
 
-void composition_pair_name(const struct composition *composition, int pair,
+void mf_composition_pair_name(const struct composition *composition, int pair,
                            char text[COMPOSITION_PAIR_NAME_SIZE]) {
     int type[2];
     text[0] = '\0';
     if (!composition_is_mixed(composition))
         return;
-    composition_pair_types(composition, pair, type);
+    mf_composition_pair_types(composition, pair, type);
     snprintf(text, COMPOSITION_PAIR_NAME_SIZE, "%s-%s", composition->name[type[0]],
              composition->name[type[1]]);
 }
 
-int composition_find_pair(const struct composition *composition, const char *name) {
+int mf_composition_find_pair(const struct composition *composition, const char *name) {
     for (int a = 0; a < composition->types; a++)
         for (int b = 0; b < composition->types; b++) {
             char text[COMPOSITION_PAIR_NAME_SIZE];
             snprintf(text, sizeof text, "%s-%s", composition->name[a], composition->name[b]);
             if (strcmp(text, name) == 0)
-                return composition_pair(composition, a, b);
+                return mf_composition_pair(composition, a, b);
         }
     return -1;
 }
 
-bool composition_is_name(const char *name) {
+bool mf_composition_is_name(const char *name) {
     const size_t length = strlen(name);
     for (size_t k = 0; k < length; k++)
         if (!isalnum((unsigned char)name[k]) && name[k] != '_')

@@ -24,21 +24,21 @@ struct composition {
 };
 
 /// `count` beads of one type without a name.
-struct composition composition_of_one(int64_t count);
+struct composition mf_composition_of_one(int64_t count);
 
 /// Beads of all types.
-int64_t composition_particles(const struct composition *composition);
+int64_t mf_composition_particles(const struct composition *composition);
 
 /// The same mixture of about `particles` beads; a type keeps two if it has them, so that there are
 /// pairs of it.
-struct composition composition_scaled(const struct composition *composition, int64_t particles);
+struct composition mf_composition_scaled(const struct composition *composition, int64_t particles);
 
 /// Largest relative change of a type's share of all beads from one mixture to another.
-double composition_distortion(const struct composition *from, const struct composition *to);
+double mf_composition_distortion(const struct composition *from, const struct composition *to);
 
-/// The smallest number of beads from `particles` on for which composition_scaled changes no share
+/// The smallest number of beads from `particles` on for which mf_composition_scaled changes no share
 /// by more than `distortion`.
-int64_t composition_least_particles(const struct composition *composition, int64_t particles,
+int64_t mf_composition_least_particles(const struct composition *composition, int64_t particles,
                                     double distortion);
 
 static inline bool composition_is_mixed(const struct composition *composition) {
@@ -46,29 +46,29 @@ static inline bool composition_is_mixed(const struct composition *composition) {
 }
 
 /// Number of kinds of pairs: T (T + 1)/2, at least 1.
-int composition_pairs(const struct composition *composition);
+int mf_composition_pairs(const struct composition *composition);
 
 /// Number of the kind of pairs of types a and b, in either order.
-int composition_pair(const struct composition *composition, int a, int b);
+int mf_composition_pair(const struct composition *composition, int a, int b);
 
 /// The same of two beads.
-int composition_pair_of_ids(const struct composition *composition, uint32_t i, uint32_t j);
+int mf_composition_pair_of_ids(const struct composition *composition, uint32_t i, uint32_t j);
 
 /// Type of a bead.
-int composition_type(const struct composition *composition, uint32_t id);
+int mf_composition_type(const struct composition *composition, uint32_t id);
 
 /// The types of a kind of pairs, type[0] ≤ type[1].
-void composition_pair_types(const struct composition *composition, int pair, int type[2]);
+void mf_composition_pair_types(const struct composition *composition, int pair, int type[2]);
 
 /// How many pairs of a kind there are: N_a (N_a − 1)/2 alike, N_a N_b unlike.
-double composition_possible_pairs(const struct composition *composition, int pair);
+double mf_composition_possible_pairs(const struct composition *composition, int pair);
 
 /// Print the name of a kind of pairs, "A-B", or nothing for beads without names.
-void composition_pair_name(const struct composition *composition, int pair,
+void mf_composition_pair_name(const struct composition *composition, int pair,
                            char text[COMPOSITION_PAIR_NAME_SIZE]);
 
 /// The kind of pairs called "A-B" or "B-A", or −1.
-int composition_find_pair(const struct composition *composition, const char *name);
+int mf_composition_find_pair(const struct composition *composition, const char *name);
 
 /// Whether a type can be called so: letters, digits and _, not too many.
-bool composition_is_name(const char *name);
+bool mf_composition_is_name(const char *name);

@@ -19,7 +19,7 @@ static const double fewest_in_cell = 5;
 static const double most_cells = 4;
 
 static void shape_cells(struct neighbours *neighbours, const struct box *box) {
-    const double room = box_volume(box) / (double)neighbours->count; // of a particle
+    const double room = mf_box_volume(box) / (double)neighbours->count; // of a particle
     const double narrowest = pow(room / most_cells, 1.0 / box->dimensions);
     double in_cell = pow(neighbours->range, box->dimensions) / room;
     neighbours->cell_total = 1;
@@ -52,24 +52,24 @@ static void divide(struct neighbours *neighbours) {
 
 /// Places on the list for each particle of a uniform fluid, and a quarter more.
 static double expect_entries(const struct neighbours *neighbours, const struct box *box) {
-    const double density = (double)neighbours->count / box_volume(box);
-    const double around = density * box_shell_volume(box, 0, neighbours->range);
+    const double density = (double)neighbours->count / mf_box_volume(box);
+    const double around = density * mf_box_shell_volume(box, 0, neighbours->range);
     return 1.25 * (neighbours->kind == NEIGHBOURS_HALF ? around / 2 + NEIGHBOURS_ROW : around) + 16;
 }
 
-enum status neighbours_init(struct neighbours *neighbours, enum neighbours_kind kind,
+enum status mf_neighbours_init(struct neighbours *neighbours, enum neighbours_kind kind,
                             const struct box *box, size_t count, double cutoff, double skin) {
     enum status status = STATUS_OK;
     *neighbours = (struct neighbours){
         .kind = kind, .range = cutoff + skin, .skin = skin, .count = count, .cell_total = 1};
-    if (box_shortest(box) < 2 * cutoff)
-        return status_fail(STATUS_BAD_INPUT,
+    if (mf_box_shortest(box) < 2 * cutoff)
+        return mf_status_fail(STATUS_BAD_INPUT,
                            "the box is too small: its shortest edge %g is below twice the cutoff "
                            "%g, so the nearest image is not the only one in range",
-                           box_shortest(box), cutoff);
+                           mf_box_shortest(box), cutoff);
     // A particle may meet only the nearest image of another, also in the skin.
-    if (neighbours->range > box_shortest(box) / 2) {
-        neighbours->range = box_shortest(box) / 2;
+    if (neighbours->range > mf_box_shortest(box) / 2) {
+        neighbours->range = mf_box_shortest(box) / 2;
         neighbours->skin = neighbours->range - cutoff;
     }
     shape_cells(neighbours, box);
@@ -80,37 +80,37 @@ enum status neighbours_init(struct neighbours *neighbours, enum neighbours_kind 
     NEW_ARRAY(neighbours->cell_start, neighbours->cell_total + 1);
     NEW_ARRAY(neighbours->cell_of, count);
     NEW_ARRAY(neighbours->order, count);
-    CHECK(neighbours_init_rows(neighbours, box));
+    CHECK(mf_neighbours_init_rows(neighbours, box));
     for (int d = 0; d < box->dimensions; d++)
         NEW_ARRAY(neighbours->built[d], count);
 done:
     if (status != STATUS_OK)
-        neighbours_clear(neighbours);
+        mf_neighbours_clear(neighbours);
     return status;
 }
 
-void neighbours_clear(struct neighbours *neighbours) {
-    memory_free(neighbours->start);
-    memory_free(neighbours->stop);
-    memory_free(neighbours->list);
-    memory_free(neighbours->owner);
-    memory_free(neighbours->cell_start);
-    memory_free(neighbours->cell_of);
-    memory_free(neighbours->order);
-    neighbours_clear_rows(neighbours);
+void mf_neighbours_clear(struct neighbours *neighbours) {
+    mf_memory_free(neighbours->start);
+    mf_memory_free(neighbours->stop);
+    mf_memory_free(neighbours->list);
+    mf_memory_free(neighbours->owner);
+    mf_memory_free(neighbours->cell_start);
+    mf_memory_free(neighbours->cell_of);
+    mf_memory_free(neighbours->order);
+    mf_neighbours_clear_rows(neighbours);
     for (int d = 0; d < 3; d++)
-        memory_free(neighbours->built[d]);
+        mf_memory_free(neighbours->built[d]);
     *neighbours = (struct neighbours){0};
 }
 
-size_t neighbours_entries(const struct neighbours *neighbours) {
+size_t mf_neighbours_entries(const struct neighbours *neighbours) {
     size_t entries = 0;
     for (int p = 0; p < neighbours->parts; p++)
         entries += neighbours->part[p].end - neighbours->part[p].begin;
     return entries;
 }
 
-size_t neighbours_listed(const struct neighbours *neighbours) {
+size_t mf_neighbours_listed(const struct neighbours *neighbours) {
     size_t listed = 0;
     for (size_t i = 0; i < neighbours->count; i++)
         for (size_t k = neighbours->start[i]; k < neighbours->stop[i]; k++)
@@ -118,17 +118,17 @@ size_t neighbours_listed(const struct neighbours *neighbours) {
     return listed;
 }
 
-enum status neighbours_sort_and_build(struct neighbours *neighbours, struct particles *particles) {
-    particles_wrap(particles);
-    particles_update_fractions(particles);
-    neighbours_sort(neighbours, particles);
-    particles_permute(particles, neighbours->order);
-    particles_label_places(particles);
-    particles_update_fractions(particles);
+enum status mf_neighbours_sort_and_build(struct neighbours *neighbours, struct particles *particles) {
+    mf_particles_wrap(particles);
+    mf_particles_update_fractions(particles);
+    mf_neighbours_sort(neighbours, particles);
+    mf_particles_permute(particles, neighbours->order);
+    mf_particles_label_places(particles);
+    mf_particles_update_fractions(particles);
     for (int d = 0; d < particles->box.dimensions; d++)
         memcpy(neighbours->built[d], particles->position[d],
                particles->count * sizeof *particles->position[d]);
-    return neighbours_build(neighbours, particles);
+    return mf_neighbours_build(neighbours, particles);
 }
 
 /// Swap the positions with those of the last build.
@@ -138,14 +138,14 @@ static void exchange_positions(struct neighbours *neighbours, struct particles *
         particles->position[d] = neighbours->built[d];
         neighbours->built[d] = now;
     }
-    particles_update_fractions(particles);
+    mf_particles_update_fractions(particles);
 }
 
-enum status neighbours_rebuild(struct neighbours *neighbours, struct particles *particles) {
-    particles_label_places(particles);
+enum status mf_neighbours_rebuild(struct neighbours *neighbours, struct particles *particles) {
+    mf_particles_label_places(particles);
     exchange_positions(neighbours, particles);
-    neighbours_sort(neighbours, particles);
-    const enum status status = neighbours_build(neighbours, particles);
+    mf_neighbours_sort(neighbours, particles);
+    const enum status status = mf_neighbours_build(neighbours, particles);
     exchange_positions(neighbours, particles);
     return status;
 }
@@ -172,11 +172,11 @@ SIMD_CLONES static double has_moved(const void *context, size_t begin, size_t en
     return moved;
 }
 
-bool neighbours_are_stale(const struct neighbours *neighbours, const struct particles *particles) {
+bool mf_neighbours_are_stale(const struct neighbours *neighbours, const struct particles *particles) {
     const struct watched watched = {neighbours, particles};
     if (neighbours->skin <= 0)
         return true;
-    return parallel_sum(particles->count, particles->threads, has_moved, &watched) > 0;
+    return mf_parallel_sum(particles->count, particles->threads, has_moved, &watched) > 0;
 }
 
 /// Lengths of the box in units of its fractions, 0 along an axis that is not there.
@@ -196,7 +196,7 @@ static inline float square_distance(const struct particles *particles, const flo
     return square;
 }
 
-void neighbours_visit_distances(
+void mf_neighbours_visit_distances(
     const struct neighbours *neighbours, const struct particles *particles, double range,
     void (*visit)(void *context, const float *squared_distances, size_t count), void *context) {
     const float limit = (float)(range * range);
@@ -217,7 +217,7 @@ void neighbours_visit_distances(
     visit(context, squared, found);
 }
 
-void neighbours_visit_pairs(const struct neighbours *neighbours, const struct particles *particles,
+void mf_neighbours_visit_pairs(const struct neighbours *neighbours, const struct particles *particles,
                             double range,
                             void (*visit)(void *context, const struct neighbours_batch *batch),
                             void *context) {

@@ -33,10 +33,10 @@ static void find_cells_of(void *context, size_t begin, size_t end) {
     }
 }
 
-void neighbours_sort(struct neighbours *neighbours, const struct particles *particles) {
+void mf_neighbours_sort(struct neighbours *neighbours, const struct particles *particles) {
     struct sorting sorting = {neighbours, particles};
     uint32_t *start = neighbours->cell_start;
-    parallel_for(particles->count, particles->threads, find_cells_of, &sorting);
+    mf_parallel_for(particles->count, particles->threads, find_cells_of, &sorting);
     memset(start, 0, (neighbours->cell_total + 1) * sizeof *start);
     for (size_t k = 0; k < particles->count; k++)
         start[neighbours->cell_of[k] + 1]++;
@@ -149,15 +149,15 @@ static void find_rows(const struct neighbours *neighbours, const struct box *box
 /// @return the new length of the list, or SIZE_MAX if it is too short
 static size_t search_row(struct neighbours *neighbours, const struct particles *particles,
                          const struct close_rows *rows, size_t used, size_t limit) {
-    switch (simd_used()) {
+    switch (mf_simd_used()) {
 #if SIMD_X86
     case SIMD_AVX512:
-        return close_avx512(neighbours, particles, rows, used, limit);
+        return mf_close_avx512(neighbours, particles, rows, used, limit);
     case SIMD_AVX2:
-        return close_avx2(neighbours, particles, rows, used, limit);
+        return mf_close_avx2(neighbours, particles, rows, used, limit);
 #endif
     default:
-        return close_portable(neighbours, particles, rows, used, limit);
+        return mf_close_portable(neighbours, particles, rows, used, limit);
     }
 }
 
@@ -198,8 +198,8 @@ static enum status reserve_list(struct neighbours *neighbours) {
                             (size_t)(neighbours->parts + 1) * 16 * PARTICLES_PADDING;
     if (capacity <= neighbours->list_capacity)
         return STATUS_OK;
-    memory_free(neighbours->list);
-    memory_free(neighbours->owner);
+    mf_memory_free(neighbours->list);
+    mf_memory_free(neighbours->owner);
     neighbours->list = neighbours->owner = NULL;
     neighbours->list_capacity = 0;
     NEW_ARRAY(neighbours->list, capacity);
@@ -225,9 +225,9 @@ static enum status build_parts(struct neighbours *neighbours, const struct parti
     return STATUS_OK;
 }
 
-enum status neighbours_build(struct neighbours *neighbours, const struct particles *particles) {
+enum status mf_neighbours_build(struct neighbours *neighbours, const struct particles *particles) {
     bool complete;
-    neighbours_fill_rows(neighbours, particles);
+    mf_neighbours_fill_rows(neighbours, particles);
     TRY(build_parts(neighbours, particles, &complete));
     while (!complete) {
         neighbours->entries_each *= 1.5;

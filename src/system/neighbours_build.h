@@ -8,8 +8,8 @@
 enum { NEIGHBOURS_MOST_REACH = 2 };
 
 /// Counting sort by cell: fills cell_of, cell_start and order. Stable, so sorted stays sorted.
-void neighbours_sort(struct neighbours *neighbours, const struct particles *particles);
+void mf_neighbours_sort(struct neighbours *neighbours, const struct particles *particles);
 
 /// Build the list of sorted particles. Fails: NO_MEMORY.
-enum status neighbours_build(struct neighbours *neighbours,
+enum status mf_neighbours_build(struct neighbours *neighbours,
                              const struct particles *particles) MUST_USE;

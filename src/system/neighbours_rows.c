@@ -13,7 +13,7 @@ static size_t row_count(const struct neighbours *neighbours) {
     return (size_t)neighbours->cells[0] * (size_t)neighbours->cells[1];
 }
 
-enum status neighbours_init_rows(struct neighbours *neighbours, const struct box *box) {
+enum status mf_neighbours_init_rows(struct neighbours *neighbours, const struct box *box) {
     enum status status = STATUS_OK;
     struct neighbours_rows *rows = &neighbours->rows;
     rows->wrap = false;
@@ -31,12 +31,12 @@ done:
     return status;
 }
 
-void neighbours_clear_rows(struct neighbours *neighbours) {
+void mf_neighbours_clear_rows(struct neighbours *neighbours) {
     struct neighbours_rows *rows = &neighbours->rows;
     for (int d = 0; d < 3; d++)
-        memory_free(rows->place[d]);
-    memory_free(rows->particle);
-    memory_free(rows->start);
+        mf_memory_free(rows->place[d]);
+    mf_memory_free(rows->particle);
+    mf_memory_free(rows->start);
 }
 
 /// Lay out the rows one after the other.
@@ -98,8 +98,8 @@ SIMD_CLONES static void fill_rows(void *context, size_t begin, size_t end) {
     }
 }
 
-void neighbours_fill_rows(struct neighbours *neighbours, const struct particles *particles) {
+void mf_neighbours_fill_rows(struct neighbours *neighbours, const struct particles *particles) {
     struct filling filling = {neighbours, particles};
     place_rows(neighbours);
-    parallel_for(row_count(neighbours), particles->threads, fill_rows, &filling);
+    mf_parallel_for(row_count(neighbours), particles->threads, fill_rows, &filling);
 }

@@ -5,8 +5,8 @@
 #include "system/neighbours.h"
 
 /// Fails: NO_MEMORY.
-enum status neighbours_init_rows(struct neighbours *neighbours, const struct box *box) MUST_USE;
-void neighbours_clear_rows(struct neighbours *neighbours);
+enum status mf_neighbours_init_rows(struct neighbours *neighbours, const struct box *box) MUST_USE;
+void mf_neighbours_clear_rows(struct neighbours *neighbours);
 
 /// Copy sorted particles into the rows.
-void neighbours_fill_rows(struct neighbours *neighbours, const struct particles *particles);
+void mf_neighbours_fill_rows(struct neighbours *neighbours, const struct particles *particles);

@@ -8,7 +8,7 @@
 
 #include <stdlib.h>
 
-enum status particles_init(struct particles *particles, const struct box *box, size_t count) {
+enum status mf_particles_init(struct particles *particles, const struct box *box, size_t count) {
     enum status status = STATUS_OK;
     *particles = (struct particles){.count = count, .box = *box, .threads = 1};
     for (int d = 0; d < 3; d++) {
@@ -24,17 +24,17 @@ enum status particles_init(struct particles *particles, const struct box *box, s
     NEW_ARRAY(particles->id, count);
     NEW_ARRAY(particles->spare, count);
     NEW_ARRAY(particles->spare_motion, count);
-    particles->spare_words = memory_zeroed(count, sizeof(uint32_t));
+    particles->spare_words = mf_memory_zeroed(count, sizeof(uint32_t));
     CHECK(particles->spare_words ? STATUS_OK : STATUS_NO_MEMORY);
     for (size_t k = 0; k < count; k++)
         particles->id[k] = (uint32_t)k;
 done:
     if (status != STATUS_OK)
-        particles_clear(particles);
+        mf_particles_clear(particles);
     return status;
 }
 
-enum status particles_keep_precise(struct particles *particles) {
+enum status mf_particles_keep_precise(struct particles *particles) {
     enum status status = STATUS_OK;
     NEW_ARRAY(particles->precise_place, particles->count);
     NEW_ARRAY(particles->precise_motion, particles->count);
@@ -43,29 +43,29 @@ done:
     return status;
 }
 
-void particles_clear(struct particles *particles) {
+void mf_particles_clear(struct particles *particles) {
     for (int d = 0; d < 3; d++) {
-        memory_free(particles->position[d]);
-        memory_free(particles->velocity[d]);
-        memory_free(particles->force[d]);
-        memory_free(particles->image[d]);
-        memory_free(particles->fraction[d]);
+        mf_memory_free(particles->position[d]);
+        mf_memory_free(particles->velocity[d]);
+        mf_memory_free(particles->force[d]);
+        mf_memory_free(particles->image[d]);
+        mf_memory_free(particles->fraction[d]);
     }
-    memory_free(particles->kernel_place);
-    memory_free(particles->kernel_motion);
-    memory_free(particles->precise_place);
-    memory_free(particles->precise_motion);
-    memory_free(particles->spare_precise_motion);
-    memory_free(particles->kernel_force);
-    memory_free(particles->id);
-    memory_free(particles->spare);
-    memory_free(particles->spare_motion);
-    memory_free(particles->spare_words);
+    mf_memory_free(particles->kernel_place);
+    mf_memory_free(particles->kernel_motion);
+    mf_memory_free(particles->precise_place);
+    mf_memory_free(particles->precise_motion);
+    mf_memory_free(particles->spare_precise_motion);
+    mf_memory_free(particles->kernel_force);
+    mf_memory_free(particles->id);
+    mf_memory_free(particles->spare);
+    mf_memory_free(particles->spare_motion);
+    mf_memory_free(particles->spare_words);
     *particles = (struct particles){0};
 }
 
-double particles_density(const struct particles *particles) {
-    return (double)particles->count / box_volume(&particles->box);
+double mf_particles_density(const struct particles *particles) {
+    return (double)particles->count / mf_box_volume(&particles->box);
 }
 
 SIMD_CLONES static void wrap(void *context, size_t begin, size_t end) {
@@ -85,8 +85,8 @@ SIMD_CLONES static void wrap(void *context, size_t begin, size_t end) {
     }
 }
 
-void particles_wrap(struct particles *particles) {
-    parallel_for(particles->count, particles->threads, wrap, particles);
+void mf_particles_wrap(struct particles *particles) {
+    mf_parallel_for(particles->count, particles->threads, wrap, particles);
 }
 
 SIMD_CLONES static void update_fractions(void *context, size_t begin, size_t end) {
@@ -109,10 +109,10 @@ SIMD_CLONES static void update_precise_places(void *context, size_t begin, size_
             particles->precise_place[k].position[d] = particles->position[d][k];
 }
 
-void particles_update_fractions(struct particles *particles) {
-    parallel_for(particles->count, particles->threads, update_fractions, particles);
+void mf_particles_update_fractions(struct particles *particles) {
+    mf_parallel_for(particles->count, particles->threads, update_fractions, particles);
     if (particles->precise_place)
-        parallel_for(particles->count, particles->threads, update_precise_places, particles);
+        mf_parallel_for(particles->count, particles->threads, update_precise_places, particles);
 }
 
 static void label_places(void *context, size_t begin, size_t end) {
@@ -124,8 +124,8 @@ static void label_places(void *context, size_t begin, size_t end) {
             particles->precise_place[k].id = particles->id[k];
 }
 
-void particles_label_places(struct particles *particles) {
-    parallel_for(particles->count, particles->threads, label_places, particles);
+void mf_particles_label_places(struct particles *particles) {
+    mf_parallel_for(particles->count, particles->threads, label_places, particles);
 }
 
 struct prediction {
@@ -159,11 +159,11 @@ SIMD_CLONES static void update_precise_motion(void *context, size_t begin, size_
         motion[k].id = particles->id[k];
 }
 
-void particles_update_motion(struct particles *particles, double ahead) {
+void mf_particles_update_motion(struct particles *particles, double ahead) {
     struct prediction prediction = {particles, ahead};
-    parallel_for(particles->count, particles->threads, update_motion, &prediction);
+    mf_parallel_for(particles->count, particles->threads, update_motion, &prediction);
     if (particles->precise_motion)
-        parallel_for(particles->count, particles->threads, update_precise_motion, &prediction);
+        mf_parallel_for(particles->count, particles->threads, update_precise_motion, &prediction);
 }
 
 /// One array on its way into another order.
@@ -210,12 +210,12 @@ static void permute_precise_motions(void *context, size_t begin, size_t end) {
     do {                                                                                           \
         struct permutation permutation = {(order), (array), (spare)};                              \
         void *old = (array);                                                                       \
-        parallel_for((particles)->count, (particles)->threads, (permute), &permutation);           \
+        mf_parallel_for((particles)->count, (particles)->threads, (permute), &permutation);           \
         (array) = (spare);                                                                         \
         (spare) = old;                                                                             \
     } while (0)
 
-void particles_permute(struct particles *particles, const uint32_t *order) {
+void mf_particles_permute(struct particles *particles, const uint32_t *order) {
     for (int d = 0; d < particles->box.dimensions; d++) {
         PERMUTE(particles, particles->position[d], particles->spare, order, permute_doubles);
         PERMUTE(particles, particles->velocity[d], particles->spare, order, permute_doubles);
@@ -228,18 +228,18 @@ void particles_permute(struct particles *particles, const uint32_t *order) {
                 permute_precise_motions);
 }
 
-void particles_draw_velocities(struct particles *particles, double temperature, uint64_t seed) {
+void mf_particles_draw_velocities(struct particles *particles, double temperature, uint64_t seed) {
     const double scale = sqrt(temperature);
     for (size_t k = 0; k < particles->count; k++) {
         double normal[4];
-        rng_normal4(rng_philox(seed, RNG_VELOCITIES, particles->id[k], 0, 0), normal);
+        mf_rng_normal4(mf_rng_philox(seed, RNG_VELOCITIES, particles->id[k], 0, 0), normal);
         for (int d = 0; d < particles->box.dimensions; d++)
             particles->velocity[d][k] = scale * normal[d];
     }
-    particles_remove_momentum(particles);
+    mf_particles_remove_momentum(particles);
 }
 
-void particles_remove_momentum(struct particles *particles) {
+void mf_particles_remove_momentum(struct particles *particles) {
     for (int d = 0; d < particles->box.dimensions; d++) {
         double *v = particles->velocity[d], sum = 0;
         for (size_t k = 0; k < particles->count; k++)
@@ -265,11 +265,11 @@ SIMD_CLONES static double square_velocities(const void *context, size_t begin, s
     return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
 }
 
-double particles_square_velocities(const struct particles *particles) {
-    return parallel_sum(particles->count, particles->threads, square_velocities, particles);
+double mf_particles_square_velocities(const struct particles *particles) {
+    return mf_parallel_sum(particles->count, particles->threads, square_velocities, particles);
 }
 
-double particles_temperature(const struct particles *particles) {
+double mf_particles_temperature(const struct particles *particles) {
     double squares = 0;
     for (int d = 0; d < particles->box.dimensions; d++) {
         const double *v = particles->velocity[d];
@@ -283,7 +283,7 @@ double particles_temperature(const struct particles *particles) {
     return squares / (particles->box.dimensions * ((double)particles->count - 1));
 }
 
-double particles_largest_force(const struct particles *particles) {
+double mf_particles_largest_force(const struct particles *particles) {
     double largest = 0;
     for (size_t k = 0; k < particles->count; k++) {
         double square = 0;

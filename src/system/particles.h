@@ -46,7 +46,7 @@ struct particles {
     struct particle_place *kernel_place;          ///< shape [count]: the same for the pair kernels
     struct particle_motion *kernel_motion;        ///< shape [count]
     struct particle_precise_place *precise_place; ///< shape [count], or NULL without
-    struct particle_precise_motion *precise_motion; ///< … particles_keep_precise
+    struct particle_precise_motion *precise_motion; ///< … mf_particles_keep_precise
     double (*kernel_force)[4];                      ///< shape [count, 4]: sums of the pair kernels
     double *spare;                                  ///< shape [count]: room for permutations
     void *spare_words;                              ///< shape [count]: the same for 32-bit words
@@ -54,45 +54,45 @@ struct particles {
     struct particle_precise_motion *spare_precise_motion; ///< shape [count] or NULL
 };
 
-enum status particles_init(struct particles *particles, const struct box *box,
+enum status mf_particles_init(struct particles *particles, const struct box *box,
                            size_t count) MUST_USE;
-void particles_clear(struct particles *particles);
+void mf_particles_clear(struct particles *particles);
 
 /// Keep also what the kernels read in double precision, from the next updates on. Fails: NO_MEMORY.
-enum status particles_keep_precise(struct particles *particles) MUST_USE;
+enum status mf_particles_keep_precise(struct particles *particles) MUST_USE;
 
 /// Particles per volume [1/λ^d].
-double particles_density(const struct particles *particles);
+double mf_particles_density(const struct particles *particles);
 
 /// Put every position into [0, length) and count the boxes crossed.
-void particles_wrap(struct particles *particles);
+void mf_particles_wrap(struct particles *particles);
 
 /// Refresh `fraction`, `kernel_place` and `precise_place` from `position`.
-void particles_update_fractions(struct particles *particles);
+void mf_particles_update_fractions(struct particles *particles);
 
 /// Write the ids into `kernel_place` and `precise_place`, after the order has changed.
-void particles_label_places(struct particles *particles);
+void mf_particles_label_places(struct particles *particles);
 
 /// Refresh `kernel_motion` and `precise_motion`, with velocities predicted by a time `ahead` [τ]:
 /// v + ahead · force.
-void particles_update_motion(struct particles *particles, double ahead);
+void mf_particles_update_motion(struct particles *particles, double ahead);
 
 /// Reorder all arrays but the forces, which are about to be replaced: new[k] = old[order[k]].
-void particles_permute(struct particles *particles, const uint32_t *order);
+void mf_particles_permute(struct particles *particles, const uint32_t *order);
 
 /// Maxwell velocities at `temperature` [k_B T_0] with zero total momentum; the same for the same
 /// seed and ids, whatever the order.
-void particles_draw_velocities(struct particles *particles, double temperature, uint64_t seed);
+void mf_particles_draw_velocities(struct particles *particles, double temperature, uint64_t seed);
 
 /// Subtract the mean velocity.
-void particles_remove_momentum(struct particles *particles);
+void mf_particles_remove_momentum(struct particles *particles);
 
 /// Σ v² of all particles [k_B T_0]; NaN or infinite if anything is.
-double particles_square_velocities(const struct particles *particles);
+double mf_particles_square_velocities(const struct particles *particles);
 
 /// Kinetic temperature Σ v² / (d (N − 1)) with the momentum of the centre of mass removed
 /// [k_B T_0].
-double particles_temperature(const struct particles *particles);
+double mf_particles_temperature(const struct particles *particles);
 
 /// Largest force on a particle [k_B T_0 / λ]; NaN if one is.
-double particles_largest_force(const struct particles *particles);
+double mf_particles_largest_force(const struct particles *particles);

@@ -7,13 +7,13 @@
 static const char *const kinds[] = {"lattice", "random", "file", NULL};
 
 #define MEMBER(name) .offset = offsetof(struct placement, name)
-const struct field placement_count_fields[] = {
+const struct field mf_placement_count_fields[] = {
     {"count", FIELD_INTEGER, MEMBER(count), .required = true, .minimum = 2, .maximum = 1e8,
      .unit = "", .help = "number of particles"},
     FIELD_END,
 };
 
-const struct field placement_fields[] = {
+const struct field mf_placement_fields[] = {
     {"placement", FIELD_CHOICE, MEMBER(kind), .initial = PLACEMENT_LATTICE, .choices = kinds,
      .unit = "",
      .help = "simple cubic lattice with jitter, random without overlap, or a file of "
@@ -30,7 +30,7 @@ const struct field placement_fields[] = {
 /// Lattice cells along each axis: the smallest grid of nearly cubic cells with room for all.
 static void lattice_shape(const struct particles *particles, size_t cells[3]) {
     const struct box *box = &particles->box;
-    double spacing = pow(box_volume(box) / (double)particles->count, 1.0 / box->dimensions);
+    double spacing = pow(mf_box_volume(box) / (double)particles->count, 1.0 / box->dimensions);
     for (;; spacing *= 0.999) {
         double room = 1;
         for (int d = 0; d < 3; d++) {
@@ -45,29 +45,29 @@ static void lattice_shape(const struct particles *particles, size_t cells[3]) {
     }
 }
 
-void placement_lattice(struct particles *particles, double jitter, uint64_t seed) {
+void mf_placement_lattice(struct particles *particles, double jitter, uint64_t seed) {
     const struct box *box = &particles->box;
     size_t cells[3];
     lattice_shape(particles, cells);
     const size_t sites = cells[0] * cells[1] * cells[2];
     for (size_t k = 0; k < particles->count; k++) {
         size_t site = placement_site(k, particles->count, sites);
-        const struct rng_block block = rng_philox(seed, RNG_PLACEMENT, (uint32_t)k, 0, 0);
+        const struct rng_block block = mf_rng_philox(seed, RNG_PLACEMENT, (uint32_t)k, 0, 0);
         for (int d = box->dimensions - 1; d >= 0; d--) {
             const double spacing = box->length[d] / (double)cells[d];
-            const double shift = jitter * (2 * rng_uniform(block.word[d], 0) - 1);
+            const double shift = jitter * (2 * mf_rng_uniform(block.word[d], 0) - 1);
             particles->position[d][k] = spacing * ((double)(site % cells[d]) + 0.5 + shift);
             site /= cells[d];
         }
     }
-    particles_wrap(particles);
-    particles_update_fractions(particles);
+    mf_particles_wrap(particles);
+    mf_particles_update_fractions(particles);
 }
 
-void placement_mix(struct particles *particles, uint64_t seed) {
-    struct rng_sequence sequence = rng_sequence_begin(seed, RNG_MIXING, 0, 0);
+void mf_placement_mix(struct particles *particles, uint64_t seed) {
+    struct rng_sequence sequence = mf_rng_sequence_begin(seed, RNG_MIXING, 0, 0);
     for (size_t k = particles->count; k > 1; k--) {
-        const size_t other = rng_sequence_below(&sequence, (uint32_t)k);
+        const size_t other = mf_rng_sequence_below(&sequence, (uint32_t)k);
         const uint32_t id = particles->id[k - 1];
         particles->id[k - 1] = particles->id[other];
         particles->id[other] = id;
@@ -135,7 +135,7 @@ static bool is_free(struct occupied *occupied, const struct particles *particles
     return true;
 }
 
-enum status placement_random(struct particles *particles, double separation, uint64_t seed) {
+enum status mf_placement_random(struct particles *particles, double separation, uint64_t seed) {
     enum { TRIALS = 10000 };
     enum status status = STATUS_OK;
     const struct box *box = &particles->box;
@@ -146,15 +146,15 @@ enum status placement_random(struct particles *particles, double separation, uin
         uint32_t trial = 0;
         do {
             if (trial == TRIALS) {
-                status = status_fail(STATUS_BAD_INPUT,
+                status = mf_status_fail(STATUS_BAD_INPUT,
                                      "no room for particle %zu of %zu at a least distance of %g: "
                                      "lower \"separation\" or place on a lattice",
                                      k + 1, particles->count, separation);
                 goto done;
             }
-            const struct rng_block block = rng_philox(seed, RNG_PLACEMENT, (uint32_t)k, ++trial, 0);
+            const struct rng_block block = mf_rng_philox(seed, RNG_PLACEMENT, (uint32_t)k, ++trial, 0);
             for (int d = 0; d < box->dimensions; d++)
-                x[d] = box->length[d] * rng_uniform(block.word[d], block.word[3]);
+                x[d] = box->length[d] * mf_rng_uniform(block.word[d], block.word[3]);
         } while (!is_free(&occupied, particles, x, separation));
         int cell[3];
         cell_of(&occupied, box, x, cell);
@@ -164,16 +164,16 @@ enum status placement_random(struct particles *particles, double separation, uin
         for (int d = 0; d < box->dimensions; d++)
             particles->position[d][k] = x[d];
     }
-    particles_update_fractions(particles);
+    mf_particles_update_fractions(particles);
 done:
-    memory_free(occupied.first);
-    memory_free(occupied.next);
+    mf_memory_free(occupied.first);
+    mf_memory_free(occupied.next);
     return status;
 }
 
-enum status placement_disordered(struct particles *particles, uint64_t seed) {
+enum status mf_placement_disordered(struct particles *particles, uint64_t seed) {
     static const double share = 0.7;
     const struct box *box = &particles->box;
-    const double distance = pow(box_volume(box) / (double)particles->count, 1.0 / box->dimensions);
-    return placement_random(particles, share * distance, seed);
+    const double distance = pow(mf_box_volume(box) / (double)particles->count, 1.0 / box->dimensions);
+    return mf_placement_random(particles, share * distance, seed);
 }

@@ -17,7 +17,7 @@ struct placement {
 };
 
 /// The number alone, which a mixture gives for each of its types, and all the rest.
-extern const struct field placement_count_fields[], placement_fields[];
+extern const struct field mf_placement_count_fields[], mf_placement_fields[];
 
 /// The site of particle k of `count` on a lattice of `sites` ≥ count, whose empty sites are spread
 /// evenly: no site twice. In whole numbers, since the product exceeds the 53 bits of a double from
@@ -28,18 +28,18 @@ static inline size_t placement_site(size_t k, size_t count, size_t sites) {
 
 /// Simple cubic (square) lattice of the smallest size that holds all particles, filled evenly,
 /// each particle shifted by a uniform random amount.
-void placement_lattice(struct particles *particles, double jitter, uint64_t seed);
+void mf_placement_lattice(struct particles *particles, double jitter, uint64_t seed);
 
 /// Exchange the ids of all particles at random, so that the types of a mixture stand on the sites
 /// of a lattice without order. Before velocities are drawn, which belong to ids.
-void placement_mix(struct particles *particles, uint64_t seed);
+void mf_placement_mix(struct particles *particles, uint64_t seed);
 
 /// Uniform random positions no two of which are nearer than `separation` (sequential addition).
 /// Fails: BAD_INPUT when no place is found in 10,000 trials: the density is too high for it.
-enum status placement_random(struct particles *particles, double separation,
+enum status mf_placement_random(struct particles *particles, double separation,
                              uint64_t seed) MUST_USE;
 
 /// Without order: at random, no two nearer than 0.7 of their mean distance, so that there is room
 /// for all (sequential addition fills a box up to 0.9 of it) and moves soon undo the overlaps.
 /// Fails: NO_MEMORY.
-enum status placement_disordered(struct particles *particles, uint64_t seed) MUST_USE;
+enum status mf_placement_disordered(struct particles *particles, uint64_t seed) MUST_USE;

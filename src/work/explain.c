@@ -58,15 +58,15 @@ __attribute__((format(printf, 5, 6))) static void add(struct plan *plan, const c
 
 /// Pairs of a particle nearer than r in a uniform fluid, each pair once.
 static double pairs_within(const struct simulation_setup *setup, double r) {
-    const double density = (double)setup->placement.count / box_volume(&setup->box);
-    return density * box_shell_volume(&setup->box, 0, r) / 2;
+    const double density = (double)setup->placement.count / mf_box_volume(&setup->box);
+    return density * mf_box_shell_volume(&setup->box, 0, r) / 2;
 }
 
 static void add_list(struct plan *plan, const struct simulation_setup *setup, double cutoff) {
-    const struct skin_scene scene = simulation_skin_scene(setup, cutoff);
+    const struct skin_scene scene = mf_simulation_skin_scene(setup, cutoff);
     const bool given = setup->skin > 0;
-    const double skin = given ? setup->skin : skin_choose(&scene);
-    const double interval = skin_interval(&scene, skin);
+    const double skin = given ? setup->skin : mf_skin_choose(&scene);
+    const double interval = mf_skin_interval(&scene, skin);
     const double entries = pairs_within(setup, cutoff + skin);
     add(plan, "list building", true, (cost.sort + cost.build * entries) / interval,
         "every %.1f steps: skin %.2f %s", interval, skin,
@@ -79,12 +79,12 @@ static void add_forces(struct plan *plan, const struct simulation_setup *setup,
                        const struct explain_measured *measured) {
     const double cutoff = measured->cutoff, pairs = pairs_within(setup, cutoff);
     add(plan, "distances and forces on particles", true, cost.pair * pairs, "%s, %s precision",
-        simd_name(), setup->precision == PAIR_DOUBLE ? "double" : "mixed");
+        mf_simd_name(), setup->precision == PAIR_DOUBLE ? "double" : "mixed");
     const int types = setup->composition.types;
     if (composition_is_mixed(&setup->composition))
         add(plan, "types of beads", true, cost.tell * pairs,
             "%d types: which curve a pair of the %d kinds has", types,
-            composition_pairs(&setup->composition));
+            mf_composition_pairs(&setup->composition));
     if (measured->has_potential)
         add(plan, "conservative force", true, cost.conservative * pairs,
             "a potential with cutoff %.3g", cutoff);
@@ -163,7 +163,7 @@ static void add_etd(struct plan *plan, const struct simulation_setup *setup,
         grid->r_maximum, every, origin_every * every);
 }
 
-void explain_scene(FILE *out, const struct simulation_setup *setup,
+void mf_explain_scene(FILE *out, const struct simulation_setup *setup,
                    const struct explain_measured *measured) {
     struct plan plan = {0};
     add(&plan, "motion", true, cost.move, "%s, and a watch over the velocities",

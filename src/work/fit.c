@@ -28,9 +28,9 @@ struct run {
     uint64_t digest; ///< of used.json
     double last_checkpoint;
     double seconds_before;                           ///< of a run before a restart
-    double *curve[UNKNOWNS], *curve_error[UNKNOWNS]; ///< shape [decoder_points]
-    double *curve_flat[UNKNOWNS];                    ///< shape [INVERSE_FLAT, decoder_points]
-    double *without_ramp;                            ///< shape [decoder_points of Φ]
+    double *curve[UNKNOWNS], *curve_error[UNKNOWNS]; ///< shape [mf_decoder_points]
+    double *curve_flat[UNKNOWNS];                    ///< shape [INVERSE_FLAT, mf_decoder_points]
+    double *without_ramp;                            ///< shape [mf_decoder_points of Φ]
     struct standing {
         bool finished, converged, used_up; ///< as in struct inverse_step
         uint64_t iterations, evaluations, engine_steps;
@@ -42,24 +42,24 @@ struct run {
 };
 
 static double seconds(const struct run *run) {
-    return run->seconds_before + progress_seconds(&run->progress);
+    return run->seconds_before + mf_progress_seconds(&run->progress);
 }
 
 enum { MAX_SPANS = INVERSE_MAX_SPANS + HISTORY_SPANS + 2 + 3 * UNKNOWNS };
 
 static size_t run_spans(struct run *run, struct memory_span *spans) {
     size_t n = run->fit.method->spans(run->state, spans);
-    n += history_spans(&run->history, spans + n);
+    n += mf_history_spans(&run->history, spans + n);
     spans[n++] = (struct memory_span){&run->standing, sizeof run->standing};
     for (int kind = 0; kind < UNKNOWNS; kind++) {
-        const size_t bytes = decoder_points(&run->decoder, kind) * sizeof(double);
+        const size_t bytes = mf_decoder_points(&run->decoder, kind) * sizeof(double);
         if (bytes == 0)
             continue;
         spans[n++] = (struct memory_span){run->curve[kind], bytes};
         spans[n++] = (struct memory_span){run->curve_error[kind], bytes};
         spans[n++] = (struct memory_span){run->curve_flat[kind], INVERSE_FLAT * bytes};
     }
-    const size_t points = decoder_points(&run->decoder, UNKNOWN_POTENTIAL);
+    const size_t points = mf_decoder_points(&run->decoder, UNKNOWN_POTENTIAL);
     if (points > 0)
         spans[n++] = (struct memory_span){run->without_ramp, points * sizeof(double)};
     return n;
@@ -68,17 +68,17 @@ static size_t run_spans(struct run *run, struct memory_span *spans) {
 static enum status save(struct run *run) {
     struct memory_span spans[MAX_SPANS];
     char path[OUTPUT_PATH_SIZE];
-    run_folder_file(&run->folder, "checkpoint.bin", path);
-    run->last_checkpoint = progress_seconds(&run->progress);
+    mf_run_folder_file(&run->folder, "checkpoint.bin", path);
+    run->last_checkpoint = mf_progress_seconds(&run->progress);
     run->standing.seconds = seconds(run);
-    return checkpoint_save(path, run->digest, spans, run_spans(run, spans));
+    return mf_checkpoint_save(path, run->digest, spans, run_spans(run, spans));
 }
 
 static enum status load(struct run *run) {
     struct memory_span spans[MAX_SPANS];
     char path[OUTPUT_PATH_SIZE];
-    run_folder_file(&run->folder, "checkpoint.bin", path);
-    TRY(checkpoint_load(path, run->digest, spans, run_spans(run, spans)));
+    mf_run_folder_file(&run->folder, "checkpoint.bin", path);
+    TRY(mf_checkpoint_load(path, run->digest, spans, run_spans(run, spans)));
     run->seconds_before = run->standing.seconds;
     return STATUS_OK;
 }
@@ -90,8 +90,8 @@ static void digest_starts(struct run *run) {
         const int kind = n / COMPOSITION_MOST_PAIRS, pair = n % COMPOSITION_MOST_PAIRS;
         const struct curve *start = run->fit.problem.unknown[kind].start[pair];
         for (int k = 0; start && k < POINTS; k++) {
-            const double value = curve_value(start, curve_cutoff(start) * k / POINTS);
-            checkpoint_digest_add(&run->digest, &value, sizeof value);
+            const double value = mf_curve_value(start, mf_curve_cutoff(start) * k / POINTS);
+            mf_checkpoint_digest_add(&run->digest, &value, sizeof value);
         }
     }
 }
@@ -101,11 +101,11 @@ static void digest_starts(struct run *run) {
 static enum status write_used(struct run *run, bool resume) {
     const struct fit_file *fit = &run->fit;
     char path[OUTPUT_PATH_SIZE];
-    run_folder_file(&run->folder, resume ? "used.json.resumed" : "used.json", path);
-    TRY(fit_file_write(fit, path));
-    TRY(checkpoint_digest(path, &run->digest));
-    targets_digest(&fit->targets, &run->digest);
-    scene_digest(&fit->scene, &run->digest);
+    mf_run_folder_file(&run->folder, resume ? "used.json.resumed" : "used.json", path);
+    TRY(mf_fit_file_write(fit, path));
+    TRY(mf_checkpoint_digest(path, &run->digest));
+    mf_targets_digest(&fit->targets, &run->digest);
+    mf_scene_digest(&fit->scene, &run->digest);
     digest_starts(run);
     if (resume)
         remove(path);
@@ -116,9 +116,9 @@ static enum status create(struct run *run) {
     enum status status = STATUS_OK;
     const struct fit_file *fit = &run->fit;
     size_t points[UNKNOWNS];
-    CHECK(decoder_init(&run->decoder, &fit->problem));
+    CHECK(mf_decoder_init(&run->decoder, &fit->problem));
     for (int kind = 0; kind < UNKNOWNS; kind++) {
-        points[kind] = decoder_points(&run->decoder, kind);
+        points[kind] = mf_decoder_points(&run->decoder, kind);
         if (points[kind] == 0)
             continue;
         NEW_ARRAY(run->curve[kind], points[kind]);
@@ -127,10 +127,10 @@ static enum status create(struct run *run) {
     }
     if (points[UNKNOWN_POTENTIAL] > 0)
         NEW_ARRAY(run->without_ramp, points[UNKNOWN_POTENTIAL]);
-    CHECK(history_init(
+    CHECK(mf_history_init(
         &run->history, fit->method, points,
         fit->method->most_iterations(fit->method, &fit->problem, fit->method_parameters)));
-    CHECK((run->state = memory_zeroed(1, fit->method->state_size)) ? STATUS_OK : STATUS_NO_MEMORY);
+    CHECK((run->state = mf_memory_zeroed(1, fit->method->state_size)) ? STATUS_OK : STATUS_NO_MEMORY);
     run->created = true;
     CHECK(fit->method->create(run->state, fit->method, &fit->problem, fit->method_parameters));
 done:
@@ -138,32 +138,32 @@ done:
 }
 
 static void say_line(void *progress, const char *line) {
-    progress_say(progress, "%s", line);
+    mf_progress_say(progress, "%s", line);
 }
 
 /// What is to be fitted, so that a wrong column or unit is seen before the work.
 static enum status tell_targets(struct run *run) {
     const struct target_etd *etd = &run->fit.targets.etd;
     if (etd->left_out > 0)
-        progress_say(&run->progress,
+        mf_progress_say(&run->progress,
                      "target.etd: %zu of %zu cells of the target are not known and left out",
                      etd->left_out, (size_t)(etd->grid.times * etd->grid.bins));
-    return target_sanity_tell(&run->fit.targets, &run->fit.scene,
+    return mf_target_sanity_tell(&run->fit.targets, &run->fit.scene,
                               &(struct target_sanity_listener){say_line, &run->progress});
 }
 
 static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
-    TRY(fit_file_read(&run->fit, file, options));
-    TRY(run_folder_open(&run->folder, RUN_FIT, file, &run->fit.inputs, options));
-    TRY(targets_normalise(&run->fit.targets, &run->fit.scene.setup.box));
+    TRY(mf_fit_file_read(&run->fit, file, options));
+    TRY(mf_run_folder_open(&run->folder, RUN_FIT, file, &run->fit.inputs, options));
+    TRY(mf_targets_normalise(&run->fit.targets, &run->fit.scene.setup.box));
     const enum status status = create(run);
     if (status != STATUS_OK)
-        return status_prefix(status, "%s", file);
+        return mf_status_prefix(status, "%s", file);
     TRY(write_used(run, options->resume));
     // Saved now, so that a run interrupted in its first iteration can be resumed like any other.
     TRY(options->resume ? load(run) : save(run));
     // What an earlier run left is touched once this one has begun.
-    TRY(run_folder_begin(&run->folder, options->resume));
+    TRY(mf_run_folder_begin(&run->folder, options->resume));
     return tell_targets(run);
 }
 
@@ -182,15 +182,15 @@ static void tell(void *context, const struct inverse_progress *p) {
     snprintf(text, sizeof text, "iteration %u%s%s%s", p->iteration, best, least, mean);
     if (run->progress.done_before == 0)
         run->progress.done_before = done - 1;
-    progress_tell(&run->progress, done, total, "evaluations", text);
+    mf_progress_tell(&run->progress, done, total, "evaluations", text);
     if (run->fit.method->keeps_parts &&
-        progress_seconds(&run->progress) - run->last_checkpoint > checkpoint_interval &&
+        mf_progress_seconds(&run->progress) - run->last_checkpoint > checkpoint_interval &&
         save(run) != STATUS_OK)
-        progress_say(&run->progress, "mesofit: warning: %s", status_message());
+        mf_progress_say(&run->progress, "mesofit: warning: %s", mf_status_message());
 }
 
 static void tell_verification(void *context, const struct inverse_progress *p) {
-    progress_tell(context, p->done, p->total, "simulations", "verification");
+    mf_progress_tell(context, p->done, p->total, "simulations", "verification");
 }
 
 /// What the tables and the summary say at this point.
@@ -206,7 +206,7 @@ static struct fit_result result_so_far(const struct run *run, enum status status
                                 .settled = s->converged,
                                 .parameter = s->parameter,
                                 .error = s->error,
-                                .first_error = history_first_error(&run->history),
+                                .first_error = mf_history_first_error(&run->history),
                                 .reason = s->reason};
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         result.curve[kind] = run->curve[kind];
@@ -220,16 +220,16 @@ static struct fit_result result_so_far(const struct run *run, enum status status
 /// The curves of an iteration. What is set, not fitted, has no error: core and cutoff.
 static void keep_curves(struct run *run, const struct inverse_step *step) {
     for (int kind = 0; kind < UNKNOWNS; kind++) {
-        const size_t points = decoder_points(&run->decoder, kind);
+        const size_t points = mf_decoder_points(&run->decoder, kind);
         for (size_t k = 0; k < points; k++) {
-            const bool known = step->curve_error[kind] && decoder_fits(&run->decoder, kind, k);
+            const bool known = step->curve_error[kind] && mf_decoder_fits(&run->decoder, kind, k);
             run->curve[kind][k] = step->curve[kind][k];
             run->curve_error[kind][k] = known ? step->curve_error[kind][k] : NAN;
         }
         for (size_t k = 0; k < INVERSE_FLAT * points; k++)
             run->curve_flat[kind][k] = step->curve_flat[kind] ? step->curve_flat[kind][k] : NAN;
     }
-    for (size_t k = 0; k < decoder_points(&run->decoder, UNKNOWN_POTENTIAL); k++)
+    for (size_t k = 0; k < mf_decoder_points(&run->decoder, UNKNOWN_POTENTIAL); k++)
         run->without_ramp[k] =
             step->without_ramp && isfinite(run->curve_error[UNKNOWN_POTENTIAL][k])
                 ? step->without_ramp[k]
@@ -237,7 +237,7 @@ static void keep_curves(struct run *run, const struct inverse_step *step) {
 }
 
 static void own_file(void *context, const char *name, char *path) {
-    run_folder_file(context, name, path);
+    mf_run_folder_file(context, name, path);
 }
 
 /// Remember an iteration and put it on disk.
@@ -255,16 +255,16 @@ static enum status record(struct run *run, const struct inverse_step *step) {
                                       .ramp = step->ramp};
     memcpy(run->standing.parameter, step->parameter, sizeof run->standing.parameter);
     memcpy(run->standing.reason, step->reason, sizeof run->standing.reason);
-    history_add(&run->history, step, run->standing.seconds);
-    TRY(history_write(&run->history, run->fit.method, &run->decoder, &run->folder));
+    mf_history_add(&run->history, step, run->standing.seconds);
+    TRY(mf_history_write(&run->history, run->fit.method, &run->decoder, &run->folder));
     const struct fit_result result = result_so_far(run, STATUS_UNCONVERGED);
-    TRY(fit_output_curves(&run->fit, &run->decoder, &result, &run->folder));
+    TRY(mf_fit_output_curves(&run->fit, &run->decoder, &result, &run->folder));
     if (run->fit.method->write) {
         const struct inverse_folder own = {own_file, &run->folder};
         TRY(run->fit.method->write(run->state, &own));
     }
-    progress_say(&run->progress, "iteration %u  error %.4f  noise %.4f  %.1f s", step->iteration,
-                 visible_number(step->error), visible_number(step->noise), run->standing.seconds);
+    mf_progress_say(&run->progress, "iteration %u  error %.4f  noise %.4f  %.1f s", step->iteration,
+                 mf_visible_number(step->error), mf_visible_number(step->noise), run->standing.seconds);
     return save(run);
 }
 
@@ -286,14 +286,14 @@ static enum status iterate(struct run *run) {
 static void tell_unconverged(const struct run *run) {
     const char *folder = run->folder.path, *reason = run->standing.reason;
     if (isfinite(run->standing.error))
-        status_fail(STATUS_UNCONVERGED, "the fit has not converged%s%s; its best curves are in %s",
+        mf_status_fail(STATUS_UNCONVERGED, "the fit has not converged%s%s; its best curves are in %s",
                     reason[0] ? ": " : "", reason, folder);
     else if (reason[0])
-        status_fail(STATUS_UNCONVERGED,
+        mf_status_fail(STATUS_UNCONVERGED,
                     "the fit has no result: %s; the failures are counted in %s/history.tsv", reason,
                     folder);
     else
-        status_fail(STATUS_UNCONVERGED,
+        mf_status_fail(STATUS_UNCONVERGED,
                     "not one simulation of the fit succeeded; the failures are counted in "
                     "%s/history.tsv",
                     folder);
@@ -302,28 +302,28 @@ static void tell_unconverged(const struct run *run) {
 /// A result whose verification blows up leaves a summary that says so.
 static enum status write_unstable(struct run *run) {
     const struct fit_result result = result_so_far(run, STATUS_UNSTABLE);
-    status_prefix(STATUS_UNSTABLE, "the verification of what was fitted%s",
+    mf_status_prefix(STATUS_UNSTABLE, "the verification of what was fitted%s",
                   isfinite(run->standing.error) ? ""
                   : run->standing.reason[0]     ? " (the fit has no result)"
                                                 : " (not one simulation of the fit succeeded)");
     char reason[512];
-    snprintf(reason, sizeof reason, "%s", status_message());
-    TRY(fit_output_summary(&run->fit, &run->decoder, &result, &run->folder));
-    run_folder_draw(&run->folder);
-    return status_fail(STATUS_UNSTABLE, "%s", reason);
+    snprintf(reason, sizeof reason, "%s", mf_status_message());
+    TRY(mf_fit_output_summary(&run->fit, &run->decoder, &result, &run->folder));
+    mf_run_folder_draw(&run->folder);
+    return mf_status_fail(STATUS_UNSTABLE, "%s", reason);
 }
 
 static void say_verified(struct run *run, const struct fit_result *result) {
     struct progress *to = &run->progress;
     const struct standing *standing = &run->standing;
-    progress_say(to, "%s after %llu iterations, %.1f s%s%s",
+    mf_progress_say(to, "%s after %llu iterations, %.1f s%s%s",
                  standing->converged ? "converged"
                  : standing->used_up ? "finished"
                                      : "not converged",
                  (unsigned long long)standing->iterations, standing->seconds,
                  standing->used_up ? ": " : "", standing->used_up ? standing->reason : "");
-    fit_report_say(to, &run->fit, &run->decoder, result);
-    progress_say(to, "results in %s", run->folder.path);
+    mf_fit_report_say(to, &run->fit, &run->decoder, result);
+    mf_progress_say(to, "results in %s", run->folder.path);
 }
 
 /// The verification has the last word. An inversion has converged only if the result agrees with
@@ -337,10 +337,10 @@ static void doubt(struct run *run, const struct verification *verification) {
     if (!standing->converged && !standing->used_up)
         return;
     if (run->fit.method->update
-            ? fit_verdict_contradicts(verification, goals_ask(goals, GOAL_PRESSURE),
+            ? mf_fit_verdict_contradicts(verification, goals_ask(goals, GOAL_PRESSURE),
                                       run->fit.problem.scene.temperature, noise_margin,
                                       standing->reason)
-            : fit_verdict_is_worse(verification, goals, standing->error, standing->variance,
+            : mf_fit_verdict_is_worse(verification, goals, standing->error, standing->variance,
                                    standing->reason))
         standing->converged = standing->used_up = false;
 }
@@ -350,16 +350,16 @@ static enum status verify_and_write(struct run *run) {
     struct decoder_laws laws = {
         .table = {run->fit.problem.scene.potential, run->fit.problem.scene.weight}};
     struct verification verification = {0};
-    struct progress progress = progress_begin(run->progress.quiet);
+    struct progress progress = mf_progress_begin(run->progress.quiet);
     const struct inverse_listener listener = {tell_verification, &progress};
     enum status status = STATUS_OK;
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         if (run->curve[kind] == NULL)
             continue;
-        CHECK(decoder_table(&run->decoder, kind, run->curve[kind], &laws.own[kind]));
+        CHECK(mf_decoder_table(&run->decoder, kind, run->curve[kind], &laws.own[kind]));
         laws.table[kind] = &laws.own[kind];
     }
-    status = verify(&run->fit.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_WEIGHT],
+    status = mf_verify(&run->fit.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_WEIGHT],
                     &run->fit.verification, &listener, &verification);
     if (status == STATUS_UNSTABLE)
         status = write_unstable(run);
@@ -368,18 +368,18 @@ static enum status verify_and_write(struct run *run) {
     const bool accepted = run->standing.converged || run->standing.used_up;
     struct fit_result result = result_so_far(run, accepted ? STATUS_OK : STATUS_UNCONVERGED);
     result.verification = &verification;
-    CHECK(fit_output_observables(&run->fit, &result, &run->folder));
-    CHECK(fit_output_summary(&run->fit, &run->decoder, &result, &run->folder));
-    run_folder_draw(&run->folder);
+    CHECK(mf_fit_output_observables(&run->fit, &result, &run->folder));
+    CHECK(mf_fit_output_summary(&run->fit, &run->decoder, &result, &run->folder));
+    mf_run_folder_draw(&run->folder);
     say_verified(run, &result);
     if (verification.warning[0])
-        progress_say(&run->progress, "mesofit: warning: %s", verification.warning);
+        mf_progress_say(&run->progress, "mesofit: warning: %s", verification.warning);
     status = result.status;
     if (status == STATUS_UNCONVERGED)
         tell_unconverged(run);
 done:
-    decoder_laws_clear(&laws);
-    verify_clear(&verification);
+    mf_decoder_laws_clear(&laws);
+    mf_verify_clear(&verification);
     return status;
 }
 
@@ -387,20 +387,20 @@ done:
 static enum status write_interrupted(struct run *run) {
     const struct fit_result result = result_so_far(run, STATUS_INTERRUPTED);
     if (run->standing.iterations > 0) {
-        TRY(fit_output_summary(&run->fit, &run->decoder, &result, &run->folder));
-        run_folder_draw(&run->folder);
+        TRY(mf_fit_output_summary(&run->fit, &run->decoder, &result, &run->folder));
+        mf_run_folder_draw(&run->folder);
     }
-    return status_fail(STATUS_INTERRUPTED,
+    return mf_status_fail(STATUS_INTERRUPTED,
                        "interrupted after %llu iterations; what there is, is in %s; go on with "
                        "--resume",
                        (unsigned long long)run->standing.iterations, run->folder.path);
 }
 
-enum status fit_run(const char *file, const struct run_options *options) {
+enum status mf_fit_run(const char *file, const struct run_options *options) {
     enum status status = STATUS_OK;
     struct run *run = NULL;
     NEW_ARRAY(run, 1);
-    run->progress = progress_begin(options->quiet);
+    run->progress = mf_progress_begin(options->quiet);
     run->progress.left_for = "all iterations"; // it may converge before
     CHECK(prepare(run, file, options));
     status = iterate(run);
@@ -412,18 +412,18 @@ done:
     if (run) {
         if (run->created)
             run->fit.method->destroy(run->state);
-        memory_free(run->state);
-        history_clear(&run->history);
-        decoder_clear(&run->decoder);
+        mf_memory_free(run->state);
+        mf_history_clear(&run->history);
+        mf_decoder_clear(&run->decoder);
         for (int kind = 0; kind < UNKNOWNS; kind++) {
-            memory_free(run->curve[kind]);
-            memory_free(run->curve_error[kind]);
-            memory_free(run->curve_flat[kind]);
+            mf_memory_free(run->curve[kind]);
+            mf_memory_free(run->curve_error[kind]);
+            mf_memory_free(run->curve_flat[kind]);
         }
-        memory_free(run->without_ramp);
-        fit_file_clear(&run->fit);
-        run_folder_close(&run->folder);
+        mf_memory_free(run->without_ramp);
+        mf_fit_file_clear(&run->fit);
+        mf_run_folder_close(&run->folder);
     }
-    memory_free(run);
+    mf_memory_free(run);
     return status;
 }

@@ -10,7 +10,7 @@
 /// Fails: BAD_INPUT, IO, NO_MEMORY; INTERRUPTED with everything so far on disk; UNCONVERGED when
 /// the results are complete but the method's criterion was not met; UNSTABLE when the verification
 /// blew up, with a summary that says so. Tested: test_fit.
-enum status fit_run(const char *file, const struct run_options *options) MUST_USE;
+enum status mf_fit_run(const char *file, const struct run_options *options) MUST_USE;
 
 /// Print what the simulations of the fit in `file` will pay for, and run nothing. Fails: BAD_INPUT.
-enum status fit_explain(const char *file, const struct run_options *options) MUST_USE;
+enum status mf_fit_explain(const char *file, const struct run_options *options) MUST_USE;

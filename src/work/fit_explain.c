@@ -17,11 +17,11 @@ static struct measured measured_of(const struct goals *goals, const struct simul
                                    int64_t every) {
     const struct pair_law law = {.potential = setup->potential, .weight = setup->weight};
     struct measured measured;
-    observation_plans(goals, setup->time_step, &measured.etd, &measured.motion);
+    mf_observation_plans(goals, setup->time_step, &measured.etd, &measured.motion);
     measured.explain = (struct explain_measured){
         .has_potential = setup->potential != NULL,
-        .cutoff = pair_cutoff(&law),
-        .rdf_range = goals_ask(goals, GOAL_RDF) ? rdf_bins_range(&goals->bins) : 0,
+        .cutoff = mf_pair_cutoff(&law),
+        .rdf_range = goals_ask(goals, GOAL_RDF) ? mf_rdf_bins_range(&goals->bins) : 0,
         .every = every,
         .sums = goals_ask(goals, GOAL_PRESSURE)};
     return measured;
@@ -32,8 +32,8 @@ static void print_simulation(const struct measured *measured, const struct goals
     struct explain_measured explain = measured->explain;
     explain.etd_plan = &measured->etd;
     explain.etd_grid = goals_ask(goals, GOAL_ETD) ? &goals->etd : NULL;
-    explain.motion = observation_moves(goals) ? &measured->motion : NULL;
-    explain_scene(stdout, setup, &explain);
+    explain.motion = mf_observation_moves(goals) ? &measured->motion : NULL;
+    mf_explain_scene(stdout, setup, &explain);
 }
 
 /// Simulations with the curves that the fit begins with.
@@ -70,39 +70,39 @@ static void print_line(void *stream, const char *line) {
 
 /// The method refuses what it cannot fit when it is created.
 static enum status try_method(const struct fit_file *fit) {
-    void *state = memory_zeroed(1, fit->method->state_size);
+    void *state = mf_memory_zeroed(1, fit->method->state_size);
     if (state == NULL)
         return STATUS_NO_MEMORY;
     const enum status status =
         fit->method->create(state, fit->method, &fit->problem, fit->method_parameters);
     fit->method->destroy(state);
-    memory_free(state);
+    mf_memory_free(state);
     return status;
 }
 
 /// In the order of the run (fit.c), so that it begins with the same curves.
-enum status fit_explain(const char *file, const struct run_options *options) {
+enum status mf_fit_explain(const char *file, const struct run_options *options) {
     enum status status = STATUS_OK;
     struct fit_file fit;
     struct decoder decoder = {0};
     struct decoder_laws laws = {0};
     double *genes = NULL;
-    CHECK(fit_file_read(&fit, file, options));
-    CHECK(targets_normalise(&fit.targets, &fit.scene.setup.box));
-    status = decoder_init(&decoder, &fit.problem);
+    CHECK(mf_fit_file_read(&fit, file, options));
+    CHECK(mf_targets_normalise(&fit.targets, &fit.scene.setup.box));
+    status = mf_decoder_init(&decoder, &fit.problem);
     if (status == STATUS_OK)
         status = try_method(&fit);
-    CHECK(status != STATUS_OK ? status_prefix(status, "%s", file) : STATUS_OK);
+    CHECK(status != STATUS_OK ? mf_status_prefix(status, "%s", file) : STATUS_OK);
     NEW_ARRAY(genes, decoder.genes);
-    CHECK(decoder_start(&decoder, genes));
-    CHECK(decoder_laws(&decoder, genes, &laws));
-    CHECK(target_sanity_tell(&fit.targets, &fit.scene,
+    CHECK(mf_decoder_start(&decoder, genes));
+    CHECK(mf_decoder_laws(&decoder, genes, &laws));
+    CHECK(mf_target_sanity_tell(&fit.targets, &fit.scene,
                              &(struct target_sanity_listener){print_line, stdout}));
     print_simulations(&fit, &laws);
 done:
-    decoder_laws_clear(&laws);
-    decoder_clear(&decoder);
-    memory_free(genes);
-    fit_file_clear(&fit);
+    mf_decoder_laws_clear(&laws);
+    mf_decoder_clear(&decoder);
+    mf_memory_free(genes);
+    mf_fit_file_clear(&fit);
     return status;
 }

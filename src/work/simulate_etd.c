@@ -5,43 +5,43 @@
 #include "io/data_table.h"
 #include "io/output.h"
 
-void simulate_etd_read(struct simulate_etd *etd, struct json_object *root) {
-    struct json_object object = json_child(root, "etd", false);
+void mf_simulate_etd_read(struct simulate_etd *etd, struct json_object *root) {
+    struct json_object object = mf_json_child(root, "etd", false);
     etd->on = object.item != NULL;
-    json_fields(&object, etd_grid_fields, &etd->grid);
-    json_fields(&object, etd_plan_fields, &etd->plan);
+    mf_json_fields(&object, mf_etd_grid_fields, &etd->grid);
+    mf_json_fields(&object, mf_etd_plan_fields, &etd->plan);
     if (etd->on)
-        json_finish(&object);
+        mf_json_finish(&object);
 }
 
-void simulate_etd_write_used(const struct simulate_etd *etd, struct json_writer *writer) {
+void mf_simulate_etd_write_used(const struct simulate_etd *etd, struct json_writer *writer) {
     if (!etd->on)
         return;
-    json_begin(writer, "etd");
-    json_put_fields(writer, etd_grid_fields, &etd->grid);
-    json_put_fields(writer, etd_plan_fields, &etd->plan);
-    json_end(writer);
+    mf_json_begin(writer, "etd");
+    mf_json_put_fields(writer, mf_etd_grid_fields, &etd->grid);
+    mf_json_put_fields(writer, mf_etd_plan_fields, &etd->plan);
+    mf_json_end(writer);
 }
 
-enum status simulate_etd_begin(struct simulate_etd *etd, const struct simulation *simulation,
+enum status mf_simulate_etd_begin(struct simulate_etd *etd, const struct simulation *simulation,
                                const struct measure_plan *measure) {
     if (!etd->on)
         return STATUS_OK;
     etd->interval = (double)etd->plan.every * simulation->setup.time_step;
-    return etd_init(&etd->etd, &etd->grid, &etd->plan, simulation, measure->equilibration,
+    return mf_etd_init(&etd->etd, &etd->grid, &etd->plan, simulation, measure->equilibration,
                     measure->samples * measure->every);
 }
 
-void simulate_etd_clear(struct simulate_etd *etd) {
-    etd_clear(&etd->etd);
+void mf_simulate_etd_clear(struct simulate_etd *etd) {
+    mf_etd_clear(&etd->etd);
 }
 
-struct etd *simulate_etd_target(struct simulate_etd *etd) {
+struct etd *mf_simulate_etd_target(struct simulate_etd *etd) {
     return etd->on ? &etd->etd : NULL;
 }
 
-size_t simulate_etd_spans(struct simulate_etd *etd, struct memory_span *spans) {
-    return etd->on ? etd_spans(&etd->etd, spans) : 0;
+size_t mf_simulate_etd_spans(struct simulate_etd *etd, struct memory_span *spans) {
+    return etd->on ? mf_etd_spans(&etd->etd, spans) : 0;
 }
 
 // Tables ------------------------------------------------------------------------------------------
@@ -69,11 +69,11 @@ static enum status write_matrix(const struct simulate_etd *etd, const char *file
         for (size_t t = 0; t < times; t++)
             columns[k * times + t] = k ? values[t * bins + k - 1] : (double)t * etd->interval;
     }
-    status = data_table_write(file, NULL, column, bins + 1, times);
+    status = mf_data_table_write(file, NULL, column, bins + 1, times);
 done:
-    memory_free(columns);
-    memory_free(column);
-    memory_free(name);
+    mf_memory_free(columns);
+    mf_memory_free(column);
+    mf_memory_free(name);
     return status;
 }
 
@@ -89,14 +89,14 @@ static enum status write_bins(const struct simulate_etd *etd, const char *file,
         n[k] = (double)pairs[k];
     }
     const struct data_column columns[] = {{"r0[lambda]", r, NULL}, {"pairs[1]", n, "%.0f"}};
-    status = data_table_write(file, NULL, columns, 2, bins);
+    status = mf_data_table_write(file, NULL, columns, 2, bins);
 done:
-    memory_free(r);
-    memory_free(n);
+    mf_memory_free(r);
+    mf_memory_free(n);
     return status;
 }
 
-enum status simulate_etd_write_tables(const struct simulate_etd *etd, const char *folder) {
+enum status mf_simulate_etd_write_tables(const struct simulate_etd *etd, const char *folder) {
     enum status status = STATUS_OK;
     const struct etd *const replicas[] = {&etd->etd};
     double *survival = NULL, *error = NULL;
@@ -107,7 +107,7 @@ enum status simulate_etd_write_tables(const struct simulate_etd *etd, const char
     NEW_ARRAY(survival, etd_cells(&etd->etd));
     NEW_ARRAY(error, etd_cells(&etd->etd));
     NEW_ARRAY(pairs, (size_t)etd->grid.bins);
-    CHECK(etd_result(replicas, 1, survival, error, pairs));
+    CHECK(mf_etd_result(replicas, 1, survival, error, pairs));
     snprintf(path, sizeof path, "%s/etd.tsv", folder);
     CHECK(write_matrix(etd, path, "E", survival, "%.8g"));
     snprintf(path, sizeof path, "%s/etd_error.tsv", folder);
@@ -115,22 +115,22 @@ enum status simulate_etd_write_tables(const struct simulate_etd *etd, const char
     snprintf(path, sizeof path, "%s/etd_bins.tsv", folder);
     CHECK(write_bins(etd, path, pairs));
 done:
-    memory_free(survival);
-    memory_free(error);
-    memory_free(pairs);
+    mf_memory_free(survival);
+    mf_memory_free(error);
+    mf_memory_free(pairs);
     return status;
 }
 
-void simulate_etd_write_summary(const struct simulate_etd *etd, struct json_writer *writer) {
+void mf_simulate_etd_write_summary(const struct simulate_etd *etd, struct json_writer *writer) {
     uint64_t pairs = 0;
     if (!etd->on)
         return;
     for (size_t block = 0; block < etd->etd.blocks; block++)
         for (int64_t bin = 0; bin < etd->grid.bins; bin++)
             pairs += etd->etd.counts[block * etd_cells(&etd->etd) + (size_t)bin];
-    json_begin(writer, "etd");
-    json_put_integer(writer, "origins", (int64_t)etd->etd.origins);
-    json_put_integer(writer, "pairs", (int64_t)pairs);
-    json_put_number(writer, "interval", etd->interval);
-    json_end(writer);
+    mf_json_begin(writer, "etd");
+    mf_json_put_integer(writer, "origins", (int64_t)etd->etd.origins);
+    mf_json_put_integer(writer, "pairs", (int64_t)pairs);
+    mf_json_put_number(writer, "interval", etd->interval);
+    mf_json_end(writer);
 }

@@ -17,27 +17,27 @@ struct simulate_etd {
 };
 
 /// Read "etd" of a scene file; faults go to its document.
-void simulate_etd_read(struct simulate_etd *etd, struct json_object *root);
+void mf_simulate_etd_read(struct simulate_etd *etd, struct json_object *root);
 
 /// Write the settings as they were read; nothing if it is off.
-void simulate_etd_write_used(const struct simulate_etd *etd, struct json_writer *writer);
+void mf_simulate_etd_write_used(const struct simulate_etd *etd, struct json_writer *writer);
 
 /// Make room for all samples that `measure` has time for.
 /// Fails: BAD_INPUT if there is no time for one window, or no room in the box; NO_MEMORY.
-enum status simulate_etd_begin(struct simulate_etd *etd, const struct simulation *simulation,
+enum status mf_simulate_etd_begin(struct simulate_etd *etd, const struct simulation *simulation,
                                const struct measure_plan *measure) MUST_USE;
-void simulate_etd_clear(struct simulate_etd *etd);
+void mf_simulate_etd_clear(struct simulate_etd *etd);
 
 /// For measure_targets: NULL if it is off.
-struct etd *simulate_etd_target(struct simulate_etd *etd);
+struct etd *mf_simulate_etd_target(struct simulate_etd *etd);
 
-/// Spans of a checkpoint, ETD_SPANS or none; returns their number. As etd_spans says, the first is
-/// to be read, followed by etd_make_room, before the others are asked for.
-size_t simulate_etd_spans(struct simulate_etd *etd, struct memory_span *spans);
+/// Spans of a checkpoint, ETD_SPANS or none; returns their number. As mf_etd_spans says, the first is
+/// to be read, followed by mf_etd_make_room, before the others are asked for.
+size_t mf_simulate_etd_spans(struct simulate_etd *etd, struct memory_span *spans);
 
 /// Write, into `folder`, etd.tsv and etd_error.tsv: time, then E or its standard error for each bin
 /// of r_0, nan where no pair began; and etd_bins.tsv: r_0, pairs. Fails: IO, NO_MEMORY.
-enum status simulate_etd_write_tables(const struct simulate_etd *etd, const char *folder) MUST_USE;
+enum status mf_simulate_etd_write_tables(const struct simulate_etd *etd, const char *folder) MUST_USE;
 
 /// Add the object "etd" to summary.json; nothing if it is off.
-void simulate_etd_write_summary(const struct simulate_etd *etd, struct json_writer *writer);
+void mf_simulate_etd_write_summary(const struct simulate_etd *etd, struct json_writer *writer);

@@ -4,49 +4,49 @@
 #include "base/memory.h"
 #include "io/data_table.h"
 
-void simulate_force_covariance_read(struct simulate_force_covariance *covariance,
+void mf_simulate_force_covariance_read(struct simulate_force_covariance *covariance,
                                     struct json_object *root) {
-    struct json_object object = json_child(root, "force_covariance", false);
+    struct json_object object = mf_json_child(root, "force_covariance", false);
     covariance->on = object.item != NULL;
-    json_fields(&object, force_covariance_fields, &covariance->plan);
+    mf_json_fields(&object, mf_force_covariance_fields, &covariance->plan);
     if (covariance->on)
-        json_finish(&object);
+        mf_json_finish(&object);
 }
 
-void simulate_force_covariance_write_used(const struct simulate_force_covariance *covariance,
+void mf_simulate_force_covariance_write_used(const struct simulate_force_covariance *covariance,
                                           struct json_writer *writer) {
     if (!covariance->on)
         return;
-    json_begin(writer, "force_covariance");
-    json_put_fields(writer, force_covariance_fields, &covariance->plan);
-    json_end(writer);
+    mf_json_begin(writer, "force_covariance");
+    mf_json_put_fields(writer, mf_force_covariance_fields, &covariance->plan);
+    mf_json_end(writer);
 }
 
-enum status simulate_force_covariance_begin(struct simulate_force_covariance *covariance,
+enum status mf_simulate_force_covariance_begin(struct simulate_force_covariance *covariance,
                                             const struct simulation *simulation,
                                             const struct measure_plan *measure) {
     if (!covariance->on)
         return STATUS_OK;
-    return force_covariance_init(&covariance->covariance, &covariance->plan, simulation,
+    return mf_force_covariance_init(&covariance->covariance, &covariance->plan, simulation,
                                  (size_t)measure->samples);
 }
 
-void simulate_force_covariance_clear(struct simulate_force_covariance *covariance) {
-    force_covariance_clear(&covariance->covariance);
+void mf_simulate_force_covariance_clear(struct simulate_force_covariance *covariance) {
+    mf_force_covariance_clear(&covariance->covariance);
 }
 
 struct force_covariance *
-simulate_force_covariance_target(struct simulate_force_covariance *covariance) {
+mf_simulate_force_covariance_target(struct simulate_force_covariance *covariance) {
     return covariance->on ? &covariance->covariance : NULL;
 }
 
-size_t simulate_force_covariance_spans(struct simulate_force_covariance *covariance,
+size_t mf_simulate_force_covariance_spans(struct simulate_force_covariance *covariance,
                                        struct memory_span *spans) {
-    return covariance->on ? force_covariance_spans(&covariance->covariance, spans) : 0;
+    return covariance->on ? mf_force_covariance_spans(&covariance->covariance, spans) : 0;
 }
 
 enum status
-simulate_force_covariance_write_table(const struct simulate_force_covariance *covariance,
+mf_simulate_force_covariance_write_table(const struct simulate_force_covariance *covariance,
                                       const char *file) {
     enum status status = STATUS_OK;
     const size_t bins = (size_t)covariance->plan.bins;
@@ -55,14 +55,14 @@ simulate_force_covariance_write_table(const struct simulate_force_covariance *co
         return STATUS_OK;
     NEW_ARRAY(values, 3 * bins);
     double *r = values, *kappa = r + bins, *error = kappa + bins;
-    force_covariance_result(&covariance->covariance, kappa, error);
+    mf_force_covariance_result(&covariance->covariance, kappa, error);
     for (size_t k = 0; k < bins; k++)
         r[k] = covariance->covariance.width * ((double)k + 0.5);
     const struct data_column columns[] = {{"r[lambda]", r, NULL},
                                           {"kappa[k_B.T_0.mu/tau]", kappa, "%.8g"},
                                           {"kappa_error[k_B.T_0.mu/tau]", error, "%.3g"}};
-    status = data_table_write(file, NULL, columns, 3, bins);
+    status = mf_data_table_write(file, NULL, columns, 3, bins);
 done:
-    memory_free(values);
+    mf_memory_free(values);
     return status;
 }

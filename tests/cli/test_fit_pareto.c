@@ -74,7 +74,7 @@ static void test_pareto_leaves_a_front_that_nobody_dominates(void **state) {
     size_t members = 0, chosen = 0;
     write_fit(*state, NULL, NULL);
     run_fit("run.json", "out", "2");
-    assert_ok(data_table_read(&table, "out/pareto.tsv", COLUMNS));
+    assert_ok(mf_data_table_read(&table, "out/pareto.tsv", COLUMNS));
     assert_int_equal(table.columns, COLUMNS);
     assert_int_equal(table.rows, 9);
     for (size_t a = 0; a < table.rows; a++) {
@@ -87,14 +87,14 @@ static void test_pareto_leaves_a_front_that_nobody_dominates(void **state) {
         }
         for (size_t b = 0; b < table.rows && one[RANK] == 1; b++)
             assert_false(
-                nsga2_dominates(table.values + b * COLUMNS + DISTANCES, one + DISTANCES, 2));
+                mf_nsga2_dominates(table.values + b * COLUMNS + DISTANCES, one + DISTANCES, 2));
     }
     assert_int_equal(chosen, 1);
     assert_true(members >= 1);
     results_assert_table("out/pareto_potential.tsv", members + 1, 21);
     results_assert_table("out/pareto_weight.tsv", members + 1, 201);
     results_assert_table("out/pareto_history.tsv", 5, 0);
-    data_table_clear(&table);
+    mf_data_table_clear(&table);
 }
 
 static void test_pareto_wants_two_goals(void **state) {

@@ -94,20 +94,20 @@ static void test_simulated_escape_times_can_be_a_target(void **state) {
                 MEASURE);
     simulate(&result, "out");
     const char *file = temporary_folder_write(*state, "target.json", text, sizeof text - 1);
-    assert_ok(json_open(&document, file));
-    struct json_object root = json_root(document);
-    struct json_object object = json_child(&root, "etd", true);
-    assert_ok(target_etd_read(&target, &object));
-    assert_ok(json_close(document, STATUS_OK));
+    assert_ok(mf_json_open(&document, file));
+    struct json_object root = mf_json_root(document);
+    struct json_object object = mf_json_child(&root, "etd", true);
+    assert_ok(mf_target_etd_read(&target, &object));
+    assert_ok(mf_json_close(document, STATUS_OK));
     assert_int_equal(target.grid.times, 7);
     assert_int_equal(target.grid.bins, 90);
     // No pair is nearer than 0.01 λ; most bins are known.
     assert_in_range(target.left_out, 7, 7 * 30);
     assert_int_equal(target.left_out % 7, 0);
     assert_true(target.survival[7 * 90 - 1] < 0.6 && target.error[7 * 90 - 1] > 0);
-    assert_ok(target_etd_steps(&target, 0.04, &every));
+    assert_ok(mf_target_etd_steps(&target, 0.04, &every));
     assert_int_equal(every, 3);
-    target_etd_clear(&target);
+    mf_target_etd_clear(&target);
 }
 
 static void test_simulate_refuses_escape_times_that_it_cannot_measure(void **state) {

@@ -56,38 +56,38 @@ int LLVMFuzzerInitialize(int *count, char ***words) {
 
 static void read_table(const char *file) {
     struct data_table table;
-    if (data_table_read(&table, file, 2) != STATUS_OK)
+    if (mf_data_table_read(&table, file, 2) != STATUS_OK)
         return;
-    if (data_table_check_increasing(&table, file, 0, 0) == STATUS_OK && table.rows == 0)
+    if (mf_data_table_check_increasing(&table, file, 0, 0) == STATUS_OK && table.rows == 0)
         abort();
-    data_table_clear(&table);
+    mf_data_table_clear(&table);
 }
 
 static void read_votca(const char *file) {
     struct votca_table table;
-    if (votca_read(&table, file) == STATUS_OK)
-        votca_clear(&table);
+    if (mf_votca_read(&table, file) == STATUS_OK)
+        mf_votca_clear(&table);
 }
 
 static void read_scene(const char *file) {
     struct json_document *document;
     struct scene scene;
-    if (json_open(&document, file) != STATUS_OK)
+    if (mf_json_open(&document, file) != STATUS_OK)
         return;
-    struct json_object root = json_root(document);
-    const enum status status = scene_read(&scene, &root, SCENE_FITS_NOTHING);
-    json_finish(&root);
-    if (json_close(document, status) == STATUS_OK && scene.setup.integrator == NULL)
+    struct json_object root = mf_json_root(document);
+    const enum status status = mf_scene_read(&scene, &root, SCENE_FITS_NOTHING);
+    mf_json_finish(&root);
+    if (mf_json_close(document, status) == STATUS_OK && scene.setup.integrator == NULL)
         abort();
-    scene_clear(&scene);
+    mf_scene_clear(&scene);
 }
 
 static void read_run(const char *file) {
     const struct run_options options = {.threads = 1};
     struct fit_file fit;
-    if (fit_file_parse(&fit, file, &options) == STATUS_OK && fit.method == NULL)
+    if (mf_fit_file_parse(&fit, file, &options) == STATUS_OK && fit.method == NULL)
         abort();
-    fit_file_clear(&fit);
+    mf_fit_file_clear(&fit);
 }
 
 /// The file as it is, and with the checksum that its bytes should have: the second gets further.
@@ -98,9 +98,9 @@ static void read_checkpoint(const char *file, const uint8_t *data, size_t size) 
     if (size >= 24)
         memcpy(&digest, data + 16, sizeof digest);
     for (int time = 0; time < 2; time++) {
-        if (checkpoint_load(file, digest, spans, 3) != STATUS_OK &&
-            checkpoint_load_span(file, digest, 1, &spans[1]) != STATUS_OK && time == 0)
-            checkpoint_digest_add(&checksum, data, size);
+        if (mf_checkpoint_load(file, digest, spans, 3) != STATUS_OK &&
+            mf_checkpoint_load_span(file, digest, 1, &spans[1]) != STATUS_OK && time == 0)
+            mf_checkpoint_digest_add(&checksum, data, size);
         FILE *stream = fopen(file, "ab");
         if (stream == NULL || fwrite(&checksum, sizeof checksum, 1, stream) != 1 ||
             fclose(stream) != 0)
@@ -118,8 +118,8 @@ static void read_result(const char *name, const uint8_t *data, size_t size) {
     if (stream)
         fclose(stream);
     write_file(name, data, size);
-    if (result_read(&result, ".") == STATUS_OK)
-        result_clear(&result);
+    if (mf_result_read(&result, ".") == STATUS_OK)
+        mf_result_clear(&result);
     if (bytes > 0)
         write_file(name, kept, bytes);
     else

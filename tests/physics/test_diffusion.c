@@ -12,10 +12,10 @@
 /// The ideal gas of dissipative particles: density 3, γ w_D = 6.75 (1 − r)², k_B T = 1.
 static void make_gas(struct fluid *fluid, int64_t count, double edge, double time_step) {
     struct formula_power_weight_parameters parameters = {sqrt(6.75), 1, 0, 1};
-    const struct curve curve = {&formula_power_weight, &parameters};
+    const struct curve curve = {&mf_formula_power_weight, &parameters};
     fluid_ideal_gas(fluid, 3, count, time_step);
-    table_clear(&fluid->weight);
-    assert_ok(table_init_weight(&fluid->weight, &curve));
+    mf_table_clear(&fluid->weight);
+    assert_ok(mf_table_init_weight(&fluid->weight, &curve));
     for (int d = 0; d < 3; d++)
         fluid->setup.box.length[d] = edge;
 }
@@ -25,19 +25,19 @@ static struct motion_summary simulate(const struct fluid *fluid, const struct mo
     struct simulation simulation;
     struct motion motion;
     double temperature;
-    assert_ok(simulation_init(&simulation, &fluid->setup, NULL));
+    assert_ok(mf_simulation_init(&simulation, &fluid->setup, NULL));
     assert_ok(
-        motion_init(&motion, plan, &simulation, when->equilibration, when->samples * when->every));
-    assert_ok(measure_equilibrate(&simulation, when, &temperature, NULL));
-    assert_ok(measure_sample(&simulation, when, (struct measure_targets){.motion = &motion}, NULL));
-    const struct motion_summary s = motion_result(&motion, NULL);
+        mf_motion_init(&motion, plan, &simulation, when->equilibration, when->samples * when->every));
+    assert_ok(mf_measure_equilibrate(&simulation, when, &temperature, NULL));
+    assert_ok(mf_measure_sample(&simulation, when, (struct measure_targets){.motion = &motion}, NULL));
+    const struct motion_summary s = mf_motion_result(&motion, NULL);
     print_message("D = %.4f(%.0f) from the MSD, %.4f(%.0f) by Green and Kubo; "
                   "T %.3f, D_n = %.4f, p = %.2g\n",
                   s.msd, 1e4 * s.msd_error, s.green_kubo, 1e4 * s.green_kubo_error,
-                  particles_temperature(&simulation.particles), s.maxwell.statistic,
+                  mf_particles_temperature(&simulation.particles), s.maxwell.statistic,
                   s.maxwell.probability);
-    motion_clear(&motion);
-    simulation_clear(&simulation);
+    mf_motion_clear(&motion);
+    mf_simulation_clear(&simulation);
     return s;
 }
 

@@ -33,29 +33,29 @@ static void measure(const struct simulation_setup *setup, struct measured *measu
     struct motion motion;
     struct thermodynamics thermodynamics;
     double temperature;
-    assert_ok(simulation_init(&simulation, setup, NULL));
-    assert_ok(motion_init(&motion, &plan, &simulation, when.equilibration, 1200));
-    assert_ok(thermodynamics_init(&thermodynamics, 300));
-    assert_ok(measure_equilibrate(&simulation, &when, &temperature, NULL));
+    assert_ok(mf_simulation_init(&simulation, setup, NULL));
+    assert_ok(mf_motion_init(&motion, &plan, &simulation, when.equilibration, 1200));
+    assert_ok(mf_thermodynamics_init(&thermodynamics, 300));
+    assert_ok(mf_measure_equilibrate(&simulation, &when, &temperature, NULL));
     const struct measure_targets targets = {.thermodynamics = &thermodynamics, .motion = &motion};
-    assert_ok(measure_sample(&simulation, &when, targets, NULL));
-    const struct thermodynamics_summary t = thermodynamics_result(&thermodynamics, 1);
-    const struct motion_summary m = motion_result(&motion, NULL);
+    assert_ok(mf_measure_sample(&simulation, &when, targets, NULL));
+    const struct thermodynamics_summary t = mf_thermodynamics_result(&thermodynamics, 1);
+    const struct motion_summary m = mf_motion_result(&motion, NULL);
     *measured =
         (struct measured){{t.temperature, t.potential_energy, t.pressure, m.msd, m.green_kubo},
                           {t.temperature_error, t.potential_energy_error, t.pressure_error,
                            m.msd_error, m.green_kubo_error}};
-    thermodynamics_clear(&thermodynamics);
-    motion_clear(&motion);
-    simulation_clear(&simulation);
+    mf_thermodynamics_clear(&thermodynamics);
+    mf_motion_clear(&motion);
+    mf_simulation_clear(&simulation);
 }
 
 static void assert_covered(const struct measured measured[SEEDS], int kind) {
     struct running_mean values = {0}, squares = {0};
     double covered = 0;
     for (int k = 0; k < SEEDS; k++) {
-        statistics_add(&values, measured[k].value[kind]);
-        statistics_add(&squares, measured[k].error[kind] * measured[k].error[kind]);
+        mf_statistics_add(&values, measured[k].value[kind]);
+        mf_statistics_add(&squares, measured[k].error[kind] * measured[k].error[kind]);
     }
     for (int k = 0; k < SEEDS; k++)
         covered += fabs(measured[k].value[kind] - values.mean) < 2 * measured[k].error[kind];
@@ -99,17 +99,17 @@ static void test_errors_of_close_samples_are_the_scatter_of_g(void **state) {
         struct rdf rdf;
         double value[BINS], error[BINS];
         fluid.setup.seed = 3000 + (uint64_t)k;
-        assert_ok(simulation_init(&simulation, &fluid.setup, NULL));
-        assert_ok(rdf_init(&rdf, &bins, &fluid.setup.box, PARTICLES, 2.5, SAMPLES));
-        assert_ok(measure_equilibrate(&simulation, &when, &temperature, NULL));
-        assert_ok(measure_sample(&simulation, &when, (struct measure_targets){.rdf = &rdf}, NULL));
-        assert_ok(rdf_result(&rdf, 1, value, error));
+        assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
+        assert_ok(mf_rdf_init(&rdf, &bins, &fluid.setup.box, PARTICLES, 2.5, SAMPLES));
+        assert_ok(mf_measure_equilibrate(&simulation, &when, &temperature, NULL));
+        assert_ok(mf_measure_sample(&simulation, &when, (struct measure_targets){.rdf = &rdf}, NULL));
+        assert_ok(mf_rdf_result(&rdf, 1, value, error));
         for (int n = 0; n < BINS; n++) {
-            statistics_add(&g[n], value[n]);
-            statistics_add(&squares[n], error[n] * error[n]);
+            mf_statistics_add(&g[n], value[n]);
+            mf_statistics_add(&squares[n], error[n] * error[n]);
         }
-        rdf_clear(&rdf);
-        simulation_clear(&simulation);
+        mf_rdf_clear(&rdf);
+        mf_simulation_clear(&simulation);
     }
     for (int n = 0; n < BINS; n++)
         ratio += sqrt(g[n].squares / (RUNS - 1) / squares[n].mean) / BINS;

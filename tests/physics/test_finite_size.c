@@ -30,12 +30,12 @@ static void sample(struct fluid *fluid, int64_t samples, struct rdf *rdf) {
     static struct simulation simulation;
     const struct measure_plan plan = {.equilibration = 1000, .samples = samples, .every = 10};
     double temperature;
-    assert_ok(simulation_init(&simulation, &fluid->setup, NULL));
-    assert_ok(rdf_init_mixture(rdf, &bins, &fluid->setup.box, &fluid->setup.composition, 1,
+    assert_ok(mf_simulation_init(&simulation, &fluid->setup, NULL));
+    assert_ok(mf_rdf_init_mixture(rdf, &bins, &fluid->setup.box, &fluid->setup.composition, 1,
                                (size_t)samples));
-    assert_ok(measure_equilibrate(&simulation, &plan, &temperature, NULL));
-    assert_ok(measure_sample(&simulation, &plan, (struct measure_targets){.rdf = rdf}, NULL));
-    simulation_clear(&simulation);
+    assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
+    assert_ok(mf_measure_sample(&simulation, &plan, (struct measure_targets){.rdf = rdf}, NULL));
+    mf_simulation_clear(&simulation);
 }
 
 /// The mean of one kind of pairs, taken to MANY.
@@ -44,13 +44,13 @@ static double convert(const struct rdf *rdf, const double *g, const double *erro
     double sum = 0, volume = 0;
     for (size_t k = 0; k < BINS; k++) {
         const double shell =
-            box_shell_volume(&rdf->box, rdf_bins_edge(&bins, k), rdf_bins_edge(&bins, k + 1));
+            mf_box_shell_volume(&rdf->box, mf_rdf_bins_edge(&bins, k), mf_rdf_bins_edge(&bins, k + 1));
         sum += shell * g[k];
         volume += shell;
     }
     return sum / volume *
-           finite_size_factor_of(&bins, g, error, &rdf->box, composition, pair,
-                                 (double)composition_particles(composition), MANY);
+           mf_finite_size_factor_of(&bins, g, error, &rdf->box, composition, pair,
+                                 (double)mf_composition_particles(composition), MANY);
 }
 
 static struct means measure(int64_t particles, const struct table *potential, int64_t samples) {
@@ -65,15 +65,15 @@ static struct means measure(int64_t particles, const struct table *potential, in
         fluid.setup.potential = potential;
         fluid.setup.seed = seed;
         sample(&fluid, samples, &rdf);
-        assert_ok(rdf_result(&rdf, 1, g, error));
+        assert_ok(mf_rdf_result(&rdf, 1, g, error));
         for (int pair = 0; pair < PAIRS; pair++)
-            statistics_add(&sum[pair], convert(&rdf, g + pair * BINS, error + pair * BINS, pair));
-        rdf_clear(&rdf);
+            mf_statistics_add(&sum[pair], convert(&rdf, g + pair * BINS, error + pair * BINS, pair));
+        mf_rdf_clear(&rdf);
         fluid_clear(&fluid);
     }
     for (int pair = 0; pair < PAIRS; pair++) {
         means.value[pair] = sum[pair].mean;
-        means.error[pair] = statistics_standard_error(&sum[pair]);
+        means.error[pair] = mf_statistics_standard_error(&sum[pair]);
     }
     return means;
 }
@@ -98,9 +98,9 @@ static void test_finite_size_of_isotopes_is_that_of_the_whole(void **state) {
     fluid_groot_warren(&fluid, FEW, 0.02);
     for (int pair = 0; pair < PAIRS; pair++)
         parts[pair] = fluid.potential;
-    assert_ok(table_stack(&potential, parts, PAIRS));
+    assert_ok(mf_table_stack(&potential, parts, PAIRS));
     compare(&potential, "isotopes");
-    table_clear(&potential);
+    mf_table_clear(&potential);
     fluid_clear(&fluid);
 }
 
@@ -112,10 +112,10 @@ static void test_finite_size_of_gases_that_do_not_see_each_other(void **state) {
     fluid_groot_warren(&fluid, FEW, 0.02);
     parts[0] = parts[2] = fluid.potential;
     fluid_no_potential(&parts[1]);
-    assert_ok(table_stack(&potential, parts, PAIRS));
+    assert_ok(mf_table_stack(&potential, parts, PAIRS));
     compare(&potential, "gases");
-    table_clear(&parts[1]);
-    table_clear(&potential);
+    mf_table_clear(&parts[1]);
+    mf_table_clear(&potential);
     fluid_clear(&fluid);
 }
 

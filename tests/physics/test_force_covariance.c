@@ -15,12 +15,12 @@ static void measure(struct force_covariance *covariance, const struct fluid *flu
     const struct measure_plan when = {.equilibration = 400, .samples = samples, .every = 1};
     struct simulation simulation;
     double temperature;
-    assert_ok(simulation_init(&simulation, &fluid->setup, NULL));
-    assert_ok(force_covariance_init(covariance, &plan, &simulation, (size_t)samples));
-    assert_ok(measure_equilibrate(&simulation, &when, &temperature, NULL));
-    assert_ok(measure_sample(&simulation, &when,
+    assert_ok(mf_simulation_init(&simulation, &fluid->setup, NULL));
+    assert_ok(mf_force_covariance_init(covariance, &plan, &simulation, (size_t)samples));
+    assert_ok(mf_measure_equilibrate(&simulation, &when, &temperature, NULL));
+    assert_ok(mf_measure_sample(&simulation, &when,
                              (struct measure_targets){.force_covariance = covariance}, NULL));
-    simulation_clear(&simulation);
+    mf_simulation_clear(&simulation);
 }
 
 /// Mean over a bin, with r² as weight.
@@ -45,10 +45,10 @@ static void assert_recovered(struct fluid *fluid, const double time_step[2], int
         fluid->setup.time_step = time_step[k];
         fluid->setup.seed = 11 + (uint64_t)k;
         measure(&covariance, fluid, samples);
-        force_covariance_result(&covariance, kappa[k], error[k]);
-        force_covariance_clear(&covariance);
+        mf_force_covariance_result(&covariance, kappa[k], error[k]);
+        mf_force_covariance_clear(&covariance);
     }
-    force_covariance_extrapolate(time_step, (const double *const[]){kappa[0], kappa[1]},
+    mf_force_covariance_extrapolate(time_step, (const double *const[]){kappa[0], kappa[1]},
                                  (const double *const[]){error[0], error[1]}, BINS, squared,
                                  squared_error);
     for (size_t bin = 6; bin < 16; bin++) {

@@ -35,20 +35,20 @@ static struct thermodynamics_summary simulate(const struct simulation_setup *set
     struct simulation simulation;
     struct thermodynamics thermodynamics;
     double temperature;
-    assert_ok(simulation_init(&simulation, setup, NULL));
-    assert_ok(thermodynamics_init(&thermodynamics, (size_t)samples));
-    assert_ok(measure_equilibrate(&simulation, &plan, &temperature, NULL));
+    assert_ok(mf_simulation_init(&simulation, setup, NULL));
+    assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)samples));
+    assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
     const struct measure_targets targets = {.rdf = rdf, .thermodynamics = &thermodynamics};
-    assert_ok(measure_sample(&simulation, &plan, targets, NULL));
-    const struct thermodynamics_summary s = thermodynamics_result(&thermodynamics, 1);
+    assert_ok(mf_measure_sample(&simulation, &plan, targets, NULL));
+    const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
     print_message("time step %g, lambda %g: kinetic %.4f(%.4f), configurational %.4f(%.4f), U/N "
                   "%.4f(%.4f), pressure %.4f(%.4f)\n",
                   setup->time_step, setup->integrator_parameters.lambda, s.temperature,
                   s.temperature_error, s.temperature_configurational,
                   s.temperature_configurational_error, s.potential_energy, s.potential_energy_error,
                   s.pressure, s.pressure_error);
-    thermodynamics_clear(&thermodynamics);
-    simulation_clear(&simulation);
+    mf_thermodynamics_clear(&thermodynamics);
+    mf_simulation_clear(&simulation);
     return s;
 }
 
@@ -66,20 +66,20 @@ static void assert_temperatures(const struct thermodynamics_summary *s, double k
 /// The reference g in the wider bins of `rdf`, each of which holds whole bins of the table.
 static void read_reference(const struct rdf *rdf, double *g) {
     struct data_table table;
-    assert_ok(data_table_read(&table, "tests/reference_data/groot_warren_rdf.txt", 2));
+    assert_ok(mf_data_table_read(&table, "tests/reference_data/groot_warren_rdf.txt", 2));
     const size_t each = table.rows / rdf->bins.count;
     assert_int_equal(table.rows % rdf->bins.count, 0);
     for (size_t k = 0; k < rdf->bins.count; k++) {
         double sum = 0, volume = 0;
         for (size_t row = each * k; row < each * (k + 1); row++) {
             const double r = table.values[row * table.columns];
-            const double shell = box_shell_volume(&rdf->box, r - 0.005, r + 0.005);
+            const double shell = mf_box_shell_volume(&rdf->box, r - 0.005, r + 0.005);
             sum += shell * table.values[row * table.columns + 1];
             volume += shell;
         }
         g[k] = sum / volume;
     }
-    data_table_clear(&table);
+    mf_data_table_clear(&table);
 }
 
 static void test_standard_fluid_has_the_published_state_when_the_time_step_is_small(void **state) {
@@ -91,21 +91,21 @@ static void test_standard_fluid_has_the_published_state_when_the_time_step_is_sm
     fluid_groot_warren(&fluid, PARTICLES, 0.01);
     // Beyond the cutoff, so that the RDF makes its own list.
     assert_ok(
-        rdf_init(&rdf, &(struct rdf_bins){0, 0.05, BINS}, &fluid.setup.box, PARTICLES, 1, SAMPLES));
+        mf_rdf_init(&rdf, &(struct rdf_bins){0, 0.05, BINS}, &fluid.setup.box, PARTICLES, 1, SAMPLES));
     const struct thermodynamics_summary s = simulate(&fluid.setup, 500, SAMPLES, &rdf);
     assert_close(s.potential_energy, 4.545, energy_tolerance);
     assert_close(s.pressure, 23.65, pressure_tolerance);
     // Kinetic: LAMMPS at this time step. Configurational: a quarter of the excess at twice it.
     assert_temperatures(&s, 1.0039, 1.0036);
     read_reference(&rdf, reference);
-    assert_ok(rdf_result(&rdf, 1, g, error));
+    assert_ok(mf_rdf_result(&rdf, 1, g, error));
     for (int k = 0; k < BINS; k++) {
         assert_close(g[k], reference[k], rdf_tolerance);
         largest = fmax(largest, fabs(g[k] - reference[k]));
         largest_error = fmax(largest_error, error[k]);
     }
     print_message("g(r): largest difference %.4f, largest error %.4f\n", largest, largest_error);
-    rdf_clear(&rdf);
+    mf_rdf_clear(&rdf);
     fluid_clear(&fluid);
 }
 
@@ -156,14 +156,14 @@ struct heating {
 };
 
 static const struct heating heatings[] = {
-    {&dpd_verlet, 0.5, 0.02, 1.0, 1.4, 0.05, 0.05}, {&dpd_verlet, 0.65, 0.02, 0.2, 0.8, 0.05, 0.05},
-    {&shardlow, 0, 0.02, 0, 1.2, 0.05, 0.05},       {&aboba, 0, 0.02, 0.7, -0.05, 0.05, 0.005},
-    {&dpd_verlet, 0.5, 0.04, 2.8, 5.5, 0.05, 0.05}, {&dpd_verlet, 0.65, 0.04, 0.2, 3.4, 0.05, 0.05},
-    {&shardlow, 0, 0.04, 0.8, 4.9, 0.05, 0.05},     {&aboba, 0, 0.04, 2.4, -0.9, 0.05, 0.05},
-    {&dpd_verlet, 0.5, 0.06, 6.1, 14, 0.05, 0.5},   {&dpd_verlet, 0.65, 0.06, 0.9, 9.1, 0.05, 0.05},
-    {&shardlow, 0, 0.06, 2.3, 12, 0.05, 0.5},       {&aboba, 0, 0.06, 6.3, -1.5, 0.05, 0.05},
-    {&dpd_verlet, 0.5, 0.08, 13, 32, 0.5, 0.5},     {&dpd_verlet, 0.65, 0.08, 4.6, 22, 0.05, 0.5},
-    {&shardlow, 0, 0.08, 5.2, 25, 0.05, 0.5},       {&aboba, 0, 0.08, 13, -2.5, 0.5, 0.05},
+    {&mf_dpd_verlet, 0.5, 0.02, 1.0, 1.4, 0.05, 0.05}, {&mf_dpd_verlet, 0.65, 0.02, 0.2, 0.8, 0.05, 0.05},
+    {&mf_shardlow, 0, 0.02, 0, 1.2, 0.05, 0.05},       {&mf_aboba, 0, 0.02, 0.7, -0.05, 0.05, 0.005},
+    {&mf_dpd_verlet, 0.5, 0.04, 2.8, 5.5, 0.05, 0.05}, {&mf_dpd_verlet, 0.65, 0.04, 0.2, 3.4, 0.05, 0.05},
+    {&mf_shardlow, 0, 0.04, 0.8, 4.9, 0.05, 0.05},     {&mf_aboba, 0, 0.04, 2.4, -0.9, 0.05, 0.05},
+    {&mf_dpd_verlet, 0.5, 0.06, 6.1, 14, 0.05, 0.5},   {&mf_dpd_verlet, 0.65, 0.06, 0.9, 9.1, 0.05, 0.05},
+    {&mf_shardlow, 0, 0.06, 2.3, 12, 0.05, 0.5},       {&mf_aboba, 0, 0.06, 6.3, -1.5, 0.05, 0.05},
+    {&mf_dpd_verlet, 0.5, 0.08, 13, 32, 0.5, 0.5},     {&mf_dpd_verlet, 0.65, 0.08, 4.6, 22, 0.05, 0.5},
+    {&mf_shardlow, 0, 0.08, 5.2, 25, 0.05, 0.5},       {&mf_aboba, 0, 0.08, 13, -2.5, 0.5, 0.05},
 };
 
 /// Of the published excess: 0.1 %.
@@ -179,7 +179,7 @@ static void add_end(void *context, const struct simulation *simulation, uint64_t
                     uint64_t total) {
     (void)done, (void)total;
     struct ends *ends = context;
-    ends->sum += particles_temperature(&simulation->particles);
+    ends->sum += mf_particles_temperature(&simulation->particles);
     ends->count++;
 }
 
@@ -194,26 +194,26 @@ static void check_heating(const struct heating *heating) {
     fluid_groot_warren(&fluid, PARTICLES, heating->time_step);
     fluid.setup.integrator = heating->integrator;
     fluid.setup.integrator_parameters.lambda = heating->lambda;
-    assert_ok(simulation_init(&simulation, &fluid.setup, NULL));
-    assert_ok(thermodynamics_init(&thermodynamics, (size_t)plan.samples));
-    assert_ok(measure_equilibrate(&simulation, &plan, &temperature, NULL));
+    assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
+    assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)plan.samples));
+    assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
     const struct measure_targets targets = {.thermodynamics = &thermodynamics};
     const struct measure_listener listener = {add_end, &ends};
-    assert_ok(measure_sample(&simulation, &plan, targets, &listener));
-    const struct thermodynamics_summary s = thermodynamics_result(&thermodynamics, 1);
+    assert_ok(mf_measure_sample(&simulation, &plan, targets, &listener));
+    const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
     const double kinetic = ends.sum / (double)ends.count;
     print_message("%s, lambda %g, time step %g: kinetic %.4f(%.4f), configurational %.4f(%.4f)\n",
                   heating->integrator->name, heating->lambda, heating->time_step, kinetic,
                   s.temperature_error, s.temperature_configurational,
                   s.temperature_configurational_error);
-    const double wide = heating->integrator == &aboba && heating->time_step == 0.08 ? 3 : 2;
+    const double wide = heating->integrator == &mf_aboba && heating->time_step == 0.08 ? 3 : 2;
     assert_close(kinetic, 1 + heating->kinetic / 100,
                  heating->kinetic_digit / 100 + 2 * hypot(s.temperature_error, heating_error));
     assert_close(s.temperature_configurational, 1 + heating->configurational / 100,
                  heating->configurational_digit / 100 +
                      wide * hypot(s.temperature_configurational_error, heating_error));
-    thermodynamics_clear(&thermodynamics);
-    simulation_clear(&simulation);
+    mf_thermodynamics_clear(&thermodynamics);
+    mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
 }
 
@@ -255,20 +255,20 @@ static const struct published_pressure hot_pressures[] = {
 
 static struct thermodynamics_summary measure_pressure(const struct published_pressure *published) {
     struct formula_soft_repulsion_parameters parameters = {published->a, 1};
-    const struct curve curve = {&formula_soft_repulsion, &parameters};
+    const struct curve curve = {&mf_formula_soft_repulsion, &parameters};
     struct table potential;
     struct fluid fluid;
     fluid_groot_warren(&fluid, 100, 0.02);
-    assert_ok(table_init_potential(&potential, &curve));
+    assert_ok(mf_table_init_potential(&potential, &curve));
     for (int d = 0; d < 3; d++)
         fluid.setup.box.length[d] = cbrt(100 / published->density);
     fluid.setup.potential = &potential;
     fluid.setup.temperature = published->temperature;
-    fluid.setup.integrator = &aboba;
+    fluid.setup.integrator = &mf_aboba;
     print_message("density %g, a %g, temperature %g: ", published->density, published->a,
                   published->temperature);
     const struct thermodynamics_summary s = simulate(&fluid.setup, 500, 16000, NULL);
-    table_clear(&potential);
+    mf_table_clear(&potential);
     fluid_clear(&fluid);
     return s;
 }

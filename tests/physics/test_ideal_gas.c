@@ -28,7 +28,7 @@ static void assert_unity(const struct comoments *g, const char *what) {
         ones[k] = 1;
     const double p = hotelling_one_sample(g, ones);
     print_message("%s: g(1.1) = %.4f(%.4f), p = %.3f\n", what, g->mean[4],
-                  sqrt(comoments_covariance(g, 4, 4) / (g->count - 1)), p);
+                  sqrt(mf_comoments_covariance(g, 4, 4) / (g->count - 1)), p);
     assert_true(p > false_alarm_rate);
 }
 
@@ -36,29 +36,29 @@ static void assert_unity(const struct comoments *g, const char *what) {
 static void sample_dynamics(const struct simulation_setup *setup, uint64_t every, double *g) {
     struct simulation simulation;
     struct rdf rdf;
-    assert_ok(simulation_init(&simulation, setup, NULL));
-    assert_ok(rdf_init(&rdf, &bins, &setup->box, PARTICLES, setup->weight ? 1 : 0, SAMPLES));
+    assert_ok(mf_simulation_init(&simulation, setup, NULL));
+    assert_ok(mf_rdf_init(&rdf, &bins, &setup->box, PARTICLES, setup->weight ? 1 : 0, SAMPLES));
     for (int sample = 0; sample < SAMPLES; sample++) {
-        assert_ok(simulation_run(&simulation, every));
-        assert_ok(rdf_sample(&rdf, &simulation.particles, &simulation.neighbours));
+        assert_ok(mf_simulation_run(&simulation, every));
+        assert_ok(mf_rdf_sample(&rdf, &simulation.particles, &simulation.neighbours));
     }
-    assert_ok(rdf_result(&rdf, 1, g, NULL));
-    rdf_clear(&rdf);
-    simulation_clear(&simulation);
+    assert_ok(mf_rdf_result(&rdf, 1, g, NULL));
+    mf_rdf_clear(&rdf);
+    mf_simulation_clear(&simulation);
 }
 
 static void assert_dynamics_gives_unity(struct fluid *fluid, uint64_t every, uint64_t seed,
                                         const char *what) {
     struct comoments replicas;
-    assert_ok(comoments_init(&replicas, BINS));
+    assert_ok(mf_comoments_init(&replicas, BINS));
     for (uint64_t k = 0; k < REPLICAS; k++) {
         double g[BINS];
         fluid->setup.seed = seed + k;
         sample_dynamics(&fluid->setup, every, g);
-        comoments_add(&replicas, g);
+        mf_comoments_add(&replicas, g);
     }
     assert_unity(&replicas, what);
-    comoments_clear(&replicas);
+    mf_comoments_clear(&replicas);
     fluid_clear(fluid);
 }
 
@@ -69,7 +69,7 @@ static void test_ideal_gas_has_no_structure_when_particles_fly_freely(void **sta
         struct fluid fluid;
         fluid_ideal_gas(&fluid, dimensions, PARTICLES, 0.05);
         fluid.setup.weight = NULL;
-        fluid.setup.integrator = &velocity_verlet;
+        fluid.setup.integrator = &mf_velocity_verlet;
         assert_dynamics_gives_unity(&fluid, 20, 100, what[dimensions - 2]);
     }
 }
@@ -100,20 +100,20 @@ static void sample_monte_carlo(const struct box *box, const struct table *nothin
                                double *g) {
     struct metropolis metropolis;
     struct rdf rdf;
-    assert_ok(metropolis_init(&metropolis, box,
+    assert_ok(mf_metropolis_init(&metropolis, box,
                               &(struct composition){.types = 1, .count = {PARTICLES}}, nothing, 1,
                               seed));
     // Steps up to 0.07 to 0.09: what is left of the lattice's order is far below the noise.
-    assert_ok(metropolis_equilibrate(&metropolis, 1000));
-    assert_ok(rdf_init(&rdf, &bins, box, PARTICLES, 0, SAMPLES));
+    assert_ok(mf_metropolis_equilibrate(&metropolis, 1000));
+    assert_ok(mf_rdf_init(&rdf, &bins, box, PARTICLES, 0, SAMPLES));
     for (int sample = 0; sample < SAMPLES; sample++) {
-        assert_ok(metropolis_run(&metropolis, 20));
-        assert_ok(rdf_sample(&rdf, &metropolis.particles, &metropolis.neighbours));
+        assert_ok(mf_metropolis_run(&metropolis, 20));
+        assert_ok(mf_rdf_sample(&rdf, &metropolis.particles, &metropolis.neighbours));
     }
     assert_int_equal(metropolis.accepted, metropolis.tried);
-    assert_ok(rdf_result(&rdf, 1, g, NULL));
-    rdf_clear(&rdf);
-    metropolis_clear(&metropolis);
+    assert_ok(mf_rdf_result(&rdf, 1, g, NULL));
+    mf_rdf_clear(&rdf);
+    mf_metropolis_clear(&metropolis);
 }
 
 static void test_ideal_gas_has_no_structure_when_sampled_by_metropolis(void **state) {
@@ -125,15 +125,15 @@ static void test_ideal_gas_has_no_structure_when_sampled_by_metropolis(void **st
         struct comoments replicas;
         fluid_ideal_gas(&fluid, dimensions, PARTICLES, 0.01);
         fluid_no_potential(&nothing);
-        assert_ok(comoments_init(&replicas, BINS));
+        assert_ok(mf_comoments_init(&replicas, BINS));
         for (uint64_t k = 0; k < REPLICAS; k++) {
             double g[BINS];
             sample_monte_carlo(&fluid.setup.box, &nothing, 200 + k, g);
-            comoments_add(&replicas, g);
+            mf_comoments_add(&replicas, g);
         }
         assert_unity(&replicas, what[dimensions - 2]);
-        comoments_clear(&replicas);
-        table_clear(&nothing);
+        mf_comoments_clear(&replicas);
+        mf_table_clear(&nothing);
         fluid_clear(&fluid);
     }
 }

@@ -46,24 +46,24 @@ static void measure_target(const struct fluid *fluid, const struct rdf_bins *bin
     double virial = 0;
     struct metropolis metropolis;
     struct rdf rdf;
-    assert_ok(metropolis_init(&metropolis, &fluid->setup.box,
+    assert_ok(mf_metropolis_init(&metropolis, &fluid->setup.box,
                               &(struct composition){.types = 1, .count = {PARTICLES}},
                               &fluid->potential, fluid->setup.temperature, 77));
-    assert_ok(metropolis_equilibrate(&metropolis, 500));
-    assert_ok(rdf_init(&rdf, bins, &fluid->setup.box, PARTICLES, 0, SAMPLES));
+    assert_ok(mf_metropolis_equilibrate(&metropolis, 500));
+    assert_ok(mf_rdf_init(&rdf, bins, &fluid->setup.box, PARTICLES, 0, SAMPLES));
     for (int sample = 0; sample < SAMPLES; sample++) {
-        assert_ok(metropolis_run(&metropolis, 4));
-        assert_ok(rdf_sample(&rdf, &metropolis.particles, &metropolis.neighbours));
-        metropolis_count(&metropolis, &pairs, &sums);
+        assert_ok(mf_metropolis_run(&metropolis, 4));
+        assert_ok(mf_rdf_sample(&rdf, &metropolis.particles, &metropolis.neighbours));
+        mf_metropolis_count(&metropolis, &pairs, &sums);
         virial += sums.virial / SAMPLES;
     }
     double volume = 1;
     for (int d = 0; d < box->dimensions; d++)
         volume *= box->length[d];
     *pressure = (PARTICLES * fluid->setup.temperature + virial / box->dimensions) / volume;
-    assert_ok(rdf_result(&rdf, 1, g, error));
-    rdf_clear(&rdf);
-    metropolis_clear(&metropolis);
+    assert_ok(mf_rdf_result(&rdf, 1, g, error));
+    mf_rdf_clear(&rdf);
+    mf_metropolis_clear(&metropolis);
 }
 
 /// Best A of Φ − truth = A (1 − r/r_c) over the well-known bins, and the rms of what it leaves.
@@ -74,10 +74,10 @@ static void compare_with_truth(const struct inverse_problem *problem, const doub
         for (size_t k = 0; k < problem->goals.bins.count; k++) {
             if (problem->goals.goal[GOAL_RDF].value[k] < well_known)
                 continue;
-            const double r = rdf_bins_centre(&problem->goals.bins, k);
-            const double shape = 1 - r / rdf_bins_range(&problem->goals.bins);
+            const double r = mf_rdf_bins_centre(&problem->goals.bins, k);
+            const double shape = 1 - r / mf_rdf_bins_range(&problem->goals.bins);
             double truth;
-            table_evaluate(problem->scene.potential, r, &truth, NULL, NULL);
+            mf_table_evaluate(problem->scene.potential, r, &truth, NULL, NULL);
             if (pass == 0) {
                 above += shape * (phi[k] - truth);
                 below += shape * shape;
@@ -124,7 +124,7 @@ static void assert_truth_is_found(const struct inverse_method *method, const str
     assert_true(fabs(ramp) < (with_pressure ? ramp_tolerance_with_pressure : ramp_tolerance));
     // The band is that of the data; ibi and hnc stop as soon as the error of g is in its noise,
     // here with a ramp of five standard errors.
-    if (method == &imc)
+    if (method == &mf_imc)
         assert_true(fabs(ramp) < 4 * step.ramp.error);
 }
 
@@ -137,44 +137,44 @@ static void check_soft(const struct inverse_method *method, bool with_pressure) 
 
 static void test_imc_finds_the_truth_when_the_potential_is_soft(void **state) {
     (void)state;
-    check_soft(&imc, false);
+    check_soft(&mf_imc, false);
 }
 
 static void test_ibi_finds_the_truth_when_the_potential_is_soft(void **state) {
     (void)state;
-    check_soft(&ibi, false);
+    check_soft(&mf_ibi, false);
 }
 
 static void test_hnc_finds_the_truth_when_the_potential_is_soft(void **state) {
     (void)state;
-    check_soft(&hnc, false);
+    check_soft(&mf_hnc, false);
 }
 
 static void test_auto_finds_the_truth_when_the_potential_is_soft(void **state) {
     (void)state;
-    check_soft(&automatic, false);
+    check_soft(&mf_automatic, false);
 }
 
 static void test_imc_finds_the_ramp_too_when_the_pressure_is_known(void **state) {
     (void)state;
-    check_soft(&imc, true);
+    check_soft(&mf_imc, true);
 }
 
 static void test_ibi_finds_the_ramp_too_when_the_pressure_is_known(void **state) {
     (void)state;
-    check_soft(&ibi, true);
+    check_soft(&mf_ibi, true);
 }
 
 static void test_hnc_finds_the_ramp_too_when_the_pressure_is_known(void **state) {
     (void)state;
-    check_soft(&hnc, true);
+    check_soft(&mf_hnc, true);
 }
 
 static void test_auto_finds_the_ramp_too_in_two_dimensions(void **state) {
     (void)state;
     struct fluid fluid;
     fluid_soft_discs(&fluid, PARTICLES, 0.01);
-    assert_truth_is_found(&automatic, &fluid, &(struct rdf_bins){0, 0.05, 20}, true, 0.004);
+    assert_truth_is_found(&mf_automatic, &fluid, &(struct rdf_bins){0, 0.05, 20}, true, 0.004);
     fluid_clear(&fluid);
 }
 
@@ -182,13 +182,13 @@ static void test_imc_finds_the_truth_when_it_has_a_core_and_a_well(void **state)
     (void)state;
     struct fluid fluid;
     struct formula_lennard_jones_parameters parameters = {1, 1, 1.8};
-    const struct curve curve = {&formula_lennard_jones, &parameters};
+    const struct curve curve = {&mf_formula_lennard_jones, &parameters};
     fluid_lennard_jones(&fluid, PARTICLES, 0.01);
     // A short cutoff makes it quick; hot, so that the chains mix soon.
-    table_clear(&fluid.potential);
-    assert_ok(table_init_potential(&fluid.potential, &curve));
+    mf_table_clear(&fluid.potential);
+    assert_ok(mf_table_init_potential(&fluid.potential, &curve));
     fluid.setup.temperature = 1.5;
-    assert_truth_is_found(&imc, &fluid, &(struct rdf_bins){0, 0.06, 30}, false, 0.002);
+    assert_truth_is_found(&mf_imc, &fluid, &(struct rdf_bins){0, 0.06, 30}, false, 0.002);
     fluid_clear(&fluid);
 }
 

@@ -30,13 +30,13 @@ static void make_fluid(struct fluid *fluid, const double *a) {
     fluid_groot_warren(fluid, PARTICLES, 0.01);
     for (int pair = 0; pair < PAIRS; pair++) {
         struct formula_soft_repulsion_parameters soft = {a[pair], 1};
-        const struct curve curve = {&formula_soft_repulsion, &soft};
-        assert_ok(table_init_potential(&part[pair], &curve));
+        const struct curve curve = {&mf_formula_soft_repulsion, &soft};
+        assert_ok(mf_table_init_potential(&part[pair], &curve));
     }
-    table_clear(&fluid->potential);
-    assert_ok(table_stack(&fluid->potential, part, PAIRS));
+    mf_table_clear(&fluid->potential);
+    assert_ok(mf_table_stack(&fluid->potential, part, PAIRS));
     for (int pair = 0; pair < PAIRS; pair++)
-        table_clear(&part[pair]);
+        mf_table_clear(&part[pair]);
     fluid->setup.composition = (struct composition){
         .types = 2, .count = {PARTICLES / 3, PARTICLES - PARTICLES / 3}, .name = {"A", "B"}};
 }
@@ -47,21 +47,21 @@ static void measure(struct mixture *mixture, const double *a, uint64_t seed) {
     struct metropolis metropolis;
     struct rdf rdf, all;
     make_fluid(&mixture->fluid, a);
-    assert_ok(metropolis_init(&metropolis, &setup->box, &setup->composition, setup->potential,
+    assert_ok(mf_metropolis_init(&metropolis, &setup->box, &setup->composition, setup->potential,
                               setup->temperature, seed));
-    assert_ok(metropolis_equilibrate(&metropolis, 500));
-    assert_ok(rdf_init_mixture(&rdf, &bins, &setup->box, &setup->composition, 0, SAMPLES));
-    assert_ok(rdf_init(&all, &bins, &setup->box, PARTICLES, 0, SAMPLES));
+    assert_ok(mf_metropolis_equilibrate(&metropolis, 500));
+    assert_ok(mf_rdf_init_mixture(&rdf, &bins, &setup->box, &setup->composition, 0, SAMPLES));
+    assert_ok(mf_rdf_init(&all, &bins, &setup->box, PARTICLES, 0, SAMPLES));
     for (int sample = 0; sample < SAMPLES; sample++) {
-        assert_ok(metropolis_run(&metropolis, 4));
-        assert_ok(rdf_sample(&rdf, &metropolis.particles, &metropolis.neighbours));
-        assert_ok(rdf_sample(&all, &metropolis.particles, &metropolis.neighbours));
+        assert_ok(mf_metropolis_run(&metropolis, 4));
+        assert_ok(mf_rdf_sample(&rdf, &metropolis.particles, &metropolis.neighbours));
+        assert_ok(mf_rdf_sample(&all, &metropolis.particles, &metropolis.neighbours));
     }
-    assert_ok(rdf_result(&rdf, 1, mixture->g, mixture->error));
-    assert_ok(rdf_result(&all, 1, mixture->all, mixture->all_error));
-    rdf_clear(&rdf);
-    rdf_clear(&all);
-    metropolis_clear(&metropolis);
+    assert_ok(mf_rdf_result(&rdf, 1, mixture->g, mixture->error));
+    assert_ok(mf_rdf_result(&all, 1, mixture->all, mixture->all_error));
+    mf_rdf_clear(&rdf);
+    mf_rdf_clear(&all);
+    mf_metropolis_clear(&metropolis);
 }
 
 static struct inverse_problem problem_of(const struct mixture *mixture) {
@@ -81,7 +81,7 @@ static void compare(const double *g, const double *phi, const double *other, dou
                     double *rms) {
     double above = 0, below = 0, squares = 0, count = 0;
     for (size_t k = 0; k < BINS; k++) {
-        const double shape = 1 - rdf_bins_centre(&bins, k) / rdf_bins_range(&bins);
+        const double shape = 1 - mf_rdf_bins_centre(&bins, k) / mf_rdf_bins_range(&bins);
         if (g[k] < well_known)
             continue;
         above += shape * (phi[k] - other[k]);
@@ -99,7 +99,7 @@ static void compare_with_truth(const struct mixture *mixture, const double *phi,
     for (size_t pair = 0; pair < PAIRS; pair++) {
         double truth[BINS];
         for (size_t k = 0; k < BINS; k++)
-            table_evaluate_pair(&mixture->fluid.potential, (int)pair, rdf_bins_centre(&bins, k),
+            mf_table_evaluate_pair(&mixture->fluid.potential, (int)pair, mf_rdf_bins_centre(&bins, k),
                                 &truth[k], NULL, NULL);
         compare(mixture->g + pair * BINS, phi + pair * stride, truth, &ramp[pair], &rms[pair]);
     }
@@ -140,24 +140,24 @@ static void check_truth(const struct inverse_method *method) {
     for (int pair = 0; pair < PAIRS; pair++)
         assert_true(rms[pair] < potential_tolerance && fabs(ramp[pair]) < ramp_tolerance);
     // The band is that of the data, of the one ramp of all potentials.
-    if (method == &imc)
+    if (method == &mf_imc)
         assert_true(fabs(ramp[0] + ramp[1] + ramp[2]) / PAIRS < 4 * step.ramp.error);
     fluid_clear(&mixture.fluid);
 }
 
 static void test_imc_finds_the_potentials_of_a_mixture(void **state) {
     (void)state;
-    check_truth(&imc);
+    check_truth(&mf_imc);
 }
 
 static void test_hnc_finds_the_potentials_of_a_mixture(void **state) {
     (void)state;
-    check_truth(&hnc);
+    check_truth(&mf_hnc);
 }
 
 static void test_auto_finds_the_potentials_of_a_mixture(void **state) {
     (void)state;
-    check_truth(&automatic);
+    check_truth(&mf_automatic);
 }
 
 /// rms of the difference of two potentials without its ramp [k_B T]. Measured with five seeds: 0.02
@@ -173,11 +173,11 @@ static void test_imc_finds_equal_potentials_when_the_types_are_alike(void **stat
     double phi[PAIRS * (BINS + 1)], alone[BINS + 1], ramp, rms;
     measure(&mixture, equal, 78);
     struct inverse_problem problem = problem_of(&mixture);
-    inversions_run(&imc, &problem, 0, phi, &step);
+    inversions_run(&mf_imc, &problem, 0, phi, &step);
     assert_true(step.converged);
-    problem.scene.composition = composition_of_one(PARTICLES);
+    problem.scene.composition = mf_composition_of_one(PARTICLES);
     problem.goals.goal[GOAL_RDF] = (struct goal){BINS, mixture.all, mixture.all_error, 0};
-    inversions_run(&imc, &problem, 0, alone, &step);
+    inversions_run(&mf_imc, &problem, 0, alone, &step);
     assert_true(step.converged);
     for (size_t pair = 0; pair < PAIRS; pair++) {
         compare(mixture.all, phi + pair * (BINS + 1), alone, &ramp, &rms);

@@ -41,8 +41,8 @@ static void measure(const struct fluid *fluid, const struct rdf_bins *bins, cons
         .threads = 2};
     struct inverse_step step;
     *inversion = (struct inversion){0};
-    assert_ok(inversion_create(inversion, &ibi, &problem, &settings));
-    assert_ok(inversion_iterate(inversion, &step, &listener));
+    assert_ok(mf_inversion_create(inversion, &mf_ibi, &problem, &settings));
+    assert_ok(mf_inversion_iterate(inversion, &step, &listener));
     inversion->problem = NULL;
 }
 
@@ -58,12 +58,12 @@ static double pressure_when_changed(const struct fluid *fluid, const struct rdf_
     struct curve curve;
     double phi[MOST_BINS + 1];
     for (size_t k = 0; k < at->grid.points; k++)
-        phi[k] = at->best[k] + amount * change_of(kind, at->grid.r[k], rdf_bins_range(bins));
-    assert_ok(sampled_create(&curve, at->grid.r, phi, at->grid.points));
+        phi[k] = at->best[k] + amount * change_of(kind, at->grid.r[k], mf_rdf_bins_range(bins));
+    assert_ok(mf_sampled_create(&curve, at->grid.r, phi, at->grid.points));
     measure(fluid, bins, g, &curve, &changed);
     const double pressure = changed.pressure.value;
-    inversion_destroy(&changed);
-    curve_clear(&curve);
+    mf_inversion_destroy(&changed);
+    mf_curve_clear(&curve);
     return pressure;
 }
 
@@ -78,21 +78,21 @@ static void check_slopes(const struct fluid *fluid, const struct rdf_bins *bins,
         double predicted = 0;
         for (size_t b = 0; b < at.grid.known; b++)
             predicted += 2 * amount * at.pressure.slope[b] *
-                         change_of(kind, at.grid.r[at.grid.known_point[b]], rdf_bins_range(bins));
+                         change_of(kind, at.grid.r[at.grid.known_point[b]], mf_rdf_bins_range(bins));
         const double found = pressure_when_changed(fluid, bins, g, &at, kind, amount) -
                              pressure_when_changed(fluid, bins, g, &at, kind, -amount);
         print_message("pressure %.3f(%.3f), change predicted %.4f, found %.4f\n", at.pressure.value,
                       at.pressure.error, predicted, found);
         assert_close_relative(predicted, found, tolerance);
     }
-    inversion_destroy(&at);
+    mf_inversion_destroy(&at);
 }
 
 static void test_inversion_pressure_slopes_are_those_of_simulations_when_it_is_soft(void **state) {
     (void)state;
     struct fluid fluid;
     struct formula_soft_repulsion_parameters parameters = {25, 1};
-    const struct curve curve = {&formula_soft_repulsion, &parameters};
+    const struct curve curve = {&mf_formula_soft_repulsion, &parameters};
     fluid_groot_warren(&fluid, PARTICLES, 0.01);
     check_slopes(&fluid, &(struct rdf_bins){0, 0.05, 20}, 0, &curve, 0.5);
     fluid_clear(&fluid);
@@ -103,7 +103,7 @@ test_inversion_pressure_slopes_are_those_of_simulations_when_it_has_a_core(void 
     (void)state;
     struct fluid fluid;
     struct formula_lennard_jones_parameters parameters = {1, 1, 1.8};
-    const struct curve curve = {&formula_lennard_jones, &parameters};
+    const struct curve curve = {&mf_formula_lennard_jones, &parameters};
     fluid_lennard_jones(&fluid, PARTICLES, 0.01);
     fluid.setup.temperature = 1.5;
     check_slopes(&fluid, &(struct rdf_bins){0, 0.045, 40}, 19, &curve, 0.3);

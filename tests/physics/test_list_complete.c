@@ -34,22 +34,22 @@ struct watcher {
 
 static void watcher_init(struct watcher *watcher, const struct simulation *simulation) {
     const struct box *box = &simulation->particles.box;
-    const double limit = pair_cutoff(&simulation->law);
+    const double limit = mf_pair_cutoff(&simulation->law);
     *watcher = (struct watcher){.count = simulation->particles.count, .limit = limit * limit};
     watcher->bytes = watcher->count * watcher->count / 8 + 1;
-    watcher->listed = memory_zeroed(watcher->bytes, 1);
+    watcher->listed = mf_memory_zeroed(watcher->bytes, 1);
     assert_non_null(watcher->listed);
     for (int d = 0; d < 3; d++) {
         watcher->length[d] = d < box->dimensions ? box->length[d] : 1;
-        watcher->x[d] = memory_zeroed(watcher->count, sizeof *watcher->x[d]);
+        watcher->x[d] = mf_memory_zeroed(watcher->count, sizeof *watcher->x[d]);
         assert_non_null(watcher->x[d]);
     }
 }
 
 static void watcher_clear(struct watcher *watcher) {
-    memory_free(watcher->listed);
+    mf_memory_free(watcher->listed);
     for (int d = 0; d < 3; d++)
-        memory_free(watcher->x[d]);
+        mf_memory_free(watcher->x[d]);
 }
 
 /// Positions between lists are not in the box.
@@ -137,8 +137,8 @@ static void fail_incomplete(const struct watcher *watcher, const struct simulati
                 fail_msg("step %llu misses %zu pairs: one is at distance %.9g (cutoff %g, range of "
                          "the list %g, skin %g, %s)",
                          (unsigned long long)simulation->step, missed, sqrt(square),
-                         pair_cutoff(&simulation->law), simulation->neighbours.range,
-                         simulation->setup.skin, simd_name());
+                         mf_pair_cutoff(&simulation->law), simulation->neighbours.range,
+                         simulation->setup.skin, mf_simd_name());
         }
     fail_msg("the two counts of pairs in range differ by %zu", missed);
 }
@@ -166,7 +166,7 @@ struct beginning {
 static void begin(struct simulation *simulation, const struct simulation_setup *setup,
                   const struct beginning *beginning) {
     struct simulation from;
-    assert_ok(simulation_init(&from, setup, NULL));
+    assert_ok(mf_simulation_init(&from, setup, NULL));
     for (int d = 0; d < setup->box.dimensions; d++)
         for (size_t k = 0; k < from.particles.count; k++) {
             double *v = &from.particles.velocity[d][k];
@@ -174,7 +174,7 @@ static void begin(struct simulation *simulation, const struct simulation_setup *
             *v = *v * beginning->heat + sign * beginning->drift[d];
         }
     fluid_continue(simulation, setup, &from);
-    simulation_clear(&from);
+    mf_simulation_clear(&from);
 }
 
 /// What shows that a scene was what it should be.
@@ -190,15 +190,15 @@ static struct outcome run(const struct simulation_setup *setup, const struct beg
     begin(&simulation, setup, beginning);
     watcher_init(&watcher, &simulation);
     for (int k = 0; k < STEPS; k++) {
-        assert_ok(simulation_run(&simulation, 1));
+        assert_ok(mf_simulation_run(&simulation, 1));
         watch(&watcher, &simulation);
     }
-    const struct outcome outcome = {.temperature = particles_temperature(&simulation.particles),
+    const struct outcome outcome = {.temperature = mf_particles_temperature(&simulation.particles),
                                     .builds = (double)simulation.list_builds / STEPS,
                                     .pairs = (double)watcher.pairs / STEPS};
     assert_true(watcher.pairs > 0);
     watcher_clear(&watcher);
-    simulation_clear(&simulation);
+    mf_simulation_clear(&simulation);
     return outcome;
 }
 
@@ -279,7 +279,7 @@ static void make_gas(struct fluid *fluid, struct table *nothing, double time_ste
     fluid_no_potential(nothing);
     fluid->setup.weight = NULL;
     fluid->setup.potential = nothing;
-    fluid->setup.integrator = &velocity_verlet;
+    fluid->setup.integrator = &mf_velocity_verlet;
 }
 
 static void test_list_is_complete_when_all_particles_drift_together(void **state) {
@@ -290,7 +290,7 @@ static void test_list_is_complete_when_all_particles_drift_together(void **state
     const struct beginning slow = {.drift = {1.5, -0.9, 1.1}};
     make_gas(&fluid, &nothing, 0.03);
     check_scene(&fluid, "drifting gas", &slow, 0);
-    table_clear(&nothing);
+    mf_table_clear(&nothing);
     const struct beginning fast = {.heat = 1, .drift = {-7, 4, 9}};
     make_fluid(&fluid, 4.9, 5.7, 5.2, 1);
     check_scene(&fluid, "drifting fluid", &fast, 1);
@@ -308,7 +308,7 @@ static void test_list_is_complete_when_two_streams_meet_head_on(void **state) {
         streams.drift[d] = 1;
         make_gas(&fluid, &nothing, 0.007);
         check_scene(&fluid, what[d], &streams, 1. / 3);
-        table_clear(&nothing);
+        mf_table_clear(&nothing);
     }
 }
 

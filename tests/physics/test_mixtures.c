@@ -27,28 +27,28 @@ static void measure(const struct simulation_setup *setup, int64_t equilibration,
                     struct measured *measured) {
     const struct measure_plan plan = {
         .equilibration = equilibration, .samples = SAMPLES, .every = 10};
-    const struct composition one = composition_of_one(PARTICLES);
+    const struct composition one = mf_composition_of_one(PARTICLES);
     const bool mixed = composition_is_mixed(&setup->composition);
     static struct simulation simulation;
     struct thermodynamics thermodynamics;
     struct rdf rdf;
     double temperature;
-    assert_ok(simulation_init(&simulation, setup, NULL));
-    assert_ok(thermodynamics_init(&thermodynamics, SAMPLES));
+    assert_ok(mf_simulation_init(&simulation, setup, NULL));
+    assert_ok(mf_thermodynamics_init(&thermodynamics, SAMPLES));
     assert_ok(
-        rdf_init_mixture(&rdf, &bins, &setup->box, mixed ? &setup->composition : &one, 1, SAMPLES));
-    assert_ok(measure_equilibrate(&simulation, &plan, &temperature, NULL));
+        mf_rdf_init_mixture(&rdf, &bins, &setup->box, mixed ? &setup->composition : &one, 1, SAMPLES));
+    assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
     const struct measure_targets targets = {.rdf = &rdf, .thermodynamics = &thermodynamics};
-    assert_ok(measure_sample(&simulation, &plan, targets, NULL));
-    measured->summary = thermodynamics_result(&thermodynamics, 1);
-    assert_ok(rdf_result(&rdf, 1, measured->g, measured->error));
+    assert_ok(mf_measure_sample(&simulation, &plan, targets, NULL));
+    measured->summary = mf_thermodynamics_result(&thermodynamics, 1);
+    assert_ok(mf_rdf_result(&rdf, 1, measured->g, measured->error));
     print_message("%d types: configurational %.4f(%.4f), pressure %.4f(%.4f)\n",
                   setup->composition.types, measured->summary.temperature_configurational,
                   measured->summary.temperature_configurational_error, measured->summary.pressure,
                   measured->summary.pressure_error);
-    rdf_clear(&rdf);
-    thermodynamics_clear(&thermodynamics);
-    simulation_clear(&simulation);
+    mf_rdf_clear(&rdf);
+    mf_thermodynamics_clear(&thermodynamics);
+    mf_simulation_clear(&simulation);
 }
 
 static void assert_same_mean(double a, double a_error, double b, double b_error) {
@@ -65,10 +65,10 @@ static void test_mixture_of_equals_is_the_fluid_of_one_type(void **state) {
     measure(&fluid.setup, 400, &alone);
     for (int pair = 0; pair < PAIRS; pair++)
         parts[pair] = fluid.potential;
-    assert_ok(table_stack(&potential, parts, PAIRS));
+    assert_ok(mf_table_stack(&potential, parts, PAIRS));
     for (int pair = 0; pair < PAIRS; pair++)
         parts[pair] = fluid.weight;
-    assert_ok(table_stack(&weight, parts, PAIRS));
+    assert_ok(mf_table_stack(&weight, parts, PAIRS));
     fluid.setup.composition = halves;
     fluid.setup.potential = &potential;
     fluid.setup.weight = &weight;
@@ -84,8 +84,8 @@ static void test_mixture_of_equals_is_the_fluid_of_one_type(void **state) {
                      b->potential_energy_error);
     assert_same_mean(a->temperature_configurational, a->temperature_configurational_error,
                      b->temperature_configurational, b->temperature_configurational_error);
-    table_clear(&potential);
-    table_clear(&weight);
+    mf_table_clear(&potential);
+    mf_table_clear(&weight);
     fluid_clear(&fluid);
 }
 
@@ -107,10 +107,10 @@ static void test_mixture_that_parts_keeps_its_temperature(void **state) {
         r[k] = 0.1 * k;
         phi[k] = 30 * (1 - r[k]) * (1 - r[k]);
     }
-    assert_ok(sampled_create(&curve, r, phi, POINTS));
+    assert_ok(mf_sampled_create(&curve, r, phi, POINTS));
     parts[0] = parts[2] = fluid.potential;
-    assert_ok(table_init_potential(&parts[1], &curve));
-    assert_ok(table_stack(&potential, parts, PAIRS));
+    assert_ok(mf_table_init_potential(&parts[1], &curve));
+    assert_ok(mf_table_stack(&potential, parts, PAIRS));
     fluid.setup.composition = halves;
     fluid.setup.potential = &potential;     // one weight is for all pairs
     measure(&fluid.setup, 6000, &measured); // parting makes heat
@@ -124,9 +124,9 @@ static void test_mixture_that_parts_keeps_its_temperature(void **state) {
     assert_true(measured.g[last] > 1.5);            // A among A
     assert_true(measured.g[BINS + last] < 0.6);     // B around A
     assert_true(measured.g[2 * BINS + last] > 1.1); // B among B, of which there are more
-    curve_clear(&curve);
-    table_clear(&parts[1]);
-    table_clear(&potential);
+    mf_curve_clear(&curve);
+    mf_table_clear(&parts[1]);
+    mf_table_clear(&potential);
     fluid_clear(&fluid);
 }
 

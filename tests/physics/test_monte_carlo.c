@@ -32,46 +32,46 @@ struct measurement {
 };
 
 static void measurement_init(struct measurement *measurement) {
-    assert_ok(comoments_init(&measurement->energy, 1));
-    assert_ok(comoments_init(&measurement->g, BINS));
+    assert_ok(mf_comoments_init(&measurement->energy, 1));
+    assert_ok(mf_comoments_init(&measurement->g, BINS));
 }
 
 static void measurement_clear(struct measurement *measurement) {
-    comoments_clear(&measurement->energy);
-    comoments_clear(&measurement->g);
+    mf_comoments_clear(&measurement->energy);
+    mf_comoments_clear(&measurement->g);
 }
 
 /// End a block: `energy` [total, summed over samples] and the RDF that saw its samples.
 static void add_block(struct measurement *measurement, double energy, const struct rdf *rdf) {
     double g[BINS];
-    assert_ok(rdf_result(rdf, 1, g, NULL));
-    comoments_add(&measurement->g, g);
+    assert_ok(mf_rdf_result(rdf, 1, g, NULL));
+    mf_comoments_add(&measurement->g, g);
     energy /= SAMPLES * (double)rdf->particle_count;
-    comoments_add(&measurement->energy, &energy);
+    mf_comoments_add(&measurement->energy, &energy);
 }
 
 static void measure_dynamics(const struct simulation_setup *setup, const struct rdf_bins *bins,
                              const struct schedule *schedule, struct measurement *measurement) {
     struct simulation simulation;
     measurement_init(measurement);
-    assert_ok(simulation_init(&simulation, setup, NULL));
+    assert_ok(mf_simulation_init(&simulation, setup, NULL));
     simulation.wants = PAIR_FORCES_AND_SUMS;
-    assert_ok(simulation_run(&simulation, schedule->equilibration));
+    assert_ok(mf_simulation_run(&simulation, schedule->equilibration));
     for (int block = 0; block < BLOCKS; block++) {
         struct rdf rdf;
         double energy = 0;
-        assert_ok(rdf_init(&rdf, bins, &setup->box, (size_t)setup->placement.count,
+        assert_ok(mf_rdf_init(&rdf, bins, &setup->box, (size_t)setup->placement.count,
                            setup->potential->cutoff, SAMPLES));
-        assert_ok(simulation_run(&simulation, schedule->gap));
+        assert_ok(mf_simulation_run(&simulation, schedule->gap));
         for (int sample = 0; sample < SAMPLES; sample++) {
-            assert_ok(simulation_run(&simulation, schedule->every));
-            assert_ok(rdf_sample(&rdf, &simulation.particles, &simulation.neighbours));
+            assert_ok(mf_simulation_run(&simulation, schedule->every));
+            assert_ok(mf_rdf_sample(&rdf, &simulation.particles, &simulation.neighbours));
             energy += simulation.sums.energy;
         }
         add_block(measurement, energy, &rdf);
-        rdf_clear(&rdf);
+        mf_rdf_clear(&rdf);
     }
-    simulation_clear(&simulation);
+    mf_simulation_clear(&simulation);
 }
 
 static void measure_monte_carlo(const struct simulation_setup *setup, const struct rdf_bins *bins,
@@ -80,35 +80,35 @@ static void measure_monte_carlo(const struct simulation_setup *setup, const stru
     const size_t count = (size_t)setup->placement.count;
     struct metropolis metropolis;
     double slope;
-    table_evaluate(setup->potential, setup->potential->cutoff * (1 - 1e-9), NULL, &slope, NULL);
+    mf_table_evaluate(setup->potential, setup->potential->cutoff * (1 - 1e-9), NULL, &slope, NULL);
     const double edge = setup->potential->cutoff * fabs(slope);
     measurement_init(measurement);
-    assert_ok(metropolis_init(&metropolis, &setup->box,
+    assert_ok(mf_metropolis_init(&metropolis, &setup->box,
                               &(struct composition){.types = 1, .count = {(int64_t)count}},
                               setup->potential, setup->temperature, setup->seed));
-    assert_ok(metropolis_equilibrate(&metropolis, (uint32_t)schedule->equilibration));
+    assert_ok(mf_metropolis_equilibrate(&metropolis, (uint32_t)schedule->equilibration));
     for (int block = 0; block < BLOCKS; block++) {
         struct rdf rdf;
         double energy = 0;
         // The list of the sampler is a full one: the RDF has to make its own.
-        assert_ok(rdf_init(&rdf, bins, &setup->box, count, 0, SAMPLES));
-        assert_ok(metropolis_run(&metropolis, (uint32_t)schedule->gap));
+        assert_ok(mf_rdf_init(&rdf, bins, &setup->box, count, 0, SAMPLES));
+        assert_ok(mf_metropolis_run(&metropolis, (uint32_t)schedule->gap));
         for (int sample = 0; sample < SAMPLES; sample++) {
             struct pair_sums sums, fast;
-            assert_ok(metropolis_run(&metropolis, (uint32_t)schedule->every));
-            assert_ok(rdf_sample(&rdf, &metropolis.particles, &metropolis.neighbours));
-            reference_forces(&law, &metropolis.particles, 0, &sums);
+            assert_ok(mf_metropolis_run(&metropolis, (uint32_t)schedule->every));
+            assert_ok(mf_rdf_sample(&rdf, &metropolis.particles, &metropolis.neighbours));
+            mf_reference_forces(&law, &metropolis.particles, 0, &sums);
             energy += sums.energy;
             // Distances are rounded to single precision before the table is read, so that a pair
             // may be on the other side of the cutoff, where the force ends abruptly.
             uint32_t counts[2] = {0};
-            metropolis_count(&metropolis, &(struct pair_histogram){0, 1, 1, 0, counts}, &fast);
+            mf_metropolis_count(&metropolis, &(struct pair_histogram){0, 1, 1, 0, counts}, &fast);
             assert_close(fast.virial, sums.virial, 1e-4 * (double)count + edge);
         }
         add_block(measurement, energy, &rdf);
-        rdf_clear(&rdf);
+        mf_rdf_clear(&rdf);
     }
-    metropolis_clear(&metropolis);
+    mf_metropolis_clear(&metropolis);
 }
 
 static void measure_hybrid(const struct simulation_setup *setup, const struct rdf_bins *bins,
@@ -117,30 +117,30 @@ static void measure_hybrid(const struct simulation_setup *setup, const struct rd
     const size_t count = (size_t)setup->placement.count;
     struct hybrid hybrid;
     measurement_init(measurement);
-    assert_ok(hybrid_init(&hybrid, &setup->box,
+    assert_ok(mf_hybrid_init(&hybrid, &setup->box,
                           &(struct composition){.types = 1, .count = {(int64_t)count}},
                           setup->potential, &pairs, setup->temperature, setup->seed));
-    assert_ok(hybrid_equilibrate(&hybrid, schedule->equilibration));
+    assert_ok(mf_hybrid_equilibrate(&hybrid, schedule->equilibration));
     hybrid.simulation.setup.time_step *= 2.5;
     for (int block = 0; block < BLOCKS; block++) {
         struct rdf rdf;
         double energy = 0;
-        assert_ok(rdf_init(&rdf, bins, &setup->box, count, 0, SAMPLES));
-        assert_ok(hybrid_run(&hybrid, schedule->gap));
+        assert_ok(mf_rdf_init(&rdf, bins, &setup->box, count, 0, SAMPLES));
+        assert_ok(mf_hybrid_run(&hybrid, schedule->gap));
         for (int sample = 0; sample < SAMPLES; sample++) {
-            assert_ok(hybrid_run(&hybrid, schedule->every));
+            assert_ok(mf_hybrid_run(&hybrid, schedule->every));
             assert_ok(
-                rdf_sample(&rdf, &hybrid.simulation.particles, &hybrid.simulation.neighbours));
+                mf_rdf_sample(&rdf, &hybrid.simulation.particles, &hybrid.simulation.neighbours));
             energy += hybrid.sums.energy;
         }
         add_block(measurement, energy, &rdf);
-        rdf_clear(&rdf);
+        mf_rdf_clear(&rdf);
     }
-    hybrid_clear(&hybrid);
+    mf_hybrid_clear(&hybrid);
 }
 
 static double standard_error(const struct comoments *moments, size_t k) {
-    return sqrt(comoments_covariance(moments, k, k) / (moments->count - 1));
+    return sqrt(mf_comoments_covariance(moments, k, k) / (moments->count - 1));
 }
 
 static void assert_equal_within_errors(const struct measurement *dynamics,
@@ -220,20 +220,20 @@ static void test_hybrid_survives_when_the_potential_is_wild(void **state) {
     struct hybrid hybrid;
     const struct pair_histogram pairs = {0, 0.1, BINS, 0, NULL};
     fluid_groot_warren(&fluid, 300, 0.01);
-    assert_ok(hybrid_init(&hybrid, &fluid.setup.box,
+    assert_ok(mf_hybrid_init(&hybrid, &fluid.setup.box,
                           &(struct composition){.types = 1, .count = {300}}, &fluid.potential,
                           &pairs, 1, 3));
-    assert_ok(hybrid_equilibrate(&hybrid, 100));
+    assert_ok(mf_hybrid_equilibrate(&hybrid, 100));
     for (int k = 0; k <= TABLE_INTERVALS; k++)
         for (int n = 0; n < 4; n++)
             fluid.potential.single[k][n] *= 1e7F;
-    assert_ok(hybrid_refresh(&hybrid));
+    assert_ok(mf_hybrid_refresh(&hybrid));
     const double before = hybrid.sums.energy;
-    assert_ok(hybrid_run(&hybrid, 20));
+    assert_ok(mf_hybrid_run(&hybrid, 20));
     assert_close(hybrid.sums.energy, before, 1e-6 * before); // all of them went back
-    assert_ok(hybrid_equilibrate(&hybrid, 2000));
+    assert_ok(mf_hybrid_equilibrate(&hybrid, 2000));
     assert_true(hybrid.sums.energy < 0.9 * before); // steps became short enough
-    hybrid_clear(&hybrid);
+    mf_hybrid_clear(&hybrid);
     fluid_clear(&fluid);
 }
 
@@ -269,19 +269,19 @@ static void test_metropolis_list_is_complete_when_the_step_is_the_first_or_tuned
     struct fluid fluid;
     struct metropolis metropolis;
     fluid_groot_warren(&fluid, 300, 0.01);
-    assert_ok(metropolis_init(&metropolis, &fluid.setup.box,
+    assert_ok(mf_metropolis_init(&metropolis, &fluid.setup.box,
                               &(struct composition){.types = 1, .count = {300}}, &fluid.potential,
                               1, 3));
     for (int sweep = 0; sweep < 30; sweep++) {
-        assert_ok(metropolis_run(&metropolis, 1));
+        assert_ok(mf_metropolis_run(&metropolis, 1));
         assert_int_equal(count_missing(&metropolis), 0);
     }
-    assert_ok(metropolis_equilibrate(&metropolis, 200));
+    assert_ok(mf_metropolis_equilibrate(&metropolis, 200));
     for (int sweep = 0; sweep < 30; sweep++) {
-        assert_ok(metropolis_run(&metropolis, 1));
+        assert_ok(mf_metropolis_run(&metropolis, 1));
         assert_int_equal(count_missing(&metropolis), 0);
     }
-    metropolis_clear(&metropolis);
+    mf_metropolis_clear(&metropolis);
     fluid_clear(&fluid);
 }
 
@@ -289,9 +289,9 @@ static void test_metropolis_list_is_complete_when_the_step_is_the_first_or_tuned
 static void make_linear(struct table *table) {
     const double r[] = {0, 0.25, 0.5, 0.75, 1}, phi[] = {2, 1.5, 1, 0.5, 0};
     struct curve curve;
-    assert_ok(sampled_create(&curve, r, phi, 5));
-    assert_ok(table_init_potential(table, &curve));
-    curve_clear(&curve);
+    assert_ok(mf_sampled_create(&curve, r, phi, 5));
+    assert_ok(mf_table_init_potential(table, &curve));
+    mf_curve_clear(&curve);
 }
 
 static void add_configurational(const struct metropolis *metropolis, double *squares,
@@ -300,20 +300,20 @@ static void add_configurational(const struct metropolis *metropolis, double *squ
     struct neighbours half;
     double here[2];
     const size_t count = metropolis->particles.count;
-    assert_ok(particles_init(&copy, &metropolis->particles.box, count));
+    assert_ok(mf_particles_init(&copy, &metropolis->particles.box, count));
     for (int d = 0; d < 3; d++)
         memcpy(copy.position[d], metropolis->particles.position[d], count * sizeof(double));
-    assert_ok(neighbours_init(&half, NEIGHBOURS_HALF, &copy.box, count,
+    assert_ok(mf_neighbours_init(&half, NEIGHBOURS_HALF, &copy.box, count,
                               metropolis->law.potential->cutoff, 0));
-    assert_ok(neighbours_sort_and_build(&half, &copy));
+    assert_ok(mf_neighbours_sort_and_build(&half, &copy));
     const struct composition alike = {0};
-    assert_ok(reference_configurational(metropolis->law.potential, &alike,
+    assert_ok(mf_reference_configurational(metropolis->law.potential, &alike,
                                         metropolis->law.temperature, &copy, &half, &here[0],
                                         &here[1]));
     *squares += here[0];
     *laplacian += here[1];
-    neighbours_clear(&half);
-    particles_clear(&copy);
+    mf_neighbours_clear(&half);
+    mf_particles_clear(&copy);
 }
 
 /// ⟨Σ|F|²⟩ = k_B T ⟨Σ∇²U⟩ within four standard errors of the blocks: one false alarm in 1,700.
@@ -326,25 +326,25 @@ static void test_configurational_temperature_sees_a_force_that_ends_abruptly(voi
     struct metropolis metropolis;
     struct running_mean difference = {0}, squares = {0};
     make_linear(&linear);
-    assert_ok(metropolis_init(
+    assert_ok(mf_metropolis_init(
         &metropolis, &box, &(struct composition){.types = 1, .count = {PARTICLES}}, &linear, 1, 3));
-    assert_ok(metropolis_equilibrate(&metropolis, 200));
+    assert_ok(mf_metropolis_equilibrate(&metropolis, 200));
     for (int block = 0; block < BLOCKS; block++) {
         double sum[2] = {0};
         for (int n = 0; n < CONFIGURATIONS; n++) {
-            assert_ok(metropolis_run(&metropolis, 10));
+            assert_ok(mf_metropolis_run(&metropolis, 10));
             add_configurational(&metropolis, &sum[0], &sum[1]);
         }
-        statistics_add(&squares, sum[0]);
-        statistics_add(&difference, sum[0] - sum[1]);
+        mf_statistics_add(&squares, sum[0]);
+        mf_statistics_add(&difference, sum[0] - sum[1]);
     }
-    const double error = statistics_standard_error(&difference);
+    const double error = mf_statistics_standard_error(&difference);
     print_message("1 - 1/T configurational: %.4f(%.4f)\n", difference.mean / squares.mean,
                   error / squares.mean);
     assert_close(difference.mean, 0, 4 * error);
     assert_true(error < 0.05 * squares.mean);
-    metropolis_clear(&metropolis);
-    table_clear(&linear);
+    mf_metropolis_clear(&metropolis);
+    mf_table_clear(&linear);
 }
 
 int main(void) {

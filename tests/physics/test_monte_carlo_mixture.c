@@ -32,46 +32,46 @@ static void measure_sampler(const struct fluid *fluid, enum sampler_kind kind, u
                                           .bins = BINS,
                                           .seed = 9};
     struct sampler sampler;
-    assert_ok(comoments_init(blocks, SIZE));
-    assert_ok(sampler_init(&sampler, kind, &system));
-    assert_ok(sampler_begin(&sampler));
-    assert_ok(sampler_equilibrate(&sampler, 500));
+    assert_ok(mf_comoments_init(blocks, SIZE));
+    assert_ok(mf_sampler_init(&sampler, kind, &system));
+    assert_ok(mf_sampler_begin(&sampler));
+    assert_ok(mf_sampler_equilibrate(&sampler, 500));
     for (int block = 0; block < BLOCKS; block++) {
         double mean[SIZE] = {0}, sample[SIZE];
         for (int n = 0; n < SAMPLES; n++) {
             // The first of a block comes after a gap, in which the mixture mixes: with a quarter of
             // it p was below 0.011 with two seeds of eight, with this above 0.035 with all of six.
-            assert_ok(sampler_sample(&sampler, n ? every : 40 * every, sample));
+            assert_ok(mf_sampler_sample(&sampler, n ? every : 40 * every, sample));
             for (int k = 0; k < SIZE; k++)
                 mean[k] += sample[k] / SAMPLES;
         }
-        comoments_add(blocks, mean);
+        mf_comoments_add(blocks, mean);
     }
-    sampler_clear(&sampler);
+    mf_sampler_clear(&sampler);
 }
 
 /// The same by dynamics, whose time step is so small that its error is below the statistical ones.
 static void measure_dynamics(const struct fluid *fluid, struct comoments *blocks) {
     struct simulation simulation;
-    assert_ok(comoments_init(blocks, SIZE));
-    assert_ok(simulation_init(&simulation, &fluid->setup, NULL));
+    assert_ok(mf_comoments_init(blocks, SIZE));
+    assert_ok(mf_simulation_init(&simulation, &fluid->setup, NULL));
     simulation.wants = PAIR_FORCES_AND_SUMS;
-    assert_ok(simulation_run(&simulation, 1000));
+    assert_ok(mf_simulation_run(&simulation, 1000));
     for (int block = 0; block < BLOCKS; block++) {
         double mean[SIZE] = {0};
-        assert_ok(simulation_run(&simulation, 800));
+        assert_ok(mf_simulation_run(&simulation, 800));
         for (int n = 0; n < SAMPLES; n++) {
             double sample[PAIRS * BINS] = {0};
-            assert_ok(simulation_run(&simulation, 20));
-            rdf_count_pairs_of(&bins, &fluid->setup.composition, &simulation.particles,
+            assert_ok(mf_simulation_run(&simulation, 20));
+            mf_rdf_count_pairs_of(&bins, &fluid->setup.composition, &simulation.particles,
                                &simulation.neighbours, sample);
             for (int k = 0; k + 1 < SIZE; k++)
                 mean[k] += sample[k] / SAMPLES;
             mean[SIZE - 1] += simulation.sums.virial / SAMPLES;
         }
-        comoments_add(blocks, mean);
+        mf_comoments_add(blocks, mean);
     }
-    simulation_clear(&simulation);
+    mf_simulation_clear(&simulation);
 }
 
 static void assert_equal_within_errors(const struct comoments *first,
@@ -81,11 +81,11 @@ static void assert_equal_within_errors(const struct comoments *first,
         print_message(
             "pairs of kind %d at contact: %.1f(%.1f), %.1f(%.1f)\n", pair,
             first->mean[pair * BINS + 1],
-            sqrt(comoments_covariance(first, (size_t)(pair * BINS + 1), (size_t)(pair * BINS + 1)) /
+            sqrt(mf_comoments_covariance(first, (size_t)(pair * BINS + 1), (size_t)(pair * BINS + 1)) /
                  BLOCKS),
             second->mean[pair * BINS + 1],
             sqrt(
-                comoments_covariance(second, (size_t)(pair * BINS + 1), (size_t)(pair * BINS + 1)) /
+                mf_comoments_covariance(second, (size_t)(pair * BINS + 1), (size_t)(pair * BINS + 1)) /
                 BLOCKS));
     print_message("p = %.3f\n", p);
     assert_true(p > false_alarm_rate);
@@ -101,9 +101,9 @@ static void test_samplers_agree_with_dynamics_when_there_are_three_types(void **
     measure_dynamics(&fluid, &dynamics);
     assert_equal_within_errors(&moves, &trajectories);
     assert_equal_within_errors(&moves, &dynamics);
-    comoments_clear(&moves);
-    comoments_clear(&trajectories);
-    comoments_clear(&dynamics);
+    mf_comoments_clear(&moves);
+    mf_comoments_clear(&trajectories);
+    mf_comoments_clear(&dynamics);
     fluid_clear(&fluid);
 }
 

@@ -32,15 +32,15 @@ struct energies {
 };
 
 static double total_energy(const struct simulation *simulation) {
-    return (simulation->sums.energy + 0.5 * particles_square_velocities(&simulation->particles)) /
+    return (simulation->sums.energy + 0.5 * mf_particles_square_velocities(&simulation->particles)) /
            (double)simulation->particles.count;
 }
 
 /// A melted Lennard-Jones liquid at about T = 0.7, left by its thermostat.
 static void prepare(struct fluid *fluid, struct simulation *simulation) {
     fluid_lennard_jones(fluid, PARTICLES, 0.004);
-    assert_ok(simulation_init(simulation, &fluid->setup, NULL));
-    assert_ok(simulation_run(simulation, 2500));
+    assert_ok(mf_simulation_init(simulation, &fluid->setup, NULL));
+    assert_ok(mf_simulation_run(simulation, 2500));
 }
 
 /// NVE from where `from` is, for `duration`, with the energy every `interval` [τ].
@@ -49,37 +49,37 @@ static void follow(const struct fluid *fluid, const struct simulation *from, dou
     struct simulation_setup setup = fluid->setup;
     struct simulation simulation;
     setup.weight = NULL;
-    setup.integrator = &velocity_verlet;
+    setup.integrator = &mf_velocity_verlet;
     setup.time_step = time_step;
     fluid_continue(&simulation, &setup, from);
     const uint64_t every = (uint64_t)lround(interval / time_step);
     energies->count = (size_t)lround(duration / interval);
     for (size_t k = 0; k < energies->count; k++) {
         simulation.wants = PAIR_FORCES;
-        assert_ok(simulation_run(&simulation, every - 1));
+        assert_ok(mf_simulation_run(&simulation, every - 1));
         simulation.wants = PAIR_FORCES_AND_SUMS;
-        assert_ok(simulation_run(&simulation, 1));
+        assert_ok(mf_simulation_run(&simulation, 1));
         energies->time[k] = (double)simulation.step * time_step;
         energies->energy[k] = total_energy(&simulation);
     }
     // Else the scene is not the liquid that it should be.
-    assert_close(particles_temperature(&simulation.particles), 0.7, temperature_band);
-    simulation_clear(&simulation);
+    assert_close(mf_particles_temperature(&simulation.particles), 0.7, temperature_band);
+    mf_simulation_clear(&simulation);
 }
 
 /// Straight line through the energies begin … end − 1: its slope, and the mean square about it.
 static void fit_line(const struct energies *energies, size_t begin, size_t end, double *slope,
                      double *square) {
     struct comoments moments;
-    assert_ok(comoments_init(&moments, 2));
+    assert_ok(mf_comoments_init(&moments, 2));
     for (size_t k = begin; k < end; k++)
-        comoments_add(&moments, (double[]){energies->time[k], energies->energy[k]});
-    const double tt = comoments_covariance(&moments, 0, 0),
-                 te = comoments_covariance(&moments, 0, 1),
-                 ee = comoments_covariance(&moments, 1, 1);
+        mf_comoments_add(&moments, (double[]){energies->time[k], energies->energy[k]});
+    const double tt = mf_comoments_covariance(&moments, 0, 0),
+                 te = mf_comoments_covariance(&moments, 0, 1),
+                 ee = mf_comoments_covariance(&moments, 1, 1);
     *slope = te / tt;
     *square = ee - te * te / tt;
-    comoments_clear(&moments);
+    mf_comoments_clear(&moments);
 }
 
 /// Fluctuation of the energy within half a time unit, which is long for the error of the
@@ -110,7 +110,7 @@ static void for_each_variant(void (*check)(const struct fluid *fluid,
         check(&fluid, &start);
     }
     variants_select(&variants[0]);
-    simulation_clear(&start);
+    mf_simulation_clear(&start);
     fluid_clear(&fluid);
 }
 
@@ -168,16 +168,16 @@ static void assert_momentum_stays_zero(struct simulation_setup *setup) {
         struct simulation simulation;
         variants_select(&variants[v]);
         setup->precision = (int)variants[v].precision;
-        assert_ok(simulation_init(&simulation, setup, NULL));
+        assert_ok(mf_simulation_init(&simulation, setup, NULL));
         double largest = momentum(&simulation.particles);
         while (simulation.step < steps) {
-            assert_ok(simulation_run(&simulation, 100));
+            assert_ok(mf_simulation_run(&simulation, 100));
             largest = fmax(largest, momentum(&simulation.particles));
         }
         print_message("%s, %s: largest momentum in %d steps %.2e\n", setup->integrator->name,
                       variants[v].name, (int)steps, largest);
         assert_true(largest < momentum_rounding);
-        simulation_clear(&simulation);
+        mf_simulation_clear(&simulation);
     }
     variants_select(&variants[0]);
 }
@@ -187,7 +187,7 @@ static void test_momentum_stays_zero_when_forces_are_conservative(void **state) 
     struct fluid fluid;
     fluid_lennard_jones(&fluid, 512, 0.004);
     fluid.setup.weight = NULL;
-    fluid.setup.integrator = &velocity_verlet;
+    fluid.setup.integrator = &mf_velocity_verlet;
     assert_momentum_stays_zero(&fluid.setup);
     fluid_clear(&fluid);
 }

@@ -71,17 +71,17 @@ static const double triangle_leg = 0.6;
 
 static void make_weight(struct table *weight) {
     struct formula_power_weight_parameters parameters = {1.3, 1, 0, 1};
-    const struct curve curve = {&formula_power_weight, &parameters};
-    assert_ok(table_init_weight(weight, &curve));
+    const struct curve curve = {&mf_formula_power_weight, &parameters};
+    assert_ok(mf_table_init_weight(weight, &curve));
 }
 
 /// Ids in the order in which they are given to particles.
 static uint32_t *make_ids(size_t count, enum ids ids) {
-    uint32_t *id = memory_zeroed(count, sizeof *id);
+    uint32_t *id = mf_memory_zeroed(count, sizeof *id);
     assert_non_null(id);
-    struct rng_sequence sequence = rng_sequence_begin(17, RNG_SELECTION, 0, 0);
+    struct rng_sequence sequence = mf_rng_sequence_begin(17, RNG_SELECTION, 0, 0);
     for (uint32_t k = 0; k < count; k++) {
-        const uint32_t other = ids == IDS_SHUFFLED ? rng_sequence_below(&sequence, k + 1) : k;
+        const uint32_t other = ids == IDS_SHUFFLED ? mf_rng_sequence_below(&sequence, k + 1) : k;
         id[k] = id[other];
         id[other] = k;
     }
@@ -105,7 +105,7 @@ static struct probe make_probe(const struct scene *scene, uint32_t a, uint32_t b
         if (d == axis)
             along = dx;
     }
-    table_evaluate(law->weight, sqrt(square), &omega, NULL, NULL);
+    mf_table_evaluate(law->weight, sqrt(square), &omega, NULL, NULL);
     assert_true(omega > 0 && fabs(along) > 0.1);
     const double amplitude = sqrt(2 * law->temperature / law->time_step) * omega;
     return (struct probe){a, axis, sqrt(square) / (amplitude * along)};
@@ -163,22 +163,22 @@ static void add_motifs(struct scene *scene, const struct plan *plan) {
         else
             add_triangle(scene, plan, number, site, id);
     }
-    memory_free(ids);
+    mf_memory_free(ids);
 }
 
 static void reverse(struct particles *particles) {
-    uint32_t *order = memory_zeroed(particles->count, sizeof *order);
+    uint32_t *order = mf_memory_zeroed(particles->count, sizeof *order);
     assert_non_null(order);
     for (size_t k = 0; k < particles->count; k++)
         order[k] = (uint32_t)(particles->count - 1 - k);
-    particles_permute(particles, order);
-    memory_free(order);
+    mf_particles_permute(particles, order);
+    mf_memory_free(order);
 }
 
 /// Particles do not move, so that their places in the arrays are known from the first sort on.
 static void find_places(struct scene *scene) {
     const size_t count = scene->particles.count;
-    uint32_t *place_of = memory_zeroed(count, sizeof *place_of);
+    uint32_t *place_of = mf_memory_zeroed(count, sizeof *place_of);
     assert_non_null(place_of);
     for (uint32_t k = 0; k < count; k++)
         place_of[scene->particles.id[k]] = k;
@@ -186,7 +186,7 @@ static void find_places(struct scene *scene) {
         scene->probe[p].particle = place_of[scene->probe[p].particle];
         scene->mirror[p].particle = place_of[scene->mirror[p].particle];
     }
-    memory_free(place_of);
+    mf_memory_free(place_of);
 }
 
 static void make_scene(struct scene *scene, const struct plan *plan) {
@@ -197,28 +197,28 @@ static void make_scene(struct scene *scene, const struct plan *plan) {
     make_weight(&scene->weight);
     scene->law.weight = &scene->weight;
     scene->pairs = motifs * (plan->motif == DIMERS ? 1 : SIDES);
-    scene->probe = memory_zeroed(scene->pairs, sizeof *scene->probe);
-    scene->mirror = memory_zeroed(scene->pairs, sizeof *scene->mirror);
+    scene->probe = mf_memory_zeroed(scene->pairs, sizeof *scene->probe);
+    scene->mirror = mf_memory_zeroed(scene->pairs, sizeof *scene->mirror);
     assert_non_null(scene->probe);
     assert_non_null(scene->mirror);
-    assert_ok(particles_init(&scene->particles, &box, motifs * (plan->motif == DIMERS ? 2 : 3)));
-    assert_ok(particles_keep_precise(&scene->particles));
+    assert_ok(mf_particles_init(&scene->particles, &box, motifs * (plan->motif == DIMERS ? 2 : 3)));
+    assert_ok(mf_particles_keep_precise(&scene->particles));
     add_motifs(scene, plan);
     if (plan->reversed)
         reverse(&scene->particles);
-    assert_ok(neighbours_init(&scene->neighbours, NEIGHBOURS_HALF, &box, scene->particles.count,
-                              pair_cutoff(&scene->law), 0.1));
-    assert_ok(neighbours_sort_and_build(&scene->neighbours, &scene->particles));
-    particles_update_motion(&scene->particles, 0);
+    assert_ok(mf_neighbours_init(&scene->neighbours, NEIGHBOURS_HALF, &box, scene->particles.count,
+                              mf_pair_cutoff(&scene->law), 0.1));
+    assert_ok(mf_neighbours_sort_and_build(&scene->neighbours, &scene->particles));
+    mf_particles_update_motion(&scene->particles, 0);
     find_places(scene);
 }
 
 static void clear_scene(struct scene *scene) {
-    particles_clear(&scene->particles);
-    neighbours_clear(&scene->neighbours);
-    table_clear(&scene->weight);
-    memory_free(scene->probe);
-    memory_free(scene->mirror);
+    mf_particles_clear(&scene->particles);
+    mf_neighbours_clear(&scene->neighbours);
+    mf_table_clear(&scene->weight);
+    mf_memory_free(scene->probe);
+    mf_memory_free(scene->mirror);
 }
 
 static void read_probes(const struct scene *scene, const struct probe *probe, double *zeta) {
@@ -229,12 +229,12 @@ static void read_probes(const struct scene *scene, const struct probe *probe, do
 /// The ζ of all pairs at a step, as kernels see it: shape [pairs].
 static void draw(struct scene *scene, uint64_t seed, uint64_t step, double *zeta) {
     scene->law.seed = seed;
-    pair_forces(&scene->law, &scene->particles, &scene->neighbours, step, PAIR_FORCES, NULL);
+    mf_pair_forces(&scene->law, &scene->particles, &scene->neighbours, step, PAIR_FORCES, NULL);
     read_probes(scene, scene->probe, zeta);
 }
 
 static double *new_numbers(size_t count) {
-    double *numbers = memory_zeroed(count, sizeof *numbers);
+    double *numbers = mf_memory_zeroed(count, sizeof *numbers);
     assert_non_null(numbers);
     return numbers;
 }
@@ -364,11 +364,11 @@ static void check_dimers(struct scene *scene) {
     check_moments(&moments);
     for (int k = 0; k < REPLAYS; k++)
         check(replays[k], sum[k] / count, 0, 1, count);
-    memory_free(now);
-    memory_free(before);
-    memory_free(other);
-    memory_free(other_before);
-    memory_free(far);
+    mf_memory_free(now);
+    mf_memory_free(before);
+    mf_memory_free(other);
+    mf_memory_free(other_before);
+    mf_memory_free(far);
 }
 
 /// ζ of the sides of triangles, which share their lowest, middle or highest particle.
@@ -396,7 +396,7 @@ static void check_triangles(struct scene *scene) {
     check("covariance of pairs that share the high id", high / count, 0, 1, count);
     check("mean product around a triangle", product / count, 0, 1, count);
     check_moments(&moments);
-    memory_free(zeta);
+    mf_memory_free(zeta);
 }
 
 /// The first instruction set in both precisions, with ids in order and shuffled. The others draw
@@ -468,8 +468,8 @@ static void test_pair_noise_is_the_same_when_the_variant_changes(void **state) {
                     compared++;
                 }
             }
-        memory_free(first);
-        memory_free(zeta);
+        mf_memory_free(first);
+        mf_memory_free(zeta);
         clear_scene(&scene);
     }
     variants_select(&variants[0]);
@@ -507,7 +507,7 @@ static void test_pair_noise_is_made_of_the_same_word_when_the_precision_changes(
                 assert_close(zeta[p] * 0x1p32 / sqrt(12), word_of(&scene, p, few_step(k)), lost);
         }
     }
-    memory_free(zeta);
+    mf_memory_free(zeta);
     clear_scene(&scene);
     variants_select(&variants[0]);
 }
@@ -532,8 +532,8 @@ static void test_pair_noise_is_opposite_when_read_on_the_other_particle(void **s
                     assert_identical(mirrored[p], zeta[p]);
             }
         }
-        memory_free(zeta);
-        memory_free(mirrored);
+        mf_memory_free(zeta);
+        mf_memory_free(mirrored);
         clear_scene(&scene);
     }
     variants_select(&variants[0]);
@@ -581,7 +581,7 @@ test_pair_noise_is_the_same_when_particles_are_stored_the_other_way_round(void *
             }
         }
         for (int s = 0; s < 3; s++) {
-            memory_free(zeta[s]);
+            mf_memory_free(zeta[s]);
             clear_scene(&scene[s]);
         }
     }

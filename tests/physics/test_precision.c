@@ -32,18 +32,18 @@ static double *first_forces(const struct simulation_setup *setup, const struct s
                             bool from_all_pairs) {
     struct simulation simulation;
     const size_t count = from->particles.count;
-    double *forces = memory_zeroed(3 * count, sizeof *forces);
+    double *forces = mf_memory_zeroed(3 * count, sizeof *forces);
     assert_non_null(forces);
     fluid_continue(&simulation, setup, from);
     if (from_all_pairs) {
         // The forces at the start saw the velocities as they are.
-        reference_forces(&simulation.law, &simulation.particles, 0, NULL);
+        mf_reference_forces(&simulation.law, &simulation.particles, 0, NULL);
     }
     for (int d = 0; d < 3; d++)
         for (size_t k = 0; k < count; k++)
             forces[(size_t)d * count + simulation.particles.id[k]] =
                 simulation.particles.force[d][k];
-    simulation_clear(&simulation);
+    mf_simulation_clear(&simulation);
     return forces;
 }
 
@@ -85,9 +85,9 @@ static void check_forces(const char *what, const struct simulation_setup *setup,
                       what, names[p], error.rms, error.largest);
         assert_true(error.rms < allowed.rms);
         assert_true(error.largest < allowed.largest);
-        memory_free(forces);
+        mf_memory_free(forces);
     }
-    memory_free(exact);
+    mf_memory_free(exact);
 }
 
 static void test_forces_are_as_exact_as_their_precision_when_the_fluid_is_dpd(void **state) {
@@ -95,22 +95,22 @@ static void test_forces_are_as_exact_as_their_precision_when_the_fluid_is_dpd(vo
     struct fluid fluid;
     struct simulation start;
     fluid_groot_warren(&fluid, 3000, 0.04);
-    assert_ok(simulation_init(&start, &fluid.setup, NULL));
-    assert_ok(simulation_run(&start, 300));
+    assert_ok(mf_simulation_init(&start, &fluid.setup, NULL));
+    assert_ok(mf_simulation_run(&start, 300));
     check_forces("DPD", &fluid.setup, &start);
     fluid.setup.weight = NULL;
     check_forces("DPD, conservative", &fluid.setup, &start);
-    simulation_clear(&start);
+    mf_simulation_clear(&start);
     fluid_clear(&fluid);
 }
 
 /// A melted Lennard-Jones liquid at about T = 0.7, left by its thermostat.
 static void melt(struct fluid *fluid, struct simulation *simulation, int64_t count) {
     fluid_lennard_jones(fluid, count, 0.004);
-    assert_ok(simulation_init(simulation, &fluid->setup, NULL));
-    assert_ok(simulation_run(simulation, 2500));
+    assert_ok(mf_simulation_init(simulation, &fluid->setup, NULL));
+    assert_ok(mf_simulation_run(simulation, 2500));
     fluid->setup.weight = NULL;
-    fluid->setup.integrator = &velocity_verlet;
+    fluid->setup.integrator = &mf_velocity_verlet;
 }
 
 static void
@@ -120,12 +120,12 @@ test_forces_are_as_exact_as_their_precision_when_the_fluid_is_lennard_jones(void
     struct simulation start;
     melt(&fluid, &start, 2048);
     check_forces("Lennard-Jones", &fluid.setup, &start);
-    simulation_clear(&start);
+    mf_simulation_clear(&start);
     fluid_clear(&fluid);
 }
 
 static double total_energy(const struct simulation *simulation) {
-    return (simulation->sums.energy + 0.5 * particles_square_velocities(&simulation->particles)) /
+    return (simulation->sums.energy + 0.5 * mf_particles_square_velocities(&simulation->particles)) /
            (double)simulation->particles.count;
 }
 
@@ -135,19 +135,19 @@ static double energy_drift(const struct simulation_setup *setup, const struct si
     struct simulation simulation;
     struct comoments moments;
     fluid_continue(&simulation, setup, from);
-    assert_ok(comoments_init(&moments, 2));
+    assert_ok(mf_comoments_init(&moments, 2));
     for (int k = 0; k < SAMPLES; k++) {
         simulation.wants = PAIR_FORCES;
-        assert_ok(simulation_run(&simulation, EVERY - 1));
+        assert_ok(mf_simulation_run(&simulation, EVERY - 1));
         simulation.wants = PAIR_FORCES_AND_SUMS;
-        assert_ok(simulation_run(&simulation, 1));
-        comoments_add(&moments, (double[]){(double)simulation.step * setup->time_step,
+        assert_ok(mf_simulation_run(&simulation, 1));
+        mf_comoments_add(&moments, (double[]){(double)simulation.step * setup->time_step,
                                            total_energy(&simulation)});
     }
     const double slope =
-        comoments_covariance(&moments, 0, 1) / comoments_covariance(&moments, 0, 0);
-    comoments_clear(&moments);
-    simulation_clear(&simulation);
+        mf_comoments_covariance(&moments, 0, 1) / mf_comoments_covariance(&moments, 0, 0);
+    mf_comoments_clear(&moments);
+    mf_simulation_clear(&simulation);
     return slope;
 }
 
@@ -174,7 +174,7 @@ test_energy_drifts_no_more_in_mixed_precision_when_the_time_step_is_small(void *
     struct simulation_setup setup = fluid.setup;
     setup.time_step = 0.001;
     for (int s = 0; s < STARTS; s++) {
-        assert_ok(simulation_run(&start, BETWEEN_STARTS));
+        assert_ok(mf_simulation_run(&start, BETWEEN_STARTS));
         for (int p = 0; p < 2; p++) {
             setup.precision = (int)precisions[p];
             mean[p] += energy_drift(&setup, &start) / STARTS;
@@ -187,7 +187,7 @@ test_energy_drifts_no_more_in_mixed_precision_when_the_time_step_is_small(void *
         assert_close(mean[p], 0, deviations * error);
     }
     assert_close(mean[0], mean[1], deviations * sqrt(2) * error);
-    simulation_clear(&start);
+    mf_simulation_clear(&start);
     fluid_clear(&fluid);
 }
 
@@ -205,19 +205,19 @@ static void measure(const struct simulation_setup *setup, struct measured *measu
     struct thermodynamics thermodynamics;
     struct rdf rdf;
     double temperature;
-    assert_ok(simulation_init(&simulation, setup, NULL));
-    assert_ok(thermodynamics_init(&thermodynamics, SAMPLES));
+    assert_ok(mf_simulation_init(&simulation, setup, NULL));
+    assert_ok(mf_thermodynamics_init(&thermodynamics, SAMPLES));
     // Beyond the cutoff, so that the RDF makes its own list.
-    assert_ok(rdf_init(&rdf, &(struct rdf_bins){0, 0.05, BINS}, &setup->box,
+    assert_ok(mf_rdf_init(&rdf, &(struct rdf_bins){0, 0.05, BINS}, &setup->box,
                        simulation.particles.count, 1, SAMPLES));
-    assert_ok(measure_equilibrate(&simulation, &plan, &temperature, NULL));
+    assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
     const struct measure_targets targets = {.rdf = &rdf, .thermodynamics = &thermodynamics};
-    assert_ok(measure_sample(&simulation, &plan, targets, NULL));
-    measured->thermodynamics = thermodynamics_result(&thermodynamics, 1);
-    assert_ok(rdf_result(&rdf, 1, measured->g, measured->g_error));
-    rdf_clear(&rdf);
-    thermodynamics_clear(&thermodynamics);
-    simulation_clear(&simulation);
+    assert_ok(mf_measure_sample(&simulation, &plan, targets, NULL));
+    measured->thermodynamics = mf_thermodynamics_result(&thermodynamics, 1);
+    assert_ok(mf_rdf_result(&rdf, 1, measured->g, measured->g_error));
+    mf_rdf_clear(&rdf);
+    mf_thermodynamics_clear(&thermodynamics);
+    mf_simulation_clear(&simulation);
 }
 
 /// Two temperatures and 40 bins of g, with errors from 20 blocks: one false alarm in 80 for new

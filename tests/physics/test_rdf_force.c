@@ -35,24 +35,24 @@ static void measure(const struct fluid *fluid, const struct plan *plan, const st
                     struct both *both) {
     const struct simulation_setup *setup = &fluid->setup;
     struct metropolis metropolis;
-    assert_ok(metropolis_init(&metropolis, &setup->box,
+    assert_ok(mf_metropolis_init(&metropolis, &setup->box,
                               &(struct composition){.types = 1, .count = {(int64_t)plan->count}},
                               &fluid->potential, setup->temperature, plan->seed));
-    assert_ok(metropolis_equilibrate(&metropolis, 300));
-    assert_ok(rdf_init(&both->rdf, bins, &setup->box, plan->count, 0, plan->samples));
-    assert_ok(rdf_force_init(&both->force, bins, &setup->box, plan->count, &fluid->potential,
+    assert_ok(mf_metropolis_equilibrate(&metropolis, 300));
+    assert_ok(mf_rdf_init(&both->rdf, bins, &setup->box, plan->count, 0, plan->samples));
+    assert_ok(mf_rdf_force_init(&both->force, bins, &setup->box, plan->count, &fluid->potential,
                              setup->temperature, 0, plan->samples));
     for (size_t sample = 0; sample < plan->samples; sample++) {
-        assert_ok(metropolis_run(&metropolis, plan->sweeps));
-        assert_ok(rdf_sample(&both->rdf, &metropolis.particles, NULL));
-        assert_ok(rdf_force_sample(&both->force, &metropolis.particles, NULL));
+        assert_ok(mf_metropolis_run(&metropolis, plan->sweeps));
+        assert_ok(mf_rdf_sample(&both->rdf, &metropolis.particles, NULL));
+        assert_ok(mf_rdf_force_sample(&both->force, &metropolis.particles, NULL));
     }
-    metropolis_clear(&metropolis);
+    mf_metropolis_clear(&metropolis);
 }
 
 static void clear(struct both *both) {
-    rdf_clear(&both->rdf);
-    rdf_force_clear(&both->force);
+    mf_rdf_clear(&both->rdf);
+    mf_rdf_force_clear(&both->force);
 }
 
 /// Largest difference from the histogram in combined errors, over bins that hold pairs enough.
@@ -60,8 +60,8 @@ static double largest_deviation(const struct both *both, enum rdf_force_version 
     const struct rdf_bins *bins = &both->rdf.bins;
     double h[MOST_BINS], h_error[MOST_BINS], g[MOST_BINS], error[MOST_BINS], largest = 0;
     double mean_h = 0, mean_g = 0;
-    assert_ok(rdf_result(&both->rdf, 1, h, h_error));
-    assert_ok(rdf_force_result(&both->force, 1, version, g, error));
+    assert_ok(mf_rdf_result(&both->rdf, 1, h, h_error));
+    assert_ok(mf_rdf_force_result(&both->force, 1, version, g, error));
     for (size_t k = 0; k < bins->count; k++) {
         mean_h += h_error[k] * h_error[k];
         mean_g += error[k] * error[k];
@@ -106,13 +106,13 @@ static void test_force_rdf_from_infinity_is_the_histogram_when_particles_overlap
     (void)state;
     const struct rdf_bins bins = {0.2, 0.1, 18};
     struct formula_gaussian_parameters parameters = {.epsilon = 2, .sigma = 1, .cutoff = 2.5};
-    const struct curve curve = {&formula_gaussian, &parameters};
+    const struct curve curve = {&mf_formula_gaussian, &parameters};
     struct fluid fluid;
     struct both both;
     fluid_soft_discs(&fluid, 100, 0.01);
-    table_clear(&fluid.potential);
-    assert_ok(table_init_potential(&fluid.potential, &curve));
-    assert_false(rdf_force_applies(&fluid.potential, fluid.setup.temperature));
+    mf_table_clear(&fluid.potential);
+    assert_ok(mf_table_init_potential(&fluid.potential, &curve));
+    assert_false(mf_rdf_force_applies(&fluid.potential, fluid.setup.temperature));
     measure(&fluid, &(struct plan){100, 400, 4, 3}, &bins, &both);
     assert_true(largest_deviation(&both, RDF_FORCE_FROM_INFINITY) < deviations);
     assert_true(largest_deviation(&both, RDF_FORCE_FROM_ZERO) > 3 * deviations);
@@ -136,7 +136,7 @@ static void test_force_rdf_errors_cover_the_mean_when_seeds_differ(void **state)
         struct both both;
         measure(&fluid, &(struct plan){120, 100, 8, 100 + (uint64_t)seed}, &bins, &both);
         for (int v = 0; v < VERSIONS; v++)
-            assert_ok(rdf_force_result(&both.force, 1, (enum rdf_force_version)v, g[v][seed],
+            assert_ok(mf_rdf_force_result(&both.force, 1, (enum rdf_force_version)v, g[v][seed],
                                        error[v][seed]));
         clear(&both);
     }
@@ -160,9 +160,9 @@ static void test_force_rdf_errors_cover_the_mean_when_seeds_differ(void **state)
 static double distance(const struct rdf *rdf, const struct rdf_force *force,
                        enum rdf_force_version version) {
     double h[MOST_BINS], g[MOST_BINS];
-    assert_ok(rdf_result(rdf, 1, h, NULL));
-    assert_ok(rdf_force_result(force, 1, version, g, NULL));
-    return rdf_rmse(g, h, rdf->bins.count);
+    assert_ok(mf_rdf_result(rdf, 1, h, NULL));
+    assert_ok(mf_rdf_force_result(force, 1, version, g, NULL));
+    return mf_rdf_rmse(g, h, rdf->bins.count);
 }
 
 /// The bias of a large time step, as rdf_force.h and README state it. The statistical error of the
@@ -178,12 +178,12 @@ static void test_force_rdf_is_off_as_known_when_the_time_step_is_large(void **st
     struct rdf_force force;
     double temperature;
     fluid_groot_warren(&fluid, PARTICLES, 0.04);
-    assert_ok(simulation_init(&simulation, &fluid.setup, NULL));
-    assert_ok(rdf_init(&rdf, &bins, &fluid.setup.box, PARTICLES, 1, 300));
+    assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
+    assert_ok(mf_rdf_init(&rdf, &bins, &fluid.setup.box, PARTICLES, 1, 300));
     assert_ok(
-        rdf_force_init(&force, &bins, &fluid.setup.box, PARTICLES, &fluid.potential, 1, 1, 300));
-    assert_ok(measure_equilibrate(&simulation, &plan, &temperature, NULL));
-    assert_ok(measure_sample(&simulation, &plan,
+        mf_rdf_force_init(&force, &bins, &fluid.setup.box, PARTICLES, &fluid.potential, 1, 1, 300));
+    assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
+    assert_ok(mf_measure_sample(&simulation, &plan,
                              (struct measure_targets){.rdf = &rdf, .rdf_force = &force}, NULL));
     const double zero = distance(&rdf, &force, RDF_FORCE_FROM_ZERO),
                  infinity = distance(&rdf, &force, RDF_FORCE_FROM_INFINITY),
@@ -192,9 +192,9 @@ static void test_force_rdf_is_off_as_known_when_the_time_step_is_large(void **st
     assert_close(zero, 0.038, 0.01);
     assert_close(infinity, 0.022, 0.006);
     assert_true(counted < 0.007);
-    rdf_clear(&rdf);
-    rdf_force_clear(&force);
-    simulation_clear(&simulation);
+    mf_rdf_clear(&rdf);
+    mf_rdf_force_clear(&force);
+    mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
 }
 

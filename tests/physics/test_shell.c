@@ -16,9 +16,9 @@ static const double temperature_tolerance = 0.01;
 static const double false_alarm_rate = 1e-4;
 
 static void make_weight(struct fluid *fluid, struct formula_power_weight_parameters parameters) {
-    const struct curve curve = {&formula_power_weight, &parameters};
-    table_clear(&fluid->weight);
-    assert_ok(table_init_weight(&fluid->weight, &curve));
+    const struct curve curve = {&mf_formula_power_weight, &parameters};
+    mf_table_clear(&fluid->weight);
+    assert_ok(mf_table_init_weight(&fluid->weight, &curve));
 }
 
 static void check_temperatures(const struct simulation_setup *setup) {
@@ -26,26 +26,26 @@ static void check_temperatures(const struct simulation_setup *setup) {
     static struct simulation simulation;
     struct thermodynamics thermodynamics;
     double temperature;
-    assert_ok(simulation_init(&simulation, setup, NULL));
-    assert_ok(thermodynamics_init(&thermodynamics, (size_t)plan.samples));
-    assert_ok(measure_equilibrate(&simulation, &plan, &temperature, NULL));
-    assert_ok(measure_sample(&simulation, &plan,
+    assert_ok(mf_simulation_init(&simulation, setup, NULL));
+    assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)plan.samples));
+    assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
+    assert_ok(mf_measure_sample(&simulation, &plan,
                              (struct measure_targets){.thermodynamics = &thermodynamics}, NULL));
-    const struct thermodynamics_summary s = thermodynamics_result(&thermodynamics, 1);
+    const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
     print_message("%-15s temperature %.4f(%.4f), configurational %.4f(%.4f)\n",
                   setup->integrator->name, s.temperature, s.temperature_error,
                   s.temperature_configurational, s.temperature_configurational_error);
     assert_close(s.temperature, 1, temperature_tolerance);
     assert_close(s.temperature_configurational, 1, temperature_tolerance);
-    thermodynamics_clear(&thermodynamics);
-    simulation_clear(&simulation);
+    mf_thermodynamics_clear(&thermodynamics);
+    mf_simulation_clear(&simulation);
 }
 
 /// The standard fluid's potential with ω = 10 from r = 0.97 to 1 alone.
 static void test_temperatures_are_set_when_friction_is_a_thin_shell(void **state) {
     (void)state;
-    static const struct integrator *const with[] = {&aboba, &shardlow, &aboba_implicit,
-                                                    &lowe_andersen};
+    static const struct integrator *const with[] = {&mf_aboba, &mf_shardlow, &mf_aboba_implicit,
+                                                    &mf_lowe_andersen};
     struct fluid fluid;
     fluid_groot_warren(&fluid, 375, 0.005);
     make_weight(&fluid, (struct formula_power_weight_parameters){10, 1e-6, 0.97, 1});
@@ -62,27 +62,27 @@ static void check_velocities(const struct simulation_setup *setup) {
     enum { SAMPLES = 300, EVERY = 50 };
     static struct simulation simulation;
     struct maxwell maxwell;
-    assert_ok(simulation_init(&simulation, setup, NULL));
-    assert_ok(maxwell_init(&maxwell));
-    assert_ok(simulation_run(&simulation, 500));
+    assert_ok(mf_simulation_init(&simulation, setup, NULL));
+    assert_ok(mf_maxwell_init(&maxwell));
+    assert_ok(mf_simulation_run(&simulation, 500));
     for (int n = 0; n < SAMPLES; n++) {
-        assert_ok(simulation_run(&simulation, EVERY));
-        maxwell_sample(&maxwell, &simulation.particles, setup->temperature, setup->seed,
+        assert_ok(mf_simulation_run(&simulation, EVERY));
+        mf_maxwell_sample(&maxwell, &simulation.particles, setup->temperature, setup->seed,
                        simulation.step);
     }
-    const struct maxwell_summary s = maxwell_result(&maxwell);
+    const struct maxwell_summary s = mf_maxwell_result(&maxwell);
     print_message("%-15s velocities against Maxwell's: D = %.2e, p = %.2g\n",
                   setup->integrator->name, s.statistic, s.probability);
     assert_true(s.probability > false_alarm_rate);
-    maxwell_clear(&maxwell);
-    simulation_clear(&simulation);
+    mf_maxwell_clear(&maxwell);
+    mf_simulation_clear(&simulation);
 }
 
 /// σ = 30, γ = 900: in a step of 0.01 a near pair forgets its velocity altogether, and its new one
 /// is the noise.
 static void test_velocities_are_those_of_maxwell_when_friction_is_strong(void **state) {
     (void)state;
-    static const struct integrator *const with[] = {&aboba, &lowe_andersen};
+    static const struct integrator *const with[] = {&mf_aboba, &mf_lowe_andersen};
     struct fluid fluid;
     fluid_groot_warren(&fluid, 375, 0.01);
     make_weight(&fluid, (struct formula_power_weight_parameters){30, 1, 0, 1});

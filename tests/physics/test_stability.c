@@ -11,22 +11,22 @@ static const struct {
     double lambda, friction;
     double good, bad;
 } limits[] = {
-    {&dpd_verlet, 0.5, 4.5, 0.05, 0.1},
-    {&dpd_verlet, 0.5, 200, 0.002, 0.01},
-    {&dpd_verlet, 0.65, 4.5, 0.05, 0.1},
-    {&dpd_verlet, 0.65, 200, 0.002, 0.01},
-    {&dpd_vv, 0, 4.5, 0.05, 0.1},
-    {&dpd_vv, 0, 200, 0.005, 0.02},
-    {&shardlow, 0, 4.5, 0.05, 0.1},
-    {&shardlow, 0, 200, 0.04, 0.1},
-    {&aboba, 0, 4.5, 0.08, 0.15},
-    {&aboba, 0, 200, 0.1, 0.2},
-    {&aboba_implicit, 0, 4.5, 0.08, 0.15},
-    {&aboba_implicit, 0, 200, 0.06, 0.15},
-    {&lowe_andersen, 0, 4.5, 0.05, 0.1},
-    {&lowe_andersen, 0, 200, 0.04, 0.1},
-    {&dpd_verlet, 0.5, 1000, 0.0005, 0.002},
-    {&aboba, 0, 1000, 0.1, 0.2},
+    {&mf_dpd_verlet, 0.5, 4.5, 0.05, 0.1},
+    {&mf_dpd_verlet, 0.5, 200, 0.002, 0.01},
+    {&mf_dpd_verlet, 0.65, 4.5, 0.05, 0.1},
+    {&mf_dpd_verlet, 0.65, 200, 0.002, 0.01},
+    {&mf_dpd_vv, 0, 4.5, 0.05, 0.1},
+    {&mf_dpd_vv, 0, 200, 0.005, 0.02},
+    {&mf_shardlow, 0, 4.5, 0.05, 0.1},
+    {&mf_shardlow, 0, 200, 0.04, 0.1},
+    {&mf_aboba, 0, 4.5, 0.08, 0.15},
+    {&mf_aboba, 0, 200, 0.1, 0.2},
+    {&mf_aboba_implicit, 0, 4.5, 0.08, 0.15},
+    {&mf_aboba_implicit, 0, 200, 0.06, 0.15},
+    {&mf_lowe_andersen, 0, 4.5, 0.05, 0.1},
+    {&mf_lowe_andersen, 0, 200, 0.04, 0.1},
+    {&mf_dpd_verlet, 0.5, 1000, 0.0005, 0.002},
+    {&mf_aboba, 0, 1000, 0.1, 0.2},
 };
 
 static void test_integrators_are_right_up_to_their_limits_and_never_silently_wrong(void **state) {

@@ -24,22 +24,22 @@ static void assert_unstable(const struct simulation_setup *setup,
     struct simulation simulation;
     char step[64];
     const clock_t begin = clock();
-    assert_ok(simulation_init(&simulation, setup, start));
-    const enum status status = simulation_run(&simulation, FEW_STEPS);
-    print_message("%s (%.2f s)\n", status_message(), (double)(clock() - begin) / CLOCKS_PER_SEC);
+    assert_ok(mf_simulation_init(&simulation, setup, start));
+    const enum status status = mf_simulation_run(&simulation, FEW_STEPS);
+    print_message("%s (%.2f s)\n", mf_status_message(), (double)(clock() - begin) / CLOCKS_PER_SEC);
     assert_int_equal(status, STATUS_UNSTABLE);
     assert_in_range(simulation.step, 1, FEW_STEPS);
     snprintf(step, sizeof step, "step %llu:", (unsigned long long)simulation.step);
-    assert_contains(status_message(), step);
-    assert_contains(status_message(), "largest force");
-    assert_null(strstr(status_message(), "-nan"));
+    assert_contains(mf_status_message(), step);
+    assert_contains(mf_status_message(), "largest force");
+    assert_null(strstr(mf_status_message(), "-nan"));
     double temperature, limit; // if it tells them, they must be a reason
-    const char *told = strstr(status_message(), "temperature ");
+    const char *told = strstr(mf_status_message(), "temperature ");
     if (told && sscanf(told, "temperature %lf (limit %lf", &temperature, &limit) == 2)
         assert_false(temperature <= limit);
-    assert_contains(status_message(), "time_step");
+    assert_contains(mf_status_message(), "time_step");
     assert_true((double)(clock() - begin) / CLOCKS_PER_SEC < patience);
-    simulation_clear(&simulation);
+    mf_simulation_clear(&simulation);
 }
 
 static void test_simulation_is_unstable_when_the_time_step_is_huge(void **state) {
@@ -50,7 +50,7 @@ static void test_simulation_is_unstable_when_the_time_step_is_huge(void **state)
         fluid_groot_warren(&fluid, PARTICLES, time_steps[k]);
         assert_unstable(&fluid.setup, NULL);
         fluid.setup.weight = NULL;
-        fluid.setup.integrator = &velocity_verlet;
+        fluid.setup.integrator = &mf_velocity_verlet;
         assert_unstable(&fluid.setup, NULL);
         fluid_clear(&fluid);
         fluid_lennard_jones(&fluid, 864, time_steps[k]);
@@ -72,7 +72,7 @@ static void test_simulation_is_unstable_soon_when_many_particles_are_flung_far(v
     // The temperature of free flight is right however far it goes.
     fluid_ideal_gas(&fluid, 3, 40000, 1e200);
     fluid.setup.weight = NULL;
-    fluid.setup.integrator = &velocity_verlet;
+    fluid.setup.integrator = &mf_velocity_verlet;
     assert_unstable(&fluid.setup, NULL);
     fluid_clear(&fluid);
 }
@@ -103,7 +103,7 @@ static void test_simulation_is_unstable_when_particles_overlap(void **state) {
     struct fluid fluid;
     struct simulation good;
     fluid_lennard_jones(&fluid, 500, 0.004);
-    assert_ok(simulation_init(&good, &fluid.setup, NULL));
+    assert_ok(mf_simulation_init(&good, &fluid.setup, NULL));
     for (int d = 0; d < 3; d++)
         good.particles.position[d][0] = good.particles.position[d][499] + (d == 0 ? 1e-4 : 0);
     const struct simulation_start start = {.position = {good.particles.position[0],
@@ -111,7 +111,7 @@ static void test_simulation_is_unstable_when_particles_overlap(void **state) {
                                                         good.particles.position[2]}};
     fluid.setup.placement.kind = PLACEMENT_FILE;
     assert_unstable(&fluid.setup, &start);
-    simulation_clear(&good);
+    mf_simulation_clear(&good);
     fluid_clear(&fluid);
 }
 
@@ -127,9 +127,9 @@ static void test_simulation_goes_on_when_two_particles_share_a_spot(void **state
         fluid.setup.box.length[d] = 3;
     fluid.setup.placement.kind = PLACEMENT_FILE;
     fluid.setup.temperature_limit = 1000;
-    assert_ok(simulation_init(&simulation, &fluid.setup, &start));
-    assert_ok(simulation_run(&simulation, 100));
-    simulation_clear(&simulation);
+    assert_ok(mf_simulation_init(&simulation, &fluid.setup, &start));
+    assert_ok(mf_simulation_run(&simulation, 100));
+    mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
 }
 
@@ -137,9 +137,9 @@ static void test_simulation_goes_on_when_two_particles_share_a_spot(void **state
 static void make_wild_table(const double wild[5], struct table *table) {
     static const double r[] = {0, 0.25, 0.5, 0.75, 1};
     struct curve curve;
-    assert_ok(sampled_create(&curve, r, wild, 5));
-    assert_ok(table_init_potential(table, &curve));
-    curve_clear(&curve);
+    assert_ok(mf_sampled_create(&curve, r, wild, 5));
+    assert_ok(mf_table_init_potential(table, &curve));
+    mf_curve_clear(&curve);
 }
 
 static const double wild[][5] = {
@@ -160,9 +160,9 @@ static void test_simulation_is_unstable_when_the_table_is_wild(void **state) {
         fluid.setup.potential = &table;
         assert_unstable(&fluid.setup, NULL);
         fluid.setup.weight = NULL;
-        fluid.setup.integrator = &velocity_verlet;
+        fluid.setup.integrator = &mf_velocity_verlet;
         assert_unstable(&fluid.setup, NULL);
-        table_clear(&table);
+        mf_table_clear(&table);
         fluid_clear(&fluid);
     }
 }
@@ -176,19 +176,19 @@ static void test_metropolis_ends_when_the_table_is_wild(void **state) {
         fluid_groot_warren(&fluid, PARTICLES / 2, 0.01);
         make_wild_table(wild[k], &table);
         const clock_t begin = clock();
-        assert_ok(metropolis_init(&metropolis, &fluid.setup.box,
+        assert_ok(mf_metropolis_init(&metropolis, &fluid.setup.box,
                                   &(struct composition){.types = 1, .count = {PARTICLES / 2}},
                                   &table, 1, 5));
-        assert_ok(metropolis_equilibrate(&metropolis, 20));
-        assert_ok(metropolis_run(&metropolis, 20));
+        assert_ok(mf_metropolis_equilibrate(&metropolis, 20));
+        assert_ok(mf_metropolis_run(&metropolis, 20));
         for (size_t i = 0; i < metropolis.particles.count; i++)
             assert_true(isfinite(metropolis.particles.position[0][i]));
         // A change of energy that is not a number is refused.
         if (isnan(wild[k][0]))
             assert_int_equal(metropolis.accepted, 0);
         assert_true((double)(clock() - begin) / CLOCKS_PER_SEC < patience);
-        metropolis_clear(&metropolis);
-        table_clear(&table);
+        mf_metropolis_clear(&metropolis);
+        mf_table_clear(&table);
         fluid_clear(&fluid);
     }
 }
@@ -201,7 +201,7 @@ static enum status measure(const struct inverse_problem *problem, const struct t
                                                  .hopeless = HUGE_VAL,
                                                  .threads = 1,
                                                  .seed = 8};
-    return evaluate(problem, &candidate, parameters, NULL, NULL, result);
+    return mf_evaluate(problem, &candidate, parameters, NULL, NULL, result);
 }
 
 static void test_evaluate_is_a_score_when_the_potential_is_wild(void **state) {
@@ -222,7 +222,7 @@ static void test_evaluate_is_a_score_when_the_potential_is_wild(void **state) {
             .threads = 1};
         assert_int_equal(measure(&problem, &table, &parameters, &result), STATUS_UNSTABLE);
         assert_in_range(result.engine_steps, 1, FEW_STEPS);
-        table_clear(&table);
+        mf_table_clear(&table);
         fluid_clear(&fluid);
     }
 }
@@ -233,7 +233,7 @@ static void test_evaluate_is_a_score_when_particles_collapse(void **state) {
     static const double target[BINS] = {0, 0, 0.5, 1, 1, 1, 1, 1, 1, 1}, none[BINS] = {0};
     // All particles fall into one drop, which heats them: no limit of the temperature is to see it.
     struct formula_gaussian_parameters well = {.epsilon = -1, .sigma = 0.5, .cutoff = 1};
-    const struct curve curve = {&formula_gaussian, &well};
+    const struct curve curve = {&mf_formula_gaussian, &well};
     const struct evaluate_parameters parameters = {
         .plan = {.equilibration = 2000, .samples = 10, .every = 5}, .temperature_tolerance = 1e6};
     struct fluid fluid;
@@ -241,14 +241,14 @@ static void test_evaluate_is_a_score_when_particles_collapse(void **state) {
     struct evaluate_result result;
     fluid_groot_warren(&fluid, 400, 0.01);
     fluid.setup.temperature_limit = 1e6;
-    assert_ok(table_init_potential(&table, &curve));
+    assert_ok(mf_table_init_potential(&table, &curve));
     const struct inverse_problem problem = {
         .goals = {.bins = {0, 0.1, BINS}, .goal[GOAL_RDF] = {BINS, target, none, 0}},
         .scene = fluid.setup,
         .threads = 1};
     assert_int_equal(measure(&problem, &table, &parameters, &result), STATUS_UNSTABLE);
-    assert_contains(status_message(), "collapsed");
-    table_clear(&table);
+    assert_contains(mf_status_message(), "collapsed");
+    mf_table_clear(&table);
     fluid_clear(&fluid);
 }
 

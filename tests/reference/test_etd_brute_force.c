@@ -26,18 +26,18 @@ static void make_trajectory(struct trajectory *trajectory, const struct simulati
     struct simulation simulation;
     *trajectory = (struct trajectory){setup->box, (size_t)setup->placement.count, NULL};
     trajectory->values =
-        memory_zeroed((SAMPLES + 1) * 3 * trajectory->count, sizeof *trajectory->values);
+        mf_memory_zeroed((SAMPLES + 1) * 3 * trajectory->count, sizeof *trajectory->values);
     assert_non_null(trajectory->values);
-    assert_ok(simulation_init(&simulation, setup, NULL));
-    assert_ok(simulation_run(&simulation, EQUILIBRATION));
+    assert_ok(mf_simulation_init(&simulation, setup, NULL));
+    assert_ok(mf_simulation_run(&simulation, EQUILIBRATION));
     for (int64_t sample = 0; sample <= SAMPLES; sample++) {
         const struct particles *particles = &simulation.particles;
         for (int d = 0; d < setup->box.dimensions; d++)
             for (size_t k = 0; k < particles->count; k++)
                 find(trajectory, sample, d)[particles->id[k]] = particles->position[d][k];
-        assert_ok(simulation_run(&simulation, (uint64_t)every));
+        assert_ok(mf_simulation_run(&simulation, (uint64_t)every));
     }
-    simulation_clear(&simulation);
+    mf_simulation_clear(&simulation);
 }
 
 static double distance(const struct trajectory *trajectory, int64_t sample, size_t i, size_t j) {
@@ -80,17 +80,17 @@ static void measure(const struct simulation_setup *setup, struct etd *etd,
     struct simulation simulation;
     struct thermodynamics thermodynamics;
     double temperature;
-    assert_ok(simulation_init(&simulation, setup, NULL));
-    assert_ok(etd_init(etd, grid, plan, &simulation, EQUILIBRATION, steps));
-    assert_ok(thermodynamics_init(&thermodynamics, (size_t)when.samples));
-    assert_ok(measure_equilibrate(&simulation, &when, &temperature, NULL));
+    assert_ok(mf_simulation_init(&simulation, setup, NULL));
+    assert_ok(mf_etd_init(etd, grid, plan, &simulation, EQUILIBRATION, steps));
+    assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)when.samples));
+    assert_ok(mf_measure_equilibrate(&simulation, &when, &temperature, NULL));
     const struct measure_targets targets = {.thermodynamics = &thermodynamics, .etd = etd};
-    assert_ok(measure_sample(&simulation, &when, targets, NULL));
-    assert_true(etd_due(etd) == INT64_MAX);
+    assert_ok(mf_measure_sample(&simulation, &when, targets, NULL));
+    assert_true(mf_etd_due(etd) == INT64_MAX);
     // The list was built, and particles sorted, many times.
     assert_true(simulation.list_builds > 10);
-    thermodynamics_clear(&thermodynamics);
-    simulation_clear(&simulation);
+    mf_thermodynamics_clear(&thermodynamics);
+    mf_simulation_clear(&simulation);
 }
 
 static void assert_etd(const struct simulation_setup *setup, const struct etd_grid *grid,
@@ -103,7 +103,7 @@ static void assert_etd(const struct simulation_setup *setup, const struct etd_gr
     const int64_t origins = (SAMPLES - grid->times + 1) / plan->origin_every + 1;
     const size_t blocks = origins < 10 ? (size_t)origins : 10;
     assert_int_equal(etd.blocks, blocks);
-    uint64_t *counts = memory_zeroed(blocks * etd_cells(&etd), sizeof *counts);
+    uint64_t *counts = mf_memory_zeroed(blocks * etd_cells(&etd), sizeof *counts);
     assert_non_null(counts);
     for (int64_t o = 0; o < origins; o++)
         follow(&trajectory, grid, o * plan->origin_every,
@@ -114,9 +114,9 @@ static void assert_etd(const struct simulation_setup *setup, const struct etd_gr
     }
     assert_true(begun > 1000);
     assert_true(escaped > begun / 100 && escaped <= begun);
-    memory_free(counts);
-    memory_free(trajectory.values);
-    etd_clear(&etd);
+    mf_memory_free(counts);
+    mf_memory_free(trajectory.values);
+    mf_etd_clear(&etd);
 }
 
 static const struct etd_grid grid = {.r_minimum = 0.4, .r_maximum = 0.9, .bins = 7, .times = 31};
@@ -150,9 +150,9 @@ static void test_etd_equals_that_of_a_stored_trajectory_whatever_moves_the_parti
     const struct etd_plan plan = {.every = 2, .origin_every = 4};
     struct fluid fluid;
     fluid_groot_warren(&fluid, 200, 0.03);
-    fluid.setup.integrator = &aboba;
+    fluid.setup.integrator = &mf_aboba;
     assert_etd(&fluid.setup, &grid, &plan);
-    fluid.setup.integrator = &velocity_verlet;
+    fluid.setup.integrator = &mf_velocity_verlet;
     fluid.setup.weight = NULL;
     assert_etd(&fluid.setup, &grid, &plan);
     fluid_clear(&fluid);
@@ -164,7 +164,7 @@ static void test_etd_makes_its_own_list_when_that_of_the_forces_is_too_short(voi
     const struct etd_plan plan = {.every = 1, .origin_every = 8};
     struct fluid fluid;
     fluid_groot_warren(&fluid, 200, 0.04);
-    fluid.setup.integrator = &aboba;
+    fluid.setup.integrator = &mf_aboba;
     assert_etd(&fluid.setup, &far, &plan);
     fluid_clear(&fluid);
 }

@@ -29,16 +29,16 @@ static int variant_count;
 static struct table soft, weight, short_weight, long_weight;
 
 static void make_weight(struct table *table, struct formula_power_weight_parameters parameters) {
-    const struct curve curve = {&formula_power_weight, &parameters};
-    assert_ok(table_init_weight(table, &curve));
+    const struct curve curve = {&mf_formula_power_weight, &parameters};
+    assert_ok(mf_table_init_weight(table, &curve));
 }
 
 static int make_tables(void **state) {
     (void)state;
     variant_count = variants_find(variants);
     struct formula_soft_repulsion_parameters parameters = {25, 1};
-    const struct curve curve = {&formula_soft_repulsion, &parameters};
-    assert_ok(table_init_potential(&soft, &curve));
+    const struct curve curve = {&mf_formula_soft_repulsion, &parameters};
+    assert_ok(mf_table_init_potential(&soft, &curve));
     make_weight(&weight, (struct formula_power_weight_parameters){sqrt(4.5), 1, 0, 1});
     make_weight(&short_weight, (struct formula_power_weight_parameters){3, 1, 0, 0.6});
     make_weight(&long_weight, (struct formula_power_weight_parameters){2.589, 1, 0, 1.72});
@@ -47,10 +47,10 @@ static int make_tables(void **state) {
 
 static int clear_tables(void **state) {
     (void)state;
-    table_clear(&soft);
-    table_clear(&weight);
-    table_clear(&short_weight);
-    table_clear(&long_weight);
+    mf_table_clear(&soft);
+    mf_table_clear(&weight);
+    mf_table_clear(&short_weight);
+    mf_table_clear(&long_weight);
     return 0;
 }
 
@@ -60,12 +60,12 @@ static void check_law(const struct box *box, size_t count, const struct pair_law
     const uint64_t step = 0x100000007;
     kept_pairs_init(&kept, box, count, 0.02);
     struct particles *particles = &kept.particles;
-    kept_pairs_use(&kept, &dpd_vv);
+    kept_pairs_use(&kept, &mf_dpd_vv);
     kept.law.friction = &kept.friction;
-    reference_forces(&kept.law, particles, step, NULL);
+    mf_reference_forces(&kept.law, particles, step, NULL);
     double *expected[3] = {NULL};
     for (int d = 0; d < box->dimensions; d++) {
-        expected[d] = memory_zeroed(count, sizeof *expected[d]);
+        expected[d] = mf_memory_zeroed(count, sizeof *expected[d]);
         assert_non_null(expected[d]);
         memcpy(expected[d], particles->force[d], count * sizeof *expected[d]);
     }
@@ -75,7 +75,7 @@ static void check_law(const struct box *box, size_t count, const struct pair_law
         kept.law.precision = variants[v].precision;
         kept_pairs_keep(&kept, step);
         assert_int_equal(kept_pairs_count(&kept.friction), scales.near);
-        assert_ok(friction_add_to_forces(&kept.friction, particles, particles->velocity, 1, true));
+        assert_ok(mf_friction_add_to_forces(&kept.friction, particles, particles->velocity, 1, true));
         for (int d = 0; d < box->dimensions; d++)
             for (size_t k = 0; k < count; k++)
                 if (!is_close(particles->force[d][k], expected[d][k],
@@ -85,7 +85,7 @@ static void check_law(const struct box *box, size_t count, const struct pair_law
                              expected[d][k]);
     }
     for (int d = 0; d < box->dimensions; d++)
-        memory_free(expected[d]);
+        mf_memory_free(expected[d]);
     pair_scales_clear(&scales);
     kept_pairs_clear(&kept);
 }
@@ -101,14 +101,14 @@ static void test_kept_pairs_add_up_to_friction_and_noise_when_types_differ(void 
     const struct box three = {3, {5.1, 4.6, 6.3}}, two = {2, {9.1, 7.7, 1}};
     const struct table parts[] = {weight, short_weight, long_weight};
     struct table omega;
-    assert_ok(table_stack(&omega, parts, 3));
+    assert_ok(mf_table_stack(&omega, parts, 3));
     for (int p = 0; p < 2; p++) {
         struct pair_law law = kept_pairs_law(p ? &soft : NULL, &omega, 0.02);
         law.composition = (struct composition){.types = 2, .count = {120, 323}};
         check_law(&three, 443, &law);
         check_law(&two, 301, &law);
     }
-    table_clear(&omega);
+    mf_table_clear(&omega);
 }
 
 static void test_kept_pairs_add_up_to_friction_and_noise_when_they_are_forces(void **state) {
@@ -131,14 +131,14 @@ static void make_pair(struct kept_pairs *kept, double r) {
     for (int k = 0; k < 2; k++)
         for (int d = 0; d < 3; d++)
             kept->particles.position[d][k] = d == 0 ? 1 + r * k : 1;
-    assert_ok(neighbours_sort_and_build(&kept->neighbours, &kept->particles));
+    assert_ok(mf_neighbours_sort_and_build(&kept->neighbours, &kept->particles));
 }
 
 static double noise(const struct kept_pairs *kept, uint64_t step) {
     const uint32_t seed = (uint32_t)kept->law.seed, high = (uint32_t)(kept->law.seed >> 32);
     const uint32_t word = rng_philox_lane(seed, high, (uint32_t)step, 0, 1,
                                           rng_stream_word(RNG_PAIR_NOISE, (uint32_t)(step >> 32)));
-    return normal_of_word(&kept->friction.normal, word);
+    return mf_normal_of_word(&kept->friction.normal, word);
 }
 
 /// Velocity of approach along the first axis, of the particle with the larger x relative to the
@@ -176,11 +176,11 @@ static void check_pair(const struct integrator *integrator,
         variants_select(&variants[v]);
         kept.law.precision = variants[v].precision;
         const uint64_t step = 7 + (uint64_t)v;
-        particles_draw_velocities(particles, 1, step);
+        mf_particles_draw_velocities(particles, 1, step);
         const double u = relative(particles), across = particles->velocity[1][0];
         kept_pairs_momentum(particles, before, &size);
         kept_pairs_keep(&kept, step);
-        friction_sweep(&kept.friction, particles);
+        mf_friction_sweep(&kept.friction, particles);
         assert_close(relative(particles), law.decay * u + law.kick * noise(&kept, step),
                      factor_tolerance * (fabs(u) + 2));
         assert_identical(particles->velocity[1][0], across);
@@ -194,8 +194,8 @@ static void test_sweep_follows_the_formula_when_there_are_two_particles(void **s
     static const double r[] = {0.003, 0.31, 0.8, 0.9995}, time_steps[] = {1e-4, 0.04, 1};
     for (int n = 0; n < 4; n++)
         for (int t = 0; t < 3; t++) {
-            check_pair(&aboba, exact_law, r[n], time_steps[t]);
-            check_pair(&shardlow, shardlow_law, r[n], time_steps[t]);
+            check_pair(&mf_aboba, exact_law, r[n], time_steps[t]);
+            check_pair(&mf_shardlow, shardlow_law, r[n], time_steps[t]);
         }
 }
 
@@ -206,7 +206,7 @@ static void test_exact_friction_leaves_a_normal_number_when_drawn_often(void **s
     enum { DRAWS = 20000 };
     struct kept_pairs kept = {.law = kept_pairs_law(NULL, &weight, 0.1)};
     make_pair(&kept, 0.4);
-    kept_pairs_use(&kept, &aboba);
+    kept_pairs_use(&kept, &mf_aboba);
     struct particles *particles = &kept.particles;
     const struct law_of_u law = exact_law(sqrt(4.5) * 0.6, 0.1, kept.law.temperature);
     const double variance = law.kick * law.kick;
@@ -216,7 +216,7 @@ static void test_exact_friction_leaves_a_normal_number_when_drawn_often(void **s
         particles->velocity[0][far] = 0.9;
         particles->velocity[0][!far] = -0.6;
         kept_pairs_keep(&kept, step);
-        friction_sweep(&kept.friction, particles);
+        mf_friction_sweep(&kept.friction, particles);
         const double change = relative(particles) - 1.5 * law.decay;
         sum += change;
         squares += change * change;
@@ -236,12 +236,12 @@ static void test_factors_keep_the_temperature_when_the_time_step_is_anything(voi
     const double temperature = 1.3, omega[] = {0, 1e-9, 1e-3, 1, 10, 30};
     for (double time_step = 1e-9; time_step < 1e9; time_step *= 10)
         for (int n = 0; n < 6; n++) {
-            const struct friction_factors exact = friction_factors_of(aboba.friction, omega[n],
+            const struct friction_factors exact = mf_friction_factors_of(mf_aboba.friction, omega[n],
                                                                       time_step, temperature),
-                                          split = friction_factors_of(shardlow.friction, omega[n],
+                                          split = mf_friction_factors_of(mf_shardlow.friction, omega[n],
                                                                       time_step, temperature),
                                           implicit =
-                                              friction_factors_of(aboba_implicit.friction, omega[n],
+                                              mf_friction_factors_of(mf_aboba_implicit.friction, omega[n],
                                                                   time_step, temperature);
             assert_close_relative(exact.amplitude * exact.amplitude,
                                   2 * temperature * exact.damping * (1 - exact.damping), 1e-12);
@@ -258,9 +258,9 @@ static void test_factors_keep_the_temperature_when_the_time_step_is_anything(voi
 /// and 2 k_B T d/Δt of a force.
 static double balanced_square(const struct integrator *integrator, double d,
                               const struct pair_law *law) {
-    if (integrator == &dpd_vv)
+    if (integrator == &mf_dpd_vv)
         return 2 * law->temperature * d / law->time_step;
-    return integrator == &aboba_implicit ? 4 * law->temperature * d
+    return integrator == &mf_aboba_implicit ? 4 * law->temperature * d
                                          : 2 * law->temperature * d * (1 - d);
 }
 
@@ -293,7 +293,7 @@ static void check_balance(const struct integrator *integrator, const struct tabl
 /// of r, a third of them in the intervals of the table in which it jumps.
 static void test_kick_balances_the_damping_when_friction_jumps(void **state) {
     (void)state;
-    static const struct integrator *const with[] = {&aboba, &shardlow, &aboba_implicit, &dpd_vv};
+    static const struct integrator *const with[] = {&mf_aboba, &mf_shardlow, &mf_aboba_implicit, &mf_dpd_vv};
     struct table shell, steep;
     make_weight(&shell, (struct formula_power_weight_parameters){10, 1e-6, 0.97, 1});
     make_weight(&steep, (struct formula_power_weight_parameters){8, 2, 0, 1});
@@ -305,8 +305,8 @@ static void test_kick_balances_the_damping_when_friction_jumps(void **state) {
             check_balance(with[k], &shell, 0.005, 0.971 + 0.029 * part);
             check_balance(with[k], &steep, 0.1, 0.01 + 0.98 * part);
         }
-    table_clear(&shell);
-    table_clear(&steep);
+    mf_table_clear(&shell);
+    mf_table_clear(&steep);
 }
 
 static void test_sweep_conserves_momentum_when_particles_are_many(void **state) {
@@ -314,11 +314,11 @@ static void test_sweep_conserves_momentum_when_particles_are_many(void **state) 
     struct kept_pairs kept = {.law = kept_pairs_law(&soft, &weight, 0.1)};
     double before[3], size;
     kept_pairs_init(&kept, &(struct box){3, {5.1, 4.6, 6.3}}, 443, 0);
-    kept_pairs_use(&kept, &aboba);
+    kept_pairs_use(&kept, &mf_aboba);
     kept_pairs_momentum(&kept.particles, before, &size);
     for (uint64_t step = 1; step <= 100; step++) {
         kept_pairs_keep(&kept, step);
-        friction_sweep(&kept.friction, &kept.particles);
+        mf_friction_sweep(&kept.friction, &kept.particles);
         kept_pairs_assert_momentum(&kept.particles, before);
     }
     kept_pairs_clear(&kept);

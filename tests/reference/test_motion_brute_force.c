@@ -43,16 +43,16 @@ static void make_trajectory(struct trajectory *trajectory, const struct simulati
     trajectory->dimensions = setup->box.dimensions;
     trajectory->count = (size_t)setup->placement.count;
     trajectory->values =
-        memory_zeroed((size_t)(SAMPLES * 2 * trajectory->dimensions) * trajectory->count,
+        mf_memory_zeroed((size_t)(SAMPLES * 2 * trajectory->dimensions) * trajectory->count,
                       sizeof *trajectory->values);
     assert_non_null(trajectory->values);
-    assert_ok(simulation_init(&simulation, setup, NULL));
-    assert_ok(simulation_run(&simulation, EQUILIBRATION));
+    assert_ok(mf_simulation_init(&simulation, setup, NULL));
+    assert_ok(mf_simulation_run(&simulation, EQUILIBRATION));
     for (int sample = 0; sample < SAMPLES; sample++) {
         store(trajectory, sample, &simulation.particles);
-        assert_ok(simulation_run(&simulation, EVERY));
+        assert_ok(mf_simulation_run(&simulation, EVERY));
     }
-    simulation_clear(&simulation);
+    mf_simulation_clear(&simulation);
 }
 
 /// Put every sample into the frame of its centre of mass.
@@ -115,13 +115,13 @@ static void assert_motion(const struct simulation_setup *setup) {
     const struct motion_curves curves = {c[0], c[1], c[2], c[3]};
     make_trajectory(&trajectory, setup);
     centre(&trajectory);
-    assert_ok(simulation_init(&simulation, setup, NULL));
-    assert_ok(motion_init(&motion, &plan, &simulation, EQUILIBRATION, 990));
-    assert_ok(thermodynamics_init(&thermodynamics, 99));
-    assert_ok(measure_equilibrate(&simulation, &when, &temperature, NULL));
+    assert_ok(mf_simulation_init(&simulation, setup, NULL));
+    assert_ok(mf_motion_init(&motion, &plan, &simulation, EQUILIBRATION, 990));
+    assert_ok(mf_thermodynamics_init(&thermodynamics, 99));
+    assert_ok(mf_measure_equilibrate(&simulation, &when, &temperature, NULL));
     const struct measure_targets targets = {.thermodynamics = &thermodynamics, .motion = &motion};
-    assert_ok(measure_sample(&simulation, &when, targets, NULL));
-    const struct motion_summary s = motion_result(&motion, &curves);
+    assert_ok(mf_measure_sample(&simulation, &when, targets, NULL));
+    const struct motion_summary s = mf_motion_result(&motion, &curves);
     // Whole windows begin at 0, 4, … 304: 77 of them, of which 64 blocks of equal size take 76.
     assert_int_equal(motion.blocks * motion.each, 76);
     correlate_all(&trajectory, 0, 76, msd);
@@ -138,10 +138,10 @@ static void assert_motion(const struct simulation_setup *setup) {
     assert_close(s.green_kubo, integral * spacing / dimensions, rounding);
     // The list was built, and particles sorted, many times; some have changed boxes.
     assert_true(simulation.list_builds > 50);
-    thermodynamics_clear(&thermodynamics);
-    motion_clear(&motion);
-    simulation_clear(&simulation);
-    memory_free(trajectory.values);
+    mf_thermodynamics_clear(&thermodynamics);
+    mf_motion_clear(&motion);
+    mf_simulation_clear(&simulation);
+    mf_memory_free(trajectory.values);
 }
 
 static void test_motion_equals_that_of_a_stored_trajectory(void **state) {

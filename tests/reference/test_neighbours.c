@@ -27,7 +27,7 @@ static double square_distance(const struct particles *particles, size_t i, size_
 /// How often particle j stands in the list of i: shape [count, count].
 static uint8_t *count_entries(const struct neighbours *neighbours) {
     const size_t count = neighbours->count;
-    uint8_t *entries = memory_zeroed(count * count, 1);
+    uint8_t *entries = mf_memory_zeroed(count * count, 1);
     assert_non_null(entries);
     for (size_t i = 0; i < count; i++)
         for (size_t k = neighbours->start[i]; k < neighbours->stop[i]; k++) {
@@ -77,42 +77,42 @@ static size_t check_complete(const struct neighbours *neighbours, const uint8_t 
 static void check_hot_simulation(const struct box *box, int64_t count, double skin) {
     struct curve curve;
     struct table potential, weight;
-    assert_ok(curve_create(&curve, &formula_soft_repulsion));
-    assert_ok(table_init_potential(&potential, &curve));
-    curve_clear(&curve);
-    assert_ok(curve_create(&curve, &formula_power_weight));
-    assert_ok(table_init_weight(&weight, &curve));
-    curve_clear(&curve);
+    assert_ok(mf_curve_create(&curve, &mf_formula_soft_repulsion));
+    assert_ok(mf_table_init_potential(&potential, &curve));
+    mf_curve_clear(&curve);
+    assert_ok(mf_curve_create(&curve, &mf_formula_power_weight));
+    assert_ok(mf_table_init_weight(&weight, &curve));
+    mf_curve_clear(&curve);
     const struct simulation_setup setup = {.box = *box,
                                            .placement = {.count = count, .jitter = 0.2},
                                            .temperature = 10,
                                            .time_step = 0.01,
                                            .skin = skin,
                                            .temperature_limit = 20,
-                                           .integrator = &dpd_verlet,
+                                           .integrator = &mf_dpd_verlet,
                                            .integrator_parameters = {0.5},
                                            .potential = &potential,
                                            .weight = &weight,
                                            .seed = 3};
     struct simulation simulation;
-    assert_ok(simulation_init(&simulation, &setup, NULL));
+    assert_ok(mf_simulation_init(&simulation, &setup, NULL));
     uint8_t *entries = count_entries(&simulation.neighbours);
     uint64_t builds = simulation.list_builds;
     for (int step = 0; step < 3000; step++) {
-        assert_ok(simulation_run(&simulation, 1));
+        assert_ok(mf_simulation_run(&simulation, 1));
         if (simulation.list_builds != builds) {
             builds = simulation.list_builds;
-            memory_free(entries);
+            mf_memory_free(entries);
             entries = count_entries(&simulation.neighbours);
             check_entries(&simulation.neighbours, entries);
         }
         assert_true(check_complete(&simulation.neighbours, entries, &simulation.particles, 1) > 0);
     }
     assert_in_range(builds, 30, 2990); // lists were built, and lists were kept
-    memory_free(entries);
-    simulation_clear(&simulation);
-    table_clear(&potential);
-    table_clear(&weight);
+    mf_memory_free(entries);
+    mf_simulation_clear(&simulation);
+    mf_table_clear(&potential);
+    mf_table_clear(&weight);
 }
 
 static void test_neighbours_are_complete_when_a_simulation_is_hot(void **state) {
@@ -124,12 +124,12 @@ static void test_neighbours_are_complete_when_a_simulation_is_hot(void **state) 
 
 static void make_gas(struct particles *particles, const struct box *box, size_t count,
                      double speed) {
-    assert_ok(particles_init(particles, box, count));
-    struct rng_sequence sequence = rng_sequence_begin(9, RNG_PLACEMENT, 0, 0);
+    assert_ok(mf_particles_init(particles, box, count));
+    struct rng_sequence sequence = mf_rng_sequence_begin(9, RNG_PLACEMENT, 0, 0);
     for (int d = 0; d < box->dimensions; d++)
         for (size_t k = 0; k < count; k++) {
-            particles->position[d][k] = box->length[d] * rng_sequence_uniform(&sequence);
-            particles->velocity[d][k] = speed * (rng_sequence_uniform(&sequence) - 0.3);
+            particles->position[d][k] = box->length[d] * mf_rng_sequence_uniform(&sequence);
+            particles->velocity[d][k] = speed * (mf_rng_sequence_uniform(&sequence) - 0.3);
         }
 }
 
@@ -137,7 +137,7 @@ static void drift(struct particles *particles, double time) {
     for (int d = 0; d < particles->box.dimensions; d++)
         for (size_t k = 0; k < particles->count; k++)
             particles->position[d][k] += time * particles->velocity[d][k];
-    particles_update_fractions(particles);
+    mf_particles_update_fractions(particles);
 }
 
 /// Free flight over many boxes, rebuilt only when stale.
@@ -146,15 +146,15 @@ static void check_drift(enum neighbours_kind kind, const struct box *box, size_t
     struct particles particles;
     struct neighbours neighbours;
     make_gas(&particles, box, count, 3);
-    assert_ok(neighbours_init(&neighbours, kind, box, count, cutoff, skin));
-    assert_ok(neighbours_sort_and_build(&neighbours, &particles));
+    assert_ok(mf_neighbours_init(&neighbours, kind, box, count, cutoff, skin));
+    assert_ok(mf_neighbours_sort_and_build(&neighbours, &particles));
     uint8_t *entries = count_entries(&neighbours);
     int builds = 0;
     for (int step = 0; step < 2000; step++) {
         drift(&particles, 0.01);
-        if (neighbours_are_stale(&neighbours, &particles)) {
-            assert_ok(neighbours_sort_and_build(&neighbours, &particles));
-            memory_free(entries);
+        if (mf_neighbours_are_stale(&neighbours, &particles)) {
+            assert_ok(mf_neighbours_sort_and_build(&neighbours, &particles));
+            mf_memory_free(entries);
             entries = count_entries(&neighbours);
             check_entries(&neighbours, entries);
             check_complete(&neighbours, entries, &particles, neighbours.range * (1 - 1e-6));
@@ -167,9 +167,9 @@ static void check_drift(enum neighbours_kind kind, const struct box *box, size_t
     for (size_t k = 0; k < count; k++)
         farthest = abs(particles.image[0][k]) > farthest ? abs(particles.image[0][k]) : farthest;
     assert_true(farthest > 3);
-    memory_free(entries);
-    particles_clear(&particles);
-    neighbours_clear(&neighbours);
+    mf_memory_free(entries);
+    mf_particles_clear(&particles);
+    mf_neighbours_clear(&neighbours);
 }
 
 static void test_neighbours_are_complete_when_particles_drift_by_many_boxes(void **state) {
@@ -190,15 +190,15 @@ static void test_neighbours_are_complete_when_particles_are_few(void **state) {
         make_gas(&particles, &box, count, 1);
         for (int kind = NEIGHBOURS_HALF; kind <= NEIGHBOURS_FULL; kind++) {
             assert_ok(
-                neighbours_init(&neighbours, (enum neighbours_kind)kind, &box, count, 1.2, 0.2));
-            assert_ok(neighbours_sort_and_build(&neighbours, &particles));
+                mf_neighbours_init(&neighbours, (enum neighbours_kind)kind, &box, count, 1.2, 0.2));
+            assert_ok(mf_neighbours_sort_and_build(&neighbours, &particles));
             uint8_t *entries = count_entries(&neighbours);
             check_entries(&neighbours, entries);
             check_complete(&neighbours, entries, &particles, neighbours.range * (1 - 1e-6));
-            memory_free(entries);
-            neighbours_clear(&neighbours);
+            mf_memory_free(entries);
+            mf_neighbours_clear(&neighbours);
         }
-        particles_clear(&particles);
+        mf_particles_clear(&particles);
     }
 }
 
@@ -220,16 +220,16 @@ static void test_neighbours_are_complete_when_there_are_several_cells_to_the_ran
             struct particles particles;
             struct neighbours neighbours;
             make_gas(&particles, &cases[c].box, cases[c].count, 1);
-            assert_ok(neighbours_init(&neighbours, (enum neighbours_kind)kind, &cases[c].box,
+            assert_ok(mf_neighbours_init(&neighbours, (enum neighbours_kind)kind, &cases[c].box,
                                       cases[c].count, 1.7, 0.3));
             assert_memory_equal(neighbours.reach, cases[c].reach, sizeof neighbours.reach);
-            assert_ok(neighbours_sort_and_build(&neighbours, &particles));
+            assert_ok(mf_neighbours_sort_and_build(&neighbours, &particles));
             uint8_t *entries = count_entries(&neighbours);
             check_entries(&neighbours, entries);
             check_complete(&neighbours, entries, &particles, neighbours.range * (1 - 1e-6));
-            memory_free(entries);
-            neighbours_clear(&neighbours);
-            particles_clear(&particles);
+            mf_memory_free(entries);
+            mf_neighbours_clear(&neighbours);
+            mf_particles_clear(&particles);
         }
 }
 
@@ -240,16 +240,16 @@ static void test_neighbours_are_complete_when_all_particles_crowd_in_one_cell(vo
     const struct box box = {3, {8, 8, 8}};
     struct particles particles;
     struct neighbours neighbours;
-    assert_ok(particles_init(&particles, &box, COUNT));
-    assert_ok(neighbours_init(&neighbours, NEIGHBOURS_HALF, &box, COUNT, 1, 0.3));
-    assert_ok(neighbours_sort_and_build(&neighbours, &particles));
+    assert_ok(mf_particles_init(&particles, &box, COUNT));
+    assert_ok(mf_neighbours_init(&neighbours, NEIGHBOURS_HALF, &box, COUNT, 1, 0.3));
+    assert_ok(mf_neighbours_sort_and_build(&neighbours, &particles));
     uint8_t *entries = count_entries(&neighbours);
     check_entries(&neighbours, entries);
     assert_int_equal(check_complete(&neighbours, entries, &particles, 1), COUNT * (COUNT - 1) / 2);
-    assert_true(neighbours.list_capacity < 2 * neighbours_entries(&neighbours));
-    memory_free(entries);
-    neighbours_clear(&neighbours);
-    particles_clear(&particles);
+    assert_true(neighbours.list_capacity < 2 * mf_neighbours_entries(&neighbours));
+    mf_memory_free(entries);
+    mf_neighbours_clear(&neighbours);
+    mf_particles_clear(&particles);
 }
 
 /// Entries beyond the range would cost time in every step.
@@ -259,8 +259,8 @@ static void test_neighbours_list_only_pairs_in_range_when_built(void **state) {
     struct particles particles;
     struct neighbours neighbours;
     make_gas(&particles, &box, 500, 1);
-    assert_ok(neighbours_init(&neighbours, NEIGHBOURS_HALF, &box, 500, 1.2, 0.3));
-    assert_ok(neighbours_sort_and_build(&neighbours, &particles));
+    assert_ok(mf_neighbours_init(&neighbours, NEIGHBOURS_HALF, &box, 500, 1.2, 0.3));
+    assert_ok(mf_neighbours_sort_and_build(&neighbours, &particles));
     const double limit = neighbours.range * neighbours.range * (1 + 1e-5);
     for (size_t i = 0; i < 500; i++)
         for (size_t k = neighbours.start[i]; k < neighbours.stop[i]; k++)
@@ -270,11 +270,11 @@ static void test_neighbours_list_only_pairs_in_range_when_built(void **state) {
     for (size_t i = 0; i < 500; i++)
         for (size_t j = 0; j < i; j++)
             pairs += square_distance(&particles, i, j) < neighbours.range * neighbours.range;
-    assert_in_range(neighbours_listed(&neighbours), pairs,
+    assert_in_range(mf_neighbours_listed(&neighbours), pairs,
                     pairs + 1); // one may be at the very range
-    assert_true(neighbours_entries(&neighbours) > pairs + 500);
-    neighbours_clear(&neighbours);
-    particles_clear(&particles);
+    assert_true(mf_neighbours_entries(&neighbours) > pairs + 500);
+    mf_neighbours_clear(&neighbours);
+    mf_particles_clear(&particles);
 }
 
 static void
@@ -284,21 +284,21 @@ test_neighbours_are_stale_when_a_particle_moved_half_the_skin_in_small_steps(voi
     struct particles particles;
     struct neighbours neighbours;
     make_gas(&particles, &box, 100, 1);
-    assert_ok(neighbours_init(&neighbours, NEIGHBOURS_HALF, &box, 100, 1, 0.4));
-    assert_ok(neighbours_sort_and_build(&neighbours, &particles));
-    assert_false(neighbours_are_stale(&neighbours, &particles));
+    assert_ok(mf_neighbours_init(&neighbours, NEIGHBOURS_HALF, &box, 100, 1, 0.4));
+    assert_ok(mf_neighbours_sort_and_build(&neighbours, &particles));
+    assert_false(mf_neighbours_are_stale(&neighbours, &particles));
     for (int step = 0; step < 19; step++) {
         particles.position[2][57] += 0.01;
-        assert_false(neighbours_are_stale(&neighbours, &particles));
+        assert_false(mf_neighbours_are_stale(&neighbours, &particles));
     }
     particles.position[2][57] += 0.0101;
-    assert_true(neighbours_are_stale(&neighbours, &particles));
+    assert_true(mf_neighbours_are_stale(&neighbours, &particles));
     particles.position[2][57] -= 0.02;
-    assert_false(neighbours_are_stale(&neighbours, &particles));
+    assert_false(mf_neighbours_are_stale(&neighbours, &particles));
     particles.position[0][3] += 6; // whole boxes count: positions since the build are unwrapped
-    assert_true(neighbours_are_stale(&neighbours, &particles));
-    neighbours_clear(&neighbours);
-    particles_clear(&particles);
+    assert_true(mf_neighbours_are_stale(&neighbours, &particles));
+    mf_neighbours_clear(&neighbours);
+    mf_particles_clear(&particles);
 }
 
 /// A restart knows the positions at the last build and the order of the particles, not the list.
@@ -309,31 +309,31 @@ static void test_neighbours_rebuild_gives_the_same_list_when_restarted(void **st
         struct particles particles;
         struct neighbours neighbours, restarted;
         make_gas(&particles, &box, 400, 2);
-        assert_ok(neighbours_init(&neighbours, (enum neighbours_kind)kind, &box, 400, 1.1, 0.5));
-        assert_ok(neighbours_init(&restarted, (enum neighbours_kind)kind, &box, 400, 1.1, 0.5));
+        assert_ok(mf_neighbours_init(&neighbours, (enum neighbours_kind)kind, &box, 400, 1.1, 0.5));
+        assert_ok(mf_neighbours_init(&restarted, (enum neighbours_kind)kind, &box, 400, 1.1, 0.5));
         for (int step = 0; step < 300; step++) {
             drift(&particles, 0.01);
-            if (neighbours_are_stale(&neighbours, &particles))
-                assert_ok(neighbours_sort_and_build(&neighbours, &particles));
+            if (mf_neighbours_are_stale(&neighbours, &particles))
+                assert_ok(mf_neighbours_sort_and_build(&neighbours, &particles));
         }
-        assert_ok(neighbours_sort_and_build(&neighbours, &particles));
+        assert_ok(mf_neighbours_sort_and_build(&neighbours, &particles));
         for (int step = 0; step < 5; step++)
             drift(&particles, 0.01);
         double x = particles.position[0][17];
         for (int d = 0; d < 3; d++)
             memcpy(restarted.built[d], neighbours.built[d], 400 * sizeof(double));
-        assert_ok(neighbours_rebuild(&restarted, &particles));
+        assert_ok(mf_neighbours_rebuild(&restarted, &particles));
         assert_identical(particles.position[0][17], x);
         assert_memory_equal(restarted.start, neighbours.start, 401 * sizeof(size_t));
         assert_memory_equal(restarted.list, neighbours.list,
-                            neighbours_entries(&neighbours) * sizeof *neighbours.list);
+                            mf_neighbours_entries(&neighbours) * sizeof *neighbours.list);
         for (int d = 0; d < 3; d++)
             assert_memory_equal(restarted.built[d], neighbours.built[d], 400 * sizeof(double));
         // The fractions are those of the present positions again.
         assert_int_equal(particles.fraction[0][17], box_fraction(x, 1 / box.length[0]));
-        neighbours_clear(&neighbours);
-        neighbours_clear(&restarted);
-        particles_clear(&particles);
+        mf_neighbours_clear(&neighbours);
+        mf_neighbours_clear(&restarted);
+        mf_particles_clear(&particles);
     }
 }
 
@@ -358,14 +358,14 @@ static void check_visit(const struct box *box, size_t count, double range) {
     struct particles particles;
     struct neighbours neighbours;
     make_gas(&particles, box, count, 1);
-    assert_ok(neighbours_init(&neighbours, NEIGHBOURS_HALF, box, count, 1.4, 0.3));
-    assert_ok(neighbours_sort_and_build(&neighbours, &particles));
+    assert_ok(mf_neighbours_init(&neighbours, NEIGHBOURS_HALF, box, count, 1.4, 0.3));
+    assert_ok(mf_neighbours_sort_and_build(&neighbours, &particles));
     struct seen seen = {.capacity = count * count}, expected = {.capacity = count * count};
-    seen.squares = memory_zeroed(seen.capacity, sizeof(double));
-    expected.squares = memory_zeroed(expected.capacity, sizeof(double));
+    seen.squares = mf_memory_zeroed(seen.capacity, sizeof(double));
+    expected.squares = mf_memory_zeroed(expected.capacity, sizeof(double));
     assert_non_null(seen.squares);
     assert_non_null(expected.squares);
-    neighbours_visit_distances(&neighbours, &particles, range, remember, &seen);
+    mf_neighbours_visit_distances(&neighbours, &particles, range, remember, &seen);
     for (size_t i = 0; i < count; i++)
         for (size_t j = i + 1; j < count; j++) {
             const double square = square_distance(&particles, i, j);
@@ -378,10 +378,10 @@ static void check_visit(const struct box *box, size_t count, double range) {
     qsort(expected.squares, expected.count, sizeof(double), compare_doubles);
     for (size_t k = 0; k < seen.count; k++)
         assert_close_relative(seen.squares[k], expected.squares[k], 1e-6); // single precision
-    memory_free(seen.squares);
-    memory_free(expected.squares);
-    neighbours_clear(&neighbours);
-    particles_clear(&particles);
+    mf_memory_free(seen.squares);
+    mf_memory_free(expected.squares);
+    mf_neighbours_clear(&neighbours);
+    mf_particles_clear(&particles);
 }
 
 static void test_neighbours_visit_distances_finds_all_pairs_when_in_range(void **state) {
@@ -397,36 +397,36 @@ static void test_neighbours_visit_distances_finds_all_pairs_when_in_range(void *
 /// distances in single precision are as often beyond the cutoff as within.
 static void check_very_cutoff(const struct box *box, double cutoff) {
     enum { TRIES = 500 };
-    struct rng_sequence sequence = rng_sequence_begin(11, RNG_PLACEMENT, 0, 0);
+    struct rng_sequence sequence = mf_rng_sequence_begin(11, RNG_PLACEMENT, 0, 0);
     struct particles particles;
     struct neighbours neighbours;
-    assert_ok(particles_init(&particles, box, 2));
-    assert_ok(neighbours_init(&neighbours, NEIGHBOURS_FULL, box, 2, cutoff, 0));
+    assert_ok(mf_particles_init(&particles, box, 2));
+    assert_ok(mf_neighbours_init(&neighbours, NEIGHBOURS_FULL, box, 2, cutoff, 0));
     for (int k = 0; k < TRIES; k++) {
         double direction[3], square = 0;
         for (int d = 0; d < box->dimensions; d++) {
-            direction[d] = rng_sequence_uniform(&sequence) - 0.5;
+            direction[d] = mf_rng_sequence_uniform(&sequence) - 0.5;
             square += direction[d] * direction[d];
         }
         for (int d = 0; d < box->dimensions; d++) {
-            particles.position[d][0] = box->length[d] * rng_sequence_uniform(&sequence);
+            particles.position[d][0] = box->length[d] * mf_rng_sequence_uniform(&sequence);
             particles.position[d][1] =
                 particles.position[d][0] + direction[d] / sqrt(square) * cutoff * (1 - 1e-14 * k);
         }
-        assert_ok(neighbours_sort_and_build(&neighbours, &particles));
+        assert_ok(mf_neighbours_sort_and_build(&neighbours, &particles));
         // Wrapping may have rounded it beyond.
         if (square_distance(&particles, 0, 1) < cutoff * cutoff)
             assert_int_equal(neighbours.stop[0] - neighbours.start[0], 1);
     }
-    particles_clear(&particles);
-    neighbours_clear(&neighbours);
+    mf_particles_clear(&particles);
+    mf_neighbours_clear(&neighbours);
 }
 
 static void test_neighbours_list_a_pair_when_it_is_at_the_very_cutoff(void **state) {
     (void)state;
     static const char *const instruction_sets[] = {"portable", "avx2", "avx512"};
     for (int s = 0; s < 3; s++) {
-        if (!simd_select(instruction_sets[s]))
+        if (!mf_simd_select(instruction_sets[s]))
             continue;
         check_very_cutoff(&(struct box){3, {4.1, 3.3, 3.9}}, 1.3);
         check_very_cutoff(&(struct box){2, {7.5, 6.1, 1}}, 1.3);
@@ -438,13 +438,13 @@ static void test_neighbours_init_refuses_when_the_box_is_below_two_cutoffs(void 
     (void)state;
     struct neighbours neighbours;
     assert_fails(
-        neighbours_init(&neighbours, NEIGHBOURS_HALF, &(struct box){3, {6, 1.99, 6}}, 10, 1, 0.3),
+        mf_neighbours_init(&neighbours, NEIGHBOURS_HALF, &(struct box){3, {6, 1.99, 6}}, 10, 1, 0.3),
         STATUS_BAD_INPUT, "twice the cutoff");
     assert_ok(
-        neighbours_init(&neighbours, NEIGHBOURS_HALF, &(struct box){2, {6, 2.1, 1}}, 10, 1, 0.3));
+        mf_neighbours_init(&neighbours, NEIGHBOURS_HALF, &(struct box){2, {6, 2.1, 1}}, 10, 1, 0.3));
     assert_close(neighbours.range, 1.05, 1e-12); // the skin gives way
     assert_close(neighbours.skin, 0.05, 1e-12);
-    neighbours_clear(&neighbours);
+    mf_neighbours_clear(&neighbours);
 }
 
 int main(void) {

@@ -47,44 +47,44 @@ static void make_sampled(struct curve *curve) {
         r[k] = 0.4 + 1.2 * k / (POINTS - 1);
         phi[k] = 5 * exp(-4 * r[k]) * cos(6 * r[k]) * (1.6 - r[k]);
     }
-    assert_ok(sampled_create(curve, r, phi, POINTS));
+    assert_ok(mf_sampled_create(curve, r, phi, POINTS));
 }
 
 static int make_tables(void **state) {
     (void)state;
     variant_count = variants_find(variants);
     struct curve curve;
-    assert_ok(curve_create(&curve, &formula_soft_repulsion));
-    assert_ok(table_init_potential(&tables.soft, &curve));
-    curve_clear(&curve);
-    assert_ok(curve_create(&curve, &formula_lennard_jones));
-    assert_ok(table_init_potential(&tables.lennard_jones, &curve));
-    curve_clear(&curve);
-    assert_ok(curve_create(&curve, &formula_gaussian));
+    assert_ok(mf_curve_create(&curve, &mf_formula_soft_repulsion));
+    assert_ok(mf_table_init_potential(&tables.soft, &curve));
+    mf_curve_clear(&curve);
+    assert_ok(mf_curve_create(&curve, &mf_formula_lennard_jones));
+    assert_ok(mf_table_init_potential(&tables.lennard_jones, &curve));
+    mf_curve_clear(&curve);
+    assert_ok(mf_curve_create(&curve, &mf_formula_gaussian));
     ((struct formula_gaussian_parameters *)curve.parameters)->cutoff = 2;
-    assert_ok(table_init_potential(&tables.gaussian, &curve));
-    curve_clear(&curve);
+    assert_ok(mf_table_init_potential(&tables.gaussian, &curve));
+    mf_curve_clear(&curve);
     make_sampled(&curve);
-    assert_ok(table_init_potential(&tables.sampled, &curve));
-    curve_clear(&curve);
-    assert_ok(curve_create(&curve, &formula_power_weight));
-    assert_ok(table_init_weight(&tables.weight, &curve));
+    assert_ok(mf_table_init_potential(&tables.sampled, &curve));
+    mf_curve_clear(&curve);
+    assert_ok(mf_curve_create(&curve, &mf_formula_power_weight));
+    assert_ok(mf_table_init_weight(&tables.weight, &curve));
     struct formula_power_weight_parameters *weight = curve.parameters;
     *weight = (struct formula_power_weight_parameters){
         .sigma = 2.589, .exponent = 1, .inner_cutoff = 0.596, .cutoff = 1.72};
-    assert_ok(table_init_weight(&tables.thesis_weight, &curve));
-    curve_clear(&curve);
+    assert_ok(mf_table_init_weight(&tables.thesis_weight, &curve));
+    mf_curve_clear(&curve);
     return 0;
 }
 
 static int clear_tables(void **state) {
     (void)state;
-    table_clear(&tables.soft);
-    table_clear(&tables.lennard_jones);
-    table_clear(&tables.gaussian);
-    table_clear(&tables.sampled);
-    table_clear(&tables.weight);
-    table_clear(&tables.thesis_weight);
+    mf_table_clear(&tables.soft);
+    mf_table_clear(&tables.lennard_jones);
+    mf_table_clear(&tables.gaussian);
+    mf_table_clear(&tables.sampled);
+    mf_table_clear(&tables.weight);
+    mf_table_clear(&tables.thesis_weight);
     return 0;
 }
 
@@ -108,37 +108,37 @@ static struct pair_law make_law(const struct table *potential, const struct tabl
 
 /// Uniform random positions; CLUSTERED: within 0.6 of the corner, on all sides of it.
 static void place_random(struct particles *particles, double reach, uint64_t seed) {
-    struct rng_sequence sequence = rng_sequence_begin(seed, RNG_PLACEMENT, 0, 0);
+    struct rng_sequence sequence = mf_rng_sequence_begin(seed, RNG_PLACEMENT, 0, 0);
     for (size_t k = 0; k < particles->count; k++)
         for (int d = 0; d < particles->box.dimensions; d++) {
             const double width = reach > 0 ? 2 * reach : particles->box.length[d];
-            particles->position[d][k] = width * (rng_sequence_uniform(&sequence) - 0.5);
+            particles->position[d][k] = width * (mf_rng_sequence_uniform(&sequence) - 0.5);
         }
-    particles_wrap(particles);
+    mf_particles_wrap(particles);
 }
 
 static void make_particles(struct particles *particles, const struct system *system) {
-    assert_ok(particles_init(particles, &system->box, system->count));
-    assert_ok(particles_keep_precise(particles));
+    assert_ok(mf_particles_init(particles, &system->box, system->count));
+    assert_ok(mf_particles_keep_precise(particles));
     if (system->arrangement == LATTICE)
-        placement_lattice(particles, 0.1, 5);
+        mf_placement_lattice(particles, 0.1, 5);
     else
         place_random(particles, system->arrangement == CLUSTERED ? 0.6 : 0, 5);
-    particles_draw_velocities(particles, 1.3, 6);
+    mf_particles_draw_velocities(particles, 1.3, 6);
 }
 
 /// Particles, sorted, with their list and what the kernels read.
 static void make_system(struct particles *particles, struct neighbours *neighbours,
                         const struct system *system, const struct pair_law *law) {
     make_particles(particles, system);
-    assert_ok(neighbours_init(neighbours, NEIGHBOURS_HALF, &system->box, system->count,
-                              pair_cutoff(law), system->skin));
-    assert_ok(neighbours_sort_and_build(neighbours, particles));
-    particles_update_motion(particles, 0);
+    assert_ok(mf_neighbours_init(neighbours, NEIGHBOURS_HALF, &system->box, system->count,
+                              mf_pair_cutoff(law), system->skin));
+    assert_ok(mf_neighbours_sort_and_build(neighbours, particles));
+    mf_particles_update_motion(particles, 0);
 }
 
 static double *copy_forces(const struct particles *particles) {
-    double *copy = memory_zeroed(3 * particles->count, sizeof *copy);
+    double *copy = mf_memory_zeroed(3 * particles->count, sizeof *copy);
     assert_non_null(copy);
     for (int d = 0; d < particles->box.dimensions; d++)
         memcpy(copy + (size_t)d * particles->count, particles->force[d],
@@ -185,30 +185,30 @@ static void check_law(const struct system *system, const struct pair_law *of_any
     struct pair_sums expected, sums;
     const uint64_t step = 0x100000007;
     make_system(&particles, &neighbours, system, &law);
-    reference_forces(&law, &particles, step, &expected);
+    mf_reference_forces(&law, &particles, step, &expected);
     double *reference = copy_forces(&particles);
     struct pair_scales scales = pair_scales_find(&law, &particles);
     for (int v = 0; v < variant_count; v++) {
         const struct tolerances allowed = tolerances[variants[v].precision];
         variants_select(&variants[v]);
-        assert_string_equal(simd_name(), variants[v].instruction_set);
+        assert_string_equal(mf_simd_name(), variants[v].instruction_set);
         law.precision = variants[v].precision;
         char label[100];
         snprintf(label, sizeof label, "%s, %dD, N = %zu, potential %d, weight %d", variants[v].name,
                  system->box.dimensions, system->count, law.potential != NULL, law.weight != NULL);
-        pair_forces(&law, &particles, &neighbours, step, PAIR_FORCES, NULL);
+        mf_pair_forces(&law, &particles, &neighbours, step, PAIR_FORCES, NULL);
         check_forces(&particles, reference, scales.force, allowed.force, label);
         check_momentum(&particles, label);
         double *without_sums = copy_forces(&particles);
-        pair_forces(&law, &particles, &neighbours, step, PAIR_FORCES_AND_SUMS, &sums);
+        mf_pair_forces(&law, &particles, &neighbours, step, PAIR_FORCES_AND_SUMS, &sums);
         check_forces(&particles, without_sums, scales.force, 0, label);
         check_sums(&sums, &expected, &scales, allowed.sum);
-        memory_free(without_sums);
+        mf_memory_free(without_sums);
     }
-    memory_free(reference);
+    mf_memory_free(reference);
     pair_scales_clear(&scales);
-    particles_clear(&particles);
-    neighbours_clear(&neighbours);
+    mf_particles_clear(&particles);
+    mf_neighbours_clear(&neighbours);
 }
 
 /// Potential alone, weight alone, and both; the weight's range equal to, below and above Φ's.
@@ -283,15 +283,15 @@ static void check_mixture(const struct system *system, const struct composition 
                                            &tables.weight,        NULL,
                                            &tables.thesis_weight, &tables.weight};
     struct table parts[2][6] = {{{0}}}, potential, weight;
-    const int pairs = composition_pairs(composition);
+    const int pairs = mf_composition_pairs(composition);
     for (int p = 0; p < pairs; p++) {
         if (potentials[p])
             parts[0][p] = *potentials[p];
         if (weights[p])
             parts[1][p] = *weights[p];
     }
-    assert_ok(table_stack(&potential, parts[0], pairs));
-    assert_ok(table_stack(&weight, parts[1], pairs));
+    assert_ok(mf_table_stack(&potential, parts[0], pairs));
+    assert_ok(mf_table_stack(&weight, parts[1], pairs));
     struct pair_law laws[] = {make_law(&potential, NULL), make_law(NULL, &weight),
                               make_law(&potential, &weight), make_law(&tables.soft, &weight),
                               make_law(&potential, &tables.weight)};
@@ -299,8 +299,8 @@ static void check_mixture(const struct system *system, const struct composition 
         laws[n].composition = *composition;
         check_law(system, &laws[n]);
     }
-    table_clear(&potential);
-    table_clear(&weight);
+    mf_table_clear(&potential);
+    mf_table_clear(&weight);
 }
 
 static void test_pair_kernels_agree_with_all_pairs_when_types_differ(void **state) {
@@ -339,15 +339,15 @@ static void test_pair_kernels_give_no_force_when_there_is_no_law(void **state) {
     struct neighbours neighbours;
     struct pair_sums sums = {1, 1};
     make_system(&particles, &neighbours, &system, &some);
-    pair_forces(&some, &particles, &neighbours, 1, PAIR_FORCES, NULL);
-    assert_true(particles_largest_force(&particles) > 0);
-    pair_forces(&none, &particles, &neighbours, 1, PAIR_FORCES_AND_SUMS, &sums);
-    assert_identical(particles_largest_force(&particles), 0);
+    mf_pair_forces(&some, &particles, &neighbours, 1, PAIR_FORCES, NULL);
+    assert_true(mf_particles_largest_force(&particles) > 0);
+    mf_pair_forces(&none, &particles, &neighbours, 1, PAIR_FORCES_AND_SUMS, &sums);
+    assert_identical(mf_particles_largest_force(&particles), 0);
     assert_identical(sums.energy, 0);
     assert_identical(sums.virial, 0);
-    assert_identical(pair_cutoff(&none), 0);
-    particles_clear(&particles);
-    neighbours_clear(&neighbours);
+    assert_identical(mf_pair_cutoff(&none), 0);
+    mf_particles_clear(&particles);
+    mf_neighbours_clear(&neighbours);
 }
 
 /// Two particles on one spot have no direction: no force, not NaN.
@@ -363,13 +363,13 @@ static void test_pair_kernels_give_no_force_when_particles_coincide(void **state
         make_particles(&particles, &system);
         for (int d = 0; d < 3; d++)
             particles.position[d][1] = particles.position[d][0];
-        assert_ok(neighbours_init(&neighbours, NEIGHBOURS_HALF, &system.box, 2, 1, 0.3));
-        assert_ok(neighbours_sort_and_build(&neighbours, &particles));
-        particles_update_motion(&particles, 0);
-        pair_forces(&law, &particles, &neighbours, 1, PAIR_FORCES, NULL);
-        assert_identical(particles_largest_force(&particles), 0);
-        particles_clear(&particles);
-        neighbours_clear(&neighbours);
+        assert_ok(mf_neighbours_init(&neighbours, NEIGHBOURS_HALF, &system.box, 2, 1, 0.3));
+        assert_ok(mf_neighbours_sort_and_build(&neighbours, &particles));
+        mf_particles_update_motion(&particles, 0);
+        mf_pair_forces(&law, &particles, &neighbours, 1, PAIR_FORCES, NULL);
+        assert_identical(mf_particles_largest_force(&particles), 0);
+        mf_particles_clear(&particles);
+        mf_neighbours_clear(&neighbours);
     }
 }
 
@@ -381,20 +381,20 @@ static void test_pair_kernels_show_nan_when_a_velocity_is_nan(void **state) {
     struct neighbours neighbours;
     make_system(&particles, &neighbours, &system, &law);
     particles.velocity[1][7] = NAN;
-    particles_update_motion(&particles, 0);
+    mf_particles_update_motion(&particles, 0);
     for (int v = 0; v < variant_count; v++) {
         variants_select(&variants[v]);
         law.precision = variants[v].precision;
-        pair_forces(&law, &particles, &neighbours, 1, PAIR_FORCES, NULL);
-        assert_true(isnan(particles_largest_force(&particles)));
+        mf_pair_forces(&law, &particles, &neighbours, 1, PAIR_FORCES, NULL);
+        assert_true(isnan(mf_particles_largest_force(&particles)));
     }
-    particles_clear(&particles);
-    neighbours_clear(&neighbours);
+    mf_particles_clear(&particles);
+    mf_neighbours_clear(&neighbours);
 }
 
 /// Forces by id, in double precision.
 static double *forces_by_id(const struct particles *particles) {
-    double *forces = memory_zeroed(3 * particles->count, sizeof *forces);
+    double *forces = mf_memory_zeroed(3 * particles->count, sizeof *forces);
     assert_non_null(forces);
     for (int d = 0; d < particles->box.dimensions; d++)
         for (size_t k = 0; k < particles->count; k++)
@@ -408,24 +408,24 @@ static double *shuffled_forces(const struct system *system, const struct pair_la
     struct particles particles;
     struct neighbours neighbours;
     make_particles(&particles, system);
-    uint32_t *order = memory_zeroed(system->count, sizeof *order);
+    uint32_t *order = mf_memory_zeroed(system->count, sizeof *order);
     assert_non_null(order);
-    struct rng_sequence sequence = rng_sequence_begin(shuffle, RNG_SELECTION, 0, 0);
+    struct rng_sequence sequence = mf_rng_sequence_begin(shuffle, RNG_SELECTION, 0, 0);
     for (uint32_t k = 0; k < system->count; k++) {
-        const uint32_t other = shuffle ? rng_sequence_below(&sequence, k + 1) : k;
+        const uint32_t other = shuffle ? mf_rng_sequence_below(&sequence, k + 1) : k;
         order[k] = order[other];
         order[other] = k;
     }
-    particles_permute(&particles, order);
-    assert_ok(neighbours_init(&neighbours, NEIGHBOURS_HALF, &system->box, system->count,
-                              pair_cutoff(law), skin));
-    assert_ok(neighbours_sort_and_build(&neighbours, &particles));
-    particles_update_motion(&particles, 0);
-    pair_forces(law, &particles, &neighbours, 3, PAIR_FORCES, NULL);
+    mf_particles_permute(&particles, order);
+    assert_ok(mf_neighbours_init(&neighbours, NEIGHBOURS_HALF, &system->box, system->count,
+                              mf_pair_cutoff(law), skin));
+    assert_ok(mf_neighbours_sort_and_build(&neighbours, &particles));
+    mf_particles_update_motion(&particles, 0);
+    mf_pair_forces(law, &particles, &neighbours, 3, PAIR_FORCES, NULL);
     double *forces = forces_by_id(&particles);
-    memory_free(order);
-    particles_clear(&particles);
-    neighbours_clear(&neighbours);
+    mf_memory_free(order);
+    mf_particles_clear(&particles);
+    mf_neighbours_clear(&neighbours);
     return forces;
 }
 
@@ -443,9 +443,9 @@ static void test_pair_forces_do_not_depend_on_order_or_skin_when_ids_are_the_sam
             for (size_t k = 0; k < 3 * system.count; k++)
                 // Partial sums on a particle stay below some hundreds.
                 assert_close(again[k], first[k], 1e3 * rounding);
-            memory_free(again);
+            mf_memory_free(again);
         }
-        memory_free(first);
+        mf_memory_free(first);
     }
 }
 
@@ -456,17 +456,17 @@ static void test_pair_noise_changes_when_seed_or_step_changes(void **state) {
     struct particles particles;
     struct neighbours neighbours;
     make_system(&particles, &neighbours, &system, &law);
-    pair_forces(&law, &particles, &neighbours, 3, PAIR_FORCES, NULL);
+    mf_pair_forces(&law, &particles, &neighbours, 3, PAIR_FORCES, NULL);
     const double first = particles.force[0][0];
-    pair_forces(&law, &particles, &neighbours, 3, PAIR_FORCES, NULL);
+    mf_pair_forces(&law, &particles, &neighbours, 3, PAIR_FORCES, NULL);
     assert_identical(particles.force[0][0], first);
-    pair_forces(&law, &particles, &neighbours, 3 + (UINT64_C(1) << 32), PAIR_FORCES, NULL);
+    mf_pair_forces(&law, &particles, &neighbours, 3 + (UINT64_C(1) << 32), PAIR_FORCES, NULL);
     assert_true(fabs(particles.force[0][0] - first) > 1e-3);
     law.seed += UINT64_C(1) << 32;
-    pair_forces(&law, &particles, &neighbours, 3, PAIR_FORCES, NULL);
+    mf_pair_forces(&law, &particles, &neighbours, 3, PAIR_FORCES, NULL);
     assert_true(fabs(particles.force[0][0] - first) > 1e-3);
-    particles_clear(&particles);
-    neighbours_clear(&neighbours);
+    mf_particles_clear(&particles);
+    mf_neighbours_clear(&neighbours);
 }
 
 /// Slope against central differences of the value, from table and kernel alike.
@@ -476,9 +476,9 @@ static void check_gradient(const struct table *potential, double first) {
     const double h = 1e-5, tolerance = 1e-4;
     for (double r = first; r < potential->cutoff - 0.01; r += 0.0037) {
         double low, high, slope;
-        table_evaluate(potential, r - h, &low, NULL, NULL);
-        table_evaluate(potential, r + h, &high, NULL, NULL);
-        table_evaluate(potential, r, NULL, &slope, NULL);
+        mf_table_evaluate(potential, r - h, &low, NULL, NULL);
+        mf_table_evaluate(potential, r + h, &high, NULL, NULL);
+        mf_table_evaluate(potential, r, NULL, &slope, NULL);
         assert_close(slope, (high - low) / (2 * h), tolerance * (1 + fabs(slope)));
     }
 }
@@ -500,17 +500,17 @@ static double two_particle_force(const struct table *potential, enum pair_precis
     struct particles particles;
     struct neighbours neighbours;
     struct pair_sums sums;
-    assert_ok(particles_init(&particles, &box, 2));
-    assert_ok(particles_keep_precise(&particles));
+    assert_ok(mf_particles_init(&particles, &box, 2));
+    assert_ok(mf_particles_keep_precise(&particles));
     particles.position[0][0] = 7.9;
     particles.position[0][1] = 7.9 + r;
-    assert_ok(neighbours_init(&neighbours, NEIGHBOURS_HALF, &box, 2, potential->cutoff, 0.2));
-    assert_ok(neighbours_sort_and_build(&neighbours, &particles));
-    pair_forces(&law, &particles, &neighbours, 1, PAIR_FORCES_AND_SUMS, &sums);
+    assert_ok(mf_neighbours_init(&neighbours, NEIGHBOURS_HALF, &box, 2, potential->cutoff, 0.2));
+    assert_ok(mf_neighbours_sort_and_build(&neighbours, &particles));
+    mf_pair_forces(&law, &particles, &neighbours, 1, PAIR_FORCES_AND_SUMS, &sums);
     *energy = sums.energy;
     const double force = particles.id[0] == 1 ? particles.force[0][0] : particles.force[0][1];
-    particles_clear(&particles);
-    neighbours_clear(&neighbours);
+    mf_particles_clear(&particles);
+    mf_neighbours_clear(&neighbours);
     return force;
 }
 
@@ -527,8 +527,8 @@ static void check_energy_gradient(const struct variant *variant, double h, doubl
             double low, high, energy, curvature_low, curvature_high;
             two_particle_force(potentials[p], precision, r - h, &low);
             two_particle_force(potentials[p], precision, r + h, &high);
-            table_evaluate(potentials[p], r - h, NULL, NULL, &curvature_low);
-            table_evaluate(potentials[p], r + h, NULL, NULL, &curvature_high);
+            mf_table_evaluate(potentials[p], r - h, NULL, NULL, &curvature_low);
+            mf_table_evaluate(potentials[p], r + h, NULL, NULL, &curvature_high);
             const double force = two_particle_force(potentials[p], precision, r, &energy);
             assert_close(force, -(high - low) / (2 * h),
                          noise / h + 2 * h / 12 * fabs(curvature_high - curvature_low));
@@ -548,9 +548,9 @@ static void test_pair_force_is_minus_the_gradient_of_the_energy_when_differenced
 
 static void test_simd_select_refuses_when_the_name_is_unknown(void **state) {
     (void)state;
-    assert_true(simd_select("portable"));
-    assert_false(simd_select("mmx"));
-    assert_string_equal(simd_name(), "portable");
+    assert_true(mf_simd_select("portable"));
+    assert_false(mf_simd_select("mmx"));
+    assert_string_equal(mf_simd_name(), "portable");
 }
 
 int main(void) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The pairs that rdf_sample counts from the simulation's list, and from a list of its own beyond
+// The pairs that mf_rdf_sample counts from the simulation's list, and from a list of its own beyond
 // it, are exactly those of a double loop over all particles in double precision.
 #include "dynamics/metropolis.h"
 #include "observe/measure.h"
@@ -23,7 +23,7 @@ struct counts {
 
 static void count_pair(const struct rdf_bins *bins, double r, struct counts *counts) {
     for (size_t k = 0; k < bins->count; k++) {
-        const double low = rdf_bins_edge(bins, k), high = rdf_bins_edge(bins, k + 1);
+        const double low = mf_rdf_bins_edge(bins, k), high = mf_rdf_bins_edge(bins, k + 1);
         counts->certain[k] += r > low + edge_rounding && r < high - edge_rounding;
         counts->possible[k] += r > low - edge_rounding && r < high + edge_rounding;
     }
@@ -41,7 +41,7 @@ static void count_kind(const struct rdf_bins *bins, const struct composition *co
                                               particles->box.length[d]);
                 square += dx * dx;
             }
-            if (composition_pair_of_ids(composition, particles->id[i], particles->id[j]) == pair)
+            if (mf_composition_pair_of_ids(composition, particles->id[i], particles->id[j]) == pair)
                 count_pair(bins, sqrt(square), counts);
         }
 }
@@ -74,11 +74,11 @@ static void assert_counts(const struct rdf_bins *bins, const struct particles *p
     struct counts counts;
     struct rdf rdf;
     count_all(bins, particles, &counts);
-    assert_ok(rdf_init(&rdf, bins, &particles->box, particles->count, list_cutoff, 1));
+    assert_ok(mf_rdf_init(&rdf, bins, &particles->box, particles->count, list_cutoff, 1));
     assert_int_equal(rdf.needs_own_list, needs_own_list);
-    assert_ok(rdf_sample(&rdf, particles, neighbours));
+    assert_ok(mf_rdf_sample(&rdf, particles, neighbours));
     assert_histogram(rdf.histogram, &counts, bins->count, 1);
-    rdf_clear(&rdf);
+    mf_rdf_clear(&rdf);
 }
 
 /// What a force pass counts is the same, too.
@@ -86,14 +86,14 @@ static void assert_passing_counts(const struct rdf_bins *bins, struct simulation
     struct counts counts;
     struct rdf rdf;
     count_all(bins, &simulation->particles, &counts);
-    assert_ok(rdf_init(&rdf, bins, &simulation->particles.box, simulation->particles.count, 1, 1));
+    assert_ok(mf_rdf_init(&rdf, bins, &simulation->particles.box, simulation->particles.count, 1, 1));
     struct pair_law law = simulation->law;
-    law.histogram = rdf_histogram(&rdf);
+    law.histogram = mf_rdf_histogram(&rdf);
     assert_non_null(law.histogram);
-    pair_forces(&law, &simulation->particles, &simulation->neighbours, 1, PAIR_FORCES, NULL);
-    rdf_sample_counted(&rdf);
+    mf_pair_forces(&law, &simulation->particles, &simulation->neighbours, 1, PAIR_FORCES, NULL);
+    mf_rdf_sample_counted(&rdf);
     assert_histogram(rdf.histogram, &counts, bins->count, 1);
-    rdf_clear(&rdf);
+    mf_rdf_clear(&rdf);
 }
 
 /// The partial histograms of a sample, from a list or from the force pass.
@@ -102,22 +102,22 @@ static void assert_kinds(const struct rdf_bins *bins, struct simulation *simulat
     const struct particles *particles = &simulation->particles;
     const struct composition *composition = &simulation->setup.composition;
     struct rdf rdf;
-    assert_ok(rdf_init_mixture(&rdf, bins, &particles->box, composition, 1, 1));
+    assert_ok(mf_rdf_init_mixture(&rdf, bins, &particles->box, composition, 1, 1));
     struct pair_law law = simulation->law;
-    law.histogram = rdf_histogram(&rdf);
+    law.histogram = mf_rdf_histogram(&rdf);
     assert_int_equal(law.histogram == NULL, rdf.needs_own_list);
     if (in_passing) {
-        pair_forces(&law, &simulation->particles, &simulation->neighbours, 1, PAIR_FORCES, NULL);
-        rdf_sample_counted(&rdf);
+        mf_pair_forces(&law, &simulation->particles, &simulation->neighbours, 1, PAIR_FORCES, NULL);
+        mf_rdf_sample_counted(&rdf);
     } else {
-        assert_ok(rdf_sample(&rdf, particles, &simulation->neighbours));
+        assert_ok(mf_rdf_sample(&rdf, particles, &simulation->neighbours));
     }
-    for (int pair = 0; pair < composition_pairs(composition); pair++) {
+    for (int pair = 0; pair < mf_composition_pairs(composition); pair++) {
         struct counts counts;
         count_kind(bins, composition, pair, particles, &counts);
         assert_histogram(rdf.histogram + (size_t)pair * bins->count, &counts, bins->count, 1);
     }
-    rdf_clear(&rdf);
+    mf_rdf_clear(&rdf);
 }
 
 static void assert_mixture_counts(struct fluid *fluid, const struct composition *composition) {
@@ -127,13 +127,13 @@ static void assert_mixture_counts(struct fluid *fluid, const struct composition 
     fluid->setup.composition = *composition;
     for (int precision = PAIR_MIXED; precision <= PAIR_DOUBLE; precision++) {
         fluid->setup.precision = precision;
-        assert_ok(simulation_init(&simulation, &fluid->setup, NULL));
-        assert_ok(simulation_run(&simulation, 53));
+        assert_ok(mf_simulation_init(&simulation, &fluid->setup, NULL));
+        assert_ok(mf_simulation_run(&simulation, 53));
         assert_kinds(&within, &simulation, false);
         assert_kinds(&within, &simulation, true);
         assert_kinds(&above_zero, &simulation, true);
         assert_kinds(&beyond, &simulation, false);
-        simulation_clear(&simulation);
+        mf_simulation_clear(&simulation);
     }
     fluid_clear(fluid);
 }
@@ -152,15 +152,15 @@ static void test_rdf_counts_every_pair_once_when_types_differ(void **state) {
 /// A fluid after some steps, so that particles have moved since the last build of the list and some
 /// have left the box.
 static void run_fluid(struct fluid *fluid, struct simulation *simulation) {
-    assert_ok(simulation_init(simulation, &fluid->setup, NULL));
-    assert_ok(simulation_run(simulation, 203));
+    assert_ok(mf_simulation_init(simulation, &fluid->setup, NULL));
+    assert_ok(mf_simulation_run(simulation, 203));
 }
 
 static void assert_fluid_counts(struct fluid *fluid) {
     struct simulation simulation;
     run_fluid(fluid, &simulation);
     // Within the list's cutoff of 1, to its end, and beyond it to half the box.
-    const double half = box_shortest(&fluid->setup.box) / 2;
+    const double half = mf_box_shortest(&fluid->setup.box) / 2;
     const struct rdf_bins within = {0, 0.025, 40}, above_zero = {0.31, 0.023, 30},
                           beyond = {0, half / 40, 40}, far = {1.1, 0.03, 20};
     assert_counts(&within, &simulation.particles, &simulation.neighbours, 1, false);
@@ -169,7 +169,7 @@ static void assert_fluid_counts(struct fluid *fluid) {
     assert_passing_counts(&above_zero, &simulation);
     assert_counts(&beyond, &simulation.particles, &simulation.neighbours, 1, true);
     assert_counts(&far, &simulation.particles, &simulation.neighbours, 1, true);
-    simulation_clear(&simulation);
+    mf_simulation_clear(&simulation);
     fluid_clear(fluid);
 }
 
@@ -206,14 +206,14 @@ static void test_rdf_counts_every_pair_twice_when_the_list_is_full(void **state)
     struct fluid fluid;
     struct metropolis metropolis;
     fluid_groot_warren(&fluid, PARTICLES, 0.01);
-    assert_ok(metropolis_init(&metropolis, &fluid.setup.box,
+    assert_ok(mf_metropolis_init(&metropolis, &fluid.setup.box,
                               &(struct composition){.types = 1, .count = {PARTICLES}},
                               &fluid.potential, 1, 6));
-    assert_ok(metropolis_equilibrate(&metropolis, 51));
+    assert_ok(mf_metropolis_equilibrate(&metropolis, 51));
     count_all(&bins, &metropolis.particles, &counts);
-    rdf_count_pairs(&bins, &metropolis.particles, &metropolis.neighbours, counted);
+    mf_rdf_count_pairs(&bins, &metropolis.particles, &metropolis.neighbours, counted);
     assert_histogram(counted, &counts, BINS, 2);
-    metropolis_clear(&metropolis);
+    mf_metropolis_clear(&metropolis);
     fluid_clear(&fluid);
 }
 
@@ -228,19 +228,19 @@ static void test_rdf_counts_the_end_of_the_step_when_forces_are_midway(void **st
     struct rdf measured, end;
     double temperature, differences = 0;
     fluid_groot_warren(&fluid, 1000, 0.05);
-    fluid.setup.integrator = &aboba;
-    assert_ok(simulation_init(&simulation, &fluid.setup, NULL));
-    assert_ok(rdf_init(&measured, &bins, &fluid.setup.box, 1000, 1, 1));
-    assert_ok(rdf_init(&end, &bins, &fluid.setup.box, 1000, 1, 1));
-    assert_ok(measure_equilibrate(&simulation, &plan, &temperature, NULL));
-    assert_ok(measure_sample(&simulation, &plan, (struct measure_targets){.rdf = &measured}, NULL));
-    assert_ok(rdf_sample(&end, &simulation.particles, &simulation.neighbours));
+    fluid.setup.integrator = &mf_aboba;
+    assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
+    assert_ok(mf_rdf_init(&measured, &bins, &fluid.setup.box, 1000, 1, 1));
+    assert_ok(mf_rdf_init(&end, &bins, &fluid.setup.box, 1000, 1, 1));
+    assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
+    assert_ok(mf_measure_sample(&simulation, &plan, (struct measure_targets){.rdf = &measured}, NULL));
+    assert_ok(mf_rdf_sample(&end, &simulation.particles, &simulation.neighbours));
     for (int k = 0; k < BINS; k++)
         differences += fabs(measured.histogram[k] - end.histogram[k]);
     assert_true(differences <= 4); // two pairs on an edge
-    rdf_clear(&measured);
-    rdf_clear(&end);
-    simulation_clear(&simulation);
+    mf_rdf_clear(&measured);
+    mf_rdf_clear(&end);
+    mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
 }
 

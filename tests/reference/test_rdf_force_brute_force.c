@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What rdf_force_sample adds up is the same as a double loop over all particles in double
+// What mf_rdf_force_sample adds up is the same as a double loop over all particles in double
 // precision, with the field A of each bin written down as it stands in rdf_force.h.
 #include "observe/rdf_force.h"
 #include "forces/reference_forces.h"
@@ -28,14 +28,14 @@ static double filled(double r, double low, double high, int dimensions) {
 
 static void add_pair(const struct rdf_bins *bins, int dimensions, double r, double dot, double unit,
                      struct answer *answer) {
-    const double range = rdf_bins_range(bins);
+    const double range = mf_rdf_bins_range(bins);
     const double flux = dot / pow(r, dimensions) * unit;
     if (r >= range)
         return;
     answer->difference -= flux * (1 - pow(r / range, dimensions));
     answer->level += 1;
     for (size_t k = 0; k < bins->count; k++) {
-        const double low = rdf_bins_edge(bins, k), high = rdf_bins_edge(bins, k + 1);
+        const double low = mf_rdf_bins_edge(bins, k), high = mf_rdf_bins_edge(bins, k + 1);
         answer->h[k] += r >= low && r < high;
         answer->z[k] += flux * (1 - filled(r, low, high, dimensions));
     }
@@ -47,7 +47,7 @@ static void count_all(const struct rdf_bins *bins, const struct particles *parti
     const struct box *box = &particles->box;
     const double solid = box->dimensions == 3 ? 4 * M_PI : 2 * M_PI;
     const double ideal =
-        0.5 * (double)particles->count * (double)(particles->count - 1) / box_volume(box);
+        0.5 * (double)particles->count * (double)(particles->count - 1) / mf_box_volume(box);
     *answer = (struct answer){.difference = 0};
     for (size_t i = 0; i < particles->count; i++)
         for (size_t j = 0; j < i; j++) {
@@ -61,10 +61,10 @@ static void count_all(const struct rdf_bins *bins, const struct particles *parti
             add_pair(bins, box->dimensions, sqrt(square), dot, 1 / (temperature * solid * ideal),
                      answer);
         }
-    answer->level /= ideal * box_shell_volume(box, 0, rdf_bins_range(bins));
+    answer->level /= ideal * mf_box_shell_volume(box, 0, mf_rdf_bins_range(bins));
     answer->difference += answer->level;
     for (size_t k = 0; k < bins->count; k++)
-        answer->h[k] /= rdf_ideal_pairs(bins, k, box, particles->count);
+        answer->h[k] /= mf_rdf_ideal_pairs(bins, k, box, particles->count);
 }
 
 /// One sample of the simulation is what the double loop says; its forces stay as they are.
@@ -77,17 +77,17 @@ static void assert_sample(const struct rdf_bins *bins, struct simulation *simula
     struct answer answer;
     struct rdf_force force;
     double largest = 0;
-    assert_ok(particles_init(&brute, &particles->box, particles->count));
+    assert_ok(mf_particles_init(&brute, &particles->box, particles->count));
     for (int d = 0; d < particles->box.dimensions; d++)
         memcpy(brute.position[d], particles->position[d], bytes);
-    reference_forces(&(struct pair_law){.potential = setup->potential}, &brute, 0, NULL);
+    mf_reference_forces(&(struct pair_law){.potential = setup->potential}, &brute, 0, NULL);
     count_all(bins, &brute, 0.7, &answer);
     for (int d = 0; d < particles->box.dimensions; d++)
         memcpy(brute.force[d], particles->force[d], bytes);
-    assert_ok(rdf_force_init(&force, bins, &particles->box, particles->count, setup->potential, 0.7,
+    assert_ok(mf_rdf_force_init(&force, bins, &particles->box, particles->count, setup->potential, 0.7,
                              list_cutoff, 1));
-    assert_int_equal(force.needs_own_list, rdf_bins_range(bins) > list_cutoff);
-    assert_ok(rdf_force_sample(&force, particles, &simulation->neighbours));
+    assert_int_equal(force.needs_own_list, mf_rdf_bins_range(bins) > list_cutoff);
+    assert_ok(mf_rdf_force_sample(&force, particles, &simulation->neighbours));
     for (size_t k = 0; k < bins->count; k++) {
         assert_close(force.sums[RDF_FORCE_H * bins->count + k], answer.h[k], tolerance);
         assert_close(force.sums[RDF_FORCE_Z * bins->count + k], answer.z[k], tolerance);
@@ -100,15 +100,15 @@ static void assert_sample(const struct rdf_bins *bins, struct simulation *simula
     assert_close(force.totals->difference, answer.difference, tolerance);
     for (int d = 0; d < particles->box.dimensions; d++)
         assert_memory_equal(brute.force[d], particles->force[d], bytes);
-    rdf_force_clear(&force);
-    particles_clear(&brute);
+    mf_rdf_force_clear(&force);
+    mf_particles_clear(&brute);
 }
 
 static void assert_fluid(struct fluid *fluid) {
     struct simulation simulation;
-    assert_ok(simulation_init(&simulation, &fluid->setup, NULL));
-    assert_ok(simulation_run(&simulation, 203));
-    const double half = box_shortest(&fluid->setup.box) / 2;
+    assert_ok(mf_simulation_init(&simulation, &fluid->setup, NULL));
+    assert_ok(mf_simulation_run(&simulation, 203));
+    const double half = mf_box_shortest(&fluid->setup.box) / 2;
     const struct rdf_bins within = {0, 0.025, 40}, above_zero = {0.31, 0.023, 30},
                           beyond = {0, half / 40, 40}, far = {1.1, 0.03, 20};
     assert_sample(&within, &simulation, 1);
@@ -116,7 +116,7 @@ static void assert_fluid(struct fluid *fluid) {
     assert_sample(&within, &simulation, 0);
     assert_sample(&beyond, &simulation, 1);
     assert_sample(&far, &simulation, 1);
-    simulation_clear(&simulation);
+    mf_simulation_clear(&simulation);
     fluid_clear(fluid);
 }
 

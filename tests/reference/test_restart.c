@@ -21,18 +21,18 @@ struct run {
 
 static void begin(struct run *run, const struct simulation_setup *setup) {
     const struct rdf_bins bins = {0, 1.0 / BINS, BINS};
-    assert_ok(simulation_init(&run->simulation, setup, NULL));
-    const struct composition alike = composition_of_one(setup->placement.count);
-    assert_ok(rdf_init_mixture(
+    assert_ok(mf_simulation_init(&run->simulation, setup, NULL));
+    const struct composition alike = mf_composition_of_one(setup->placement.count);
+    assert_ok(mf_rdf_init_mixture(
         &run->rdf, &bins, &setup->box,
         composition_is_mixed(&setup->composition) ? &setup->composition : &alike, 1, SAMPLES));
-    assert_ok(thermodynamics_init(&run->thermodynamics, SAMPLES));
+    assert_ok(mf_thermodynamics_init(&run->thermodynamics, SAMPLES));
 }
 
 static void clear(struct run *run) {
-    simulation_clear(&run->simulation);
-    rdf_clear(&run->rdf);
-    thermodynamics_clear(&run->thermodynamics);
+    mf_simulation_clear(&run->simulation);
+    mf_rdf_clear(&run->rdf);
+    mf_thermodynamics_clear(&run->thermodynamics);
 }
 
 static void sample(struct run *run, int64_t samples) {
@@ -40,22 +40,22 @@ static void sample(struct run *run, int64_t samples) {
     part.samples = samples;
     const struct measure_targets targets = {.rdf = &run->rdf,
                                             .thermodynamics = &run->thermodynamics};
-    assert_ok(measure_sample(&run->simulation, &part, targets, NULL));
+    assert_ok(mf_measure_sample(&run->simulation, &part, targets, NULL));
 }
 
 /// All samples that are complete after `steps` steps, and the steps.
 static void run_for(struct run *run, uint64_t steps) {
     if (steps >= EQUILIBRATION) {
-        assert_ok(simulation_run(&run->simulation, EQUILIBRATION));
+        assert_ok(mf_simulation_run(&run->simulation, EQUILIBRATION));
         sample(run, ((int64_t)steps - EQUILIBRATION) / EVERY);
     }
     run->simulation.wants = PAIR_FORCES;
-    assert_ok(simulation_run(&run->simulation, steps - run->simulation.step));
+    assert_ok(mf_simulation_run(&run->simulation, steps - run->simulation.step));
 }
 
 static void run_to_the_end(struct run *run) {
     if (run->simulation.step < EQUILIBRATION)
-        assert_ok(simulation_run(&run->simulation, EQUILIBRATION - run->simulation.step));
+        assert_ok(mf_simulation_run(&run->simulation, EQUILIBRATION - run->simulation.step));
     sample(run, SAMPLES);
 }
 
@@ -75,7 +75,7 @@ static void check(const struct simulation_setup *setup) {
     run_for(&whole, EQUILIBRATION);
     run_to_the_end(&whole);
     assert_true(whole.simulation.list_builds > 1);
-    for (uint64_t steps = 0; steps <= measure_steps(&plan); steps += 3) {
+    for (uint64_t steps = 0; steps <= mf_measure_steps(&plan); steps += 3) {
         begin(&pieces, setup);
         run_for(&pieces, steps);
         restart_simulation(&pieces.simulation);
@@ -90,9 +90,9 @@ static void check(const struct simulation_setup *setup) {
 static void check_integrators(struct fluid *fluid) {
     fluid->setup.skin = 0.15;
     fluid->setup.integrator_parameters.tolerance = 0.01;
-    for (size_t k = 0; integrator_list[k]; k++) {
-        fluid->setup.integrator = integrator_list[k];
-        fluid->setup.weight = integrator_list[k]->dissipative ? &fluid->weight : NULL;
+    for (size_t k = 0; mf_integrator_list[k]; k++) {
+        fluid->setup.integrator = mf_integrator_list[k];
+        fluid->setup.weight = mf_integrator_list[k]->dissipative ? &fluid->weight : NULL;
         for (int precision = PAIR_MIXED; precision <= PAIR_DOUBLE; precision++) {
             fluid->setup.precision = precision;
             check(&fluid->setup);

@@ -23,21 +23,21 @@ static void run(const struct simulation_setup *setup, int threads, struct outcom
     struct rdf rdf;
     struct simulation_setup shared = *setup;
     shared.threads = threads;
-    assert_ok(simulation_init(&simulation, &shared, NULL));
+    assert_ok(mf_simulation_init(&simulation, &shared, NULL));
     assert_true(simulation.neighbours.parts >= 4);
-    const double cutoff = pair_cutoff(&simulation.law);
+    const double cutoff = mf_pair_cutoff(&simulation.law);
     const struct rdf_bins bins = {0, cutoff / BINS, BINS};
     const size_t count = simulation.particles.count;
-    const struct composition alike = composition_of_one((int64_t)count);
-    assert_ok(rdf_init_mixture(
+    const struct composition alike = mf_composition_of_one((int64_t)count);
+    assert_ok(mf_rdf_init_mixture(
         &rdf, &bins, &shared.box,
         composition_is_mixed(&shared.composition) ? &shared.composition : &alike, cutoff, 1));
     assert_true(rdf.pairs <= MOST_PAIRS);
-    assert_ok(simulation_run(&simulation, STEPS - 1));
+    assert_ok(mf_simulation_run(&simulation, STEPS - 1));
     simulation.wants = PAIR_FORCES_AND_SUMS;
-    simulation.law.histogram = rdf_histogram(&rdf);
-    assert_ok(simulation_run(&simulation, 1));
-    rdf_sample_counted(&rdf);
+    simulation.law.histogram = mf_rdf_histogram(&rdf);
+    assert_ok(mf_simulation_run(&simulation, 1));
+    mf_rdf_sample_counted(&rdf);
     memset(outcome, 0, sizeof *outcome);
     for (int d = 0; d < shared.box.dimensions; d++)
         for (size_t k = 0; k < count; k++) {
@@ -47,8 +47,8 @@ static void run(const struct simulation_setup *setup, int threads, struct outcom
     memcpy(outcome->histogram, rdf.histogram, rdf.pairs * BINS * sizeof *rdf.histogram);
     outcome->sums = simulation.sums;
     outcome->list_builds = simulation.list_builds;
-    rdf_clear(&rdf);
-    simulation_clear(&simulation);
+    mf_rdf_clear(&rdf);
+    mf_simulation_clear(&simulation);
 }
 
 static void check_setup(const struct simulation_setup *setup) {
@@ -81,7 +81,7 @@ static void test_threads_give_the_same_bits_when_energy_is_conserved(void **stat
     struct fluid fluid;
     fluid_lennard_jones(&fluid, 2048, 0.005);
     fluid.setup.weight = NULL;
-    fluid.setup.integrator = &velocity_verlet;
+    fluid.setup.integrator = &mf_velocity_verlet;
     fluid.setup.temperature = 4;
     check(&fluid);
 }
@@ -98,9 +98,9 @@ static void test_threads_give_the_same_bits_when_friction_is_split_off(void **st
     struct fluid fluid;
     fluid_groot_warren(&fluid, 1000, 0.04);
     fluid.setup.integrator_parameters.tolerance = 0.01;
-    for (size_t k = 0; integrator_list[k]; k++)
-        if (integrator_list[k]->friction) {
-            fluid.setup.integrator = integrator_list[k];
+    for (size_t k = 0; mf_integrator_list[k]; k++)
+        if (mf_integrator_list[k]->friction) {
+            fluid.setup.integrator = mf_integrator_list[k];
             check_setup(&fluid.setup);
         }
     fluid_clear(&fluid);
@@ -112,7 +112,7 @@ static void test_threads_give_the_same_bits_when_types_differ(void **state) {
     fluid_mixture(&fluid, 1000, 0.04);
     check(&fluid);
     fluid_mixture(&fluid, 1000, 0.04);
-    fluid.setup.integrator = &aboba;
+    fluid.setup.integrator = &mf_aboba;
     check(&fluid);
 }
 

@@ -38,7 +38,7 @@ void figure_folders_write(const char *folder, const char *name, const char *text
 
 void figure_folders_make(char path[FIGURE_PATH], const char *name) {
     snprintf(path, FIGURE_PATH, "%s/%s", root, name);
-    assert_int_equal(output_make_folder(path), STATUS_OK);
+    assert_int_equal(mf_output_make_folder(path), STATUS_OK);
 }
 
 bool figure_folders_say(const char *folder, const char *name, const char *word) {

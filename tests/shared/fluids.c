@@ -6,15 +6,15 @@
 
 static void make_weight(struct fluid *fluid, double sigma, double cutoff) {
     struct formula_power_weight_parameters parameters = {sigma, 1, 0, cutoff};
-    const struct curve curve = {&formula_power_weight, &parameters};
-    assert_ok(table_init_weight(&fluid->weight, &curve));
+    const struct curve curve = {&mf_formula_power_weight, &parameters};
+    assert_ok(mf_table_init_weight(&fluid->weight, &curve));
     fluid->setup.weight = &fluid->weight;
 }
 
 static void make_soft_table(struct table *table, double a) {
     struct formula_soft_repulsion_parameters parameters = {a, 1};
-    const struct curve curve = {&formula_soft_repulsion, &parameters};
-    assert_ok(table_init_potential(table, &curve));
+    const struct curve curve = {&mf_formula_soft_repulsion, &parameters};
+    assert_ok(mf_table_init_potential(table, &curve));
 }
 
 static void make_soft_potential(struct fluid *fluid) {
@@ -28,13 +28,13 @@ static void begin(struct fluid *fluid, int dimensions, int64_t count, double den
     const double edge = pow((double)count / density, 1.0 / dimensions);
     *fluid = (struct fluid){
         .setup = {.box = {dimensions, {edge, edge, dimensions == 3 ? edge : 1}},
-                  .composition = composition_of_one(count),
+                  .composition = mf_composition_of_one(count),
                   .placement = {.count = count, .kind = PLACEMENT_LATTICE, .jitter = 0.05},
                   .temperature = 1,
                   .time_step = time_step,
                   .skin = 0.3,
                   .temperature_limit = 10,
-                  .integrator = &dpd_verlet,
+                  .integrator = &mf_dpd_verlet,
                   .integrator_parameters = {.lambda = 0.5},
                   .seed = 1},
     };
@@ -44,8 +44,8 @@ void fluid_lennard_jones(struct fluid *fluid, int64_t count, double time_step) {
     begin(fluid, 3, count, 0.8442, time_step);
     fluid->setup.temperature = 0.7;
     struct formula_lennard_jones_parameters parameters = {1, 1, 2.5};
-    const struct curve curve = {&formula_lennard_jones, &parameters};
-    assert_ok(table_init_potential(&fluid->potential, &curve));
+    const struct curve curve = {&mf_formula_lennard_jones, &parameters};
+    assert_ok(mf_table_init_potential(&fluid->potential, &curve));
     fluid->setup.potential = &fluid->potential;
     make_weight(fluid, 1.5, 2.5);
 }
@@ -66,18 +66,18 @@ void fluid_mixture(struct fluid *fluid, int64_t count, double time_step) {
     for (int pair = 0; pair < PAIRS; pair++) {
         struct formula_soft_repulsion_parameters soft = {25 + 3 * pair, 1 - 0.04 * pair};
         struct formula_power_weight_parameters power = {1.5 + 0.3 * pair, 1, 0, 0.8 + 0.04 * pair};
-        const struct curve phi = {&formula_soft_repulsion, &soft},
-                           omega = {&formula_power_weight, &power};
-        assert_ok(table_init_potential(&potential[pair], &phi));
-        assert_ok(table_init_weight(&weight[pair], &omega));
+        const struct curve phi = {&mf_formula_soft_repulsion, &soft},
+                           omega = {&mf_formula_power_weight, &power};
+        assert_ok(mf_table_init_potential(&potential[pair], &phi));
+        assert_ok(mf_table_init_weight(&weight[pair], &omega));
     }
-    assert_ok(table_stack(&fluid->potential, potential, PAIRS));
-    assert_ok(table_stack(&fluid->weight, weight, PAIRS));
+    assert_ok(mf_table_stack(&fluid->potential, potential, PAIRS));
+    assert_ok(mf_table_stack(&fluid->weight, weight, PAIRS));
     fluid->setup.potential = &fluid->potential;
     fluid->setup.weight = &fluid->weight;
     for (int pair = 0; pair < PAIRS; pair++) {
-        table_clear(&potential[pair]);
-        table_clear(&weight[pair]);
+        mf_table_clear(&potential[pair]);
+        mf_table_clear(&weight[pair]);
     }
 }
 
@@ -101,8 +101,8 @@ void fluid_no_potential(struct table *table) {
 }
 
 void fluid_clear(struct fluid *fluid) {
-    table_clear(&fluid->potential);
-    table_clear(&fluid->weight);
+    mf_table_clear(&fluid->potential);
+    mf_table_clear(&fluid->weight);
 }
 
 void fluid_continue(struct simulation *simulation, const struct simulation_setup *setup,
@@ -114,5 +114,5 @@ void fluid_continue(struct simulation *simulation, const struct simulation_setup
         start.position[d] = from->particles.position[d];
         start.velocity[d] = from->particles.velocity[d];
     }
-    assert_ok(simulation_init(simulation, &here, &start));
+    assert_ok(mf_simulation_init(simulation, &here, &start));
 }

@@ -11,7 +11,7 @@ struct fluid {
 };
 
 /// Lennard-Jones near its triple point: density 0.8442, temperature 0.7, cutoff 2.5, thermostat
-/// ω = 1.5 (1 − r/2.5): dpd-verlet. With setup.weight = NULL and velocity_verlet it is NVE.
+/// ω = 1.5 (1 − r/2.5): dpd-verlet. With setup.weight = NULL and mf_velocity_verlet it is NVE.
 void fluid_lennard_jones(struct fluid *fluid, int64_t count, double time_step);
 
 /// The standard fluid of dissipative particle dynamics: density 3, a = 25, γ = 4.5, T = 1, r_c = 1.

@@ -12,14 +12,14 @@ static void ignore(void *context, const struct inverse_progress *progress) {
 void inversions_run(const struct inverse_method *method, const struct inverse_problem *problem,
                     double precision, double *phi, struct inverse_step *step) {
     const struct inverse_listener listener = {ignore, NULL};
-    const size_t pairs = (size_t)composition_pairs(&problem->scene.composition);
+    const size_t pairs = (size_t)mf_composition_pairs(&problem->scene.composition);
     const size_t points = pairs * (problem->goals.bins.count + 1);
     void *state = calloc(1, method->state_size);
     struct inversion_settings *settings = calloc(1, method->parameters_size);
     assert_non_null(state);
     assert_non_null(settings);
     for (size_t k = 0; method->tables[k]; k++)
-        fields_set_defaults(method->tables[k], settings);
+        mf_fields_set_defaults(method->tables[k], settings);
     settings->common.replicas = 4;
     settings->common.samples = 250;
     settings->common.equilibration = 100;

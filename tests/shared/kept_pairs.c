@@ -13,14 +13,14 @@ static const double rounding = 1e-13;
 /// Uniform random particles, of which no two are very close, sorted and listed. One `law` for all.
 void kept_pairs_init(struct kept_pairs *kept, const struct box *box, size_t count,
                      double separation) {
-    assert_ok(particles_init(&kept->particles, box, count));
-    assert_ok(particles_keep_precise(&kept->particles));
+    assert_ok(mf_particles_init(&kept->particles, box, count));
+    assert_ok(mf_particles_keep_precise(&kept->particles));
     kept->particles.threads = 1;
-    assert_ok(placement_random(&kept->particles, separation, 5));
-    particles_draw_velocities(&kept->particles, kept->law.temperature, 6);
-    assert_ok(neighbours_init(&kept->neighbours, NEIGHBOURS_HALF, box, count,
-                              pair_cutoff(&kept->law), 0.2));
-    assert_ok(neighbours_sort_and_build(&kept->neighbours, &kept->particles));
+    assert_ok(mf_placement_random(&kept->particles, separation, 5));
+    mf_particles_draw_velocities(&kept->particles, kept->law.temperature, 6);
+    assert_ok(mf_neighbours_init(&kept->neighbours, NEIGHBOURS_HALF, box, count,
+                              mf_pair_cutoff(&kept->law), 0.2));
+    assert_ok(mf_neighbours_sort_and_build(&kept->neighbours, &kept->particles));
 }
 
 struct pair_law kept_pairs_law(const struct table *potential, const struct table *omega,
@@ -33,7 +33,7 @@ struct pair_law kept_pairs_law(const struct table *potential, const struct table
 }
 
 void kept_pairs_use(struct kept_pairs *kept, const struct integrator *integrator) {
-    assert_ok(friction_init(&kept->friction, kept->law.weight, kept->law.time_step,
+    assert_ok(mf_friction_init(&kept->friction, kept->law.weight, kept->law.time_step,
                             kept->law.temperature, integrator->friction));
 }
 
@@ -41,8 +41,8 @@ void kept_pairs_use(struct kept_pairs *kept, const struct integrator *integrator
 void kept_pairs_keep(struct kept_pairs *kept, uint64_t step) {
     struct pair_law law = kept->law;
     law.friction = &kept->friction;
-    assert_ok(friction_reserve(&kept->friction, &kept->neighbours));
-    pair_forces(&law, &kept->particles, &kept->neighbours, step, PAIR_FORCES, NULL);
+    assert_ok(mf_friction_reserve(&kept->friction, &kept->neighbours));
+    mf_pair_forces(&law, &kept->particles, &kept->neighbours, step, PAIR_FORCES, NULL);
 }
 
 size_t kept_pairs_count(const struct friction *friction) {
@@ -53,9 +53,9 @@ size_t kept_pairs_count(const struct friction *friction) {
 }
 
 void kept_pairs_clear(struct kept_pairs *kept) {
-    particles_clear(&kept->particles);
-    neighbours_clear(&kept->neighbours);
-    friction_clear(&kept->friction);
+    mf_particles_clear(&kept->particles);
+    mf_neighbours_clear(&kept->neighbours);
+    mf_friction_clear(&kept->friction);
     *kept = (struct kept_pairs){0};
 }
 

@@ -44,10 +44,10 @@ const struct landscape landscape_rastrigin = {"rastrigin", rastrigin, -5, 5, 1};
 const struct landscape landscape_edge = {"edge", edge, 0, 1, 0};
 
 void *landscape_parameters(const struct optimiser *optimiser) {
-    void *parameters = memory_zeroed(1, optimiser->parameters_size);
+    void *parameters = mf_memory_zeroed(1, optimiser->parameters_size);
     assert_non_null(parameters);
     for (size_t k = 0; optimiser->tables[k]; k++)
-        fields_set_defaults(optimiser->tables[k], parameters);
+        mf_fields_set_defaults(optimiser->tables[k], parameters);
     return parameters;
 }
 
@@ -59,7 +59,7 @@ void landscape_set(const struct optimiser *optimiser, void *parameters, const ch
                 continue;
             struct field alone[2] = {*field, FIELD_END};
             alone[0].initial = value;
-            fields_set_defaults(alone, parameters);
+            mf_fields_set_defaults(alone, parameters);
             return;
         }
     fail_msg("%s has no field %s", optimiser->name, name);
@@ -73,7 +73,7 @@ struct landscape_run landscape_begin(const struct optimiser *optimiser, void *pa
                                           drive->start,
                                           drive->seed,
                                           drive->most};
-    struct landscape_run run = {optimiser, parameters, memory_zeroed(1, optimiser->state_size)};
+    struct landscape_run run = {optimiser, parameters, mf_memory_zeroed(1, optimiser->state_size)};
     assert_non_null(run.state);
     assert_ok(optimiser->create(run.state, &space, parameters));
     return run;
@@ -81,17 +81,17 @@ struct landscape_run landscape_begin(const struct optimiser *optimiser, void *pa
 
 void landscape_end(struct landscape_run *run) {
     run->optimiser->destroy(run->state);
-    memory_free(run->state);
+    mf_memory_free(run->state);
     run->state = NULL;
 }
 
 /// An error as it is measured, measurement number `number`.
 static double measure(const struct landscape_drive *drive, double exact, uint64_t number) {
     static const double failures[] = {OPTIMISER_FAILED, NAN, HUGE_VAL, -HUGE_VAL, 1e300};
-    const struct rng_block block = rng_philox(drive->seed, RNG_EVALUATION, (uint32_t)number, 0, 0);
+    const struct rng_block block = mf_rng_philox(drive->seed, RNG_EVALUATION, (uint32_t)number, 0, 0);
     double normal[4];
-    rng_normal4(rng_philox(drive->seed, RNG_EVALUATION, (uint32_t)number, 1, 0), normal);
-    if (rng_uniform(block.word[0], block.word[1]) < drive->failing)
+    mf_rng_normal4(mf_rng_philox(drive->seed, RNG_EVALUATION, (uint32_t)number, 1, 0), normal);
+    if (mf_rng_uniform(block.word[0], block.word[1]) < drive->failing)
         return failures[number % 5];
     return exact + drive->noise * normal[0];
 }
@@ -107,25 +107,25 @@ static struct optimiser_round ask_twice(struct landscape_run *run, size_t genes)
     struct optimiser_round first, second;
     assert_ok(run->optimiser->ask(run->state, &first));
     const size_t bytes = first.count * genes * sizeof(double);
-    double *copy = memory_zeroed(bytes + 1, 1);
+    double *copy = mf_memory_zeroed(bytes + 1, 1);
     assert_non_null(copy);
     memcpy(copy, first.genes, bytes);
     assert_ok(run->optimiser->ask(run->state, &second));
     assert_int_equal(first.count, second.count);
     assert_memory_equal(copy, second.genes, bytes);
-    memory_free(copy);
+    mf_memory_free(copy);
     return second;
 }
 
 static void look_at_favourite(const struct landscape_run *run, const struct landscape_drive *drive,
                               struct landscape_result *result) {
-    double *genes = memory_zeroed(drive->genes, sizeof *genes);
+    double *genes = mf_memory_zeroed(drive->genes, sizeof *genes);
     assert_non_null(genes);
     if (run->optimiser->favourite(run->state, genes)) {
         check_round(drive, &(struct optimiser_round){genes, 1});
         result->favourite = drive->landscape->error(genes, drive->genes);
     }
-    memory_free(genes);
+    mf_memory_free(genes);
 }
 
 bool landscape_step(struct landscape_run *run, const struct landscape_drive *drive,
@@ -135,7 +135,7 @@ bool landscape_step(struct landscape_run *run, const struct landscape_drive *dri
     if (result->finished)
         return false;
     check_round(drive, &round);
-    double *errors = memory_zeroed(2 * round.count, sizeof *errors);
+    double *errors = mf_memory_zeroed(2 * round.count, sizeof *errors);
     assert_non_null(errors);
     for (size_t k = 0; k < round.count; k++) {
         const double exact = drive->landscape->error(round.genes + k * drive->genes, drive->genes);
@@ -144,7 +144,7 @@ bool landscape_step(struct landscape_run *run, const struct landscape_drive *dri
         errors[round.count + k] = drive->noise * drive->noise;
     }
     assert_ok(run->optimiser->tell(run->state, errors, errors + round.count));
-    memory_free(errors);
+    mf_memory_free(errors);
     result->rounds++;
     look_at_favourite(run, drive, result);
     return true;

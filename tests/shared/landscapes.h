@@ -43,7 +43,7 @@ struct landscape_run {
     void *parameters, *state;
 };
 
-/// The default parameters of an optimiser; memory_free them.
+/// The default parameters of an optimiser; mf_memory_free them.
 void *landscape_parameters(const struct optimiser *optimiser);
 
 /// Set a number, integer or choice by its field's name; the test fails if there is none.

@@ -17,7 +17,7 @@ static double separation(const struct particles *particles, size_t i, size_t j) 
 /// |F| + r |dF/dr| of the potential.
 static double conservative_scale(const struct table *potential, int pair, double r) {
     double slope, curvature;
-    table_evaluate_pair(potential, pair, r, NULL, &slope, &curvature);
+    mf_table_evaluate_pair(potential, pair, r, NULL, &slope, &curvature);
     return fabs(slope) + r * fabs(curvature);
 }
 
@@ -27,7 +27,7 @@ static double dissipative_scale(const struct pair_law *law, int pair, double r) 
     double omega = 0, slope = 0;
     for (int side = -1; side <= 1; side++) {
         double value, steepness;
-        table_evaluate_pair(law->weight, pair, fmin(r * (1 + 1e-6 * side), law->weight->cutoff),
+        mf_table_evaluate_pair(law->weight, pair, fmin(r * (1 + 1e-6 * side), law->weight->cutoff),
                             &value, &steepness, NULL);
         omega = fmax(omega, fabs(value));
         slope = fmax(slope, fabs(steepness));
@@ -38,16 +38,16 @@ static double dissipative_scale(const struct pair_law *law, int pair, double r) 
 }
 
 struct pair_scales pair_scales_find(const struct pair_law *law, const struct particles *particles) {
-    struct pair_scales scales = {.force = memory_zeroed(particles->count, sizeof(double))};
+    struct pair_scales scales = {.force = mf_memory_zeroed(particles->count, sizeof(double))};
     assert_non_null(scales.force);
     for (size_t i = 0; i < particles->count; i++)
         for (size_t j = i + 1; j < particles->count; j++) {
             const double r = separation(particles, i, j);
             const int pair =
-                composition_pair_of_ids(&law->composition, particles->id[i], particles->id[j]);
+                mf_composition_pair_of_ids(&law->composition, particles->id[i], particles->id[j]);
             double force = 0, phi, slope;
             if (law->potential && r < law->potential->cutoff) {
-                table_evaluate_pair(law->potential, pair, r, &phi, &slope, NULL);
+                mf_table_evaluate_pair(law->potential, pair, r, &phi, &slope, NULL);
                 scales.energy += fabs(phi);
                 scales.virial += fabs(r * slope);
                 force += conservative_scale(law->potential, pair, r);
@@ -63,6 +63,6 @@ struct pair_scales pair_scales_find(const struct pair_law *law, const struct par
 }
 
 void pair_scales_clear(struct pair_scales *scales) {
-    memory_free(scales->force);
+    mf_memory_free(scales->force);
     *scales = (struct pair_scales){0};
 }

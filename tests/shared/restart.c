@@ -6,17 +6,17 @@
 void restart_simulation(struct simulation *simulation) {
     struct memory_span from[SIMULATION_SPANS], to[SIMULATION_SPANS];
     struct simulation again;
-    assert_ok(simulation_init(&again, &simulation->setup, NULL));
-    const size_t spans = simulation_spans(simulation, from);
-    assert_int_equal(simulation_spans(&again, to), spans);
+    assert_ok(mf_simulation_init(&again, &simulation->setup, NULL));
+    const size_t spans = mf_simulation_spans(simulation, from);
+    assert_int_equal(mf_simulation_spans(&again, to), spans);
     for (size_t n = 0; n < spans; n++) {
         assert_int_equal(from[n].bytes, to[n].bytes);
         memcpy(to[n].memory, from[n].memory, from[n].bytes);
     }
     const uint64_t list_builds = simulation->list_builds;
-    simulation_clear(simulation);
+    mf_simulation_clear(simulation);
     *simulation = again;
-    assert_ok(simulation_restore(simulation));
+    assert_ok(mf_simulation_restore(simulation));
     assert_int_equal(simulation->list_builds, list_builds);
 }
 

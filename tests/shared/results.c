@@ -86,11 +86,11 @@ static void read_member(const char *file, const char *key, enum field_type type,
                                     .minimum = -DBL_MAX,
                                     .maximum = DBL_MAX},
                                    FIELD_END};
-    assert_ok(json_open(&document, file));
-    struct json_object root = json_root(document);
-    struct json_object object = dot ? json_child(&root, outer, true) : root;
-    json_fields(&object, fields, value);
-    assert_ok(json_close(document, STATUS_OK));
+    assert_ok(mf_json_open(&document, file));
+    struct json_object root = mf_json_root(document);
+    struct json_object object = dot ? mf_json_child(&root, outer, true) : root;
+    mf_json_fields(&object, fields, value);
+    assert_ok(mf_json_close(document, STATUS_OK));
 }
 
 double results_number(const char *file, const char *key) {

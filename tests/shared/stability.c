@@ -14,15 +14,15 @@ static enum status measure(const struct simulation_setup *setup,
     struct simulation simulation = {0};
     struct thermodynamics thermodynamics = {0};
     double temperature;
-    assert_ok(thermodynamics_init(&thermodynamics, (size_t)plan->samples));
-    CHECK(simulation_init(&simulation, setup, start));
-    CHECK(measure_equilibrate(&simulation, plan, &temperature, NULL));
-    CHECK(measure_sample(&simulation, plan,
+    assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)plan->samples));
+    CHECK(mf_simulation_init(&simulation, setup, start));
+    CHECK(mf_measure_equilibrate(&simulation, plan, &temperature, NULL));
+    CHECK(mf_measure_sample(&simulation, plan,
                          (struct measure_targets){.thermodynamics = &thermodynamics}, NULL));
-    *summary = thermodynamics_result(&thermodynamics, 1);
+    *summary = mf_thermodynamics_result(&thermodynamics, 1);
 done:
-    thermodynamics_clear(&thermodynamics);
-    simulation_clear(&simulation);
+    mf_thermodynamics_clear(&thermodynamics);
+    mf_simulation_clear(&simulation);
     return status;
 }
 
@@ -35,11 +35,11 @@ enum stability stability_run(const struct simulation_setup *setup,
     print_message("%s, time step %g, T %g, N %lld: ", setup->integrator->name, setup->time_step,
                   setup->temperature, (long long)setup->placement.count);
     if (status == STATUS_UNSTABLE) {
-        print_message("%s\n", status_message());
+        print_message("%s\n", mf_status_message());
         return STABILITY_UNSTABLE;
     }
     assert_ok(status);
-    const bool good = thermodynamics_judge(&s, setup) == STATUS_OK;
+    const bool good = mf_thermodynamics_judge(&s, setup) == STATUS_OK;
     print_message("%.3f(%.3f) / %.3f(%.3f)%s\n", s.temperature, s.temperature_error,
                   s.temperature_configurational, s.temperature_configurational_error,
                   good ? "" : ", doubtful");
@@ -50,9 +50,9 @@ enum stability stability_of(const struct stability_case *what, int64_t count) {
     struct fluid fluid;
     struct table weight;
     struct formula_power_weight_parameters parameters = {sqrt(what->friction), 1, 0, 1};
-    const struct curve curve = {&formula_power_weight, &parameters};
+    const struct curve curve = {&mf_formula_power_weight, &parameters};
     fluid_groot_warren(&fluid, count, what->time_step);
-    assert_ok(table_init_weight(&weight, &curve));
+    assert_ok(mf_table_init_weight(&weight, &curve));
     fluid.setup.weight = &weight;
     fluid.setup.integrator = what->integrator;
     fluid.setup.integrator_parameters.lambda = what->lambda;
@@ -62,7 +62,7 @@ enum stability stability_of(const struct stability_case *what, int64_t count) {
     const enum stability stability =
         stability_run(&fluid.setup, NULL, (int64_t)fmax(300, 10 / what->time_step),
                       (int64_t)fmax(4, 0.05 / what->time_step));
-    table_clear(&weight);
+    mf_table_clear(&weight);
     fluid_clear(&fluid);
     return stability;
 }

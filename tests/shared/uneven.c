@@ -12,7 +12,7 @@ static const struct box box = {3, {24, 8, 8}};
 typedef void uneven_place(struct rng_sequence *random, double x[3]);
 
 static double between(struct rng_sequence *random, double low, double high) {
-    return low + (high - low) * rng_sequence_uniform(random);
+    return low + (high - low) * mf_rng_sequence_uniform(random);
 }
 
 static void place_anywhere(struct rng_sequence *random, double x[3]) {
@@ -35,7 +35,7 @@ static void place_dense(struct particles *particles, struct rng_sequence *random
     double centre[3], x[3];
     place_anywhere(random, centre);
     for (size_t k = 0; k < particles->count; k++) {
-        if (rng_sequence_uniform(random) < share)
+        if (mf_rng_sequence_uniform(random) < share)
             place_near(random, centre, size, x);
         else
             place_anywhere(random, x);
@@ -62,13 +62,13 @@ static void place_first(struct particles *particles, struct rng_sequence *random
     for (size_t k = 0; k < particles->count; k++) {
         const bool is_far = k % 8 == 0;
         particles->position[0][k] = is_far ? between(random, 12, 24) : between(random, 0, 0.9);
-        particles->position[1][k] = box.length[1] * pow(rng_sequence_uniform(random), 6);
+        particles->position[1][k] = box.length[1] * pow(mf_rng_sequence_uniform(random), 6);
         particles->position[2][k] = between(random, 0, box.length[2]);
     }
 }
 
 static void place(struct particles *particles, enum uneven_kind kind, uint32_t number) {
-    struct rng_sequence random = rng_sequence_begin(77, RNG_PLACEMENT, (uint32_t)kind, number);
+    struct rng_sequence random = mf_rng_sequence_begin(77, RNG_PLACEMENT, (uint32_t)kind, number);
     switch (kind) {
     case UNEVEN_DROPLET:
         place_dense(particles, &random, (const double[3]){1, 1, 1});
@@ -91,21 +91,21 @@ static void place(struct particles *particles, enum uneven_kind kind, uint32_t n
 
 void uneven_init(struct uneven *uneven, enum uneven_kind kind, uint32_t number) {
     struct formula_soft_repulsion_parameters parameters = {25, 1};
-    const struct curve curve = {&formula_soft_repulsion, &parameters};
+    const struct curve curve = {&mf_formula_soft_repulsion, &parameters};
     const size_t some = kind == UNEVEN_EMPTY ? 600 : 2000;
     const size_t count = kind == UNEVEN_TWO ? 2 : some + 31 * (number % 64);
-    assert_ok(table_init_potential(&uneven->potential, &curve));
-    assert_ok(particles_init(&uneven->particles, &box, count));
+    assert_ok(mf_table_init_potential(&uneven->potential, &curve));
+    assert_ok(mf_particles_init(&uneven->particles, &box, count));
     uneven->particles.threads = 1;
     place(&uneven->particles, kind, number);
-    assert_ok(neighbours_init(&uneven->neighbours, NEIGHBOURS_HALF, &box, count, 1, 0.3));
-    assert_ok(neighbours_sort_and_build(&uneven->neighbours, &uneven->particles));
+    assert_ok(mf_neighbours_init(&uneven->neighbours, NEIGHBOURS_HALF, &box, count, 1, 0.3));
+    assert_ok(mf_neighbours_sort_and_build(&uneven->neighbours, &uneven->particles));
 }
 
 void uneven_clear(struct uneven *uneven) {
-    table_clear(&uneven->potential);
-    particles_clear(&uneven->particles);
-    neighbours_clear(&uneven->neighbours);
+    mf_table_clear(&uneven->potential);
+    mf_particles_clear(&uneven->particles);
+    mf_neighbours_clear(&uneven->neighbours);
 }
 
 void uneven_narrow(struct uneven *uneven, int room) {
@@ -134,12 +134,12 @@ static double *find_forces(struct uneven *uneven, int threads) {
     struct particles *particles = &uneven->particles;
     const struct pair_law law = {.potential = &uneven->potential, .temperature = 1};
     const size_t count = particles->count;
-    double *forces = memory_zeroed(3 * count, sizeof *forces);
+    double *forces = mf_memory_zeroed(3 * count, sizeof *forces);
     assert_non_null(forces);
     particles->threads = threads;
-    assert_ok(neighbours_sort_and_build(&uneven->neighbours, particles));
+    assert_ok(mf_neighbours_sort_and_build(&uneven->neighbours, particles));
     check_owners(&uneven->neighbours, threads);
-    pair_forces(&law, particles, &uneven->neighbours, 0, PAIR_FORCES, NULL);
+    mf_pair_forces(&law, particles, &uneven->neighbours, 0, PAIR_FORCES, NULL);
     for (int d = 0; d < 3; d++)
         memcpy(forces + (size_t)d * count, particles->force[d], count * sizeof *forces);
     particles->threads = 1;
@@ -149,8 +149,8 @@ static double *find_forces(struct uneven *uneven, int threads) {
 void uneven_check_threads(struct uneven *uneven, int threads) {
     double *shared = find_forces(uneven, threads), *alone = find_forces(uneven, 1);
     assert_memory_equal(shared, alone, 3 * uneven->particles.count * sizeof *alone);
-    memory_free(shared);
-    memory_free(alone);
+    mf_memory_free(shared);
+    mf_memory_free(alone);
 }
 
 int uneven_check_ends(struct uneven *uneven) {
@@ -161,7 +161,7 @@ int uneven_check_ends(struct uneven *uneven) {
     int seen = 0;
     for (size_t row = 0; row < capacity / NEIGHBOURS_ROW; row++)
         neighbours->owner[row] = UNTOUCHED;
-    assert_ok(neighbours_sort_and_build(neighbours, &uneven->particles));
+    assert_ok(mf_neighbours_sort_and_build(neighbours, &uneven->particles));
     // A first trial with other ends has left its rows, or the list is a new one.
     if (neighbours->entries_each > narrow || neighbours->list_capacity > capacity)
         return 0;

@@ -15,7 +15,7 @@ int variants_find(struct variant variants[VARIANTS_MOST]) {
     } precisions[] = {{PAIR_MIXED, "mixed"}, {PAIR_DOUBLE, "double"}};
     int count = 0;
     for (int s = 0; s < 3; s++) {
-        if (!simd_select(instruction_sets[s]))
+        if (!mf_simd_select(instruction_sets[s]))
             continue;
         for (int p = 0; p < 2; p++) {
             struct variant *variant = &variants[count++];
@@ -30,5 +30,5 @@ int variants_find(struct variant variants[VARIANTS_MOST]) {
 }
 
 void variants_select(const struct variant *variant) {
-    assert_true(simd_select(variant->instruction_set));
+    assert_true(mf_simd_select(variant->instruction_set));
 }

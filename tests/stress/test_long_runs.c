@@ -12,9 +12,9 @@ enum { STEPS = 1000000, BLOCKS = 20 };
 
 static double energy(struct simulation *simulation) {
     simulation->wants = PAIR_FORCES_AND_SUMS;
-    assert_ok(simulation_run(simulation, 1));
+    assert_ok(mf_simulation_run(simulation, 1));
     simulation->wants = PAIR_FORCES;
-    return simulation->sums.energy + 0.5 * particles_square_velocities(&simulation->particles);
+    return simulation->sums.energy + 0.5 * mf_particles_square_velocities(&simulation->particles);
 }
 
 static double largest_momentum(const struct particles *particles) {
@@ -37,18 +37,18 @@ static void test_nve_keeps_its_energy_for_a_million_steps(void **state) {
         struct simulation simulation;
         fluid_lennard_jones(&fluid, 112, 0.002);
         fluid.setup.weight = NULL;
-        fluid.setup.integrator = &velocity_verlet;
+        fluid.setup.integrator = &mf_velocity_verlet;
         fluid.setup.precision = precision;
-        assert_ok(simulation_init(&simulation, &fluid.setup, NULL));
-        assert_ok(simulation_run(&simulation, 1000));
+        assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
+        assert_ok(mf_simulation_run(&simulation, 1000));
         const double before = energy(&simulation);
-        assert_ok(simulation_run(&simulation, STEPS));
+        assert_ok(mf_simulation_run(&simulation, STEPS));
         const double drift = (energy(&simulation) - before) / 112;
         print_message("precision %d: drift %.2g a particle in 2000 tau, momentum %.2g\n", precision,
                       drift, largest_momentum(&simulation.particles));
         assert_close(drift, 0, 2e-3);
         assert_close(largest_momentum(&simulation.particles), 0, 1e-8);
-        simulation_clear(&simulation);
+        mf_simulation_clear(&simulation);
         fluid_clear(&fluid);
     }
 }
@@ -57,21 +57,21 @@ static void test_nve_keeps_its_energy_for_a_million_steps(void **state) {
 static struct running_mean long_temperature(struct simulation_setup *setup) {
     struct simulation simulation;
     struct running_mean blocks = {0};
-    assert_ok(simulation_init(&simulation, setup, NULL));
-    assert_ok(simulation_run(&simulation, 1000));
+    assert_ok(mf_simulation_init(&simulation, setup, NULL));
+    assert_ok(mf_simulation_run(&simulation, 1000));
     for (int block = 0; block < BLOCKS; block++) {
         double sum = 0;
         for (int k = 0; k < STEPS / BLOCKS / 10; k++) {
-            assert_ok(simulation_run(&simulation, 10));
-            sum += particles_temperature(&simulation.particles);
+            assert_ok(mf_simulation_run(&simulation, 10));
+            sum += mf_particles_temperature(&simulation.particles);
         }
-        statistics_add(&blocks, sum / (STEPS / BLOCKS / 10.0));
+        mf_statistics_add(&blocks, sum / (STEPS / BLOCKS / 10.0));
     }
     print_message("%s, precision %d: T %.4f(%.4f), momentum %.2g\n", setup->integrator->name,
-                  setup->precision, blocks.mean, statistics_standard_error(&blocks),
+                  setup->precision, blocks.mean, mf_statistics_standard_error(&blocks),
                   largest_momentum(&simulation.particles));
     assert_close(largest_momentum(&simulation.particles), 0, 1e-8);
-    simulation_clear(&simulation);
+    mf_simulation_clear(&simulation);
     return blocks;
 }
 
@@ -81,18 +81,18 @@ static void test_dpd_keeps_temperature_and_momentum_for_a_million_steps(void **s
     struct fluid fluid;
     fluid_groot_warren(&fluid, 100, 0.01);
     fluid.setup.integrator_parameters.tolerance = 0.01;
-    for (size_t k = 0; integrator_list[k]; k++) {
-        if (!integrator_list[k]->dissipative)
+    for (size_t k = 0; mf_integrator_list[k]; k++) {
+        if (!mf_integrator_list[k]->dissipative)
             continue;
         struct running_mean runs[2];
-        fluid.setup.integrator = integrator_list[k];
+        fluid.setup.integrator = mf_integrator_list[k];
         for (int precision = PAIR_MIXED; precision <= PAIR_DOUBLE; precision++) {
             fluid.setup.precision = precision;
             runs[precision] = long_temperature(&fluid.setup);
             assert_close(runs[precision].mean, 1, 0.015);
         }
         const double error =
-            hypot(statistics_standard_error(&runs[0]), statistics_standard_error(&runs[1]));
+            hypot(mf_statistics_standard_error(&runs[0]), mf_statistics_standard_error(&runs[1]));
         assert_close(runs[0].mean, runs[1].mean, 4 * error);
     }
     fluid_clear(&fluid);

@@ -20,7 +20,7 @@ static const double frictions[] = {40, 200, 1000}, time_steps[] = {0.02, 0.05, 0
 static enum status run_to(struct simulation *simulation, enum status before, uint64_t end) {
     if (before != STATUS_OK)
         return before;
-    const enum status status = simulation_run(simulation, end - simulation->step);
+    const enum status status = mf_simulation_run(simulation, end - simulation->step);
     assert_true(status == STATUS_OK || status == STATUS_UNSTABLE);
     return status;
 }
@@ -28,8 +28,8 @@ static enum status run_to(struct simulation *simulation, enum status before, uin
 /// Returns how the run ends.
 static enum status check(const struct simulation_setup *setup) {
     struct simulation whole, pieces;
-    assert_ok(simulation_init(&whole, setup, NULL));
-    assert_ok(simulation_init(&pieces, setup, NULL));
+    assert_ok(mf_simulation_init(&whole, setup, NULL));
+    assert_ok(mf_simulation_init(&pieces, setup, NULL));
     const enum status expected = run_to(&whole, STATUS_OK, STEPS);
     enum status status = STATUS_OK;
     for (size_t k = 0; k < sizeof stops / sizeof *stops && status == STATUS_OK; k++) {
@@ -46,8 +46,8 @@ static enum status check(const struct simulation_setup *setup) {
         restart_assert_same(&whole, &pieces);
     else // NaN has many bits
         assert_int_equal(pieces.step, whole.step);
-    simulation_clear(&whole);
-    simulation_clear(&pieces);
+    mf_simulation_clear(&whole);
+    mf_simulation_clear(&pieces);
     return status;
 }
 
@@ -57,17 +57,17 @@ test_restart_goes_on_with_the_same_bits_when_friction_and_time_step_are_large(vo
     int ended = 0, unstable = 0;
     for (size_t f = 0; f < sizeof frictions / sizeof *frictions; f++) {
         struct formula_power_weight_parameters parameters = {sqrt(frictions[f]), 1, 0, 1};
-        const struct curve curve = {&formula_power_weight, &parameters};
+        const struct curve curve = {&mf_formula_power_weight, &parameters};
         struct table weight;
-        assert_ok(table_init_weight(&weight, &curve));
-        for (size_t k = 0; integrator_list[k]; k++)
+        assert_ok(mf_table_init_weight(&weight, &curve));
+        for (size_t k = 0; mf_integrator_list[k]; k++)
             for (size_t t = 0; t < sizeof time_steps / sizeof *time_steps; t++) {
-                if (!integrator_list[k]->dissipative)
+                if (!mf_integrator_list[k]->dissipative)
                     continue;
                 struct fluid fluid;
                 fluid_groot_warren(&fluid, PARTICLES, time_steps[t]);
                 fluid.setup.weight = &weight;
-                fluid.setup.integrator = integrator_list[k];
+                fluid.setup.integrator = mf_integrator_list[k];
                 fluid.setup.integrator_parameters.tolerance = 0.01;
                 fluid.setup.temperature_limit = 20;
                 fluid.setup.threads = 1 + (int)(t % 2);
@@ -75,7 +75,7 @@ test_restart_goes_on_with_the_same_bits_when_friction_and_time_step_are_large(vo
                 *(check(&fluid.setup) == STATUS_OK ? &ended : &unstable) += 1;
                 fluid_clear(&fluid);
             }
-        table_clear(&weight);
+        mf_table_clear(&weight);
     }
     assert_true(ended >= 40);
     assert_true(unstable >= 10);

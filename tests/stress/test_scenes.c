@@ -13,9 +13,9 @@ enum { MOST_POINTS = 600 };
 
 static void make_table(struct table *table, const double *r, const double *value, size_t points) {
     struct curve curve;
-    assert_ok(sampled_create(&curve, r, value, points));
-    assert_ok(table_init_potential(table, &curve));
-    curve_clear(&curve);
+    assert_ok(mf_sampled_create(&curve, r, value, points));
+    assert_ok(mf_table_init_potential(table, &curve));
+    mf_curve_clear(&curve);
 }
 
 /// A fluid of density 0.8 and friction within 1.5 that has this potential.
@@ -27,7 +27,7 @@ static void make_fluid(struct fluid *fluid, const struct table *potential, doubl
 }
 
 static const struct integrator *const dissipative[] = {
-    &dpd_verlet, &dpd_vv, &shardlow, &aboba, &aboba_implicit, &lowe_andersen};
+    &mf_dpd_verlet, &mf_dpd_vv, &mf_shardlow, &mf_aboba, &mf_aboba_implicit, &mf_lowe_andersen};
 enum { DISSIPATIVE = sizeof dissipative / sizeof *dissipative };
 
 /// All integrators end as `expected` with this potential.
@@ -56,7 +56,7 @@ static void test_steep_table_is_good_when_the_time_step_is_small(void **state) {
     check(&table, 0.001, PLACEMENT_LATTICE, STABILITY_GOOD);
     check(&table, 0.001, PLACEMENT_RANDOM, STABILITY_GOOD);
     check(&table, 0.1, PLACEMENT_LATTICE, STABILITY_UNSTABLE);
-    table_clear(&table);
+    mf_table_clear(&table);
 }
 
 static void test_water_table_is_good_from_a_lattice_and_from_random_places(void **state) {
@@ -64,7 +64,7 @@ static void test_water_table_is_good_from_a_lattice_and_from_random_places(void 
     struct data_table points;
     double r[MOST_POINTS], value[MOST_POINTS];
     struct table table;
-    assert_ok(data_table_read(&points, "tests/bench/scenes/cgwater.tsv", 2));
+    assert_ok(mf_data_table_read(&points, "tests/bench/scenes/cgwater.tsv", 2));
     assert_true(points.rows <= MOST_POINTS);
     for (size_t k = 0; k < points.rows; k++) {
         r[k] = points.values[k * points.columns];
@@ -73,8 +73,8 @@ static void test_water_table_is_good_from_a_lattice_and_from_random_places(void 
     make_table(&table, r, value, points.rows);
     check(&table, 0.01, PLACEMENT_LATTICE, STABILITY_GOOD);
     check(&table, 0.01, PLACEMENT_RANDOM, STABILITY_GOOD);
-    table_clear(&table);
-    data_table_clear(&points);
+    mf_table_clear(&table);
+    mf_data_table_clear(&points);
 }
 
 /// A raw random walk of 100 points, and 20 points of a smooth curve.
@@ -83,12 +83,12 @@ static void test_rough_and_coarse_tables_end_in_one_of_three_ways(void **state) 
     double r[100], value[100];
     struct table table;
     for (uint64_t seed = 1; seed <= 3; seed++) {
-        struct rng_sequence sequence = rng_sequence_begin(seed, RNG_INITIAL, 0, 0);
+        struct rng_sequence sequence = mf_rng_sequence_begin(seed, RNG_INITIAL, 0, 0);
         double walk = 0;
         for (int k = 99; k >= 0; k--) {
             r[k] = k / 99.0;
             value[k] = walk;
-            walk += rng_sequence_uniform(&sequence) - 0.3;
+            walk += mf_rng_sequence_uniform(&sequence) - 0.3;
         }
         make_table(&table, r, value, 100);
         for (int k = 0; k < DISSIPATIVE; k++) {
@@ -99,7 +99,7 @@ static void test_rough_and_coarse_tables_end_in_one_of_three_ways(void **state) 
             (void)stability_run(&fluid.setup, NULL, 500, 20);
             fluid_clear(&fluid);
         }
-        table_clear(&table);
+        mf_table_clear(&table);
     }
     for (int k = 0; k < 20; k++) {
         r[k] = k / 19.0;
@@ -107,7 +107,7 @@ static void test_rough_and_coarse_tables_end_in_one_of_three_ways(void **state) 
     }
     make_table(&table, r, value, 20);
     check(&table, 0.02, PLACEMENT_LATTICE, STABILITY_GOOD);
-    table_clear(&table);
+    mf_table_clear(&table);
 }
 
 static void test_standard_fluid_is_good_when_cold_and_hot(void **state) {
@@ -143,11 +143,11 @@ static void test_standard_fluid_runs_at_any_size(void **state) {
                 assert_int_equal(stability_run(&fluid.setup, NULL, 2000, 40), STABILITY_GOOD);
             } else {
                 struct simulation simulation;
-                assert_ok(simulation_init(&simulation, &fluid.setup, NULL));
-                assert_ok(simulation_run(&simulation, 3));
+                assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
+                assert_ok(mf_simulation_run(&simulation, 3));
                 // On its way from the lattice it is colder for a while.
-                assert_close(particles_temperature(&simulation.particles), 0.95, 0.05);
-                simulation_clear(&simulation);
+                assert_close(mf_particles_temperature(&simulation.particles), 0.95, 0.05);
+                mf_simulation_clear(&simulation);
             }
             fluid_clear(&fluid);
         }
@@ -162,7 +162,7 @@ static void test_positions_may_be_a_million_boxes_away(void **state) {
     struct fluid fluid;
     struct simulation first, here, there;
     fluid_groot_warren(&fluid, COUNT, 0.01);
-    assert_ok(simulation_init(&first, &fluid.setup, NULL));
+    assert_ok(mf_simulation_init(&first, &fluid.setup, NULL));
     for (int d = 0; d < 3; d++)
         for (int k = 0; k < COUNT; k++) {
             near[d][k] = first.particles.position[d][k];
@@ -174,24 +174,24 @@ static void test_positions_may_be_a_million_boxes_away(void **state) {
         struct simulation_start start = {.position = {near[0], near[1], near[2]}};
         fluid.setup.integrator = dissipative[k];
         fluid.setup.integrator_parameters.tolerance = 1e-8;
-        assert_ok(simulation_init(&here, &fluid.setup, &start));
+        assert_ok(mf_simulation_init(&here, &fluid.setup, &start));
         for (int d = 0; d < 3; d++)
             start.position[d] = far[d];
-        assert_ok(simulation_init(&there, &fluid.setup, &start));
-        assert_ok(simulation_run(&here, 20));
-        assert_ok(simulation_run(&there, 20));
+        assert_ok(mf_simulation_init(&there, &fluid.setup, &start));
+        assert_ok(mf_simulation_run(&here, 20));
+        assert_ok(mf_simulation_run(&there, 20));
         double velocity[2][COUNT];
         for (int n = 0; n < COUNT; n++) {
             velocity[0][here.particles.id[n]] = here.particles.velocity[0][n];
             velocity[1][there.particles.id[n]] = there.particles.velocity[0][n];
         }
         for (int n = 0; n < COUNT; n++)
-            if (dissipative[k] != &lowe_andersen) // a collision is a matter of yes or no
+            if (dissipative[k] != &mf_lowe_andersen) // a collision is a matter of yes or no
                 assert_close(velocity[0][n], velocity[1][n], 1e-4);
-        simulation_clear(&here);
-        simulation_clear(&there);
+        mf_simulation_clear(&here);
+        mf_simulation_clear(&there);
     }
-    simulation_clear(&first);
+    mf_simulation_clear(&first);
     fluid_clear(&fluid);
 }
 

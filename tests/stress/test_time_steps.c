@@ -14,13 +14,13 @@ static const struct {
     double lambda;
     double good[FRICTIONS];
 } limits[] = {
-    {&dpd_verlet, 0.5, {0.05, 0.02, 0.002, 0.0005}},
-    {&dpd_verlet, 0.65, {0.05, 0.02, 0.002, 0.0005}},
-    {&dpd_vv, 0, {0.05, 0.03, 0.005, 0.001}},
-    {&shardlow, 0, {0.05, 0.04, 0.04, 0.04}},
-    {&aboba, 0, {0.08, 0.1, 0.1, 0.1}},
-    {&aboba_implicit, 0, {0.08, 0.1, 0.06, 0.06}},
-    {&lowe_andersen, 0, {0.05, 0.04, 0.04, 0.04}},
+    {&mf_dpd_verlet, 0.5, {0.05, 0.02, 0.002, 0.0005}},
+    {&mf_dpd_verlet, 0.65, {0.05, 0.02, 0.002, 0.0005}},
+    {&mf_dpd_vv, 0, {0.05, 0.03, 0.005, 0.001}},
+    {&mf_shardlow, 0, {0.05, 0.04, 0.04, 0.04}},
+    {&mf_aboba, 0, {0.08, 0.1, 0.1, 0.1}},
+    {&mf_aboba_implicit, 0, {0.08, 0.1, 0.06, 0.06}},
+    {&mf_lowe_andersen, 0, {0.05, 0.04, 0.04, 0.04}},
 };
 
 /// From here on nothing is right.

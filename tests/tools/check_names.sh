@@ -1,9 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# check_names.sh LIBRARY: every external function and object of x_y.o is called x_y, or x_ys if it is
-# the list of them, or begins with x_, the first word of its file: files of one module, such as
-# genetic.c and genetic_operators.c, share it.
+# check_names.sh LIBRARY: what the linker sees begins with mf_, or with mesofit_ if a public header
+# declares it. Behind mf_, every function and object of x_y.o is called x_y, or x_ys if it is the
+# list of them, or begins with x_, the first word of its file: files of one module, such as genetic.c
+# and genetic_operators.c, share it.
 set -u
 
 symbols=$(nm --defined-only --extern-only --format=posix "$1") || exit 1
@@ -20,8 +21,13 @@ faults=$(printf '%s\n' "$symbols" | awk '
         sub(/_.*$/, "", word)
         next
     }
-    NF >= 2 && $1 != file && $1 != file "s" && index($1, word "_") != 1 {
-        print file ".c: " $1 " should begin with " word "_"
+    NF >= 2 && index($1, "mesofit_") == 1 {
+        next
+    }
+    NF >= 2 {
+        name = $1
+        if (sub(/^mf_/, "", name) != 1 || (name != file && name != file "s" && index(name, word "_") != 1))
+            print file ".c: " $1 " should begin with mf_" word "_"
     }')
 if [ -n "$faults" ]; then
     printf 'names:\n%s\n' "$faults"

@@ -9,7 +9,7 @@ static int turns_with_most(struct crew *crew, int turns, uint64_t many, uint64_t
     int with_most = 0;
     for (int k = 0; k < turns; k++) {
         with_most += crew->now == crew->most;
-        crew_end_turn(crew, (crew->now == crew->most ? many : one) * (k % 3 == 0 ? 10 : 1));
+        mf_crew_end_turn(crew, (crew->now == crew->most ? many : one) * (k % 3 == 0 ? 10 : 1));
     }
     return with_most;
 }
@@ -17,7 +17,7 @@ static int turns_with_most(struct crew *crew, int turns, uint64_t many, uint64_t
 static void one_thread_stays_one(void **state) {
     (void)state;
     struct crew crew;
-    crew_init(&crew, 1);
+    mf_crew_init(&crew, 1);
     assert_int_equal(turns_with_most(&crew, 1000, 1, 1), 1000);
     assert_int_equal(crew.now, 1);
 }
@@ -25,7 +25,7 @@ static void one_thread_stays_one(void **state) {
 static void threads_that_pay_are_taken(void **state) {
     (void)state;
     struct crew crew;
-    crew_init(&crew, 4);
+    mf_crew_init(&crew, 4);
     // Nine turns of a trial are tried with one thread: at most one trial in 128 turns.
     assert_true(turns_with_most(&crew, 10000, 100, 300) >= 10000 - 9 * 8);
 }
@@ -33,14 +33,14 @@ static void threads_that_pay_are_taken(void **state) {
 static void threads_that_hinder_are_left_out(void **state) {
     (void)state;
     struct crew crew;
-    crew_init(&crew, 2);
+    mf_crew_init(&crew, 2);
     assert_true(turns_with_most(&crew, 10000, 300, 100) <= 9 * 8);
 }
 
 static void a_change_is_found(void **state) {
     (void)state;
     struct crew crew;
-    crew_init(&crew, 2);
+    mf_crew_init(&crew, 2);
     turns_with_most(&crew, 1000, 300, 100);
     turns_with_most(&crew, CREW_LONGEST_REST + 100, 100, 300);
     assert_int_equal(crew.better, 2);

@@ -32,7 +32,7 @@ static void test_fields_set_defaults_fills_every_member_when_struct_holds_rubbis
     (void)state;
     struct sample sample;
     memset(&sample, 0x5A, sizeof sample);
-    fields_set_defaults(fields, &sample);
+    mf_fields_set_defaults(fields, &sample);
     assert_identical(sample.strength, 0.1);
     assert_int_equal(sample.steps, -7);
     assert_int_equal(sample.seed, 42);
@@ -60,18 +60,18 @@ static void test_fields_range_text_names_both_ends_when_they_are_bounded(void **
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         const struct field field = {.minimum = cases[k].minimum, .maximum = cases[k].maximum};
         char text[64];
-        fields_range_text(&field, text, sizeof text);
+        mf_fields_range_text(&field, text, sizeof text);
         assert_string_equal(text, cases[k].text);
     }
 }
 
 static void test_fields_choice_index_finds_exact_names_when_asked(void **state) {
     (void)state;
-    assert_int_equal(fields_choice_index(&fields[6], "soft"), 0);
-    assert_int_equal(fields_choice_index(&fields[6], "hard"), 1);
-    assert_int_equal(fields_choice_index(&fields[6], "Hard"), -1);
-    assert_int_equal(fields_choice_index(&fields[6], "har"), -1);
-    assert_int_equal(fields_choice_index(&fields[6], ""), -1);
+    assert_int_equal(mf_fields_choice_index(&fields[6], "soft"), 0);
+    assert_int_equal(mf_fields_choice_index(&fields[6], "hard"), 1);
+    assert_int_equal(mf_fields_choice_index(&fields[6], "Hard"), -1);
+    assert_int_equal(mf_fields_choice_index(&fields[6], "har"), -1);
+    assert_int_equal(mf_fields_choice_index(&fields[6], ""), -1);
 }
 
 static void test_fields_describe_prints_unit_default_and_range_when_they_exist(void **state) {
@@ -79,7 +79,7 @@ static void test_fields_describe_prints_unit_default_and_range_when_they_exist(v
     char text[4096] = "";
     FILE *stream = fmemopen(text, sizeof text, "w");
     assert_non_null(stream);
-    fields_describe(fields, stream);
+    mf_fields_describe(fields, stream);
     fclose(stream);
     assert_contains(text, "how strong, in k_B T");
     assert_contains(text, "number, default 0.1");

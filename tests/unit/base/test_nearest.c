@@ -5,7 +5,7 @@
 static const char *const known[] = {"seed", "steps", "temperature", "x"};
 
 static void assert_nearest(const char *given, const char *expected) {
-    const char *nearest = nearest_name(given, known, 4);
+    const char *nearest = mf_nearest_name(given, known, 4);
     if (expected == NULL)
         assert_null(nearest);
     else {
@@ -31,7 +31,7 @@ static void test_nearest_name_finds_nothing_when_too_far(void **state) {
     assert_nearest("y", NULL);
     assert_nearest("", NULL);
     assert_nearest("pressure", NULL);
-    assert_null(nearest_name("seed", known, 0));
+    assert_null(mf_nearest_name("seed", known, 0));
 }
 
 static void test_nearest_name_finds_nothing_when_the_name_is_very_long(void **state) {
@@ -45,13 +45,13 @@ static void test_nearest_name_finds_nothing_when_the_name_is_very_long(void **st
 static void test_nearest_hint_lists_the_known_when_nothing_is_near(void **state) {
     (void)state;
     char text[64], small[12];
-    nearest_hint("sed", known, 4, text, sizeof text);
+    mf_nearest_hint("sed", known, 4, text, sizeof text);
     assert_string_equal(text, "did you mean \"seed\"?");
-    nearest_hint("pressure", known, 4, text, sizeof text);
+    mf_nearest_hint("pressure", known, 4, text, sizeof text);
     assert_string_equal(text, "known: seed, steps, temperature, x");
-    nearest_hint("pressure", known, 4, small, sizeof small);
+    mf_nearest_hint("pressure", known, 4, small, sizeof small);
     assert_string_equal(small, "known: seed");
-    nearest_hint("pressure", known, 0, text, sizeof text);
+    mf_nearest_hint("pressure", known, 0, text, sizeof text);
     assert_string_equal(text, "none is known here");
 }
 

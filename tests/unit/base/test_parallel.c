@@ -27,7 +27,7 @@ static double add_up(const void *context, size_t begin, size_t end) {
 static void test_parallel_for_visits_each_element_once_when_threads_are_many(void **state) {
     (void)state;
     for (int threads = 1; threads <= 5; threads++)
-        parallel_for(COUNT, threads, visit, NULL);
+        mf_parallel_for(COUNT, threads, visit, NULL);
     for (size_t k = 0; k < COUNT; k++)
         assert_int_equal(visits[k], 5);
 }
@@ -37,10 +37,10 @@ static void test_parallel_sum_has_the_same_bits_for_any_threads(void **state) {
     for (size_t k = 0; k < COUNT; k++)
         values[k] = sin((double)k) * exp(10 * cos(3.0 * (double)k));
     for (size_t count = 0; count <= COUNT; count = 3 * count + 1) {
-        const double one = parallel_sum(count, 1, add_up, values);
+        const double one = mf_parallel_sum(count, 1, add_up, values);
         assert_close(one, add_up(values, 0, count), 1e-6);
         for (int threads = 2; threads <= 5; threads++)
-            assert_identical(parallel_sum(count, threads, add_up, values), one);
+            assert_identical(mf_parallel_sum(count, threads, add_up, values), one);
     }
 }
 

@@ -52,10 +52,10 @@ static void test_rng_philox_lane_gives_the_known_answers_when_given_their_counte
 /// The first known answer needs no stream; for others the stream owns the fourth counter word.
 static void test_rng_philox_puts_seed_and_counters_in_place_when_they_differ(void **state) {
     (void)state;
-    const struct rng_block zero = rng_philox(0, RNG_PAIR_NOISE, 0, 0, 0);
+    const struct rng_block zero = mf_rng_philox(0, RNG_PAIR_NOISE, 0, 0, 0);
     assert_memory_equal(zero.word, known[0].answer, sizeof zero.word);
 
-    const struct rng_block block = rng_philox(0x0123456789abcdef, RNG_METROPOLIS, 5, 6, 7);
+    const struct rng_block block = mf_rng_philox(0x0123456789abcdef, RNG_METROPOLIS, 5, 6, 7);
     const philox4x32_ctr_t counter = {{5, 6, 7, (uint32_t)RNG_METROPOLIS << 28}};
     const philox4x32_key_t key = {{0x89abcdef, 0x01234567}};
     const philox4x32_ctr_t answer = philox4x32(counter, key);
@@ -65,13 +65,13 @@ static void test_rng_philox_puts_seed_and_counters_in_place_when_they_differ(voi
 static void test_rng_philox_lane_equals_word_0_when_counters_vary(void **state) {
     (void)state;
     for (uint32_t n = 0; n < 20000; n++) {
-        const struct rng_block random = rng_philox(3, RNG_SELECTION, n, 0, 0);
+        const struct rng_block random = mf_rng_philox(3, RNG_SELECTION, n, 0, 0);
         const uint64_t seed = (uint64_t)random.word[0] << 32 | random.word[1];
         const enum rng_stream stream = (enum rng_stream)(n % (RNG_MEAN_VELOCITY + 1));
         const uint32_t a = n, b = random.word[2], c = random.word[3];
         const uint32_t lane = rng_philox_lane((uint32_t)seed, (uint32_t)(seed >> 32), a, b, c,
                                               rng_stream_word(stream, 0));
-        assert_int_equal(lane, rng_philox(seed, stream, a, b, c).word[0]);
+        assert_int_equal(lane, mf_rng_philox(seed, stream, a, b, c).word[0]);
     }
 }
 
@@ -85,7 +85,7 @@ static void test_rng_stream_word_keeps_streams_apart_when_extra_is_large(void **
 /// One normal number for a pair, as the engine keys it: step, smaller id, larger id.
 static double pair_normal(uint64_t seed, uint32_t step, uint32_t smaller, uint32_t larger) {
     double normal[4];
-    rng_normal4(rng_philox(seed, RNG_PAIR_NOISE, step, smaller, larger), normal);
+    mf_rng_normal4(mf_rng_philox(seed, RNG_PAIR_NOISE, step, smaller, larger), normal);
     return normal[0];
 }
 
@@ -154,8 +154,8 @@ static void test_rng_seeds_do_not_replay_each_other_when_steps_are_shifted(void 
     (void)state;
     for (uint32_t step = 0; step < 100; step++)
         for (uint32_t shift = 0; shift < 100; shift++) {
-            const struct rng_block first = rng_philox(42, RNG_PAIR_NOISE, step, 1, 2);
-            const struct rng_block second = rng_philox(43, RNG_PAIR_NOISE, shift, 1, 2);
+            const struct rng_block first = mf_rng_philox(42, RNG_PAIR_NOISE, step, 1, 2);
+            const struct rng_block second = mf_rng_philox(43, RNG_PAIR_NOISE, shift, 1, 2);
             assert_memory_not_equal(first.word, second.word, sizeof first.word);
         }
 }
@@ -164,8 +164,8 @@ static void test_rng_streams_differ_when_seed_and_counters_are_the_same(void **s
     (void)state;
     for (int a = RNG_PAIR_NOISE; a <= RNG_MEAN_VELOCITY; a++)
         for (int b = RNG_PAIR_NOISE; b < a; b++) {
-            const struct rng_block first = rng_philox(7, (enum rng_stream)a, 1, 2, 3);
-            const struct rng_block second = rng_philox(7, (enum rng_stream)b, 1, 2, 3);
+            const struct rng_block first = mf_rng_philox(7, (enum rng_stream)a, 1, 2, 3);
+            const struct rng_block second = mf_rng_philox(7, (enum rng_stream)b, 1, 2, 3);
             assert_memory_not_equal(first.word, second.word, sizeof first.word);
         }
 }
@@ -175,7 +175,7 @@ static void test_rng_normal4_numbers_are_independent_when_from_one_block(void **
     double product[4][4] = {{0}}, fourth = 0;
     for (uint32_t n = 0; n < SAMPLES; n++) {
         double x[4];
-        rng_normal4(rng_philox(9, RNG_VELOCITIES, n, 0, 0), x);
+        mf_rng_normal4(mf_rng_philox(9, RNG_VELOCITIES, n, 0, 0), x);
         for (int a = 0; a < 4; a++)
             for (int b = 0; b <= a; b++)
                 product[a][b] += x[a] * x[b];
@@ -195,7 +195,7 @@ static void test_rng_normal4_is_finite_when_words_are_extreme(void **state) {
     for (int a = 0; a < 4; a++)
         for (int b = 0; b < 4; b++) {
             double x[4];
-            rng_normal4((struct rng_block){{extremes[a], extremes[b], extremes[b], extremes[a]}},
+            mf_rng_normal4((struct rng_block){{extremes[a], extremes[b], extremes[b], extremes[a]}},
                         x);
             for (int k = 0; k < 4; k++)
                 assert_true(isfinite(x[k]));
@@ -204,18 +204,18 @@ static void test_rng_normal4_is_finite_when_words_are_extreme(void **state) {
 
 static void test_rng_uniform_is_never_0_or_1_when_words_are_extreme(void **state) {
     (void)state;
-    assert_true(rng_uniform(0, 0) > 0);
-    assert_true(rng_uniform(0xFFFFFFFF, 0xFFFFFFFF) < 1);
-    assert_close(rng_uniform(0x80000000, 0), 0.5, 0x1p-52);
-    assert_close(rng_uniform(0xFFFFFFFF, 0xFFFFFFFF), 1, 0x1p-52);
+    assert_true(mf_rng_uniform(0, 0) > 0);
+    assert_true(mf_rng_uniform(0xFFFFFFFF, 0xFFFFFFFF) < 1);
+    assert_close(mf_rng_uniform(0x80000000, 0), 0.5, 0x1p-52);
+    assert_close(mf_rng_uniform(0xFFFFFFFF, 0xFFFFFFFF), 1, 0x1p-52);
 }
 
 static void test_rng_sequence_is_uniform_when_long(void **state) {
     (void)state;
-    struct rng_sequence sequence = rng_sequence_begin(5, RNG_SELECTION, 1, 2);
+    struct rng_sequence sequence = mf_rng_sequence_begin(5, RNG_SELECTION, 1, 2);
     double sum = 0, squares = 0;
     for (int n = 0; n < SAMPLES; n++) {
-        const double u = rng_sequence_uniform(&sequence);
+        const double u = mf_rng_sequence_uniform(&sequence);
         assert_true(u > 0 && u < 1);
         sum += u;
         squares += (u - 0.5) * (u - 0.5);
@@ -228,41 +228,41 @@ static void test_rng_sequence_is_uniform_when_long(void **state) {
 
 static void test_rng_sequence_repeats_when_begun_again(void **state) {
     (void)state;
-    struct rng_sequence first = rng_sequence_begin(5, RNG_SELECTION, 1, 2);
-    struct rng_sequence again = rng_sequence_begin(5, RNG_SELECTION, 1, 2);
-    struct rng_sequence other = rng_sequence_begin(6, RNG_SELECTION, 1, 2);
+    struct rng_sequence first = mf_rng_sequence_begin(5, RNG_SELECTION, 1, 2);
+    struct rng_sequence again = mf_rng_sequence_begin(5, RNG_SELECTION, 1, 2);
+    struct rng_sequence other = mf_rng_sequence_begin(6, RNG_SELECTION, 1, 2);
     int same = 0;
     for (int n = 0; n < 100; n++) {
-        const double u = rng_sequence_uniform(&first);
-        assert_identical(u, rng_sequence_uniform(&again));
-        same += is_identical(u, rng_sequence_uniform(&other));
+        const double u = mf_rng_sequence_uniform(&first);
+        assert_identical(u, mf_rng_sequence_uniform(&again));
+        same += is_identical(u, mf_rng_sequence_uniform(&other));
     }
     assert_int_equal(same, 0);
 }
 
 static void test_rng_sequence_below_is_even_and_in_range_when_count_is_seven(void **state) {
     (void)state;
-    struct rng_sequence sequence = rng_sequence_begin(5, RNG_INITIAL, 0, 0);
+    struct rng_sequence sequence = mf_rng_sequence_begin(5, RNG_INITIAL, 0, 0);
     int hits[7] = {0};
     for (int n = 0; n < SAMPLES; n++) {
-        const uint32_t k = rng_sequence_below(&sequence, 7);
+        const uint32_t k = mf_rng_sequence_below(&sequence, 7);
         assert_true(k < 7);
         hits[k]++;
     }
     const double p = 1.0 / 7;
     for (int k = 0; k < 7; k++)
         assert_close(hits[k] / (double)SAMPLES, p, standard_errors * sqrt(p * (1 - p) / SAMPLES));
-    assert_int_equal(rng_sequence_below(&sequence, 1), 0);
+    assert_int_equal(mf_rng_sequence_below(&sequence, 1), 0);
 }
 
 static void test_rng_child_seed_differs_when_any_argument_differs(void **state) {
     (void)state;
-    const uint64_t child = rng_child_seed(1, RNG_EVALUATION, 2, 3);
-    assert_true(child == rng_child_seed(1, RNG_EVALUATION, 2, 3));
-    assert_true(child != rng_child_seed(2, RNG_EVALUATION, 2, 3));
-    assert_true(child != rng_child_seed(1, RNG_VERIFICATION, 2, 3));
-    assert_true(child != rng_child_seed(1, RNG_EVALUATION, 3, 3));
-    assert_true(child != rng_child_seed(1, RNG_EVALUATION, 2, 4));
+    const uint64_t child = mf_rng_child_seed(1, RNG_EVALUATION, 2, 3);
+    assert_true(child == mf_rng_child_seed(1, RNG_EVALUATION, 2, 3));
+    assert_true(child != mf_rng_child_seed(2, RNG_EVALUATION, 2, 3));
+    assert_true(child != mf_rng_child_seed(1, RNG_VERIFICATION, 2, 3));
+    assert_true(child != mf_rng_child_seed(1, RNG_EVALUATION, 3, 3));
+    assert_true(child != mf_rng_child_seed(1, RNG_EVALUATION, 2, 4));
 }
 
 int main(void) {

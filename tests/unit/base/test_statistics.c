@@ -19,7 +19,7 @@ static const double rounding_at_large_offset = 1e-7;
 static void make_samples(double samples[SAMPLES][SIZE], double offset) {
     for (uint32_t n = 0; n < SAMPLES; n++) {
         double normal[4];
-        rng_normal4(rng_philox(11, RNG_INITIAL, n, 0, 0), normal);
+        mf_rng_normal4(mf_rng_philox(11, RNG_INITIAL, n, 0, 0), normal);
         samples[n][0] = offset + normal[0];
         samples[n][1] = offset + 0.5 * normal[0] + normal[1];
         samples[n][2] = offset - normal[1] + 0.1 * normal[2];
@@ -45,7 +45,7 @@ static void assert_two_pass(const struct comoments *moments, double samples[SAMP
     assert_identical(moments->count, (double)SAMPLES);
     for (size_t a = 0; a < SIZE; a++)
         for (size_t b = 0; b < SIZE; b++)
-            assert_close(comoments_covariance(moments, a, b), covariance_two_pass(samples, a, b),
+            assert_close(mf_comoments_covariance(moments, a, b), covariance_two_pass(samples, a, b),
                          tolerance);
 }
 
@@ -56,19 +56,19 @@ static void test_statistics_add_equals_two_passes_when_numbers_are_of_order_one(
     struct running_mean running = {0};
     long double sum = 0;
     for (int n = 0; n < SAMPLES; n++) {
-        statistics_add(&running, samples[n][1]);
+        mf_statistics_add(&running, samples[n][1]);
         sum += samples[n][1];
     }
     const double variance = covariance_two_pass(samples, 1, 1) * SAMPLES / (SAMPLES - 1);
     assert_close(running.mean, (double)(sum / SAMPLES), rounding);
-    assert_close(statistics_standard_error(&running), sqrt(variance / SAMPLES), rounding);
+    assert_close(mf_statistics_standard_error(&running), sqrt(variance / SAMPLES), rounding);
 }
 
 static void test_statistics_add_keeps_the_variance_when_the_mean_is_large(void **state) {
     (void)state;
     struct running_mean running = {0};
     for (int n = 0; n < SAMPLES; n++)
-        statistics_add(&running, 1e8 + n % 2);
+        mf_statistics_add(&running, 1e8 + n % 2);
     assert_close(running.mean, 1e8 + 0.5, rounding_at_large_offset);
     assert_close(running.squares / SAMPLES, 0.25, rounding_at_large_offset);
 }
@@ -76,44 +76,44 @@ static void test_statistics_add_keeps_the_variance_when_the_mean_is_large(void *
 static void test_statistics_standard_error_is_zero_when_there_are_fewer_than_two(void **state) {
     (void)state;
     struct running_mean running = {0};
-    assert_identical(statistics_standard_error(&running), 0.0);
-    statistics_add(&running, 3);
-    assert_identical(statistics_standard_error(&running), 0.0);
+    assert_identical(mf_statistics_standard_error(&running), 0.0);
+    mf_statistics_add(&running, 3);
+    assert_identical(mf_statistics_standard_error(&running), 0.0);
     assert_identical(running.mean, 3.0);
-    statistics_add(&running, 5);
-    assert_close(statistics_standard_error(&running), 1, rounding);
+    mf_statistics_add(&running, 5);
+    assert_close(mf_statistics_standard_error(&running), 1, rounding);
 }
 
 static void test_statistics_correlated_error_is_exact_when_series_are_short(void **state) {
     (void)state;
     // Γ = 1, 5/7, 1/3, −1/5: both pairs count, the window is 3, and 8 − 7 values are left.
     static const double step[] = {0, 0, 0, 0, 2, 2, 2, 2};
-    assert_close(statistics_correlated_error(step, 8, 1),
+    assert_close(mf_statistics_correlated_error(step, 8, 1),
                  sqrt(-1 + 2 * (1 + 5.0 / 7) + 2 * (1.0 / 3 - 1.0 / 5)), rounding);
     // Γ(0) + Γ(1) = 0: the error of independent values.
     static const double comb[] = {-1, 1, -1, 1, -1, 1, -1, 1};
-    assert_close(statistics_correlated_error(comb, 8, 1), sqrt(1.0 / 7), rounding);
+    assert_close(mf_statistics_correlated_error(comb, 8, 1), sqrt(1.0 / 7), rounding);
     // Chains do not meet: as eight chains of one value, Γ(0) is all there is.
-    assert_close(statistics_correlated_error(step, 1, 8), sqrt(1.0 / 7), rounding);
+    assert_close(mf_statistics_correlated_error(step, 1, 8), sqrt(1.0 / 7), rounding);
 }
 
 static void test_statistics_correlated_error_is_zero_when_there_is_no_scatter(void **state) {
     (void)state;
-    assert_identical(statistics_correlated_error((double[]){3}, 1, 1), 0.0);
-    assert_identical(statistics_correlated_error((double[]){3}, 0, 1), 0.0);
-    assert_identical(statistics_correlated_error((double[]){3, 3, 3, 3, 3}, 5, 1), 0.0);
-    assert_true(isnan(statistics_correlated_error((double[]){3, NAN, 3}, 3, 1)));
+    assert_identical(mf_statistics_correlated_error((double[]){3}, 1, 1), 0.0);
+    assert_identical(mf_statistics_correlated_error((double[]){3}, 0, 1), 0.0);
+    assert_identical(mf_statistics_correlated_error((double[]){3, 3, 3, 3, 3}, 5, 1), 0.0);
+    assert_true(isnan(mf_statistics_correlated_error((double[]){3, NAN, 3}, 3, 1)));
 }
 
 enum { LENGTH = 400, TRIALS = 2000 };
 
 /// A stationary series x(t+1) = φ x(t) + sqrt(1 − φ²) normal, mean 0 and variance 1.
 static void make_autoregressive(double *series, double phi, uint64_t seed, uint32_t trial) {
-    struct rng_sequence numbers = rng_sequence_begin(seed, RNG_INITIAL, trial, 0);
+    struct rng_sequence numbers = mf_rng_sequence_begin(seed, RNG_INITIAL, trial, 0);
     double x = 0;
     for (int k = 0; k < LENGTH; k++) {
-        const double radius = sqrt(-2 * log(rng_sequence_uniform(&numbers)));
-        const double normal = radius * cos(2 * acos(-1) * rng_sequence_uniform(&numbers));
+        const double radius = sqrt(-2 * log(mf_rng_sequence_uniform(&numbers)));
+        const double normal = radius * cos(2 * acos(-1) * mf_rng_sequence_uniform(&numbers));
         x = k == 0 ? normal : phi * x + sqrt(1 - phi * phi) * normal;
         series[k] = x;
     }
@@ -128,7 +128,7 @@ static double cover(double phi, size_t chains, uint64_t seed) {
         for (int k = 0; k < LENGTH; k++)
             sum += series[k];
         covered +=
-            fabs(sum / LENGTH) < 2 * statistics_correlated_error(series, LENGTH / chains, chains);
+            fabs(sum / LENGTH) < 2 * mf_statistics_correlated_error(series, LENGTH / chains, chains);
     }
     print_message("phi = %.2f: the truth within two errors in %.1f %% of %d series\n", phi,
                   100 * covered / TRIALS, TRIALS);
@@ -155,11 +155,11 @@ static void test_comoments_equal_two_passes_when_samples_are_added(void **state)
     double samples[SAMPLES][SIZE];
     make_samples(samples, 0);
     struct comoments moments;
-    assert_ok(comoments_init(&moments, SIZE));
+    assert_ok(mf_comoments_init(&moments, SIZE));
     for (int n = 0; n < SAMPLES; n++)
-        comoments_add(&moments, samples[n]);
+        mf_comoments_add(&moments, samples[n]);
     assert_two_pass(&moments, samples, rounding);
-    comoments_clear(&moments);
+    mf_comoments_clear(&moments);
 }
 
 static void test_comoments_do_not_cancel_when_the_offset_is_large(void **state) {
@@ -167,25 +167,25 @@ static void test_comoments_do_not_cancel_when_the_offset_is_large(void **state) 
     double samples[SAMPLES][SIZE];
     make_samples(samples, 1e8);
     struct comoments moments;
-    assert_ok(comoments_init(&moments, SIZE));
+    assert_ok(mf_comoments_init(&moments, SIZE));
     for (int n = 0; n < SAMPLES; n++)
-        comoments_add(&moments, samples[n]);
+        mf_comoments_add(&moments, samples[n]);
     assert_two_pass(&moments, samples, rounding_at_large_offset);
-    comoments_clear(&moments);
+    mf_comoments_clear(&moments);
 }
 
 /// Moments of the samples in three unequal parts, merged in the order of `order`.
 static void merge_parts(struct comoments *merged, double samples[SAMPLES][SIZE],
                         const int order[3]) {
     static const int begin[] = {0, 10, 400, SAMPLES};
-    assert_ok(comoments_init(merged, SIZE));
+    assert_ok(mf_comoments_init(merged, SIZE));
     for (int k = 0; k < 3; k++) {
         struct comoments part;
-        assert_ok(comoments_init(&part, SIZE));
+        assert_ok(mf_comoments_init(&part, SIZE));
         for (int n = begin[order[k]]; n < begin[order[k] + 1]; n++)
-            comoments_add(&part, samples[n]);
-        comoments_merge(merged, &part);
-        comoments_clear(&part);
+            mf_comoments_add(&part, samples[n]);
+        mf_comoments_merge(merged, &part);
+        mf_comoments_clear(&part);
     }
 }
 
@@ -200,7 +200,7 @@ static void test_comoments_merge_equals_two_passes_when_parts_come_in_any_order(
             struct comoments merged;
             merge_parts(&merged, samples, orders[k]);
             assert_two_pass(&merged, samples, large ? rounding_at_large_offset : rounding);
-            comoments_clear(&merged);
+            mf_comoments_clear(&merged);
         }
     }
 }
@@ -214,24 +214,24 @@ static void test_comoments_merge_gives_the_same_bits_when_the_order_is_the_same(
     merge_parts(&second, samples, (int[]){2, 0, 1});
     assert_memory_equal(first.mean, second.mean, SIZE * sizeof(double));
     assert_memory_equal(first.comoment, second.comoment, SIZE * SIZE * sizeof(double));
-    comoments_clear(&first);
-    comoments_clear(&second);
+    mf_comoments_clear(&first);
+    mf_comoments_clear(&second);
 }
 
 static void test_comoments_merge_changes_nothing_when_the_other_is_empty(void **state) {
     (void)state;
     struct comoments moments, empty;
-    assert_ok(comoments_init(&moments, SIZE));
-    assert_ok(comoments_init(&empty, SIZE));
-    comoments_merge(&moments, &empty);
-    assert_identical(comoments_covariance(&moments, 0, 0), 0.0);
-    comoments_add(&moments, (double[SIZE]){1, 2, 3});
-    comoments_add(&moments, (double[SIZE]){3, 2, 1});
-    comoments_merge(&moments, &empty);
+    assert_ok(mf_comoments_init(&moments, SIZE));
+    assert_ok(mf_comoments_init(&empty, SIZE));
+    mf_comoments_merge(&moments, &empty);
+    assert_identical(mf_comoments_covariance(&moments, 0, 0), 0.0);
+    mf_comoments_add(&moments, (double[SIZE]){1, 2, 3});
+    mf_comoments_add(&moments, (double[SIZE]){3, 2, 1});
+    mf_comoments_merge(&moments, &empty);
     assert_identical(moments.count, 2.0);
-    assert_identical(comoments_covariance(&moments, 0, 2), -1.0);
-    comoments_clear(&moments);
-    comoments_clear(&empty);
+    assert_identical(mf_comoments_covariance(&moments, 0, 2), -1.0);
+    mf_comoments_clear(&moments);
+    mf_comoments_clear(&empty);
 }
 
 static void test_comoments_reset_forgets_all_when_used_again(void **state) {
@@ -239,14 +239,14 @@ static void test_comoments_reset_forgets_all_when_used_again(void **state) {
     double samples[SAMPLES][SIZE];
     make_samples(samples, 0);
     struct comoments moments;
-    assert_ok(comoments_init(&moments, SIZE));
-    comoments_add(&moments, (double[SIZE]){1e9, -5, 7});
-    comoments_add(&moments, (double[SIZE]){-3, 1e9, 7});
-    comoments_reset(&moments);
+    assert_ok(mf_comoments_init(&moments, SIZE));
+    mf_comoments_add(&moments, (double[SIZE]){1e9, -5, 7});
+    mf_comoments_add(&moments, (double[SIZE]){-3, 1e9, 7});
+    mf_comoments_reset(&moments);
     for (int n = 0; n < SAMPLES; n++)
-        comoments_add(&moments, samples[n]);
+        mf_comoments_add(&moments, samples[n]);
     assert_two_pass(&moments, samples, rounding);
-    comoments_clear(&moments);
+    mf_comoments_clear(&moments);
 }
 
 int main(void) {

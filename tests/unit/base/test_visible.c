@@ -23,7 +23,7 @@ static void test_visible_copy_shows_control_characters(void **state) {
     (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         char copy[64];
-        visible_copy(copy, sizeof copy, cases[k].text, cases[k].kept);
+        mf_visible_copy(copy, sizeof copy, cases[k].text, cases[k].kept);
         assert_string_equal(copy, cases[k].expected);
     }
 }
@@ -35,25 +35,25 @@ static void test_visible_copy_cuts_before_what_does_not_fit(void **state) {
                                            "abc", "abc", "abc", "abc\\x1b"};
     for (size_t size = 1; size <= sizeof copy; size++) {
         memset(copy, 'x', sizeof copy);
-        visible_copy(copy, size, "abc\x1b!", "");
+        mf_visible_copy(copy, size, "abc\x1b!", "");
         assert_string_equal(copy, expected[size]);
     }
 }
 
 static void test_messages_have_no_control_characters(void **state) {
     (void)state;
-    status_fail(STATUS_IO, "a%sb\nc", "\x1b]0;title\a");
-    assert_string_equal(status_message(), "a\\x1b]0;title\\x07b\nc");
-    status_prefix(STATUS_IO, "%s", "\x1b");
-    assert_string_equal(status_message(), "\\x1b: a\\x1b]0;title\\x07b\nc");
+    mf_status_fail(STATUS_IO, "a%sb\nc", "\x1b]0;title\a");
+    assert_string_equal(mf_status_message(), "a\\x1b]0;title\\x07b\nc");
+    mf_status_prefix(STATUS_IO, "%s", "\x1b");
+    assert_string_equal(mf_status_message(), "\\x1b: a\\x1b]0;title\\x07b\nc");
 }
 
 static void test_visible_number_has_no_sign_of_nan(void **state) {
     char text[16];
     (void)state;
-    snprintf(text, sizeof text, "%g", visible_number(-(double)NAN));
+    snprintf(text, sizeof text, "%g", mf_visible_number(-(double)NAN));
     assert_string_equal(text, "nan");
-    assert_true(visible_number(-1.5) == -1.5 && visible_number(-INFINITY) == -INFINITY);
+    assert_true(mf_visible_number(-1.5) == -1.5 && mf_visible_number(-INFINITY) == -INFINITY);
 }
 
 int main(void) {

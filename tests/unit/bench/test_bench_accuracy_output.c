@@ -10,7 +10,7 @@
 
 static void assert_number(double value, double error, const char *expected) {
     char text[48];
-    bench_number_text(text, sizeof text, value, error);
+    mf_bench_number_text(text, sizeof text, value, error);
     assert_string_equal(text, expected);
 }
 
@@ -30,7 +30,7 @@ static char *print(const struct bench_diagram *diagram) {
     size_t size = 0;
     FILE *stream = open_memstream(&text, &size);
     assert_non_null(stream);
-    bench_accuracy_table(stream, diagram);
+    mf_bench_accuracy_table(stream, diagram);
     assert_int_equal(fclose(stream), 0);
     return text;
 }
@@ -52,7 +52,7 @@ static void test_cheapest_reach_is_recommended_with_its_gain(void **state) {
                                     .method = names,
                                     .methods = 3,
                                     .has_weight = true};
-    assert_int_equal(bench_cheapest(&diagram), 2);
+    assert_int_equal(mf_bench_cheapest(&diagram), 2);
     char *text = print(&diagram);
     assert_contains(text, "for |dg| <= 0.005 take aboba with a time step of 0.06 tau: 3 ms/tau, "
                           "2.00(12) times less than dpd-verlet(0.5) at 0.03 tau\n");

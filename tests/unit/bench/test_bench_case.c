@@ -10,14 +10,14 @@
 static void test_bench_median_and_spread_ignore_the_order(void **state) {
     (void)state;
     const double odd[] = {5, 1, 4, 2, 3}, even[] = {8, 2, 4, 6}, one[] = {7};
-    assert_identical(bench_median(odd, 5), 3);
-    assert_identical(bench_spread(odd, 5), 4.0 / 3);
-    assert_identical(bench_median(even, 4), 5);
-    assert_identical(bench_spread(even, 4), 6.0 / 5);
-    assert_identical(bench_median(one, 1), 7);
-    assert_identical(bench_spread(one, 1), 0);
-    assert_true(isnan(bench_median(one, 0)));
-    assert_true(isnan(bench_spread(one, 0)));
+    assert_identical(mf_bench_median(odd, 5), 3);
+    assert_identical(mf_bench_spread(odd, 5), 4.0 / 3);
+    assert_identical(mf_bench_median(even, 4), 5);
+    assert_identical(mf_bench_spread(even, 4), 6.0 / 5);
+    assert_identical(mf_bench_median(one, 1), 7);
+    assert_identical(mf_bench_spread(one, 1), 0);
+    assert_true(isnan(mf_bench_median(one, 0)));
+    assert_true(isnan(mf_bench_spread(one, 0)));
 }
 
 static void test_bench_case_result_is_what_the_sums_say(void **state) {
@@ -38,7 +38,7 @@ static void test_bench_case_result_is_what_the_sums_say(void **state) {
         .places = 3 * 10000,
         .temperature = 3 * 0.7,
     };
-    bench_case_result(&bench, "name", &result);
+    mf_bench_case_result(&bench, "name", &result);
     assert_string_equal(result.scene, "name");
     assert_string_equal(result.isa, "portable");
     assert_string_equal(result.precision, "double");
@@ -68,10 +68,10 @@ static void test_bench_case_counts_pairs_and_keeps_the_temperature(void **state)
     const struct bench_how how = {"portable", "mixed", 1, 0.01};
     fluid_lennard_jones(&fluid, 400, 0.002);
     fluid.setup.weight = NULL;
-    fluid.setup.integrator = &velocity_verlet;
+    fluid.setup.integrator = &mf_velocity_verlet;
     const struct bench_scene scene = {.name = "scene", .scene = {.setup = fluid.setup}};
-    assert_ok(bench_case_begin(&bench, &scene, &how));
-    assert_ok(bench_case_repeat(&bench));
+    assert_ok(mf_bench_case_begin(&bench, &scene, &how));
+    assert_ok(mf_bench_case_repeat(&bench));
     double pairs = 0;
     const struct particles *particles = &bench.simulation.particles;
     for (size_t i = 0; i < particles->count; i++)
@@ -84,15 +84,15 @@ static void test_bench_case_counts_pairs_and_keeps_the_temperature(void **state)
             }
             pairs += square < 2.5 * 2.5;
         }
-    assert_ok(bench_case_repeat(&bench));
-    bench_case_result(&bench, "scene", &result);
+    assert_ok(mf_bench_case_repeat(&bench));
+    mf_bench_case_result(&bench, "scene", &result);
     assert_close_relative(result.pairs, pairs, 0.03); // the mean of two moments
     assert_close_relative(result.temperature, 0.7, 0.2);
     assert_in_range(result.list_efficiency * 100, 30, 100);
     assert_in_range(result.row_filling * 1000, 500, 999); // some rows are not full
     assert_close(result.phase_share[0] + result.phase_share[1] + result.phase_share[2], 1, 1e-12);
     assert_true(bench.steps > 1); // how long they last depends on what else the machine does
-    bench_case_clear(&bench);
+    mf_bench_case_clear(&bench);
     fluid_clear(&fluid);
 }
 
@@ -101,27 +101,27 @@ static void test_bench_case_begin_refuses_kernels_that_are_not_there(void **stat
     struct bench_case bench;
     const struct bench_scene scene = {.name = "scene"};
     const struct bench_how how = {"avx1024", "mixed", 1, 0.01};
-    assert_fails(bench_case_begin(&bench, &scene, &how), STATUS_BAD_INPUT,
+    assert_fails(mf_bench_case_begin(&bench, &scene, &how), STATUS_BAD_INPUT,
                  "this processor lacks avx1024");
-    bench_case_clear(&bench);
+    mf_bench_case_clear(&bench);
 }
 
 /// A line for each part that the scene has, the plain step first.
 static void check_skips(bool dissipative, size_t lines) {
     struct fluid fluid;
     struct bench_scene scene = {.name = "tiny"};
-    const struct bench_how how = {simd_name(), "mixed", 1, 1e-4};
+    const struct bench_how how = {mf_simd_name(), "mixed", 1, 1e-4};
     char text[1024] = "";
     size_t count = 0;
     fluid_groot_warren(&fluid, 100, 0.04);
     if (!dissipative) {
         fluid.setup.weight = NULL;
-        fluid.setup.integrator = &velocity_verlet;
+        fluid.setup.integrator = &mf_velocity_verlet;
     }
     scene.scene.setup = fluid.setup;
     FILE *out = fmemopen(text, sizeof text, "w");
     assert_non_null(out);
-    assert_ok(bench_skips(out, &scene, &how));
+    assert_ok(mf_bench_skips(out, &scene, &how));
     fclose(out);
     for (const char *c = text; *c; c++)
         count += *c == '\n';

@@ -31,7 +31,7 @@ static void test_extrapolation_removes_the_square_of_the_step(void **state) {
     make_point(&points[0], g[1], 0.02, 5, 0.1);
     make_point(&points[1], g[2], 0.04, 5, 0.1);
     make_point(&points[2], g[3], 0.05, 5, 0.1);
-    const struct bench_extrapolation done = bench_extrapolate(&reference, points, 3, BINS);
+    const struct bench_extrapolation done = mf_bench_extrapolate(&reference, points, 3, BINS);
     assert_close(done.partner, 0.04, 0);
     assert_close(done.moved, 5 * 3 * 1e-4, 1e-12);
     for (int k = 0; k < BINS; k++)
@@ -50,7 +50,7 @@ static void test_extrapolation_needs_a_stable_partner_of_its_method(void **state
     make_point(&points[2], g[3], 0.04, 5, 0.1);
     points[1].method = &other;
     points[2].status = STATUS_UNSTABLE;
-    assert_close(bench_extrapolate(&reference, points, 3, BINS).partner, 0, 0);
+    assert_close(mf_bench_extrapolate(&reference, points, 3, BINS).partner, 0, 0);
     assert_close(reference.g[1].value, 2 + 10 * 1e-4, 1e-12);
 }
 
@@ -60,7 +60,7 @@ static void test_row_has_largest_change_and_rms_without_noise(void **state) {
     struct bench_number g[2][BINS];
     make_point(&reference, g[0], 0.01, 0, 0.03);
     make_point(&point, g[1], 0.1, 20, 0.04);
-    const struct bench_row row = bench_row_of(&point, &reference, BINS, 0.01);
+    const struct bench_row row = mf_bench_row_of(&point, &reference, BINS, 0.01);
     const double *value = row.value;
     assert_close(value[BENCH_G_LARGEST], 0.6, 1e-12);
     assert_close(value[BENCH_G_LARGEST_ERROR], 0.05, 1e-12);
@@ -77,7 +77,7 @@ static void test_noise_alone_has_an_rms_of_0(void **state) {
     struct bench_number g[2][BINS];
     make_point(&reference, g[0], 0.01, 0, 0.03);
     make_point(&point, g[1], 0.1, 0.1, 0.04);
-    const struct bench_row row = bench_row_of(&point, &reference, BINS, 0.01);
+    const struct bench_row row = mf_bench_row_of(&point, &reference, BINS, 0.01);
     assert_close(row.value[BENCH_G_RMS], 0, 0);
     assert_true(row.value[BENCH_G_RMS_ERROR] > 0);
 }
@@ -85,9 +85,9 @@ static void test_noise_alone_has_an_rms_of_0(void **state) {
 static void test_expected_largest_is_that_of_half_normal_numbers(void **state) {
     (void)state;
     const double one[] = {2}, two[] = {1, 1}, none[] = {0, 0};
-    assert_close_relative(bench_expected_largest(one, 1), 2 * sqrt(2 / M_PI), 1e-4);
-    assert_close_relative(bench_expected_largest(two, 2), 2 / sqrt(M_PI), 1e-4);
-    assert_close(bench_expected_largest(none, 2), 0, 0);
+    assert_close_relative(mf_bench_expected_largest(one, 1), 2 * sqrt(2 / M_PI), 1e-4);
+    assert_close_relative(mf_bench_expected_largest(two, 2), 2 / sqrt(M_PI), 1e-4);
+    assert_close(mf_bench_expected_largest(none, 2), 0, 0);
 }
 
 static struct bench_row make_row(double time_step, double largest) {
@@ -102,7 +102,7 @@ static struct bench_row make_row(double time_step, double largest) {
 static void test_reach_lies_on_the_power_law_of_the_errors(void **state) {
     (void)state;
     const struct bench_row rows[] = {make_row(0.1, 0.01), make_row(0.2, 0.04), make_row(0.4, 0.16)};
-    const struct bench_reach reach = bench_reach_of(rows, 3, 0.0225);
+    const struct bench_reach reach = mf_bench_reach_of(rows, 3, 0.0225);
     assert_string_equal(reach.method, "one");
     assert_close(reach.time_step, 0.15, 1e-12);
     assert_close(reach.cpu, 1 / 0.15, 1e-9);
@@ -114,10 +114,10 @@ static void test_reach_lies_on_the_power_law_of_the_errors(void **state) {
 static void test_reach_ends_at_the_first_step_that_is_too_large(void **state) {
     (void)state;
     const struct bench_row rows[] = {make_row(0.1, 0.01), make_row(0.2, 0.04), make_row(0.4, 0.01)};
-    assert_close(bench_reach_of(rows, 3, 0.02).time_step, 0.1 * sqrt(2), 1e-12);
-    assert_null(bench_reach_of(rows, 3, 0.005).method);
-    assert_null(bench_reach_of(rows, 0, 1).method);
-    const struct bench_reach all = bench_reach_of(rows, 3, 1);
+    assert_close(mf_bench_reach_of(rows, 3, 0.02).time_step, 0.1 * sqrt(2), 1e-12);
+    assert_null(mf_bench_reach_of(rows, 3, 0.005).method);
+    assert_null(mf_bench_reach_of(rows, 0, 1).method);
+    const struct bench_reach all = mf_bench_reach_of(rows, 3, 1);
     assert_close(all.time_step, 0.4, 0);
     assert_false(all.is_bounded);
 }

@@ -26,28 +26,28 @@ static void make_liquid(struct liquid *liquid, bool from_table) {
     fluid_lennard_jones(&fluid, 500, 0.002);
     scene->setup = fluid.setup;
     fluid_clear(&fluid);
-    scene->setup.integrator = &velocity_verlet;
+    scene->setup.integrator = &mf_velocity_verlet;
     scene->setup.weight = NULL;
-    assert_ok(curve_create(&scene->potential.curve[0], &formula_lennard_jones));
+    assert_ok(mf_curve_create(&scene->potential.curve[0], &mf_formula_lennard_jones));
     if (from_table) {
         for (int k = 0; k < POINTS; k++) {
             r[k] = 0.8 + 1.7 * k / (POINTS - 1);
-            value[k] = curve_value(&scene->potential.curve[0], r[k]);
+            value[k] = mf_curve_value(&scene->potential.curve[0], r[k]);
         }
-        curve_clear(&scene->potential.curve[0]);
-        assert_ok(sampled_create(&scene->potential.curve[0], r, value, POINTS));
+        mf_curve_clear(&scene->potential.curve[0]);
+        assert_ok(mf_sampled_create(&scene->potential.curve[0], r, value, POINTS));
     }
-    assert_ok(table_init_potential(&scene->potential.table, &scene->potential.curve[0]));
+    assert_ok(mf_table_init_potential(&scene->potential.table, &scene->potential.curve[0]));
     scene->setup.potential = &scene->potential.table;
-    assert_ok(simulation_init(&liquid->simulation, &scene->setup, NULL));
-    assert_ok(simulation_run(&liquid->simulation, 200));
+    assert_ok(mf_simulation_init(&liquid->simulation, &scene->setup, NULL));
+    assert_ok(mf_simulation_run(&liquid->simulation, 200));
     liquid->simulation.wants = PAIR_FORCES_AND_SUMS;
-    assert_ok(simulation_run(&liquid->simulation, 1));
+    assert_ok(mf_simulation_run(&liquid->simulation, 1));
 }
 
 static void clear_liquid(struct liquid *liquid) {
-    simulation_clear(&liquid->simulation);
-    scene_clear(&liquid->scene);
+    mf_simulation_clear(&liquid->simulation);
+    mf_scene_clear(&liquid->scene);
 }
 
 static void skip_without_lammps(void) {
@@ -63,18 +63,18 @@ static void check_first_state(struct temporary_folder *folder, bool from_table) 
     char text[16384];
     double temperature, energy, pressure;
     make_liquid(&liquid, from_table);
-    assert_ok(bench_lammps_write(folder->path, &liquid.scene, &liquid.simulation));
-    assert_ok(program_run(folder->path, words, PROGRAM_EVERYTHING, 0, text, sizeof text));
+    assert_ok(mf_bench_lammps_write(folder->path, &liquid.scene, &liquid.simulation));
+    assert_ok(mf_program_run(folder->path, words, PROGRAM_EVERYTHING, 0, text, sizeof text));
     const char *heading = strstr(text, "Step Temp E_pair E_mol TotEng Press");
     assert_non_null(heading);
     assert_int_equal(
         sscanf(strchr(heading, '\n'), " 0 %lf %lf %*f %*f %lf", &temperature, &energy, &pressure),
         3);
     const struct simulation *simulation = &liquid.simulation;
-    assert_close_relative(temperature, particles_temperature(&simulation->particles), 1e-4);
+    assert_close_relative(temperature, mf_particles_temperature(&simulation->particles), 1e-4);
     assert_close_relative(energy, simulation->sums.energy / 500, 1e-4);
-    assert_close(pressure, simulation_pressure(simulation), 3e-3);
-    assert_true(bench_lammps_rate(text) > 0);
+    assert_close(pressure, mf_simulation_pressure(simulation), 3e-3);
+    assert_true(mf_bench_lammps_rate(text) > 0);
     clear_liquid(&liquid);
 }
 
@@ -90,30 +90,30 @@ static void test_bench_lammps_write_gives_the_same_table(void **state) {
 
 static void test_bench_lammps_rate_is_that_of_the_last_run(void **state) {
     (void)state;
-    assert_close(bench_lammps_rate("Loop time of 1 on 1 procs for 50 steps with 500 atoms\n"
+    assert_close(mf_bench_lammps_rate("Loop time of 1 on 1 procs for 50 steps with 500 atoms\n"
                                    "Loop time of 0.25 on 1 procs for 300 steps with 500 atoms\n"
                                    "Total wall time: 0:00:01\n"),
                  1200, 1e-9);
-    assert_true(isnan(bench_lammps_rate("ERROR: no\n")));
-    assert_true(isnan(bench_lammps_rate("Loop time of nothing")));
+    assert_true(isnan(mf_bench_lammps_rate("ERROR: no\n")));
+    assert_true(isnan(mf_bench_lammps_rate("Loop time of nothing")));
 }
 
 static void test_bench_lammps_objection_says_what_debians_lammps_lacks(void **state) {
     (void)state;
-    struct scene scene = {.setup = {.integrator = &velocity_verlet, .box.dimensions = 3}};
-    assert_contains(bench_lammps_objection(&scene), "neither a table nor Lennard-Jones");
-    scene.potential.curve[0].family = &formula_lennard_jones;
-    assert_null(bench_lammps_objection(&scene));
-    scene.potential.curve[0].family = &sampled_family;
-    assert_null(bench_lammps_objection(&scene));
+    struct scene scene = {.setup = {.integrator = &mf_velocity_verlet, .box.dimensions = 3}};
+    assert_contains(mf_bench_lammps_objection(&scene), "neither a table nor Lennard-Jones");
+    scene.potential.curve[0].family = &mf_formula_lennard_jones;
+    assert_null(mf_bench_lammps_objection(&scene));
+    scene.potential.curve[0].family = &mf_sampled_family;
+    assert_null(mf_bench_lammps_objection(&scene));
     scene.setup.box.dimensions = 2;
-    assert_contains(bench_lammps_objection(&scene), "three dimensions");
-    scene.setup.integrator = &dpd_verlet;
-    assert_contains(bench_lammps_objection(&scene), "velocity-verlet");
+    assert_contains(mf_bench_lammps_objection(&scene), "three dimensions");
+    scene.setup.integrator = &mf_dpd_verlet;
+    assert_contains(mf_bench_lammps_objection(&scene), "velocity-verlet");
     scene.weight.curves = 1;
-    assert_contains(bench_lammps_objection(&scene), "friction");
+    assert_contains(mf_bench_lammps_objection(&scene), "friction");
     scene.setup.composition.types = 2;
-    assert_contains(bench_lammps_objection(&scene), "mixture");
+    assert_contains(mf_bench_lammps_objection(&scene), "mixture");
 }
 
 #define IN_FOLDER(test)                                                                            \

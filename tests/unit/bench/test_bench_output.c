@@ -41,15 +41,15 @@ static char *read_back(struct temporary_folder *folder,
 }
 
 static void print_engine(FILE *stream, const struct bench_result *results, size_t count) {
-    assert_ok(bench_output_table(stream, results, count, false));
+    assert_ok(mf_bench_output_table(stream, results, count, false));
 }
 
 static void print_lammps(FILE *stream, const struct bench_result *results, size_t count) {
-    assert_ok(bench_output_table(stream, results, count, true));
+    assert_ok(mf_bench_output_table(stream, results, count, true));
 }
 
 static void print_json(FILE *stream, const struct bench_result *results, size_t count) {
-    assert_ok(bench_output_json(stream, results, count));
+    assert_ok(mf_bench_output_json(stream, results, count));
 }
 
 static void test_bench_output_table_is_aligned_and_rounded(void **state) {
@@ -123,14 +123,14 @@ static size_t count_columns(const char *text, size_t lines) {
 
 static void test_bench_output_tsv_names_every_column(void **state) {
     struct bench_result results[] = {fast, fast};
-    char *text = read_back(*state, bench_output_tsv, results, 2);
+    char *text = read_back(*state, mf_bench_output_tsv, results, 2);
     assert_int_equal(strncmp(text, "# scene\tisa\tprecision\tparticles[1]\t", 35), 0);
     assert_contains(text, "\tns_per_pair[ns]\t");
     assert_contains(text, "\nwater\tavx2\tmixed\t2744\t1\t");
     const size_t columns = count_columns(text, 3);
     free(text);
     snprintf(results[1].lammps_style, sizeof results[1].lammps_style, "style");
-    text = read_back(*state, bench_output_tsv, results, 2);
+    text = read_back(*state, mf_bench_output_tsv, results, 2);
     assert_contains(text, "\tlammps_ratio[1]\n");
     assert_int_equal(count_columns(text, 3), columns + 2);
     free(text);

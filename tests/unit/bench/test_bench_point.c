@@ -14,48 +14,48 @@ static const struct table some_weight;
 static void test_scene_with_friction_gets_all_that_know_it(void **state) {
     (void)state;
     struct bench_method methods[BENCH_MOST_METHODS];
-    const struct simulation_setup setup = {.weight = &some_weight, .integrator = &dpd_verlet};
-    const size_t count = bench_methods(&setup, methods);
+    const struct simulation_setup setup = {.weight = &some_weight, .integrator = &mf_dpd_verlet};
+    const size_t count = mf_bench_methods(&setup, methods);
     assert_int_equal(count, 7);
     assert_string_equal(methods[0].name, "dpd-verlet(0.5)");
     assert_string_equal(methods[1].name, "dpd-verlet(0.65)");
     assert_true(methods[1].parameters.lambda == 0.65);
     for (size_t k = 0; k < count; k++)
         assert_true(methods[k].integrator->dissipative);
-    assert_ptr_equal(bench_reference_method(methods, count)->integrator, &aboba);
+    assert_ptr_equal(mf_bench_reference_method(methods, count)->integrator, &mf_aboba);
 }
 
 static void test_scene_without_friction_gets_velocity_verlet(void **state) {
     (void)state;
     struct bench_method methods[BENCH_MOST_METHODS];
-    const struct simulation_setup setup = {.integrator = &velocity_verlet};
-    assert_int_equal(bench_methods(&setup, methods), 1);
-    assert_ptr_equal(bench_reference_method(methods, 1)->integrator, &velocity_verlet);
+    const struct simulation_setup setup = {.integrator = &mf_velocity_verlet};
+    assert_int_equal(mf_bench_methods(&setup, methods), 1);
+    assert_ptr_equal(mf_bench_reference_method(methods, 1)->integrator, &mf_velocity_verlet);
 }
 
 static void test_parameters_of_the_scene_are_kept_and_others_are_the_usual(void **state) {
     (void)state;
     struct bench_method methods[BENCH_MOST_METHODS];
-    struct simulation_setup setup = {.weight = &some_weight, .integrator = &aboba_implicit};
+    struct simulation_setup setup = {.weight = &some_weight, .integrator = &mf_aboba_implicit};
     setup.integrator_parameters.tolerance = 0.125;
-    for (size_t k = bench_methods(&setup, methods); k-- > 0;)
-        if (methods[k].integrator == &aboba_implicit)
+    for (size_t k = mf_bench_methods(&setup, methods); k-- > 0;)
+        if (methods[k].integrator == &mf_aboba_implicit)
             assert_true(methods[k].parameters.tolerance == 0.125);
-    setup.integrator = &aboba;
-    for (size_t k = bench_methods(&setup, methods); k-- > 0;)
-        if (methods[k].integrator == &aboba_implicit)
+    setup.integrator = &mf_aboba;
+    for (size_t k = mf_bench_methods(&setup, methods); k-- > 0;)
+        if (methods[k].integrator == &mf_aboba_implicit)
             assert_true(methods[k].parameters.tolerance == 0.01);
 }
 
 static void test_bins_reach_the_cutoff_and_join_the_core(void **state) {
     (void)state;
     const struct box box = {3, {10, 10, 10}};
-    const struct bench_bins bins = bench_bins_choose(&box, 3000, 1); // mean distance 0.693
+    const struct bench_bins bins = mf_bench_bins_choose(&box, 3000, 1); // mean distance 0.693
     assert_int_equal(bins.fine.count, 14);
-    assert_close(rdf_bins_range(&bins.fine), 1, 1e-12);
+    assert_close(mf_rdf_bins_range(&bins.fine), 1, 1e-12);
     assert_int_equal(bins.core, 3);
     assert_int_equal(bins.count, 12);
-    const struct bench_bins tiny = bench_bins_choose(&box, 3000, 0.01);
+    const struct bench_bins tiny = mf_bench_bins_choose(&box, 3000, 0.01);
     assert_int_equal(tiny.fine.count, 2);
     assert_int_equal(tiny.count, 2);
 }
@@ -68,17 +68,17 @@ static void run(struct bench_point *point, double time_step, double time,
                 const struct simulation_setup *setup) {
     static struct bench_method methods[BENCH_MOST_METHODS];
     uint64_t steps = 0;
-    const size_t count = bench_methods(setup, methods);
+    const size_t count = mf_bench_methods(setup, methods);
     const struct bench_common common = {.setup = setup,
-                                        .bins = bench_bins_choose(&setup->box, 81, 1),
+                                        .bins = mf_bench_bins_choose(&setup->box, 81, 1),
                                         .tell = count_steps,
                                         .context = &steps};
-    *point = (struct bench_point){.method = bench_reference_method(methods, count),
+    *point = (struct bench_point){.method = mf_bench_reference_method(methods, count),
                                   .time_step = time_step,
                                   .time = time,
                                   .seed = 5};
-    const uint64_t planned = bench_point_steps(&common, point);
-    assert_ok(bench_point_run(&common, point));
+    const uint64_t planned = mf_bench_point_steps(&common, point);
+    assert_ok(mf_bench_point_run(&common, point));
     if (point->status == STATUS_OK)
         assert_int_equal(steps, planned);
 }
@@ -100,8 +100,8 @@ static void test_point_has_the_same_bits_twice_and_sensible_numbers(void **state
     assert_in_range((int)(1e4 * first.quantity[BENCH_DIFFUSION].error), 20, 1000);
     assert_memory_equal(first.quantity, second.quantity, sizeof first.quantity);
     assert_memory_equal(first.g, second.g, 12 * sizeof *first.g);
-    memory_free(first.g);
-    memory_free(second.g);
+    mf_memory_free(first.g);
+    mf_memory_free(second.g);
     fluid_clear(&fluid);
 }
 
@@ -114,7 +114,7 @@ static void test_short_point_has_no_diffusion_coefficient(void **state) {
     assert_int_equal(point.status, STATUS_OK);
     assert_true(isfinite(point.quantity[BENCH_PRESSURE].value));
     assert_true(isnan(point.quantity[BENCH_DIFFUSION].value));
-    memory_free(point.g);
+    mf_memory_free(point.g);
     fluid_clear(&fluid);
 }
 
@@ -125,7 +125,7 @@ static void test_unstable_point_is_a_result(void **state) {
     fluid_groot_warren(&fluid, 81, 0.02);
     run(&point, 1, 20, &fluid.setup);
     assert_int_equal(point.status, STATUS_UNSTABLE);
-    memory_free(point.g);
+    mf_memory_free(point.g);
     fluid_clear(&fluid);
 }
 

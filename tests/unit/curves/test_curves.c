@@ -13,93 +13,93 @@
 /// A curve of the family with its default parameters.
 static struct curve make(const struct curve_family *family) {
     struct curve curve;
-    assert_ok(curve_create(&curve, family));
+    assert_ok(mf_curve_create(&curve, family));
     return curve;
 }
 
 static void test_curve_find_knows_every_family_when_named(void **state) {
     (void)state;
-    assert_ptr_equal(curve_find(curve_potentials, "lennard-jones"), &formula_lennard_jones);
-    assert_ptr_equal(curve_find(curve_potentials, "soft-repulsion"), &formula_soft_repulsion);
-    assert_ptr_equal(curve_find(curve_potentials, "gaussian"), &formula_gaussian);
-    assert_ptr_equal(curve_find(curve_potentials, "table"), &sampled_family);
-    assert_ptr_equal(curve_find(curve_weights, "power"), &formula_power_weight);
-    assert_null(curve_find(curve_weights, "lennard-jones"));
-    assert_null(curve_find(curve_potentials, ""));
+    assert_ptr_equal(mf_curve_find(mf_curve_potentials, "lennard-jones"), &mf_formula_lennard_jones);
+    assert_ptr_equal(mf_curve_find(mf_curve_potentials, "soft-repulsion"), &mf_formula_soft_repulsion);
+    assert_ptr_equal(mf_curve_find(mf_curve_potentials, "gaussian"), &mf_formula_gaussian);
+    assert_ptr_equal(mf_curve_find(mf_curve_potentials, "table"), &mf_sampled_family);
+    assert_ptr_equal(mf_curve_find(mf_curve_weights, "power"), &mf_formula_power_weight);
+    assert_null(mf_curve_find(mf_curve_weights, "lennard-jones"));
+    assert_null(mf_curve_find(mf_curve_potentials, ""));
 }
 
 static void test_lennard_jones_has_its_textbook_values_when_shifted(void **state) {
     (void)state;
-    struct curve curve = make(&formula_lennard_jones);
+    struct curve curve = make(&mf_formula_lennard_jones);
     const double shift = 4 * (pow(2.5, -12) - pow(2.5, -6));
-    assert_close(curve_cutoff(&curve), 2.5, 0);
-    assert_close(curve_value(&curve, 1), -shift, 1e-14);
-    assert_close(curve_value(&curve, pow(2, 1.0 / 6)), -1 - shift, 1e-14);
-    assert_close(curve_value(&curve, 2), 4 * (pow(2, -12) - pow(2, -6)) - shift, 1e-14);
-    assert_close(curve_value(&curve, 2.5 * (1 - 1e-9)), 0, 1e-8);
-    assert_identical(curve_value(&curve, 2.5), 0);
-    assert_identical(curve_value(&curve, 9), 0);
-    curve_clear(&curve);
+    assert_close(mf_curve_cutoff(&curve), 2.5, 0);
+    assert_close(mf_curve_value(&curve, 1), -shift, 1e-14);
+    assert_close(mf_curve_value(&curve, pow(2, 1.0 / 6)), -1 - shift, 1e-14);
+    assert_close(mf_curve_value(&curve, 2), 4 * (pow(2, -12) - pow(2, -6)) - shift, 1e-14);
+    assert_close(mf_curve_value(&curve, 2.5 * (1 - 1e-9)), 0, 1e-8);
+    assert_identical(mf_curve_value(&curve, 2.5), 0);
+    assert_identical(mf_curve_value(&curve, 9), 0);
+    mf_curve_clear(&curve);
 }
 
 /// Below σ/2 it is straight: value and slope continuous, finite at 0.
 static void test_lennard_jones_is_straight_when_particles_overlap(void **state) {
     (void)state;
-    struct curve curve = make(&formula_lennard_jones);
-    const double at = curve_value(&curve, 0.5);
+    struct curve curve = make(&mf_formula_lennard_jones);
+    const double at = mf_curve_value(&curve, 0.5);
     // Φ'(σ/2) = −24 (2 · 2¹² − 2⁶) · 2
     const double expected = -24 * (2 * 4096.0 - 64) * 2;
-    assert_close_relative(curve_value(&curve, 0.5 - 1e-6) - at, -1e-6 * expected, 1e-6);
-    assert_close_relative(curve_value(&curve, 0.5 + 1e-6) - at, 1e-6 * expected, 1e-4);
-    assert_close_relative(curve_value(&curve, 0) - at, -0.5 * expected, 1e-12);
-    curve_clear(&curve);
+    assert_close_relative(mf_curve_value(&curve, 0.5 - 1e-6) - at, -1e-6 * expected, 1e-6);
+    assert_close_relative(mf_curve_value(&curve, 0.5 + 1e-6) - at, 1e-6 * expected, 1e-4);
+    assert_close_relative(mf_curve_value(&curve, 0) - at, -0.5 * expected, 1e-12);
+    mf_curve_clear(&curve);
 }
 
 static void test_soft_repulsion_has_the_force_of_groot_and_warren_when_differenced(void **state) {
     (void)state;
-    struct curve curve = make(&formula_soft_repulsion);
+    struct curve curve = make(&mf_formula_soft_repulsion);
     *(struct formula_soft_repulsion_parameters *)curve.parameters =
         (struct formula_soft_repulsion_parameters){.a = 18.75, .cutoff = 1.3};
-    assert_close(curve_value(&curve, 0), 0.5 * 18.75 * 1.3, 1e-14);
+    assert_close(mf_curve_value(&curve, 0), 0.5 * 18.75 * 1.3, 1e-14);
     for (double r = 0.05; r < 1.25; r += 0.1) {
         const double force =
-            -(curve_value(&curve, r + 1e-5) - curve_value(&curve, r - 1e-5)) / 2e-5;
+            -(mf_curve_value(&curve, r + 1e-5) - mf_curve_value(&curve, r - 1e-5)) / 2e-5;
         assert_close(force, 18.75 * (1 - r / 1.3), 1e-8);
     }
-    assert_identical(curve_value(&curve, 1.3), 0);
-    assert_identical(curve_value(&curve, 2), 0);
-    curve_clear(&curve);
+    assert_identical(mf_curve_value(&curve, 1.3), 0);
+    assert_identical(mf_curve_value(&curve, 2), 0);
+    mf_curve_clear(&curve);
 }
 
 static void test_gaussian_has_its_values_when_shifted(void **state) {
     (void)state;
-    struct curve curve = make(&formula_gaussian);
+    struct curve curve = make(&mf_formula_gaussian);
     *(struct formula_gaussian_parameters *)curve.parameters =
         (struct formula_gaussian_parameters){.epsilon = -2, .sigma = 0.5, .cutoff = 1};
     const double shift = -2 * exp(-4);
-    assert_close(curve_value(&curve, 0), -2 - shift, 1e-15);
-    assert_close(curve_value(&curve, 0.5), -2 / M_E - shift, 1e-15);
-    assert_identical(curve_value(&curve, 1), 0);
-    curve_clear(&curve);
+    assert_close(mf_curve_value(&curve, 0), -2 - shift, 1e-15);
+    assert_close(mf_curve_value(&curve, 0.5), -2 / M_E - shift, 1e-15);
+    assert_identical(mf_curve_value(&curve, 1), 0);
+    mf_curve_clear(&curve);
 }
 
 static void test_power_weight_is_zero_outside_its_shell_when_it_has_an_inner_cutoff(void **state) {
     (void)state;
-    struct curve curve = make(&formula_power_weight);
+    struct curve curve = make(&mf_formula_power_weight);
     // The default is γ = 4.5, σ = 3 of Groot and Warren.
-    assert_close(pow(curve_value(&curve, 0), 2), 4.5, 1e-14);
-    assert_close(pow(curve_value(&curve, 0.5), 2), 4.5 / 4, 1e-14);
+    assert_close(pow(mf_curve_value(&curve, 0), 2), 4.5, 1e-14);
+    assert_close(pow(mf_curve_value(&curve, 0.5), 2), 4.5 / 4, 1e-14);
     *(struct formula_power_weight_parameters *)curve.parameters =
         (struct formula_power_weight_parameters){
             .sigma = 2.589, .exponent = 1, .inner_cutoff = 0.596, .cutoff = 1.72};
-    assert_identical(curve_value(&curve, 0), 0);
-    assert_identical(curve_value(&curve, 0.596), 0);
-    assert_close(curve_value(&curve, 0.6), 2.589 * (1 - 0.6 / 1.72), 1e-14);
-    assert_close(curve_value(&curve, 1.29), 2.589 / 4, 1e-14);
-    assert_identical(curve_value(&curve, 1.72), 0);
+    assert_identical(mf_curve_value(&curve, 0), 0);
+    assert_identical(mf_curve_value(&curve, 0.596), 0);
+    assert_close(mf_curve_value(&curve, 0.6), 2.589 * (1 - 0.6 / 1.72), 1e-14);
+    assert_close(mf_curve_value(&curve, 1.29), 2.589 / 4, 1e-14);
+    assert_identical(mf_curve_value(&curve, 1.72), 0);
     ((struct formula_power_weight_parameters *)curve.parameters)->exponent = 0.25;
-    assert_close(curve_value(&curve, 1.29), 2.589 * sqrt(0.5), 1e-14);
-    curve_clear(&curve);
+    assert_close(mf_curve_value(&curve, 1.29), 2.589 * sqrt(0.5), 1e-14);
+    mf_curve_clear(&curve);
 }
 
 /// Largest difference of a table and its curve: value and force, from `first` to the cutoff.
@@ -110,13 +110,13 @@ struct difference {
 static struct difference compare(const struct curve *curve, const struct table *table,
                                  double first) {
     struct difference largest = {0};
-    const double cutoff = curve_cutoff(curve), h = 1e-6;
+    const double cutoff = mf_curve_cutoff(curve), h = 1e-6;
     for (int k = 0; k < 7919; k++) {
         const double r = first + (cutoff - first - 1e-4) * (k + 0.5) / 7919;
         double value, slope;
-        table_evaluate(table, r, &value, &slope, NULL);
-        const double expected = (curve_value(curve, r + h) - curve_value(curve, r - h)) / (2 * h);
-        largest.value = fmax(largest.value, fabs(value - curve_value(curve, r)));
+        mf_table_evaluate(table, r, &value, &slope, NULL);
+        const double expected = (mf_curve_value(curve, r + h) - mf_curve_value(curve, r - h)) / (2 * h);
+        largest.value = fmax(largest.value, fabs(value - mf_curve_value(curve, r)));
         largest.slope = fmax(largest.slope, fabs(slope - expected) / (1 + fabs(expected)));
     }
     return largest;
@@ -125,87 +125,87 @@ static struct difference compare(const struct curve *curve, const struct table *
 /// Bounds: twice what was measured when the test was written; table.h quotes the second.
 static void test_table_follows_its_potential_when_smooth(void **state) {
     (void)state;
-    struct curve curve = make(&formula_soft_repulsion);
+    struct curve curve = make(&mf_formula_soft_repulsion);
     struct table table;
-    assert_ok(table_init_potential(&table, &curve));
+    assert_ok(mf_table_init_potential(&table, &curve));
     struct difference difference = compare(&curve, &table, 0.001);
     assert_true(difference.value < 1e-12); // a parabola is a cubic
     assert_true(difference.slope < 1e-7);
-    table_clear(&table);
-    curve_clear(&curve);
+    mf_table_clear(&table);
+    mf_curve_clear(&curve);
 
-    curve = make(&formula_lennard_jones);
-    assert_ok(table_init_potential(&table, &curve));
+    curve = make(&mf_formula_lennard_jones);
+    assert_ok(mf_table_init_potential(&table, &curve));
     difference = compare(&curve, &table, 0.9);
     assert_true(difference.value < 2e-6);
     assert_true(difference.slope < 1e-5);
-    table_clear(&table);
-    curve_clear(&curve);
+    mf_table_clear(&table);
+    mf_curve_clear(&curve);
 
-    curve = make(&formula_gaussian);
-    assert_ok(table_init_potential(&table, &curve));
+    curve = make(&mf_formula_gaussian);
+    assert_ok(mf_table_init_potential(&table, &curve));
     difference = compare(&curve, &table, 0.001);
     assert_true(difference.value < 1e-10);
     assert_true(difference.slope < 1e-7);
-    table_clear(&table);
-    curve_clear(&curve);
+    mf_table_clear(&table);
+    mf_curve_clear(&curve);
 }
 
 static void test_table_is_zero_when_beyond_the_cutoff(void **state) {
     (void)state;
-    struct curve curve = make(&formula_gaussian);
+    struct curve curve = make(&mf_formula_gaussian);
     struct table table;
-    assert_ok(table_init_potential(&table, &curve));
+    assert_ok(mf_table_init_potential(&table, &curve));
     double value, slope, curvature;
     const double far[] = {table.cutoff, 2 * table.cutoff, 1e9};
     for (int k = 0; k < 3; k++) {
-        table_evaluate(&table, far[k], &value, &slope, &curvature);
+        mf_table_evaluate(&table, far[k], &value, &slope, &curvature);
         assert_identical(value, 0);
         assert_identical(slope, 0);
         assert_identical(curvature, 0);
     }
     for (int k = 0; k < 4; k++)
         assert_identical(table.single[TABLE_INTERVALS][k], 0);
-    table_clear(&table);
-    curve_clear(&curve);
+    mf_table_clear(&table);
+    mf_curve_clear(&curve);
 }
 
 /// Value and slope are continuous at every node, and so is the curvature.
 /// Each curve keeps its own grid, shift and end; a part without one is 0.
 static void test_table_stack_holds_each_curve_as_it_was_alone(void **state) {
     (void)state;
-    struct curve soft = make(&formula_soft_repulsion), gaussian = make(&formula_gaussian);
+    struct curve soft = make(&mf_formula_soft_repulsion), gaussian = make(&mf_formula_gaussian);
     struct table parts[3] = {{0}}, stack;
-    assert_ok(table_init_potential(&parts[0], &soft));
-    assert_ok(table_init_potential(&parts[2], &gaussian));
-    assert_ok(table_stack(&stack, parts, 3));
+    assert_ok(mf_table_init_potential(&parts[0], &soft));
+    assert_ok(mf_table_init_potential(&parts[2], &gaussian));
+    assert_ok(mf_table_stack(&stack, parts, 3));
     assert_int_equal(stack.curves, 3);
     assert_identical(stack.cutoff, fmax(parts[0].cutoff, parts[2].cutoff));
     for (double r = 0; r < 1.2 * stack.cutoff; r += 0.00371)
         for (int pair = 0; pair < 3; pair++) {
             double here[3], alone[3] = {0};
-            table_evaluate_pair(&stack, pair, r, &here[0], &here[1], &here[2]);
+            mf_table_evaluate_pair(&stack, pair, r, &here[0], &here[1], &here[2]);
             if (pair != 1)
-                table_evaluate(&parts[pair], r, &alone[0], &alone[1], &alone[2]);
+                mf_table_evaluate(&parts[pair], r, &alone[0], &alone[1], &alone[2]);
             for (int n = 0; n < 3; n++)
                 assert_identical(here[n], alone[n]);
             // A table of one curve is for all pairs.
-            table_evaluate_pair(&parts[0], pair, r, &here[0], NULL, NULL);
-            table_evaluate(&parts[0], r, &alone[0], NULL, NULL);
+            mf_table_evaluate_pair(&parts[0], pair, r, &here[0], NULL, NULL);
+            mf_table_evaluate(&parts[0], r, &alone[0], NULL, NULL);
             assert_identical(here[0], alone[0]);
         }
-    table_clear(&parts[0]);
-    table_clear(&parts[2]);
-    table_clear(&stack);
-    curve_clear(&soft);
-    curve_clear(&gaussian);
+    mf_table_clear(&parts[0]);
+    mf_table_clear(&parts[2]);
+    mf_table_clear(&stack);
+    mf_curve_clear(&soft);
+    mf_curve_clear(&gaussian);
 }
 
 static void test_table_is_twice_continuous_when_a_potential(void **state) {
     (void)state;
-    struct curve curve = make(&formula_lennard_jones);
+    struct curve curve = make(&mf_formula_lennard_jones);
     struct table table;
-    assert_ok(table_init_potential(&table, &curve));
+    assert_ok(mf_table_init_potential(&table, &curve));
     for (int k = 400; k < TABLE_INTERVALS - 1; k++) {
         const double *c = table.coefficient + 4 * k, *next = c + 4;
         const double size = 1e-9 * (1 + fabs(c[0]) + fabs(c[1]) + fabs(c[2]) + fabs(c[3]));
@@ -213,31 +213,31 @@ static void test_table_is_twice_continuous_when_a_potential(void **state) {
         assert_close(c[1] + 2 * c[2] + 3 * c[3], next[1], size);
         assert_close(2 * c[2] + 6 * c[3], 2 * next[2], size);
     }
-    table_clear(&table);
-    curve_clear(&curve);
+    mf_table_clear(&table);
+    mf_curve_clear(&curve);
 }
 
 static void test_table_of_a_weight_jumps_within_one_interval_when_the_weight_does(void **state) {
     (void)state;
-    struct curve curve = make(&formula_power_weight);
+    struct curve curve = make(&mf_formula_power_weight);
     struct formula_power_weight_parameters *p = curve.parameters;
     p->inner_cutoff = 0.4;
     struct table table;
-    assert_ok(table_init_weight(&table, &curve));
+    assert_ok(mf_table_init_weight(&table, &curve));
     const double spacing = 1.0 / TABLE_INTERVALS;
     for (double r = 0.0003; r < 1; r += 0.0017) {
         double value;
-        table_evaluate(&table, r, &value, NULL, NULL);
+        mf_table_evaluate(&table, r, &value, NULL, NULL);
         if (fabs(r - 0.4) > spacing)
-            assert_close(value, curve_value(&curve, r), 1e-11); // the last node is 1e-12 inside
+            assert_close(value, mf_curve_value(&curve, r), 1e-11); // the last node is 1e-12 inside
         else
             assert_true(value >= 0 && value <= p->sigma * 0.6 + 1e-3);
     }
     double value;
-    table_evaluate(&table, 1, &value, NULL, NULL);
+    mf_table_evaluate(&table, 1, &value, NULL, NULL);
     assert_identical(value, 0);
-    table_clear(&table);
-    curve_clear(&curve);
+    mf_table_clear(&table);
+    mf_curve_clear(&curve);
 }
 
 static void test_sampled_curve_goes_through_its_points_when_evaluated(void **state) {
@@ -249,33 +249,33 @@ static void test_sampled_curve_goes_through_its_points_when_evaluated(void **sta
         y[k] = cos(2 * r[k]) * (2 - r[k]);
     }
     struct curve curve;
-    assert_ok(sampled_create(&curve, r, y, POINTS));
-    assert_close(curve_cutoff(&curve), 2, 0);
+    assert_ok(mf_sampled_create(&curve, r, y, POINTS));
+    assert_close(mf_curve_cutoff(&curve), 2, 0);
     for (int k = 0; k < POINTS - 1; k++)
-        assert_close(curve_value(&curve, r[k]), y[k], 1e-14);
+        assert_close(mf_curve_value(&curve, r[k]), y[k], 1e-14);
     // Between points: the natural spline's error is some 1e-4 near its ends, far less inside.
-    assert_close(curve_value(&curve, 1.234), cos(2.468) * (2 - 1.234), 1e-6);
+    assert_close(mf_curve_value(&curve, 1.234), cos(2.468) * (2 - 1.234), 1e-6);
     // Below the first point the straight line with the slope there.
-    const double slope = (curve_value(&curve, 0.5 + 1e-6) - curve_value(&curve, 0.5)) / 1e-6;
-    assert_close(curve_value(&curve, 0.2), y[0] - 0.3 * slope, 1e-5);
-    assert_identical(curve_value(&curve, 2), 0);
-    assert_identical(curve_value(&curve, 3), 0);
-    curve_clear(&curve);
+    const double slope = (mf_curve_value(&curve, 0.5 + 1e-6) - mf_curve_value(&curve, 0.5)) / 1e-6;
+    assert_close(mf_curve_value(&curve, 0.2), y[0] - 0.3 * slope, 1e-5);
+    assert_identical(mf_curve_value(&curve, 2), 0);
+    assert_identical(mf_curve_value(&curve, 3), 0);
+    mf_curve_clear(&curve);
 }
 
 static void test_sampled_create_refuses_when_points_are_bad(void **state) {
     (void)state;
     struct curve curve;
     const double r[] = {0, 1, 1, 2}, y[] = {3, 2, 1, 0};
-    assert_fails(sampled_create(&curve, r, y, 4), STATUS_BAD_INPUT, "does not grow at point 3");
-    assert_fails(sampled_create(&curve, r, y, 2), STATUS_BAD_INPUT, "at least 3 points");
+    assert_fails(mf_sampled_create(&curve, r, y, 4), STATUS_BAD_INPUT, "does not grow at point 3");
+    assert_fails(mf_sampled_create(&curve, r, y, 2), STATUS_BAD_INPUT, "at least 3 points");
     const double nan[] = {0, NAN, 2};
-    assert_fails(sampled_create(&curve, nan, y, 3), STATUS_BAD_INPUT, "does not grow");
-    assert_ok(curve_create(&curve, &sampled_family));
+    assert_fails(mf_sampled_create(&curve, nan, y, 3), STATUS_BAD_INPUT, "does not grow");
+    assert_ok(mf_curve_create(&curve, &mf_sampled_family));
     ((struct sampled_parameters *)curve.parameters)->cutoff = 3;
     const double good[] = {0, 1, 1.5, 2};
-    assert_fails(sampled_set_points(&curve, good, y, 4), STATUS_BAD_INPUT, "before the cutoff");
-    curve_clear(&curve);
+    assert_fails(mf_sampled_set_points(&curve, good, y, 4), STATUS_BAD_INPUT, "before the cutoff");
+    mf_curve_clear(&curve);
 }
 
 static double binomial(int n, int k) {
@@ -309,7 +309,7 @@ static void test_bezier_values_are_bernstein_sums_when_genes_are_few(void **stat
     const double genes[] = {3, -1, 4, 1, -5, 9, 2, -6, 5, 3};
     double values[BEZIER_POINTS];
     for (int count = 1; count <= 10; count++) {
-        assert_ok(bezier_values(genes, (size_t)count, t, values, BEZIER_POINTS));
+        assert_ok(mf_bezier_values(genes, (size_t)count, t, values, BEZIER_POINTS));
         for (int p = 0; p < BEZIER_POINTS; p++)
             assert_close(values[p], bernstein(genes, count, t[p]), 1e-13);
         assert_identical(values[0], genes[0] - genes[count - 1]);
@@ -325,7 +325,7 @@ static void test_bezier_values_stay_in_the_hull_when_genes_are_a_hundred(void **
     for (int k = 0; k < GENES; k++)
         genes[k] = (k * 7919 % 101) / 100.0 * 6.5;
     const double last = genes[GENES - 1];
-    assert_ok(bezier_values(genes, GENES, equal_places(), values, BEZIER_POINTS));
+    assert_ok(mf_bezier_values(genes, GENES, equal_places(), values, BEZIER_POINTS));
     for (int p = 0; p < BEZIER_POINTS; p++) {
         assert_true(values[p] + last >= 0 && values[p] + last <= 6.5);
         if (p > 0)
@@ -335,7 +335,7 @@ static void test_bezier_values_stay_in_the_hull_when_genes_are_a_hundred(void **
     assert_true(largest <= 6.5 * (GENES - 1) / (BEZIER_POINTS - 1.0));
     for (int k = 0; k < GENES; k++)
         genes[k] = 2;
-    assert_ok(bezier_values(genes, GENES, equal_places(), values, BEZIER_POINTS));
+    assert_ok(mf_bezier_values(genes, GENES, equal_places(), values, BEZIER_POINTS));
     for (int p = 0; p < BEZIER_POINTS; p++)
         assert_close(values[p], 0, 1e-13);
 }
@@ -349,13 +349,13 @@ static void test_bezier_values_are_known_when_a_hundred_genes_are_simple(void **
     double genes[GENES], values[BEZIER_POINTS];
     for (int k = 0; k < GENES; k++)
         genes[k] = 5 - 0.25 * k;
-    assert_ok(bezier_values(genes, GENES, t, values, BEZIER_POINTS));
+    assert_ok(mf_bezier_values(genes, GENES, t, values, BEZIER_POINTS));
     for (int p = 0; p < BEZIER_POINTS; p++)
         assert_close(values[p], 0.25 * 99 * (1 - t[p]), 1e-12);
     for (int k = 0; k < GENES - 1; k++)
         genes[k] = 2;
     genes[GENES - 1] = 0;
-    assert_ok(bezier_values(genes, GENES, t, values, BEZIER_POINTS));
+    assert_ok(mf_bezier_values(genes, GENES, t, values, BEZIER_POINTS));
     for (int p = 0; p < BEZIER_POINTS; p++)
         assert_close(values[p], 2 * (1 - pow(t[p], 99)), 1e-13);
 }
@@ -364,7 +364,7 @@ static void test_core_continues_value_and_slope_when_the_potential_repels(void *
     (void)state;
     const double r[] = {0, 0.2, 0.4, 0.6 - 1e-6, 0.6, 0.8};
     double phi[] = {99, 99, 99, 99, 1.5, 1};
-    core_fill(r, phi, 4, -3, 2000);
+    mf_core_fill(r, phi, 4, -3, 2000);
     assert_identical(phi[4], 1.5);
     assert_identical(phi[5], 1);
     assert_close((phi[4] - phi[3]) / 1e-6, -3, 2e-3);
@@ -378,11 +378,11 @@ static void test_core_starts_flat_when_the_potential_attracts_inwards(void **sta
     (void)state;
     const double r[] = {0, 0.6 - 1e-6, 0.6};
     double phi[] = {99, 99, 1.5};
-    core_fill(r, phi, 2, 4, 2000);
+    mf_core_fill(r, phi, 2, 4, 2000);
     assert_close((phi[2] - phi[1]) / 1e-6, 0, 2e-3);
     assert_close(phi[0], 1.5 + 0.5 * 2000 * 0.36, 1e-12);
     phi[0] = 7;
-    core_fill(r, phi, 0, 4, 2000); // nothing is below the first known point
+    mf_core_fill(r, phi, 0, 4, 2000); // nothing is below the first known point
     assert_identical(phi[0], 7);
 }
 

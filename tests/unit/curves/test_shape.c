@@ -23,11 +23,11 @@ static void some_genes(double *genes, size_t count) {
 
 static void test_shape_find_knows_every_shape_when_named(void **state) {
     (void)state;
-    for (size_t k = 0; shapes[k]; k++)
-        assert_ptr_equal(shape_find(shapes[k]->name), shapes[k]);
-    assert_non_null(shape_find("bezier"));
-    assert_non_null(shape_find("bspline"));
-    assert_null(shape_find("spline"));
+    for (size_t k = 0; mf_shapes[k]; k++)
+        assert_ptr_equal(mf_shape_find(mf_shapes[k]->name), mf_shapes[k]);
+    assert_non_null(mf_shape_find("bezier"));
+    assert_non_null(mf_shape_find("bspline"));
+    assert_null(mf_shape_find("spline"));
 }
 
 static void test_shape_values_begin_at_the_first_gene_and_end_at_0(void **state) {
@@ -35,10 +35,10 @@ static void test_shape_values_begin_at_the_first_gene_and_end_at_0(void **state)
     for (size_t count = 1; count <= 40; count++) {
         double genes[40], values[2], shift[2];
         some_genes(genes, count);
-        assert_ok(shape_find("bspline")->values(genes, count, (double[]){0, 1}, values, 2));
+        assert_ok(mf_shape_find("bspline")->values(genes, count, (double[]){0, 1}, values, 2));
         assert_close(values[0], genes[0], 1e-14);
         assert_identical(values[1], 0);
-        assert_ok(shape_find("bezier")->values(genes, count, (double[]){0, 1}, shift, 2));
+        assert_ok(mf_shape_find("bezier")->values(genes, count, (double[]){0, 1}, shift, 2));
         assert_close(shift[0], genes[0] - genes[count - 1], 1e-13);
         assert_close(shift[1], 0, 1e-13);
     }
@@ -54,7 +54,7 @@ static void test_bspline_basis_adds_up_to_1_before_the_last_interval(void **stat
     grid(t, POINTS);
     for (int k = 0; k < GENES; k++)
         ones[k] = 1;
-    assert_ok(bspline_values(ones, GENES, t, values, POINTS));
+    assert_ok(mf_bspline_values(ones, GENES, t, values, POINTS));
     for (int p = 0; p < POINTS; p++) {
         if (t[p] <= last)
             assert_close(values[p], 1, 1e-14);
@@ -69,7 +69,7 @@ static void test_bspline_has_its_textbook_values_in_the_last_interval(void **sta
     (void)state;
     for (double u = 0; u <= 1; u += 0.125) {
         double value;
-        assert_ok(bspline_values(ones, 4, (double[]){0.5 + 0.5 * u}, &value, 1));
+        assert_ok(mf_bspline_values(ones, 4, (double[]){0.5 + 0.5 * u}, &value, 1));
         assert_close(value, 1 - u * u * u, 1e-14);
     }
 }
@@ -79,7 +79,7 @@ static void test_bspline_gene_acts_on_four_intervals_alone(void **state) {
     double t[POINTS], basis[POINTS * GENES];
     (void)state;
     grid(t, POINTS);
-    assert_ok(shape_basis(shape_find("bspline"), GENES, t, POINTS, basis));
+    assert_ok(mf_shape_basis(mf_shape_find("bspline"), GENES, t, POINTS, basis));
     for (int k = 0; k < GENES; k++)
         for (int p = 0; p < POINTS; p++) {
             const double place = t[p] * INTERVALS - k;
@@ -93,9 +93,9 @@ static void test_bspline_gene_acts_on_four_intervals_alone(void **state) {
 static void test_bspline_is_a_polynomial_when_genes_are_few(void **state) {
     double value;
     (void)state;
-    assert_ok(bspline_values((double[]){3}, 1, (double[]){0.25}, &value, 1));
+    assert_ok(mf_bspline_values((double[]){3}, 1, (double[]){0.25}, &value, 1));
     assert_close(value, 3 * 0.75, 1e-14);
-    assert_ok(bspline_values((double[]){3, 2}, 2, (double[]){0.25}, &value, 1));
+    assert_ok(mf_bspline_values((double[]){3, 2}, 2, (double[]){0.25}, &value, 1));
     assert_close(value, 3 * 0.75 * 0.75 + 2 * 2 * 0.25 * 0.75, 1e-14);
 }
 
@@ -105,9 +105,9 @@ static void test_shape_basis_times_genes_is_the_curve(void **state) {
     (void)state;
     grid(t, POINTS);
     some_genes(genes, GENES);
-    for (size_t s = 0; shapes[s]; s++) {
-        assert_ok(shape_basis(shapes[s], GENES, t, POINTS, basis));
-        assert_ok(shapes[s]->values(genes, GENES, t, values, POINTS));
+    for (size_t s = 0; mf_shapes[s]; s++) {
+        assert_ok(mf_shape_basis(mf_shapes[s], GENES, t, POINTS, basis));
+        assert_ok(mf_shapes[s]->values(genes, GENES, t, values, POINTS));
         for (int p = 0; p < POINTS; p++) {
             double sum = 0;
             for (int k = 0; k < GENES; k++)
@@ -123,13 +123,13 @@ static void test_shape_fit_recovers_the_genes_of_a_bspline(void **state) {
     (void)state;
     grid(t, POINTS);
     some_genes(genes, GENES);
-    assert_ok(bspline_values(genes, GENES, t, values, POINTS));
+    assert_ok(mf_bspline_values(genes, GENES, t, values, POINTS));
     for (int p = 0; p < POINTS; p++)
         weights[p] = 1 + (p % 5);
-    assert_ok(shape_fit(shape_find("bspline"), t, values, NULL, POINTS, fitted, GENES));
+    assert_ok(mf_shape_fit(mf_shape_find("bspline"), t, values, NULL, POINTS, fitted, GENES));
     for (int k = 0; k < GENES; k++)
         assert_close(fitted[k], genes[k], 1e-9);
-    assert_ok(shape_fit(shape_find("bspline"), t, values, weights, POINTS, fitted, GENES));
+    assert_ok(mf_shape_fit(mf_shape_find("bspline"), t, values, weights, POINTS, fitted, GENES));
     for (int k = 0; k < GENES; k++)
         assert_close(fitted[k], genes[k], 1e-9);
 }
@@ -141,7 +141,7 @@ static void fit_curve(const struct shape *shape, double (*function)(double), siz
     grid(t, points);
     for (size_t p = 0; p < points; p++)
         values[p] = function(t[p]);
-    assert_ok(shape_fit(shape, t, values, NULL, points, genes, count));
+    assert_ok(mf_shape_fit(shape, t, values, NULL, points, genes, count));
     assert_ok(shape->values(genes, count, t, fitted, points));
     *distance = *largest = 0;
     for (size_t p = 0; p < points; p++)
@@ -158,11 +158,11 @@ static double soft_core(double t) {
 static void test_shape_fit_stays_small_when_genes_are_too_many(void **state) {
     double distance, largest;
     (void)state;
-    for (size_t s = 0; shapes[s]; s++) {
-        fit_curve(shapes[s], soft_core, POINTS, 100, &distance, &largest);
+    for (size_t s = 0; mf_shapes[s]; s++) {
+        fit_curve(mf_shapes[s], soft_core, POINTS, 100, &distance, &largest);
         assert_close(distance, 0, 1e-5);
         assert_true(largest < 10);
-        fit_curve(shapes[s], soft_core, 20, 100, &distance, &largest);
+        fit_curve(mf_shapes[s], soft_core, 20, 100, &distance, &largest);
         assert_close(distance, 0, 1e-5);
         assert_true(largest < 10);
     }
@@ -172,7 +172,7 @@ static void test_shape_fit_follows_the_weights(void **state) {
     static const double t[3] = {0, 0, 0.5}, values[3] = {1, 3, 1}, weights[3] = {3, 1, 0};
     double gene;
     (void)state;
-    assert_ok(shape_fit(shape_find("bspline"), t, values, weights, 3, &gene, 1));
+    assert_ok(mf_shape_fit(mf_shape_find("bspline"), t, values, weights, 3, &gene, 1));
     assert_close(gene, 1.5, 1e-10);
 }
 
@@ -181,10 +181,10 @@ static void test_shape_fit_fails_when_points_say_nothing(void **state) {
     const double nan[2] = {NAN, 1};
     double genes[2];
     (void)state;
-    const struct shape *shape = shape_find("bspline");
-    assert_fails(shape_fit(shape, t, zero, NULL, 0, genes, 2), STATUS_BAD_INPUT, "without points");
-    assert_fails(shape_fit(shape, t, nan, NULL, 2, genes, 2), STATUS_BAD_INPUT, "nan");
-    assert_fails(shape_fit(shape, t, zero, zero, 2, genes, 2), STATUS_BAD_INPUT, "weight");
+    const struct shape *shape = mf_shape_find("bspline");
+    assert_fails(mf_shape_fit(shape, t, zero, NULL, 0, genes, 2), STATUS_BAD_INPUT, "without points");
+    assert_fails(mf_shape_fit(shape, t, nan, NULL, 2, genes, 2), STATUS_BAD_INPUT, "nan");
+    assert_fails(mf_shape_fit(shape, t, zero, zero, 2, genes, 2), STATUS_BAD_INPUT, "weight");
 }
 
 int main(void) {

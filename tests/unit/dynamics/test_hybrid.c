@@ -12,23 +12,23 @@ static const struct pair_histogram bins = {.width = 0.1, .bins = 10};
 
 static void make_table(struct table *table, double a) {
     struct formula_soft_repulsion_parameters soft = {a, 1};
-    const struct curve curve = {&formula_soft_repulsion, &soft};
-    assert_ok(table_init_potential(table, &curve));
+    const struct curve curve = {&mf_formula_soft_repulsion, &soft};
+    assert_ok(mf_table_init_potential(table, &curve));
 }
 
 /// The time step that a fluid begins with.
 static double first_step(const struct composition *composition, const struct table *table) {
     struct hybrid hybrid;
-    assert_ok(hybrid_init(&hybrid, &box, composition, table, &bins, 1, 3));
+    assert_ok(mf_hybrid_init(&hybrid, &box, composition, table, &bins, 1, 3));
     const double step = hybrid.simulation.setup.time_step;
-    hybrid_clear(&hybrid);
+    mf_hybrid_clear(&hybrid);
     return step;
 }
 
 /// It follows the fastest pairs, whichever kind they are.
 static void test_hybrid_begins_with_the_step_of_the_stiffest_pairs(void **state) {
     (void)state;
-    const struct composition one = composition_of_one(COUNT);
+    const struct composition one = mf_composition_of_one(COUNT);
     const struct composition two = {.types = 2, .count = {COUNT / 2, COUNT / 2}};
     struct table soft, stiff;
     make_table(&soft, 60);
@@ -38,12 +38,12 @@ static void test_hybrid_begins_with_the_step_of_the_stiffest_pairs(void **state)
     for (int place = 0; place < PAIRS; place++) {
         struct table part[PAIRS] = {soft, soft, soft}, all;
         part[place] = stiff;
-        assert_ok(table_stack(&all, part, PAIRS));
+        assert_ok(mf_table_stack(&all, part, PAIRS));
         assert_identical(first_step(&two, &all), fast);
-        table_clear(&all);
+        mf_table_clear(&all);
     }
-    table_clear(&soft);
-    table_clear(&stiff);
+    mf_table_clear(&soft);
+    mf_table_clear(&stiff);
 }
 
 int main(void) {

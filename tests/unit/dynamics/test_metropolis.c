@@ -13,26 +13,26 @@ enum { PARTICLES = 400, SWEEPS = 200 };
 /// Positions by id after sweeps that begin with a new list each, or with one when it is due.
 static void find_positions(bool sorted_often, double position[PARTICLES][3]) {
     struct formula_soft_repulsion_parameters parameters = {25, 1};
-    const struct curve curve = {&formula_soft_repulsion, &parameters};
+    const struct curve curve = {&mf_formula_soft_repulsion, &parameters};
     const struct box box = {3, {5, 5.1, 5.2}};
-    const struct composition composition = composition_of_one(PARTICLES);
+    const struct composition composition = mf_composition_of_one(PARTICLES);
     struct metropolis metropolis;
     struct table potential;
-    assert_ok(table_init_potential(&potential, &curve));
-    assert_ok(metropolis_init(&metropolis, &box, &composition, &potential, 1, 9));
+    assert_ok(mf_table_init_potential(&potential, &curve));
+    assert_ok(mf_metropolis_init(&metropolis, &box, &composition, &potential, 1, 9));
     metropolis.step = 0.04; // so small that the list holds for several sweeps
     for (int n = 0; n < SWEEPS; n++) {
         if (sorted_often)
-            assert_ok(metropolis_refresh(&metropolis));
-        assert_ok(metropolis_run(&metropolis, 1));
+            assert_ok(mf_metropolis_refresh(&metropolis));
+        assert_ok(mf_metropolis_run(&metropolis, 1));
     }
     const struct particles *particles = &metropolis.particles;
     for (int d = 0; d < 3; d++)
         for (size_t k = 0; k < PARTICLES; k++)
             position[particles->id[k]][d] =
                 particles->position[d][k] + particles->image[d][k] * box.length[d];
-    metropolis_clear(&metropolis);
-    table_clear(&potential);
+    mf_metropolis_clear(&metropolis);
+    mf_table_clear(&potential);
 }
 
 /// A sum of energies in another order may decide one move in a million otherwise.

@@ -32,9 +32,9 @@ static double energy_at(const struct metropolis *metropolis, size_t self, const 
         }
         if (j == self || sqrt(square) >= metropolis->law.potential->cutoff)
             continue;
-        const int pair = composition_pair_of_ids(&metropolis->law.composition, particles->id[self],
+        const int pair = mf_composition_pair_of_ids(&metropolis->law.composition, particles->id[self],
                                                  particles->id[j]);
-        table_evaluate_pair(metropolis->law.potential, pair, sqrt(square), &value, &slope, NULL);
+        mf_table_evaluate_pair(metropolis->law.potential, pair, sqrt(square), &value, &slope, NULL);
         sum += value;
         *virial -= sqrt(square) * slope;
     }
@@ -55,22 +55,22 @@ static void check_changes(const struct metropolis *metropolis) {
         const double before = energy_at(metropolis, k, from, &unused);
         const double after = energy_at(metropolis, k, moved, &unused);
         const double fast =
-            move_energy_change(&metropolis->law, particles, &metropolis->neighbours, k, to);
+            mf_move_energy_change(&metropolis->law, particles, &metropolis->neighbours, k, to);
         const double scale = fmax(1, 0.1 * (fabs(before) + fabs(after)));
         largest = fmax(largest, fabs(fast - (after - before)) / scale);
     }
-    print_message("%s: largest error %.1e\n", simd_name(), largest);
+    print_message("%s: largest error %.1e\n", mf_simd_name(), largest);
     assert_true(largest < energy_tolerance);
 }
 
 static void check_sums(const struct metropolis *metropolis) {
     const struct composition *composition = &metropolis->law.composition;
     const struct rdf_bins bins = {0, metropolis->law.potential->cutoff / BINS, BINS};
-    const size_t pairs = (size_t)composition_pairs(composition);
+    const size_t pairs = (size_t)mf_composition_pairs(composition);
     uint32_t counts[MOST_PAIRS * BINS + 1] = {0};
     double histogram[MOST_PAIRS * BINS] = {0}, energy = 0, virial = 0, differences = 0;
     struct pair_sums sums;
-    rdf_count_pairs_of(&bins, composition, &metropolis->particles, &metropolis->neighbours,
+    mf_rdf_count_pairs_of(&bins, composition, &metropolis->particles, &metropolis->neighbours,
                        histogram);
     for (size_t k = 0; k < COUNT; k++) {
         double at[3] = {0};
@@ -78,7 +78,7 @@ static void check_sums(const struct metropolis *metropolis) {
             at[d] = metropolis->particles.position[d][k];
         energy += 0.5 * energy_at(metropolis, k, at, &virial);
     }
-    metropolis_count(metropolis, &(struct pair_histogram){0, bins.width, BINS, pairs, counts},
+    mf_metropolis_count(metropolis, &(struct pair_histogram){0, bins.width, BINS, pairs, counts},
                      &sums);
     assert_close(sums.energy, energy, energy_tolerance * COUNT);
     assert_close(sums.virial, 0.5 * virial, 10 * energy_tolerance * COUNT);
@@ -92,10 +92,10 @@ static void check_sums(const struct metropolis *metropolis) {
 static void check_counts_together(const struct metropolis *metropolis) {
     const double width = metropolis->law.potential->cutoff / BINS;
     uint32_t apart[MOST_PAIRS * BINS + 1] = {0}, together[BINS + 1] = {0};
-    const size_t pairs = (size_t)composition_pairs(&metropolis->law.composition);
+    const size_t pairs = (size_t)mf_composition_pairs(&metropolis->law.composition);
     struct pair_sums sums;
-    metropolis_count(metropolis, &(struct pair_histogram){0, width, BINS, pairs, apart}, &sums);
-    metropolis_count(metropolis, &(struct pair_histogram){0, width, BINS, 0, together}, &sums);
+    mf_metropolis_count(metropolis, &(struct pair_histogram){0, width, BINS, pairs, apart}, &sums);
+    mf_metropolis_count(metropolis, &(struct pair_histogram){0, width, BINS, 0, together}, &sums);
     for (size_t k = 0; k < BINS; k++) {
         uint32_t sum = 0;
         for (size_t pair = 0; pair < pairs; pair++)
@@ -106,22 +106,22 @@ static void check_counts_together(const struct metropolis *metropolis) {
 
 static void check_all_sets(const struct fluid *fluid) {
     static const char *const sets[] = {"portable", "avx2", "avx512"};
-    const char *best = simd_name();
+    const char *best = mf_simd_name();
     struct metropolis metropolis;
-    assert_ok(metropolis_init(&metropolis, &fluid->setup.box, &fluid->setup.composition,
+    assert_ok(mf_metropolis_init(&metropolis, &fluid->setup.box, &fluid->setup.composition,
                               &fluid->potential, fluid->setup.temperature, 3));
-    assert_ok(metropolis_equilibrate(&metropolis, 60));
+    assert_ok(mf_metropolis_equilibrate(&metropolis, 60));
     // A list has room for the moves of the sweep that it was looked at for, and no more.
-    assert_ok(metropolis_refresh(&metropolis));
+    assert_ok(mf_metropolis_refresh(&metropolis));
     for (int s = 0; s < 3; s++) {
-        if (!simd_select(sets[s]))
+        if (!mf_simd_select(sets[s]))
             continue;
         check_changes(&metropolis);
         check_sums(&metropolis);
         check_counts_together(&metropolis);
     }
-    assert_true(simd_select(best));
-    metropolis_clear(&metropolis);
+    assert_true(mf_simd_select(best));
+    mf_metropolis_clear(&metropolis);
 }
 
 static void test_move_is_right_when_cores_are_hard(void **state) {
@@ -167,15 +167,15 @@ static void test_move_is_right_when_a_flat_scene_has_two_types(void **state) {
     fluid_soft_discs(&fluid, COUNT, 0.01);
     for (int pair = 0; pair < 3; pair++) {
         struct formula_soft_repulsion_parameters soft = {20 + 15 * pair, 0.8 + 0.1 * pair};
-        const struct curve curve = {&formula_soft_repulsion, &soft};
-        assert_ok(table_init_potential(&parts[pair], &curve));
+        const struct curve curve = {&mf_formula_soft_repulsion, &soft};
+        assert_ok(mf_table_init_potential(&parts[pair], &curve));
     }
-    table_clear(&fluid.potential);
-    assert_ok(table_stack(&fluid.potential, parts, 3));
+    mf_table_clear(&fluid.potential);
+    assert_ok(mf_table_stack(&fluid.potential, parts, 3));
     fluid.setup.composition = (struct composition){.types = 2, .count = {150, COUNT - 150}};
     check_all_sets(&fluid);
     for (int pair = 0; pair < 3; pair++)
-        table_clear(&parts[pair]);
+        mf_table_clear(&parts[pair]);
     fluid_clear(&fluid);
 }
 

@@ -17,9 +17,9 @@ static void test_simulation_begins_well_when_particles_overlap_at_random(void **
     for (uint64_t seed = 1; seed <= 5; seed++) {
         struct simulation simulation;
         fluid.setup.seed = seed;
-        assert_ok(simulation_init(&simulation, &fluid.setup, NULL));
-        assert_ok(simulation_run(&simulation, 500));
-        simulation_clear(&simulation);
+        assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
+        assert_ok(mf_simulation_run(&simulation, 500));
+        mf_simulation_clear(&simulation);
     }
     fluid_clear(&fluid);
 }
@@ -30,14 +30,14 @@ static void test_relax_gives_the_same_bits_when_there_are_threads(void **state) 
     struct simulation alone, shared;
     make_heap(&fluid);
     fluid.setup.threads = 1;
-    assert_ok(simulation_init(&alone, &fluid.setup, NULL));
+    assert_ok(mf_simulation_init(&alone, &fluid.setup, NULL));
     fluid.setup.threads = 2;
-    assert_ok(simulation_init(&shared, &fluid.setup, NULL));
+    assert_ok(mf_simulation_init(&shared, &fluid.setup, NULL));
     for (int d = 0; d < 3; d++)
         assert_memory_equal(alone.particles.position[d], shared.particles.position[d],
                             alone.particles.count * sizeof(double));
-    simulation_clear(&alone);
-    simulation_clear(&shared);
+    mf_simulation_clear(&alone);
+    mf_simulation_clear(&shared);
     fluid_clear(&fluid);
 }
 
@@ -49,11 +49,11 @@ static void test_relax_moves_nothing_when_there_is_no_overlap(void **state) {
     fluid_groot_warren(&fluid, 500, 0.04);
     fluid.setup.placement.kind = PLACEMENT_RANDOM;
     for (int soft = 0; soft < 2; soft++) {
-        assert_ok(simulation_init(&simulation, &fluid.setup, NULL));
+        assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
         const double before = simulation.particles.position[0][17];
-        assert_ok(relax_overlaps(&simulation));
+        assert_ok(mf_relax_overlaps(&simulation));
         assert_true(simulation.particles.position[0][17] == before);
-        simulation_clear(&simulation);
+        mf_simulation_clear(&simulation);
         fluid_clear(&fluid);
         fluid_lennard_jones(&fluid, 864, 0.004);
     }

@@ -18,23 +18,23 @@ static struct skin_scene scene(double time_step, double temperature) {
 static void test_skin_interval_is_one_step_when_there_is_no_skin(void **state) {
     (void)state;
     const struct skin_scene fluid = scene(0.01, 1);
-    assert_close(skin_interval(&fluid, 0), 1, 0);
+    assert_close(mf_skin_interval(&fluid, 0), 1, 0);
 }
 
 /// sqrt(2 ln 24001) = 4.49 thermal speeds: 0.2 λ, there and back, in 2.2 steps of 0.01.
 static void test_skin_interval_is_the_time_of_flight_of_the_fastest(void **state) {
     (void)state;
     const struct skin_scene fluid = scene(0.01, 1);
-    assert_close(skin_interval(&fluid, 0.2), 0.2 / (2 * 4.4915 * 0.01) + 0.5, 1e-3);
+    assert_close(mf_skin_interval(&fluid, 0.2), 0.2 / (2 * 4.4915 * 0.01) + 0.5, 1e-3);
 }
 
 static void test_skin_shrinks_when_particles_fly_farther_in_a_step(void **state) {
     (void)state;
     const struct skin_scene slow = scene(0.001, 1), usual = scene(0.01, 1), hot = scene(0.01, 4),
                             fast = scene(0.06, 4);
-    assert_true(skin_choose(&slow) > 0.1);
-    assert_true(skin_choose(&hot) >= skin_choose(&usual));
-    assert_close(skin_choose(&fast), 0, 0); // a list that lasts a step needs no skin
+    assert_true(mf_skin_choose(&slow) > 0.1);
+    assert_true(mf_skin_choose(&hot) >= mf_skin_choose(&usual));
+    assert_close(mf_skin_choose(&fast), 0, 0); // a list that lasts a step needs no skin
 }
 
 static void test_skin_stays_within_the_nearest_images_when_the_box_is_small(void **state) {
@@ -42,8 +42,8 @@ static void test_skin_stays_within_the_nearest_images_when_the_box_is_small(void
     static const struct box small = {3, {2.1, 2.2, 2.3}}, smallest = {3, {2, 2, 2}};
     const struct skin_scene tight = {&small, 30, 1, 1, 0.0001},
                             tightest = {&smallest, 24, 1, 1, 0.0001};
-    assert_in_range(1000 * skin_choose(&tight), 10, 50);
-    assert_close(skin_choose(&tightest), 0, 0);
+    assert_in_range(1000 * mf_skin_choose(&tight), 10, 50);
+    assert_close(mf_skin_choose(&tightest), 0, 0);
 }
 
 int main(void) {

@@ -18,19 +18,19 @@ static enum status read(void **state, const char *table, const char *members,
     struct json_document *document;
     temporary_folder_write(*state, "g.tsv", table, strlen(table));
     const int length = snprintf(text, sizeof text, "{\"rdf\": {\"file\": \"g.tsv\"%s}}", members);
-    assert_ok(json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
-    struct json_object root = json_root(document);
-    struct json_object object = json_child(&root, "rdf", true);
-    assert_ok(target_read(target, &object, &units, 3));
-    json_finish(&root);
-    return json_close(document, STATUS_OK);
+    assert_ok(mf_json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
+    struct json_object root = mf_json_root(document);
+    struct json_object object = mf_json_child(&root, "rdf", true);
+    assert_ok(mf_target_read(target, &object, &units, 3));
+    mf_json_finish(&root);
+    return mf_json_close(document, STATUS_OK);
 }
 
 static void assert_refused(void **state, const char *table, const char *members, const char *part) {
     struct target target;
     assert_fails(read(state, table, members, &target), STATUS_BAD_INPUT, part);
-    assert_contains(status_message(), "a.json: rdf");
-    target_clear(&target);
+    assert_contains(mf_status_message(), "a.json: rdf");
+    mf_target_clear(&target);
 }
 
 static void test_target_read_takes_the_bins_from_their_centres(void **state) {
@@ -42,14 +42,14 @@ static void test_target_read_takes_the_bins_from_their_centres(void **state) {
     assert_close(target.bins.width, 0.1, 1e-15);
     assert_close(target.g[2], 1.5, 0);
     assert_close(target.error[3], 0.3, 0);
-    target_clear(&target);
+    mf_target_clear(&target);
 }
 
 static void test_target_read_lets_the_first_bin_begin_above_0(void **state) {
     struct target target;
     assert_ok(read(state, "0.25 0 0\n0.35 0.5 0\n0.45 1.5 0\n0.55 1 0\n", "", &target));
     assert_close(target.bins.low, 0.2, 1e-15);
-    target_clear(&target);
+    mf_target_clear(&target);
 }
 
 static void test_target_read_forgives_the_rounding_of_the_file(void **state) {
@@ -59,7 +59,7 @@ static void test_target_read_forgives_the_rounding_of_the_file(void **state) {
                    &target));
     assert_close(target.bins.low, 0, 0);
     assert_close_relative(target.bins.width, 1.0 / 300, 1e-3);
-    target_clear(&target);
+    mf_target_clear(&target);
 }
 
 static void test_target_read_takes_the_columns_it_is_told(void **state) {
@@ -71,7 +71,7 @@ static void test_target_read_takes_the_columns_it_is_told(void **state) {
     assert_close(target.g[3], 2, 0);
     // No errors, and too few rows to tell their scatter: 0.002 at g = 1 in the last bin.
     assert_close(target.error[3], 0.002 * sqrt(2), 1e-15);
-    target_clear(&target);
+    mf_target_clear(&target);
     assert_refused(state, table, ", \"g_column\": 5", "g.tsv:1: 4 columns, at least 5");
     assert_refused(state, table, ", \"r_column\": 0", "rdf.r_column: 0 is out of range");
 }
@@ -114,7 +114,7 @@ static void test_target_read_leaves_the_empty_half_bin_out(void **state) {
     assert_close(target.bins.low, 0.001, 1e-12);
     assert_close(target.bins.width, 0.002, 1e-12);
     assert_close(target.g[1], 0.5, 0);
-    target_clear(&target);
+    mf_target_clear(&target);
 }
 
 static void test_target_read_takes_comma_separated_columns_with_names(void **state) {
@@ -124,7 +124,7 @@ static void test_target_read_takes_comma_separated_columns_with_names(void **sta
     assert_close(target.g[2], 1.5, 0);
     assert_close(target.error[2], 0.2, 0);
     assert_close(target.estimated_error, 0, 0);
-    target_clear(&target);
+    mf_target_clear(&target);
 }
 
 static void test_target_read_refuses_errors_that_are_none(void **state) {
@@ -154,10 +154,10 @@ static void test_target_read_joins_rows_to_the_width_that_is_asked_for(void **st
     // Shells of 0.2 to 0.3 and 0.3 to 0.4 have the volumes 19 and 37.
     assert_close(target.g[1], (19 * 1 + 37 * 2) / 56.0, 1e-12);
     assert_close(target.error[1], 0.1 * sqrt(19 * 19 + 37 * 37) / 56, 1e-12);
-    target_clear(&target);
+    mf_target_clear(&target);
     assert_ok(read(state, table, ", \"bin_width\": 0.02", &target));
     assert_int_equal(target.bins.count, 9);
-    target_clear(&target);
+    mf_target_clear(&target);
 }
 
 static void test_target_read_joins_rows_by_itself_when_there_are_too_many(void **state) {
@@ -175,11 +175,11 @@ static void test_target_read_joins_rows_by_itself_when_there_are_too_many(void *
     // A step has no scatter; what is assumed is assumed of the bins.
     assert_true(target.assumed);
     assert_close(target.error[332], 0.002, 1e-9);
-    target_clear(&target);
+    mf_target_clear(&target);
     assert_ok(read(state, table, ", \"cutoff\": 0.7", &target));
     assert_int_equal(target.joined, 1);
     assert_int_equal(target.bins.count, 350);
-    target_clear(&target);
+    mf_target_clear(&target);
     free(table);
 }
 
@@ -198,7 +198,7 @@ static void test_target_read_takes_votca_in_nanometres(void **state) {
     assert_close(target.bins.width, 0.2, 1e-15);
     assert_identical(target.g[2], 1.5);
     assert_true(target.assumed);
-    target_clear(&target);
+    mf_target_clear(&target);
 }
 
 /// Normalised by N_a² for alike pairs, of the system that was measured.
@@ -210,23 +210,23 @@ static void test_target_convert_takes_votca_to_possible_pairs(void **state) {
     struct target target;
     double g[5], error[5];
     assert_ok(read(state, table, VOTCA, &target));
-    target_convert(&target, &square, &one, 0, g, error);
+    mf_target_convert(&target, &square, &one, 0, g, error);
     assert_close(g[2], 1.65, 1e-15);
-    target_convert(&target, &square, &binary, 0, g, error);
+    mf_target_convert(&target, &square, &binary, 0, g, error);
     assert_close(g[2], 1.5 * 20 / 19, 1e-15);
-    target_convert(&target, &square, &binary, 1, g, error);
+    mf_target_convert(&target, &square, &binary, 1, g, error);
     assert_close(g[2], 1.5, 0);
-    target_clear(&target);
+    mf_target_clear(&target);
     // Of an incompressible liquid, the tail of a g that is normalised by N² knows no N.
     assert_ok(read(state, table, VOTCA ", \"particles\": 1000", &target));
-    target_convert(&target, &square, &one, 0, g, error);
+    mf_target_convert(&target, &square, &one, 0, g, error);
     assert_close(g[2], 1.65, 1e-14);
     // 200 A of 1000: measured 1 − 1/200 below the possible pairs.
-    target_convert(&target, &square, &binary, 0, g, error);
+    mf_target_convert(&target, &square, &binary, 0, g, error);
     assert_close(g[2], 1.5 * 200 / 199 * (1 - 1e-3) / (1 - 1e-2), 1e-14);
-    target_convert(&target, &square, &binary, 1, g, error);
+    mf_target_convert(&target, &square, &binary, 1, g, error);
     assert_close(g[2], 1.5 * (1 - 1e-3) / (1 - 1e-2), 1e-14);
-    target_clear(&target);
+    mf_target_clear(&target);
 }
 
 static void test_target_read_refuses_what_votca_does_not_write(void **state) {

@@ -19,12 +19,12 @@ static enum status read_members(void **state, const char *members, struct target
     struct json_document *document;
     const int length = snprintf(text, sizeof text, "{\"etd\": {%s}}", members);
     assert_in_range(length, 1, sizeof text - 1);
-    assert_ok(json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
-    struct json_object root = json_root(document);
-    struct json_object object = json_child(&root, "etd", true);
-    assert_ok(target_etd_read(target, &object));
-    json_finish(&root);
-    return json_close(document, STATUS_OK);
+    assert_ok(mf_json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
+    struct json_object root = mf_json_root(document);
+    struct json_object object = mf_json_child(&root, "etd", true);
+    assert_ok(mf_target_etd_read(target, &object));
+    mf_json_finish(&root);
+    return mf_json_close(document, STATUS_OK);
 }
 
 /// Read a target of these tables with more members of its object.
@@ -42,9 +42,9 @@ static void assert_refused(void **state, const char *table, const char *errors, 
                            const char *part) {
     struct target_etd target;
     assert_fails(read_tables(state, table, errors, members, &target), STATUS_BAD_INPUT, part);
-    assert_contains(status_message(), "a.json: etd");
+    assert_contains(mf_status_message(), "a.json: etd");
     assert_null(target.survival);
-    target_etd_clear(&target);
+    mf_target_etd_clear(&target);
 }
 
 static void test_target_etd_read_takes_times_and_bins_from_the_shape(void **state) {
@@ -59,7 +59,7 @@ static void test_target_etd_read_takes_times_and_bins_from_the_shape(void **stat
     assert_close(target.survival[5], 0, 0);
     assert_close(target.error[3], 0.02, 0);
     assert_int_equal(target.left_out, 0);
-    target_etd_clear(&target);
+    mf_target_etd_clear(&target);
 }
 
 static void test_target_etd_read_needs_no_errors(void **state) {
@@ -67,7 +67,7 @@ static void test_target_etd_read_needs_no_errors(void **state) {
     assert_ok(read_tables(state, good, NULL, RANGE, &target));
     assert_close(target.error[4], 0, 0);
     assert_string_equal(target.parameters.error_file, "");
-    target_etd_clear(&target);
+    mf_target_etd_clear(&target);
 }
 
 static void test_target_etd_read_leaves_out_what_is_not_known(void **state) {
@@ -80,7 +80,7 @@ static void test_target_etd_read_leaves_out_what_is_not_known(void **state) {
     assert_true(isnan(target.survival[0]) && isnan(target.error[6]));
     assert_true(isnan(target.survival[5]) && isnan(target.error[5]));
     assert_close(target.survival[4], 0.9, 0);
-    target_etd_clear(&target);
+    mf_target_etd_clear(&target);
 }
 
 /// The atomistic target of the repository: times in ps and in τ, then 100 bins.
@@ -102,11 +102,11 @@ static void test_target_etd_read_takes_the_water_target(void **state) {
     // As the target's table of bins has it: bin 11 after 1 ps.
     assert_close(target.survival[50 * 100 + 10], 0.930266, 1e-6);
     assert_close(target.error[50 * 100 + 10], 0.000856, 1e-6);
-    assert_ok(target_etd_steps(&target, 0.015949, &every));
+    assert_ok(mf_target_etd_steps(&target, 0.015949, &every));
     assert_int_equal(every, 1);
-    assert_ok(target_etd_steps(&target, 0.00797, &every));
+    assert_ok(mf_target_etd_steps(&target, 0.00797, &every));
     assert_int_equal(every, 2);
-    target_etd_clear(&target);
+    mf_target_etd_clear(&target);
 }
 
 static void test_target_etd_read_refuses_what_is_no_escape_time_distribution(void **state) {
@@ -152,19 +152,19 @@ static void test_target_etd_steps_names_the_time_steps_that_would_do(void **stat
     struct target_etd target;
     int64_t every;
     assert_ok(read_tables(state, good, NULL, RANGE, &target));
-    assert_ok(target_etd_steps(&target, 0.1, &every));
+    assert_ok(mf_target_etd_steps(&target, 0.1, &every));
     assert_int_equal(every, 1);
-    assert_ok(target_etd_steps(&target, 0.10009, &every));
+    assert_ok(mf_target_etd_steps(&target, 0.10009, &every));
     assert_int_equal(every, 1);
-    assert_ok(target_etd_steps(&target, 0.02, &every));
+    assert_ok(mf_target_etd_steps(&target, 0.02, &every));
     assert_int_equal(every, 5);
-    assert_fails(target_etd_steps(&target, 0.04, &every), STATUS_BAD_INPUT,
+    assert_fails(mf_target_etd_steps(&target, 0.04, &every), STATUS_BAD_INPUT,
                  "2.5 time steps of 0.04: not a whole number, as it would be with a time step of "
                  "0.0333333 or 0.05");
-    assert_fails(target_etd_steps(&target, 0.1002, &every), STATUS_BAD_INPUT,
+    assert_fails(mf_target_etd_steps(&target, 0.1002, &every), STATUS_BAD_INPUT,
                  "with a time step of 0.1");
-    assert_fails(target_etd_steps(&target, 7, &every), STATUS_BAD_INPUT, "with a time step of 0.1");
-    target_etd_clear(&target);
+    assert_fails(mf_target_etd_steps(&target, 7, &every), STATUS_BAD_INPUT, "with a time step of 0.1");
+    mf_target_etd_clear(&target);
 }
 
 #define TEST(name)                                                                                 \

@@ -28,15 +28,15 @@ enum { KNOWN = sizeof known / sizeof *known };
 static void take(const struct known *from, struct target_rows *rows) {
     struct data_table table;
     *rows = (struct target_rows){.dimensions = 3};
-    assert_ok(data_table_read(&table, from->file, 3));
-    assert_ok(target_rows_allocate(rows, table.rows));
+    assert_ok(mf_data_table_read(&table, from->file, 3));
+    assert_ok(mf_target_rows_allocate(rows, table.rows));
     for (size_t k = 0; k < table.rows; k++) {
         const double *row = table.values + k * table.columns;
         rows->r[k] = row[from->r];
         rows->g[k] = row[from->g];
         rows->error[k] = row[from->error];
     }
-    data_table_clear(&table);
+    mf_data_table_clear(&table);
 }
 
 /// The errors in the table, as they would be at g = 1 in the last bin: their mean over the bins.
@@ -60,9 +60,9 @@ static void test_target_rows_scatter_is_near_the_errors_from_blocks(void **state
         struct target_rows rows;
         double error;
         take(&known[n], &rows);
-        assert_ok(target_rows_scatter(&rows, &error));
+        assert_ok(mf_target_rows_scatter(&rows, &error));
         assert_close(error / quoted(&rows), 1, 0.3);
-        target_rows_clear(&rows);
+        mf_target_rows_clear(&rows);
     }
 }
 
@@ -78,7 +78,7 @@ static double share(const struct target_rows *rows, size_t k) {
 static void add_noise(struct target_rows *rows, double error, uint32_t draw) {
     for (size_t k = 0; k < rows->count; k++) {
         double normal[4];
-        rng_normal4(rng_philox(11, RNG_PLACEMENT, draw, (uint32_t)k, 0), normal);
+        mf_rng_normal4(mf_rng_philox(11, RNG_PLACEMENT, draw, (uint32_t)k, 0), normal);
         rows->g[k] = fmax(0, rows->g[k] + error * sqrt(share(rows, k)) * normal[0]);
     }
 }
@@ -97,10 +97,10 @@ static void test_target_rows_scatter_finds_noise_that_is_known(void **state) {
             double found;
             take(&known[n / 2], &rows);
             add_noise(&rows, errors[n % 2], draw);
-            assert_ok(target_rows_scatter(&rows, &found));
+            assert_ok(mf_target_rows_scatter(&rows, &found));
             assert_close(found / errors[n % 2], 1, 0.6);
             sum += found / errors[n % 2] / DRAWS;
-            target_rows_clear(&rows);
+            mf_target_rows_clear(&rows);
         }
         assert_close(sum, 1, 0.12);
     }
@@ -114,7 +114,7 @@ static void test_target_rows_set_errors_have_the_shape_of_those_from_blocks(void
     double *blocks = malloc(rows.count * sizeof *blocks);
     double logarithms = 0, count = 0;
     memcpy(blocks, rows.error, rows.count * sizeof *blocks);
-    target_rows_set_errors(&rows, quoted(&rows));
+    mf_target_rows_set_errors(&rows, quoted(&rows));
     for (size_t k = 0; k < rows.count; k++)
         if (rows.g[k] > 0.2) {
             logarithms += pow(log(rows.error[k] / blocks[k]), 2);
@@ -124,42 +124,42 @@ static void test_target_rows_set_errors_have_the_shape_of_those_from_blocks(void
     assert_close(sqrt(logarithms / count), 0.16, 0.1);
     assert_close(rows.error[0], 0, 0);
     free(blocks);
-    target_rows_clear(&rows);
+    mf_target_rows_clear(&rows);
 }
 
 static void test_target_rows_scatter_is_unknown_when_there_is_none(void **state) {
     (void)state;
     struct target_rows rows = {.dimensions = 3};
     double error;
-    assert_ok(target_rows_allocate(&rows, 20));
+    assert_ok(mf_target_rows_allocate(&rows, 20));
     for (size_t k = 0; k < rows.count; k++) {
         rows.r[k] = 0.1 * (double)k + 0.05;
         rows.g[k] = 1;
     }
-    assert_ok(target_rows_scatter(&rows, &error));
+    assert_ok(mf_target_rows_scatter(&rows, &error));
     assert_true(isnan(error));
     rows.g[7] = 1.1;
     rows.count = 15; // 11 differences
-    assert_ok(target_rows_scatter(&rows, &error));
+    assert_ok(mf_target_rows_scatter(&rows, &error));
     assert_true(isnan(error));
-    target_rows_clear(&rows);
+    mf_target_rows_clear(&rows);
 }
 
 static void test_target_rows_tail_tells_oscillations_from_what_grows(void **state) {
     (void)state;
     struct target_rows rows = {.dimensions = 3};
-    assert_ok(target_rows_allocate(&rows, 8));
+    assert_ok(mf_target_rows_allocate(&rows, 8));
     for (size_t k = 0; k < rows.count; k++) {
         rows.r[k] = 0.1 * (double)k + 0.05;
         rows.g[k] = k < 6 ? (double)k : 7 + 0.5 * (double)(k - 6);
     }
-    struct target_tail tail = target_rows_tail(&rows);
+    struct target_tail tail = mf_target_rows_tail(&rows);
     assert_close(tail.mean, 7.25, 1e-12);
     assert_close(tail.scatter, 0.25, 1e-12);
     assert_true(tail.grows);
     rows.g[3] = 1;
-    assert_false(target_rows_tail(&rows).grows);
-    target_rows_clear(&rows);
+    assert_false(mf_target_rows_tail(&rows).grows);
+    mf_target_rows_clear(&rows);
 }
 
 int main(void) {

@@ -35,12 +35,12 @@ static enum status read(void **state, const char *members, struct targets *targe
     struct json_document *document;
     const int length = snprintf(text, sizeof text, "{\"target\": {%s}}", members);
     assert_in_range(length, 1, sizeof text - 1);
-    assert_ok(json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
-    struct json_object root = json_root(document);
-    assert_ok(targets_read(targets, &root, &box, &(struct composition){.types = 1, .count = {100}},
+    assert_ok(mf_json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
+    struct json_object root = mf_json_root(document);
+    assert_ok(mf_targets_read(targets, &root, &box, &(struct composition){.types = 1, .count = {100}},
                            &units));
-    json_finish(&root);
-    return json_close(document, STATUS_OK);
+    mf_json_finish(&root);
+    return mf_json_close(document, STATUS_OK);
 }
 
 static void write_tables(void **state) {
@@ -55,9 +55,9 @@ static void test_targets_read_takes_all_kinds(void **state) {
     struct goals fitted, compared;
     write_tables(state);
     assert_ok(read(state, RDF ", " ETD ", " VACF ", " MSD ", " NUMBERS, &t));
-    targets_goals(&t, true, &fitted, &compared);
-    assert_int_equal(goals_count(&compared), 6);
-    assert_int_equal(goals_count(&fitted), 5);
+    mf_targets_goals(&t, true, &fitted, &compared);
+    assert_int_equal(mf_goals_count(&compared), 6);
+    assert_int_equal(mf_goals_count(&fitted), 5);
     assert_false(goals_ask(&fitted, GOAL_PRESSURE));
     assert_close(*compared.goal[GOAL_PRESSURE].value, -3, 0);
     assert_close(*fitted.goal[GOAL_DIFFUSION].value, 0.02, 0);
@@ -76,7 +76,7 @@ static void test_targets_read_takes_all_kinds(void **state) {
     assert_close(fitted.goal[GOAL_MSD].error[2], 0.002, 0);
     assert_close(fitted.motion_interval, 0.1, 1e-12);
     assert_int_equal(fitted.motion_lags, 2);
-    targets_clear(&t);
+    mf_targets_clear(&t);
 }
 
 static void test_targets_read_takes_the_columns_of_a_curve(void **state) {
@@ -89,7 +89,7 @@ static void test_targets_read_takes_the_columns_of_a_curve(void **state) {
     assert_close(t.vacf.interval, 0.5, 0);
     assert_close(t.vacf.value[2], 1, 0);
     assert_close(t.vacf.error[2], 0, 0);
-    targets_clear(&t);
+    mf_targets_clear(&t);
 }
 
 /// The window of motion is that of a curve, else that of the escape times, else its own.
@@ -99,32 +99,32 @@ static void test_targets_goals_measure_motion_as_the_targets_do(void **state) {
     write_tables(state);
     put(state, "v.tsv", "0 3 0\n0.3 2 0\n0.6 1 0\n0.9 1 0\n");
     assert_ok(read(state, ETD ", " VACF, &t));
-    targets_goals(&t, true, &fitted, &compared);
+    mf_targets_goals(&t, true, &fitted, &compared);
     assert_close(compared.motion_interval, 0.3, 1e-12);
     assert_int_equal(compared.motion_lags, 3);
     assert_true(goals_ask(&compared, GOAL_DIFFUSION) && !goals_ask(&fitted, GOAL_DIFFUSION));
     assert_true(isnan(*compared.goal[GOAL_DIFFUSION].value));
-    targets_goals(&t, false, &fitted, &compared);
+    mf_targets_goals(&t, false, &fitted, &compared);
     assert_false(goals_ask(&compared, GOAL_DIFFUSION));
-    targets_clear(&t);
+    mf_targets_clear(&t);
     assert_ok(read(state, ETD, &t));
-    targets_goals(&t, true, &fitted, &compared);
+    mf_targets_goals(&t, true, &fitted, &compared);
     assert_close(compared.motion_interval, 0.1, 1e-12);
     assert_int_equal(compared.motion_lags, 2);
-    targets_clear(&t);
+    mf_targets_clear(&t);
     assert_ok(read(state, "\"diffusion\": {\"value\": 1}", &t));
-    targets_goals(&t, true, &fitted, &compared);
+    mf_targets_goals(&t, true, &fitted, &compared);
     assert_close(compared.motion_interval * (double)compared.motion_lags, 1.6, 1e-12);
-    targets_clear(&t);
+    mf_targets_clear(&t);
 }
 
 static void assert_refused(void **state, const char *members, const char *first,
                            const char *second) {
     struct targets t;
     assert_fails(read(state, members, &t), STATUS_BAD_INPUT, first);
-    assert_contains(status_message(), second);
-    assert_contains(status_message(), "a.json: target");
-    targets_clear(&t);
+    assert_contains(mf_status_message(), second);
+    assert_contains(mf_status_message(), "a.json: target");
+    mf_targets_clear(&t);
 }
 
 static void refuse_curve(void **state, const char *table, const char *part) {
@@ -155,7 +155,7 @@ static void test_targets_read_takes_curves_without_errors(void **state) {
     assert_int_equal(t.vacf.times, 3);
     assert_close(t.vacf.value[1], 2, 0);
     assert_close(t.vacf.error[1], 0, 0);
-    targets_clear(&t);
+    mf_targets_clear(&t);
     assert_refused(state, "\"vacf\": {\"file\": \"v.tsv\", \"error_column\": 3}",
                    "v.tsv:2: 2 columns, at least 3", "\"error_column\"; 0 if");
 }
@@ -185,15 +185,15 @@ static void test_targets_check_steps_tells_the_time_step_that_would_do(void **st
     struct targets t;
     write_tables(state);
     assert_ok(read(state, VACF, &t));
-    assert_ok(targets_check_steps(&t, 0.1));
-    assert_ok(targets_check_steps(&t, 0.025));
-    assert_fails(targets_check_steps(&t, 0.03), STATUS_BAD_INPUT, "v.tsv");
-    assert_contains(status_message(), "0.025 would do");
-    assert_fails(targets_check_steps(&t, 0.15), STATUS_BAD_INPUT, "0.1 would do");
-    targets_clear(&t);
+    assert_ok(mf_targets_check_steps(&t, 0.1));
+    assert_ok(mf_targets_check_steps(&t, 0.025));
+    assert_fails(mf_targets_check_steps(&t, 0.03), STATUS_BAD_INPUT, "v.tsv");
+    assert_contains(mf_status_message(), "0.025 would do");
+    assert_fails(mf_targets_check_steps(&t, 0.15), STATUS_BAD_INPUT, "0.1 would do");
+    mf_targets_clear(&t);
     assert_ok(read(state, ETD, &t));
-    assert_fails(targets_check_steps(&t, 0.03), STATUS_BAD_INPUT, "a time step of 0.025 or 0.0333");
-    targets_clear(&t);
+    assert_fails(mf_targets_check_steps(&t, 0.03), STATUS_BAD_INPUT, "a time step of 0.025 or 0.0333");
+    mf_targets_clear(&t);
 }
 
 static void test_targets_digest_knows_every_number(void **state) {
@@ -201,18 +201,18 @@ static void test_targets_digest_knows_every_number(void **state) {
     uint64_t before = 1, after;
     write_tables(state);
     assert_ok(read(state, RDF ", " ETD ", " VACF ", " MSD, &t));
-    targets_digest(&t, &before);
+    mf_targets_digest(&t, &before);
     double *const numbers[] = {t.rdf_g,      t.rdf_error,  t.etd.survival, t.etd.error,
                                t.vacf.value, t.vacf.error, t.msd.value,    t.msd.error};
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
         const double good = numbers[k][2];
         numbers[k][2] = good + 1;
         after = 1;
-        targets_digest(&t, &after);
+        mf_targets_digest(&t, &after);
         assert_true(after != before);
         numbers[k][2] = good;
     }
-    targets_clear(&t);
+    mf_targets_clear(&t);
 }
 
 #define TEST(name)                                                                                 \

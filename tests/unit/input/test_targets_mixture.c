@@ -33,11 +33,11 @@ static enum status read(void **state, const char *members, struct targets *targe
     struct json_document *document;
     const int length = snprintf(text, sizeof text, "{\"target\": {\"rdf\": {%s}}}", members);
     assert_in_range(length, 1, sizeof text - 1);
-    assert_ok(json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
-    struct json_object root = json_root(document);
-    assert_ok(targets_read(targets, &root, &box, &binary, &units));
-    json_finish(&root);
-    return json_close(document, STATUS_OK);
+    assert_ok(mf_json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
+    struct json_object root = mf_json_root(document);
+    assert_ok(mf_targets_read(targets, &root, &box, &binary, &units));
+    mf_json_finish(&root);
+    return mf_json_close(document, STATUS_OK);
 }
 
 #define AA "\"A-A\": {\"file\": \"aa.tsv\"}"
@@ -62,10 +62,10 @@ static void test_targets_read_takes_pairs_in_any_order_and_either_name(void **st
         struct targets t;
         struct goals fitted, compared;
         assert_ok(read(state, members[k], &t));
-        targets_goals(&t, false, &fitted, &compared);
+        mf_targets_goals(&t, false, &fitted, &compared);
         check_values(&fitted);
         assert_close(fitted.goal[GOAL_RDF].weight, k ? 7 : 0, 0);
-        targets_clear(&t);
+        mf_targets_clear(&t);
     }
 }
 
@@ -73,8 +73,8 @@ static void assert_refused(void **state, const char *members, const char *first,
                            const char *second) {
     struct targets t;
     assert_fails(read(state, members, &t), STATUS_BAD_INPUT, first);
-    assert_contains(status_message(), second);
-    targets_clear(&t);
+    assert_contains(mf_status_message(), second);
+    mf_targets_clear(&t);
 }
 
 static void test_targets_read_refuses_a_mixture_that_is_not_complete(void **state) {
@@ -104,20 +104,20 @@ static void test_targets_write_gives_a_mixture_back(void **state) {
     struct json_document *document;
     write_tables(state);
     assert_ok(read(state, BA ", " BB ", \"fitted\": \"yes\", " AA, &t));
-    struct json_writer *writer = json_writer_create();
-    targets_write(&t, writer);
+    struct json_writer *writer = mf_json_writer_create();
+    mf_targets_write(&t, writer);
     const char *path = temporary_folder_file(*state, "b.json");
-    assert_ok(json_write(writer, path));
-    json_writer_free(writer);
-    assert_ok(json_open(&document, path));
-    struct json_object root = json_root(document);
-    assert_ok(targets_read(&again, &root, &box, &binary, &units));
-    json_finish(&root);
-    assert_ok(json_close(document, STATUS_OK));
-    targets_goals(&again, false, &fitted, &compared);
+    assert_ok(mf_json_write(writer, path));
+    mf_json_writer_free(writer);
+    assert_ok(mf_json_open(&document, path));
+    struct json_object root = mf_json_root(document);
+    assert_ok(mf_targets_read(&again, &root, &box, &binary, &units));
+    mf_json_finish(&root);
+    assert_ok(mf_json_close(document, STATUS_OK));
+    mf_targets_goals(&again, false, &fitted, &compared);
     check_values(&compared);
-    targets_clear(&t);
-    targets_clear(&again);
+    mf_targets_clear(&t);
+    mf_targets_clear(&again);
 }
 
 /// Isotopes have the g of the whole for every kind of pairs, whatever their shares are. In two
@@ -132,14 +132,14 @@ static void test_targets_read_converts_every_pair_by_all_particles(void **state)
         &t));
     const double factor = (1 - 1.0 / 50) / (1 - 1.0 / 400);
     for (int again = 0; again < 2; again++) {
-        targets_goals(&t, false, &fitted, &compared);
+        mf_targets_goals(&t, false, &fitted, &compared);
         const double *g = fitted.goal[GOAL_RDF].value, *error = fitted.goal[GOAL_RDF].error;
         for (int pair = 0; pair < 3; pair++) {
             assert_close(g[pair * BINS + 2], (1.5 + 0.1 * pair) * factor, 1e-12);
             assert_close(error[pair * BINS + 2], 0.2 * factor, 1e-12);
         }
     }
-    targets_clear(&t);
+    mf_targets_clear(&t);
 }
 
 static void test_targets_digest_knows_every_pair(void **state) {
@@ -147,15 +147,15 @@ static void test_targets_digest_knows_every_pair(void **state) {
     uint64_t before = 1;
     write_tables(state);
     assert_ok(read(state, AA ", " AB ", " BB, &t));
-    targets_digest(&t, &before);
+    mf_targets_digest(&t, &before);
     for (int n = 0; n < 3 * BINS; n++) {
         uint64_t after = 1;
         t.rdf_g[n] += 1;
-        targets_digest(&t, &after);
+        mf_targets_digest(&t, &after);
         assert_true(after != before);
         t.rdf_g[n] -= 1;
     }
-    targets_clear(&t);
+    mf_targets_clear(&t);
 }
 
 #define TEST(name)                                                                                 \

@@ -25,25 +25,25 @@ static const double amplitude[PAIRS] = {0.12, 0.05, 0.08}, width[PAIRS] = {0.9, 
 
 static void make_g(double scale, double *g) {
     for (size_t n = 0; n < PAIRS * BINS; n++) {
-        const double x = rdf_bins_centre(&bins, n % BINS) / width[n / BINS];
+        const double x = mf_rdf_bins_centre(&bins, n % BINS) / width[n / BINS];
         g[n] = 1 - scale * amplitude[n / BINS] * exp(-x * x);
     }
 }
 
 static void test_hnc_closure_of_two_types_that_are_alike_is_that_of_one(void **state) {
     (void)state;
-    const struct composition one = composition_of_one(1000);
+    const struct composition one = mf_composition_of_one(1000);
     double g[PAIRS * BINS], indirect[PAIRS * BINS], alone[BINS], slope[PAIRS * BINS], other[BINS];
     double difference[PAIRS * BINS];
     for (size_t n = 0; n < PAIRS * BINS; n++) {
-        const double r = rdf_bins_centre(&bins, n % BINS);
+        const double r = mf_rdf_bins_centre(&bins, n % BINS);
         g[n] = 1 - 0.1 * exp(-r * r) * cos(3 * r);
         difference[n] = 0.01 * exp(-r * r) * sin(r);
     }
-    assert_ok(hnc_closure(&bins, &box, &one, g, alone));
-    assert_ok(hnc_closure(&bins, &box, &thirds, g, indirect));
-    assert_ok(hnc_closure_slope(&bins, &box, &one, g, difference, 0.3, other));
-    assert_ok(hnc_closure_slope(&bins, &box, &thirds, g, difference, 0.3, slope));
+    assert_ok(mf_hnc_closure(&bins, &box, &one, g, alone));
+    assert_ok(mf_hnc_closure(&bins, &box, &thirds, g, indirect));
+    assert_ok(mf_hnc_closure_slope(&bins, &box, &one, g, difference, 0.3, other));
+    assert_ok(mf_hnc_closure_slope(&bins, &box, &thirds, g, difference, 0.3, slope));
     assert_true(fabs(alone[0]) > 1e-3);
     for (size_t n = 0; n < PAIRS * BINS; n++) {
         assert_close(indirect[n], alone[n % BINS], 1e-13);
@@ -85,9 +85,9 @@ static void test_hnc_closure_is_the_inverse_by_hand_when_h_are_gaussians(void **
     (void)state;
     double g[PAIRS * BINS], indirect[PAIRS * BINS], largest = 0, size = 0;
     make_g(1, g);
-    assert_ok(hnc_closure(&bins, &box, &unequal, g, indirect));
+    assert_ok(mf_hnc_closure(&bins, &box, &unequal, g, indirect));
     for (size_t n = 0; n < PAIRS * BINS; n += 5) {
-        const double exact = indirect_of(rdf_bins_centre(&bins, n % BINS), (int)(n / BINS));
+        const double exact = indirect_of(mf_rdf_bins_centre(&bins, n % BINS), (int)(n / BINS));
         largest = fmax(largest, fabs(indirect[n] - exact));
         size = fmax(size, fabs(exact));
     }
@@ -102,15 +102,15 @@ static void check_slope(size_t pair) {
         less[PAIRS * BINS], difference[PAIRS * BINS], slope[PAIRS * BINS], largest = 0;
     make_g(1, g);
     for (size_t n = 0; n < PAIRS * BINS; n++) {
-        const double r = rdf_bins_centre(&bins, n % BINS);
+        const double r = mf_rdf_bins_centre(&bins, n % BINS);
         const double change = n / BINS == pair ? small * exp(-r * r) * (1 + r) : 0;
         above[n] = g[n] + change;
         below[n] = g[n] - change;
         difference[n] = 2 * change;
     }
-    assert_ok(hnc_closure(&bins, &box, &unequal, above, more));
-    assert_ok(hnc_closure(&bins, &box, &unequal, below, less));
-    assert_ok(hnc_closure_slope(&bins, &box, &unequal, g, difference, 0, slope));
+    assert_ok(mf_hnc_closure(&bins, &box, &unequal, above, more));
+    assert_ok(mf_hnc_closure(&bins, &box, &unequal, below, less));
+    assert_ok(mf_hnc_closure_slope(&bins, &box, &unequal, g, difference, 0, slope));
     for (size_t n = 0; n < PAIRS * BINS; n++) {
         largest = fmax(largest, fabs(slope[n]));
         assert_close(slope[n], more[n] - less[n], small * small * 0.1);
@@ -128,7 +128,7 @@ static void test_hnc_closure_stays_finite_when_a_mixture_has_no_structure_factor
     (void)state;
     double g[PAIRS * BINS], indirect[PAIRS * BINS];
     make_g(4, g);
-    assert_ok(hnc_closure(&bins, &box, &unequal, g, indirect));
+    assert_ok(mf_hnc_closure(&bins, &box, &unequal, g, indirect));
     for (size_t n = 0; n < PAIRS * BINS; n++)
         assert_true(fabs(indirect[n]) < 10);
 }

@@ -31,7 +31,7 @@ static void make_excess(double covariance[SIZE][SIZE], const double *variance, d
                         uint32_t trial, double *excess) {
     for (int a = 0; a < SIZE; a++) {
         double normal[4];
-        rng_normal4(rng_philox(21, RNG_INITIAL, trial, (uint32_t)a, 0), normal);
+        mf_rng_normal4(mf_rng_philox(21, RNG_INITIAL, trial, (uint32_t)a, 0), normal);
         excess[a] = noise * sqrt(variance[a]) * normal[0];
         for (int b = 0; b < SIZE; b++)
             excess[a] += covariance[a][b] * true_change(b) / temperature;
@@ -77,14 +77,14 @@ static void test_imc_solve_is_exact_when_there_is_no_noise(void **state) {
     fill(variance, 1e-20);
     make_excess(covariance, variance, 0, 0, excess);
     const struct imc_system system = make_system(covariance, excess, variance);
-    assert_ok(imc_solve(&system, 0, x, &solution));
+    assert_ok(mf_imc_solve(&system, 0, x, &solution));
     for (int k = 0; k < SIZE; k++) {
         // Too many pairs ask for a higher potential.
         assert_close(x[k], true_change(k), exact);
     }
 }
 
-/// What imc_solve minimises, written down anew.
+/// What mf_imc_solve minimises, written down anew.
 static double objective(const struct imc_system *system, double strength, const double *x) {
     const double bend = pow(0.1 / spacing, 2);
     double penalty = 0;
@@ -110,7 +110,7 @@ static void test_imc_solve_is_the_minimum_when_the_strength_is_given(void **stat
     const struct imc_system system = make_system(covariance, excess, variance);
     for (int s = 0; s < 3; s++) {
         struct imc_solution solution;
-        assert_ok(imc_solve(&system, strengths[s], x, &solution));
+        assert_ok(mf_imc_solve(&system, strengths[s], x, &solution));
         assert_identical(solution.strength, strengths[s]);
         assert_close_relative(solution.misfit, misfit_of(&system, x), 1e-9);
         // A quadratic form is lowest where a step to either side raises it by the same.
@@ -141,7 +141,7 @@ static void test_imc_solve_leaves_just_the_noise_when_the_excess_is_significant(
         struct imc_solution solution;
         make_excess(covariance, variance, 1, trial, excess);
         const struct imc_system system = make_system(covariance, excess, variance);
-        assert_ok(imc_solve(&system, 0, x, &solution));
+        assert_ok(mf_imc_solve(&system, 0, x, &solution));
         assert_close(solution.misfit, 1, discrepancy);
         assert_close(misfit_of(&system, x), 1, 10 * discrepancy);
         assert_true(solution.strength > 0);
@@ -157,7 +157,7 @@ static void test_imc_solve_changes_nothing_when_the_excess_is_noise(void **state
     for (int k = 0; k < SIZE; k++)
         excess[k] = k % 2 ? 1.9 : -1.9;
     const struct imc_system system = make_system(covariance, excess, variance);
-    assert_ok(imc_solve(&system, 0, x, &solution));
+    assert_ok(mf_imc_solve(&system, 0, x, &solution));
     assert_close(solution.misfit, 0.95 * 0.95, 1e-3);
     for (int k = 0; k < SIZE; k++)
         assert_close(x[k], 0, 1e-3);
@@ -206,7 +206,7 @@ static void test_imc_solve_stays_bounded_when_a_direction_is_unseen(void **state
     fill(variance, 0.1);
     make_excess(covariance, variance, 1, 3, excess);
     const struct imc_system system = make_system(covariance, excess, variance);
-    assert_ok(imc_solve(&system, 0, x, &solution));
+    assert_ok(mf_imc_solve(&system, 0, x, &solution));
     assert_bounded(x, 3);
     assert_close(solution.misfit, 1, discrepancy);
 }
@@ -221,7 +221,7 @@ static void test_imc_solve_stays_bounded_when_a_bin_has_no_pairs(void **state) {
     fill(variance, 0.1);
     make_excess(covariance, variance, 1, 4, excess);
     const struct imc_system system = make_system(covariance, excess, variance);
-    assert_ok(imc_solve(&system, 0, x, &solution));
+    assert_ok(mf_imc_solve(&system, 0, x, &solution));
     assert_bounded(x, 3);
     // Its value comes from its neighbours.
     assert_close(x[5], 0.5 * (x[4] + x[6]), 0.2);
@@ -244,7 +244,7 @@ static void test_imc_solve_stays_bounded_when_the_excess_cannot_be_removed(void 
         for (int bin = 3; bin < 9; bin++)
             excess[bin] -= depth[d];
         const struct imc_system system = make_system(covariance, excess, variance);
-        assert_ok(imc_solve(&system, 0, x, &solution));
+        assert_ok(mf_imc_solve(&system, 0, x, &solution));
         assert_true(solution.misfit > 1);
         assert_bounded(x, 10);
     }
@@ -268,7 +268,7 @@ static void test_imc_solve_stays_bounded_when_the_excess_lies_in_an_unseen_direc
                 excess[k] += depth[d] * ramp[k];
             struct imc_system system = make_system(covariance, excess, variance);
             system.spacing = spacings[h];
-            assert_ok(imc_solve(&system, 0, x, &solution));
+            assert_ok(mf_imc_solve(&system, 0, x, &solution));
             assert_true(solution.misfit > 1);
             assert_bounded(x, 3);
         }
@@ -277,7 +277,7 @@ static void test_imc_solve_stays_bounded_when_the_excess_lies_in_an_unseen_direc
 static void test_imc_solve_leaves_the_ramp_free_when_it_is_smooth(void **state) {
     (void)state;
     gsl_matrix *prior = gsl_matrix_alloc(2 * SIZE - 1, SIZE);
-    imc_solve_prior(spacing, (const size_t[]){SIZE}, 1, prior);
+    mf_imc_solve_prior(spacing, (const size_t[]){SIZE}, 1, prior);
     for (size_t row = 0; row < SIZE - 1; row++) {
         double sum = 0;
         for (size_t k = 0; k < SIZE; k++)
@@ -287,7 +287,7 @@ static void test_imc_solve_leaves_the_ramp_free_when_it_is_smooth(void **state) 
     gsl_matrix_free(prior);
 }
 
-/// What imc_votca minimises.
+/// What mf_imc_votca minimises.
 static double votca_objective(const struct imc_system *system, double strength, const double *x) {
     double sum = 0;
     for (size_t a = 0; a < SIZE; a++) {
@@ -335,14 +335,14 @@ static void test_imc_solve_meets_a_constraint_at_the_least_cost(void **state) {
     struct imc_system system = make_system(covariance, excess, variance);
     system.constraint = p;
     system.wanted = 17;
-    assert_ok(imc_solve(&system, 1, x, &solution));
+    assert_ok(mf_imc_solve(&system, 1, x, &solution));
     assert_close_relative(solution.misfit, misfit_of(&system, x), 1e-9);
     assert_constrained_minimum(&system, 1, objective, x);
-    assert_ok(imc_votca(&system, 10, x, &solution));
+    assert_ok(mf_imc_votca(&system, 10, x, &solution));
     assert_close_relative(solution.misfit, misfit_of(&system, x), 1e-9);
     assert_constrained_minimum(&system, 10, votca_objective, x);
     // Where the noise decides, the constraint counts as much.
-    assert_ok(imc_solve(&system, 0, x, &solution));
+    assert_ok(mf_imc_solve(&system, 0, x, &solution));
     assert_close(product(p, x), 17, 1e-9);
 }
 
@@ -355,20 +355,20 @@ test_imc_solve_follows_all_directions_when_it_is_weak_and_none_when_strong(void 
     fill(variance, 4);
     make_excess(covariance, variance, 1, 8, excess);
     const struct imc_system system = make_system(covariance, excess, variance);
-    assert_ok(imc_solve(&system, 1e-12, x, &solution));
+    assert_ok(mf_imc_solve(&system, 1e-12, x, &solution));
     assert_close(solution.directions, SIZE, 1e-3);
-    assert_ok(imc_solve(&system, 1e12, x, &solution));
+    assert_ok(mf_imc_solve(&system, 1e12, x, &solution));
     assert_close(solution.directions, 0, 1e-3);
     // The trace is what the prediction of each bin follows that bin's excess.
     double trace = 0;
-    assert_ok(imc_solve(&system, 30, x, &solution));
+    assert_ok(mf_imc_solve(&system, 30, x, &solution));
     for (int a = 0; a < SIZE; a++) {
         double moved[SIZE], other[SIZE];
         struct imc_solution ignored;
         memcpy(moved, excess, sizeof moved);
         moved[a] += 1;
         const struct imc_system beside = make_system(covariance, moved, variance);
-        assert_ok(imc_solve(&beside, 30, other, &ignored));
+        assert_ok(mf_imc_solve(&beside, 30, other, &ignored));
         for (int b = 0; b < SIZE; b++)
             trace += covariance[a][b] * (other[b] - x[b]) / temperature;
     }

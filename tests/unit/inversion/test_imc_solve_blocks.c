@@ -68,9 +68,9 @@ static void test_imc_solve_of_two_blocks_is_each_of_them_alone(void **state) {
     for (int n = 0; n < 3; n++) {
         double x[SIZE], alone[FIRST], misfit = 0, directions = 0;
         struct imc_solution both, one;
-        assert_ok(imc_solve(&s.whole, strengths[n], x, &both));
+        assert_ok(mf_imc_solve(&s.whole, strengths[n], x, &both));
         for (int block = 0; block < 2; block++) {
-            assert_ok(imc_solve(&s.part[block], strengths[n], alone, &one));
+            assert_ok(mf_imc_solve(&s.part[block], strengths[n], alone, &one));
             for (size_t k = 0; k < blocks[block]; k++)
                 assert_close(x[begin_of(block) + k], alone[k], 1e-10);
             misfit += one.misfit * (double)blocks[block] / SIZE;
@@ -87,9 +87,9 @@ static void test_imc_solve_does_not_smooth_from_one_block_into_the_next(void **s
     double x[SIZE], as_one[SIZE];
     struct imc_solution solution;
     make(&s);
-    assert_ok(imc_solve(&s.whole, 1e3, x, &solution));
+    assert_ok(mf_imc_solve(&s.whole, 1e3, x, &solution));
     s.whole.blocks = 0;
-    assert_ok(imc_solve(&s.whole, 1e3, as_one, &solution));
+    assert_ok(mf_imc_solve(&s.whole, 1e3, as_one, &solution));
     assert_true(fabs(x[FIRST] - as_one[FIRST]) > 0.01);
 }
 
@@ -97,7 +97,7 @@ static void test_imc_solve_prior_leaves_the_ramp_of_each_block_free(void **state
     (void)state;
     gsl_matrix *prior = gsl_matrix_alloc(2 * SIZE - 1, SIZE);
     assert_non_null(prior);
-    imc_solve_prior(spacing, blocks, 2, prior);
+    mf_imc_solve_prior(spacing, blocks, 2, prior);
     for (int ramp_of = 0; ramp_of < 2; ramp_of++)
         for (size_t row = 0; row < SIZE - 1; row++) {
             double sum = 0, size = 0;
@@ -122,11 +122,11 @@ static void test_inversion_band_of_two_blocks_is_each_of_them_alone(void **state
     struct pair_of_systems s;
     double both[SIZE * SIZE], alone[FIRST * FIRST], directions, sum = 0;
     make(&s);
-    assert_ok(inversion_band_covariance(&s.whole, both, &directions));
+    assert_ok(mf_inversion_band_covariance(&s.whole, both, &directions));
     for (int block = 0; block < 2; block++) {
         double of_one;
         const size_t first = begin_of(block);
-        assert_ok(inversion_band_covariance(&s.part[block], alone, &of_one));
+        assert_ok(mf_inversion_band_covariance(&s.part[block], alone, &of_one));
         for (size_t a = 0; a < blocks[block]; a++)
             for (size_t b = 0; b < blocks[block]; b++)
                 assert_close(both[(first + a) * SIZE + first + b], alone[a * blocks[block] + b],

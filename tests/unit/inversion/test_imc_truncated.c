@@ -63,7 +63,7 @@ static void test_imc_truncated_keeps_the_directions_above_the_strength(void **st
         weight[k] = 1 + k;
     const struct imc_system system = make_system(covariance, weight, excess, variance);
     // 0.4^3 = 0.064, 0.4^4 = 0.0256.
-    assert_ok(imc_truncated(&system, 0.05, x, &solution));
+    assert_ok(mf_imc_truncated(&system, 0.05, x, &solution));
     assert_close(solution.directions, 4, 0);
     for (int k = 0; k < SIZE; k++)
         assert_close(component(x, k), k < 4 ? temperature * weight[k] / eigenvalue(k) : 0, 1e-9);
@@ -82,7 +82,7 @@ static void test_imc_truncated_keeps_no_more_than_the_noise_asks(void **state) {
     for (int k = 3; k < SIZE; k++)
         weight[k] = k % 2 ? 1 : -1;
     const struct imc_system system = make_system(covariance, weight, excess, variance);
-    assert_ok(imc_truncated(&system, 0, x, &solution));
+    assert_ok(mf_imc_truncated(&system, 0, x, &solution));
     assert_close(solution.directions, 3, 0);
     assert_true(solution.misfit <= 1);
     for (int k = 0; k < SIZE; k++)
@@ -96,7 +96,7 @@ static void test_imc_truncated_changes_nothing_when_the_excess_is_noise(void **s
     for (int k = 0; k < SIZE; k++)
         weight[k] = 0.9;
     const struct imc_system system = make_system(covariance, weight, excess, variance);
-    assert_ok(imc_truncated(&system, 0, x, &solution));
+    assert_ok(mf_imc_truncated(&system, 0, x, &solution));
     assert_close(solution.directions, 0, 0);
     for (int k = 0; k < SIZE; k++)
         assert_close(x[k], 0, 0);
@@ -113,7 +113,7 @@ static void test_imc_truncated_meets_a_constraint_by_the_directions_it_keeps(voi
     struct imc_system system = make_system(covariance, weight, excess, variance);
     system.constraint = p;
     system.wanted = 2.5;
-    assert_ok(imc_truncated(&system, 0.05, x, &solution));
+    assert_ok(mf_imc_truncated(&system, 0.05, x, &solution));
     double met = 0, response = 0;
     for (int a = 0; a < SIZE; a++)
         met += p[a] * x[a];

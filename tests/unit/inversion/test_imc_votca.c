@@ -22,8 +22,8 @@ static void solve(const char *matrix_file, const char *excess_file, double stren
     struct data_table matrix, excess;
     struct imc_solution solution;
     double column[MOST], variance[MOST];
-    assert_ok(data_table_read(&matrix, matrix_file, 1));
-    assert_ok(data_table_read(&excess, excess_file, 2));
+    assert_ok(mf_data_table_read(&matrix, matrix_file, 1));
+    assert_ok(mf_data_table_read(&excess, excess_file, 2));
     assert_int_equal(matrix.rows, matrix.columns);
     assert_int_equal(matrix.rows, excess.rows);
     assert_in_range(matrix.rows, 1, MOST);
@@ -39,20 +39,20 @@ static void solve(const char *matrix_file, const char *excess_file, double stren
                                       .variance = variance,
                                       .temperature = 1,
                                       .spacing = 1};
-    assert_ok(imc_votca(&system, strength, x, &solution));
+    assert_ok(mf_imc_votca(&system, strength, x, &solution));
     assert_identical(solution.strength, strength);
-    data_table_clear(&matrix);
-    data_table_clear(&excess);
+    mf_data_table_clear(&matrix);
+    mf_data_table_clear(&excess);
 }
 
 /// Compare with the rows of an answer; returns their number.
 static size_t compare(const char *file, const double *x) {
     struct votca_table answer;
-    assert_ok(votca_read(&answer, file));
+    assert_ok(mf_votca_read(&answer, file));
     const size_t rows = answer.rows;
     for (size_t k = 0; k < rows; k++)
         assert_close(x[k], answer.y[k], tolerance);
-    votca_clear(&answer);
+    mf_votca_clear(&answer);
     return rows;
 }
 
@@ -85,7 +85,7 @@ static void test_imc_votca_leaves_out_what_is_singular(void **state) {
                                       .spacing = 1};
     struct imc_solution solution;
     double x[2];
-    assert_ok(imc_votca(&system, 0, x, &solution));
+    assert_ok(mf_imc_votca(&system, 0, x, &solution));
     for (int k = 0; k < 2; k++)
         assert_close(x[k], 1.5 * 0.5, 1e-12);
     assert_close(solution.directions, 1, 1e-12);

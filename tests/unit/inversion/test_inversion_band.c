@@ -38,20 +38,20 @@ static void test_inversion_band_is_the_scatter_when_the_data_say_all(void **stat
                                         .variance = variance,
                                         .temperature = temperature,
                                         .spacing = spacing};
-    assert_ok(inversion_band_covariance(&response, covariance, &directions));
+    assert_ok(mf_inversion_band_covariance(&response, covariance, &directions));
     for (uint32_t trial = 0; trial < TRIALS; trial++) {
         double excess[SIZE], x[SIZE];
         struct imc_solution solution;
         for (int a = 0; a < SIZE; a++) {
             double normal[4];
-            rng_normal4(rng_philox(22, RNG_INITIAL, trial, (uint32_t)a, 0), normal);
+            mf_rng_normal4(mf_rng_philox(22, RNG_INITIAL, trial, (uint32_t)a, 0), normal);
             excess[a] = sqrt(variance[a]) * normal[0];
         }
         struct imc_system system = response;
         system.excess = excess;
-        assert_ok(imc_solve(&system, 1e-9, x, &solution));
+        assert_ok(mf_imc_solve(&system, 1e-9, x, &solution));
         for (int k = 0; k < SIZE; k++)
-            statistics_add(&scatter[k], x[k]);
+            mf_statistics_add(&scatter[k], x[k]);
     }
     for (int k = 0; k < SIZE; k++)
         assert_close_relative(sqrt(covariance[k * SIZE + k]),
@@ -69,7 +69,7 @@ static void test_inversion_band_is_the_prior_when_the_data_say_nothing(void **st
                                         .variance = variance,
                                         .temperature = temperature,
                                         .spacing = spacing};
-    assert_ok(inversion_band_covariance(&response, covariance, &directions));
+    assert_ok(mf_inversion_band_covariance(&response, covariance, &directions));
     assert_close(directions, 0, 1e-12);
     // One number has the ridge alone: 10 k_B T of it, spread over the whole curve; the last bin,
     // half a spacing from the end, is held by its bend.
@@ -96,20 +96,20 @@ static void make_stiff_counts(double counts[SIZE][SIZE]) {
 static void sample_counts(const gsl_matrix *factor, uint32_t samples, uint32_t trial,
                           double counts[SIZE][SIZE]) {
     struct comoments moments;
-    assert_ok(comoments_init(&moments, SIZE));
+    assert_ok(mf_comoments_init(&moments, SIZE));
     for (uint32_t k = 0; k < samples; k++) {
         double value[SIZE] = {0}, normal[4];
         for (uint32_t b = 0; b < SIZE; b++) {
-            rng_normal4(rng_philox(31, RNG_INITIAL, trial, k, b), normal);
+            mf_rng_normal4(mf_rng_philox(31, RNG_INITIAL, trial, k, b), normal);
             for (uint32_t a = b; a < SIZE; a++)
                 value[a] += gsl_matrix_get(factor, a, b) * normal[0];
         }
-        comoments_add(&moments, value);
+        mf_comoments_add(&moments, value);
     }
     for (size_t a = 0; a < SIZE; a++)
         for (size_t b = 0; b < SIZE; b++)
-            counts[a][b] = comoments_covariance(&moments, a, b);
-    comoments_clear(&moments);
+            counts[a][b] = mf_comoments_covariance(&moments, a, b);
+    mf_comoments_clear(&moments);
 }
 
 /// Variance of the ramp's amplitude, (1 − r/r_c)·Φ/|1 − r/r_c|².
@@ -122,7 +122,7 @@ static double ramp_variance(double counts[SIZE][SIZE], double samples) {
                                       .variance = variance,
                                       .temperature = temperature,
                                       .spacing = spacing};
-    assert_ok(inversion_band_covariance(&system, covariance, &directions));
+    assert_ok(mf_inversion_band_covariance(&system, covariance, &directions));
     for (int a = 0; a < SIZE; a++) {
         const double ramp = 1 - (a + 0.5) / SIZE;
         squares += ramp * ramp;
@@ -150,7 +150,7 @@ static void test_inversion_band_is_not_narrower_by_the_noise_of_counts(void **st
         struct running_mean found = {0};
         for (uint32_t trial = 0; trial < 200; trial++) {
             sample_counts(factor, samples[k], trial, sampled);
-            statistics_add(&found, ramp_variance(sampled, samples[k]));
+            mf_statistics_add(&found, ramp_variance(sampled, samples[k]));
         }
         const double ratio = sqrt(found.mean / ramp_variance(counts, samples[k]));
         print_message("%d samples of %d bins: the ramp's error is %.3f of that by the exact C\n",

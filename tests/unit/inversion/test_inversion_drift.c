@@ -6,8 +6,8 @@
 static bool drifts(int iterations, double step, double error, double factor) {
     struct inversion_drift drift = {0};
     for (int k = 0; k < iterations; k++, error *= factor)
-        inversion_drift_add(&drift, k * step, error);
-    return inversion_drifts(&drift, 1);
+        mf_inversion_drift_add(&drift, k * step, error);
+    return mf_inversion_drifts(&drift, 1);
 }
 
 static void test_inversion_drifts_when_the_ramp_grows_and_helps_nothing(void **state) {
@@ -29,8 +29,8 @@ static void test_inversion_does_not_drift_to_and_fro(void **state) {
     (void)state;
     struct inversion_drift drift = {0};
     for (int k = 0; k < 20; k++) {
-        inversion_drift_add(&drift, k % 2 ? 3 : -3, 0.01);
-        assert_false(inversion_drifts(&drift, 1));
+        mf_inversion_drift_add(&drift, k % 2 ? 3 : -3, 0.01);
+        assert_false(mf_inversion_drifts(&drift, 1));
     }
 }
 

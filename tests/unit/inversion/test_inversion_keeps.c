@@ -18,7 +18,7 @@ static void begin(struct inversion *inversion, struct inverse_problem *problem, 
 /// Samples say that g is this far off; what is kept becomes the best, as in an iteration.
 static bool keeps(struct inversion *inversion, double rms, double noise) {
     inversion->distance[GOAL_RDF] = (struct goal_distance){.rms = rms, .noise = noise};
-    const bool kept = inversion_keeps(inversion);
+    const bool kept = mf_inversion_keeps(inversion);
     if (kept)
         memcpy(inversion->progress.best, inversion->distance, sizeof inversion->progress.best);
     return kept;

@@ -13,7 +13,7 @@ static struct inversion make_inversion(struct inverse_problem *problem, double r
     problem->goals.goal[GOAL_PRESSURE] = (struct goal){pressure, &target, &target, 0};
     return (struct inversion){
         .problem = problem,
-        .method = &imc,
+        .method = &mf_imc,
         .settings.common = {.iterations = 30, .precision = 0.002, .damping = 1},
         .progress = {.damping = 1,
                      .best[GOAL_RDF] = {.rms = rms, .noise = 0.003},
@@ -25,7 +25,7 @@ static struct inversion make_inversion(struct inverse_problem *problem, double r
 
 static void assert_says(const struct inversion *inversion, const char *words) {
     char reason[INVERSE_REASON_SIZE];
-    inversion_reason_tell(inversion, reason);
+    mf_inversion_reason_tell(inversion, reason);
     assert_contains(reason, words);
     assert_true(strlen(reason) + 1 < INVERSE_REASON_SIZE);
 }
@@ -56,7 +56,7 @@ static void test_inversion_reason_of_a_stuck_mixture_advises_a_shorter_cutoff(vo
     struct inverse_problem problem;
     struct inversion inversion = make_inversion(&problem, 0.265, false);
     inversion.progress.damping = 1.0 / 128;
-    problem.scene.composition = composition_of_one(100);
+    problem.scene.composition = mf_composition_of_one(100);
     assert_says(&inversion, "without progress");
     problem.scene.composition.types = 2;
     assert_says(&inversion, "a shorter \"cutoff\"");
@@ -95,12 +95,12 @@ static void test_inversion_reason_is_a_ramp_that_runs_away(void **state) {
     struct inversion inversion = make_inversion(&problem, 0.0117, false);
     problem.scene.temperature = 1;
     for (int k = 0; k < INVERSION_DRIFT_MEMORY; k++)
-        inversion_drift_add(&inversion.progress.drift, 0.9 * k, 0.012);
+        mf_inversion_drift_add(&inversion.progress.drift, 0.9 * k, 0.012);
     assert_says(&inversion, "by 3.6 k_B T_0 in four iterations");
     assert_says(&inversion, "\"normalisation\"");
     // A pressure holds the ramp.
     inversion = make_inversion(&problem, 0.0117, true);
-    assert_false(inversion_runs_away(&inversion));
+    assert_false(mf_inversion_runs_away(&inversion));
 }
 
 int main(void) {

@@ -27,8 +27,8 @@ static void make(struct made *made, int start) {
     const double temperature = made->fluid.setup.temperature;
     for (int k = 0; k < BINS; k++) {
         double normal[4];
-        rng_normal4(rng_philox(5, RNG_INITIAL, (uint32_t)k, 0, 0), normal);
-        table_evaluate(&made->fluid.potential, rdf_bins_centre(&bins, (size_t)k), &made->exact[k],
+        mf_rng_normal4(mf_rng_philox(5, RNG_INITIAL, (uint32_t)k, 0, 0), normal);
+        mf_table_evaluate(&made->fluid.potential, mf_rdf_bins_centre(&bins, (size_t)k), &made->exact[k],
                        NULL, NULL);
         const double g = exp(-made->exact[k] / temperature);
         made->g[k] = g * (1 + noise * normal[0]);
@@ -53,7 +53,7 @@ static void make(struct made *made, int start) {
 }
 
 static void clear(struct made *made) {
-    inversion_destroy(&made->inversion);
+    mf_inversion_destroy(&made->inversion);
     fluid_clear(&made->fluid);
 }
 
@@ -62,7 +62,7 @@ static void test_inversion_start_is_smooth_within_the_errors_of_the_target(void 
     struct made made;
     double off = 0, rough = 0, raw = 0;
     make(&made, INVERSION_FROM_MEAN_FORCE);
-    assert_ok(inversion_create(&made.inversion, &imc, &made.problem, &made.settings));
+    assert_ok(mf_inversion_create(&made.inversion, &mf_imc, &made.problem, &made.settings));
     const struct inversion *inversion = &made.inversion;
     const double temperature = made.problem.scene.temperature;
     // Beyond the minimum, where the truth itself is nearly straight within three bins.
@@ -89,7 +89,7 @@ static void test_inversion_start_is_the_target_as_it_stands_without_errors(void 
     struct made made;
     make(&made, INVERSION_FROM_MEAN_FORCE);
     made.error[BINS - 1] = 0;
-    assert_ok(inversion_create(&made.inversion, &imc, &made.problem, &made.settings));
+    assert_ok(mf_inversion_create(&made.inversion, &mf_imc, &made.problem, &made.settings));
     for (size_t k = 60; k < BINS; k++)
         assert_float_equal(made.inversion.phi[k], -made.problem.scene.temperature * log(made.g[k]),
                            1e-12);
@@ -100,23 +100,23 @@ static void test_inversion_start_is_poor_when_g_is_far_off_under_tension(void **
     (void)state;
     struct made made;
     make(&made, INVERSION_FROM_HNC);
-    assert_ok(inversion_create(&made.inversion, &imc, &made.problem, &made.settings));
+    assert_ok(mf_inversion_create(&made.inversion, &mf_imc, &made.problem, &made.settings));
     made.inversion.distance[GOAL_RDF].rms = 0.5;
     made.inversion.pressure.value = 0.1;
-    assert_false(inversion_start_is_poor(&made.inversion, true));
+    assert_false(mf_inversion_start_is_poor(&made.inversion, true));
     made.inversion.pressure.value = -4;
-    assert_true(inversion_start_is_poor(&made.inversion, true));
+    assert_true(mf_inversion_start_is_poor(&made.inversion, true));
     made.inversion.distance[GOAL_RDF].rms = 0.01;
-    assert_false(inversion_start_is_poor(&made.inversion, true));
+    assert_false(mf_inversion_start_is_poor(&made.inversion, true));
     made.inversion.distance[GOAL_RDF].rms = 0.5;
     made.inversion.progress.iteration = 1;
-    assert_false(inversion_start_is_poor(&made.inversion, true));
-    assert_true(inversion_start_is_poor(&made.inversion, false));
+    assert_false(mf_inversion_start_is_poor(&made.inversion, true));
+    assert_true(mf_inversion_start_is_poor(&made.inversion, false));
     made.inversion.progress.iteration = 2;
-    assert_false(inversion_start_is_poor(&made.inversion, false));
+    assert_false(mf_inversion_start_is_poor(&made.inversion, false));
     made.inversion.progress.iteration = 0;
     made.inversion.settings.common.start = INVERSION_FROM_MEAN_FORCE;
-    assert_false(inversion_start_is_poor(&made.inversion, true));
+    assert_false(mf_inversion_start_is_poor(&made.inversion, true));
     clear(&made);
 }
 
@@ -125,7 +125,7 @@ static void test_inversion_create_refuses_a_hole_beyond_the_core(void **state) {
     struct made made;
     make(&made, INVERSION_FROM_HNC);
     made.g[70] = made.g[71] = 0;
-    assert_fails(inversion_create(&made.inversion, &imc, &made.problem, &made.settings),
+    assert_fails(mf_inversion_create(&made.inversion, &mf_imc, &made.problem, &made.settings),
                  STATUS_BAD_INPUT, "empty at r = 1.41");
     clear(&made);
 }
@@ -143,13 +143,13 @@ static void test_inversion_band_widens_when_more_than_noise_is_left(void **state
     double error[2];
     make(&made, INVERSION_FROM_MEAN_FORCE);
     made.settings.common.samples = 200; // enough for the data to say more than the prior
-    assert_ok(inversion_create(&made.inversion, &imc, &made.problem, &made.settings));
+    assert_ok(mf_inversion_create(&made.inversion, &mf_imc, &made.problem, &made.settings));
     struct inversion *inversion = &made.inversion;
-    assert_ok(inversion_iterate(inversion, &step, &listener));
+    assert_ok(mf_inversion_iterate(inversion, &step, &listener));
     for (int left = 0; left < 2; left++) {
         for (size_t a = 0; a < inversion->grid.known; a++)
             inversion->excess[a] = (left ? 3 : 0.5) * sqrt(inversion->variance[a]);
-        assert_ok(inversion_band_find(inversion));
+        assert_ok(mf_inversion_band_find(inversion));
         error[left] = inversion->band.error[inversion->grid.known_point[30]];
     }
     print_message("errors of %.4f and %.4f\n", error[0], error[1]);

@@ -24,10 +24,10 @@ static void make(struct fluid *fluid, double eta, double range) {
     const double density = hard_spheres_density(eta), edge = cbrt(PARTICLES / density);
     *fluid = (struct fluid){.bins = {0, range / BINS, BINS},
                             .box = {3, {edge, edge, edge}},
-                            .composition = composition_of_one(PARTICLES)};
+                            .composition = mf_composition_of_one(PARTICLES)};
     const double tail = (1 - hard_spheres_compressibility(eta)) / PARTICLES;
     for (size_t k = 0; k < BINS; k++)
-        fluid->g[k] = (1 + hard_spheres_h(eta, rdf_bins_centre(&fluid->bins, k))) * (1 + tail);
+        fluid->g[k] = (1 + hard_spheres_h(eta, mf_rdf_bins_centre(&fluid->bins, k))) * (1 + tail);
 }
 
 static struct normalisation find(struct fluid *fluid, double factor) {
@@ -37,7 +37,7 @@ static struct normalisation find(struct fluid *fluid, double factor) {
         g[k] = factor * fluid->g[k];
         error[k] = 1e-4 * g[k];
     }
-    assert_ok(normalisation_find(&fluid->bins, &fluid->box, &fluid->composition, g, error, width,
+    assert_ok(mf_normalisation_find(&fluid->bins, &fluid->box, &fluid->composition, g, error, width,
                                  &found));
     print_message("factor %.4f: %s %.5f(%.5f), S(0) = %.3f\n", factor,
                   found.found ? "found" : "kept", found.factor, found.error, found.compressibility);

@@ -20,8 +20,8 @@ static void check(double eta, double range, double absolute, double relative) {
         edge[k] = range * k / CELLS;
     for (int k = 0; k < CELLS; k++)
         h[k] = hard_spheres_h(eta, 0.5 * (edge[k] + edge[k + 1]));
-    assert_ok(ornstein_zernike_init(&oz, edge, CELLS, hard_spheres_density(eta)));
-    assert_ok(ornstein_zernike_solve(&oz, h, &compressibility));
+    assert_ok(mf_ornstein_zernike_init(&oz, edge, CELLS, hard_spheres_density(eta)));
+    assert_ok(mf_ornstein_zernike_solve(&oz, h, &compressibility));
     // The cells about r = 0 hold a thousandth of the core.
     for (int k = 0; k < CELLS; k++) {
         if (edge[k] < 0.1)
@@ -32,7 +32,7 @@ static void check(double eta, double range, double absolute, double relative) {
     print_message("eta %g, range %g: S(0) = %.5f, exact %.5f\n", eta, range, compressibility,
                   hard_spheres_compressibility(eta));
     assert_close(compressibility, hard_spheres_compressibility(eta), 0.0015);
-    ornstein_zernike_clear(&oz);
+    mf_ornstein_zernike_clear(&oz);
 }
 
 static void test_ornstein_zernike_finds_the_exact_c_of_hard_spheres(void **state) {
@@ -56,10 +56,10 @@ static void test_ornstein_zernike_knows_no_liquid_with_a_negative_compressibilit
     // Repelled over the whole range at a density at which that is impossible.
     for (int k = 0; k < CELLS; k++)
         h[k] = -0.9;
-    assert_ok(ornstein_zernike_init(&oz, edge, CELLS, 1));
-    assert_ok(ornstein_zernike_solve(&oz, h, &compressibility));
+    assert_ok(mf_ornstein_zernike_init(&oz, edge, CELLS, 1));
+    assert_ok(mf_ornstein_zernike_solve(&oz, h, &compressibility));
     assert_true(!(compressibility > 0.01));
-    ornstein_zernike_clear(&oz);
+    mf_ornstein_zernike_clear(&oz);
 }
 
 static void test_ornstein_zernike_of_no_particles_is_h(void **state) {
@@ -68,12 +68,12 @@ static void test_ornstein_zernike_of_no_particles_is_h(void **state) {
     const double edge[] = {0, 0.5, 1, 1.5};
     const double h[] = {-1, 0.7, -0.2};
     double compressibility;
-    assert_ok(ornstein_zernike_init(&oz, edge, 3, 0));
-    assert_ok(ornstein_zernike_solve(&oz, h, &compressibility));
+    assert_ok(mf_ornstein_zernike_init(&oz, edge, 3, 0));
+    assert_ok(mf_ornstein_zernike_solve(&oz, h, &compressibility));
     for (int k = 0; k < 3; k++)
         assert_close(oz.c[k], h[k], 1e-5);
     assert_close(compressibility, 1, 1e-12);
-    ornstein_zernike_clear(&oz);
+    mf_ornstein_zernike_clear(&oz);
 }
 
 int main(void) {

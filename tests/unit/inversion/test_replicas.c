@@ -20,7 +20,7 @@ static void make(struct replicas *replicas, double *block, double shift) {
         replicas->member[k].block = block + k * REPLICAS_BLOCKS * BINS;
         for (size_t n = 0; n < REPLICAS_BLOCKS * BINS; n++) {
             double normal[4];
-            rng_normal4(rng_philox(3, RNG_INITIAL, (uint32_t)k, (uint32_t)n, 0), normal);
+            mf_rng_normal4(mf_rng_philox(3, RNG_INITIAL, (uint32_t)k, (uint32_t)n, 0), normal);
             replicas->member[k].block[n] = 100 + normal[0] + (k % 2 ? shift : -shift);
         }
     }
@@ -38,11 +38,11 @@ static void test_replicas_disagree_as_their_means_do(void **state) {
         seen[a] = a;
     }
     make(&replicas, block, 0);
-    assert_true(fabs(replicas_disagreement(&replicas, ideal, seen, BINS) - 1) < 0.5);
+    assert_true(fabs(mf_replicas_disagreement(&replicas, ideal, seen, BINS) - 1) < 0.5);
     make(&replicas, block, 2);
     // A shift by ±2 has a variance of 4 · 8/7, and the mean of four blocks one of 1/4.
     const double expected = 1 + REPLICAS_BLOCKS * 4.0 * COUNT / (COUNT - 1);
-    assert_true(fabs(replicas_disagreement(&replicas, ideal, seen, BINS) / expected - 1) < 0.3);
+    assert_true(fabs(mf_replicas_disagreement(&replicas, ideal, seen, BINS) / expected - 1) < 0.3);
 }
 
 /// S(q) of the lattice's planes across x, as in test_placement.
@@ -70,7 +70,7 @@ static void test_replicas_scatter_their_particles_when_the_plan_says_so(void **s
             struct replicas replicas;
             struct replicas_plan plan = {.scatter = scatter, .block_samples = 1, .every = 1};
             assert_ok(
-                replicas_init(&replicas, 2, kind,
+                mf_replicas_init(&replicas, 2, kind,
                               &(struct sampler_system){.box = &fluid.setup.box,
                                                        .composition = &fluid.setup.composition,
                                                        .potential = &fluid.potential,
@@ -78,7 +78,7 @@ static void test_replicas_scatter_their_particles_when_the_plan_says_so(void **s
                                                        .width = 0.1,
                                                        .bins = 25,
                                                        .seed = 3}));
-            assert_ok(replicas_run(&replicas, &plan, 1, &progress, &listener));
+            assert_ok(mf_replicas_run(&replicas, &plan, 1, &progress, &listener));
             for (size_t k = 0; k < 2; k++) {
                 const struct sampler *sampler = &replicas.member[k].sampler;
                 const struct particles *particles = kind == SAMPLER_DYNAMICS
@@ -87,7 +87,7 @@ static void test_replicas_scatter_their_particles_when_the_plan_says_so(void **s
                 const double found = order(particles, EDGE);
                 assert_true(scatter ? found < 12 : found > 0.1 * PARTICLES);
             }
-            replicas_clear(&replicas);
+            mf_replicas_clear(&replicas);
         }
     fluid_clear(&fluid);
 }

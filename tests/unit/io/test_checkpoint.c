@@ -32,7 +32,7 @@ static const char *save(void **state) {
     struct pieces pieces = saved;
     struct memory_span spans[SPANS];
     list(&pieces, spans);
-    assert_ok(checkpoint_save(file, DIGEST, spans, SPANS));
+    assert_ok(mf_checkpoint_save(file, DIGEST, spans, SPANS));
     return file;
 }
 
@@ -46,8 +46,8 @@ static void assert_refused(const char *file, uint64_t digest, size_t count, cons
     struct pieces pieces = before;
     struct memory_span spans[SPANS];
     list(&pieces, spans);
-    assert_fails(checkpoint_load(file, digest, spans, count), STATUS_BAD_INPUT, part);
-    assert_contains(status_message(), "checkpoint.bin: ");
+    assert_fails(mf_checkpoint_load(file, digest, spans, count), STATUS_BAD_INPUT, part);
+    assert_contains(mf_status_message(), "checkpoint.bin: ");
     assert_true(is_same(&pieces, &before));
 }
 
@@ -56,7 +56,7 @@ static void test_checkpoint_load_gives_the_bits_that_were_saved(void **state) {
     struct pieces pieces = before;
     struct memory_span spans[SPANS];
     list(&pieces, spans);
-    assert_ok(checkpoint_load(file, DIGEST, spans, SPANS));
+    assert_ok(mf_checkpoint_load(file, DIGEST, spans, SPANS));
     assert_true(is_same(&pieces, &saved));
 }
 
@@ -71,7 +71,7 @@ static void test_checkpoint_load_refuses_when_the_shape_is_another(void **state)
     assert_refused(file, DIGEST, SPANS - 1, "of another shape");
     list(&pieces, spans);
     spans[0].bytes -= 8;
-    assert_fails(checkpoint_load(file, DIGEST, spans, SPANS), STATUS_BAD_INPUT, "another shape");
+    assert_fails(mf_checkpoint_load(file, DIGEST, spans, SPANS), STATUS_BAD_INPUT, "another shape");
     assert_true(is_same(&pieces, &before));
 }
 
@@ -112,7 +112,7 @@ static void test_checkpoint_load_refuses_when_any_byte_is_another(void **state) 
             bytes[k] = (char)(bytes[k] ^ flip);
             temporary_folder_write(*state, "checkpoint.bin", bytes, length);
             assert_refused(file, DIGEST, SPANS, k < 16 ? "not a checkpoint" : "is damaged");
-            assert_fails(checkpoint_load_span(file, DIGEST, 0, &(struct memory_span){bytes, 0}),
+            assert_fails(mf_checkpoint_load_span(file, DIGEST, 0, &(struct memory_span){bytes, 0}),
                          STATUS_BAD_INPUT, "checkpoint.bin: ");
             bytes[k] = (char)(bytes[k] ^ flip);
         }
@@ -134,9 +134,9 @@ static void test_checkpoint_save_ends_with_fnv_1a_of_the_file(void **state) {
 
 static void test_checkpoint_load_refuses_when_it_is_no_file(void **state) {
     (void)state;
-    assert_fails(checkpoint_load("/dev/zero", DIGEST, NULL, 0), STATUS_IO,
+    assert_fails(mf_checkpoint_load("/dev/zero", DIGEST, NULL, 0), STATUS_IO,
                  "/dev/zero: is a device");
-    assert_fails(checkpoint_load("/", DIGEST, NULL, 0), STATUS_IO, "/: is a folder");
+    assert_fails(mf_checkpoint_load("/", DIGEST, NULL, 0), STATUS_IO, "/: is a folder");
 }
 
 static void test_checkpoint_load_span_finds_one_alone(void **state) {
@@ -144,40 +144,40 @@ static void test_checkpoint_load_span_finds_one_alone(void **state) {
     struct pieces pieces = before;
     struct memory_span spans[SPANS];
     list(&pieces, spans);
-    assert_ok(checkpoint_load(file, DIGEST, spans, SPANS));
+    assert_ok(mf_checkpoint_load(file, DIGEST, spans, SPANS));
     for (size_t k = 0; k < SPANS; k++) {
         memset(spans[k].memory, 1, spans[k].bytes);
-        assert_ok(checkpoint_load_span(file, DIGEST, k, &spans[k]));
+        assert_ok(mf_checkpoint_load_span(file, DIGEST, k, &spans[k]));
         assert_true(is_same(&pieces, &saved));
     }
     spans[1].bytes++;
-    assert_fails(checkpoint_load_span(file, DIGEST, 1, &spans[1]), STATUS_BAD_INPUT,
+    assert_fails(mf_checkpoint_load_span(file, DIGEST, 1, &spans[1]), STATUS_BAD_INPUT,
                  "another shape");
-    assert_fails(checkpoint_load_span(file, DIGEST, SPANS, &spans[0]), STATUS_BAD_INPUT,
+    assert_fails(mf_checkpoint_load_span(file, DIGEST, SPANS, &spans[0]), STATUS_BAD_INPUT,
                  "another shape");
-    assert_fails(checkpoint_load_span(file, DIGEST + 1, 0, &spans[0]), STATUS_BAD_INPUT,
+    assert_fails(mf_checkpoint_load_span(file, DIGEST + 1, 0, &spans[0]), STATUS_BAD_INPUT,
                  "settings have changed");
 }
 
 static void test_checkpoint_load_names_the_file_when_it_is_missing(void **state) {
     const char *file = temporary_folder_file(*state, "checkpoint.bin");
-    assert_fails(checkpoint_load(file, DIGEST, NULL, 0), STATUS_IO,
+    assert_fails(mf_checkpoint_load(file, DIGEST, NULL, 0), STATUS_IO,
                  "checkpoint.bin: No such file or directory");
 }
 
 static void test_checkpoint_save_names_the_file_when_it_cannot_be_written(void **state) {
     const char *file = temporary_folder_file(*state, "no/checkpoint.bin");
-    assert_fails(checkpoint_save(file, DIGEST, NULL, 0), STATUS_IO, "no/checkpoint.bin");
+    assert_fails(mf_checkpoint_save(file, DIGEST, NULL, 0), STATUS_IO, "no/checkpoint.bin");
 }
 
 /// Values of FNV-1a, 64 bits, from its authors' page: "" and "foobar".
 static void test_checkpoint_digest_is_fnv_1a(void **state) {
     uint64_t digest;
-    assert_ok(checkpoint_digest(temporary_folder_write(*state, "a", "", 0), &digest));
+    assert_ok(mf_checkpoint_digest(temporary_folder_write(*state, "a", "", 0), &digest));
     assert_true(digest == 0xcbf29ce484222325u);
-    assert_ok(checkpoint_digest(temporary_folder_write(*state, "a", "foobar", 6), &digest));
+    assert_ok(mf_checkpoint_digest(temporary_folder_write(*state, "a", "foobar", 6), &digest));
     assert_true(digest == 0x85944171f73967e8u);
-    assert_fails(checkpoint_digest(temporary_folder_file(*state, "b"), &digest), STATUS_IO,
+    assert_fails(mf_checkpoint_digest(temporary_folder_file(*state, "b"), &digest), STATUS_IO,
                  "b: No such file");
 }
 

@@ -15,7 +15,7 @@ static const char *write_text(void **state, const char *text) {
 
 static void assert_refused(void **state, const char *text, const char *part) {
     struct data_table table;
-    assert_fails(data_table_read(&table, write_text(state, text), 2), STATUS_BAD_INPUT, part);
+    assert_fails(mf_data_table_read(&table, write_text(state, text), 2), STATUS_BAD_INPUT, part);
     assert_null(table.values);
 }
 
@@ -29,7 +29,7 @@ static void test_data_table_read_finds_rows_when_comments_and_blanks_surround_th
                        "\t1.5 -2.5E+2\n"
                        "   \n"
                        "2.5 .5";
-    assert_ok(data_table_read(&table, write_text(state, text), 2));
+    assert_ok(mf_data_table_read(&table, write_text(state, text), 2));
     assert_int_equal(table.rows, 3);
     assert_int_equal(table.columns, 2);
     const double expected[] = {0.5, 1e-3, 1.5, -250, 2.5, 0.5};
@@ -40,42 +40,42 @@ static void test_data_table_read_finds_rows_when_comments_and_blanks_surround_th
     assert_int_equal(table.line[2], 8);
     assert_string_equal(table.header, "r[nm]  g");
     assert_string_equal(table.comments, "@ title \"rdf\"\n#\tr[nm]  g\n");
-    data_table_clear(&table);
+    mf_data_table_clear(&table);
     assert_null(table.values);
 }
 
 static void test_data_table_read_takes_windows_line_ends_when_present(void **state) {
     struct data_table table;
     assert_ok(
-        data_table_read(&table, write_text(state, "\xEF\xBB\xBF# r g\r\n1 2\r\n\r\n3 4\r\n"), 2));
+        mf_data_table_read(&table, write_text(state, "\xEF\xBB\xBF# r g\r\n1 2\r\n\r\n3 4\r\n"), 2));
     assert_int_equal(table.rows, 2);
     assert_int_equal(table.columns, 2);
     assert_identical(table.values[3], 4.0);
     assert_int_equal(table.line[1], 4);
     assert_string_equal(table.header, "r g");
     assert_string_equal(table.comments, "# r g\n");
-    data_table_clear(&table);
+    mf_data_table_clear(&table);
 }
 
 static void test_data_table_read_has_an_empty_header_when_there_is_no_comment(void **state) {
     struct data_table table;
-    assert_ok(data_table_read(&table, write_text(state, "1\n# late\n2\n"), 1));
+    assert_ok(mf_data_table_read(&table, write_text(state, "1\n# late\n2\n"), 1));
     assert_string_equal(table.header, "");
     assert_string_equal(table.comments, "");
     assert_int_equal(table.rows, 2);
-    data_table_clear(&table);
+    mf_data_table_clear(&table);
 }
 
 /// Read `text`, which must hold the rows 0.5 1.5 0.1 and 1 2 0.2, the first in line `first`.
 static void assert_same_rows(void **state, const char *text, size_t first) {
     static const double expected[] = {0.5, 1.5, 0.1, 1, 2, 0.2};
     struct data_table table;
-    assert_ok(data_table_read(&table, write_text(state, text), 3));
+    assert_ok(mf_data_table_read(&table, write_text(state, text), 3));
     assert_int_equal(table.rows, 2);
     assert_int_equal(table.columns, 3);
     assert_memory_equal(table.values, expected, sizeof expected);
     assert_int_equal(table.line[0], first);
-    data_table_clear(&table);
+    mf_data_table_clear(&table);
 }
 
 static void
@@ -114,10 +114,10 @@ static void test_data_table_read_says_so_when_decimals_have_a_comma(void **state
 
 static void test_data_table_read_takes_nan_when_it_stands_beyond_the_wanted_columns(void **state) {
     struct data_table table;
-    assert_ok(data_table_read(&table, write_text(state, "1 2 nan\n3 4 5\n"), 2));
+    assert_ok(mf_data_table_read(&table, write_text(state, "1 2 nan\n3 4 5\n"), 2));
     assert_true(isnan(table.values[2]));
     assert_identical(table.values[5], 5.0);
-    data_table_clear(&table);
+    mf_data_table_clear(&table);
     assert_refused(state, "1 2 3\n3 4 inf\n", ":2: column 3: \"inf\"");
 }
 
@@ -144,23 +144,23 @@ static void test_data_table_read_says_so_when_there_is_nothing_to_read(void **st
     assert_refused(state, "", "t.dat: the file is empty");
     assert_refused(state, "# only\n\n", "t.dat:3: the file ends without a row of numbers");
     assert_fails(
-        data_table_read(&table, temporary_folder_write(*state, "t.dat", "1 2\n3 \0 4\n", 10), 2),
+        mf_data_table_read(&table, temporary_folder_write(*state, "t.dat", "1 2\n3 \0 4\n", 10), 2),
         STATUS_BAD_INPUT, "t.dat:2:3: a NUL byte");
-    assert_fails(data_table_read(&table, temporary_folder_file(*state, "none"), 2), STATUS_IO,
+    assert_fails(mf_data_table_read(&table, temporary_folder_file(*state, "none"), 2), STATUS_IO,
                  "none: No such file or directory");
-    assert_fails(data_table_read(&table, ((struct temporary_folder *)*state)->path, 2), STATUS_IO,
+    assert_fails(mf_data_table_read(&table, ((struct temporary_folder *)*state)->path, 2), STATUS_IO,
                  "is a folder, not a file");
 }
 
 /// Devices have no end, and a file of a gigabyte is no table.
 static void test_data_table_read_refuses_what_has_no_end(void **state) {
     struct data_table table;
-    assert_fails(data_table_read(&table, "/dev/zero", 1), STATUS_IO,
+    assert_fails(mf_data_table_read(&table, "/dev/zero", 1), STATUS_IO,
                  "/dev/zero: is a device, not a file");
-    assert_fails(data_table_read(&table, "/dev/full", 1), STATUS_IO, "is a device");
+    assert_fails(mf_data_table_read(&table, "/dev/full", 1), STATUS_IO, "is a device");
     const char *file = temporary_folder_write(*state, "large.tsv", "1 2\n", 4);
     assert_int_equal(truncate(file, ((off_t)1 << 30) + 1), 0); // without a block on the disk
-    assert_fails(data_table_read(&table, file, 1), STATUS_BAD_INPUT, "larger than 1 GiB");
+    assert_fails(mf_data_table_read(&table, file, 1), STATUS_BAD_INPUT, "larger than 1 GiB");
 }
 
 static void test_data_table_read_takes_long_files_when_they_outgrow_the_buffer(void **state) {
@@ -172,50 +172,50 @@ static void test_data_table_read_takes_long_files_when_they_outgrow_the_buffer(v
         values[k] = k / 7.0;
     const struct data_column columns[] = {{"x", values, "%.17g"}};
     const char *file = temporary_folder_file(*state, "long.dat");
-    assert_ok(data_table_write(file, NULL, columns, 1, ROWS));
-    assert_ok(data_table_read(&table, file, 1));
+    assert_ok(mf_data_table_write(file, NULL, columns, 1, ROWS));
+    assert_ok(mf_data_table_read(&table, file, 1));
     assert_int_equal(table.rows, ROWS);
     assert_memory_equal(table.values, values, ROWS * sizeof *values);
-    data_table_clear(&table);
+    mf_data_table_clear(&table);
     free(values);
 }
 
 static void test_data_table_check_increasing_names_the_line_when_a_row_does_not_grow(void **state) {
     struct data_table table;
     const char *file = write_text(state, "# r\n0 5\n1 4\n\n1 6\n");
-    assert_ok(data_table_read(&table, file, 2));
-    assert_fails(data_table_check_increasing(&table, file, 0, 0), STATUS_BAD_INPUT,
+    assert_ok(mf_data_table_read(&table, file, 2));
+    assert_fails(mf_data_table_check_increasing(&table, file, 0, 0), STATUS_BAD_INPUT,
                  "t.dat:5: column 1: 1 does not grow from 1 in line 3");
-    assert_fails(data_table_check_increasing(&table, file, 1, 0), STATUS_BAD_INPUT,
+    assert_fails(mf_data_table_check_increasing(&table, file, 1, 0), STATUS_BAD_INPUT,
                  "t.dat:3: column 2: 4 does not grow from 5 in line 2");
-    assert_fails(data_table_check_increasing(&table, file, 0, 0.5), STATUS_BAD_INPUT,
+    assert_fails(mf_data_table_check_increasing(&table, file, 0, 0.5), STATUS_BAD_INPUT,
                  "t.dat:2: column 1: 0 is below 0.5");
-    assert_fails(data_table_check_increasing(&table, file, 2, 0), STATUS_BAD_INPUT,
+    assert_fails(mf_data_table_check_increasing(&table, file, 2, 0), STATUS_BAD_INPUT,
                  "there is no column 3");
     table.rows = 2;
-    assert_ok(data_table_check_increasing(&table, file, 0, 0));
-    data_table_clear(&table);
+    assert_ok(mf_data_table_check_increasing(&table, file, 0, 0));
+    mf_data_table_clear(&table);
 }
 
 static void test_data_table_write_prints_comment_header_and_rows_when_asked(void **state) {
     const double r[] = {0.125, 2}, g[] = {1.0 / 3, -1e-20};
     const struct data_column columns[] = {{"r[lambda]", r, "%.3f"}, {"g", g, NULL}};
     const char *file = temporary_folder_file(*state, "t.dat");
-    assert_ok(data_table_write(file, "made by a test\nseed 7\n", columns, 2, 2));
+    assert_ok(mf_data_table_write(file, "made by a test\nseed 7\n", columns, 2, 2));
     char *text = temporary_folder_read(file);
     assert_string_equal(text, "# made by a test\n# seed 7\n# r[lambda]\tg\n"
                               "0.125\t0.3333333333\n2.000\t-1e-20\n");
     free(text);
 
     struct data_table table;
-    assert_ok(data_table_read(&table, file, 2));
+    assert_ok(mf_data_table_read(&table, file, 2));
     assert_string_equal(table.header, "r[lambda]\tg");
-    data_table_clear(&table);
+    mf_data_table_clear(&table);
 }
 
 static void test_data_table_write_names_the_file_when_it_cannot_be_made(void **state) {
     const struct data_column columns[] = {{"x", (double[]){1}, NULL}};
-    assert_fails(data_table_write(temporary_folder_file(*state, "no/t.dat"), NULL, columns, 1, 1),
+    assert_fails(mf_data_table_write(temporary_folder_file(*state, "no/t.dat"), NULL, columns, 1, 1),
                  STATUS_IO, "no/t.dat: No such file or directory");
 }
 

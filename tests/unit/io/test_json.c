@@ -47,30 +47,30 @@ static const char *write_text(void **state, const char *text) {
 
 static struct json_document *open_text(void **state, const char *text) {
     struct json_document *document = NULL;
-    assert_ok(json_open(&document, write_text(state, text)));
+    assert_ok(mf_json_open(&document, write_text(state, text)));
     return document;
 }
 
 /// Read the whole text as one `sample`, unknown keys being faults.
 static enum status read_sample(void **state, const char *text, struct sample *sample) {
     struct json_document *document = open_text(state, text);
-    struct json_object root = json_root(document);
-    json_fields(&root, fields, sample);
-    json_finish(&root);
-    return json_close(document, STATUS_OK);
+    struct json_object root = mf_json_root(document);
+    mf_json_fields(&root, fields, sample);
+    mf_json_finish(&root);
+    return mf_json_close(document, STATUS_OK);
 }
 
 static void assert_fault(void **state, const char *text, const char *part) {
     struct sample sample;
     assert_fails(read_sample(state, text, &sample), STATUS_BAD_INPUT, part);
-    assert_null(strchr(status_message(), '\n'));
+    assert_null(strchr(mf_status_message(), '\n'));
 }
 
 static void assert_malformed(void **state, const char *text, const char *part) {
     struct json_document *document;
-    assert_fails(json_open(&document, write_text(state, text)), STATUS_BAD_INPUT, part);
+    assert_fails(mf_json_open(&document, write_text(state, text)), STATUS_BAD_INPUT, part);
     assert_null(document);
-    assert_null(strchr(status_message(), '\n'));
+    assert_null(strchr(mf_status_message(), '\n'));
 }
 
 // Whole files -------------------------------------------------------------------------------------
@@ -85,10 +85,10 @@ static void test_json_open_says_what_is_wrong_when_there_is_no_text(void **state
     struct json_document *document;
     struct temporary_folder *folder = *state;
     assert_malformed(state, "", "run.json: the file is empty");
-    assert_fails(json_open(&document, temporary_folder_file(folder, "none.json")), STATUS_IO,
+    assert_fails(mf_json_open(&document, temporary_folder_file(folder, "none.json")), STATUS_IO,
                  "none.json: No such file or directory");
-    assert_fails(json_open(&document, folder->path), STATUS_IO, ": is a folder, not a file");
-    assert_fails(json_open(&document, temporary_folder_write(folder, "nul", "{\n\0}", 4)),
+    assert_fails(mf_json_open(&document, folder->path), STATUS_IO, ": is a folder, not a file");
+    assert_fails(mf_json_open(&document, temporary_folder_write(folder, "nul", "{\n\0}", 4)),
                  STATUS_BAD_INPUT, "nul:2:1: a NUL byte");
     assert_null(document);
 }
@@ -204,15 +204,15 @@ static void test_json_fields_refuses_texts_when_they_do_not_fit(void **state) {
 static void test_json_fields_demands_required_ones_when_the_object_is_there(void **state) {
     struct sample sample;
     struct json_document *document = open_text(state, "{\"here\": {}}");
-    struct json_object root = json_root(document);
-    struct json_object here = json_child(&root, "here", false);
-    struct json_object absent = json_child(&root, "absent", false);
-    json_fields(&absent, required_fields, &sample);
-    assert_int_equal(json_fault_count(document), 0);
-    json_fields(&here, required_fields, &sample);
-    assert_int_equal(json_fault_count(document), 1);
-    json_finish(&root);
-    assert_fails(json_close(document, STATUS_OK), STATUS_BAD_INPUT,
+    struct json_object root = mf_json_root(document);
+    struct json_object here = mf_json_child(&root, "here", false);
+    struct json_object absent = mf_json_child(&root, "absent", false);
+    mf_json_fields(&absent, required_fields, &sample);
+    assert_int_equal(mf_json_fault_count(document), 0);
+    mf_json_fields(&here, required_fields, &sample);
+    assert_int_equal(mf_json_fault_count(document), 1);
+    mf_json_finish(&root);
+    assert_fails(mf_json_close(document, STATUS_OK), STATUS_BAD_INPUT,
                  "run.json: here.strength: missing: a number is required (how strong)");
 }
 
@@ -230,25 +230,25 @@ static void test_json_open_records_a_fault_when_a_key_stands_twice(void **state)
     assert_fault(state, "{\"seed\": 1, \"seed\": 1}", "run.json: seed: the key stands here twice");
     struct json_document *document =
         open_text(state, "{\"a\": [{\"x\": 1}, {\"b\": {\"c\": 1, \"d\": 2, \"c\": 3}}]}");
-    assert_fails(json_close(document, STATUS_OK), STATUS_BAD_INPUT,
+    assert_fails(mf_json_close(document, STATUS_OK), STATUS_BAD_INPUT,
                  "run.json: a[1].b.c: the key stands");
 }
 
 static void test_json_child_reports_paths_when_objects_are_nested(void **state) {
     struct json_document *document = open_text(state, "{\"a\": {\"b\": {\"x\": 1}, \"c\": 3}}");
-    struct json_object root = json_root(document);
-    struct json_object a = json_child(&root, "a", true);
-    struct json_object b = json_child(&a, "b", true);
-    struct json_object c = json_child(&a, "c", false);
-    struct json_object d = json_child(&a, "d", true);
-    assert_true(json_has(&a, "b"));
-    assert_false(json_has(&a, "B"));
+    struct json_object root = mf_json_root(document);
+    struct json_object a = mf_json_child(&root, "a", true);
+    struct json_object b = mf_json_child(&a, "b", true);
+    struct json_object c = mf_json_child(&a, "c", false);
+    struct json_object d = mf_json_child(&a, "d", true);
+    assert_true(mf_json_has(&a, "b"));
+    assert_false(mf_json_has(&a, "B"));
     assert_null(c.item);
     assert_null(d.item);
-    json_fault(&b, "x", "must be below %d", 1);
-    json_fault(&b, NULL, "is odd");
-    json_finish(&d);
-    json_finish(&b);
+    mf_json_fault(&b, "x", "must be below %d", 1);
+    mf_json_fault(&b, NULL, "is odd");
+    mf_json_finish(&d);
+    mf_json_finish(&b);
     char expected[8192];
     const char *file = ((struct temporary_folder *)*state)->file;
     snprintf(expected, sizeof expected,
@@ -258,64 +258,64 @@ static void test_json_child_reports_paths_when_objects_are_nested(void **state) 
              "%s: a.b: is odd\n"
              "%s: a.b.x: unknown key; none is known here",
              file, file, file, file, file);
-    assert_int_equal(json_close(document, STATUS_OK), STATUS_BAD_INPUT);
-    assert_string_equal(status_message(), expected);
+    assert_int_equal(mf_json_close(document, STATUS_OK), STATUS_BAD_INPUT);
+    assert_string_equal(mf_status_message(), expected);
 }
 
 static void test_json_choice_returns_known_texts_when_given_or_falls_back(void **state) {
     struct json_document *document =
         open_text(state, "{\"law\": \"soft\", \"odd\": \"hrad\", \"number\": 1}");
-    struct json_object root = json_root(document);
-    assert_string_equal(json_choice(&root, "law", kinds, NULL), "soft");
-    assert_string_equal(json_choice(&root, "law", NULL, NULL), "soft");
-    assert_string_equal(json_choice(&root, "none", kinds, "hard"), "hard");
-    assert_int_equal(json_fault_count(document), 0);
-    assert_null(json_choice(&root, "odd", kinds, NULL));
-    assert_null(json_choice(&root, "number", kinds, "hard"));
-    assert_null(json_choice(&root, "missing", kinds, NULL));
-    json_finish(&root);
-    assert_int_equal(json_fault_count(document), 3);
-    assert_fails(json_close(document, STATUS_OK), STATUS_BAD_INPUT, "did you mean \"hard\"?");
-    assert_contains(status_message(), "number: expected a text, found the number 1");
-    assert_contains(status_message(), "missing: missing: a text is required");
+    struct json_object root = mf_json_root(document);
+    assert_string_equal(mf_json_choice(&root, "law", kinds, NULL), "soft");
+    assert_string_equal(mf_json_choice(&root, "law", NULL, NULL), "soft");
+    assert_string_equal(mf_json_choice(&root, "none", kinds, "hard"), "hard");
+    assert_int_equal(mf_json_fault_count(document), 0);
+    assert_null(mf_json_choice(&root, "odd", kinds, NULL));
+    assert_null(mf_json_choice(&root, "number", kinds, "hard"));
+    assert_null(mf_json_choice(&root, "missing", kinds, NULL));
+    mf_json_finish(&root);
+    assert_int_equal(mf_json_fault_count(document), 3);
+    assert_fails(mf_json_close(document, STATUS_OK), STATUS_BAD_INPUT, "did you mean \"hard\"?");
+    assert_contains(mf_status_message(), "number: expected a text, found the number 1");
+    assert_contains(mf_status_message(), "missing: missing: a text is required");
 }
 
 static void test_json_close_counts_the_rest_when_faults_are_many(void **state) {
     struct json_document *document = open_text(state, "{}");
-    struct json_object root = json_root(document);
+    struct json_object root = mf_json_root(document);
     for (int k = 0; k < 27; k++)
-        json_fault(&root, NULL, "fault %d", k);
-    assert_int_equal(json_fault_count(document), 27);
-    assert_fails(json_close(document, STATUS_OK), STATUS_BAD_INPUT,
+        mf_json_fault(&root, NULL, "fault %d", k);
+    assert_int_equal(mf_json_fault_count(document), 27);
+    assert_fails(mf_json_close(document, STATUS_OK), STATUS_BAD_INPUT,
                  "fault 19\n… and 7 more faults");
-    assert_null(strstr(status_message(), "fault 20"));
+    assert_null(strstr(mf_status_message(), "fault 20"));
 }
 
 static void test_json_close_drops_whole_lines_when_faults_are_long(void **state) {
     struct json_document *document = open_text(state, "{}");
-    struct json_object root = json_root(document);
+    struct json_object root = mf_json_root(document);
     for (int k = 0; k < 10; k++)
-        json_fault(&root, NULL, "%01500d end", k);
-    assert_fails(json_close(document, STATUS_OK), STATUS_BAD_INPUT, "04 end\n… and 5 more faults");
+        mf_json_fault(&root, NULL, "%01500d end", k);
+    assert_fails(mf_json_close(document, STATUS_OK), STATUS_BAD_INPUT, "04 end\n… and 5 more faults");
 }
 
 // Writing -----------------------------------------------------------------------------------------
 
 static void assert_round_trip(void **state, const struct sample *sample) {
     const char *file = temporary_folder_file(*state, "run.json");
-    struct json_writer *writer = json_writer_create();
+    struct json_writer *writer = mf_json_writer_create();
     assert_non_null(writer);
-    json_put_fields(writer, fields, sample);
-    assert_ok(json_write(writer, file));
-    json_writer_free(writer);
+    mf_json_put_fields(writer, fields, sample);
+    assert_ok(mf_json_write(writer, file));
+    mf_json_writer_free(writer);
 
     struct sample again;
     struct json_document *document;
-    assert_ok(json_open(&document, file));
-    struct json_object root = json_root(document);
-    json_fields(&root, fields, &again);
-    json_finish(&root);
-    assert_ok(json_close(document, STATUS_OK));
+    assert_ok(mf_json_open(&document, file));
+    struct json_object root = mf_json_root(document);
+    mf_json_fields(&root, fields, &again);
+    mf_json_finish(&root);
+    assert_ok(mf_json_close(document, STATUS_OK));
     assert_identical(again.strength, sample->strength);
     assert_int_equal(again.steps, sample->steps);
     assert_int_equal(again.seed, sample->seed);
@@ -344,11 +344,11 @@ static void test_json_put_fields_reads_back_the_same_bits_when_digits_are_many(v
 
 static void test_json_put_fields_makes_a_file_absolute_when_it_is_relative(void **state) {
     const struct sample sample = {.file = "a/b.dat"};
-    struct json_writer *writer = json_writer_create();
-    json_put_fields(writer, fields, &sample);
+    struct json_writer *writer = mf_json_writer_create();
+    mf_json_put_fields(writer, fields, &sample);
     const char *file = temporary_folder_file(*state, "used.json");
-    assert_ok(json_write(writer, file));
-    json_writer_free(writer);
+    assert_ok(mf_json_write(writer, file));
+    mf_json_writer_free(writer);
     char *text = temporary_folder_read(file);
     assert_contains(text, "\"file\":\t\"/");
     assert_contains(text, "/a/b.dat\"");
@@ -358,20 +358,20 @@ static void test_json_put_fields_makes_a_file_absolute_when_it_is_relative(void 
 }
 
 static void test_json_write_prints_the_tree_when_objects_are_nested(void **state) {
-    struct json_writer *writer = json_writer_create();
+    struct json_writer *writer = mf_json_writer_create();
     assert_non_null(writer);
-    json_put_text(writer, "name", "x");
-    json_begin(writer, "scene");
-    json_begin(writer, "box");
-    json_put_numbers(writer, "sides", (double[]){1, 0.1, 1e300}, 3);
-    json_end(writer);
-    json_put_integer(writer, "steps", INT64_MIN);
-    json_end(writer);
-    json_put_number(writer, "score", 0.1);
-    json_put_numbers(writer, "none", NULL, 0);
+    mf_json_put_text(writer, "name", "x");
+    mf_json_begin(writer, "scene");
+    mf_json_begin(writer, "box");
+    mf_json_put_numbers(writer, "sides", (double[]){1, 0.1, 1e300}, 3);
+    mf_json_end(writer);
+    mf_json_put_integer(writer, "steps", INT64_MIN);
+    mf_json_end(writer);
+    mf_json_put_number(writer, "score", 0.1);
+    mf_json_put_numbers(writer, "none", NULL, 0);
     const char *file = temporary_folder_file(*state, "out.json");
-    assert_ok(json_write(writer, file));
-    json_writer_free(writer);
+    assert_ok(mf_json_write(writer, file));
+    mf_json_writer_free(writer);
     char *text = temporary_folder_read(file);
     assert_string_equal(text, "{\n\t\"name\":\t\"x\",\n\t\"scene\":\t{\n\t\t\"box\":\t{\n"
                               "\t\t\t\"sides\":\t[1, 0.1, 1e+300]\n\t\t},\n"
@@ -381,17 +381,17 @@ static void test_json_write_prints_the_tree_when_objects_are_nested(void **state
 }
 
 static void write_twice(struct json_writer *writer) {
-    json_put_integer(writer, "distance", 1);
-    json_put_integer(writer, "distance", 1);
+    mf_json_put_integer(writer, "distance", 1);
+    mf_json_put_integer(writer, "distance", 1);
 }
 
 static void write_too_deep(struct json_writer *writer) {
     for (int k = 0; k < 20; k++)
-        json_begin(writer, "distance");
+        mf_json_begin(writer, "distance");
 }
 
 static void write_nameless(struct json_writer *writer) {
-    json_begin(writer, NULL);
+    mf_json_begin(writer, NULL);
 }
 
 static void test_json_write_writes_nothing_when_the_tree_has_a_problem(void **state) {
@@ -403,26 +403,26 @@ static void test_json_write_writes_nothing_when_the_tree_has_a_problem(void **st
                  {write_nameless, "out.json: \"\" is an object without a key"}};
     const char *file = temporary_folder_file(*state, "out.json");
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        struct json_writer *writer = json_writer_create();
+        struct json_writer *writer = mf_json_writer_create();
         assert_non_null(writer);
         cases[k].build(writer);
-        assert_fails(json_write(writer, file), STATUS_IO, cases[k].part);
+        assert_fails(mf_json_write(writer, file), STATUS_IO, cases[k].part);
         assert_false(temporary_folder_exists(file));
-        json_writer_free(writer);
+        mf_json_writer_free(writer);
     }
 }
 
 /// JSON has no word for them but null, and one of them must not cost the rest.
 static void test_json_write_writes_null_when_a_number_is_not_finite(void **state) {
     const char *file = temporary_folder_file(*state, "out.json");
-    struct json_writer *writer = json_writer_create();
+    struct json_writer *writer = mf_json_writer_create();
     assert_non_null(writer);
-    json_put_number(writer, "a", NAN);
-    json_put_number(writer, "b", -INFINITY);
-    json_put_numbers(writer, "c", (double[]){1, INFINITY, 0.5}, 3);
-    json_put_number(writer, "d", 2);
-    assert_ok(json_write(writer, file));
-    json_writer_free(writer);
+    mf_json_put_number(writer, "a", NAN);
+    mf_json_put_number(writer, "b", -INFINITY);
+    mf_json_put_numbers(writer, "c", (double[]){1, INFINITY, 0.5}, 3);
+    mf_json_put_number(writer, "d", 2);
+    assert_ok(mf_json_write(writer, file));
+    mf_json_writer_free(writer);
     char *text = temporary_folder_read(file);
     assert_string_equal(text, "{\n\t\"a\":\tnull,\n\t\"b\":\tnull,\n\t\"c\":\t[1, null, 0.5],\n"
                               "\t\"d\":\t2\n}\n");
@@ -441,25 +441,25 @@ static void test_json_open_refuses_more_keys_than_can_be_looked_for(void **state
             end += sprintf(end, "%s\"k%d\": 1", k ? ", " : "", k);
         sprintf(end, "}}");
         const double begun = clock_seconds();
-        const enum status status = json_open(&document, write_text(state, text));
+        const enum status status = mf_json_open(&document, write_text(state, text));
         assert_true(clock_seconds() - begun < 10);
         assert_int_equal(status, count > JSON_MOST_MEMBERS ? STATUS_BAD_INPUT : STATUS_OK);
         if (status == STATUS_OK)
-            assert_ok(json_close(document, STATUS_OK));
+            assert_ok(mf_json_close(document, STATUS_OK));
     }
-    assert_contains(status_message(), "run.json: an object has 160000 keys; 1000 are the most");
+    assert_contains(mf_status_message(), "run.json: an object has 160000 keys; 1000 are the most");
     free(text);
 }
 
 /// Want of memory is told before what the file says wrong.
 static void test_json_close_tells_want_of_memory_first(void **state) {
     struct json_document *document = open_text(state, "{\"a\": 1, \"a\": 2}");
-    status_fail(STATUS_NO_MEMORY, "out of memory");
-    assert_fails(json_close(document, STATUS_NO_MEMORY), STATUS_NO_MEMORY, "out of memory");
+    mf_status_fail(STATUS_NO_MEMORY, "out of memory");
+    assert_fails(mf_json_close(document, STATUS_NO_MEMORY), STATUS_NO_MEMORY, "out of memory");
     document = open_text(state, "{\"a\": 1, \"a\": 2}");
-    assert_fails(json_close(document, STATUS_IO), STATUS_BAD_INPUT, "twice");
+    assert_fails(mf_json_close(document, STATUS_IO), STATUS_BAD_INPUT, "twice");
     document = open_text(state, "{}");
-    assert_int_equal(json_close(document, STATUS_IO), STATUS_IO);
+    assert_int_equal(mf_json_close(document, STATUS_IO), STATUS_IO);
 }
 
 /// A text of a file is shown, not sent to the terminal.
@@ -477,17 +477,17 @@ static void test_json_collect_files_finds_what_the_fields_name(void **state) {
     struct input_files inputs = {0};
     temporary_folder_write(*state, "table.tsv", "1", 1);
     struct json_document *document = open_text(state, "{\"file\": \"./table.tsv\"}");
-    assert_ok(json_collect_files(document, &inputs));
-    struct json_object root = json_root(document);
-    json_fields(&root, fields, &sample);
-    assert_ok(json_close(document, STATUS_OK));
+    assert_ok(mf_json_collect_files(document, &inputs));
+    struct json_object root = mf_json_root(document);
+    mf_json_fields(&root, fields, &sample);
+    assert_ok(mf_json_close(document, STATUS_OK));
     assert_int_equal(inputs.count, 2);
-    assert_fails(input_files_spare(&inputs, temporary_folder_file(*state, "table.tsv")),
+    assert_fails(mf_input_files_spare(&inputs, temporary_folder_file(*state, "table.tsv")),
                  STATUS_BAD_INPUT, "/./table.tsv: write elsewhere");
-    assert_fails(input_files_spare(&inputs, temporary_folder_file(*state, "run.json")),
+    assert_fails(mf_input_files_spare(&inputs, temporary_folder_file(*state, "run.json")),
                  STATUS_BAD_INPUT, "run.json would be replaced");
-    assert_ok(input_files_spare(&inputs, temporary_folder_file(*state, "other.tsv")));
-    input_files_clear(&inputs);
+    assert_ok(mf_input_files_spare(&inputs, temporary_folder_file(*state, "other.tsv")));
+    mf_input_files_clear(&inputs);
 }
 
 static void test_json_write_stream_prints_a_list_when_the_root_is_one(void **state) {
@@ -495,41 +495,41 @@ static void test_json_write_stream_prints_a_list_when_the_root_is_one(void **sta
     const char *file = temporary_folder_file(*state, "stream");
     FILE *stream = fopen(file, "w+");
     assert_non_null(stream);
-    struct json_writer *writer = json_writer_create_list();
+    struct json_writer *writer = mf_json_writer_create_list();
     assert_non_null(writer);
-    assert_ok(json_write_stream(writer, stream, "stream"));
+    assert_ok(mf_json_write_stream(writer, stream, "stream"));
     for (int k = 0; k < 2; k++) {
-        json_begin(writer, NULL);
-        json_put_integer(writer, "number", k);
-        json_begin(writer, "inside");
-        json_end(writer);
-        json_end(writer);
+        mf_json_begin(writer, NULL);
+        mf_json_put_integer(writer, "number", k);
+        mf_json_begin(writer, "inside");
+        mf_json_end(writer);
+        mf_json_end(writer);
     }
-    assert_ok(json_write_stream(writer, stream, "stream"));
+    assert_ok(mf_json_write_stream(writer, stream, "stream"));
     rewind(stream);
     const size_t length = fread(text, 1, sizeof text - 1, stream);
     text[length] = '\0';
     assert_string_equal(text, "[]\n[{\n\t\t\"number\":\t0,\n\t\t\"inside\":\t{\n\t\t}\n\t}, {\n"
                               "\t\t\"number\":\t1,\n\t\t\"inside\":\t{\n\t\t}\n\t}]\n");
     assert_int_equal(fclose(stream), 0);
-    json_writer_free(writer);
+    mf_json_writer_free(writer);
 }
 
 static void test_json_write_stream_fails_when_the_tree_or_the_stream_is_bad(void **state) {
     (void)state;
-    struct json_writer *writer = json_writer_create_list();
+    struct json_writer *writer = mf_json_writer_create_list();
     assert_non_null(writer);
     FILE *full = fopen("/dev/full", "w");
     assert_non_null(full);
-    assert_fails(json_write_stream(writer, full, "stdout"), STATUS_IO,
+    assert_fails(mf_json_write_stream(writer, full, "stdout"), STATUS_IO,
                  "cannot write stdout: No space left");
     fclose(full);
-    json_begin(writer, NULL);
+    mf_json_begin(writer, NULL);
     write_twice(writer);
-    json_end(writer);
-    assert_fails(json_write_stream(writer, stdout, "stdout"), STATUS_IO,
+    mf_json_end(writer);
+    assert_fails(mf_json_write_stream(writer, stdout, "stdout"), STATUS_IO,
                  "cannot write stdout: \"distance\" is given twice");
-    json_writer_free(writer);
+    mf_json_writer_free(writer);
 }
 
 #define IN_FOLDER(test)                                                                            \

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 static void assert_malformed(const char *text, const char *part) {
-    assert_fails(json_syntax_check("f.json", text), STATUS_BAD_INPUT, part);
+    assert_fails(mf_json_syntax_check("f.json", text), STATUS_BAD_INPUT, part);
 }
 
 static void test_json_syntax_check_accepts_when_the_text_is_json(void **state) {
@@ -23,12 +23,12 @@ static void test_json_syntax_check_accepts_when_the_text_is_json(void **state) {
         "\"\\\\u0000\"",
     };
     for (size_t k = 0; k < sizeof texts / sizeof *texts; k++)
-        assert_ok(json_syntax_check("f.json", texts[k]));
+        assert_ok(mf_json_syntax_check("f.json", texts[k]));
 
     char siblings[400] = "[[]";
     for (int k = 0; k < 100; k++)
         strcat(siblings, ",[]");
-    assert_ok(json_syntax_check("f.json", strcat(siblings, "]")));
+    assert_ok(mf_json_syntax_check("f.json", strcat(siblings, "]")));
 }
 
 static void test_json_syntax_check_gives_the_place_when_the_text_is_malformed(void **state) {

@@ -24,22 +24,22 @@ static void assert_no_partial(const struct output *output) {
 static void test_output_commit_replaces_the_file_when_all_was_written(void **state) {
     const char *path = temporary_folder_write(*state, "a.txt", "old", 3);
     struct output output;
-    assert_ok(output_open(&output, path));
+    assert_ok(mf_output_open(&output, path));
     fputs("new\n", output.stream);
     assert_file_holds(path, "old");
-    assert_ok(output_commit(&output));
+    assert_ok(mf_output_commit(&output));
     assert_file_holds(path, "new\n");
     assert_no_partial(&output);
-    output_abandon(&output);
+    mf_output_abandon(&output);
     assert_file_holds(path, "new\n");
 }
 
 static void test_output_abandon_keeps_the_old_file_when_called_before_commit(void **state) {
     const char *path = temporary_folder_write(*state, "a.txt", "old", 3);
     struct output output;
-    assert_ok(output_open(&output, path));
+    assert_ok(mf_output_open(&output, path));
     fputs("new\n", output.stream);
-    output_abandon(&output);
+    mf_output_abandon(&output);
     assert_file_holds(path, "old");
     assert_no_partial(&output);
 }
@@ -50,7 +50,7 @@ static void test_output_commit_reports_and_cleans_up_when_the_disk_is_full(void 
     const char *path = temporary_folder_write(*state, "a.txt", "old", 3);
     struct output output;
     for (int bytes = 1; bytes < 2000000; bytes *= 1000) {
-        assert_ok(output_open(&output, path));
+        assert_ok(mf_output_open(&output, path));
         const int full = open("/dev/full", O_WRONLY);
         assert_true(full >= 0 && dup2(full, output.file) == output.file);
         close(full);
@@ -62,9 +62,9 @@ static void test_output_commit_reports_and_cleans_up_when_the_disk_is_full(void 
             close(zero);
         }
         errno = 0;
-        assert_fails(output_commit(&output), STATUS_IO, "a.txt: No space left on device");
+        assert_fails(mf_output_commit(&output), STATUS_IO, "a.txt: No space left on device");
         assert_no_partial(&output);
-        output_abandon(&output);
+        mf_output_abandon(&output);
         assert_file_holds(path, "old");
     }
 }
@@ -75,14 +75,14 @@ static void test_output_open_makes_a_file_of_its_own_when_something_is_in_the_wa
     const char *victim = strdup(temporary_folder_write(*state, "victim", "precious", 8));
     const char *path = temporary_folder_file(*state, "a.txt");
     struct output output;
-    assert_ok(output_open(&output, path));
-    output_abandon(&output);
+    assert_ok(mf_output_open(&output, path));
+    mf_output_abandon(&output);
     for (int kind = 0; kind < 2; kind++) {
         assert_int_equal(kind ? mkfifo(output.temporary, 0666) : symlink(victim, output.temporary),
                          0);
-        assert_ok(output_open(&output, path));
+        assert_ok(mf_output_open(&output, path));
         fputs("new\n", output.stream);
-        assert_ok(output_commit(&output));
+        assert_ok(mf_output_commit(&output));
         assert_file_holds(victim, "precious");
         assert_file_holds(path, "new\n");
         struct stat about;
@@ -99,10 +99,10 @@ static void test_output_commit_reports_and_cleans_up_when_the_file_grows_too_lar
     signal(SIGXFSZ, SIG_IGN);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &(struct rlimit){1000, before.rlim_max}), 0);
     struct output output;
-    const enum status opened = output_open(&output, path);
+    const enum status opened = mf_output_open(&output, path);
     for (int k = 0; opened == STATUS_OK && k < 100000; k++)
         fputc('x', output.stream);
-    const enum status status = opened == STATUS_OK ? output_commit(&output) : opened;
+    const enum status status = opened == STATUS_OK ? mf_output_commit(&output) : opened;
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
     assert_fails(status, STATUS_IO, "a.txt: File too large");
     assert_no_partial(&output);
@@ -113,16 +113,16 @@ static void test_output_commit_reports_and_cleans_up_when_a_folder_is_in_the_way
     const char *path = temporary_folder_file(*state, "a.txt");
     assert_int_equal(mkdir(path, 0777), 0);
     struct output output;
-    assert_ok(output_open(&output, path));
-    assert_fails(output_commit(&output), STATUS_IO, "a.txt: Is a directory");
+    assert_ok(mf_output_open(&output, path));
+    assert_fails(mf_output_commit(&output), STATUS_IO, "a.txt: Is a directory");
     assert_no_partial(&output);
 }
 
 static void test_output_open_names_the_file_when_the_folder_is_missing(void **state) {
     struct output output;
     const char *path = temporary_folder_file(*state, "no/a.txt");
-    assert_fails(output_open(&output, path), STATUS_IO, "no/a.txt: No such file or directory");
-    output_abandon(&output);
+    assert_fails(mf_output_open(&output, path), STATUS_IO, "no/a.txt: No such file or directory");
+    mf_output_abandon(&output);
 }
 
 static void test_output_open_refuses_when_the_path_is_too_long(void **state) {
@@ -131,29 +131,29 @@ static void test_output_open_refuses_when_the_path_is_too_long(void **state) {
     memset(path, 'x', sizeof path - 1);
     path[sizeof path - 1] = '\0';
     struct output output;
-    assert_fails(output_open(&output, path), STATUS_IO, "longer than 4095 bytes");
-    output_abandon(&output);
+    assert_fails(mf_output_open(&output, path), STATUS_IO, "longer than 4095 bytes");
+    mf_output_abandon(&output);
 }
 
 static void test_output_make_folder_makes_parents_when_they_are_missing(void **state) {
     const char *path = temporary_folder_file(*state, "a/b/c");
-    assert_ok(output_make_folder(path));
+    assert_ok(mf_output_make_folder(path));
     assert_true(temporary_folder_exists(path));
-    assert_ok(output_make_folder(path));
-    assert_ok(output_make_folder(temporary_folder_file(*state, "a//d/")));
+    assert_ok(mf_output_make_folder(path));
+    assert_ok(mf_output_make_folder(temporary_folder_file(*state, "a//d/")));
     assert_true(temporary_folder_exists(temporary_folder_file(*state, "a/d")));
-    assert_ok(output_make_folder("/"));
-    assert_ok(output_make_folder("."));
+    assert_ok(mf_output_make_folder("/"));
+    assert_ok(mf_output_make_folder("."));
 }
 
 static void test_output_make_folder_names_the_path_when_a_file_is_in_the_way(void **state) {
     temporary_folder_write(*state, "a", "", 0);
-    assert_fails(output_make_folder(temporary_folder_file(*state, "a")), STATUS_IO,
+    assert_fails(mf_output_make_folder(temporary_folder_file(*state, "a")), STATUS_IO,
                  "/a is not a folder");
-    assert_fails(output_make_folder(temporary_folder_file(*state, "a/b")), STATUS_IO,
+    assert_fails(mf_output_make_folder(temporary_folder_file(*state, "a/b")), STATUS_IO,
                  "/a is not a folder");
-    assert_fails(output_make_folder("/proc/no/folder"), STATUS_IO, "/proc/no/folder");
-    assert_fails(output_make_folder(""), STATUS_IO, "cannot make folder \"\"");
+    assert_fails(mf_output_make_folder("/proc/no/folder"), STATUS_IO, "/proc/no/folder");
+    assert_fails(mf_output_make_folder(""), STATUS_IO, "cannot make folder \"\"");
 }
 
 #define IN_FOLDER(test)                                                                            \

@@ -11,13 +11,13 @@ static const char *put(void **state, const char *text) {
 
 static void assert_refused(void **state, const char *text, const char *part) {
     struct votca_table table;
-    assert_fails(votca_read(&table, put(state, text)), STATUS_BAD_INPUT, part);
+    assert_fails(mf_votca_read(&table, put(state, text)), STATUS_BAD_INPUT, part);
     assert_null(table.x);
 }
 
 static void test_votca_read_takes_the_rows_in_range(void **state) {
     struct votca_table table;
-    assert_ok(votca_read(&table, put(state, "# made by hand\n0 nan u\n0.1 1e6 o\n0.2 3.5 i\n"
+    assert_ok(mf_votca_read(&table, put(state, "# made by hand\n0 nan u\n0.1 1e6 o\n0.2 3.5 i\n"
                                             "0.3 -1 i\n0.4 0 i\n0.5 0 o\n")));
     assert_int_equal(table.rows, 3);
     assert_false(table.has_error);
@@ -25,28 +25,28 @@ static void test_votca_read_takes_the_rows_in_range(void **state) {
     assert_identical(table.y[1], -1);
     assert_identical(table.error[2], 0);
     assert_int_equal(table.line[0], 4);
-    votca_clear(&table);
+    mf_votca_clear(&table);
     assert_null(table.x);
 }
 
 static void test_votca_read_takes_errors_when_there_are_four_columns(void **state) {
     struct votca_table table;
-    assert_ok(votca_read(&table, put(state, "0.2 3.5 0.1 i\n0.3 -1 0.2 i\n")));
+    assert_ok(mf_votca_read(&table, put(state, "0.2 3.5 0.1 i\n0.3 -1 0.2 i\n")));
     assert_int_equal(table.rows, 2);
     assert_true(table.has_error);
     assert_identical(table.error[1], 0.2);
-    votca_clear(&table);
+    mf_votca_clear(&table);
 }
 
 static void test_votca_read_takes_two_columns_without_flags(void **state) {
     struct votca_table table;
-    assert_ok(votca_read(&table, put(state, "0 0\n0.1 0.5\n0.2 1.5\n")));
+    assert_ok(mf_votca_read(&table, put(state, "0 0\n0.1 0.5\n0.2 1.5\n")));
     assert_int_equal(table.rows, 3);
     assert_false(table.has_error);
     assert_identical(table.x[1], 0.1);
     assert_identical(table.y[2], 1.5);
     assert_int_equal(table.line[2], 3);
-    votca_clear(&table);
+    mf_votca_clear(&table);
 }
 
 static void test_votca_read_refuses_what_is_no_table_of_votca(void **state) {
@@ -66,12 +66,12 @@ static void test_votca_write_is_read_again_without_what_it_continued(void **stat
     const double x[] = {0.1, 0.2, 0.3}, y[] = {1e3, -0.123456789, 0};
     const char *file = put(state, "");
     struct votca_table table;
-    assert_ok(votca_write(file, x, y, 3, 1));
-    assert_ok(votca_read(&table, file));
+    assert_ok(mf_votca_write(file, x, y, 3, 1));
+    assert_ok(mf_votca_read(&table, file));
     assert_int_equal(table.rows, 2);
     assert_identical(table.x[0], 0.2);
     assert_identical(table.y[0], -0.123456789);
-    votca_clear(&table);
+    mf_votca_clear(&table);
 }
 
 #define TEST(function)                                                                             \

@@ -30,7 +30,7 @@ struct data {
 };
 
 static double normal(struct rng_sequence *random) {
-    const double u = rng_sequence_uniform(random), v = rng_sequence_uniform(random);
+    const double u = mf_rng_sequence_uniform(random), v = mf_rng_sequence_uniform(random);
     return sqrt(-2 * log(u)) * cos(2 * acos(-1) * v);
 }
 
@@ -55,12 +55,12 @@ static void add_row(struct data *data, const struct experiment *e, struct rng_se
     make_noise(e, random, noise);
     for (int j = 0; j < FEATURES; j++)
         y[j] = answer(data, j, x) + e->noise * noise[j];
-    surrogate_add(&data->surrogate, x, y);
+    mf_surrogate_add(&data->surrogate, x, y);
 }
 
 /// The truth lies `offset` from the centre in every gene.
 static void begin(struct data *data, const struct experiment *e, double offset, uint32_t number) {
-    struct rng_sequence random = rng_sequence_begin(7, RNG_INITIAL, number, 0);
+    struct rng_sequence random = mf_rng_sequence_begin(7, RNG_INITIAL, number, 0);
     double noise[FEATURES];
     *data = (struct data){0};
     for (int n = 0; n < GENES; n++) {
@@ -76,7 +76,7 @@ static void begin(struct data *data, const struct experiment *e, double offset, 
         data->target[j] = answer(data, j, data->truth) + e->target_error * noise[j];
     }
     assert_ok(
-        surrogate_init(&data->surrogate, GENES, FEATURES, CAPACITY, data->target, data->error));
+        mf_surrogate_init(&data->surrogate, GENES, FEATURES, CAPACITY, data->target, data->error));
     for (size_t k = 0; k < e->rows; k++)
         add_row(data, e, &random);
 }
@@ -88,7 +88,7 @@ static double deviation(const struct data *data, const struct surrogate_model *m
 
 static void fit(const struct data *data, double reach, struct surrogate_model *model) {
     bool known;
-    assert_ok(surrogate_fit(&data->surrogate, data->centre, reach, model, &known));
+    assert_ok(mf_surrogate_fit(&data->surrogate, data->centre, reach, model, &known));
     assert_true(known);
 }
 
@@ -102,8 +102,8 @@ static void test_surrogate_finds_the_truth_when_there_is_next_to_no_noise(void *
     fit(&data, 0.3, &model);
     for (int n = 0; n < GENES; n++)
         assert_close(model.best[n], data.truth[n], 2e-3);
-    surrogate_model_clear(&model);
-    surrogate_clear(&data.surrogate);
+    mf_surrogate_model_clear(&model);
+    mf_surrogate_clear(&data.surrogate);
 }
 
 static void test_surrogate_meets_one_feature_exactly_when_it_is_a_constraint(void **state) {
@@ -120,15 +120,15 @@ static void test_surrogate_meets_one_feature_exactly_when_it_is_a_constraint(voi
         // What the others say differs by their errors of 0.1; the model's slopes have a ridge of
         // 1e-3.
         assert_true(met ? off < 1e-3 : off > 1e-2);
-        surrogate_model_clear(&model);
+        mf_surrogate_model_clear(&model);
     }
     // Where it cannot be met, the step stays within the reach.
     data.target[2] += 100;
     fit(&data, 0.3, &model);
     for (int n = 0; n < GENES; n++)
         assert_true(fabs(model.best[n] - 0.5) < 0.3 * sqrt(GENES));
-    surrogate_model_clear(&model);
-    surrogate_clear(&data.surrogate);
+    mf_surrogate_model_clear(&model);
+    mf_surrogate_clear(&data.surrogate);
 }
 
 /// The part of the genes of many experiments that lie within two standard errors: 0.954 if these
@@ -143,8 +143,8 @@ static double coverage(const struct experiment *e, double offset) {
         fit(&data, 0.3, &model);
         for (int n = 0; n < genes; n++, all++)
             within += fabs(deviation(&data, &model, n)) <= 2;
-        surrogate_model_clear(&model);
-        surrogate_clear(&data.surrogate);
+        mf_surrogate_model_clear(&model);
+        mf_surrogate_clear(&data.surrogate);
     }
     return (double)within / (double)all;
 }
@@ -173,8 +173,8 @@ static void test_surrogate_error_of_an_open_gene_is_about_that_of_no_knowledge(v
             fit(&data, 0.3, &model);
             known[number] = sqrt(model.covariance[0]);
             open[number] = sqrt(model.covariance[GENES * GENES - 1]);
-            surrogate_model_clear(&model);
-            surrogate_clear(&data.surrogate);
+            mf_surrogate_model_clear(&model);
+            mf_surrogate_clear(&data.surrogate);
         }
         qsort(known, EXPERIMENTS, sizeof *known, by_size);
         qsort(open, EXPERIMENTS, sizeof *open, by_size);
@@ -188,20 +188,20 @@ static void test_surrogate_is_not_known_when_there_are_too_few_rows(void **state
     const struct experiment e = {.spread = 0.1, .noise = 0.01, .target_error = 0.01};
     struct data data;
     struct surrogate_model model;
-    struct rng_sequence random = rng_sequence_begin(9, RNG_INITIAL, 0, 0);
+    struct rng_sequence random = mf_rng_sequence_begin(9, RNG_INITIAL, 0, 0);
     bool known = true;
     begin(&data, &e, 0.1, 0);
-    for (size_t k = 0; k + 1 < surrogate_least_rows(GENES); k++)
+    for (size_t k = 0; k + 1 < mf_surrogate_least_rows(GENES); k++)
         add_row(&data, &e, &random);
-    assert_ok(surrogate_fit(&data.surrogate, data.centre, 0.3, &model, &known));
+    assert_ok(mf_surrogate_fit(&data.surrogate, data.centre, 0.3, &model, &known));
     assert_false(known);
     assert_null(model.best);
-    surrogate_model_clear(&model);
+    mf_surrogate_model_clear(&model);
     add_row(&data, &e, &random);
-    assert_ok(surrogate_fit(&data.surrogate, data.centre, 0.3, &model, &known));
+    assert_ok(mf_surrogate_fit(&data.surrogate, data.centre, 0.3, &model, &known));
     assert_true(known);
-    surrogate_model_clear(&model);
-    surrogate_clear(&data.surrogate);
+    mf_surrogate_model_clear(&model);
+    mf_surrogate_clear(&data.surrogate);
 }
 
 /// Old rows of another experiment are gone once as many new ones have come as there is room for.
@@ -213,8 +213,8 @@ static void test_surrogate_forgets_the_oldest_rows_when_it_is_full(void **state)
     struct surrogate_model model, expected;
     begin(&data, &e, 0.1, 0);
     begin(&fresh, &e, 0.1, 0);
-    struct rng_sequence old = rng_sequence_begin(9, RNG_INITIAL, 0, 0);
-    struct rng_sequence one = rng_sequence_begin(9, RNG_INITIAL, 1, 0), two = one;
+    struct rng_sequence old = mf_rng_sequence_begin(9, RNG_INITIAL, 0, 0);
+    struct rng_sequence one = mf_rng_sequence_begin(9, RNG_INITIAL, 1, 0), two = one;
     for (int k = 0; k < 7; k++)
         add_row(&data, &wild, &old);
     for (int k = 0; k < CAPACITY; k++) {
@@ -226,10 +226,10 @@ static void test_surrogate_forgets_the_oldest_rows_when_it_is_full(void **state)
     fit(&fresh, 0.3, &expected);
     for (int n = 0; n < GENES; n++)
         assert_close(model.best[n], expected.best[n], 1e-9);
-    surrogate_model_clear(&model);
-    surrogate_model_clear(&expected);
-    surrogate_clear(&data.surrogate);
-    surrogate_clear(&fresh.surrogate);
+    mf_surrogate_model_clear(&model);
+    mf_surrogate_model_clear(&expected);
+    mf_surrogate_clear(&data.surrogate);
+    mf_surrogate_clear(&fresh.surrogate);
 }
 
 static void test_surrogate_stays_within_the_genes_when_the_target_is_beyond(void **state) {
@@ -242,8 +242,8 @@ static void test_surrogate_stays_within_the_genes_when_the_target_is_beyond(void
     fit(&data, 3, &model);
     for (int n = 0; n < GENES; n++)
         assert_close(model.best[n], n % 2 ? 1 : 0, 0);
-    surrogate_model_clear(&model);
-    surrogate_clear(&data.surrogate);
+    mf_surrogate_model_clear(&model);
+    mf_surrogate_clear(&data.surrogate);
 }
 
 static void test_surrogate_is_the_same_from_its_spans(void **state) {
@@ -257,8 +257,8 @@ static void test_surrogate_is_the_same_from_its_spans(void **state) {
     empty.rows = 0;
     begin(&data, &e, 0.1, 0);
     begin(&copy, &empty, 0.1, 0);
-    assert_int_equal(surrogate_spans(&data.surrogate, from), SURROGATE_SPANS);
-    assert_int_equal(surrogate_spans(&copy.surrogate, to), SURROGATE_SPANS);
+    assert_int_equal(mf_surrogate_spans(&data.surrogate, from), SURROGATE_SPANS);
+    assert_int_equal(mf_surrogate_spans(&copy.surrogate, to), SURROGATE_SPANS);
     for (int k = 0; k < SURROGATE_SPANS; k++) {
         assert_int_equal(from[k].bytes, to[k].bytes);
         memcpy(to[k].memory, from[k].memory, from[k].bytes);
@@ -267,10 +267,10 @@ static void test_surrogate_is_the_same_from_its_spans(void **state) {
     fit(&copy, 0.3, &again);
     for (int n = 0; n < GENES * GENES; n++)
         assert_identical(model.covariance[n], again.covariance[n]);
-    surrogate_model_clear(&model);
-    surrogate_model_clear(&again);
-    surrogate_clear(&data.surrogate);
-    surrogate_clear(&copy.surrogate);
+    mf_surrogate_model_clear(&model);
+    mf_surrogate_model_clear(&again);
+    mf_surrogate_clear(&data.surrogate);
+    mf_surrogate_clear(&copy.surrogate);
 }
 
 static void test_surrogate_errors_hold_the_truth_as_often_as_they_say(void **state) {
@@ -310,8 +310,8 @@ static void test_surrogate_knows_nothing_when_all_rows_are_at_one_place(void **s
             assert_true(model.best[n] >= 0 && model.best[n] <= 1);
             assert_true(error > 0.15 && error <= 0.3);
         }
-        surrogate_model_clear(&model);
-        surrogate_clear(&data.surrogate);
+        mf_surrogate_model_clear(&model);
+        mf_surrogate_clear(&data.surrogate);
     }
 }
 

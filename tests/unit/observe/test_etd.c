@@ -17,15 +17,15 @@ static const struct etd_plan plan = {.every = 2, .origin_every = 3};
 static void fly(struct fluid *fluid, struct simulation *simulation, uint64_t seed) {
     fluid_ideal_gas(fluid, 3, PARTICLES, 0.02);
     fluid->setup.weight = NULL;
-    fluid->setup.integrator = &velocity_verlet;
+    fluid->setup.integrator = &mf_velocity_verlet;
     fluid->setup.seed = seed;
-    assert_ok(simulation_init(simulation, &fluid->setup, NULL));
+    assert_ok(mf_simulation_init(simulation, &fluid->setup, NULL));
 }
 
 static void sample(struct etd *etd, struct simulation *simulation) {
-    while (etd_due(etd) != INT64_MAX) {
-        assert_ok(simulation_run(simulation, (uint64_t)etd_due(etd) - simulation->step));
-        assert_ok(etd_sample(etd, simulation));
+    while (mf_etd_due(etd) != INT64_MAX) {
+        assert_ok(mf_simulation_run(simulation, (uint64_t)mf_etd_due(etd) - simulation->step));
+        assert_ok(mf_etd_sample(etd, simulation));
     }
 }
 
@@ -34,10 +34,10 @@ static void measure(struct etd *etd, uint64_t seed, int64_t origins) {
     struct simulation simulation;
     fly(&fluid, &simulation, seed);
     const int64_t steps = 2 * (TIMES - 1 + 3 * (origins - 1));
-    assert_ok(etd_init(etd, &grid, &plan, &simulation, 0, steps));
+    assert_ok(mf_etd_init(etd, &grid, &plan, &simulation, 0, steps));
     assert_int_equal(etd->origins, origins);
     sample(etd, &simulation);
-    simulation_clear(&simulation);
+    mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
 }
 
@@ -76,9 +76,9 @@ static void test_etd_is_exact_when_particles_fly_freely(void **state) {
     uint64_t pairs[BINS];
     fly(&fluid, &simulation, 1);
     follow_lines(&simulation, begun, stay);
-    assert_ok(etd_init(&etd, &grid, &plan, &simulation, 0, 2 * (TIMES - 1)));
+    assert_ok(mf_etd_init(&etd, &grid, &plan, &simulation, 0, 2 * (TIMES - 1)));
     sample(&etd, &simulation);
-    assert_ok(etd_result(&(const struct etd *){&etd}, 1, survival, NULL, pairs));
+    assert_ok(mf_etd_result(&(const struct etd *){&etd}, 1, survival, NULL, pairs));
     for (int bin = 0; bin < BINS; bin++) {
         assert_int_equal(pairs[bin], (uint64_t)begun[bin]);
         for (int time = 0; time < TIMES && pairs[bin] > 0; time++)
@@ -86,8 +86,8 @@ static void test_etd_is_exact_when_particles_fly_freely(void **state) {
     }
     assert_true(pairs[BINS - 1] > 100);
     assert_true(survival[CELLS - 1] < 0.3);
-    etd_clear(&etd);
-    simulation_clear(&simulation);
+    mf_etd_clear(&etd);
+    mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
 }
 
@@ -96,7 +96,7 @@ static void test_etd_begins_with_1_and_falls(void **state) {
     struct etd etd;
     double survival[CELLS], error[CELLS];
     measure(&etd, 3, 40);
-    assert_ok(etd_result(&(const struct etd *){&etd}, 1, survival, error, NULL));
+    assert_ok(mf_etd_result(&(const struct etd *){&etd}, 1, survival, error, NULL));
     for (int bin = 0; bin < BINS; bin++) {
         assert_identical(survival[bin], 1.0);
         assert_identical(error[bin], 0.0);
@@ -105,7 +105,7 @@ static void test_etd_begins_with_1_and_falls(void **state) {
         assert_true(survival[cell] >= 0 && survival[cell] <= survival[cell - BINS]);
         assert_true(error[cell] >= 0);
     }
-    etd_clear(&etd);
+    mf_etd_clear(&etd);
 }
 
 static void test_etd_result_pools_replicas_and_their_blocks(void **state) {
@@ -116,9 +116,9 @@ static void test_etd_result_pools_replicas_and_their_blocks(void **state) {
     const struct etd *const list[] = {&etd[0], &etd[1]};
     for (int k = 0; k < 2; k++) {
         measure(&etd[k], 10 + (uint64_t)k, 1);
-        assert_ok(etd_result(&list[k], 1, one[k], NULL, pairs[k]));
+        assert_ok(mf_etd_result(&list[k], 1, one[k], NULL, pairs[k]));
     }
-    assert_ok(etd_result(list, 2, both, error, sum));
+    assert_ok(mf_etd_result(list, 2, both, error, sum));
     for (int cell = 0; cell < CELLS; cell++) {
         const double n[2] = {(double)pairs[0][cell % BINS], (double)pairs[1][cell % BINS]};
         if (n[0] == 0 || n[1] == 0)
@@ -132,8 +132,8 @@ static void test_etd_result_pools_replicas_and_their_blocks(void **state) {
         else
             assert_close(error[cell] * error[cell], mean * (1 - mean) / (n[0] + n[1]), 1e-14);
     }
-    etd_clear(&etd[0]);
-    etd_clear(&etd[1]);
+    mf_etd_clear(&etd[0]);
+    mf_etd_clear(&etd[1]);
 }
 
 /// Four blocks of two replicas, one of them without pairs, against the formula written out.
@@ -148,7 +148,7 @@ static void test_etd_result_leaves_out_one_block_at_a_time(void **state) {
     double survival[2], error[2], squares = 0;
     uint64_t pairs;
     assert_ok(
-        etd_result((const struct etd *const[]){&etd[0], &etd[1]}, 2, survival, error, &pairs));
+        mf_etd_result((const struct etd *const[]){&etd[0], &etd[1]}, 2, survival, error, &pairs));
     for (int k = 0; k < 3; k++)
         squares += (without[k] - mean) * (without[k] - mean);
     assert_int_equal(pairs, 60);
@@ -173,7 +173,7 @@ static void test_etd_result_has_an_error_when_no_pair_differs(void **state) {
                     counts[2 * b + 1] = escaped;
                 }
                 const struct etd etd = {.grid = small, .blocks = blocks, .counts = counts};
-                assert_ok(etd_result(&(const struct etd *){&etd}, 1, survival, error, &begun));
+                assert_ok(mf_etd_result(&(const struct etd *){&etd}, 1, survival, error, &begun));
                 const double n = (double)begun, p = error[1];
                 assert_identical(error[0], 0.0);
                 assert_true(p > 0);
@@ -195,16 +195,16 @@ static void test_etd_result_is_not_known_without_pairs(void **state) {
     uint64_t pairs[2];
     fluid_ideal_gas(&fluid, 3, 64, 0.02);
     fluid.setup.weight = NULL;
-    fluid.setup.integrator = &velocity_verlet;
+    fluid.setup.integrator = &mf_velocity_verlet;
     fluid.setup.placement.kind = PLACEMENT_LATTICE;
     fluid.setup.placement.jitter = 0;
     fluid.setup.temperature = 1e-12;
-    assert_ok(simulation_init(&simulation, &fluid.setup, NULL));
-    assert_ok(etd_init(&etd, &near, &plan, &simulation, 0, 100));
-    assert_ok(etd_result(&(const struct etd *){&etd}, 1, survival, error, pairs));
+    assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
+    assert_ok(mf_etd_init(&etd, &near, &plan, &simulation, 0, 100));
+    assert_ok(mf_etd_result(&(const struct etd *){&etd}, 1, survival, error, pairs));
     assert_true(isnan(survival[1]) && pairs[1] == 0);
     sample(&etd, &simulation);
-    assert_ok(etd_result(&(const struct etd *){&etd}, 1, survival, error, pairs));
+    assert_ok(mf_etd_result(&(const struct etd *){&etd}, 1, survival, error, pairs));
     assert_int_equal(pairs[0] + pairs[1], etd.origins * 64 * 3);
     assert_true(pairs[0] == 0 || pairs[1] == 0 || isfinite(survival[3]));
     for (int bin = 0; bin < 2; bin++)
@@ -214,8 +214,8 @@ static void test_etd_result_is_not_known_without_pairs(void **state) {
             const double least = time == 0 ? 0 : 1 / (double)(pairs[bin] + 1);
             assert_true(pairs[bin] ? error[2 * time + bin] == least : isnan(error[2 * time + bin]));
         }
-    etd_clear(&etd);
-    simulation_clear(&simulation);
+    mf_etd_clear(&etd);
+    mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
 }
 
@@ -227,11 +227,11 @@ static void measure_fluid(struct etd *etd, uint64_t seed) {
     struct simulation simulation;
     fluid_groot_warren(&fluid, 81, 0.04);
     fluid.setup.seed = seed;
-    assert_ok(simulation_init(&simulation, &fluid.setup, NULL));
-    assert_ok(simulation_run(&simulation, 50));
-    assert_ok(etd_init(etd, &near, &rare, &simulation, 50, TIMES - 1 + 19 * 40));
+    assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
+    assert_ok(mf_simulation_run(&simulation, 50));
+    assert_ok(mf_etd_init(etd, &near, &rare, &simulation, 50, TIMES - 1 + 19 * 40));
     sample(etd, &simulation);
-    simulation_clear(&simulation);
+    mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
 }
 
@@ -248,14 +248,14 @@ static void test_etd_errors_are_what_they_say(void **state) {
         measure_fluid(&etd[run], 100 + (uint64_t)run);
         list[run] = &etd[run];
     }
-    assert_ok(etd_result(list, RUNS, all, NULL, NULL));
+    assert_ok(mf_etd_result(list, RUNS, all, NULL, NULL));
     for (int run = 0; run < RUNS; run++) {
-        assert_ok(etd_result(&list[run], 1, survival, error, NULL));
+        assert_ok(mf_etd_result(&list[run], 1, survival, error, NULL));
         for (int time = 5; time < TIMES; time += 5)
             for (int bin = 5; bin < BINS; bin++, cells++)
                 within += fabs(survival[time * BINS + bin] - all[time * BINS + bin]) <
                           2 * error[time * BINS + bin];
-        etd_clear(&etd[run]);
+        mf_etd_clear(&etd[run]);
     }
     assert_true(within > 0.88 * cells);
     assert_true(within < 0.96 * cells);
@@ -267,15 +267,15 @@ static void test_etd_init_refuses_what_cannot_be_measured(void **state) {
     struct simulation simulation;
     struct etd etd;
     fly(&fluid, &simulation, 1);
-    assert_fails(etd_init(&etd, &grid, &plan, &simulation, 0, 2 * (TIMES - 1) - 1),
+    assert_fails(mf_etd_init(&etd, &grid, &plan, &simulation, 0, 2 * (TIMES - 1) - 1),
                  STATUS_BAD_INPUT, "20 times of 2 steps are longer than the 39 steps");
     const struct etd_grid empty = {.r_minimum = 1, .r_maximum = 1, .bins = 1, .times = 2};
-    assert_fails(etd_init(&etd, &empty, &plan, &simulation, 0, 100), STATUS_BAD_INPUT,
+    assert_fails(mf_etd_init(&etd, &empty, &plan, &simulation, 0, 100), STATUS_BAD_INPUT,
                  "r_maximum 1 is not above r_minimum 1");
     const struct etd_grid wide = {.r_minimum = 0, .r_maximum = 2.6, .bins = 1, .times = 2};
-    assert_fails(etd_init(&etd, &wide, &plan, &simulation, 0, 100), STATUS_BAD_INPUT,
+    assert_fails(mf_etd_init(&etd, &wide, &plan, &simulation, 0, 100), STATUS_BAD_INPUT,
                  "shortest edge 5 is below twice r_maximum, 2.6");
-    simulation_clear(&simulation);
+    mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
 }
 

@@ -36,18 +36,18 @@ static void test_finite_size_factor_is_that_of_hard_rods(void **state) {
     for (int k = 0; k < 3; k++) {
         const double density = densities[k], s = pow(1 - density, 2);
         const double r = 12.4, exact = rods(400, density, r) / rods(40, density, r);
-        const double factor = finite_size_factor(s, 40, 400);
+        const double factor = mf_finite_size_factor(s, 40, 400);
         print_message("density %.2f: g(400)/g(40) exact %.6f, by S(0) %.6f, by S = 0 %.6f\n",
-                      density, exact, factor, finite_size_factor(0, 40, 400));
-        assert_close(factor, exact, 0.02 * (1 - finite_size_factor(0, 40, 400)));
+                      density, exact, factor, mf_finite_size_factor(0, 40, 400));
+        assert_close(factor, exact, 0.02 * (1 - mf_finite_size_factor(0, 40, 400)));
     }
 }
 
 static void test_finite_size_factor_is_one_for_an_ideal_gas(void **state) {
     (void)state;
-    assert_identical(finite_size_factor(1, 20, 1000), 1.0);
-    assert_close(finite_size_factor(0, 2, 4), 0.5 / 0.75, 1e-12);
-    assert_close(finite_size_factor(0.3, 70, 900) * finite_size_factor(0.3, 900, 70), 1, 1e-12);
+    assert_identical(mf_finite_size_factor(1, 20, 1000), 1.0);
+    assert_close(mf_finite_size_factor(0, 2, 4), 0.5 / 0.75, 1e-12);
+    assert_close(mf_finite_size_factor(0.3, 70, 900) * mf_finite_size_factor(0.3, 900, 70), 1, 1e-12);
 }
 
 /// A hole of radius 1 whose outside is `outside`, with noise, and the factor to ten times as many.
@@ -56,12 +56,12 @@ static double factor_of(double hole, double outside, double noise, const struct 
     double g[BINS], error[BINS];
     for (uint32_t k = 0; k < BINS; k++) {
         double normal[4];
-        rng_normal4(rng_philox(seed, RNG_INITIAL, k, 0, 0), normal);
-        g[k] = (rdf_bins_centre(&bins, k) < 1 ? hole : 1) * outside + noise * normal[0];
+        mf_rng_normal4(mf_rng_philox(seed, RNG_INITIAL, k, 0, 0), normal);
+        g[k] = (mf_rdf_bins_centre(&bins, k) < 1 ? hole : 1) * outside + noise * normal[0];
         error[k] = noise;
     }
-    const double all = (double)composition_particles(of);
-    return finite_size_factor_of(&bins, g, error, &cube, of, pair, all, 10 * all);
+    const double all = (double)mf_composition_particles(of);
+    return mf_finite_size_factor_of(&bins, g, error, &cube, of, pair, all, 10 * all);
 }
 
 /// s = 1 − 4π/3 · ρ (1 − hole) of a g that is flat outside of the hole. The integral ends at 4
@@ -74,7 +74,7 @@ static void test_finite_size_factor_of_finds_s_in_g(void **state) {
     const double s = 1 - 4 * M_PI / 3 * densities * depth;
     // In a closed system the outside lies by −G/V above 1.
     const double outside = 1 + 4 * M_PI / 3 * depth / 1e3;
-    assert_close(factor_of(1 - depth, outside, 1e-6, &one, 0, 1), finite_size_factor(s, 1e3, 1e4),
+    assert_close(factor_of(1 - depth, outside, 1e-6, &one, 0, 1), mf_finite_size_factor(s, 1e3, 1e4),
                  integral);
     assert_close(factor_of(1, 1, 1e-6, &one, 0, 1), 1, 1e-6);
 }
@@ -85,10 +85,10 @@ static void test_finite_size_factor_of_believes_no_noise(void **state) {
     const double depth = 3 / (4 * M_PI);
     for (uint32_t seed = 1; seed <= 10; seed++)
         assert_close(factor_of(1 - depth, 1 + 1e-3, 0.03, &one, 0, seed),
-                     finite_size_factor(0, 1e3, 1e4), 0.3 * 9e-4);
+                     mf_finite_size_factor(0, 1e3, 1e4), 0.3 * 9e-4);
     // Types that have parted: A-A inside a domain, as large as the box.
     const struct composition binary = {.types = 2, .count = {500, 500}};
-    assert_identical(factor_of(2, 2, 0, &binary, 0, 1), finite_size_factor(0, 1e3, 1e4));
+    assert_identical(factor_of(2, 2, 0, &binary, 0, 1), mf_finite_size_factor(0, 1e3, 1e4));
 }
 
 /// Two gases that do not see each other: A-A as if alone, A-B ideal.
@@ -98,10 +98,10 @@ static void test_finite_size_factor_of_tells_kinds_of_pairs_apart(void **state) 
     const double depth = 0.5, own = 1 - 4 * M_PI / 3 * 0.2 * depth;
     const double outside = 1 + 4 * M_PI / 3 * depth / 1e3;
     assert_close(factor_of(1 - depth, outside, 1e-6, &binary, 0, 1),
-                 finite_size_factor(own, 200, 2000), integral);
+                 mf_finite_size_factor(own, 200, 2000), integral);
     assert_close(factor_of(1, 1, 1e-6, &binary, 1, 1), 1, 1e-6);
     // No number fluctuates less than not at all: 1 + ρ_A G_AA is bounded by 0.
-    assert_true(factor_of(0, 0.9, 1e-6, &binary, 0, 1) >= finite_size_factor(0, 200, 2000));
+    assert_true(factor_of(0, 0.9, 1e-6, &binary, 0, 1) >= mf_finite_size_factor(0, 200, 2000));
 }
 
 static void test_finite_size_factor_of_is_of_a_liquid_in_the_plane(void **state) {
@@ -109,9 +109,9 @@ static void test_finite_size_factor_of_is_of_a_liquid_in_the_plane(void **state)
     const struct box square = {2, {30, 30, 1}};
     const double g[] = {1, 1, 1}, error[] = {0, 0, 0};
     const struct rdf_bins few = {0, 1, 3};
-    assert_close(finite_size_factor_of(&few, g, error, &square, &one, 0, 100, 50),
-                 finite_size_factor(0, 100, 50), 0);
-    assert_identical(finite_size_factor_of(&few, g, error, &square, &one, 0, 100, 100), 1.0);
+    assert_close(mf_finite_size_factor_of(&few, g, error, &square, &one, 0, 100, 50),
+                 mf_finite_size_factor(0, 100, 50), 0);
+    assert_identical(mf_finite_size_factor_of(&few, g, error, &square, &one, 0, 100, 100), 1.0);
 }
 
 int main(void) {

@@ -20,10 +20,10 @@ static void test_force_covariance_equals_a_sum_over_all_pairs(void **state) {
     struct force_covariance covariance;
     double products[BINS] = {0}, pairs[BINS] = {0}, kappa[BINS], error[BINS];
     fluid_soft_discs(&fluid, 100, 0.03);
-    assert_ok(simulation_init(&simulation, &fluid.setup, NULL));
-    assert_ok(force_covariance_init(&covariance, &plan, &simulation, 1));
-    assert_ok(simulation_run(&simulation, 50));
-    force_covariance_sample(&covariance, &simulation);
+    assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
+    assert_ok(mf_force_covariance_init(&covariance, &plan, &simulation, 1));
+    assert_ok(mf_simulation_run(&simulation, 50));
+    mf_force_covariance_sample(&covariance, &simulation);
     const struct particles *p = &simulation.particles;
     for (size_t i = 0; i < p->count; i++)
         for (size_t j = 0; j < i; j++) {
@@ -36,7 +36,7 @@ static void test_force_covariance_equals_a_sum_over_all_pairs(void **state) {
                 p->force[0][i] * p->force[0][j] + p->force[1][i] * p->force[1][j];
             pairs[(int)(r * BINS)]++;
         }
-    force_covariance_result(&covariance, kappa, error);
+    mf_force_covariance_result(&covariance, kappa, error);
     for (int bin = 0; bin < BINS; bin++) {
         if (pairs[bin] > 0)
             assert_close_relative(kappa[bin], -0.03 * products[bin] / pairs[bin], 1e-9);
@@ -44,8 +44,8 @@ static void test_force_covariance_equals_a_sum_over_all_pairs(void **state) {
             assert_true(isnan(kappa[bin]));
         assert_true(isnan(error[bin])); // of one sample
     }
-    force_covariance_clear(&covariance);
-    simulation_clear(&simulation);
+    mf_force_covariance_clear(&covariance);
+    mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
 }
 
@@ -57,7 +57,7 @@ static void test_force_covariance_extrapolate_removes_what_grows_with_the_time_s
                                 {a[0] + 0.06 * b[0], a[1] + 0.06 * b[1]}};
     const double error[2][2] = {{0.2, 0}, {0.1, 0.3}};
     double squared[2], squared_error[2];
-    force_covariance_extrapolate(time_step, (const double *const[]){kappa[0], kappa[1]},
+    mf_force_covariance_extrapolate(time_step, (const double *const[]){kappa[0], kappa[1]},
                                  (const double *const[]){error[0], error[1]}, 2, squared,
                                  squared_error);
     for (int k = 0; k < 2; k++) {
@@ -72,26 +72,26 @@ static void test_force_covariance_init_refuses_where_it_would_mean_nothing(void 
     struct simulation simulation;
     struct force_covariance covariance;
     fluid_groot_warren(&fluid, 100, 0.03);
-    assert_ok(simulation_init(&simulation, &fluid.setup, NULL));
+    assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
     const struct force_covariance_plan far = {.range = 1.01, .bins = BINS};
-    assert_fails(force_covariance_init(&covariance, &far, &simulation, 1), STATUS_BAD_INPUT,
+    assert_fails(mf_force_covariance_init(&covariance, &far, &simulation, 1), STATUS_BAD_INPUT,
                  "the range 1.01 exceeds 1");
-    simulation_clear(&simulation);
-    for (size_t k = 0; integrator_list[k]; k++) {
-        fluid.setup.integrator = integrator_list[k];
-        if (!integrator_list[k]->friction || !integrator_list[k]->dissipative)
+    mf_simulation_clear(&simulation);
+    for (size_t k = 0; mf_integrator_list[k]; k++) {
+        fluid.setup.integrator = mf_integrator_list[k];
+        if (!mf_integrator_list[k]->friction || !mf_integrator_list[k]->dissipative)
             continue;
-        assert_ok(simulation_init(&simulation, &fluid.setup, NULL));
-        assert_fails(force_covariance_init(&covariance, &plan, &simulation, 1), STATUS_BAD_INPUT,
+        assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
+        assert_fails(mf_force_covariance_init(&covariance, &plan, &simulation, 1), STATUS_BAD_INPUT,
                      "splits friction and noise off the forces");
-        simulation_clear(&simulation);
+        mf_simulation_clear(&simulation);
     }
-    fluid.setup.integrator = &velocity_verlet;
+    fluid.setup.integrator = &mf_velocity_verlet;
     fluid.setup.weight = NULL;
-    assert_ok(simulation_init(&simulation, &fluid.setup, NULL));
-    assert_fails(force_covariance_init(&covariance, &plan, &simulation, 1), STATUS_BAD_INPUT,
+    assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
+    assert_fails(mf_force_covariance_init(&covariance, &plan, &simulation, 1), STATUS_BAD_INPUT,
                  "no dissipative weight");
-    simulation_clear(&simulation);
+    mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
 }
 

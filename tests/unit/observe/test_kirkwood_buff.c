@@ -24,10 +24,10 @@ static struct kirkwood_buff integrate(double (*of)(double), double range, const 
     static double g[BINS], error[BINS];
     const struct rdf_bins bins = {0, range / BINS, BINS};
     for (size_t k = 0; k < BINS; k++) {
-        g[k] = of(rdf_bins_centre(&bins, k));
+        g[k] = of(mf_rdf_bins_centre(&bins, k));
         error[k] = own_error;
     }
-    return kirkwood_buff_integrate(&bins, g, error, box, count);
+    return mf_kirkwood_buff_integrate(&bins, g, error, box, count);
 }
 
 static void test_kirkwood_buff_is_the_polynomial_of_a_hole(void **state) {
@@ -61,8 +61,8 @@ static void test_kirkwood_buff_takes_out_the_finite_size(void **state) {
     const struct rdf_bins bins = {0, 5.0 / BINS, BINS};
     const double infinite = integrate(hole, 5, &huge, 100, 0).integral;
     for (size_t k = 0; k < BINS; k++)
-        g[k] = hole(rdf_bins_centre(&bins, k)) - infinite / (12.0 * 12 * 12);
-    const struct kirkwood_buff found = kirkwood_buff_integrate(&bins, g, error, &box, count);
+        g[k] = hole(mf_rdf_bins_centre(&bins, k)) - infinite / (12.0 * 12 * 12);
+    const struct kirkwood_buff found = mf_kirkwood_buff_integrate(&bins, g, error, &box, count);
     assert_close_relative(found.integral, infinite, 1e-9);
     assert_close(found.compressibility, 1 + 3000 / 1728.0 * infinite, 1e-9);
 }
@@ -71,7 +71,7 @@ static void test_kirkwood_buff_error_is_that_of_independent_bins(void **state) {
     (void)state;
     const struct rdf_bins bins = {0, 1, 2};
     const double g[] = {0.5, 1.2}, error[] = {0.1, NAN};
-    const struct kirkwood_buff found = kirkwood_buff_integrate(&bins, g, error, &huge, 1000);
+    const struct kirkwood_buff found = mf_kirkwood_buff_integrate(&bins, g, error, &huge, 1000);
     const double first =
         4 * M_PI * 8 *
         (0.125 / 3 - 23.0 / 48 * pow(0.5, 6) + 3.0 / 28 * pow(0.5, 7) + 9.0 / 64 * pow(0.5, 8));

@@ -14,33 +14,33 @@ static const struct box cube = {3, {5, 5, 5}};
 static void test_maxwell_probability_is_that_of_tables(void **state) {
     (void)state;
     const double n = 1e12, root = 1e6;
-    assert_close(maxwell_probability(0.828 / root, n), 0.4994, 0.0002);
-    assert_close(maxwell_probability(1.224 / root, n), 0.1000, 0.0002);
-    assert_close(maxwell_probability(1.358 / root, n), 0.0500, 0.0001);
-    assert_close(maxwell_probability(1.628 / root, n), 0.0100, 0.0001);
-    assert_close(maxwell_probability(0, n), 1, 0);
-    assert_close(maxwell_probability(0.1 / root, n), 1, 1e-12);
+    assert_close(mf_maxwell_probability(0.828 / root, n), 0.4994, 0.0002);
+    assert_close(mf_maxwell_probability(1.224 / root, n), 0.1000, 0.0002);
+    assert_close(mf_maxwell_probability(1.358 / root, n), 0.0500, 0.0001);
+    assert_close(mf_maxwell_probability(1.628 / root, n), 0.0100, 0.0001);
+    assert_close(mf_maxwell_probability(0, n), 1, 0);
+    assert_close(mf_maxwell_probability(0.1 / root, n), 1, 1e-12);
     // Both series, where they meet.
-    assert_close(maxwell_probability(0.999999 / root, n), maxwell_probability(1.000001 / root, n),
+    assert_close(mf_maxwell_probability(0.999999 / root, n), mf_maxwell_probability(1.000001 / root, n),
                  1e-5);
     // Ten numbers: the exact critical value at 5 % is 0.409.
-    assert_close(maxwell_probability(0.409, 10), 0.05, 0.002);
+    assert_close(mf_maxwell_probability(0.409, 10), 0.05, 0.002);
 }
 
 static double test_velocities(double drawn_at, double tested_at, uint64_t seed) {
     struct particles particles;
     struct maxwell maxwell;
-    assert_ok(particles_init(&particles, &cube, PARTICLES));
-    assert_ok(maxwell_init(&maxwell));
+    assert_ok(mf_particles_init(&particles, &cube, PARTICLES));
+    assert_ok(mf_maxwell_init(&maxwell));
     for (uint64_t step = 0; step < 3; step++) {
-        particles_draw_velocities(&particles, drawn_at,
-                                  rng_child_seed(seed, RNG_INITIAL, 1, (uint32_t)step));
-        maxwell_sample(&maxwell, &particles, tested_at, seed, step);
+        mf_particles_draw_velocities(&particles, drawn_at,
+                                  mf_rng_child_seed(seed, RNG_INITIAL, 1, (uint32_t)step));
+        mf_maxwell_sample(&maxwell, &particles, tested_at, seed, step);
     }
-    const struct maxwell_summary s = maxwell_result(&maxwell);
+    const struct maxwell_summary s = mf_maxwell_result(&maxwell);
     assert_identical(s.numbers, 3.0 * 3 * PARTICLES);
-    maxwell_clear(&maxwell);
-    particles_clear(&particles);
+    mf_maxwell_clear(&maxwell);
+    mf_particles_clear(&particles);
     return s.probability;
 }
 
@@ -73,11 +73,11 @@ static void test_maxwell_p_value_is_small_when_the_temperature_is_another(void *
 static void test_maxwell_has_no_p_value_when_nothing_was_sampled(void **state) {
     (void)state;
     struct maxwell maxwell;
-    assert_ok(maxwell_init(&maxwell));
-    const struct maxwell_summary s = maxwell_result(&maxwell);
+    assert_ok(mf_maxwell_init(&maxwell));
+    const struct maxwell_summary s = mf_maxwell_result(&maxwell);
     assert_identical(s.numbers, 0.0);
     assert_true(isnan(s.statistic) && isnan(s.probability));
-    maxwell_clear(&maxwell);
+    mf_maxwell_clear(&maxwell);
 }
 
 int main(void) {

@@ -25,9 +25,9 @@ struct curves {
 static void fly(struct fluid *fluid, struct simulation *simulation, int dimensions, double drift) {
     fluid_ideal_gas(fluid, dimensions, PARTICLES, 0.02);
     fluid->setup.weight = NULL;
-    fluid->setup.integrator = &velocity_verlet;
+    fluid->setup.integrator = &mf_velocity_verlet;
     fluid->setup.temperature_limit = 1e4;
-    assert_ok(simulation_init(simulation, &fluid->setup, NULL));
+    assert_ok(mf_simulation_init(simulation, &fluid->setup, NULL));
     for (int d = 0; d < dimensions; d++)
         for (size_t k = 0; k < PARTICLES; k++)
             simulation->particles.velocity[d][k] += drift * (1 - 3 * d);
@@ -38,11 +38,11 @@ static struct motion_summary measure(struct simulation *simulation, struct motio
     const struct measure_plan when = {.equilibration = 30, .samples = 100, .every = 13};
     const struct motion_curves curves = {c->msd, c->msd_error, c->vacf, c->vacf_error};
     double temperature;
-    assert_ok(motion_init(motion, &plan, simulation, when.equilibration, 1300));
-    assert_ok(measure_equilibrate(simulation, &when, &temperature, NULL));
-    assert_ok(measure_sample(simulation, &when, (struct measure_targets){.motion = motion}, NULL));
+    assert_ok(mf_motion_init(motion, &plan, simulation, when.equilibration, 1300));
+    assert_ok(mf_measure_equilibrate(simulation, &when, &temperature, NULL));
+    assert_ok(mf_measure_sample(simulation, &when, (struct measure_targets){.motion = motion}, NULL));
     assert_int_equal(simulation->step, 1330);
-    return motion_result(motion, &curves);
+    return mf_motion_result(motion, &curves);
 }
 
 static void assert_free_flight(int dimensions, double drift) {
@@ -52,7 +52,7 @@ static void assert_free_flight(int dimensions, double drift) {
     struct curves c;
     fly(&fluid, &simulation, dimensions, drift);
     const double square =
-        dimensions * (1 - 1.0 / PARTICLES) * particles_temperature(&simulation.particles);
+        dimensions * (1 - 1.0 / PARTICLES) * mf_particles_temperature(&simulation.particles);
     const struct motion_summary s = measure(&simulation, &motion, &c);
     for (int lag = 0; lag <= LAGS; lag++) {
         const double t = lag * 5 * 0.02;
@@ -72,8 +72,8 @@ static void assert_free_flight(int dimensions, double drift) {
         most = abs(simulation.particles.image[0][k]) > most ? abs(simulation.particles.image[0][k])
                                                             : most;
     assert_true(most >= 5);
-    motion_clear(&motion);
-    simulation_clear(&simulation);
+    mf_motion_clear(&motion);
+    mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
 }
 
@@ -96,17 +96,17 @@ static void test_motion_takes_only_samples_of_whole_windows(void **state) {
     struct motion motion;
     fly(&fluid, &simulation, 3, 0);
     // 260 samples after the first: windows of 40 begin at 0, 7, … 217, the last ends at 257.
-    assert_ok(motion_init(&motion, &plan, &simulation, 30, 1300));
+    assert_ok(mf_motion_init(&motion, &plan, &simulation, 30, 1300));
     assert_int_equal(motion.blocks * motion.each, 32);
-    assert_int_equal(motion_due(&motion), 30);
+    assert_int_equal(mf_motion_due(&motion), 30);
     for (int sample = 0; sample <= 257; sample++) {
-        assert_int_equal(motion_due(&motion), 30 + 5 * sample);
-        motion_sample(&motion, &simulation);
+        assert_int_equal(mf_motion_due(&motion), 30 + 5 * sample);
+        mf_motion_sample(&motion, &simulation);
     }
-    assert_true(motion_due(&motion) == INT64_MAX);
-    assert_close(motion_result(&motion, NULL).msd, 0, rounding);
-    motion_clear(&motion);
-    simulation_clear(&simulation);
+    assert_true(mf_motion_due(&motion) == INT64_MAX);
+    assert_close(mf_motion_result(&motion, NULL).msd, 0, rounding);
+    mf_motion_clear(&motion);
+    mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
 }
 
@@ -116,16 +116,16 @@ static void test_motion_has_no_result_before_a_window_is_complete(void **state) 
     struct simulation simulation;
     struct motion motion;
     fly(&fluid, &simulation, 3, 0);
-    assert_ok(motion_init(&motion, &plan, &simulation, 0, 200));
-    assert_true(isnan(motion_result(&motion, NULL).msd));
+    assert_ok(mf_motion_init(&motion, &plan, &simulation, 0, 200));
+    assert_true(isnan(mf_motion_result(&motion, NULL).msd));
     for (int sample = 0; sample < LAGS; sample++)
-        motion_sample(&motion, &simulation);
-    assert_true(isnan(motion_result(&motion, NULL).green_kubo));
-    motion_sample(&motion, &simulation);
-    assert_true(motion_result(&motion, NULL).green_kubo > 0);
-    assert_identical(motion_result(&motion, NULL).green_kubo_error, 0.0);
-    motion_clear(&motion);
-    simulation_clear(&simulation);
+        mf_motion_sample(&motion, &simulation);
+    assert_true(isnan(mf_motion_result(&motion, NULL).green_kubo));
+    mf_motion_sample(&motion, &simulation);
+    assert_true(mf_motion_result(&motion, NULL).green_kubo > 0);
+    assert_identical(mf_motion_result(&motion, NULL).green_kubo_error, 0.0);
+    mf_motion_clear(&motion);
+    mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
 }
 
@@ -135,10 +135,10 @@ static void test_motion_init_refuses_when_there_is_no_time_for_a_window(void **s
     struct simulation simulation;
     struct motion motion;
     fly(&fluid, &simulation, 3, 0);
-    assert_fails(motion_init(&motion, &plan, &simulation, 0, 199), STATUS_BAD_INPUT,
+    assert_fails(mf_motion_init(&motion, &plan, &simulation, 0, 199), STATUS_BAD_INPUT,
                  "40 lags of 5 steps are longer than the 199 steps");
-    motion_clear(&motion);
-    simulation_clear(&simulation);
+    mf_motion_clear(&motion);
+    mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
 }
 
@@ -161,9 +161,9 @@ static struct motion_summary of_decay(double h, double msd_slope) {
         products[k] = exp(-h * k);
         squares[k] = 2 * msd_slope * h * k;
     }
-    assert_ok(maxwell_init(&motion.maxwell));
-    const struct motion_summary s = motion_result(&motion, NULL);
-    maxwell_clear(&motion.maxwell);
+    assert_ok(mf_maxwell_init(&motion.maxwell));
+    const struct motion_summary s = mf_motion_result(&motion, NULL);
+    mf_maxwell_clear(&motion.maxwell);
     return s;
 }
 
@@ -172,11 +172,11 @@ static void test_green_kubo_knows_what_its_sampling_costs(void **state) {
     (void)state;
     struct motion_summary fine = of_decay(0.2, 1), coarse = of_decay(2, 1);
     assert_close_relative(fine.green_kubo_sampling, fabs(fine.green_kubo - 1), 0.05);
-    assert_ok(motion_judge(&fine));
+    assert_ok(mf_motion_judge(&fine));
     assert_true(coarse.green_kubo > 1.3);
     assert_close_relative(coarse.green_kubo_sampling, fabs(coarse.green_kubo - 1), 0.3);
-    assert_true(motion_green_kubo_uncertainty(&coarse) > 0.25);
-    assert_fails(motion_judge(&coarse), STATUS_UNCONVERGED, "the VACF falls by 86 %");
+    assert_true(mf_motion_green_kubo_uncertainty(&coarse) > 0.25);
+    assert_fails(mf_motion_judge(&coarse), STATUS_UNCONVERGED, "the VACF falls by 86 %");
 }
 
 /// A window that ends at 1.2 relaxation times leaves out exp(−1.2) of D.
@@ -185,18 +185,18 @@ static void test_green_kubo_knows_what_its_window_leaves_out(void **state) {
     const struct motion_summary s = of_decay(0.02, 1);
     assert_close(1 - s.green_kubo, exp(-1.2), 1e-3);
     assert_true(s.green_kubo_truncation > 0.5 * exp(-1.2));
-    assert_true(motion_green_kubo_uncertainty(&s) < 2 * exp(-1.2));
+    assert_true(mf_motion_green_kubo_uncertainty(&s) < 2 * exp(-1.2));
 }
 
 static void test_judge_tells_when_both_diffusion_coefficients_disagree(void **state) {
     (void)state;
     struct motion_summary s = of_decay(0.2, 1.5);
-    assert_ok(motion_judge(&s)); // one window: the errors are not known
+    assert_ok(mf_motion_judge(&s)); // one window: the errors are not known
     s.msd_error = s.green_kubo_error = 0.01;
     assert_close(s.msd, 1.5, 1e-9);
-    assert_fails(motion_judge(&s), STATUS_UNCONVERGED, "1.5 by the MSD and 1 by Green and Kubo");
+    assert_fails(mf_motion_judge(&s), STATUS_UNCONVERGED, "1.5 by the MSD and 1 by Green and Kubo");
     s.msd_error = 0.2;
-    assert_ok(motion_judge(&s));
+    assert_ok(mf_motion_judge(&s));
 }
 
 int main(void) {

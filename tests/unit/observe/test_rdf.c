@@ -15,11 +15,11 @@ static const struct box cube = {3, {6, 7, 8}}, square = {2, {6, 7, 1}};
 static void test_rdf_bins_are_equal_when_they_begin_above_zero(void **state) {
     (void)state;
     const struct rdf_bins bins = {0.5, 0.25, 6};
-    assert_close(rdf_bins_edge(&bins, 0), 0.5, rounding);
-    assert_close(rdf_bins_edge(&bins, 2), 1, rounding);
-    assert_close(rdf_bins_centre(&bins, 0), 0.625, rounding);
-    assert_close(rdf_bins_centre(&bins, 5), 1.875, rounding);
-    assert_close(rdf_bins_range(&bins), 2, rounding);
+    assert_close(mf_rdf_bins_edge(&bins, 0), 0.5, rounding);
+    assert_close(mf_rdf_bins_edge(&bins, 2), 1, rounding);
+    assert_close(mf_rdf_bins_centre(&bins, 0), 0.625, rounding);
+    assert_close(mf_rdf_bins_centre(&bins, 5), 1.875, rounding);
+    assert_close(mf_rdf_bins_range(&bins), 2, rounding);
 }
 
 static void test_rdf_ideal_pairs_are_exact_when_a_bin_is_wide(void **state) {
@@ -27,10 +27,10 @@ static void test_rdf_ideal_pairs_are_exact_when_a_bin_is_wide(void **state) {
     const double pi = acos(-1);
     const struct rdf_bins bins = {1, 1, 2};
     // 10 particles have 45 pairs; shells 1 to 2 and 2 to 3 of a sphere, and of a disc.
-    assert_close(rdf_ideal_pairs(&bins, 0, &cube, 10), 45 * 4 * pi / 3 * 7 / 336, rounding);
-    assert_close(rdf_ideal_pairs(&bins, 1, &cube, 10), 45 * 4 * pi / 3 * 19 / 336, rounding);
-    assert_close(rdf_ideal_pairs(&bins, 0, &square, 10), 45 * pi * 3 / 42, rounding);
-    assert_close(rdf_ideal_pairs(&bins, 1, &square, 10), 45 * pi * 5 / 42, rounding);
+    assert_close(mf_rdf_ideal_pairs(&bins, 0, &cube, 10), 45 * 4 * pi / 3 * 7 / 336, rounding);
+    assert_close(mf_rdf_ideal_pairs(&bins, 1, &cube, 10), 45 * 4 * pi / 3 * 19 / 336, rounding);
+    assert_close(mf_rdf_ideal_pairs(&bins, 0, &square, 10), 45 * pi * 3 / 42, rounding);
+    assert_close(mf_rdf_ideal_pairs(&bins, 1, &square, 10), 45 * pi * 5 / 42, rounding);
 }
 
 static void test_rdf_ideal_pairs_fill_the_range_when_added(void **state) {
@@ -41,7 +41,7 @@ static void test_rdf_ideal_pairs_fill_the_range_when_added(void **state) {
     for (int b = 0; b < 2; b++) {
         double sum = 0;
         for (size_t k = 0; k < bins.count; k++)
-            sum += rdf_ideal_pairs(&bins, k, boxes[b], 2);
+            sum += mf_rdf_ideal_pairs(&bins, k, boxes[b], 2);
         assert_close(sum, b == 0 ? ball : disc, rounding);
     }
 }
@@ -50,20 +50,20 @@ static void test_rdf_ideal_pairs_are_of_the_kind_when_types_differ(void **state)
     (void)state;
     const struct rdf_bins bins = {0.5, 0.25, 6};
     const struct composition binary = {.types = 2, .count = {10, 30}};
-    const double whole = rdf_ideal_pairs(&bins, 3, &cube, 40);
+    const double whole = mf_rdf_ideal_pairs(&bins, 3, &cube, 40);
     double sum = 0;
     for (int pair = 0; pair < 3; pair++)
-        sum += rdf_ideal_pairs_of(&bins, 3, &cube, &binary, pair);
+        sum += mf_rdf_ideal_pairs_of(&bins, 3, &cube, &binary, pair);
     assert_close(sum, whole, rounding);
-    assert_close(rdf_ideal_pairs_of(&bins, 3, &cube, &binary, 1), whole * 300 / 780, rounding);
-    assert_close(rdf_ideal_pairs_of(&bins, 3, &cube, &binary, 2),
-                 rdf_ideal_pairs(&bins, 3, &cube, 30), rounding);
+    assert_close(mf_rdf_ideal_pairs_of(&bins, 3, &cube, &binary, 1), whole * 300 / 780, rounding);
+    assert_close(mf_rdf_ideal_pairs_of(&bins, 3, &cube, &binary, 2),
+                 mf_rdf_ideal_pairs(&bins, 3, &cube, 30), rounding);
 }
 
 /// Particles at given x, the other coordinates 1, with the list of a box of `dimensions`.
 static void place(struct particles *particles, const struct box *box, const double *x,
                   size_t count) {
-    assert_ok(particles_init(particles, box, count));
+    assert_ok(mf_particles_init(particles, box, count));
     for (int d = 0; d < box->dimensions; d++)
         for (size_t k = 0; k < count; k++)
             particles->position[d][k] = d == 0 ? x[k] : 1;
@@ -79,22 +79,22 @@ static void test_rdf_result_is_of_the_kind_when_types_differ(void **state) {
     struct rdf rdf;
     double g[6], error[6], rmse, spread;
     place(&particles, &cube, x, 4);
-    assert_ok(rdf_init_mixture(&rdf, &bins, &cube, &composition, 0, 3));
+    assert_ok(mf_rdf_init_mixture(&rdf, &bins, &cube, &composition, 0, 3));
     for (int sample = 0; sample < 3; sample++)
-        assert_ok(rdf_sample(&rdf, &particles, NULL));
-    assert_ok(rdf_result(&rdf, 1, g, error));
+        assert_ok(mf_rdf_sample(&rdf, &particles, NULL));
+    assert_ok(mf_rdf_result(&rdf, 1, g, error));
     for (int k = 0; k < 6; k++) {
         assert_close(
-            g[k], pairs[k] / rdf_ideal_pairs_of(&bins, (size_t)k % 2, &cube, &composition, k / 2),
+            g[k], pairs[k] / mf_rdf_ideal_pairs_of(&bins, (size_t)k % 2, &cube, &composition, k / 2),
             rounding * (1 + g[k]));
         assert_close(error[k], 0, rounding);
         g[k] += k == 5 ? 6 : 0;
     }
-    assert_ok(rdf_distance(&rdf, 1, g, &rmse, &spread));
+    assert_ok(mf_rdf_distance(&rdf, 1, g, &rmse, &spread));
     assert_close(rmse, sqrt(6), rounding * 100);
     assert_close(spread, 0, rounding * 100);
-    rdf_clear(&rdf);
-    particles_clear(&particles);
+    mf_rdf_clear(&rdf);
+    mf_particles_clear(&particles);
 }
 
 static void test_rdf_result_is_normalised_when_pairs_are_known(void **state) {
@@ -108,17 +108,17 @@ static void test_rdf_result_is_normalised_when_pairs_are_known(void **state) {
         struct rdf rdf;
         double g[2], error[2];
         place(&particles, boxes[b], x, 3);
-        assert_ok(rdf_init(&rdf, &bins, boxes[b], 3, 0, 3));
+        assert_ok(mf_rdf_init(&rdf, &bins, boxes[b], 3, 0, 3));
         for (int sample = 0; sample < 3; sample++)
-            assert_ok(rdf_sample(&rdf, &particles, NULL));
-        assert_ok(rdf_result(&rdf, 1, g, error));
+            assert_ok(mf_rdf_sample(&rdf, &particles, NULL));
+        assert_ok(mf_rdf_result(&rdf, 1, g, error));
         for (size_t k = 0; k < 2; k++) {
             const double pairs = k == 0 ? 2 : 1;
-            assert_close(g[k], pairs / rdf_ideal_pairs(&bins, k, boxes[b], 3), rounding);
+            assert_close(g[k], pairs / mf_rdf_ideal_pairs(&bins, k, boxes[b], 3), rounding);
             assert_close(error[k], 0, rounding);
         }
-        rdf_clear(&rdf);
-        particles_clear(&particles);
+        mf_rdf_clear(&rdf);
+        mf_particles_clear(&particles);
     }
 }
 
@@ -126,11 +126,11 @@ static void test_rdf_init_refuses_when_the_range_exceeds_half_the_box(void **sta
     (void)state;
     struct rdf rdf;
     const struct rdf_bins bins = {0, 0.4, 8};
-    assert_fails(rdf_init(&rdf, &bins, &cube, 10, 1, 5), STATUS_BAD_INPUT, "RDF");
+    assert_fails(mf_rdf_init(&rdf, &bins, &cube, 10, 1, 5), STATUS_BAD_INPUT, "RDF");
     // The simulation's list would have been refused already.
-    assert_ok(rdf_init(&rdf, &bins, &cube, 10, 3.2, 5));
+    assert_ok(mf_rdf_init(&rdf, &bins, &cube, 10, 3.2, 5));
     assert_false(rdf.needs_own_list);
-    rdf_clear(&rdf);
+    mf_rdf_clear(&rdf);
 }
 
 // The errors are tested on histograms of independent numbers with a known mean and scatter.
@@ -152,16 +152,16 @@ static double scatter(size_t k) {
 /// before.
 static void make_samples(struct rdf *rdf, uint32_t trial, uint32_t replica, double phi) {
     double deviation[BINS] = {0};
-    assert_ok(rdf_init(rdf, &few_bins, &cube, MANY, 5, BLOCKS * EACH));
+    assert_ok(mf_rdf_init(rdf, &few_bins, &cube, MANY, 5, BLOCKS * EACH));
     assert_int_equal(rdf->blocks, BLOCKS);
     for (uint32_t sample = 0; sample < BLOCKS * EACH; sample++) {
         double normal[4] = {0};
         for (uint32_t k = 0; k < BINS; k++) {
             if (k % 4 == 0)
-                rng_normal4(rng_philox(9, RNG_INITIAL, trial, replica * BINS + k, sample), normal);
+                mf_rng_normal4(mf_rng_philox(9, RNG_INITIAL, trial, replica * BINS + k, sample), normal);
             deviation[k] = sample == 0 ? normal[k % 4]
                                        : phi * deviation[k] + sqrt(1 - phi * phi) * normal[k % 4];
-            rdf->histogram[sample / EACH * BINS + k] += rdf_ideal_pairs(&few_bins, k, &cube, MANY) *
+            rdf->histogram[sample / EACH * BINS + k] += mf_rdf_ideal_pairs(&few_bins, k, &cube, MANY) *
                                                         true_g(k) * (1 + scatter(k) * deviation[k]);
         }
         rdf->block_samples[sample / EACH] += 1;
@@ -181,10 +181,10 @@ static void test_rdf_errors_cover_the_truth_when_samples_are_independent(void **
         struct rdf rdf;
         double g[BINS], error[BINS];
         make_samples(&rdf, trial, 0, 0);
-        assert_ok(rdf_result(&rdf, 1, g, error));
+        assert_ok(mf_rdf_result(&rdf, 1, g, error));
         for (size_t k = 0; k < BINS; k++)
             covered += fabs(g[k] - true_g(k)) < 2 * error[k];
-        rdf_clear(&rdf);
+        mf_rdf_clear(&rdf);
     }
     assert_close(covered / (TRIALS * BINS), covered_share, covered_band);
 }
@@ -202,13 +202,13 @@ static void check_errors(double phi, double scale) {
         double g[BINS], error[BINS];
         for (uint32_t r = 0; r < REPLICAS; r++)
             make_samples(&rdf[r], trial, r, phi);
-        assert_ok(rdf_result(rdf, REPLICAS, g, error));
+        assert_ok(mf_rdf_result(rdf, REPLICAS, g, error));
         for (size_t k = 0; k < BINS; k++) {
-            statistics_add(&spread[k], g[k]);
-            statistics_add(&squares[k], error[k] * error[k]);
+            mf_statistics_add(&spread[k], g[k]);
+            mf_statistics_add(&squares[k], error[k] * error[k]);
         }
         for (uint32_t r = 0; r < REPLICAS; r++)
-            rdf_clear(&rdf[r]);
+            mf_rdf_clear(&rdf[r]);
     }
     print_message("phi = %.1f: reported over exact error %.3f\n", phi,
                   sqrt(squares[0].mean / EACH / BLOCKS) * EACH * BLOCKS * sqrt(REPLICAS) /
@@ -251,12 +251,12 @@ static void test_rdf_distance_error_is_the_scatter_when_the_target_is_off(void *
         struct rdf rdf;
         double rmse, error, without_error;
         make_samples(&rdf, trial, 7, 0);
-        assert_ok(rdf_distance(&rdf, 1, target, &rmse, &error));
-        assert_ok(rdf_distance(&rdf, 1, target, &without_error, NULL));
+        assert_ok(mf_rdf_distance(&rdf, 1, target, &rmse, &error));
+        assert_ok(mf_rdf_distance(&rdf, 1, target, &without_error, NULL));
         assert_identical(rmse, without_error);
-        statistics_add(&spread, rmse);
-        statistics_add(&squares, error * error);
-        rdf_clear(&rdf);
+        mf_statistics_add(&spread, rmse);
+        mf_statistics_add(&squares, error * error);
+        mf_rdf_clear(&rdf);
     }
     assert_close(spread.mean, 0.3, 0.003);
     assert_close_relative(sqrt(squares.mean), sqrt(spread.squares / (TRIALS - 1)),
@@ -265,8 +265,8 @@ static void test_rdf_distance_error_is_the_scatter_when_the_target_is_off(void *
 
 static void test_rdf_rmse_is_the_root_mean_square_when_bins_differ(void **state) {
     (void)state;
-    assert_close(rdf_rmse((double[]){1, 2, 3}, (double[]){1, 0, 4}, 3), sqrt(5.0 / 3), rounding);
-    assert_identical(rdf_rmse((double[]){1, 2}, (double[]){1, 2}, 2), 0.0);
+    assert_close(mf_rdf_rmse((double[]){1, 2, 3}, (double[]){1, 0, 4}, 3), sqrt(5.0 / 3), rounding);
+    assert_identical(mf_rdf_rmse((double[]){1, 2}, (double[]){1, 2}, 2), 0.0);
 }
 
 static void test_rdf_error_is_zero_when_there_is_one_block(void **state) {
@@ -277,15 +277,15 @@ static void test_rdf_error_is_zero_when_there_is_one_block(void **state) {
     struct rdf rdf;
     double g[2], error[2], rmse, rmse_error;
     place(&particles, &cube, x, 3);
-    assert_ok(rdf_init(&rdf, &bins, &cube, 3, 0, 1));
-    assert_ok(rdf_sample(&rdf, &particles, NULL));
-    assert_ok(rdf_result(&rdf, 1, g, error));
+    assert_ok(mf_rdf_init(&rdf, &bins, &cube, 3, 0, 1));
+    assert_ok(mf_rdf_sample(&rdf, &particles, NULL));
+    assert_ok(mf_rdf_result(&rdf, 1, g, error));
     assert_true(g[0] > 0);
     assert_identical(error[0], 0.0);
-    assert_ok(rdf_distance(&rdf, 1, (double[]){0, 0}, &rmse, &rmse_error));
+    assert_ok(mf_rdf_distance(&rdf, 1, (double[]){0, 0}, &rmse, &rmse_error));
     assert_identical(rmse_error, 0.0);
-    rdf_clear(&rdf);
-    particles_clear(&particles);
+    mf_rdf_clear(&rdf);
+    mf_particles_clear(&particles);
 }
 
 int main(void) {

@@ -28,11 +28,11 @@ static void make_pair(struct fluid *fluid, struct simulation *simulation, double
         fluid->setup.box.length[d] = 3;
     fluid->setup.placement.kind = PLACEMENT_FILE;
     fluid->setup.weight = NULL;
-    fluid->setup.integrator = &velocity_verlet;
+    fluid->setup.integrator = &mf_velocity_verlet;
     fluid->setup.temperature_limit = 1e6;
-    assert_ok(simulation_init(simulation, &fluid->setup, &start));
+    assert_ok(mf_simulation_init(simulation, &fluid->setup, &start));
     simulation->wants = PAIR_FORCES_AND_SUMS;
-    assert_ok(simulation_run(simulation, 1));
+    assert_ok(mf_simulation_run(simulation, 1));
 }
 
 static void test_thermodynamics_sample_is_exact_when_there_are_two_particles(void **state) {
@@ -41,9 +41,9 @@ static void test_thermodynamics_sample_is_exact_when_there_are_two_particles(voi
     struct simulation simulation;
     struct thermodynamics thermodynamics;
     make_pair(&fluid, &simulation, 2, -1);
-    assert_ok(thermodynamics_init(&thermodynamics, 1));
-    assert_ok(thermodynamics_sample(&thermodynamics, &simulation));
-    const struct thermodynamics_summary s = thermodynamics_result(&thermodynamics, 1);
+    assert_ok(mf_thermodynamics_init(&thermodynamics, 1));
+    assert_ok(mf_thermodynamics_sample(&thermodynamics, &simulation));
+    const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
     // Velocities about their mean are ±1.5: Σ v² = 4.5 with 3 degrees of freedom.
     assert_close(s.temperature, 1.5, single_rounding);
     // Φ = 12.5 · 0.5² = 3.125, F = 12.5, virial 6.25.
@@ -52,8 +52,8 @@ static void test_thermodynamics_sample_is_exact_when_there_are_two_particles(voi
     // Σ F² = 2 · 12.5²; Σ ∇²U = 2 (25 − 2 · 12.5 / 0.5) < 0.
     assert_close(s.temperature_configurational, 312.5 / -50, 100 * single_rounding);
     assert_identical(s.temperature_error, 0.0);
-    thermodynamics_clear(&thermodynamics);
-    simulation_clear(&simulation);
+    mf_thermodynamics_clear(&thermodynamics);
+    mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
 }
 
@@ -64,9 +64,9 @@ test_thermodynamics_pressure_takes_the_set_temperature_when_there_is_friction(vo
     struct simulation simulation;
     make_pair(&fluid, &simulation, 2, -1);
     simulation.law.weight = &fluid.weight;
-    assert_close(simulation_pressure(&simulation), 2 / 27.0 * 1 + 6.25 / (3 * 27),
+    assert_close(mf_simulation_pressure(&simulation), 2 / 27.0 * 1 + 6.25 / (3 * 27),
                  10 * single_rounding);
-    simulation_clear(&simulation);
+    mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
 }
 
@@ -77,28 +77,28 @@ test_thermodynamics_has_no_configurational_temperature_when_there_is_no_potentia
     struct simulation simulation;
     struct thermodynamics thermodynamics;
     fluid_ideal_gas(&fluid, 2, 50, 0.01);
-    assert_ok(simulation_init(&simulation, &fluid.setup, NULL));
+    assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
     simulation.wants = PAIR_FORCES_AND_SUMS;
-    assert_ok(simulation_run(&simulation, 1));
-    assert_ok(thermodynamics_init(&thermodynamics, 1));
-    assert_ok(thermodynamics_sample(&thermodynamics, &simulation));
-    const struct thermodynamics_summary s = thermodynamics_result(&thermodynamics, 1);
+    assert_ok(mf_simulation_run(&simulation, 1));
+    assert_ok(mf_thermodynamics_init(&thermodynamics, 1));
+    assert_ok(mf_thermodynamics_sample(&thermodynamics, &simulation));
+    const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
     assert_true(isnan(s.temperature_configurational));
     assert_close(s.pressure, 2, rounding);
     assert_close(s.potential_energy, 0, rounding);
-    thermodynamics_clear(&thermodynamics);
-    simulation_clear(&simulation);
+    mf_thermodynamics_clear(&thermodynamics);
+    mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
 }
 
 /// A series of independent normal numbers in place of each quantity, about 1, 2, 3, 8 and 4; the
 /// numerator of the configurational temperature moves with its denominator.
 static void make_series(struct thermodynamics *thermodynamics, uint32_t trial, uint32_t replica) {
-    assert_ok(thermodynamics_init(thermodynamics, SAMPLES));
+    assert_ok(mf_thermodynamics_init(thermodynamics, SAMPLES));
     for (uint32_t k = 0; k < SAMPLES; k++) {
         double a[4], b[4];
-        rng_normal4(rng_philox(3, RNG_INITIAL, trial, replica, 2 * k), a);
-        rng_normal4(rng_philox(3, RNG_INITIAL, trial, replica, 2 * k + 1), b);
+        mf_rng_normal4(mf_rng_philox(3, RNG_INITIAL, trial, replica, 2 * k), a);
+        mf_rng_normal4(mf_rng_philox(3, RNG_INITIAL, trial, replica, 2 * k + 1), b);
         double *here = thermodynamics->values + k;
         here[THERMODYNAMICS_TEMPERATURE * SAMPLES] = 1 + 0.1 * a[0];
         here[THERMODYNAMICS_POTENTIAL_ENERGY * SAMPLES] = 2 + 0.2 * a[1];
@@ -118,10 +118,10 @@ static void test_thermodynamics_series_are_kept_when_there_is_room_for_more(void
     double sum = 0;
     for (int k = 0; k < 7; k++)
         sum += energy[k];
-    assert_ptr_equal(thermodynamics_series(&thermodynamics, THERMODYNAMICS_POTENTIAL_ENERGY),
+    assert_ptr_equal(mf_thermodynamics_series(&thermodynamics, THERMODYNAMICS_POTENTIAL_ENERGY),
                      energy);
-    assert_close(thermodynamics_result(&thermodynamics, 1).potential_energy, sum / 7, rounding);
-    thermodynamics_clear(&thermodynamics);
+    assert_close(mf_thermodynamics_result(&thermodynamics, 1).potential_energy, sum / 7, rounding);
+    mf_thermodynamics_clear(&thermodynamics);
 }
 
 /// Errors of independent samples cover 95.4 %, and a little more for what the window leaves out;
@@ -135,14 +135,14 @@ static void test_thermodynamics_errors_cover_the_truth_when_samples_are_independ
         struct thermodynamics replicas[2];
         make_series(&replicas[0], trial, 0);
         make_series(&replicas[1], trial, 1);
-        const struct thermodynamics_summary s = thermodynamics_result(replicas, 2);
+        const struct thermodynamics_summary s = mf_thermodynamics_result(replicas, 2);
         temperature += fabs(s.temperature - 1) < 2 * s.temperature_error;
         energy += fabs(s.potential_energy - 2) < 2 * s.potential_energy_error;
         pressure += fabs(s.pressure - 3) < 2 * s.pressure_error;
         configurational +=
             fabs(s.temperature_configurational - 2) < 2 * s.temperature_configurational_error;
-        thermodynamics_clear(&replicas[0]);
-        thermodynamics_clear(&replicas[1]);
+        mf_thermodynamics_clear(&replicas[0]);
+        mf_thermodynamics_clear(&replicas[1]);
     }
     assert_close(temperature / TRIALS, covered_share, covered_band);
     assert_close(energy / TRIALS, covered_share, covered_band);
@@ -160,9 +160,9 @@ static void test_thermodynamics_errors_grow_when_samples_are_correlated(void **s
         double *series = thermodynamics.values + THERMODYNAMICS_TEMPERATURE * SAMPLES;
         for (size_t k = 0; k < SAMPLES; k++)
             series[k] = series[k / 10 * 10];
-        const double error = thermodynamics_result(&thermodynamics, 1).temperature_error;
-        statistics_add(&squares, error * error);
-        thermodynamics_clear(&thermodynamics);
+        const double error = mf_thermodynamics_result(&thermodynamics, 1).temperature_error;
+        mf_statistics_add(&squares, error * error);
+        mf_thermodynamics_clear(&thermodynamics);
     }
     // Twenty independent numbers are few: the window has to be found, too, and the mean square of
     // the errors comes out 15 % (of the error) too large.
@@ -178,27 +178,27 @@ static void test_judge_tells_when_a_temperature_is_off(void **state) {
                                        .temperature_error = 0.002,
                                        .temperature_configurational = 0.75,
                                        .temperature_configurational_error = 0.01};
-    assert_fails(thermodynamics_judge(&s, &fluid.setup), STATUS_UNSTABLE, "0.75 by the positions");
+    assert_fails(mf_thermodynamics_judge(&s, &fluid.setup), STATUS_UNSTABLE, "0.75 by the positions");
     s.temperature_configurational_error = 0.04; // it may be 0.9
-    assert_ok(thermodynamics_judge(&s, &fluid.setup));
+    assert_ok(mf_thermodynamics_judge(&s, &fluid.setup));
     s.temperature_configurational = 1.05;
     s.temperature = 1.12;
-    assert_fails(thermodynamics_judge(&s, &fluid.setup), STATUS_UNSTABLE, "1.12 by the velocities");
+    assert_fails(mf_thermodynamics_judge(&s, &fluid.setup), STATUS_UNSTABLE, "1.12 by the velocities");
     s.temperature_configurational = NAN;
     s.temperature = 1.02;
-    assert_ok(thermodynamics_judge(&s, &fluid.setup));
+    assert_ok(mf_thermodynamics_judge(&s, &fluid.setup));
     s.temperature = NAN;
-    assert_fails(thermodynamics_judge(&s, &fluid.setup), STATUS_UNSTABLE, "time_step");
+    assert_fails(mf_thermodynamics_judge(&s, &fluid.setup), STATUS_UNSTABLE, "time_step");
     // Without friction the two are held to each other.
     fluid.setup.weight = NULL;
     s.temperature = 1.4;
     s.temperature_configurational = 1.45;
     s.temperature_configurational_error = 0.01;
-    assert_ok(thermodynamics_judge(&s, &fluid.setup));
+    assert_ok(mf_thermodynamics_judge(&s, &fluid.setup));
     s.temperature_configurational = 1.1;
-    assert_fails(thermodynamics_judge(&s, &fluid.setup), STATUS_UNSTABLE, "1.1 by the positions");
+    assert_fails(mf_thermodynamics_judge(&s, &fluid.setup), STATUS_UNSTABLE, "1.1 by the positions");
     s.blocks = 4;
-    assert_ok(thermodynamics_judge(&s, &fluid.setup));
+    assert_ok(mf_thermodynamics_judge(&s, &fluid.setup));
     fluid_clear(&fluid);
 }
 
@@ -211,15 +211,15 @@ static void test_judge_of_a_fit_sees_a_few_percent_of_the_positions(void **state
                                        .temperature_error = 0.002,
                                        .temperature_configurational = 0.965,
                                        .temperature_configurational_error = 0.005};
-    assert_ok(thermodynamics_judge(&s, &fluid.setup));
-    assert_fails(thermodynamics_judge_fit(&s, &fluid.setup), STATUS_UNSTABLE, "-3.5 % off");
+    assert_ok(mf_thermodynamics_judge(&s, &fluid.setup));
+    assert_fails(mf_thermodynamics_judge_fit(&s, &fluid.setup), STATUS_UNSTABLE, "-3.5 % off");
     s.temperature_configurational_error = 0.013; // it may be chance
-    assert_ok(thermodynamics_judge_fit(&s, &fluid.setup));
+    assert_ok(mf_thermodynamics_judge_fit(&s, &fluid.setup));
     s.temperature_configurational = 1.02;
     s.temperature_configurational_error = 0.001; // sure, and little
-    assert_ok(thermodynamics_judge_fit(&s, &fluid.setup));
+    assert_ok(mf_thermodynamics_judge_fit(&s, &fluid.setup));
     s.temperature_configurational = NAN;
-    assert_ok(thermodynamics_judge_fit(&s, &fluid.setup));
+    assert_ok(mf_thermodynamics_judge_fit(&s, &fluid.setup));
     fluid_clear(&fluid);
 }
 

@@ -17,20 +17,20 @@ enum { GENES = 10, SEEDS = 20 };
 static double evaluations(const struct landscape *landscape, double step, int lost) {
     double sum = 0;
     int found = 0;
-    void *parameters = landscape_parameters(&cmaes_optimiser);
-    landscape_set(&cmaes_optimiser, parameters, "step", step);
-    landscape_set(&cmaes_optimiser, parameters, "rounds", 2000);
+    void *parameters = landscape_parameters(&mf_cmaes_optimiser);
+    landscape_set(&mf_cmaes_optimiser, parameters, "step", step);
+    landscape_set(&mf_cmaes_optimiser, parameters, "rounds", 2000);
     for (uint64_t seed = 1; seed <= SEEDS; seed++) {
         const struct landscape_drive drive = {
             .landscape = landscape, .genes = GENES, .seed = seed, .target = 1e-10};
         const struct landscape_result result =
-            landscape_minimise(&cmaes_optimiser, parameters, &drive);
+            landscape_minimise(&mf_cmaes_optimiser, parameters, &drive);
         if (result.least > 1e-10)
             continue;
         sum += (double)result.evaluations;
         found++;
     }
-    memory_free(parameters);
+    mf_memory_free(parameters);
     assert_true(found >= SEEDS - lost);
     return sum / found;
 }
@@ -52,18 +52,18 @@ static void test_cmaes_is_as_fast_as_others_on_rosenbrock(void **state) {
 /// restarts with twice of it each do (Auger and Hansen 2005). 2 of 3 seeds at least.
 static void test_cmaes_finds_the_deepest_minimum_by_restarts(void **state) {
     int found = 0, alone = 0;
-    void *parameters = landscape_parameters(&cmaes_optimiser);
+    void *parameters = landscape_parameters(&mf_cmaes_optimiser);
     (void)state;
-    landscape_set(&cmaes_optimiser, parameters, "rounds", 5000);
+    landscape_set(&mf_cmaes_optimiser, parameters, "rounds", 5000);
     for (uint64_t seed = 1; seed <= 3; seed++) {
         const struct landscape_drive drive = {
             .landscape = &landscape_rastrigin, .genes = 5, .seed = seed, .target = 1e-8};
-        landscape_set(&cmaes_optimiser, parameters, "restarts", 0);
-        alone += landscape_minimise(&cmaes_optimiser, parameters, &drive).least < 1e-8;
-        landscape_set(&cmaes_optimiser, parameters, "restarts", 6);
-        found += landscape_minimise(&cmaes_optimiser, parameters, &drive).least < 1e-8;
+        landscape_set(&mf_cmaes_optimiser, parameters, "restarts", 0);
+        alone += landscape_minimise(&mf_cmaes_optimiser, parameters, &drive).least < 1e-8;
+        landscape_set(&mf_cmaes_optimiser, parameters, "restarts", 6);
+        found += landscape_minimise(&mf_cmaes_optimiser, parameters, &drive).least < 1e-8;
     }
-    memory_free(parameters);
+    mf_memory_free(parameters);
     assert_int_equal(alone, 0);
     assert_true(found >= 2);
 }
@@ -71,8 +71,8 @@ static void test_cmaes_finds_the_deepest_minimum_by_restarts(void **state) {
 /// Geometric mean of the favourite's error on a noisy sphere.
 static double noisy_sphere(double noise, uint64_t evaluations) {
     double sum = 0;
-    void *parameters = landscape_parameters(&cmaes_optimiser);
-    landscape_set(&cmaes_optimiser, parameters, "rounds", 5000);
+    void *parameters = landscape_parameters(&mf_cmaes_optimiser);
+    landscape_set(&mf_cmaes_optimiser, parameters, "rounds", 5000);
     for (uint64_t seed = 1; seed <= SEEDS; seed++) {
         const struct landscape_drive drive = {.landscape = &landscape_sphere,
                                               .genes = GENES,
@@ -80,9 +80,9 @@ static double noisy_sphere(double noise, uint64_t evaluations) {
                                               .noise = noise,
                                               .target = -HUGE_VAL,
                                               .evaluations = evaluations};
-        sum += log(landscape_minimise(&cmaes_optimiser, parameters, &drive).favourite) / SEEDS;
+        sum += log(landscape_minimise(&mf_cmaes_optimiser, parameters, &drive).favourite) / SEEDS;
     }
-    memory_free(parameters);
+    mf_memory_free(parameters);
     return exp(sum);
 }
 
@@ -107,15 +107,15 @@ static void test_cmaes_finds_a_minimum_beside_a_cliff(void **state) {
 static size_t population_after(int rounds, double noise) {
     const struct landscape_drive drive = {
         .landscape = &landscape_sphere, .genes = GENES, .seed = 2, .noise = noise};
-    void *parameters = landscape_parameters(&cmaes_optimiser);
+    void *parameters = landscape_parameters(&mf_cmaes_optimiser);
     struct landscape_result result = {.least = HUGE_VAL};
-    struct landscape_run run = landscape_begin(&cmaes_optimiser, parameters, &drive);
+    struct landscape_run run = landscape_begin(&mf_cmaes_optimiser, parameters, &drive);
     struct optimiser_round round;
     for (int k = 0; k < rounds; k++)
         landscape_step(&run, &drive, &result);
-    assert_ok(cmaes_optimiser.ask(run.state, &round));
+    assert_ok(mf_cmaes_optimiser.ask(run.state, &round));
     landscape_end(&run);
-    memory_free(parameters);
+    mf_memory_free(parameters);
     return round.count;
 }
 
@@ -132,36 +132,36 @@ static void test_cmaes_population_stays_within_the_largest_round(void **state) {
     (void)state;
     const struct landscape_drive drive = {
         .landscape = &landscape_sphere, .genes = GENES, .seed = 2, .noise = 1, .most = 100};
-    void *parameters = landscape_parameters(&cmaes_optimiser);
-    landscape_set(&cmaes_optimiser, parameters, "population", 70);
-    landscape_set(&cmaes_optimiser, parameters, "restarts", 6);
-    landscape_set(&cmaes_optimiser, parameters, "tolerance", 1e9); // every descent is short
+    void *parameters = landscape_parameters(&mf_cmaes_optimiser);
+    landscape_set(&mf_cmaes_optimiser, parameters, "population", 70);
+    landscape_set(&mf_cmaes_optimiser, parameters, "restarts", 6);
+    landscape_set(&mf_cmaes_optimiser, parameters, "tolerance", 1e9); // every descent is short
     struct landscape_result result = {.least = HUGE_VAL};
-    struct landscape_run run = landscape_begin(&cmaes_optimiser, parameters, &drive);
+    struct landscape_run run = landscape_begin(&mf_cmaes_optimiser, parameters, &drive);
     struct optimiser_round round;
     size_t largest = 0;
     do {
-        assert_ok(cmaes_optimiser.ask(run.state, &round));
+        assert_ok(mf_cmaes_optimiser.ask(run.state, &round));
         assert_true(round.count <= drive.most);
         largest = round.count > largest ? round.count : largest;
     } while (landscape_step(&run, &drive, &result));
     assert_int_equal(largest, drive.most);
     landscape_end(&run);
-    memory_free(parameters);
+    mf_memory_free(parameters);
 }
 
 static void test_cmaes_refuses_a_population_below_4(void **state) {
-    void *parameters = landscape_parameters(&cmaes_optimiser);
-    void *memory = memory_zeroed(1, cmaes_optimiser.state_size);
+    void *parameters = landscape_parameters(&mf_cmaes_optimiser);
+    void *memory = mf_memory_zeroed(1, mf_cmaes_optimiser.state_size);
     (void)state;
     assert_non_null(memory);
-    landscape_set(&cmaes_optimiser, parameters, "population", 3);
-    assert_fails(cmaes_optimiser.create(memory, &(struct optimiser_space){.genes = 2, .maximum = 1},
+    landscape_set(&mf_cmaes_optimiser, parameters, "population", 3);
+    assert_fails(mf_cmaes_optimiser.create(memory, &(struct optimiser_space){.genes = 2, .maximum = 1},
                                         parameters),
                  STATUS_BAD_INPUT, "below 4");
-    cmaes_optimiser.destroy(memory);
-    memory_free(memory);
-    memory_free(parameters);
+    mf_cmaes_optimiser.destroy(memory);
+    mf_memory_free(memory);
+    mf_memory_free(parameters);
 }
 
 /// n = 10, λ = 10: numbers of the tutorial's table 1, computed apart.
@@ -169,7 +169,7 @@ static void test_cmaes_strategy_has_the_numbers_of_the_tutorial(void **state) {
     double weights[10], positive = 0, negative = 0;
     struct cmaes_strategy s = {.population = 10, .weights = weights};
     (void)state;
-    cmaes_strategy_set(&s, GENES);
+    mf_cmaes_strategy_set(&s, GENES);
     assert_int_equal(s.parents, 5);
     assert_close(s.effective, 3.167299, 1e-6);
     assert_close(s.path_sigma, 0.284429, 1e-6);
@@ -194,13 +194,13 @@ static void test_cmaes_sample_has_the_covariance_of_its_axes(void **state) {
     struct cmaes_distribution d;
     double squares[3] = {0}, step[2];
     (void)state;
-    assert_ok(cmaes_init(&d, 2));
-    cmaes_begin(&d, 1);
+    assert_ok(mf_cmaes_init(&d, 2));
+    mf_cmaes_begin(&d, 1);
     const double c = cos(0.5), s = sin(0.5);
     memcpy(d.axes, (double[]){c, -s, s, c}, 4 * sizeof(double));
     memcpy(d.lengths, (double[]){2, 0.5}, 2 * sizeof(double));
     for (uint32_t k = 0; k < STEPS; k++) {
-        cmaes_sample(&d, 9, k, 3, step);
+        mf_cmaes_sample(&d, 9, k, 3, step);
         squares[0] += step[0] * step[0] / STEPS;
         squares[1] += step[0] * step[1] / STEPS;
         squares[2] += step[1] * step[1] / STEPS;
@@ -209,7 +209,7 @@ static void test_cmaes_sample_has_the_covariance_of_its_axes(void **state) {
     assert_close(squares[0], xx, 5 * xx * sqrt(2.0 / STEPS));
     assert_close(squares[1], xy, 5 * sqrt((xx * yy + xy * xy) / STEPS));
     assert_close(squares[2], yy, 5 * yy * sqrt(2.0 / STEPS));
-    cmaes_clear(&d);
+    mf_cmaes_clear(&d);
 }
 
 static void test_cmaes_update_goes_nowhere_when_all_errors_are_equal(void **state) {
@@ -220,15 +220,15 @@ static void test_cmaes_update_goes_nowhere_when_all_errors_are_equal(void **stat
     struct cmaes_distribution d;
     struct cmaes_strategy s = {.population = POPULATION, .weights = weights};
     (void)state;
-    cmaes_strategy_set(&s, 2);
-    assert_ok(cmaes_init(&d, 2));
-    cmaes_begin(&d, 0.5);
+    mf_cmaes_strategy_set(&s, 2);
+    assert_ok(mf_cmaes_init(&d, 2));
+    mf_cmaes_begin(&d, 0.5);
     d.mean[0] = 7;
-    assert_ok(cmaes_update(&d, &s, steps, errors));
+    assert_ok(mf_cmaes_update(&d, &s, steps, errors));
     assert_close(d.mean[0], 7, 1e-15);
     assert_close(d.mean[1], 0, 1e-15);
     assert_true(d.moments.sigma < 0.5); // no path: the step is too long
-    cmaes_clear(&d);
+    mf_cmaes_clear(&d);
 }
 
 int main(void) {

@@ -15,7 +15,7 @@ static void body(struct coroutine *self, void *context) {
     for (int k = 1; k <= story->questions; k++) {
         const double question = k;
         double answer = 0;
-        if (!coroutine_measure(self, &question, &answer)) {
+        if (!mf_coroutine_measure(self, &question, &answer)) {
             story->was_stopped = true;
             return;
         }
@@ -26,18 +26,18 @@ static void body(struct coroutine *self, void *context) {
 static void test_coroutine_asks_until_its_body_returns(void **state) {
     struct story story = {.questions = 100};
     (void)state;
-    struct coroutine *coroutine = coroutine_begin(body, &story);
+    struct coroutine *coroutine = mf_coroutine_begin(body, &story);
     assert_non_null(coroutine);
     for (int k = 1; k <= 100; k++) {
-        assert_close(*coroutine_question(coroutine), k, 0);
-        assert_close(*coroutine_question(coroutine), k, 0);
-        coroutine_answer(coroutine, 2 * k);
+        assert_close(*mf_coroutine_question(coroutine), k, 0);
+        assert_close(*mf_coroutine_question(coroutine), k, 0);
+        mf_coroutine_answer(coroutine, 2 * k);
     }
-    assert_null(coroutine_question(coroutine));
-    coroutine_answer(coroutine, 1); // nobody listens
-    assert_null(coroutine_question(coroutine));
+    assert_null(mf_coroutine_question(coroutine));
+    mf_coroutine_answer(coroutine, 1); // nobody listens
+    assert_null(mf_coroutine_question(coroutine));
     assert_close(story.sum, 10100, 0);
-    coroutine_end(coroutine);
+    mf_coroutine_end(coroutine);
     assert_false(story.was_stopped);
 }
 
@@ -45,15 +45,15 @@ static void test_coroutine_end_stops_the_body_wherever_it_is(void **state) {
     (void)state;
     for (int answers = 0; answers <= 4; answers++) {
         struct story story = {.questions = 4};
-        struct coroutine *coroutine = coroutine_begin(body, &story);
+        struct coroutine *coroutine = mf_coroutine_begin(body, &story);
         assert_non_null(coroutine);
         for (int k = 0; k < answers; k++)
-            coroutine_answer(coroutine, 1);
-        coroutine_end(coroutine);
+            mf_coroutine_answer(coroutine, 1);
+        mf_coroutine_end(coroutine);
         assert_int_equal(story.was_stopped, answers < 4);
         assert_close(story.sum, answers, 0);
     }
-    coroutine_end(NULL);
+    mf_coroutine_end(NULL);
 }
 
 int main(void) {

@@ -42,7 +42,7 @@ static double sphere(const double *genes) {
 
 static double measure(struct problem *problem, const double *genes) {
     double normal[4];
-    rng_normal4(rng_philox(problem->seed, RNG_EVALUATION, problem->measurements++, 0, 0), normal);
+    mf_rng_normal4(mf_rng_philox(problem->seed, RNG_EVALUATION, problem->measurements++, 0, 0), normal);
     return sphere(genes) + problem->noise * normal[0];
 }
 
@@ -51,25 +51,25 @@ static void step(struct genetic *genetic, struct problem *problem, double *error
     const int64_t population = genetic->parameters.population;
     const bool has_elite = genetic->elite_measured > 0;
     for (int64_t k = 0; k < population; k++)
-        errors[k] = measure(problem, genetic_individual(genetic, k));
+        errors[k] = measure(problem, mf_genetic_individual(genetic, k));
     int64_t best = has_elite;
     for (int64_t k = best; k < population; k++)
         if (errors[k] < errors[best])
             best = k;
     double fresh = 0;
     for (int k = 0; k < REMEASUREMENTS; k++)
-        fresh += measure(problem, genetic_individual(genetic, best)) / REMEASUREMENTS;
+        fresh += measure(problem, mf_genetic_individual(genetic, best)) / REMEASUREMENTS;
     const double before = genetic->elite_error;
     if (has_elite)
-        genetic_remeasure_elite(genetic, errors[0]);
+        mf_genetic_remeasure_elite(genetic, errors[0]);
     if (errors[best] < before)
-        genetic_offer(genetic, genetic_individual(genetic, best), fresh, REMEASUREMENTS);
-    genetic_next_generation(genetic, errors);
+        mf_genetic_offer(genetic, mf_genetic_individual(genetic, best), fresh, REMEASUREMENTS);
+    mf_genetic_next_generation(genetic, errors);
 }
 
 static void evolve(struct genetic *genetic, const struct genetic_parameters *parameters,
                    struct problem problem) {
-    assert_ok(genetic_init(genetic, parameters, problem.seed));
+    assert_ok(mf_genetic_init(genetic, parameters, problem.seed));
     double *errors = calloc((size_t)parameters->population, sizeof *errors);
     assert_non_null(errors);
     for (int64_t k = 0; k < parameters->generations; k++)
@@ -87,7 +87,7 @@ static void test_genetic_reaches_the_bottom_of_a_sphere(void **state) {
         evolve(&genetic, &usual, (struct problem){.seed = seed});
         assert_close(sphere(genetic.elite), 0, reached);
         assert_close(genetic.elite_error, sphere(genetic.elite), 1e-12);
-        genetic_clear(&genetic);
+        mf_genetic_clear(&genetic);
     }
 }
 
@@ -96,14 +96,14 @@ static void test_genetic_never_loses_its_elite_when_there_is_no_noise(void **sta
     struct problem problem = {.seed = 4};
     struct genetic genetic;
     double errors[100], best = GENETIC_FAILED;
-    assert_ok(genetic_init(&genetic, &usual, problem.seed));
+    assert_ok(mf_genetic_init(&genetic, &usual, problem.seed));
     for (int k = 0; k < 30; k++) {
         step(&genetic, &problem, errors);
         assert_true(genetic.elite_error <= best * (1 + 1e-12));
-        assert_memory_equal(genetic_individual(&genetic, 0), genetic.elite, GENES * sizeof(double));
+        assert_memory_equal(mf_genetic_individual(&genetic, 0), genetic.elite, GENES * sizeof(double));
         best = genetic.elite_error;
     }
-    genetic_clear(&genetic);
+    mf_genetic_clear(&genetic);
 }
 
 /// A challenger wins by fresh measurements, but only if they are low: what is left of that luck is
@@ -120,7 +120,7 @@ static void test_genetic_knows_the_error_of_its_elite_when_there_is_noise(void *
         evolve(&genetic, &usual, (struct problem){.seed = seed, .noise = noise});
         bias += (genetic.elite_error - sphere(genetic.elite)) / SEEDS;
         error += sphere(genetic.elite) / SEEDS;
-        genetic_clear(&genetic);
+        mf_genetic_clear(&genetic);
     }
     assert_close(bias, 0, noise);
     // 0.257 over these seeds: about as far down as one measurement can tell.
@@ -139,9 +139,9 @@ static void test_genetic_gives_the_same_bits_for_a_seed(void **state) {
     assert_memory_equal(a.elite, b.elite, GENES * sizeof(double));
     assert_identical(a.elite_error, b.elite_error);
     assert_memory_not_equal(a.population, other.population, bytes);
-    genetic_clear(&a);
-    genetic_clear(&b);
-    genetic_clear(&other);
+    mf_genetic_clear(&a);
+    mf_genetic_clear(&b);
+    mf_genetic_clear(&other);
 }
 
 /// The last child of an odd population has no sibling: nothing beyond the arrays is touched (which
@@ -154,10 +154,10 @@ static void test_genetic_next_generation_fills_any_population(void **state) {
         struct genetic genetic;
         parameters.population = population;
         parameters.mutation = 0;
-        assert_ok(genetic_init(&genetic, &parameters, 3));
+        assert_ok(mf_genetic_init(&genetic, &parameters, 3));
         double parents[9 * GENES];
         memcpy(parents, genetic.population, (size_t)(population * GENES) * sizeof(double));
-        genetic_next_generation(&genetic, errors);
+        mf_genetic_next_generation(&genetic, errors);
         assert_int_equal(genetic.generation, 1);
         for (int64_t k = 0; k < population * GENES; k++) {
             int64_t from = 0;
@@ -166,7 +166,7 @@ static void test_genetic_next_generation_fills_any_population(void **state) {
                 from++;
             assert_true(from < population);
         }
-        genetic_clear(&genetic);
+        mf_genetic_clear(&genetic);
     }
 }
 
@@ -178,13 +178,13 @@ static void test_genetic_genes_stay_in_their_range(void **state) {
     parameters.gene_maximum = 4; // half or twice of which is outside
     parameters.mutated_genes = 1;
     double errors[100] = {0};
-    assert_ok(genetic_init(&genetic, &parameters, 3));
+    assert_ok(mf_genetic_init(&genetic, &parameters, 3));
     for (int generation = 0; generation < 5; generation++) {
-        genetic_next_generation(&genetic, errors);
+        mf_genetic_next_generation(&genetic, errors);
         for (int k = 0; k < 100 * GENES; k++)
             assert_true(genetic.population[k] >= 3 && genetic.population[k] <= 4);
     }
-    genetic_clear(&genetic);
+    mf_genetic_clear(&genetic);
 }
 
 static void test_genetic_has_no_elite_when_all_have_failed(void **state) {
@@ -194,30 +194,30 @@ static void test_genetic_has_no_elite_when_all_have_failed(void **state) {
     double errors[POPULATION];
     (void)state;
     parameters.population = POPULATION;
-    assert_ok(genetic_init(&genetic, &parameters, 3));
+    assert_ok(mf_genetic_init(&genetic, &parameters, 3));
     for (int k = 0; k < POPULATION; k++)
         errors[k] = GENETIC_FAILED;
-    assert_false(genetic_offer(&genetic, genetic.population, GENETIC_FAILED, 2));
-    genetic_next_generation(&genetic, errors);
+    assert_false(mf_genetic_offer(&genetic, genetic.population, GENETIC_FAILED, 2));
+    mf_genetic_next_generation(&genetic, errors);
     assert_close(genetic.elite_measured, 0, 0);
     for (int k = 0; k < GENES; k++)
-        assert_true(genetic_individual(&genetic, 0)[k] != 0);
-    assert_true(genetic_offer(&genetic, genetic.population, 2, 2));
-    genetic_clear(&genetic);
+        assert_true(mf_genetic_individual(&genetic, 0)[k] != 0);
+    assert_true(mf_genetic_offer(&genetic, genetic.population, 2, 2));
+    mf_genetic_clear(&genetic);
 }
 
 static void test_genetic_remeasure_elite_is_the_mean_of_all_measurements(void **state) {
     struct genetic genetic;
     (void)state;
-    assert_ok(genetic_init(&genetic, &usual, 3));
-    assert_true(genetic_offer(&genetic, genetic.population, 4, 2));
-    assert_false(genetic_offer(&genetic, genetic_individual(&genetic, 1), 4, 2));
-    genetic_remeasure_elite(&genetic, 10);
-    genetic_remeasure_elite(&genetic, 2);
+    assert_ok(mf_genetic_init(&genetic, &usual, 3));
+    assert_true(mf_genetic_offer(&genetic, genetic.population, 4, 2));
+    assert_false(mf_genetic_offer(&genetic, mf_genetic_individual(&genetic, 1), 4, 2));
+    mf_genetic_remeasure_elite(&genetic, 10);
+    mf_genetic_remeasure_elite(&genetic, 2);
     assert_close(genetic.elite_error, (4 + 4 + 10 + 2) / 4.0, 1e-15);
     assert_close(genetic.elite_measured, 4, 0);
     assert_memory_equal(genetic.elite, genetic.population, GENES * sizeof(double));
-    genetic_clear(&genetic);
+    mf_genetic_clear(&genetic);
 }
 
 /// 1000 uniform genes: mean and deviation of the range within five of their standard errors.
@@ -228,14 +228,14 @@ static void test_genetic_init_spreads_the_genes_over_their_range(void **state) {
     (void)state;
     parameters.gene_minimum = -3;
     parameters.gene_maximum = 5;
-    assert_ok(genetic_init(&genetic, &parameters, 3));
+    assert_ok(mf_genetic_init(&genetic, &parameters, 3));
     for (int k = 0; k < 100 * GENES; k++) {
         assert_true(genetic.population[k] > -3 && genetic.population[k] < 5);
         mean += genetic.population[k] / (100 * GENES);
     }
     assert_close(mean, 1, 5 * 8 / sqrt(12 * 1000));
-    assert_close(genetic_diversity(&genetic), 1 / sqrt(12), 5 * 0.004);
-    genetic_clear(&genetic);
+    assert_close(mf_genetic_diversity(&genetic), 1 / sqrt(12), 5 * 0.004);
+    mf_genetic_clear(&genetic);
 }
 
 int main(void) {

@@ -13,7 +13,7 @@
 enum { DRAWS = 60000 };
 
 static struct rng_sequence begin(uint64_t seed) {
-    return rng_sequence_begin(seed, RNG_SELECTION, 0, 0);
+    return mf_rng_sequence_begin(seed, RNG_SELECTION, 0, 0);
 }
 
 // Tournament --------------------------------------------------------------------------------------
@@ -52,7 +52,7 @@ static void check_tournament(int size, double p) {
     int wins[POPULATION] = {0};
     struct rng_sequence random = begin((uint64_t)size);
     for (int k = 0; k < DRAWS; k++)
-        wins[genetic_tournament(errors, POPULATION, size, p, &random)]++;
+        wins[mf_genetic_tournament(errors, POPULATION, size, p, &random)]++;
     expected_winners(errors, size, p, probability);
     for (int k = 0; k < POPULATION; k++) {
         const double expected = DRAWS * probability[k];
@@ -89,7 +89,7 @@ static void test_genetic_crossover_exchanges_all_genes_beyond_one_point(void **s
             a[k] = k;
             b[k] = 100 + k;
         }
-        genetic_crossover(a, b, GENES, &random);
+        mf_genetic_crossover(a, b, GENES, &random);
         while (point > 0 && a[point - 1] >= 100)
             point--;
         for (int k = 0; k < GENES; k++) {
@@ -109,7 +109,7 @@ static void test_genetic_crossover_leaves_single_genes_alone(void **state) {
     double a = 1, b = 2;
     struct rng_sequence random = begin(1);
     (void)state;
-    genetic_crossover(&a, &b, 1, &random);
+    mf_genetic_crossover(&a, &b, 1, &random);
     assert_close(a, 1, 0);
     assert_close(b, 2, 0);
 }
@@ -123,7 +123,7 @@ static void test_genetic_crossover_two_points_exchanges_a_stretch(void **state) 
     for (int trial = 0; trial < DRAWS; trial++) {
         double a[GENES] = {0}, b[GENES] = {1, 1, 1, 1, 1};
         int first = 0, end = GENES;
-        genetic_crossover_two_points(a, b, GENES, &random);
+        mf_genetic_crossover_two_points(a, b, GENES, &random);
         while (first < GENES && a[first] == 0)
             first++;
         while (end > 0 && a[end - 1] == 0)
@@ -154,7 +154,7 @@ static void test_genetic_blend_mixes_smoothly(void **state) {
             a[k] = 1;
             b[k] = 0;
         }
-        genetic_blend(a, b, GENES, &random);
+        mf_genetic_blend(a, b, GENES, &random);
         for (int k = 0; k < GENES; k++) {
             assert_close(a[k] + b[k], 1, 1e-15);
             assert_true(a[k] >= 0 && a[k] <= 1);
@@ -171,13 +171,13 @@ static void test_genetic_recombine_does_what_its_kind_says(void **state) {
         const struct genetic_parameters p = {.genes = 3, .crossover_kind = kind};
         double a[3] = {1, 2, 3}, b[3] = {4, 5, 6}, c[3] = {1, 2, 3}, d[3] = {4, 5, 6};
         struct rng_sequence first = begin(8), second = begin(8);
-        genetic_recombine(a, b, &p, &first);
+        mf_genetic_recombine(a, b, &p, &first);
         if (kind == GENETIC_ONE_POINT)
-            genetic_crossover(c, d, 3, &second);
+            mf_genetic_crossover(c, d, 3, &second);
         else if (kind == GENETIC_TWO_POINT)
-            genetic_crossover_two_points(c, d, 3, &second);
+            mf_genetic_crossover_two_points(c, d, 3, &second);
         else
-            genetic_blend(c, d, 3, &second);
+            mf_genetic_blend(c, d, 3, &second);
         assert_memory_equal(a, c, sizeof a);
         assert_memory_equal(b, d, sizeof b);
     }
@@ -199,7 +199,7 @@ static double *mutated(double gene, const struct genetic_parameters *parameters,
     assert_non_null(genes);
     for (int k = 0; k < DRAWS; k++)
         genes[k] = gene;
-    genetic_mutate(genes, parameters, &random);
+    mf_genetic_mutate(genes, parameters, &random);
     return genes;
 }
 
@@ -272,7 +272,7 @@ static void test_genetic_mutate_spares_the_children_that_are_not_drawn(void **st
     int mutated = 0;
     for (int child = 0; child < CHILDREN; child++) {
         double genes[GENES] = {1, 1, 1, 1};
-        genetic_mutate(genes, &some, &random);
+        mf_genetic_mutate(genes, &some, &random);
         int changed = 0;
         for (int k = 0; k < GENES; k++)
             changed += genes[k] != 1;
@@ -294,7 +294,7 @@ static void test_genetic_mutate_correlated_adds_a_smooth_bump(void **state) {
     (void)state;
     for (int trial = 0; trial < TRIALS; trial++) {
         double genes[GENES] = {0}, largest = 0;
-        genetic_mutate_correlated(genes, &parameters, &random);
+        mf_genetic_mutate_correlated(genes, &parameters, &random);
         for (int k = 0; k < GENES; k++)
             if (fabs(genes[k]) > fabs(largest))
                 largest = genes[k];

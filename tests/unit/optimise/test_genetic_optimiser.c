@@ -17,32 +17,32 @@ struct run {
 };
 
 static void ask(struct run *run) {
-    assert_ok(genetic_optimiser.ask(run->state, &run->round));
+    assert_ok(mf_genetic_optimiser.ask(run->state, &run->round));
 }
 
 static void tell(struct run *run, const double *errors) {
     static const double exact[ROWS] = {0};
-    assert_ok(genetic_optimiser.tell(run->state, errors, exact));
+    assert_ok(mf_genetic_optimiser.tell(run->state, errors, exact));
     ask(run);
 }
 
 static struct run begin(int64_t generations) {
-    struct run run = {.state = memory_zeroed(1, genetic_optimiser.state_size)};
+    struct run run = {.state = mf_memory_zeroed(1, mf_genetic_optimiser.state_size)};
     const struct optimiser_space space = {.genes = GENES, .maximum = 1, .seed = 3};
     assert_non_null(run.state);
-    fields_set_defaults(genetic_fields, &run.parameters);
+    mf_fields_set_defaults(mf_genetic_fields, &run.parameters);
     run.parameters.population = POPULATION;
     run.parameters.generations = generations;
     run.parameters.mutation = run.parameters.mutated_genes = 1; // so nobody is a twin by chance
     assert_int_equal(run.parameters.remeasurements, REMEASUREMENTS);
-    assert_ok(genetic_optimiser.create(run.state, &space, &run.parameters));
+    assert_ok(mf_genetic_optimiser.create(run.state, &space, &run.parameters));
     ask(&run);
     return run;
 }
 
 static void end(struct run *run) {
-    genetic_optimiser.destroy(run->state);
-    memory_free(run->state);
+    mf_genetic_optimiser.destroy(run->state);
+    mf_memory_free(run->state);
 }
 
 static void assert_genes(const double *a, const double *b) {
@@ -62,13 +62,13 @@ static void test_challenger_becomes_elite_by_fresh_measurements_alone(void **sta
     struct run run = begin(10);
     (void)state;
     assert_int_equal(run.round.count, POPULATION);
-    assert_false(genetic_optimiser.favourite(run.state, favourite));
+    assert_false(mf_genetic_optimiser.favourite(run.state, favourite));
     copy_row(&run, 4, challenger);
     tell(&run, (double[]){5, 4, 3, 2, 1, 6});
     assert_int_equal(run.round.count, ROWS);
     assert_genes(row(&run, POPULATION), challenger);
     assert_genes(row(&run, POPULATION + 1), challenger);
-    assert_true(genetic_optimiser.favourite(run.state, favourite));
+    assert_true(mf_genetic_optimiser.favourite(run.state, favourite));
     assert_genes(favourite, challenger);
 
     // Measured again, it is 2 on average. Nobody of this generation is below.
@@ -88,7 +88,7 @@ static void test_challenger_becomes_elite_by_fresh_measurements_alone(void **sta
     tell(&run, (double[]){2, 9, 0.1, 9, 9, 9});
     tell(&run, (double[]){2, 9, 9, 9, 9, 9, 1.5, 1});
     assert_genes(row(&run, 0), better);
-    assert_true(genetic_optimiser.favourite(run.state, favourite));
+    assert_true(mf_genetic_optimiser.favourite(run.state, favourite));
     assert_genes(favourite, better);
     end(&run);
 }
@@ -117,9 +117,9 @@ static void test_last_round_measures_the_last_challenger_alone(void **state) {
     assert_genes(row(&run, 0), challenger);
     tell(&run, (double[]){0.5, 0.7});
     assert_int_equal(run.round.count, 0);
-    assert_true(genetic_optimiser.favourite(run.state, favourite));
+    assert_true(mf_genetic_optimiser.favourite(run.state, favourite));
     assert_genes(favourite, challenger);
-    assert_int_equal(genetic_optimiser.most_rounds(&run.parameters, GENES), 3);
+    assert_int_equal(mf_genetic_optimiser.most_rounds(&run.parameters, GENES), 3);
     end(&run);
 }
 
@@ -139,7 +139,7 @@ static void test_hopeless_is_the_median_of_the_last_generation(void **state) {
     struct run run = begin(10);
     (void)state;
     tell(&run, (double[]){5, 4, 3, 2, 1, NAN});
-    assert_close(genetic_optimiser.hopeless(run.state), 4, 0);
+    assert_close(mf_genetic_optimiser.hopeless(run.state), 4, 0);
     end(&run);
 }
 

@@ -53,18 +53,18 @@ static struct nsga2 begin(const struct problem *problem, size_t population, size
                           uint64_t seed) {
     struct nsga2 nsga2;
     struct nsga2_parameters parameters;
-    fields_set_defaults(nsga2_fields, &parameters);
+    mf_fields_set_defaults(mf_nsga2_fields, &parameters);
     parameters.population = (int64_t)population;
     parameters.generations = (int64_t)generations;
     const struct nsga2_space space = {problem->genes, 2, NULL, seed};
-    assert_ok(nsga2_init(&nsga2, &parameters, &space));
+    assert_ok(mf_nsga2_init(&nsga2, &parameters, &space));
     return nsga2;
 }
 
 /// One round; asks twice, and no candidate is beyond the bounds. False if there is none.
 static bool step(struct nsga2 *nsga2, const struct problem *problem) {
     static double value[MOST_ROWS * 2];
-    const struct optimiser_round round = nsga2_ask(nsga2), again = nsga2_ask(nsga2);
+    const struct optimiser_round round = mf_nsga2_ask(nsga2), again = mf_nsga2_ask(nsga2);
     assert_ptr_equal(round.genes, again.genes);
     assert_int_equal(round.count, again.count);
     assert_true(round.count <= MOST_ROWS);
@@ -74,17 +74,17 @@ static bool step(struct nsga2 *nsga2, const struct problem *problem) {
         for (size_t n = 0; n < problem->genes; n++)
             assert_true(x[n] >= 0 && x[n] <= 1);
         const struct rng_block block =
-            rng_philox(7, RNG_EVALUATION, nsga2->progress.generation, (uint32_t)k, 0);
-        rng_normal4(block, normal);
+            mf_rng_philox(7, RNG_EVALUATION, nsga2->progress.generation, (uint32_t)k, 0);
+        mf_rng_normal4(block, normal);
         problem->value(x, problem->genes, value + 2 * k);
         for (size_t m = 0; m < 2; m++)
             value[2 * k + m] += problem->noise * normal[m];
-        if (rng_uniform(block.word[2], block.word[3]) < problem->failing)
+        if (mf_rng_uniform(block.word[2], block.word[3]) < problem->failing)
             value[2 * k + k % 2] = (double[]){OPTIMISER_FAILED, NAN, INFINITY}[k % 3];
     }
     if (round.count == 0)
         return false;
-    assert_ok(nsga2_tell(nsga2, value));
+    assert_ok(mf_nsga2_tell(nsga2, value));
     return true;
 }
 
@@ -95,18 +95,18 @@ static struct nsga2 run(const struct problem *problem, size_t population, size_t
     while (step(&nsga2, problem))
         rounds++;
     assert_int_equal(rounds, generations);
-    assert_true(nsga2_is_over(&nsga2));
+    assert_true(mf_nsga2_is_over(&nsga2));
     return nsga2;
 }
 
 /// Mean distance, along the second objective and without noise, of the first front from the known.
 static double distance_from_front(const struct nsga2 *nsga2, const struct problem *problem) {
     double sum = 0, members = 0;
-    for (size_t k = 0; k < nsga2_parents(nsga2); k++) {
+    for (size_t k = 0; k < mf_nsga2_parents(nsga2); k++) {
         double value[2];
         if (nsga2->rank[k] != 1)
             continue;
-        problem->value(nsga2_parent(nsga2, k), problem->genes, value);
+        problem->value(mf_nsga2_parent(nsga2, k), problem->genes, value);
         sum += value[1] - problem->front(value[0]);
         members += 1;
     }
@@ -121,9 +121,9 @@ static int compare_pairs(const void *a, const void *b) {
 /// Area that the members dominate below (1, 1), by their true objectives.
 static double hypervolume(const struct nsga2 *nsga2, const struct problem *problem) {
     double pairs[MOST_ROWS][2], volume = 0, height = 1;
-    const size_t count = nsga2_parents(nsga2);
+    const size_t count = mf_nsga2_parents(nsga2);
     for (size_t k = 0; k < count; k++)
-        problem->value(nsga2_parent(nsga2, k), problem->genes, pairs[k]);
+        problem->value(mf_nsga2_parent(nsga2, k), problem->genes, pairs[k]);
     qsort(pairs, count, sizeof *pairs, compare_pairs);
     for (size_t k = 0; k < count; k++) {
         if (pairs[k][0] >= 1 || pairs[k][1] >= height)
@@ -141,12 +141,12 @@ static void test_nsga2_finds_the_front_of_schaffer(void **state) {
         double lowest = INFINITY, highest = 0;
         // Of ten seeds: at most 9e-4, and ends within 1.2e-5 of 0 and 0.02 of 4.
         assert_true(distance_from_front(&nsga2, &schaffer_problem) < 2e-3);
-        for (size_t k = 0; k < nsga2_parents(&nsga2); k++) {
+        for (size_t k = 0; k < mf_nsga2_parents(&nsga2); k++) {
             lowest = fmin(lowest, nsga2.value[2 * k]);
             highest = fmax(highest, nsga2.value[2 * k]);
         }
         assert_true(lowest < 1e-3 && highest > 3.95);
-        nsga2_clear(&nsga2);
+        mf_nsga2_clear(&nsga2);
     }
 }
 
@@ -159,7 +159,7 @@ static void test_nsga2_finds_the_front_of_zdt1(void **state) {
         assert_true(distance_from_front(&nsga2, &zdt1_problem) < 0.01);
         assert_true(hypervolume(&nsga2, &zdt1_problem) > 0.64);
         assert_true(hypervolume(&nsga2, &zdt1_problem) < 2.0 / 3);
-        nsga2_clear(&nsga2);
+        mf_nsga2_clear(&nsga2);
     }
 }
 
@@ -171,17 +171,17 @@ static void test_nsga2_keeps_no_lucky_draw(void **state) {
     (void)state;
     for (uint64_t seed = 1; seed <= 3; seed++) {
         struct nsga2 nsga2 = run(&noisy, 40, 100, seed);
-        for (size_t k = 0; k < nsga2_parents(&nsga2); k++) {
+        for (size_t k = 0; k < mf_nsga2_parents(&nsga2); k++) {
             double value[2];
             if (nsga2.rank[k] != 1)
                 continue;
-            noisy.value(nsga2_parent(&nsga2, k), noisy.genes, value);
+            noisy.value(mf_nsga2_parent(&nsga2, k), noisy.genes, value);
             for (size_t m = 0; m < 2; m++)
                 bias += value[m] - nsga2.value[2 * k + m];
             members += 2;
         }
         assert_true(distance_from_front(&nsga2, &noisy) < 0.1);
-        nsga2_clear(&nsga2);
+        mf_nsga2_clear(&nsga2);
     }
     assert_true(bias / members < 0.12);
 }
@@ -191,15 +191,15 @@ static void test_nsga2_has_no_failed_member_on_its_front(void **state) {
     failing.failing = 0.3;
     (void)state;
     struct nsga2 nsga2 = run(&failing, 41, 60, 2);
-    for (size_t k = 0; k < nsga2_parents(&nsga2); k++)
+    for (size_t k = 0; k < mf_nsga2_parents(&nsga2); k++)
         assert_true(nsga2.rank[k] > 1 || nsga2.value[2 * k] < OPTIMISER_FAILED);
     assert_true(distance_from_front(&nsga2, &failing) < 0.15);
-    nsga2_clear(&nsga2);
+    mf_nsga2_clear(&nsga2);
     failing.failing = 1;
     nsga2 = run(&failing, 8, 5, 2);
-    for (size_t k = 0; k < nsga2_parents(&nsga2); k++)
+    for (size_t k = 0; k < mf_nsga2_parents(&nsga2); k++)
         assert_true(nsga2.value[2 * k] == OPTIMISER_FAILED);
-    nsga2_clear(&nsga2);
+    mf_nsga2_clear(&nsga2);
 }
 
 /// Stopped after any generation and begun anew with its spans alone, it ends with the same bits.
@@ -213,19 +213,19 @@ static void test_nsga2_goes_on_with_the_same_bits(void **state) {
         struct nsga2 next = begin(&noisy, POPULATION, GENERATIONS, 9);
         struct memory_span from[NSGA2_SPANS], to[NSGA2_SPANS];
         if (pieces.progress.generation % 2 == 0)
-            nsga2_ask(&pieces);
-        assert_int_equal(nsga2_spans(&pieces, from), NSGA2_SPANS);
-        assert_int_equal(nsga2_spans(&next, to), NSGA2_SPANS);
+            mf_nsga2_ask(&pieces);
+        assert_int_equal(mf_nsga2_spans(&pieces, from), NSGA2_SPANS);
+        assert_int_equal(mf_nsga2_spans(&next, to), NSGA2_SPANS);
         for (int k = 0; k < NSGA2_SPANS; k++)
             memcpy(to[k].memory, from[k].memory, from[k].bytes);
-        nsga2_clear(&pieces);
+        mf_nsga2_clear(&pieces);
         pieces = next;
     }
     assert_memory_equal(whole.x, pieces.x, POPULATION * noisy.genes * sizeof(double));
     assert_memory_equal(whole.value, pieces.value, POPULATION * 2 * sizeof(double));
     assert_memory_equal(whole.measured, pieces.measured, POPULATION * sizeof(double));
-    nsga2_clear(&whole);
-    nsga2_clear(&pieces);
+    mf_nsga2_clear(&whole);
+    mf_nsga2_clear(&pieces);
 }
 
 static void test_nsga2_begins_about_the_start(void **state) {
@@ -234,18 +234,18 @@ static void test_nsga2_begins_about_the_start(void **state) {
     struct nsga2 nsga2;
     double squares = 0;
     (void)state;
-    fields_set_defaults(nsga2_fields, &parameters);
+    mf_fields_set_defaults(mf_nsga2_fields, &parameters);
     parameters.population = 100;
     const struct nsga2_space space = {3, 2, start, 1};
-    assert_ok(nsga2_init(&nsga2, &parameters, &space));
-    const struct optimiser_round round = nsga2_ask(&nsga2);
-    assert_int_equal(nsga2_parents(&nsga2), 0);
+    assert_ok(mf_nsga2_init(&nsga2, &parameters, &space));
+    const struct optimiser_round round = mf_nsga2_ask(&nsga2);
+    assert_int_equal(mf_nsga2_parents(&nsga2), 0);
     assert_memory_equal(round.genes, start, sizeof start);
     for (size_t k = 0; k < round.count; k++)
         squares += pow(round.genes[3 * k + 1] - 0.5, 2) / (double)round.count;
     // Widths from 0.01 to 0.1, uniform in their logarithm: a mean square of 0.099/(2 ln 10) 0.1.
     assert_true(sqrt(squares) > 0.03 && sqrt(squares) < 0.07);
-    nsga2_clear(&nsga2);
+    mf_nsga2_clear(&nsga2);
 }
 
 static void test_nsga2_plants_children_once(void **state) {
@@ -254,15 +254,15 @@ static void test_nsga2_plants_children_once(void **state) {
     struct nsga2 nsga2 = begin(&problem, 6, 5, 1);
     (void)state;
     for (int k = 0; k < 4; k++)
-        nsga2_plant(&nsga2, planted);
+        mf_nsga2_plant(&nsga2, planted);
     for (int k = 0; k < 3; k++) {
-        const double *x = nsga2_ask(&nsga2).genes;
+        const double *x = mf_nsga2_ask(&nsga2).genes;
         for (int child = 0; child < 6; child++)
             assert_true((x[2 * child] == planted[0] && x[2 * child + 1] == 1) ==
                         (k == 1 && child >= 3));
         step(&nsga2, &problem);
     }
-    nsga2_clear(&nsga2);
+    mf_nsga2_clear(&nsga2);
 }
 
 // Parts -----------------------------------------------------------------------------------------
@@ -273,10 +273,10 @@ static void test_sort_ranks_by_domination(void **state) {
     static const uint32_t expected[] = {1, 1, 1, 2, 3, 1, 4, 5};
     uint32_t rank[8];
     (void)state;
-    assert_true(nsga2_dominates(value[1], value[3], 2));
-    assert_false(nsga2_dominates(value[1], value[5], 2));
-    assert_false(nsga2_dominates(value[0], value[1], 2));
-    assert_ok(nsga2_sort(value[0], 8, 2, rank));
+    assert_true(mf_nsga2_dominates(value[1], value[3], 2));
+    assert_false(mf_nsga2_dominates(value[1], value[5], 2));
+    assert_false(mf_nsga2_dominates(value[0], value[1], 2));
+    assert_ok(mf_nsga2_sort(value[0], 8, 2, rank));
     assert_memory_equal(rank, expected, sizeof rank);
 }
 
@@ -285,7 +285,7 @@ static void test_crowding_is_the_room_between_neighbours(void **state) {
     static const uint32_t rank[] = {1, 1, 1, 1, 2};
     double crowding[5];
     (void)state;
-    assert_ok(nsga2_crowd(value[0], 5, 2, rank, crowding));
+    assert_ok(mf_nsga2_crowd(value[0], 5, 2, rank, crowding));
     assert_true(isinf(crowding[0]) && isinf(crowding[3]) && isinf(crowding[4]));
     assert_close(crowding[1], 0.4 + 0.8, 1e-12);
     assert_close(crowding[2], 0.9 + 0.8, 1e-12);
@@ -294,13 +294,13 @@ static void test_crowding_is_the_room_between_neighbours(void **state) {
 /// Children keep the mean of their parents far from the bounds, and the exponent sets how near they
 /// are: ⟨|β − 1|⟩ of an exponent of 15 is 0.06.
 static void test_crossover_stays_near_the_parents(void **state) {
-    struct rng_sequence random = rng_sequence_begin(3, RNG_SELECTION, 0, 0);
+    struct rng_sequence random = mf_rng_sequence_begin(3, RNG_SELECTION, 0, 0);
     double moved = 0;
     int crossed = 0;
     (void)state;
     for (int k = 0; k < 20000; k++) {
         double a = 0.45, b = 0.55;
-        nsga2_cross(&a, &b, 1, 15, &random);
+        mf_nsga2_cross(&a, &b, 1, 15, &random);
         assert_close(a + b, 1.0, 1e-3);
         moved += fabs(fabs(b - a) - 0.1) / 0.1;
         crossed += fabs(b - a) != 0.55 - 0.45;
@@ -311,11 +311,11 @@ static void test_crossover_stays_near_the_parents(void **state) {
 
 /// Within the bounds, and of mean square 2/((η + 2)(η + 3)) in the middle, but for the bounds.
 static void test_mutation_is_polynomial(void **state) {
-    struct rng_sequence random = rng_sequence_begin(4, RNG_SELECTION, 0, 0);
+    struct rng_sequence random = mf_rng_sequence_begin(4, RNG_SELECTION, 0, 0);
     double squares = 0, mean = 0;
     (void)state;
     for (int k = 0; k < 20000; k++) {
-        const double x = nsga2_mutate(0.5, 20, &random), edge = nsga2_mutate(k % 2, 20, &random);
+        const double x = mf_nsga2_mutate(0.5, 20, &random), edge = mf_nsga2_mutate(k % 2, 20, &random);
         assert_true(edge >= 0 && edge <= 1);
         squares += (x - 0.5) * (x - 0.5) / 20000;
         mean += (x - 0.5) / 20000;

@@ -26,7 +26,7 @@ static const struct variant {
     double sphere, rosenbrock, rastrigin, edge, noisy, failing;
 } variants[] = {
 #define GENETIC(crossover, mutation)                                                               \
-    &genetic_optimiser, {                                                                          \
+    &mf_genetic_optimiser, {                                                                          \
         {"crossover_kind", crossover}, {"mutation_kind", mutation}, {"population", 60},            \
             {"mutation", 1}, {"mutated_genes", 0.3}, {                                             \
             "generations", 50                                                                      \
@@ -39,13 +39,13 @@ static const struct variant {
     {GENETIC(GENETIC_TWO_POINT, GENETIC_CORRELATED), 6e-7, 8, 12, 1e-3, 0.011, 1e-5},
     {GENETIC(GENETIC_BLEND, GENETIC_CORRELATED), 6e-7, 8, 12, 1e-3, 0.011, 1e-5},
 #define NLOPT(algorithm)                                                                           \
-    &nlopt_optimiser, {                                                                            \
+    &mf_nlopt_optimiser, {                                                                            \
         {"algorithm", algorithm}, {                                                                \
             "evaluations", EVALUATIONS                                                             \
         }                                                                                          \
     }
-    {&cmaes_optimiser, {{"rounds", 2000}}, 1e-9, 1e-9, 24, 1e-9, 0.02, 1e-9},
-    {&cmaes_optimiser, {{"restarts", 4}}, 1e-9, 1e-9, 8, 1e-9, 0.02, 1e-9},
+    {&mf_cmaes_optimiser, {{"rounds", 2000}}, 1e-9, 1e-9, 24, 1e-9, 0.02, 1e-9},
+    {&mf_cmaes_optimiser, {{"restarts", 4}}, 1e-9, 1e-9, 8, 1e-9, 0.02, 1e-9},
     {NLOPT(0), 1.4e-3, 5, 1.7, 0.024, 0.036, 5.4e-3}, // GN_ESCH
     {NLOPT(1), 1e-9, 1.6e-5, 8, 1e-9, 0.042, 1e-9},   // GN_CRS2_LM
     {NLOPT(2), 0.014, 6, 8, 0.34, 0.054, 0.01},       // GN_ISRES
@@ -80,7 +80,7 @@ static void check_minimum(const struct variant *variant, struct landscape_drive 
                      (int)(variant - variants), drive.landscape->name, (int)drive.seed,
                      result.favourite, bound);
     }
-    memory_free(parameters);
+    mf_memory_free(parameters);
 }
 
 static void test_every_optimiser_finds_a_known_minimum(void **state) {
@@ -127,7 +127,7 @@ static void test_every_optimiser_has_no_favourite_when_all_have_failed(void **st
         const struct landscape_result result = landscape_minimise(v->optimiser, parameters, &drive);
         assert_true(result.rounds > 0);
         assert_true(result.favourite == HUGE_VAL);
-        memory_free(parameters);
+        mf_memory_free(parameters);
     }
 }
 
@@ -205,7 +205,7 @@ static void check_restart(const struct variant *variant, double noise, int befor
     }
     landscape_end(&old);
     landscape_end(&new);
-    memory_free(parameters);
+    mf_memory_free(parameters);
 }
 
 static void test_every_optimiser_goes_on_with_the_same_bits_when_restarted(void **state) {
@@ -221,7 +221,7 @@ static void test_every_optimiser_goes_on_with_the_same_bits_when_restarted(void 
 /// Descents end after some 50 rounds: before, in the middle and after the end of all.
 static void test_cmaes_goes_on_with_the_same_bits_when_it_began_again(void **state) {
     static const struct variant often = {
-        &cmaes_optimiser, {{"restarts", 3}, {"tolerance", 0.01}}, 0, 0, 0, 0, 0, 0};
+        &mf_cmaes_optimiser, {{"restarts", 3}, {"tolerance", 0.01}}, 0, 0, 0, 0, 0, 0};
     (void)state;
     for (int before = 5; before < 300; before += 14)
         check_restart(&often, 0, before, before % 2 == 0);
@@ -251,7 +251,7 @@ static void test_every_optimiser_is_a_function_of_its_seed(void **state) {
         landscape_end(&first);
         landscape_end(&second);
         landscape_end(&third);
-        memory_free(parameters);
+        mf_memory_free(parameters);
     }
 }
 
@@ -260,8 +260,8 @@ static void test_only_what_ended_by_itself_has_settled(void **state) {
     struct landscape_drive drive = {.landscape = &landscape_sphere, .genes = GENES, .seed = 7};
     (void)state;
     for (const struct variant *v = variants; v < variants + VARIANTS; v++) {
-        const bool local = v->optimiser == &nlopt_optimiser && v->settings[0].value >= 4;
-        const bool may_settle = local || v->optimiser == &cmaes_optimiser;
+        const bool local = v->optimiser == &mf_nlopt_optimiser && v->settings[0].value >= 4;
+        const bool may_settle = local || v->optimiser == &mf_cmaes_optimiser;
         for (int ample = 0; ample < 2; ample++) {
             void *parameters = parameters_of(v);
             struct landscape_result result = {.least = HUGE_VAL};
@@ -273,7 +273,7 @@ static void test_only_what_ended_by_itself_has_settled(void **state) {
             if (v->optimiser->settled)
                 assert_int_equal(v->optimiser->settled(run.state), ample && may_settle);
             landscape_end(&run);
-            memory_free(parameters);
+            mf_memory_free(parameters);
         }
     }
 }
@@ -289,7 +289,7 @@ static void test_every_optimiser_begins_near_its_start(void **state) {
         void *parameters = parameters_of(v);
         struct optimiser_round round;
         double nearest = HUGE_VAL;
-        if (v->optimiser == &cmaes_optimiser)
+        if (v->optimiser == &mf_cmaes_optimiser)
             landscape_set(v->optimiser, parameters, "step", 0.01);
         struct landscape_run run = landscape_begin(v->optimiser, parameters, &drive);
         assert_ok(v->optimiser->ask(run.state, &round));
@@ -300,11 +300,11 @@ static void test_every_optimiser_begins_near_its_start(void **state) {
                     fmax(distance, fabs(round.genes[k * GENES + (size_t)gene] - start[gene]));
             nearest = fmin(nearest, distance);
         }
-        const bool global = v->optimiser == &nlopt_optimiser && v->settings[0].value < 4;
+        const bool global = v->optimiser == &mf_nlopt_optimiser && v->settings[0].value < 4;
         if (!global)
-            assert_close(nearest, 0, v->optimiser == &cmaes_optimiser ? 0.03 : 1e-12);
+            assert_close(nearest, 0, v->optimiser == &mf_cmaes_optimiser ? 0.03 : 1e-12);
         landscape_end(&run);
-        memory_free(parameters);
+        mf_memory_free(parameters);
     }
 }
 
@@ -321,12 +321,12 @@ static void test_every_optimiser_refuses_a_space_without_room(void **state) {
     for (const struct variant *v = variants; v < variants + VARIANTS; v++)
         for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
             void *parameters = parameters_of(v),
-                 *memory = memory_zeroed(1, v->optimiser->state_size);
+                 *memory = mf_memory_zeroed(1, v->optimiser->state_size);
             assert_non_null(memory);
             assert_int_equal(v->optimiser->create(memory, &bad[k], parameters), STATUS_BAD_INPUT);
             v->optimiser->destroy(memory);
-            memory_free(memory);
-            memory_free(parameters);
+            mf_memory_free(memory);
+            mf_memory_free(parameters);
         }
 }
 
@@ -335,7 +335,7 @@ static void test_populations_larger_than_a_round_are_refused(void **state) {
     static const struct {
         const struct optimiser *optimiser;
         size_t most; ///< for a population of 60
-    } populations[] = {{&genetic_optimiser, 62}, {&cmaes_optimiser, 60}};
+    } populations[] = {{&mf_genetic_optimiser, 62}, {&mf_cmaes_optimiser, 60}};
     (void)state;
     for (int k = 0; k < 2; k++)
         for (size_t less = 0; less < 2; less++) {
@@ -343,7 +343,7 @@ static void test_populations_larger_than_a_round_are_refused(void **state) {
             const struct optimiser_space space = {
                 .genes = GENES, .maximum = 1, .most = populations[k].most - less};
             void *parameters = landscape_parameters(optimiser),
-                 *memory = memory_zeroed(1, optimiser->state_size);
+                 *memory = mf_memory_zeroed(1, optimiser->state_size);
             assert_non_null(memory);
             landscape_set(optimiser, parameters, "population", 60);
             if (less)
@@ -352,8 +352,8 @@ static void test_populations_larger_than_a_round_are_refused(void **state) {
             else
                 assert_ok(optimiser->create(memory, &space, parameters));
             optimiser->destroy(memory);
-            memory_free(memory);
-            memory_free(parameters);
+            mf_memory_free(memory);
+            mf_memory_free(parameters);
         }
 }
 
@@ -367,33 +367,33 @@ static void test_hopeless_is_unknown_before_a_round_is_told(void **state) {
         struct landscape_run run = landscape_begin(v->optimiser, parameters, &drive);
         assert_true(v->optimiser->hopeless(run.state) == HUGE_VAL);
         landscape_step(&run, &drive, &result);
-        if (v->optimiser != &nlopt_optimiser) {
+        if (v->optimiser != &mf_nlopt_optimiser) {
             assert_true(v->optimiser->hopeless(run.state) > result.least);
             assert_true(v->optimiser->hopeless(run.state) < GENES);
         }
         landscape_end(&run);
-        memory_free(parameters);
+        mf_memory_free(parameters);
     }
 }
 
 static void test_optimiser_find_knows_every_optimiser_when_named(void **state) {
     (void)state;
-    assert_ptr_equal(optimiser_find("genetic"), &genetic_optimiser);
-    assert_ptr_equal(optimiser_find("cma-es"), &cmaes_optimiser);
-    assert_ptr_equal(optimiser_find("nlopt"), &nlopt_optimiser);
-    assert_null(optimiser_find("simplex"));
+    assert_ptr_equal(mf_optimiser_find("genetic"), &mf_genetic_optimiser);
+    assert_ptr_equal(mf_optimiser_find("cma-es"), &mf_cmaes_optimiser);
+    assert_ptr_equal(mf_optimiser_find("nlopt"), &mf_nlopt_optimiser);
+    assert_null(mf_optimiser_find("simplex"));
 }
 
 static void test_optimiser_reflect_folds_at_both_ends(void **state) {
     (void)state;
-    assert_close(optimiser_reflect(0.25), 0.25, 0);
-    assert_close(optimiser_reflect(-0.25), 0.25, 0);
-    assert_close(optimiser_reflect(1.25), 0.75, 0);
-    assert_close(optimiser_reflect(-1.25), 0.75, 0);
-    assert_close(optimiser_reflect(2.25), 0.25, 0);
-    assert_close(optimiser_reflect(1e300), 0, 1);
-    assert_close(optimiser_reflect(NAN), 0, 0);
-    assert_close(optimiser_reflect(HUGE_VAL), 0, 0);
+    assert_close(mf_optimiser_reflect(0.25), 0.25, 0);
+    assert_close(mf_optimiser_reflect(-0.25), 0.25, 0);
+    assert_close(mf_optimiser_reflect(1.25), 0.75, 0);
+    assert_close(mf_optimiser_reflect(-1.25), 0.75, 0);
+    assert_close(mf_optimiser_reflect(2.25), 0.25, 0);
+    assert_close(mf_optimiser_reflect(1e300), 0, 1);
+    assert_close(mf_optimiser_reflect(NAN), 0, 0);
+    assert_close(mf_optimiser_reflect(HUGE_VAL), 0, 0);
 }
 
 int main(void) {

@@ -23,8 +23,8 @@ struct both {
 };
 
 static int index_of(const struct shape *shape) {
-    for (int k = 0; shapes[k]; k++)
-        if (shapes[k] == shape)
+    for (int k = 0; mf_shapes[k]; k++)
+        if (mf_shapes[k] == shape)
             return k;
     return -1;
 }
@@ -33,9 +33,9 @@ static void begin(struct both *both, bool potential, bool weight) {
     *both = (struct both){.soft = {25, 4}, .power = {3, 1, 0, 1.5}};
     for (int k = CORE; k < BINS; k++)
         both->g[k] = 1;
-    both->potential = (struct curve){&formula_soft_repulsion, &both->soft};
-    both->weight = (struct curve){&formula_power_weight, &both->power};
-    const int bspline = index_of(shape_find("bspline"));
+    both->potential = (struct curve){&mf_formula_soft_repulsion, &both->soft};
+    both->weight = (struct curve){&mf_formula_power_weight, &both->power};
+    const int bspline = index_of(mf_shape_find("bspline"));
     both->problem = (struct inverse_problem){
         .goals = {.bins = {0, 0.1, BINS}, .goal[GOAL_RDF] = {.count = BINS, .value = both->g}},
         .unknown = {{potential, {bspline, POTENTIAL_GENES, -20, 80, 0, 0}, {&both->potential}},
@@ -43,17 +43,17 @@ static void begin(struct both *both, bool potential, bool weight) {
         .scene = {.temperature = 1},
         .core_threshold = 1e-3,
         .core_stiffness = 2000};
-    assert_ok(decoder_init(&both->decoder, &both->problem));
-    assert_ok(decoder_start(&both->decoder, both->genes));
+    assert_ok(mf_decoder_init(&both->decoder, &both->problem));
+    assert_ok(mf_decoder_start(&both->decoder, both->genes));
 }
 
 static void check_curve(const struct both *both, enum unknown_kind kind, const struct curve *start,
                         size_t first, double tolerance) {
     double curve[MOST_POINTS];
-    const double *r = decoder_r(&both->decoder, kind);
-    decoder_curve(&both->decoder, kind, both->genes, curve);
-    for (size_t k = first; k < decoder_points(&both->decoder, kind); k++)
-        assert_close(curve[k], curve_value(start, r[k]), tolerance);
+    const double *r = mf_decoder_r(&both->decoder, kind);
+    mf_decoder_curve(&both->decoder, kind, both->genes, curve);
+    for (size_t k = first; k < mf_decoder_points(&both->decoder, kind); k++)
+        assert_close(curve[k], mf_curve_value(start, r[k]), tolerance);
 }
 
 static void test_decoder_start_gives_back_both_curves_side_by_side(void **state) {
@@ -62,13 +62,13 @@ static void test_decoder_start_gives_back_both_curves_side_by_side(void **state)
     begin(&both, true, true);
     assert_int_equal(both.decoder.genes, POTENTIAL_GENES + WEIGHT_GENES);
     assert_int_equal(both.decoder.first[UNKNOWN_WEIGHT], POTENTIAL_GENES);
-    assert_int_equal(decoder_points(&both.decoder, UNKNOWN_POTENTIAL), BINS + 1);
-    assert_int_equal(decoder_points(&both.decoder, UNKNOWN_WEIGHT), WEIGHT_POINTS);
+    assert_int_equal(mf_decoder_points(&both.decoder, UNKNOWN_POTENTIAL), BINS + 1);
+    assert_int_equal(mf_decoder_points(&both.decoder, UNKNOWN_WEIGHT), WEIGHT_POINTS);
     check_curve(&both, UNKNOWN_POTENTIAL, &both.potential, CORE, 0.1);
     check_curve(&both, UNKNOWN_WEIGHT, &both.weight, 0, 0.02);
     for (size_t k = 0; k < both.decoder.genes; k++)
         assert_true(both.genes[k] >= 0 && both.genes[k] <= 1);
-    decoder_clear(&both.decoder);
+    mf_decoder_clear(&both.decoder);
 }
 
 static void test_decoder_start_is_the_same_alone_and_beside_the_other(void **state) {
@@ -77,17 +77,17 @@ static void test_decoder_start_is_the_same_alone_and_beside_the_other(void **sta
     begin(&both, true, true);
     begin(&alone, false, true);
     assert_int_equal(alone.decoder.genes, WEIGHT_GENES);
-    assert_int_equal(decoder_points(&alone.decoder, UNKNOWN_POTENTIAL), 0);
+    assert_int_equal(mf_decoder_points(&alone.decoder, UNKNOWN_POTENTIAL), 0);
     for (int k = 0; k < WEIGHT_GENES; k++)
         assert_identical(alone.genes[k], both.genes[POTENTIAL_GENES + k]);
-    decoder_clear(&alone.decoder);
+    mf_decoder_clear(&alone.decoder);
     begin(&alone, true, false);
     assert_int_equal(alone.decoder.genes, POTENTIAL_GENES);
-    assert_int_equal(decoder_points(&alone.decoder, UNKNOWN_WEIGHT), 0);
+    assert_int_equal(mf_decoder_points(&alone.decoder, UNKNOWN_WEIGHT), 0);
     for (int k = 0; k < POTENTIAL_GENES; k++)
         assert_identical(alone.genes[k], both.genes[k]);
-    decoder_clear(&alone.decoder);
-    decoder_clear(&both.decoder);
+    mf_decoder_clear(&alone.decoder);
+    mf_decoder_clear(&both.decoder);
 }
 
 static void test_decoder_start_is_clamped_when_it_leaves_the_range(void **state) {
@@ -96,13 +96,13 @@ static void test_decoder_start_is_clamped_when_it_leaves_the_range(void **state)
     double curve[WEIGHT_POINTS];
     begin(&both, false, true);
     both.power.sigma = 500;
-    assert_ok(decoder_start(&both.decoder, both.genes));
+    assert_ok(mf_decoder_start(&both.decoder, both.genes));
     for (int k = 0; k < WEIGHT_GENES; k++)
         assert_true(both.genes[k] >= 0 && both.genes[k] <= 1);
     assert_close(both.genes[0], 1, 0);
-    decoder_curve(&both.decoder, UNKNOWN_WEIGHT, both.genes, curve);
+    mf_decoder_curve(&both.decoder, UNKNOWN_WEIGHT, both.genes, curve);
     assert_close(curve[0], 5, 1e-9);
-    decoder_clear(&both.decoder);
+    mf_decoder_clear(&both.decoder);
 }
 
 static void test_decoder_start_falls_from_the_middle_when_no_weight_is_given(void **state) {
@@ -111,11 +111,11 @@ static void test_decoder_start_falls_from_the_middle_when_no_weight_is_given(voi
     double curve[WEIGHT_POINTS];
     begin(&both, false, true);
     both.problem.unknown[UNKNOWN_WEIGHT].start[0] = NULL;
-    assert_ok(decoder_start(&both.decoder, both.genes));
-    decoder_curve(&both.decoder, UNKNOWN_WEIGHT, both.genes, curve);
+    assert_ok(mf_decoder_start(&both.decoder, both.genes));
+    mf_decoder_curve(&both.decoder, UNKNOWN_WEIGHT, both.genes, curve);
     for (int k = 0; k < WEIGHT_POINTS; k++)
         assert_close(curve[k], 2.5 * (1 - both.decoder.weight.r[k] / 1.5), 0.02);
-    decoder_clear(&both.decoder);
+    mf_decoder_clear(&both.decoder);
 }
 
 static void test_decoder_curve_of_a_weight_is_never_negative(void **state) {
@@ -127,21 +127,21 @@ static void test_decoder_curve_of_a_weight_is_never_negative(void **state) {
     both.problem.unknown[UNKNOWN_WEIGHT].parameters.minimum = -5;
     for (int k = 0; k < WEIGHT_GENES; k++)
         both.genes[k] = k % 2;
-    decoder_curve(&both.decoder, UNKNOWN_WEIGHT, both.genes, curve);
+    mf_decoder_curve(&both.decoder, UNKNOWN_WEIGHT, both.genes, curve);
     for (int k = 0; k < WEIGHT_POINTS; k++) {
         assert_true(curve[k] >= 0);
         zeros += curve[k] <= 0;
     }
     assert_in_range(zeros, 20, WEIGHT_POINTS - 20);
-    decoder_clear(&both.decoder);
+    mf_decoder_clear(&both.decoder);
 }
 
 /// Σ of some matrix M Mᵀ of random numbers.
 static void make_covariance(double *covariance, size_t genes) {
     double factor[32 * 32] = {0};
-    struct rng_sequence random = rng_sequence_begin(4, RNG_INITIAL, 0, 0);
+    struct rng_sequence random = mf_rng_sequence_begin(4, RNG_INITIAL, 0, 0);
     for (size_t k = 0; k < genes * genes; k++)
-        factor[k] = rng_sequence_uniform(&random) - 0.5;
+        factor[k] = mf_rng_sequence_uniform(&random) - 0.5;
     for (size_t a = 0; a < genes; a++)
         for (size_t b = 0; b < genes; b++) {
             covariance[a * genes + b] = 0;
@@ -156,15 +156,15 @@ static void check_band(const struct both *both, enum unknown_kind kind, size_t f
     static double slope[ALL][MOST_POINTS];
     double covariance[ALL * ALL], zero[MOST_POINTS], error[MOST_POINTS], genes[ALL] = {0};
     double flat[INVERSE_FLAT * MOST_POINTS];
-    const size_t points = decoder_points(&both->decoder, kind);
+    const size_t points = mf_decoder_points(&both->decoder, kind);
     make_covariance(covariance, ALL);
-    decoder_curve(&both->decoder, kind, genes, zero);
+    mf_decoder_curve(&both->decoder, kind, genes, zero);
     for (int n = 0; n < ALL; n++) {
         genes[n] = 1;
-        decoder_curve(&both->decoder, kind, genes, slope[n]);
+        mf_decoder_curve(&both->decoder, kind, genes, slope[n]);
         genes[n] = 0;
     }
-    assert_ok(decoder_band(&both->decoder, kind, genes, covariance, error, flat));
+    assert_ok(mf_decoder_band(&both->decoder, kind, genes, covariance, error, flat));
     for (size_t k = first; k < points; k++) {
         double sum = 0;
         for (int a = 0; a < ALL; a++)
@@ -174,7 +174,7 @@ static void check_band(const struct both *both, enum unknown_kind kind, size_t f
     }
     for (size_t k = 0; k < first; k++)
         assert_true(isnan(error[k]));
-    assert_ok(decoder_band(&both->decoder, kind, genes, NULL, error, flat));
+    assert_ok(mf_decoder_band(&both->decoder, kind, genes, NULL, error, flat));
     for (size_t k = 0; k < points; k++)
         assert_true(isnan(error[k]));
 }
@@ -185,7 +185,7 @@ static void test_decoder_band_is_the_error_that_the_covariance_gives_the_curve(v
     begin(&both, true, true);
     check_band(&both, UNKNOWN_POTENTIAL, CORE);
     check_band(&both, UNKNOWN_WEIGHT, 0);
-    decoder_clear(&both.decoder);
+    mf_decoder_clear(&both.decoder);
 }
 
 static void test_decoder_laws_are_those_of_the_scene_when_they_are_known(void **state) {
@@ -196,26 +196,26 @@ static void test_decoder_laws_are_those_of_the_scene_when_they_are_known(void **
     double value;
     begin(&both, false, true);
     both.problem.scene.potential = &known;
-    assert_ok(decoder_laws(&both.decoder, both.genes, &laws));
+    assert_ok(mf_decoder_laws(&both.decoder, both.genes, &laws));
     assert_ptr_equal(laws.table[UNKNOWN_POTENTIAL], &known);
     assert_ptr_equal(laws.table[UNKNOWN_WEIGHT], &laws.own[UNKNOWN_WEIGHT]);
-    table_evaluate(laws.table[UNKNOWN_WEIGHT], 0.75, &value, NULL, NULL);
+    mf_table_evaluate(laws.table[UNKNOWN_WEIGHT], 0.75, &value, NULL, NULL);
     assert_close(value, 1.5, 0.02);
-    decoder_laws_clear(&laws);
-    decoder_clear(&both.decoder);
+    mf_decoder_laws_clear(&laws);
+    mf_decoder_clear(&both.decoder);
 }
 
 /// A formula beside nothing else: of three genes, or of those that are not fixed.
 static void begin_power_with(struct both *both, int64_t genes, double sigma, double exponent,
                              double inner_cutoff) {
     *both = (struct both){.power = {2.5, 1.5, 0.4, 1.6}};
-    both->weight = (struct curve){&formula_power_weight, &both->power};
+    both->weight = (struct curve){&mf_formula_power_weight, &both->power};
     both->problem.unknown[UNKNOWN_WEIGHT] = (struct unknown){
         true,
         {INVERSE_CURVE_POWER, genes, 0, 5, 0.1, 1.6, {sigma, exponent, inner_cutoff}},
         {&both->weight}};
-    assert_ok(decoder_init(&both->decoder, &both->problem));
-    assert_ok(decoder_start(&both->decoder, both->genes));
+    assert_ok(mf_decoder_init(&both->decoder, &both->problem));
+    assert_ok(mf_decoder_start(&both->decoder, both->genes));
 }
 
 static void begin_power(struct both *both) {
@@ -228,7 +228,7 @@ static void test_decoder_power_is_the_formula_and_starts_at_it(void **state) {
     begin_power(&both);
     assert_int_equal(both.decoder.genes, INVERSE_PARAMETERS);
     check_curve(&both, UNKNOWN_WEIGHT, &both.weight, 0, 1e-12);
-    decoder_clear(&both.decoder);
+    mf_decoder_clear(&both.decoder);
 }
 
 /// The curve is the formula with what is fixed, whatever the genes of the rest are.
@@ -240,14 +240,14 @@ static void test_decoder_power_holds_what_is_fixed(void **state) {
     assert_int_equal(both.decoder.genes, 1);
     check_curve(&both, UNKNOWN_WEIGHT, &both.weight, 0, 1e-12);
     both.genes[0] = 0.8; // σ = 4
-    decoder_curve(&both.decoder, UNKNOWN_WEIGHT, both.genes, curve);
+    mf_decoder_curve(&both.decoder, UNKNOWN_WEIGHT, both.genes, curve);
     for (size_t k = 0; k < WEIGHT_POINTS; k++)
-        assert_close(curve[k], 4 / 2.5 * curve_value(&both.weight, both.decoder.weight.r[k]), 1e-9);
-    decoder_clear(&both.decoder);
+        assert_close(curve[k], 4 / 2.5 * mf_curve_value(&both.weight, both.decoder.weight.r[k]), 1e-9);
+    mf_decoder_clear(&both.decoder);
     begin_power_with(&both, 2, 2.5, NAN, NAN);
     assert_int_equal(both.decoder.genes, 2);
     check_curve(&both, UNKNOWN_WEIGHT, &both.weight, 0, 1e-12);
-    decoder_clear(&both.decoder);
+    mf_decoder_clear(&both.decoder);
 }
 
 static void test_decoder_parameters_have_the_errors_of_their_genes(void **state) {
@@ -256,7 +256,7 @@ static void test_decoder_parameters_have_the_errors_of_their_genes(void **state)
     struct inverse_parameter found[INVERSE_PARAMETERS];
     const double covariance[4] = {0.01 * 0.01, 0, 0, 0.02 * 0.02};
     begin_power_with(&both, 2, NAN, 1.5, NAN);
-    decoder_parameters(&both.decoder, both.genes, covariance, found);
+    mf_decoder_parameters(&both.decoder, both.genes, covariance, found);
     assert_close(found[INVERSE_SIGMA].value, 2.5, 1e-12);
     assert_close(found[INVERSE_SIGMA].error, 5 * 0.01, 1e-12);
     assert_close(found[INVERSE_EXPONENT].value, 1.5, 0);
@@ -265,13 +265,13 @@ static void test_decoder_parameters_have_the_errors_of_their_genes(void **state)
     assert_close(found[INVERSE_INNER_CUTOFF].value, 0.4, 1e-12);
     assert_close(found[INVERSE_INNER_CUTOFF].error, 0.75 * 0.02, 1e-12);
     const struct unknown_parameters *p = &both.problem.unknown[UNKNOWN_WEIGHT].parameters;
-    assert_null(decoder_parameter_bound(p, INVERSE_SIGMA, 0.5 * (p->minimum + p->maximum)));
-    assert_string_equal(decoder_parameter_bound(p, INVERSE_SIGMA, p->minimum), "minimum");
-    assert_string_equal(decoder_parameter_bound(p, INVERSE_SIGMA, p->maximum), "maximum");
-    assert_null(decoder_parameter_bound(p, INVERSE_SIGMA, NAN));
-    decoder_parameters(&both.decoder, both.genes, NULL, found);
+    assert_null(mf_decoder_parameter_bound(p, INVERSE_SIGMA, 0.5 * (p->minimum + p->maximum)));
+    assert_string_equal(mf_decoder_parameter_bound(p, INVERSE_SIGMA, p->minimum), "minimum");
+    assert_string_equal(mf_decoder_parameter_bound(p, INVERSE_SIGMA, p->maximum), "maximum");
+    assert_null(mf_decoder_parameter_bound(p, INVERSE_SIGMA, NAN));
+    mf_decoder_parameters(&both.decoder, both.genes, NULL, found);
     assert_true(isnan(found[INVERSE_SIGMA].error));
-    decoder_clear(&both.decoder);
+    mf_decoder_clear(&both.decoder);
 }
 
 static void test_decoder_band_of_the_formula_follows_its_genes(void **state) {
@@ -281,11 +281,11 @@ static void test_decoder_band_of_the_formula_follows_its_genes(void **state) {
     begin_power(&both);
     // Only σ is uncertain: the band is the curve itself, scaled.
     covariance[0] = 0.01 * 0.01;
-    assert_ok(decoder_band(&both.decoder, UNKNOWN_WEIGHT, both.genes, covariance, error, flat));
+    assert_ok(mf_decoder_band(&both.decoder, UNKNOWN_WEIGHT, both.genes, covariance, error, flat));
     for (size_t k = 0; k < WEIGHT_POINTS; k++)
-        assert_close(error[k], curve_value(&both.weight, both.decoder.weight.r[k]) / 2.5 * 5 * 0.01,
+        assert_close(error[k], mf_curve_value(&both.weight, both.decoder.weight.r[k]) / 2.5 * 5 * 0.01,
                      1e-9);
-    decoder_clear(&both.decoder);
+    mf_decoder_clear(&both.decoder);
 }
 
 /// Two uncertain genes are two directions: orthogonal, the wider first, and together all of the
@@ -298,7 +298,7 @@ static void test_decoder_flat_directions_are_principal_components(void **state) 
     begin_power(&both);
     covariance[0] = 0.01 * 0.01;
     covariance[4] = 0.02 * 0.02;
-    assert_ok(decoder_band(&both.decoder, UNKNOWN_WEIGHT, both.genes, covariance, error, flat));
+    assert_ok(mf_decoder_band(&both.decoder, UNKNOWN_WEIGHT, both.genes, covariance, error, flat));
     for (size_t k = 0; k < WEIGHT_POINTS; k++) {
         const double second = flat[WEIGHT_POINTS + k];
         all += error[k] * error[k];
@@ -309,7 +309,7 @@ static void test_decoder_flat_directions_are_principal_components(void **state) 
     assert_close((squares[0] + squares[1]) / all, 1, 1e-6);
     assert_true(squares[0] > squares[1] && squares[1] > 0.01 * all);
     assert_close(product / all, 0, 1e-6);
-    decoder_clear(&both.decoder);
+    mf_decoder_clear(&both.decoder);
 }
 
 int main(void) {

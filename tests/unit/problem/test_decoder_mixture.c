@@ -39,13 +39,13 @@ static void begin(struct mixture *mixture) {
     for (size_t pair = 0; pair < PAIRS; pair++) {
         for (size_t k = cores[pair]; k < BINS; k++)
             mixture->g[pair * BINS + k] = 1;
-        mixture->potential[pair] = (struct curve){&formula_soft_repulsion, &mixture->soft[pair]};
+        mixture->potential[pair] = (struct curve){&mf_formula_soft_repulsion, &mixture->soft[pair]};
         mixture->problem.unknown[UNKNOWN_POTENTIAL].start[pair] = &mixture->potential[pair];
     }
-    mixture->weight = (struct curve){&formula_power_weight, &mixture->power};
+    mixture->weight = (struct curve){&mf_formula_power_weight, &mixture->power};
     mixture->problem.unknown[UNKNOWN_WEIGHT].start[0] = &mixture->weight;
-    assert_ok(decoder_init(&mixture->decoder, &mixture->problem));
-    assert_ok(decoder_start(&mixture->decoder, mixture->genes));
+    assert_ok(mf_decoder_init(&mixture->decoder, &mixture->problem));
+    assert_ok(mf_decoder_start(&mixture->decoder, mixture->genes));
 }
 
 static void test_decoder_start_gives_back_each_potential_of_a_mixture(void **state) {
@@ -55,21 +55,21 @@ static void test_decoder_start_gives_back_each_potential_of_a_mixture(void **sta
     begin(&m);
     assert_int_equal(m.decoder.genes, ALL);
     assert_int_equal(m.decoder.first[UNKNOWN_WEIGHT], PAIRS * GENES);
-    assert_int_equal(decoder_curve_count(&m.decoder, UNKNOWN_POTENTIAL), PAIRS);
-    assert_int_equal(decoder_curve_count(&m.decoder, UNKNOWN_WEIGHT), 1);
-    assert_int_equal(decoder_points(&m.decoder, UNKNOWN_POTENTIAL), PAIRS * EACH);
-    decoder_curve(&m.decoder, UNKNOWN_POTENTIAL, m.genes, curve);
+    assert_int_equal(mf_decoder_curve_count(&m.decoder, UNKNOWN_POTENTIAL), PAIRS);
+    assert_int_equal(mf_decoder_curve_count(&m.decoder, UNKNOWN_WEIGHT), 1);
+    assert_int_equal(mf_decoder_points(&m.decoder, UNKNOWN_POTENTIAL), PAIRS * EACH);
+    mf_decoder_curve(&m.decoder, UNKNOWN_POTENTIAL, m.genes, curve);
     for (size_t n = 0; n < PAIRS * EACH; n++) {
         const size_t pair = n / EACH, k = n % EACH;
-        assert_int_equal(decoder_fits(&m.decoder, UNKNOWN_POTENTIAL, n),
+        assert_int_equal(mf_decoder_fits(&m.decoder, UNKNOWN_POTENTIAL, n),
                          k >= cores[pair] && k < BINS);
         if (k >= cores[pair])
-            assert_close(curve[n], curve_value(&m.potential[pair], m.decoder.potential.r[n]), 0.1);
+            assert_close(curve[n], mf_curve_value(&m.potential[pair], m.decoder.potential.r[n]), 0.1);
     }
-    decoder_curve(&m.decoder, UNKNOWN_WEIGHT, m.genes, weight);
+    mf_decoder_curve(&m.decoder, UNKNOWN_WEIGHT, m.genes, weight);
     assert_close(weight[WEIGHT_POINTS / 2],
-                 curve_value(&m.weight, m.decoder.weight.r[WEIGHT_POINTS / 2]), 0.02);
-    decoder_clear(&m.decoder);
+                 mf_curve_value(&m.weight, m.decoder.weight.r[WEIGHT_POINTS / 2]), 0.02);
+    mf_decoder_clear(&m.decoder);
 }
 
 /// The potentials that are not given start from the mean force, here 0.
@@ -79,13 +79,13 @@ static void test_decoder_start_takes_the_mean_force_where_a_potential_is_not_giv
     double curve[PAIRS * EACH];
     begin(&m);
     m.problem.unknown[UNKNOWN_POTENTIAL].start[1] = NULL;
-    assert_ok(decoder_start(&m.decoder, m.genes));
-    decoder_curve(&m.decoder, UNKNOWN_POTENTIAL, m.genes, curve);
+    assert_ok(mf_decoder_start(&m.decoder, m.genes));
+    mf_decoder_curve(&m.decoder, UNKNOWN_POTENTIAL, m.genes, curve);
     for (size_t k = cores[1]; k < BINS; k++)
         assert_close(curve[EACH + k], 0, 1e-6);
-    assert_close(curve[2 * EACH + 10], curve_value(&m.potential[2], m.decoder.potential.r[10]),
+    assert_close(curve[2 * EACH + 10], mf_curve_value(&m.potential[2], m.decoder.potential.r[10]),
                  0.1);
-    decoder_clear(&m.decoder);
+    mf_decoder_clear(&m.decoder);
 }
 
 static void test_decoder_genes_of_a_kind_of_pairs_move_its_curve_alone(void **state) {
@@ -93,19 +93,19 @@ static void test_decoder_genes_of_a_kind_of_pairs_move_its_curve_alone(void **st
     struct mixture m;
     double before[PAIRS * EACH], after[PAIRS * EACH];
     begin(&m);
-    decoder_curve(&m.decoder, UNKNOWN_POTENTIAL, m.genes, before);
+    mf_decoder_curve(&m.decoder, UNKNOWN_POTENTIAL, m.genes, before);
     for (size_t gene = 0; gene < ALL; gene++) {
         size_t moved[PAIRS] = {0};
         const double kept = m.genes[gene];
         m.genes[gene] += 0.1;
-        decoder_curve(&m.decoder, UNKNOWN_POTENTIAL, m.genes, after);
+        mf_decoder_curve(&m.decoder, UNKNOWN_POTENTIAL, m.genes, after);
         m.genes[gene] = kept;
         for (size_t n = 0; n < PAIRS * EACH; n++)
             moved[n / EACH] += !is_identical(before[n], after[n]);
         for (size_t pair = 0; pair < PAIRS; pair++)
             assert_int_equal(moved[pair] > 0, pair == gene / GENES);
     }
-    decoder_clear(&m.decoder);
+    mf_decoder_clear(&m.decoder);
 }
 
 /// Only the genes of A-B are uncertain: so is its curve alone. Cores have no error.
@@ -117,7 +117,7 @@ static void test_decoder_band_of_a_mixture_is_unknown_in_each_core(void **state)
     begin(&m);
     for (size_t gene = GENES; gene < 2 * GENES; gene++)
         covariance[gene * ALL + gene] = 0.01 * 0.01;
-    assert_ok(decoder_band(&m.decoder, UNKNOWN_POTENTIAL, m.genes, covariance, error, flat));
+    assert_ok(mf_decoder_band(&m.decoder, UNKNOWN_POTENTIAL, m.genes, covariance, error, flat));
     for (size_t n = 0; n < PAIRS * EACH; n++) {
         const size_t pair = n / EACH, k = n % EACH;
         assert_int_equal(isnan(error[n]), k < cores[pair]);
@@ -126,7 +126,7 @@ static void test_decoder_band_of_a_mixture_is_unknown_in_each_core(void **state)
         if (k >= cores[pair] && k < BINS)
             assert_int_equal(error[n] > 0.1, pair == 1);
     }
-    decoder_clear(&m.decoder);
+    mf_decoder_clear(&m.decoder);
 }
 
 static void test_decoder_laws_of_a_mixture_are_a_table_of_its_curves(void **state) {
@@ -134,16 +134,16 @@ static void test_decoder_laws_of_a_mixture_are_a_table_of_its_curves(void **stat
     struct mixture m;
     struct decoder_laws laws;
     begin(&m);
-    assert_ok(decoder_laws(&m.decoder, m.genes, &laws));
+    assert_ok(mf_decoder_laws(&m.decoder, m.genes, &laws));
     assert_int_equal(laws.table[UNKNOWN_POTENTIAL]->curves, PAIRS);
     assert_int_equal(laws.table[UNKNOWN_WEIGHT]->curves, 1);
     for (int pair = 0; pair < PAIRS; pair++) {
         double value;
-        table_evaluate_pair(laws.table[UNKNOWN_POTENTIAL], pair, 1.5, &value, NULL, NULL);
-        assert_close(value, curve_value(&m.potential[pair], 1.5), 0.1);
+        mf_table_evaluate_pair(laws.table[UNKNOWN_POTENTIAL], pair, 1.5, &value, NULL, NULL);
+        assert_close(value, mf_curve_value(&m.potential[pair], 1.5), 0.1);
     }
-    decoder_laws_clear(&laws);
-    decoder_clear(&m.decoder);
+    mf_decoder_laws_clear(&laws);
+    mf_decoder_clear(&m.decoder);
 }
 
 static void test_decoder_curve_name_has_the_kind_of_pairs_in_a_mixture(void **state) {
@@ -153,15 +153,15 @@ static void test_decoder_curve_name_has_the_kind_of_pairs_in_a_mixture(void **st
     char name[DECODER_NAME_SIZE];
     begin(&m);
     for (size_t pair = 0; pair < PAIRS; pair++) {
-        decoder_curve_name(&m.decoder, UNKNOWN_POTENTIAL, pair, name);
+        mf_decoder_curve_name(&m.decoder, UNKNOWN_POTENTIAL, pair, name);
         assert_string_equal(name, names[pair]);
     }
-    decoder_curve_name(&m.decoder, UNKNOWN_WEIGHT, 0, name);
+    mf_decoder_curve_name(&m.decoder, UNKNOWN_WEIGHT, 0, name);
     assert_string_equal(name, "weight");
-    m.problem.scene.composition = composition_of_one(50);
-    decoder_curve_name(&m.decoder, UNKNOWN_POTENTIAL, 0, name);
+    m.problem.scene.composition = mf_composition_of_one(50);
+    mf_decoder_curve_name(&m.decoder, UNKNOWN_POTENTIAL, 0, name);
     assert_string_equal(name, "potential");
-    decoder_clear(&m.decoder);
+    mf_decoder_clear(&m.decoder);
 }
 
 int main(void) {

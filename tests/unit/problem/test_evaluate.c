@@ -45,7 +45,7 @@ static void measure(const struct made *made, double hopeless, double patience,
                                                  .hopeless = hopeless,
                                                  .threads = 1,
                                                  .seed = 11};
-    assert_ok(evaluate(&made->problem, &candidate, &parameters, NULL, NULL, result));
+    assert_ok(mf_evaluate(&made->problem, &candidate, &parameters, NULL, NULL, result));
 }
 
 static void test_evaluate_stops_early_when_a_candidate_is_hopeless(void **state) {
@@ -117,7 +117,7 @@ static void test_evaluate_begins_where_it_is_told(void **state) {
         .hopeless = HUGE_VAL,
         .threads = 1,
         .seed = 11};
-    assert_ok(evaluate(&made.problem, &candidate, &made.parameters, NULL,
+    assert_ok(mf_evaluate(&made.problem, &candidate, &made.parameters, NULL,
                        (double *const[]){to[0], to[1], to[2]}, &result));
     for (int d = 0; d < 3; d++)
         for (int k = 0; k < COUNT; k++)
@@ -136,7 +136,7 @@ static void test_evaluate_fails_when_the_temperature_is_another(void **state) {
                                                  .hopeless = HUGE_VAL,
                                                  .threads = 1,
                                                  .seed = 11};
-    assert_fails(evaluate(&made.problem, &candidate, &made.parameters, NULL, NULL, &result),
+    assert_fails(mf_evaluate(&made.problem, &candidate, &made.parameters, NULL, NULL, &result),
                  STATUS_UNSTABLE, "the temperature is");
     assert_int_equal(result.engine_steps, 20);
     fluid_clear(&made.fluid);
@@ -164,20 +164,20 @@ static void measure_rounds(const struct made *made, int threads, struct rounds *
     problem.threads = threads;
     for (int k = 0; k < CANDIDATES * GENES; k++)
         genes[k] = 0.2 + 0.03 * k;
-    assert_ok(decoder_init(&decoder, &problem));
-    assert_ok(candidates_init(&candidates, &decoder, &parameters));
+    assert_ok(mf_decoder_init(&decoder, &problem));
+    assert_ok(mf_candidates_init(&candidates, &decoder, &parameters));
     for (int n = 0; n < 2; n++) {
         const double hopeless = n == 0 ? HUGE_VAL : 0.5 * rounds->errors[0][0];
         assert_int_equal(candidates.totals.warm, n > 0);
-        assert_ok(candidates_measure(&candidates, &round, hopeless, &listener));
+        assert_ok(mf_candidates_measure(&candidates, &round, hopeless, &listener));
         memcpy(rounds->errors[n], candidates.errors, sizeof rounds->errors[n]);
-        candidates_next_round(&candidates);
+        mf_candidates_next_round(&candidates);
     }
     memcpy(rounds->positions, candidates.position, sizeof rounds->positions);
     rounds->steps = candidates.totals.steps;
     assert_int_equal(candidates.totals.evaluations, 2 * CANDIDATES);
-    candidates_clear(&candidates);
-    decoder_clear(&decoder);
+    mf_candidates_clear(&candidates);
+    mf_decoder_clear(&decoder);
 }
 
 static void test_candidates_race_with_the_same_bits_for_any_threads(void **state) {

@@ -26,7 +26,7 @@ struct slabs {
 };
 
 static void begin(struct slabs *slabs) {
-    struct rng_sequence random = rng_sequence_begin(4, RNG_INITIAL, 0, 0);
+    struct rng_sequence random = mf_rng_sequence_begin(4, RNG_INITIAL, 0, 0);
     *slabs = (struct slabs){0};
     fluid_mixture(&slabs->fluid, COUNT, no_time);
     const double edge = slabs->fluid.setup.box.length[0];
@@ -36,8 +36,8 @@ static void begin(struct slabs *slabs) {
     }
     for (int k = 0; k < COUNT; k++) {
         slabs->memory[0][k] = edge * (k + 0.5) / COUNT;
-        slabs->memory[1][k] = edge * rng_sequence_uniform(&random);
-        slabs->memory[2][k] = edge * rng_sequence_uniform(&random);
+        slabs->memory[1][k] = edge * mf_rng_sequence_uniform(&random);
+        slabs->memory[2][k] = edge * mf_rng_sequence_uniform(&random);
     }
     for (int d = 0; d < 3; d++)
         slabs->position[d] = slabs->memory[d];
@@ -55,7 +55,7 @@ static void count_g(const struct slabs *slabs, double *g) {
         g[n] = 0;
     for (uint32_t i = 0; i < COUNT; i++)
         for (uint32_t j = i + 1; j < COUNT; j++) {
-            const size_t pair = (size_t)composition_pair_of_ids(composition, i, j);
+            const size_t pair = (size_t)mf_composition_pair_of_ids(composition, i, j);
             double square = 0;
             for (int d = 0; d < 3; d++) {
                 const double x =
@@ -65,7 +65,7 @@ static void count_g(const struct slabs *slabs, double *g) {
             const size_t bin = (size_t)(sqrt(square) / bins.width);
             if (bin < BINS)
                 g[pair * BINS + bin] +=
-                    1 / rdf_ideal_pairs_of(&bins, bin, box, composition, (int)pair);
+                    1 / mf_rdf_ideal_pairs_of(&bins, bin, box, composition, (int)pair);
         }
 }
 
@@ -90,7 +90,7 @@ static void test_evaluate_keeps_types_and_places_when_it_begins_where_another_en
                                                      .threads = 1,
                                                      .seed = seed};
         double *ended[3] = {memory[0], memory[1], memory[2]};
-        assert_ok(evaluate(&slabs.problem, &candidate, &parameters, features, ended, &result));
+        assert_ok(mf_evaluate(&slabs.problem, &candidate, &parameters, features, ended, &result));
         // A pair at an edge may be rounded to either side.
         for (int n = 0; n < PAIRS * BINS; n++)
             assert_close(features[n], expected[n], 0.05 + 0.1 * expected[n]);

@@ -16,7 +16,7 @@ static void test_goals_distance_is_the_rms_of_what_both_know(void **state) {
     const double wanted[] = {1, 2, NAN, 4, 5}, wanted_error[] = {0.3, NAN, 1, 0, 9};
     const double value[] = {2, 0, 7, 5, NAN}, error[] = {0.4, 2, 1, NAN, 9};
     const struct goal goal = {5, wanted, wanted_error, 0};
-    const struct goal_distance distance = goals_distance(&goal, value, error);
+    const struct goal_distance distance = mf_goals_distance(&goal, value, error);
     assert_int_equal(distance.count, 3);
     assert_close(distance.rms, sqrt((1 + 4 + 1) / 3.0), rounding);
     assert_close(distance.noise, sqrt((0.25 + 4 + 0) / 3.0), rounding);
@@ -26,7 +26,7 @@ static void test_goals_distance_is_infinite_when_nothing_is_common(void **state)
     (void)state;
     const double wanted[] = {1, NAN}, value[] = {NAN, 1}, error[] = {0, 0};
     const struct goal goal = {2, wanted, error, 0};
-    const struct goal_distance distance = goals_distance(&goal, value, error);
+    const struct goal_distance distance = mf_goals_distance(&goal, value, error);
     assert_int_equal(distance.count, 0);
     assert_true(distance.rms > 1e300);
     assert_close(distance.noise, 0, 0);
@@ -35,10 +35,10 @@ static void test_goals_distance_is_infinite_when_nothing_is_common(void **state)
 static void test_goals_weight_is_one_over_the_errors_when_none_is_given(void **state) {
     (void)state;
     const double value[] = {1, 2, 3, 4}, error[] = {0.3, 0, NAN, 0.4}, none[4] = {0};
-    assert_close(goals_weight(&(struct goal){4, value, error, 0}), 1 / sqrt(0.125), rounding);
-    assert_close(goals_weight(&(struct goal){4, value, error, 7}), 7, 0);
+    assert_close(mf_goals_weight(&(struct goal){4, value, error, 0}), 1 / sqrt(0.125), rounding);
+    assert_close(mf_goals_weight(&(struct goal){4, value, error, 7}), 7, 0);
     // Without any error it is a number all the same.
-    assert_close(goals_weight(&(struct goal){4, value, none, 0}), 100, 1e-10);
+    assert_close(mf_goals_weight(&(struct goal){4, value, none, 0}), 100, 1e-10);
 }
 
 static void test_goals_error_is_that_of_a_single_goal_as_it_is(void **state) {
@@ -46,9 +46,9 @@ static void test_goals_error_is_that_of_a_single_goal_as_it_is(void **state) {
     const double value[] = {1}, error[] = {0.5};
     struct goal_distance distance[GOALS] = {[GOAL_MSD] = {3, 0.25, 1}, [GOAL_VACF] = {99, 99, 1}};
     const struct goals goals = {.goal[GOAL_MSD] = {1, value, error, 8}};
-    assert_int_equal(goals_count(&goals), 1);
-    assert_close(goals_error(&goals, distance), 3, 0);
-    assert_close(goals_noise(&goals, distance), 0.25, 0);
+    assert_int_equal(mf_goals_count(&goals), 1);
+    assert_close(mf_goals_error(&goals, distance), 3, 0);
+    assert_close(mf_goals_noise(&goals, distance), 0.25, 0);
 }
 
 static void test_goals_error_is_1_at_the_errors_of_several_goals(void **state) {
@@ -58,16 +58,16 @@ static void test_goals_error_is_1_at_the_errors_of_several_goals(void **state) {
                                 .goal[GOAL_DIFFUSION] = {1, value, large, 0}};
     struct goal_distance distance[GOALS] = {
         [GOAL_RDF] = {0.01, 0.02, 2}, [GOAL_DIFFUSION] = {5, 10, 1}};
-    assert_int_equal(goals_count(&goals), 2);
-    assert_close(goals_error(&goals, distance), 1, rounding);
-    assert_close(goals_noise(&goals, distance), 2, rounding);
+    assert_int_equal(mf_goals_count(&goals), 2);
+    assert_close(mf_goals_error(&goals, distance), 1, rounding);
+    assert_close(mf_goals_noise(&goals, distance), 2, rounding);
     distance[GOAL_DIFFUSION].rms = INFINITY;
-    assert_true(goals_error(&goals, distance) > 1e300);
+    assert_true(mf_goals_error(&goals, distance) > 1e300);
     struct goals weighted = goals;
     weighted.goal[GOAL_RDF].weight = 300;
     weighted.goal[GOAL_DIFFUSION].weight = 0.8;
     distance[GOAL_DIFFUSION].rms = 5;
-    assert_close(goals_error(&weighted, distance), sqrt(0.5 * (9 + 16)), 1e-12);
+    assert_close(mf_goals_error(&weighted, distance), sqrt(0.5 * (9 + 16)), 1e-12);
 }
 
 /// E of time and bin; the first time, which is no measurement, would spoil every mean.
@@ -88,8 +88,8 @@ static void test_goals_features_are_means_over_ten_by_ten_blocks_of_escape_times
     double cell[CELLS], cell_error[CELLS], value[BLOCKS], error[BLOCKS];
     make_cells(cell, cell_error);
     const struct goals goals = escape_goals(cell, cell_error);
-    assert_int_equal(goals_features(&goals), BLOCKS);
-    goals_take_features(&goals, NULL, value, error);
+    assert_int_equal(mf_goals_features(&goals), BLOCKS);
+    mf_goals_take_features(&goals, NULL, value, error);
     for (int row = 0; row < 10; row++)
         for (int column = 0; column < 10; column++) {
             // Two times and three bins in each block.
@@ -110,7 +110,7 @@ static void test_goals_features_use_every_cell_once_when_ten_does_not_divide_the
     for (int k = FEW_BINS; k < FEW_TIMES * FEW_BINS; k++) {
         int seen = 0;
         cell[k] = 1;
-        goals_take_features(&goals, NULL, value, NULL);
+        mf_goals_take_features(&goals, NULL, value, NULL);
         for (int n = 0; n < BLOCKS; n++)
             seen += value[n] > 0;
         assert_int_equal(seen, 1);
@@ -131,8 +131,8 @@ static void test_goals_features_of_the_target_stand_in_for_what_was_not_measured
         seen[BINS + b] = seen[2 * BINS + b] = NAN; // a whole block
     const struct goals goals = escape_goals(cell, cell_error);
     double *observed[GOALS] = {[GOAL_ETD] = seen};
-    goals_take_features(&goals, NULL, wanted, NULL);
-    goals_take_features(&goals, observed, value, NULL);
+    mf_goals_take_features(&goals, NULL, wanted, NULL);
+    mf_goals_take_features(&goals, observed, value, NULL);
     assert_close(value[0] - wanted[0], 1, 1e-12); // 5 over five cells
     for (int n = 1; n < BLOCKS; n++)
         assert_close(value[n], wanted[n], 0);
@@ -145,15 +145,15 @@ static void test_goals_features_are_0_when_the_target_does_not_know(void **state
     const struct goals goals = {.goal[GOAL_RDF] = {3, g, g_error, 0},
                                 .goal[GOAL_DIFFUSION] = {1, d, d_error, 0}};
     double *observed[GOALS] = {[GOAL_RDF] = seen_g, [GOAL_DIFFUSION] = seen_d};
-    assert_int_equal(goals_features(&goals), 4);
-    goals_take_features(&goals, NULL, value, error);
+    assert_int_equal(mf_goals_features(&goals), 4);
+    mf_goals_take_features(&goals, NULL, value, error);
     const double wanted[] = {1, 0, 3, 0}, wanted_error[] = {0.1, 0, 0, 0};
     const double measured[] = {2, 0, 3, 0};
     for (int k = 0; k < 4; k++) {
         assert_close(value[k], wanted[k], 0);
         assert_close(error[k], wanted_error[k], rounding);
     }
-    goals_take_features(&goals, observed, value, NULL);
+    mf_goals_take_features(&goals, observed, value, NULL);
     for (int k = 0; k < 4; k++)
         assert_close(value[k], measured[k], 0);
 }
@@ -165,20 +165,20 @@ static void test_goals_variance_is_that_of_repeated_measurements(void **state) {
     enum { MEASUREMENTS = 4000 };
     static const double wanted = 1, target_error = 7, truth = 1.5, error = 0.1;
     const struct goals goals = {.goal[GOAL_DIFFUSION] = {1, &wanted, &target_error, 0}};
-    struct rng_sequence random = rng_sequence_begin(3, RNG_INITIAL, 0, 0);
+    struct rng_sequence random = mf_rng_sequence_begin(3, RNG_INITIAL, 0, 0);
     double mean = 0, square = 0, variance = 0;
     for (int k = 0; k < MEASUREMENTS; k++) {
         // Twelve uniform numbers make a normal one.
         double value = -6;
         for (int n = 0; n < 12; n++)
-            value += rng_sequence_uniform(&random);
+            value += mf_rng_sequence_uniform(&random);
         value = truth + error * value;
         struct goal_distance distance[GOALS] = {0};
-        distance[GOAL_DIFFUSION] = goals_distance(&goals.goal[GOAL_DIFFUSION], &value, &error);
-        const double e = goals_error(&goals, distance);
+        distance[GOAL_DIFFUSION] = mf_goals_distance(&goals.goal[GOAL_DIFFUSION], &value, &error);
+        const double e = mf_goals_error(&goals, distance);
         mean += e / MEASUREMENTS;
         square += e * e / MEASUREMENTS;
-        variance += goals_variance(&goals, distance) / MEASUREMENTS;
+        variance += mf_goals_variance(&goals, distance) / MEASUREMENTS;
     }
     assert_close(variance / (square - mean * mean), 1, 0.1);
 }

@@ -36,14 +36,14 @@ static void test_potential_grid_has_three_parts_when_the_target_has_a_core(void 
     target[CORE - 1] = 1e-3;
     target[20] = 0;
     const struct inverse_problem problem = make_problem(target);
-    assert_ok(potential_grid_init(&grid, &problem));
+    assert_ok(mf_potential_grid_init(&grid, &problem));
     assert_int_equal(grid.core[0], CORE);
     assert_int_equal(grid.known, BINS - CORE);
     assert_int_equal(grid.points, BINS + 1);
     assert_close(grid.r[0], 0.05, rounding);
     assert_close(grid.r[BINS - 1], 3.95, rounding);
     assert_close(grid.r[BINS], 4, rounding);
-    potential_grid_clear(&grid);
+    mf_potential_grid_clear(&grid);
 }
 
 static void test_potential_grid_has_no_core_when_the_target_begins_at_once(void **state) {
@@ -53,11 +53,11 @@ static void test_potential_grid_has_no_core_when_the_target_begins_at_once(void 
     for (int k = 0; k < BINS; k++)
         target[k] = 0.5;
     const struct inverse_problem problem = make_problem(target);
-    assert_ok(potential_grid_init(&grid, &problem));
+    assert_ok(mf_potential_grid_init(&grid, &problem));
     assert_int_equal(grid.core[0], 0);
-    potential_grid_start(&grid, &problem, phi);
+    mf_potential_grid_start(&grid, &problem, phi);
     assert_close(phi[0], 1.3 * log(2), rounding);
-    potential_grid_clear(&grid);
+    mf_potential_grid_clear(&grid);
 }
 
 static void test_potential_grid_refuses_when_the_target_is_empty(void **state) {
@@ -65,7 +65,7 @@ static void test_potential_grid_refuses_when_the_target_is_empty(void **state) {
     double target[BINS] = {0};
     struct potential_grid grid;
     const struct inverse_problem problem = make_problem(target);
-    assert_fails(potential_grid_init(&grid, &problem), STATUS_BAD_INPUT, "0.001");
+    assert_fails(mf_potential_grid_init(&grid, &problem), STATUS_BAD_INPUT, "0.001");
 }
 
 static void test_potential_grid_starts_from_the_mean_force_when_there_is_no_start(void **state) {
@@ -75,28 +75,28 @@ static void test_potential_grid_starts_from_the_mean_force_when_there_is_no_star
     make_target(target);
     target[20] = 0;
     const struct inverse_problem problem = make_problem(target);
-    assert_ok(potential_grid_init(&grid, &problem));
-    potential_grid_start(&grid, &problem, phi);
+    assert_ok(mf_potential_grid_init(&grid, &problem));
+    mf_potential_grid_start(&grid, &problem, phi);
     for (int k = CORE; k < BINS; k++)
         assert_close(phi[k], -1.3 * log(k == 20 ? 1e-3 : target[k]), rounding);
     assert_identical(phi[BINS], 0.0);
-    potential_grid_clear(&grid);
+    mf_potential_grid_clear(&grid);
 }
 
 static void test_potential_grid_starts_from_the_curve_when_there_is_one(void **state) {
     (void)state;
     struct formula_soft_repulsion_parameters soft = {40, 3};
-    const struct curve curve = {&formula_soft_repulsion, &soft};
+    const struct curve curve = {&mf_formula_soft_repulsion, &soft};
     double target[BINS], phi[BINS + 1];
     struct potential_grid grid;
     make_target(target);
     struct inverse_problem problem = make_problem(target);
     problem.unknown[UNKNOWN_POTENTIAL].start[0] = &curve;
-    assert_ok(potential_grid_init(&grid, &problem));
-    potential_grid_start(&grid, &problem, phi);
+    assert_ok(mf_potential_grid_init(&grid, &problem));
+    mf_potential_grid_start(&grid, &problem, phi);
     for (int k = CORE; k < BINS; k++)
-        assert_close(phi[k], curve_value(&curve, grid.r[k]), rounding);
-    potential_grid_clear(&grid);
+        assert_close(phi[k], mf_curve_value(&curve, grid.r[k]), rounding);
+    mf_potential_grid_clear(&grid);
 }
 
 static void test_potential_grid_core_is_the_parabola_when_completed(void **state) {
@@ -108,10 +108,10 @@ static void test_potential_grid_core_is_the_parabola_when_completed(void **state
     const struct inverse_problem problem = make_problem(target);
     for (int s = 0; s < 3; s++) {
         struct potential_grid grid;
-        assert_ok(potential_grid_init(&grid, &problem));
+        assert_ok(mf_potential_grid_init(&grid, &problem));
         for (int k = CORE; k <= BINS; k++)
             phi[k] = 2 + slopes[s] * (grid.r[k] - grid.r[CORE]);
-        potential_grid_complete(&grid, phi);
+        mf_potential_grid_complete(&grid, phi);
         const double push = fmax(0, -slopes[s]);
         for (int k = 0; k < CORE; k++) {
             const double depth = grid.r[CORE] - grid.r[k];
@@ -119,7 +119,7 @@ static void test_potential_grid_core_is_the_parabola_when_completed(void **state
             assert_true(phi[k] > phi[k + 1]);
         }
         assert_identical(phi[BINS], 0.0);
-        potential_grid_clear(&grid);
+        mf_potential_grid_clear(&grid);
     }
 }
 
@@ -130,15 +130,15 @@ static void test_potential_grid_table_is_smooth_and_repulsive_when_there_is_a_co
     struct table table;
     make_target(target);
     const struct inverse_problem problem = make_problem(target);
-    assert_ok(potential_grid_init(&grid, &problem));
-    potential_grid_start(&grid, &problem, phi);
-    assert_ok(potential_grid_table(&grid, phi, &table));
+    assert_ok(mf_potential_grid_init(&grid, &problem));
+    mf_potential_grid_start(&grid, &problem, phi);
+    assert_ok(mf_potential_grid_table(&grid, phi, &table));
     assert_close(table.cutoff, 4, rounding);
     // The largest second derivative is about the stiffness: the slope changes by no more than a few
     // times that over a step, also where the core begins.
     const double step = 1e-3, largest_bend = 3 * 2000 * step;
     for (double r = 0; r < 0.85; r += step) {
-        table_evaluate(&table, r, &value, &slope, NULL);
+        mf_table_evaluate(&table, r, &value, &slope, NULL);
         assert_true(isfinite(value) && isfinite(slope));
         assert_true(value < before);
         assert_true(slope < 0);
@@ -149,16 +149,16 @@ static void test_potential_grid_table_is_smooth_and_repulsive_when_there_is_a_co
     }
     // Through the points, and 0 at the cutoff and beyond.
     for (int k = CORE; k < BINS; k++) {
-        table_evaluate(&table, grid.r[k], &value, NULL, NULL);
+        mf_table_evaluate(&table, grid.r[k], &value, NULL, NULL);
         assert_close(value, phi[k], 1e-3);
     }
-    table_evaluate(&table, 4 - 1e-9, &value, NULL, NULL);
+    mf_table_evaluate(&table, 4 - 1e-9, &value, NULL, NULL);
     assert_close(value, 0, 1e-6);
-    table_evaluate(&table, 4.1, &value, &slope, NULL);
+    mf_table_evaluate(&table, 4.1, &value, &slope, NULL);
     assert_identical(value, 0.0);
     assert_identical(slope, 0.0);
-    table_clear(&table);
-    potential_grid_clear(&grid);
+    mf_table_clear(&table);
+    mf_potential_grid_clear(&grid);
 }
 
 /// Mean of −r Φ'(r) over a bin's shell by many points.
@@ -167,15 +167,15 @@ static double virial_of(const struct potential_grid *grid, const double *phi,
     enum { MANY = 1000 };
     struct table table;
     double sum = 0, volume = 0;
-    assert_ok(potential_grid_table(grid, phi, &table));
+    assert_ok(mf_potential_grid_table(grid, phi, &table));
     for (int k = 0; k < MANY; k++) {
-        const double r = rdf_bins_edge(bins, bin) + (k + 0.5) / MANY * bins->width;
+        const double r = mf_rdf_bins_edge(bins, bin) + (k + 0.5) / MANY * bins->width;
         double slope;
-        table_evaluate(&table, r, NULL, &slope, NULL);
+        mf_table_evaluate(&table, r, NULL, &slope, NULL);
         sum -= r * r * r * slope;
         volume += r * r;
     }
-    table_clear(&table);
+    mf_table_clear(&table);
     return sum / volume;
 }
 
@@ -187,12 +187,12 @@ static void test_potential_grid_virials_are_those_of_a_changed_table(void **stat
     make_target(target);
     const struct inverse_problem problem = make_problem(target);
     const struct rdf_bins *bins = &problem.goals.bins;
-    assert_ok(potential_grid_init(&grid, &problem));
-    potential_grid_start(&grid, &problem, phi);
-    assert_ok(potential_grid_virials(&grid, bins, 3, phi, virial));
+    assert_ok(mf_potential_grid_init(&grid, &problem));
+    mf_potential_grid_start(&grid, &problem, phi);
+    assert_ok(mf_potential_grid_virials(&grid, bins, 3, phi, virial));
     for (size_t k = 0; k < grid.points; k++)
-        changed[k] = phi[k] + 0.3 * potential_grid_ramp(&grid, k) + 0.1 * cos(3 * grid.r[k]);
-    potential_grid_complete(&grid, changed);
+        changed[k] = phi[k] + 0.3 * mf_potential_grid_ramp(&grid, k) + 0.1 * cos(3 * grid.r[k]);
+    mf_potential_grid_complete(&grid, changed);
     for (size_t a = 0; a < BINS; a++) {
         double predicted = 0;
         for (size_t b = 0; b < grid.known; b++)
@@ -201,7 +201,7 @@ static void test_potential_grid_virials_are_those_of_a_changed_table(void **stat
         assert_close(predicted, virial_of(&grid, changed, bins, a) - virial_of(&grid, phi, bins, a),
                      0.01);
     }
-    potential_grid_clear(&grid);
+    mf_potential_grid_clear(&grid);
 }
 
 int main(void) {

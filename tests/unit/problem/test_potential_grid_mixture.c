@@ -39,7 +39,7 @@ static struct inverse_problem make_problem(const double *target) {
 static void begin(struct potential_grid *grid, struct inverse_problem *problem, double *target) {
     make_target(target);
     *problem = make_problem(target);
-    assert_ok(potential_grid_init(grid, problem));
+    assert_ok(mf_potential_grid_init(grid, problem));
 }
 
 static void test_potential_grid_has_a_core_for_each_kind_of_pairs(void **state) {
@@ -53,14 +53,14 @@ static void test_potential_grid_has_a_core_for_each_kind_of_pairs(void **state) 
     assert_int_equal(grid.points, POINTS);
     assert_int_equal(grid.known, KNOWN);
     for (size_t pair = 0; pair < PAIRS; pair++) {
-        const size_t block = potential_grid_block(&grid, pair);
+        const size_t block = mf_potential_grid_block(&grid, pair);
         assert_int_equal(block, pair * (BINS + 1));
         assert_int_equal(grid.core[pair], cores[pair]);
         assert_int_equal(grid.known_of[pair], BINS - cores[pair]);
         for (size_t k = 0; k <= BINS; k++) {
             assert_close(grid.r[block + k], k < BINS ? 0.1 * ((double)k + 0.5) : 4, rounding);
-            assert_int_equal(potential_grid_in_core(&grid, block + k), k < cores[pair]);
-            assert_close(potential_grid_ramp(&grid, block + k), 1 - grid.r[block + k] / 4,
+            assert_int_equal(mf_potential_grid_in_core(&grid, block + k), k < cores[pair]);
+            assert_close(mf_potential_grid_ramp(&grid, block + k), 1 - grid.r[block + k] / 4,
                          rounding);
         }
         for (size_t k = cores[pair]; k < BINS; k++, n++) {
@@ -69,7 +69,7 @@ static void test_potential_grid_has_a_core_for_each_kind_of_pairs(void **state) 
         }
     }
     assert_int_equal(n, KNOWN);
-    potential_grid_clear(&grid);
+    mf_potential_grid_clear(&grid);
 }
 
 static void test_potential_grid_refuses_when_the_target_of_one_kind_is_empty(void **state) {
@@ -81,8 +81,8 @@ static void test_potential_grid_refuses_when_the_target_of_one_kind_is_empty(voi
     for (size_t k = 0; k < BINS; k++)
         target[BINS + k] = 0;
     problem = make_problem(target);
-    assert_fails(potential_grid_init(&grid, &problem), STATUS_BAD_INPUT, "A-B");
-    potential_grid_clear(&grid);
+    assert_fails(mf_potential_grid_init(&grid, &problem), STATUS_BAD_INPUT, "A-B");
+    mf_potential_grid_clear(&grid);
 }
 
 static void test_potential_grid_completes_each_core_and_each_end(void **state) {
@@ -93,9 +93,9 @@ static void test_potential_grid_completes_each_core_and_each_end(void **state) {
     begin(&grid, &problem, target);
     for (size_t n = 0; n < POINTS; n++)
         phi[n] = (double)(n / (BINS + 1)) + 2 - (5 + (double)(n / (BINS + 1))) * grid.r[n];
-    potential_grid_complete(&grid, phi);
+    mf_potential_grid_complete(&grid, phi);
     for (size_t pair = 0; pair < PAIRS; pair++) {
-        const size_t block = potential_grid_block(&grid, pair), first = block + cores[pair];
+        const size_t block = mf_potential_grid_block(&grid, pair), first = block + cores[pair];
         const double push = 5 + (double)pair;
         for (size_t n = block; n < first; n++) {
             const double depth = grid.r[first] - grid.r[n];
@@ -105,29 +105,29 @@ static void test_potential_grid_completes_each_core_and_each_end(void **state) {
             assert_close(phi[n], (double)pair + 2 - push * grid.r[n], rounding);
         assert_identical(phi[block + BINS], 0.0);
     }
-    potential_grid_clear(&grid);
+    mf_potential_grid_clear(&grid);
 }
 
 static void test_potential_grid_starts_each_kind_from_its_curve_or_the_mean_force(void **state) {
     (void)state;
     struct formula_soft_repulsion_parameters soft[2] = {{40, 3}, {15, 3.5}};
-    const struct curve first = {&formula_soft_repulsion, &soft[0]},
-                       last = {&formula_soft_repulsion, &soft[1]};
+    const struct curve first = {&mf_formula_soft_repulsion, &soft[0]},
+                       last = {&mf_formula_soft_repulsion, &soft[1]};
     double target[PAIRS * BINS], phi[POINTS];
     struct potential_grid grid;
     struct inverse_problem problem;
     begin(&grid, &problem, target);
     problem.unknown[UNKNOWN_POTENTIAL].start[0] = &first;
     problem.unknown[UNKNOWN_POTENTIAL].start[2] = &last;
-    potential_grid_start(&grid, &problem, phi);
+    mf_potential_grid_start(&grid, &problem, phi);
     for (size_t k = 0; k < BINS; k++) {
         if (k >= cores[0])
-            assert_close(phi[k], curve_value(&first, grid.r[k]), rounding);
+            assert_close(phi[k], mf_curve_value(&first, grid.r[k]), rounding);
         assert_close(phi[BINS + 1 + k], -temperature * log(target[BINS + k]), rounding);
         if (k >= cores[2])
-            assert_close(phi[2 * (BINS + 1) + k], curve_value(&last, grid.r[k]), rounding);
+            assert_close(phi[2 * (BINS + 1) + k], mf_curve_value(&last, grid.r[k]), rounding);
     }
-    potential_grid_clear(&grid);
+    mf_potential_grid_clear(&grid);
 }
 
 static void test_potential_grid_table_goes_through_the_points_of_each_kind(void **state) {
@@ -137,19 +137,19 @@ static void test_potential_grid_table_goes_through_the_points_of_each_kind(void 
     struct inverse_problem problem;
     struct table table;
     begin(&grid, &problem, target);
-    potential_grid_start(&grid, &problem, phi);
-    assert_ok(potential_grid_table(&grid, phi, &table));
+    mf_potential_grid_start(&grid, &problem, phi);
+    assert_ok(mf_potential_grid_table(&grid, phi, &table));
     assert_int_equal(table.curves, PAIRS);
     for (int pair = 0; pair < PAIRS; pair++) {
         assert_close(table_reach(&table, pair), 4, rounding);
         for (size_t k = cores[pair]; k <= BINS; k++) {
-            const size_t n = potential_grid_block(&grid, (size_t)pair) + k;
-            table_evaluate_pair(&table, pair, grid.r[n], &value, NULL, NULL);
+            const size_t n = mf_potential_grid_block(&grid, (size_t)pair) + k;
+            mf_table_evaluate_pair(&table, pair, grid.r[n], &value, NULL, NULL);
             assert_close(value, phi[n], 1e-3);
         }
     }
-    table_clear(&table);
-    potential_grid_clear(&grid);
+    mf_table_clear(&table);
+    mf_potential_grid_clear(&grid);
 }
 
 /// As the grid of that kind alone would have them, and nothing from one kind to another.
@@ -160,17 +160,17 @@ static void test_potential_grid_virials_of_a_block_act_on_its_own_bins(void **st
     struct potential_grid grid;
     struct inverse_problem problem;
     begin(&grid, &problem, target);
-    potential_grid_start(&grid, &problem, phi);
-    assert_ok(potential_grid_virials(&grid, &problem.goals.bins, 3, phi, virial));
+    mf_potential_grid_start(&grid, &problem, phi);
+    assert_ok(mf_potential_grid_virials(&grid, &problem.goals.bins, 3, phi, virial));
     for (size_t pair = 0, first = 0; pair < PAIRS; first += grid.known_of[pair++]) {
         struct potential_grid own;
         struct inverse_problem one = problem;
         double largest = 0;
-        one.scene.composition = composition_of_one(50);
+        one.scene.composition = mf_composition_of_one(50);
         one.goals.goal[GOAL_RDF].value = target + pair * BINS;
-        assert_ok(potential_grid_init(&own, &one));
-        assert_ok(potential_grid_virials(&own, &problem.goals.bins, 3,
-                                         phi + potential_grid_block(&grid, pair), alone));
+        assert_ok(mf_potential_grid_init(&own, &one));
+        assert_ok(mf_potential_grid_virials(&own, &problem.goals.bins, 3,
+                                         phi + mf_potential_grid_block(&grid, pair), alone));
         for (size_t a = 0; a < PAIRS * BINS; a++)
             for (size_t b = 0; b < own.known; b++) {
                 const double found = virial[a * KNOWN + first + b];
@@ -181,9 +181,9 @@ static void test_potential_grid_virials_of_a_block_act_on_its_own_bins(void **st
                 largest = fmax(largest, fabs(found));
             }
         assert_true(largest > 1);
-        potential_grid_clear(&own);
+        mf_potential_grid_clear(&own);
     }
-    potential_grid_clear(&grid);
+    mf_potential_grid_clear(&grid);
 }
 
 int main(void) {

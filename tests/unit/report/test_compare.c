@@ -48,7 +48,7 @@ static void write_file(const char *folder, const char *name, const char *text) {
 static void make_fit(const char *folder, const char *summary, double phi) {
     char path[PATH], potential[256];
     snprintf(path, sizeof path, "%s/%s", root, folder);
-    assert_int_equal(output_make_folder(path), STATUS_OK);
+    assert_int_equal(mf_output_make_folder(path), STATUS_OK);
     snprintf(potential, sizeof potential,
              "# r[lambda]\tphi[k_BT_0]\tforce[k_BT_0/lambda]\tphi_error[k_BT_0]\n"
              "0.5\t1000\t9\tnan\n1\t%g\t-1\t0.1\n1.5\t0\t0\tnan\n",
@@ -69,7 +69,7 @@ static void make_fit(const char *folder, const char *summary, double phi) {
 static void make_weight_fit(const char *folder, const char *names, const char *columns) {
     char path[PATH], omega[512];
     snprintf(path, sizeof path, "%s/%s", root, folder);
-    assert_int_equal(output_make_folder(path), STATUS_OK);
+    assert_int_equal(mf_output_make_folder(path), STATUS_OK);
     snprintf(omega, sizeof omega, "# r[lambda]\tomega[sqrt(mu/tau)]%s\n0\t2%s\n0.5\t1%s\n1\t0%s\n",
              names, columns, columns, columns);
     write_file(folder, "omega.tsv", omega);
@@ -102,7 +102,7 @@ static enum status compare(const char *first, const char *second, bool quiet) {
     snprintf(paths[0], PATH, "%s/%s", root, first);
     snprintf(paths[1], PATH, "%s/%s", root, second ? second : "");
     snprintf(out, sizeof out, "%s/cmp", root);
-    return compare_folders((const char *const[]){paths[0], paths[1]}, second ? 2 : 1, out, quiet);
+    return mf_compare_folders((const char *const[]){paths[0], paths[1]}, second ? 2 : 1, out, quiet);
 }
 
 static char *compare_text(const char *table) {
@@ -123,7 +123,7 @@ static void test_numbers_are_those_of_the_summary(void **state) {
     char path[PATH];
     assert_int_equal(compare("a/out", "b/out", true), STATUS_OK);
     snprintf(path, sizeof path, "%s/cmp/compare.tsv", root);
-    assert_int_equal(data_table_read(&table, path, 2), STATUS_OK);
+    assert_int_equal(mf_data_table_read(&table, path, 2), STATUS_OK);
     assert_int_equal(table.rows, 2);
     assert_int_equal(table.columns, 13);
     const double expected[] = {1,      12.25, 2,     3,    4,    80000, 0.01234,
@@ -132,7 +132,7 @@ static void test_numbers_are_those_of_the_summary(void **state) {
         assert_true(table.values[13 + k] == expected[k]);
     assert_contains(table.header, "index[1]\tseconds[s]\tthreads[1]");
     assert_contains(table.comments, "# 1\tb\timc\tok\t0.1\n");
-    data_table_clear(&table);
+    mf_data_table_clear(&table);
 }
 
 static void test_missing_numbers_are_nan(void **state) {
@@ -326,7 +326,7 @@ static void assert_refused(const char *folder, enum status status, const char *e
     char message[2 * PATH];
     snprintf(message, sizeof message, "%s/%s%s", root, folder, ending);
     assert_int_equal(compare("a/out", folder, true), status);
-    assert_string_equal(status_message(), message);
+    assert_string_equal(mf_status_message(), message);
 }
 
 static void test_faults_name_the_file(void **state) {
@@ -359,14 +359,14 @@ static void test_faults_name_the_file(void **state) {
     snprintf(path, sizeof path, "%s/bad/timing.tsv", root);
     assert_int_equal(remove(path), 0);
     assert_int_equal(compare("bad", NULL, true), STATUS_IO);
-    assert_contains(status_message(), path);
-    assert_null(strchr(status_message(), '\n'));
+    assert_contains(mf_status_message(), path);
+    assert_null(strchr(mf_status_message(), '\n'));
 }
 
 static void test_no_folder_is_refused(void **state) {
     (void)state;
-    assert_int_equal(compare_folders(NULL, 0, root, true), STATUS_BAD_INPUT);
-    assert_string_equal(status_message(), "compare: give the folder of at least one fit");
+    assert_int_equal(mf_compare_folders(NULL, 0, root, true), STATUS_BAD_INPUT);
+    assert_string_equal(mf_status_message(), "compare: give the folder of at least one fit");
 }
 
 static int make_all(void **state) {

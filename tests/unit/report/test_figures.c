@@ -23,8 +23,8 @@ static const char imc_history[] =
 static const char timing[] = "# iteration[1]\tseconds[s]\n0\t0\n1\t2\n";
 
 static void assert_draws(const char *folder) {
-    if (figures_draw(folder) != STATUS_OK)
-        fail_msg("%s", status_message());
+    if (mf_figures_draw(folder) != STATUS_OK)
+        fail_msg("%s", mf_status_message());
 }
 
 static void test_draws_what_the_tables_allow(void **state) {
@@ -38,8 +38,8 @@ static void test_draws_what_the_tables_allow(void **state) {
                          "0.5\t1000\t0\tnan\n1\t-0.5\t0\tnan\n1.5\t0\t0\tnan\n");
     figure_folders_write(folder, "history.tsv", ga_history);
     figure_folders_write(folder, "timing.tsv", timing);
-    if (figures_draw(folder) != STATUS_OK)
-        fail_msg("%s", status_message());
+    if (mf_figures_draw(folder) != STATUS_OK)
+        fail_msg("%s", mf_status_message());
     assert_true(figure_folders_drawn(folder, "rdf"));
     assert_true(figure_folders_drawn(folder, "potential"));
     assert_true(figure_folders_drawn(folder, "error"));
@@ -56,13 +56,13 @@ static void test_draws_the_front_of_several_goals(void **state) {
     figure_folders_write(folder, "pareto.tsv",
                          "# member\trank\tchosen\tmeasured\terror[1]\trdf_rmse[1]\tetd_rmse[1]\t"
                          "rdf_noise[1]\tetd_noise[1]\n1\t1\t1\t3\t2\t0.1\t0.2\t0\t0\n");
-    assert_int_equal(figures_draw(folder), STATUS_OK);
+    assert_int_equal(mf_figures_draw(folder), STATUS_OK);
     assert_false(figure_folders_drawn(folder, "pareto"));
     figure_folders_write(folder, "pareto_history.tsv",
                          "# iteration\tfront\terror[1]\trdf_rmse[1]\tetd_rmse[1]\n"
                          "0\t0\t2\t0.1\t0.2\n0\t2\t2\t0.1\t0.2\n");
-    if (figures_draw(folder) != STATUS_OK)
-        fail_msg("%s", status_message());
+    if (mf_figures_draw(folder) != STATUS_OK)
+        fail_msg("%s", mf_status_message());
     assert_true(figure_folders_drawn(folder, "pareto"));
     figure_folders_write(folder, "pareto.tsv",
                          "# member\trank\tchosen\tmeasured\terror[1]\trdf_rmse[1]\tetd_rmse[1]\t"
@@ -74,8 +74,8 @@ static void test_draws_the_front_of_several_goals(void **state) {
         folder, "pareto_history.tsv",
         "# iteration\tfront\terror[1]\trdf_rmse[1]\tetd_rmse[1]\tpressure_rmse[1]\n"
         "0\t0\t2\t0.1\t0.2\t1\n0\t2\t2\t0.1\t0.2\t1\n");
-    if (figures_draw(folder) != STATUS_OK)
-        fail_msg("%s", status_message());
+    if (mf_figures_draw(folder) != STATUS_OK)
+        fail_msg("%s", mf_status_message());
 }
 
 static void test_draws_no_generations_without_diversity(void **state) {
@@ -85,7 +85,7 @@ static void test_draws_no_generations_without_diversity(void **state) {
     figure_folders_make(folder, "imc");
     figure_folders_write(folder, "history.tsv", imc_history);
     figure_folders_write(folder, "timing.tsv", timing);
-    assert_int_equal(figures_draw(folder), STATUS_OK);
+    assert_int_equal(mf_figures_draw(folder), STATUS_OK);
     assert_true(figure_folders_drawn(folder, "error"));
     assert_false(figure_folders_drawn(folder, "generations"));
 }
@@ -101,7 +101,7 @@ static void test_draws_simulation_and_no_fit(void **state) {
                          "# step[1]\ttime[tau]\ttemperature[T_0]\tpotential_energy[k_BT_0]\t"
                          "pressure[k_BT_0/lambda^3]\ttemperature_configurational[T_0]\n"
                          "0\t0\t1\t0\t3\tnan\n1\t0.1\t1\t0\t3\tnan\n");
-    assert_int_equal(figures_draw(folder), STATUS_OK);
+    assert_int_equal(mf_figures_draw(folder), STATUS_OK);
     assert_true(figure_folders_drawn(folder, "simulation"));
     assert_false(figure_folders_drawn(folder, "rdf"));
 }
@@ -276,7 +276,7 @@ static void test_draws_nothing_without_tables(void **state) {
     (void)state;
     char folder[FIGURE_PATH], figures[FIGURE_PATH + 64];
     figure_folders_make(folder, "empty");
-    assert_int_equal(figures_draw(folder), STATUS_OK);
+    assert_int_equal(mf_figures_draw(folder), STATUS_OK);
     snprintf(figures, sizeof figures, "%s/figures", folder);
     assert_int_not_equal(access(figures, F_OK), 0);
 }
@@ -294,10 +294,10 @@ static void test_broken_tables_spoil_their_figures_only(void **state) {
                          "# r target target_error result result_error\nnot a number\n");
     figure_folders_write(folder, "history.tsv", imc_history);
     figure_folders_write(folder, "timing.tsv", timing);
-    assert_int_equal(figures_draw(folder), STATUS_IO);
-    assert_non_null(strstr(status_message(), "/broken/figures/rdf: gnuplot failed: "));
-    assert_non_null(strstr(status_message(), "rdf.gp\" line "));
-    assert_null(strchr(status_message(), '\n'));
+    assert_int_equal(mf_figures_draw(folder), STATUS_IO);
+    assert_non_null(strstr(mf_status_message(), "/broken/figures/rdf: gnuplot failed: "));
+    assert_non_null(strstr(mf_status_message(), "rdf.gp\" line "));
+    assert_null(strchr(mf_status_message(), '\n'));
     assert_false(figure_folders_drawn(folder, "rdf"));
     assert_true(figure_folders_drawn(folder, "error"));
 }
@@ -308,18 +308,18 @@ static void test_missing_gnuplot_is_one_clear_line(void **state) {
     figure_folders_make(folder, "no_gnuplot");
     figure_folders_write(folder, "rdf.tsv", fit_rdf);
     assert_int_equal(setenv("PATH", figure_folders_root(), 1), 0);
-    const enum status status = figures_draw(folder);
+    const enum status status = mf_figures_draw(folder);
     assert_int_equal(setenv("PATH", path, 1), 0);
     free(path);
     assert_int_equal(status, STATUS_IO);
     snprintf(message, sizeof message, "no figure %s/figures/rdf: gnuplot is not installed", folder);
-    assert_string_equal(status_message(), message);
+    assert_string_equal(mf_status_message(), message);
 }
 
 static void test_comparison_needs_its_table(void **state) {
     (void)state;
-    assert_int_equal(figures_draw_comparison(figure_folders_root()), STATUS_IO);
-    assert_non_null(strstr(status_message(), "no compare.tsv in "));
+    assert_int_equal(mf_figures_draw_comparison(figure_folders_root()), STATUS_IO);
+    assert_non_null(strstr(mf_status_message(), "no compare.tsv in "));
 }
 
 int main(void) {

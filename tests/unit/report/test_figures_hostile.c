@@ -22,8 +22,8 @@ static const char imc_history[] =
 static const char timing[] = "# iteration[1]\tseconds[s]\n0\t0\n1\t2\n";
 
 static void assert_draws(const char *folder) {
-    if (figures_draw(folder) != STATUS_OK)
-        fail_msg("%s", status_message());
+    if (mf_figures_draw(folder) != STATUS_OK)
+        fail_msg("%s", mf_status_message());
 }
 
 /// True if a file of that name has come into the folder or beside it.
@@ -67,8 +67,8 @@ static void test_names_of_tables_are_no_commands(void **state) {
     figure_folders_write(folder, "thermodynamics.tsv",
                          "# s t T U P Tc\n0 0 1 0 3 1\n1 0.1 1 0 3 1\n");
     figure_folders_write(folder, "omega.tsv", "# r omega omega_error\n0 2 1\n1 0 1\n");
-    if (figures_draw(folder) != STATUS_OK)
-        fail_msg("%s", status_message());
+    if (mf_figures_draw(folder) != STATUS_OK)
+        fail_msg("%s", mf_status_message());
     assert_false(has_come(folder, "pwned"));
     assert_true(figure_folders_drawn(folder, "rdf_A_1-B") &&
                 figure_folders_drawn(folder, "potential_A_1-B"));
@@ -92,8 +92,8 @@ static void test_words_of_tables_are_no_commands(void **state) {
                          "\"fitted\": \"yes\"}}\n");
     figure_folders_write(folder, "history.tsv", imc_history);
     figure_folders_write(folder, "timing.tsv", timing);
-    if (figures_draw(folder) != STATUS_OK)
-        fail_msg("%s", status_message());
+    if (mf_figures_draw(folder) != STATUS_OK)
+        fail_msg("%s", mf_status_message());
     assert_false(has_come(folder, "pwned"));
     assert_true(figure_folders_drawn(folder, "pareto"));
 }
@@ -120,8 +120,8 @@ static void test_names_of_a_benchmark_are_no_commands(void **state) {
         snprintf(name, sizeof name, "%s.tsv", names[k]);
         figure_folders_write(folder, name, table);
         snprintf(path, sizeof path, "%s/%s", folder, name);
-        if (figures_draw_accuracy(path) != STATUS_OK)
-            fail_msg("%s", status_message());
+        if (mf_figures_draw_accuracy(path) != STATUS_OK)
+            fail_msg("%s", mf_status_message());
         assert_false(has_come(folder, "pwned"));
         assert_true(figure_folders_drawn(folder, names[k]));
     }
@@ -137,7 +137,7 @@ static enum status draw_with(const char *gnuplot, const char *folder) {
     assert_int_equal(chmod(script, 0755), 0);
     snprintf(path, sizeof path, "%s:%s", place, before);
     assert_int_equal(setenv("PATH", path, 1), 0);
-    const enum status status = figures_draw(folder);
+    const enum status status = mf_figures_draw(folder);
     assert_int_equal(setenv("PATH", before, 1), 0);
     free(before);
     return status;
@@ -155,7 +155,7 @@ static void test_unfinished_figures_are_none(void **state) {
     figure_folders_write(folder, "rdf.tsv", fit_rdf);
     for (size_t k = 0; k < sizeof gnuplots / sizeof *gnuplots; k++) {
         assert_int_equal(draw_with(gnuplots[k], folder), STATUS_IO);
-        assert_non_null(strstr(status_message(), "figures/rdf: gnuplot left it unfinished"));
+        assert_non_null(strstr(mf_status_message(), "figures/rdf: gnuplot left it unfinished"));
         assert_false(figure_folders_drawn(folder, "rdf"));
     }
     assert_int_equal(draw_with("#!/bin/sh\nprintf '%1000s</svg>\\n\\n' x > figures/rdf.svg\n"
@@ -173,7 +173,7 @@ static void test_figures_do_not_follow_links(void **state) {
     figure_folders_write(folder, "rdf.tsv", fit_rdf);
     figure_folders_write(folder, "victim", "precious");
     snprintf(figures, sizeof figures, "%s/figures", folder);
-    assert_int_equal(output_make_folder(figures), STATUS_OK);
+    assert_int_equal(mf_output_make_folder(figures), STATUS_OK);
     snprintf(link, sizeof link, "%s/rdf.svg", figures);
     assert_int_equal(symlink("../victim", link), 0);
     assert_draws(folder);

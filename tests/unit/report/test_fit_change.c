@@ -19,7 +19,7 @@ static void begin(struct decoder *decoder, struct inverse_problem *problem, doub
         .scene = {.temperature = 1},
         .core_threshold = 1e-3,
         .core_stiffness = 2000};
-    assert_ok(decoder_init(decoder, problem));
+    assert_ok(mf_decoder_init(decoder, problem));
 }
 
 /// A well that goes from −1 at r = 2.05 to −0.5 at r = 2.55; what changes in the core is not told.
@@ -29,19 +29,19 @@ static void test_change_of_a_potential_is_that_beyond_its_core(void **state) {
     struct inverse_problem problem;
     double g[BINS], first[BINS + 1] = {0}, last[BINS + 1] = {0};
     begin(&decoder, &problem, g);
-    assert_close(decoder_r(&decoder, UNKNOWN_POTENTIAL)[20], 2.05, 1e-12);
+    assert_close(mf_decoder_r(&decoder, UNKNOWN_POTENTIAL)[20], 2.05, 1e-12);
     first[20] = -1;
     last[25] = -0.5;
     last[CORE] = -50;
     first[CORE - 3] = 1000;
     last[CORE - 3] = -1000;
-    const struct fit_change change = fit_change_find(&decoder, UNKNOWN_POTENTIAL, 0, first, last);
+    const struct fit_change change = mf_fit_change_find(&decoder, UNKNOWN_POTENTIAL, 0, first, last);
     assert_close(change.first_well, -1, 0);
     assert_close(change.first_well_at, 2.05, 1e-12);
     assert_close(change.well, -0.5, 0);
     assert_close(change.well_at, 2.55, 1e-12);
     assert_close(change.rms, sqrt(1.25 / (BINS - CORE - 1)), 1e-12);
-    decoder_clear(&decoder);
+    mf_decoder_clear(&decoder);
 }
 
 static void test_change_of_a_weight_is_its_rms(void **state) {
@@ -54,8 +54,8 @@ static void test_change_of_a_weight_is_its_rms(void **state) {
         first[k] = 1;
         last[k] = 1.25;
     }
-    assert_close(fit_change_find(&decoder, UNKNOWN_WEIGHT, 0, first, last).rms, 0.25, 1e-12);
-    decoder_clear(&decoder);
+    assert_close(mf_fit_change_find(&decoder, UNKNOWN_WEIGHT, 0, first, last).rms, 0.25, 1e-12);
+    mf_decoder_clear(&decoder);
 }
 
 int main(void) {

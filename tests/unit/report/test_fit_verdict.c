@@ -15,7 +15,7 @@ static struct verification make(double rms, double temperature, double pressure)
 
 static void assert_says(const struct verification *verification, const char *words) {
     char reason[INVERSE_REASON_SIZE];
-    assert_true(fit_verdict_contradicts(verification, false, 1.5, 3, reason));
+    assert_true(mf_fit_verdict_contradicts(verification, false, 1.5, 3, reason));
     assert_contains(reason, words);
     assert_true(strlen(reason) + 1 < INVERSE_REASON_SIZE);
 }
@@ -24,7 +24,7 @@ static void test_fit_verdict_is_silent_when_g_is_off_by_noise(void **state) {
     (void)state;
     char reason[INVERSE_REASON_SIZE];
     const struct verification good = make(0.0059, 1.8, -3);
-    assert_false(fit_verdict_contradicts(&good, true, 1.5, 3, reason));
+    assert_false(mf_fit_verdict_contradicts(&good, true, 1.5, 3, reason));
 }
 
 static void test_fit_verdict_names_the_cause_when_g_is_off(void **state) {
@@ -45,11 +45,11 @@ static void test_fit_verdict_names_the_pressure_when_it_was_fitted_and_is_off(vo
     char reason[INVERSE_REASON_SIZE];
     struct verification found = make(0.0021, 1.5, 1.9);
     found.distance[GOAL_PRESSURE] = (struct goal_distance){.rms = 0.4, .noise = 0.1};
-    assert_false(fit_verdict_contradicts(&found, false, 1.5, 3, reason));
-    assert_true(fit_verdict_contradicts(&found, true, 1.5, 3, reason));
+    assert_false(mf_fit_verdict_contradicts(&found, false, 1.5, 3, reason));
+    assert_true(mf_fit_verdict_contradicts(&found, true, 1.5, 3, reason));
     assert_contains(reason, "pressure, 1.9, is off by 0.4 (0.1 by statistics)");
     found.distance[GOAL_PRESSURE].rms = 0.29;
-    assert_false(fit_verdict_contradicts(&found, true, 1.5, 3, reason));
+    assert_false(mf_fit_verdict_contradicts(&found, true, 1.5, 3, reason));
 }
 
 /// Of one target, and of two that count in units of their errors.
@@ -63,17 +63,17 @@ static void test_fit_verdict_is_worse_when_the_difference_is_no_chance(void **st
     struct verification found = {.distance = {[GOAL_RDF] = {.rms = 1.12, .variance = 1e-4},
                                               [GOAL_DIFFUSION] = {.rms = 0.02, .variance = 1e-6}}};
     one.goal[GOAL_DIFFUSION].count = 0;
-    assert_true(fit_verdict_is_worse(&found, &one, 0.088, 0.0001, reason));
+    assert_true(mf_fit_verdict_is_worse(&found, &one, 0.088, 0.0001, reason));
     assert_contains(reason, "own error is 0.088 +- 0.01, that of its verification 1.1 +- 0.01");
     assert_true(strlen(reason) + 1 < INVERSE_REASON_SIZE);
     // Better, or worse by 4 errors, or by a tenth, are no contradiction.
-    assert_false(fit_verdict_is_worse(&found, &one, 1.3, 0, reason));
-    assert_false(fit_verdict_is_worse(&found, &one, 0.8, 0.0063, reason));
-    assert_false(fit_verdict_is_worse(&found, &one, 1.0, 0, reason));
+    assert_false(mf_fit_verdict_is_worse(&found, &one, 1.3, 0, reason));
+    assert_false(mf_fit_verdict_is_worse(&found, &one, 0.8, 0.0063, reason));
+    assert_false(mf_fit_verdict_is_worse(&found, &one, 1.0, 0, reason));
     // sqrt(((10 1.12)² + (100 0.02)²)/2) = 8.04.
-    assert_true(fit_verdict_is_worse(&found, &goals, 6, 0, reason));
+    assert_true(mf_fit_verdict_is_worse(&found, &goals, 6, 0, reason));
     assert_contains(reason, "verification 8 +- ");
-    assert_false(fit_verdict_is_worse(&found, &goals, 7, 0, reason));
+    assert_false(mf_fit_verdict_is_worse(&found, &goals, 7, 0, reason));
 }
 
 int main(void) {

@@ -27,7 +27,7 @@ static void test_number_text_has_two_digits_of_its_error(void **state) {
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         char text[NUMBER_TEXT_SIZE];
-        number_text(cases[k].value, cases[k].error, text);
+        mf_number_text(cases[k].value, cases[k].error, text);
         assert_string_equal(text, cases[k].expected);
     }
 }

@@ -14,7 +14,7 @@ enum { TEXT_SIZE = 1024 };
 
 static enum status run_shell(const char *script, enum program_says says, char *text) {
     const char *const words[] = {"sh", "-c", script, NULL};
-    return program_run("/", words, says, 0, text, TEXT_SIZE);
+    return mf_program_run("/", words, says, 0, text, TEXT_SIZE);
 }
 
 static void test_program_run_keeps_what_was_asked_for_when_both_streams_speak(void **state) {
@@ -41,7 +41,7 @@ static void test_program_run_works_in_the_folder_when_given_one(void **state) {
     char text[TEXT_SIZE];
     const char *const words[] = {"ls", NULL};
     temporary_folder_write(folder, "file", "x", 1);
-    assert_ok(program_run(folder->path, words, PROGRAM_EVERYTHING, 0, text, sizeof text));
+    assert_ok(mf_program_run(folder->path, words, PROGRAM_EVERYTHING, 0, text, sizeof text));
     assert_string_equal(text, "file\n");
 }
 
@@ -49,7 +49,7 @@ static void test_program_run_says_why_when_the_program_fails(void **state) {
     char text[TEXT_SIZE];
     const char *const words[] = {"no-such-program", NULL};
     (void)state;
-    assert_fails(program_run("/", words, PROGRAM_ERRORS, 0, text, sizeof text), STATUS_IO,
+    assert_fails(mf_program_run("/", words, PROGRAM_ERRORS, 0, text, sizeof text), STATUS_IO,
                  "no-such-program is not installed");
     assert_fails(run_shell("echo first; echo last; echo; exit 3", PROGRAM_EVERYTHING, text),
                  STATUS_IO, "sh failed: last");
@@ -68,7 +68,7 @@ static void test_program_run_stops_what_takes_too_long(void **state) {
     for (int k = 0; k < 3; k++) {
         const char *const words[] = {"sh", "-c", scripts[k], NULL};
         const double begun = clock_seconds();
-        assert_fails(program_run("/", words, PROGRAM_EVERYTHING, 0.3, text, sizeof text), STATUS_IO,
+        assert_fails(mf_program_run("/", words, PROGRAM_EVERYTHING, 0.3, text, sizeof text), STATUS_IO,
                      "sh had not ended after 0.3 s and was stopped");
         assert_true(clock_seconds() - begun < 60);
     }
@@ -88,10 +88,10 @@ static void test_program_run_stops_what_takes_too_long(void **state) {
 static void test_program_find_folder_goes_up_when_the_program_is_being_built(void **state) {
     char path[4096], style[4200];
     (void)state;
-    assert_ok(program_find_folder(path, sizeof path, "plots", "style.gp"));
+    assert_ok(mf_program_find_folder(path, sizeof path, "plots", "style.gp"));
     snprintf(style, sizeof style, "%s/style.gp", path);
     assert_int_equal(access(style, R_OK), 0);
-    assert_fails(program_find_folder(path, sizeof path, "plots", "no-such.gp"), STATUS_IO,
+    assert_fails(mf_program_find_folder(path, sizeof path, "plots", "no-such.gp"), STATUS_IO,
                  "no folder plots with no-such.gp near the program");
 }
 

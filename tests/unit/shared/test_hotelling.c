@@ -14,11 +14,11 @@ static const double deviations = 5;
 
 /// Correlated normal samples whose last component has the mean `shift`.
 static void draw(struct comoments *samples, uint32_t trial, uint32_t set, double shift) {
-    comoments_reset(samples);
+    mf_comoments_reset(samples);
     for (uint32_t k = 0; k < SAMPLES; k++) {
         double normal[4];
-        rng_normal4(rng_philox(5, RNG_INITIAL, trial, set, k), normal);
-        comoments_add(samples, (double[SIZE]){normal[0], normal[0] + 0.3 * normal[1],
+        mf_rng_normal4(mf_rng_philox(5, RNG_INITIAL, trial, set, k), normal);
+        mf_comoments_add(samples, (double[SIZE]){normal[0], normal[0] + 0.3 * normal[1],
                                               normal[2] - normal[1] + shift});
     }
 }
@@ -26,8 +26,8 @@ static void draw(struct comoments *samples, uint32_t trial, uint32_t set, double
 /// Fractions of trials with p below `level`: of one sample, and of two.
 static void find_alarms(double shift, double level, double *one, double *two) {
     struct comoments first, second;
-    assert_ok(comoments_init(&first, SIZE));
-    assert_ok(comoments_init(&second, SIZE));
+    assert_ok(mf_comoments_init(&first, SIZE));
+    assert_ok(mf_comoments_init(&second, SIZE));
     *one = *two = 0;
     for (uint32_t trial = 0; trial < TRIALS; trial++) {
         draw(&first, trial, 0, shift);
@@ -35,8 +35,8 @@ static void find_alarms(double shift, double level, double *one, double *two) {
         *one += (hotelling_one_sample(&first, (double[SIZE]){0}) < level) / (double)TRIALS;
         *two += (hotelling_two_samples(&first, &second) < level) / (double)TRIALS;
     }
-    comoments_clear(&first);
-    comoments_clear(&second);
+    mf_comoments_clear(&first);
+    mf_comoments_clear(&second);
 }
 
 static void test_hotelling_raises_the_stated_rate_of_alarms_when_means_are_equal(void **state) {
@@ -64,21 +64,21 @@ static void test_hotelling_raises_alarms_when_a_mean_is_off(void **state) {
 static void test_hotelling_is_student_when_there_is_one_number(void **state) {
     (void)state;
     struct comoments samples;
-    assert_ok(comoments_init(&samples, 1));
+    assert_ok(mf_comoments_init(&samples, 1));
     for (int k = 0; k < 5; k++)
-        comoments_add(&samples, (double[]){k});
+        mf_comoments_add(&samples, (double[]){k});
     // Mean 2, standard error sqrt(0.5): t = (2 − 0.5) / sqrt(0.5), both tails.
     const double t = 1.5 / sqrt(0.5);
     assert_close(hotelling_one_sample(&samples, (double[]){0.5}), 2 * gsl_cdf_tdist_Q(t, 4), 1e-12);
     struct comoments others;
-    assert_ok(comoments_init(&others, 1));
+    assert_ok(mf_comoments_init(&others, 1));
     for (int k = 0; k < 3; k++)
-        comoments_add(&others, (double[]){4 * k});
+        mf_comoments_add(&others, (double[]){4 * k});
     // Mean 4; pooled variance (10 + 32)/6 = 7, of the difference 7 (1/5 + 1/3).
     const double t2 = 2 / sqrt(7 * (1.0 / 5 + 1.0 / 3));
     assert_close(hotelling_two_samples(&samples, &others), 2 * gsl_cdf_tdist_Q(t2, 6), 1e-12);
-    comoments_clear(&others);
-    comoments_clear(&samples);
+    mf_comoments_clear(&others);
+    mf_comoments_clear(&samples);
 }
 
 int main(void) {

@@ -10,7 +10,7 @@ static void test_composition_type_follows_from_the_id(void **state) {
     (void)state;
     static const int types[] = {0, 0, 0, 0, 1, 2, 2, 2};
     for (uint32_t id = 0; id < 8; id++)
-        assert_int_equal(composition_type(&three, id), types[id]);
+        assert_int_equal(mf_composition_type(&three, id), types[id]);
 }
 
 static void test_composition_pairs_come_in_order_whatever_the_number_of_types(void **state) {
@@ -21,13 +21,13 @@ static void test_composition_pairs_come_in_order_whatever_the_number_of_types(vo
         for (int a = 0; a < types; a++)
             for (int b = a; b < types; b++, next++) {
                 int type[2];
-                assert_int_equal(composition_pair(&composition, a, b), next);
-                assert_int_equal(composition_pair(&composition, b, a), next);
-                composition_pair_types(&composition, next, type);
+                assert_int_equal(mf_composition_pair(&composition, a, b), next);
+                assert_int_equal(mf_composition_pair(&composition, b, a), next);
+                mf_composition_pair_types(&composition, next, type);
                 assert_int_equal(type[0], a);
                 assert_int_equal(type[1], b);
             }
-        assert_int_equal(composition_pairs(&composition), next);
+        assert_int_equal(mf_composition_pairs(&composition), next);
     }
 }
 
@@ -36,64 +36,64 @@ static void test_composition_counts_pairs_by_kind(void **state) {
     static const double possible[] = {6, 4, 12, 0, 3, 3};
     double all = 0;
     for (int pair = 0; pair < 6; pair++) {
-        assert_true(composition_possible_pairs(&three, pair) == possible[pair]);
+        assert_true(mf_composition_possible_pairs(&three, pair) == possible[pair]);
         all += possible[pair];
     }
     assert_true(all == 8 * 7 / 2);
-    assert_int_equal(composition_pair_of_ids(&three, 6, 2), 2);
-    assert_int_equal(composition_pair_of_ids(&three, 5, 7), 5);
+    assert_int_equal(mf_composition_pair_of_ids(&three, 6, 2), 2);
+    assert_int_equal(mf_composition_pair_of_ids(&three, 5, 7), 5);
 }
 
 static void test_composition_finds_pairs_by_name_in_either_order(void **state) {
     (void)state;
     char name[COMPOSITION_PAIR_NAME_SIZE];
-    composition_pair_name(&three, 4, name);
+    mf_composition_pair_name(&three, 4, name);
     assert_string_equal(name, "water-B_2");
-    assert_int_equal(composition_find_pair(&three, name), 4);
-    assert_int_equal(composition_find_pair(&three, "B_2-water"), 4);
-    assert_int_equal(composition_find_pair(&three, "A-A"), 0);
-    assert_int_equal(composition_find_pair(&three, "A"), -1);
-    assert_int_equal(composition_find_pair(&three, "A-C"), -1);
-    assert_int_equal(composition_find_pair(&three, "a-A"), -1);
+    assert_int_equal(mf_composition_find_pair(&three, name), 4);
+    assert_int_equal(mf_composition_find_pair(&three, "B_2-water"), 4);
+    assert_int_equal(mf_composition_find_pair(&three, "A-A"), 0);
+    assert_int_equal(mf_composition_find_pair(&three, "A"), -1);
+    assert_int_equal(mf_composition_find_pair(&three, "A-C"), -1);
+    assert_int_equal(mf_composition_find_pair(&three, "a-A"), -1);
 }
 
 static void test_composition_has_one_kind_of_pairs_when_beads_are_alike(void **state) {
     (void)state;
-    const struct composition none = {0}, one = composition_of_one(7);
+    const struct composition none = {0}, one = mf_composition_of_one(7);
     char name[COMPOSITION_PAIR_NAME_SIZE];
     assert_false(composition_is_mixed(&none));
     assert_false(composition_is_mixed(&one));
-    assert_int_equal(composition_pairs(&none), 1);
-    assert_int_equal(composition_pair_of_ids(&one, 3, 6), 0);
-    assert_true(composition_possible_pairs(&one, 0) == 21);
-    composition_pair_name(&one, 0, name);
+    assert_int_equal(mf_composition_pairs(&none), 1);
+    assert_int_equal(mf_composition_pair_of_ids(&one, 3, 6), 0);
+    assert_true(mf_composition_possible_pairs(&one, 0) == 21);
+    mf_composition_pair_name(&one, 0, name);
     assert_string_equal(name, "");
 }
 
 static void test_composition_is_name_refuses_what_no_file_could_be_called(void **state) {
     (void)state;
-    assert_true(composition_is_name("A"));
-    assert_true(composition_is_name("Bead_number_015"));
-    assert_false(composition_is_name(""));
-    assert_false(composition_is_name("A-B"));
-    assert_false(composition_is_name("a/b"));
-    assert_false(composition_is_name("ü"));
-    assert_false(composition_is_name("Bead_number_0016"));
+    assert_true(mf_composition_is_name("A"));
+    assert_true(mf_composition_is_name("Bead_number_015"));
+    assert_false(mf_composition_is_name(""));
+    assert_false(mf_composition_is_name("A-B"));
+    assert_false(mf_composition_is_name("a/b"));
+    assert_false(mf_composition_is_name("ü"));
+    assert_false(mf_composition_is_name("Bead_number_0016"));
 }
 
 static void test_composition_scaled_keeps_the_shares(void **state) {
     (void)state;
-    const struct composition large = composition_scaled(&three, 800);
+    const struct composition large = mf_composition_scaled(&three, 800);
     assert_int_equal(large.types, 3);
     assert_int_equal(large.count[0], 400);
     assert_int_equal(large.count[1], 100);
     assert_int_equal(large.count[2], 300);
-    assert_int_equal(composition_particles(&large), 800);
+    assert_int_equal(mf_composition_particles(&large), 800);
     assert_string_equal(large.name[1], "water");
-    const struct composition back = composition_scaled(&large, 8);
-    assert_int_equal(composition_particles(&back), 9); // 4, 2, 3
+    const struct composition back = mf_composition_scaled(&large, 8);
+    assert_int_equal(mf_composition_particles(&back), 9); // 4, 2, 3
     assert_int_equal(
-        composition_scaled(&(struct composition){.types = 1, .count = {7}}, 21).count[0], 21);
+        mf_composition_scaled(&(struct composition){.types = 1, .count = {7}}, 21).count[0], 21);
 }
 
 /// A type whose like pairs were there keeps some: without them there is no g of them.
@@ -101,32 +101,32 @@ static void test_composition_scaled_leaves_each_type_a_pair(void **state) {
     (void)state;
     const struct composition rare = {.types = 2, .count = {10, 990}};
     const struct composition single = {.types = 2, .count = {1, 999}};
-    const struct composition small = composition_scaled(&rare, 50);
+    const struct composition small = mf_composition_scaled(&rare, 50);
     assert_int_equal(small.count[0], 2);
     assert_int_equal(small.count[1], 50);
-    assert_int_equal(composition_scaled(&single, 50).count[0], 1);
+    assert_int_equal(mf_composition_scaled(&single, 50).count[0], 1);
 }
 
 static void test_composition_distortion_is_of_the_share_that_changes_most(void **state) {
     (void)state;
     const struct composition rare = {.types = 2, .count = {990, 10}};
-    const struct composition small = composition_scaled(&rare, 100);
+    const struct composition small = mf_composition_scaled(&rare, 100);
     assert_int_equal(small.count[1], 2);
     // 2 of 101 instead of 1 of 100.
-    assert_close(composition_distortion(&rare, &small), 200.0 / 101 - 1, 1e-12);
-    assert_close(composition_distortion(&rare, &rare), 0, 0);
+    assert_close(mf_composition_distortion(&rare, &small), 200.0 / 101 - 1, 1e-12);
+    assert_close(mf_composition_distortion(&rare, &rare), 0, 0);
     // 2 of 167 are 1.198 of 1 in 100.
-    assert_int_equal(composition_least_particles(&rare, 100, 0.2), 167);
-    assert_int_equal(composition_least_particles(&rare, 180, 0.2), 180);
-    assert_int_equal(composition_least_particles(&rare, 100, 0), 200);
+    assert_int_equal(mf_composition_least_particles(&rare, 100, 0.2), 167);
+    assert_int_equal(mf_composition_least_particles(&rare, 180, 0.2), 180);
+    assert_int_equal(mf_composition_least_particles(&rare, 100, 0), 200);
 }
 
 static void test_composition_particles_are_those_of_all_types(void **state) {
     (void)state;
-    const struct composition none = {0}, one = composition_of_one(7);
-    assert_int_equal(composition_particles(&three), 8);
-    assert_int_equal(composition_particles(&one), 7);
-    assert_int_equal(composition_particles(&none), 0);
+    const struct composition none = {0}, one = mf_composition_of_one(7);
+    assert_int_equal(mf_composition_particles(&three), 8);
+    assert_int_equal(mf_composition_particles(&one), 7);
+    assert_int_equal(mf_composition_particles(&none), 0);
 }
 
 int main(void) {

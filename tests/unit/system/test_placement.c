@@ -34,11 +34,11 @@ static void test_placement_lattice_is_simple_cubic_when_count_is_a_cube(void **s
     (void)state;
     struct particles particles;
     const struct box box = {3, {9.427, 9.427, 9.427}};
-    assert_ok(particles_init(&particles, &box, 2744));
-    placement_lattice(&particles, 0, 1);
+    assert_ok(mf_particles_init(&particles, &box, 2744));
+    mf_placement_lattice(&particles, 0, 1);
     check_in_box(&particles);
     assert_close(least_distance(&particles), 9.427 / 14, 1e-12);
-    particles_clear(&particles);
+    mf_particles_clear(&particles);
 }
 
 /// 463³ particles, near the most that a scene may have, of which a full lattice has one each; and a
@@ -62,11 +62,11 @@ static void test_placement_lattice_is_square_when_in_two_dimensions(void **state
     (void)state;
     struct particles particles;
     const struct box box = {2, {6, 6, 1}};
-    assert_ok(particles_init(&particles, &box, 144));
-    placement_lattice(&particles, 0, 1);
+    assert_ok(mf_particles_init(&particles, &box, 144));
+    mf_placement_lattice(&particles, 0, 1);
     check_in_box(&particles);
     assert_close(least_distance(&particles), 0.5, 1e-12);
-    particles_clear(&particles);
+    mf_particles_clear(&particles);
 }
 
 /// No site is used twice, whatever the count and shape; the sites are no finer than needed.
@@ -77,13 +77,13 @@ static void test_placement_lattice_keeps_particles_apart_when_count_is_odd(void 
     for (int b = 0; b < 4; b++)
         for (size_t count = 2; count < 130; count += 7) {
             struct particles particles;
-            assert_ok(particles_init(&particles, &boxes[b], count));
-            placement_lattice(&particles, 0, 1);
+            assert_ok(mf_particles_init(&particles, &boxes[b], count));
+            mf_placement_lattice(&particles, 0, 1);
             check_in_box(&particles);
             const double spacing =
-                pow(box_volume(&boxes[b]) / (double)count, 1.0 / boxes[b].dimensions);
+                pow(mf_box_volume(&boxes[b]) / (double)count, 1.0 / boxes[b].dimensions);
             assert_true(least_distance(&particles) > 0.55 * spacing);
-            particles_clear(&particles);
+            mf_particles_clear(&particles);
         }
 }
 
@@ -96,10 +96,10 @@ static void test_placement_mix_exchanges_ids_when_asked(void **state) {
     bool found[COUNT] = {false};
     size_t same = 0;
     double middle = 0;
-    assert_ok(particles_init(&particles, &box, COUNT));
-    assert_ok(particles_init(&again, &box, COUNT));
-    placement_mix(&particles, 7);
-    placement_mix(&again, 7);
+    assert_ok(mf_particles_init(&particles, &box, COUNT));
+    assert_ok(mf_particles_init(&again, &box, COUNT));
+    mf_placement_mix(&particles, 7);
+    mf_placement_mix(&again, 7);
     assert_memory_equal(particles.id, again.id, COUNT * sizeof *again.id);
     for (size_t k = 0; k < COUNT; k++) {
         assert_false(found[particles.id[k]]);
@@ -110,22 +110,22 @@ static void test_placement_mix_exchanges_ids_when_asked(void **state) {
     assert_true(same < 10);
     // 250 expected with a standard deviation of 8: no false alarm to speak of, and one seed.
     assert_true(fabs(middle - 250) < 40);
-    particles_clear(&particles);
-    particles_clear(&again);
+    mf_particles_clear(&particles);
+    mf_particles_clear(&again);
 }
 
 static void test_placement_lattice_shifts_within_the_jitter_when_asked(void **state) {
     (void)state;
     struct particles even, shifted, again, other;
     const struct box box = {3, {6, 6, 6}};
-    assert_ok(particles_init(&even, &box, 216));
-    assert_ok(particles_init(&shifted, &box, 216));
-    assert_ok(particles_init(&again, &box, 216));
-    assert_ok(particles_init(&other, &box, 216));
-    placement_lattice(&even, 0, 1);
-    placement_lattice(&shifted, 0.3, 1);
-    placement_lattice(&again, 0.3, 1);
-    placement_lattice(&other, 0.3, 2);
+    assert_ok(mf_particles_init(&even, &box, 216));
+    assert_ok(mf_particles_init(&shifted, &box, 216));
+    assert_ok(mf_particles_init(&again, &box, 216));
+    assert_ok(mf_particles_init(&other, &box, 216));
+    mf_placement_lattice(&even, 0, 1);
+    mf_placement_lattice(&shifted, 0.3, 1);
+    mf_placement_lattice(&again, 0.3, 1);
+    mf_placement_lattice(&other, 0.3, 2);
     check_in_box(&shifted);
     double largest = 0, difference = 0;
     for (int d = 0; d < 3; d++)
@@ -138,24 +138,24 @@ static void test_placement_lattice_shifts_within_the_jitter_when_asked(void **st
         }
     assert_true(largest > 0.29);
     assert_true(difference > 0.3);
-    particles_clear(&even);
-    particles_clear(&shifted);
-    particles_clear(&again);
-    particles_clear(&other);
+    mf_particles_clear(&even);
+    mf_particles_clear(&shifted);
+    mf_particles_clear(&again);
+    mf_particles_clear(&other);
 }
 
 static void check_random(const struct box *box, size_t count, double separation) {
     struct particles particles, again;
-    assert_ok(particles_init(&particles, box, count));
-    assert_ok(particles_init(&again, box, count));
-    assert_ok(placement_random(&particles, separation, 3));
-    assert_ok(placement_random(&again, separation, 3));
+    assert_ok(mf_particles_init(&particles, box, count));
+    assert_ok(mf_particles_init(&again, box, count));
+    assert_ok(mf_placement_random(&particles, separation, 3));
+    assert_ok(mf_placement_random(&again, separation, 3));
     check_in_box(&particles);
     assert_true(least_distance(&particles) >= separation);
     for (int d = 0; d < box->dimensions; d++)
         assert_memory_equal(particles.position[d], again.position[d], count * sizeof(double));
-    particles_clear(&particles);
-    particles_clear(&again);
+    mf_particles_clear(&particles);
+    mf_particles_clear(&again);
 }
 
 static void test_placement_random_keeps_the_separation_when_there_is_room(void **state) {
@@ -172,8 +172,8 @@ static void test_placement_random_is_uniform_when_there_is_no_separation(void **
     enum { COUNT = 8000 };
     struct particles particles;
     const struct box box = {3, {4, 5, 6}};
-    assert_ok(particles_init(&particles, &box, COUNT));
-    assert_ok(placement_random(&particles, 0, 17));
+    assert_ok(mf_particles_init(&particles, &box, COUNT));
+    assert_ok(mf_placement_random(&particles, 0, 17));
     int hits[8] = {0};
     for (size_t k = 0; k < COUNT; k++)
         hits[(particles.position[0][k] > 2) + 2 * (particles.position[1][k] > 2.5) +
@@ -182,15 +182,15 @@ static void test_placement_random_is_uniform_when_there_is_no_separation(void **
     for (int o = 0; o < 8; o++)
         chi2 += (hits[o] - COUNT / 8.0) * (hits[o] - COUNT / 8.0) / (COUNT / 8.0);
     assert_true(chi2 < 24.3);
-    particles_clear(&particles);
+    mf_particles_clear(&particles);
 }
 
 static void test_placement_random_fails_when_the_density_is_too_high(void **state) {
     (void)state;
     struct particles particles;
-    assert_ok(particles_init(&particles, &(struct box){3, {3, 3, 3}}, 200));
-    assert_fails(placement_random(&particles, 1, 1), STATUS_BAD_INPUT, "no room for particle");
-    particles_clear(&particles);
+    assert_ok(mf_particles_init(&particles, &(struct box){3, {3, 3, 3}}, 200));
+    assert_fails(mf_placement_random(&particles, 1, 1), STATUS_BAD_INPUT, "no room for particle");
+    mf_particles_clear(&particles);
 }
 
 /// Order shows in S(q) = |Σ exp(iqx)|²/N at the waves of a lattice's planes; without it S is below
@@ -200,8 +200,8 @@ static void test_placement_disordered_has_no_planes_when_the_count_is_a_cube(voi
     enum { EDGE = 8, COUNT = EDGE * EDGE * EDGE };
     struct particles particles;
     const struct box box = {3, {9, 9, 9}};
-    assert_ok(particles_init(&particles, &box, COUNT));
-    assert_ok(placement_disordered(&particles, 5));
+    assert_ok(mf_particles_init(&particles, &box, COUNT));
+    assert_ok(mf_placement_disordered(&particles, 5));
     check_in_box(&particles);
     assert_true(least_distance(&particles) >= 0.7 * 9 / EDGE);
     for (int d = 0; d < 3; d++) {
@@ -213,7 +213,7 @@ static void test_placement_disordered_has_no_planes_when_the_count_is_a_cube(voi
         }
         assert_true((real * real + imaginary * imaginary) / COUNT < 12);
     }
-    particles_clear(&particles);
+    mf_particles_clear(&particles);
 }
 
 int main(void) {
