@@ -42,7 +42,7 @@ static enum status check_options(const struct command_line *line, const char *su
     for (; *foreign < OPTIONS; foreign++)
         if (line->own[*foreign])
             return mf_status_fail(STATUS_BAD_INPUT, "bench %s takes no %s", subject,
-                               options[*foreign].name);
+                                  options[*foreign].name);
     return STATUS_OK;
 }
 

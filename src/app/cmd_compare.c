@@ -4,8 +4,8 @@
 
 static enum status run(const struct command_line *line) {
     return mf_compare_folders(line->files, line->file_count,
-                           line->options.folder ? line->options.folder : "compare",
-                           line->options.quiet);
+                              line->options.folder ? line->options.folder : "compare",
+                              line->options.quiet);
 }
 
 const struct command cmd_compare = {

@@ -221,7 +221,8 @@ static enum status run(const struct command_line *line) {
         names[k] = topics[k].name;
     char hint[512];
     mf_nearest_hint(line->files[0], names, count, hint, sizeof hint);
-    return mf_status_fail(STATUS_BAD_INPUT, "describe: \"%s\" is not known; %s", line->files[0], hint);
+    return mf_status_fail(STATUS_BAD_INPUT, "describe: \"%s\" is not known; %s", line->files[0],
+                          hint);
 }
 
 const struct command cmd_describe = {

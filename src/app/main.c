@@ -80,7 +80,7 @@ static enum status parse_number(const char *option, const char *text, uint64_t l
     if (text == NULL || end == text || *end != '\0' || errno || *text == '-' || *number < least ||
         *number > most)
         return mf_status_fail(STATUS_BAD_INPUT, "%s takes a whole number from %llu to %llu", option,
-                           (unsigned long long)least, (unsigned long long)most);
+                              (unsigned long long)least, (unsigned long long)most);
     return STATUS_OK;
 }
 
@@ -184,10 +184,11 @@ static enum status run(int count, char **words) {
     TRY(find_command(words[0], &command));
     TRY(parse_line(command, count - 1, words + 1, &line));
     if (line.file_count < command->least_files || line.file_count > command->most_files)
-        return mf_status_fail(STATUS_BAD_INPUT, "usage: mesofit %s %s", command->name, command->usage);
+        return mf_status_fail(STATUS_BAD_INPUT, "usage: mesofit %s %s", command->name,
+                              command->usage);
     if (line.options.resume && line.options.force)
         return mf_status_fail(STATUS_BAD_INPUT,
-                           "--resume goes on with what --force would replace: give one of them");
+                              "--resume goes on with what --force would replace: give one of them");
     return command->run(&line);
 }
 
@@ -226,7 +227,7 @@ static enum status finish_output(enum status status) {
     if (status != STATUS_OK || (error == 0 && !ferror(stdout)))
         return status;
     return mf_status_fail(STATUS_IO, "cannot write to stdout: %s",
-                       error ? strerror(error) : "not all of it has arrived");
+                          error ? strerror(error) : "not all of it has arrived");
 }
 
 static enum status act(int count, char **words) {

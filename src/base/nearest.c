@@ -49,7 +49,7 @@ const char *mf_nearest_name(const char *given, const char *const *known, size_t 
 }
 
 void mf_nearest_hint(const char *given, const char *const *known, size_t count, char *text,
-                  size_t size) {
+                     size_t size) {
     const char *nearest = mf_nearest_name(given, known, count);
     if (nearest) {
         snprintf(text, size, "did you mean \"%s\"?", nearest);

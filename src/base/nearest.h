@@ -12,4 +12,4 @@ const char *mf_nearest_name(const char *given, const char *const *known, size_t 
 
 /// Print `did you mean "seed"?`, or `known: a, b, c` when nothing is near, into `text`.
 void mf_nearest_hint(const char *given, const char *const *known, size_t count, char *text,
-                  size_t size);
+                     size_t size);

@@ -6,8 +6,8 @@ static size_t part_begin(size_t count, int number, int parts) {
     return number == parts ? count : count * (size_t)number / (size_t)parts / 16 * 16;
 }
 
-void mf_parallel_for(size_t count, int threads, void (*body)(void *context, size_t begin, size_t end),
-                  void *context) {
+void mf_parallel_for(size_t count, int threads,
+                     void (*body)(void *context, size_t begin, size_t end), void *context) {
     if (threads <= 1) {
         body(context, 0, count);
         return;
@@ -18,8 +18,8 @@ void mf_parallel_for(size_t count, int threads, void (*body)(void *context, size
 }
 
 double mf_parallel_sum(size_t count, int threads,
-                    double (*body)(const void *context, size_t begin, size_t end),
-                    const void *context) {
+                       double (*body)(const void *context, size_t begin, size_t end),
+                       const void *context) {
     enum { MOST_BLOCKS = 64, SMALLEST_BLOCK = 4096 };
     const size_t wanted = (count + SMALLEST_BLOCK - 1) / SMALLEST_BLOCK;
     const int blocks = wanted < MOST_BLOCKS ? (int)wanted : MOST_BLOCKS;

@@ -14,11 +14,11 @@
 ///
 /// The stretches depend on the number of threads: a body whose elements do not touch each other
 /// gives the same bits for any number.
-void mf_parallel_for(size_t count, int threads, void (*body)(void *context, size_t begin, size_t end),
-                  void *context);
+void mf_parallel_for(size_t count, int threads,
+                     void (*body)(void *context, size_t begin, size_t end), void *context);
 
 /// Σ of body(begin, end) over blocks of 0 … count − 1 that are the same for any number of threads,
 /// added in order. Blocks are large, and few enough that their sums stay on the stack.
 double mf_parallel_sum(size_t count, int threads,
-                    double (*body)(const void *context, size_t begin, size_t end),
-                    const void *context);
+                       double (*body)(const void *context, size_t begin, size_t end),
+                       const void *context);

@@ -6,7 +6,7 @@
 #include <math.h>
 
 struct rng_block mf_rng_philox(uint64_t seed, enum rng_stream stream, uint32_t a, uint32_t b,
-                            uint32_t c) {
+                               uint32_t c) {
     const philox4x32_ctr_t counter = {{a, b, c, rng_stream_word(stream, 0)}};
     const philox4x32_key_t key = {{(uint32_t)seed, (uint32_t)(seed >> 32)}};
     const philox4x32_ctr_t out = philox4x32(counter, key);
@@ -34,14 +34,14 @@ void mf_rng_normal4(struct rng_block block, double normal[4]) {
 }
 
 struct rng_sequence mf_rng_sequence_begin(uint64_t seed, enum rng_stream stream, uint32_t a,
-                                       uint32_t b) {
+                                          uint32_t b) {
     return (struct rng_sequence){.seed = seed, .stream = stream, .a = a, .b = b, .used = 4};
 }
 
 static uint32_t next_word(struct rng_sequence *sequence) {
     if (sequence->used == 4) {
-        sequence->block =
-            mf_rng_philox(sequence->seed, sequence->stream, sequence->a, sequence->b, sequence->c++);
+        sequence->block = mf_rng_philox(sequence->seed, sequence->stream, sequence->a, sequence->b,
+                                        sequence->c++);
         sequence->used = 0;
     }
     return sequence->block.word[sequence->used++];

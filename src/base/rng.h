@@ -31,7 +31,7 @@ struct rng_block {
 
 /// Four independent 32-bit words for (seed, stream, a, b, c).
 struct rng_block mf_rng_philox(uint64_t seed, enum rng_stream stream, uint32_t a, uint32_t b,
-                            uint32_t c);
+                               uint32_t c);
 
 /// Seed of a simulation that is number (a, b) of `stream`, itself the child of `seed`.
 uint64_t mf_rng_child_seed(uint64_t seed, enum rng_stream stream, uint32_t a, uint32_t b);
@@ -52,7 +52,7 @@ struct rng_sequence {
 };
 
 struct rng_sequence mf_rng_sequence_begin(uint64_t seed, enum rng_stream stream, uint32_t a,
-                                       uint32_t b);
+                                          uint32_t b);
 
 /// Next uniform number in (0, 1).
 double mf_rng_sequence_uniform(struct rng_sequence *sequence);

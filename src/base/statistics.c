@@ -59,7 +59,8 @@ static double autocorrelation(const double *values, size_t length, size_t chains
     return count > 0 ? sum / count : 0;
 }
 
-double mf_statistics_inefficiency(const double *values, size_t length, size_t chains, size_t numbers) {
+double mf_statistics_inefficiency(const double *values, size_t length, size_t chains,
+                                  size_t numbers) {
     const double n = (double)(length * chains);
     double sum = -1, last = INFINITY;
     size_t window = 0;

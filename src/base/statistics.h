@@ -32,7 +32,8 @@ double mf_statistics_standard_error(const struct running_mean *running);
 /// number.
 /// @param[in] values  shape [numbers, chains, length]
 /// Tested: test_statistics.
-double mf_statistics_inefficiency(const double *values, size_t length, size_t chains, size_t numbers);
+double mf_statistics_inefficiency(const double *values, size_t length, size_t chains,
+                                  size_t numbers);
 
 /// Standard error of the mean of one such number; 0 for fewer than two values:
 ///   error² = Γ(0)/n times the inefficiency.

@@ -216,8 +216,8 @@ static enum status time_to_file(struct run *run) {
     return mf_output_commit(&output);
 }
 
-enum status mf_bench_engine(const char *const *files, size_t count, const struct run_options *common,
-                         const struct bench_options *options) {
+enum status mf_bench_engine(const char *const *files, size_t count,
+                            const struct run_options *common, const struct bench_options *options) {
     struct run run = {.common = common, .options = options};
     run.progress = mf_progress_begin(common->quiet);
     run.progress.quiet |= !run.progress.terminal; // nothing but results goes into a pipe

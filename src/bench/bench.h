@@ -18,5 +18,6 @@ struct bench_options {
 /// the results to stdout. What a scene file says of measurements is ignored.
 /// @param[in] common  threads, seed and quiet count
 /// Fails: BAD_INPUT, IO, NO_MEMORY; UNSTABLE; INTERRUPTED, and nothing is kept.
-enum status mf_bench_engine(const char *const *files, size_t count, const struct run_options *common,
-                         const struct bench_options *options) MUST_USE;
+enum status mf_bench_engine(const char *const *files, size_t count,
+                            const struct run_options *common,
+                            const struct bench_options *options) MUST_USE;

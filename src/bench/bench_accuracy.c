@@ -66,9 +66,9 @@ static enum status parse_time_steps(struct run *run, const char *text) {
         if (*end == '\0')
             return STATUS_OK;
     }
-    return mf_status_fail(STATUS_BAD_INPUT,
-                       "--time-steps takes growing numbers above 0, such as 0.01,0.02, %d at most",
-                       MOST_STEPS);
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "--time-steps takes growing numbers above 0, such as 0.01,0.02, %d at most", MOST_STEPS);
 }
 
 /// True if a list such as "aboba,shardlow" names a method, or its integrator.
@@ -97,7 +97,7 @@ static enum status check_names(const struct run *run, const char *list) {
             continue;
         mf_nearest_hint(word, names, run->suitable_count, hint, sizeof hint);
         return mf_status_fail(STATUS_BAD_INPUT, "--integrators: \"%s\" does not suit the scene; %s",
-                           word, hint);
+                              word, hint);
     }
     return STATUS_OK;
 }
@@ -139,7 +139,8 @@ static void tell(void *context, uint64_t steps) {
 #pragma omp critical
     {
         run->steps_done += steps;
-        mf_progress_tell(&run->progress, run->steps_done, run->steps_total, "steps", run->scene.name);
+        mf_progress_tell(&run->progress, run->steps_done, run->steps_total, "steps",
+                         run->scene.name);
     }
 }
 
@@ -148,13 +149,14 @@ static enum status prepare(struct run *run) {
     enum status status = STATUS_OK;
     const struct scene *scene = &run->scene.scene;
     const size_t particles = (size_t)scene->setup.placement.count;
-    const struct bench_method *method = mf_bench_reference_method(run->suitable, run->suitable_count);
+    const struct bench_method *method =
+        mf_bench_reference_method(run->suitable, run->suitable_count);
     const struct simulation_start *start =
         scene->setup.placement.kind == PLACEMENT_FILE ? &scene->start : NULL;
     NEW_ARRAY(run->start_values, 6 * particles);
     mf_progress_tell(&run->progress, 0, run->steps_total, "steps", run->scene.name);
     CHECK(mf_bench_point_prepare(&scene->setup, start, method, run->time_steps[0],
-                              preparation_share * run->time, run->start_values));
+                                 preparation_share * run->time, run->start_values));
     for (size_t d = 0; d < 3; d++) {
         run->start.position[d] = run->start_values + d * particles;
         run->start.velocity[d] = run->start_values + (3 + d) * particles;
@@ -173,14 +175,15 @@ static enum status plan(struct run *run) {
     run->points_common = (struct bench_common){
         .setup = setup,
         .start = &run->start,
-        .bins = mf_bench_bins_choose(&setup->box, (size_t)setup->placement.count, mf_pair_cutoff(&law)),
+        .bins =
+            mf_bench_bins_choose(&setup->box, (size_t)setup->placement.count, mf_pair_cutoff(&law)),
         .tell = tell,
         .context = run};
-    run->reference =
-        (struct bench_point){.method = mf_bench_reference_method(run->suitable, run->suitable_count),
-                             .time_step = reference_step * run->time_steps[0],
-                             .time = reference_length * run->time,
-                             .seed = setup->seed};
+    run->reference = (struct bench_point){
+        .method = mf_bench_reference_method(run->suitable, run->suitable_count),
+        .time_step = reference_step * run->time_steps[0],
+        .time = reference_length * run->time,
+        .seed = setup->seed};
     run->steps_total = mf_bench_point_steps(&run->points_common, &run->reference);
     for (size_t k = 0; k < points; k++) {
         run->points[k] = (struct bench_point){.method = &run->methods[k / run->step_count],
@@ -251,8 +254,8 @@ static enum status run_points(struct run *run) {
         return mf_status_fail(status, "%s", reason);
     if (run->reference.status != STATUS_OK)
         return mf_status_fail(STATUS_UNSTABLE,
-                           "the reference is unstable at a time step of %g; lower \"time_step\"",
-                           run->reference.time_step);
+                              "the reference is unstable at a time step of %g; lower \"time_step\"",
+                              run->reference.time_step);
     return STATUS_OK;
 }
 
@@ -265,7 +268,7 @@ static void judge(struct run *run, size_t method) {
     size_t count = 0;
     for (; count < run->step_count && points[count].status == STATUS_OK; count++)
         run->rows[run->row_count++] = mf_bench_row_of(&points[count], &run->reference,
-                                                   run->points_common.bins.count, run->wanted);
+                                                      run->points_common.bins.count, run->wanted);
     run->reach[method] = mf_bench_reach_of(first, count, run->wanted);
 }
 
@@ -284,8 +287,8 @@ static enum status write_table(struct run *run, const struct bench_diagram *diag
 static enum status report(struct run *run) {
     const char *names[BENCH_MOST_METHODS];
     const size_t bins = run->points_common.bins.count;
-    const struct bench_extrapolation to_zero =
-        mf_bench_extrapolate(&run->reference, run->points, run->method_count * run->step_count, bins);
+    const struct bench_extrapolation to_zero = mf_bench_extrapolate(
+        &run->reference, run->points, run->method_count * run->step_count, bins);
     for (size_t m = 0; m < run->method_count; m++) {
         names[m] = run->methods[m].name;
         judge(run, m);
@@ -304,7 +307,8 @@ static enum status report(struct run *run) {
         .method = names,
         .methods = run->method_count,
         .has_weight = run->scene.scene.setup.weight != NULL};
-    mf_progress_say(&run->progress, "%s: %.0f s", run->scene.name, mf_progress_seconds(&run->progress));
+    mf_progress_say(&run->progress, "%s: %.0f s", run->scene.name,
+                    mf_progress_seconds(&run->progress));
     if (run->options->json)
         TRY(mf_bench_accuracy_json(stdout, &diagram));
     else
@@ -317,7 +321,8 @@ static enum status carry_out(struct run *run, const char *file) {
     TRY(mf_bench_scene_read(&run->scene, file, run->options->output, run->common));
     if (composition_is_mixed(&run->scene.scene.setup.composition))
         return mf_status_fail(STATUS_BAD_INPUT,
-                           "%s: particles.types: bench accuracy wants beads that are alike", file);
+                              "%s: particles.types: bench accuracy wants beads that are alike",
+                              file);
     TRY(choose(run));
     if (run->options->output) { // two minutes are not to be lost
         TRY(mf_output_open(&probe, run->options->output));
@@ -334,7 +339,7 @@ static enum status carry_out(struct run *run, const char *file) {
 }
 
 enum status mf_bench_accuracy(const char *file, const struct run_options *common,
-                           const struct bench_accuracy_options *options) {
+                              const struct bench_accuracy_options *options) {
     enum status status = STATUS_OK;
     struct run *run = NULL;
     NEW_ARRAY(run, 1);

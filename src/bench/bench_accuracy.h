@@ -20,4 +20,4 @@ struct bench_accuracy_options {
 /// Fails: BAD_INPUT, IO, NO_MEMORY; UNSTABLE if the reference is; INTERRUPTED, and nothing is kept.
 /// Tested: tests/cli/test_bench_accuracy.c.
 enum status mf_bench_accuracy(const char *file, const struct run_options *common,
-                           const struct bench_accuracy_options *options) MUST_USE;
+                              const struct bench_accuracy_options *options) MUST_USE;

@@ -119,7 +119,7 @@ static void print_reference(FILE *stream, const struct bench_diagram *diagram) {
         if ((q == BENCH_TOTAL && diagram->has_weight) || !isfinite(value[BENCH_VALUES + 2 * q]))
             continue;
         mf_bench_number_text(cell, sizeof cell, value[BENCH_VALUES + 2 * q],
-                          value[BENCH_VALUES + 2 * q + 1]);
+                             value[BENCH_VALUES + 2 * q + 1]);
         fprintf(stream, "%s %s %s", q > 0 ? "," : "", names[q], cell);
     }
     double noise = 0;
@@ -169,9 +169,9 @@ static void print_recommendation(FILE *stream, const struct bench_diagram *diagr
     if (usual && usual != reach) {
         char cell[CELL_SIZE];
         const double ratio = usual->cpu / reach->cpu;
-        mf_bench_number_text(cell, sizeof cell, ratio,
-                          ratio *
-                              hypot(usual->cpu_error / usual->cpu, reach->cpu_error / reach->cpu));
+        mf_bench_number_text(
+            cell, sizeof cell, ratio,
+            ratio * hypot(usual->cpu_error / usual->cpu, reach->cpu_error / reach->cpu));
         fprintf(stream, ", %s times less than %s at %.2g tau", cell, usual->method,
                 usual->time_step);
     }

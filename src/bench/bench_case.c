@@ -83,7 +83,7 @@ static enum status calibrate(struct bench_case *bench) {
 }
 
 enum status mf_bench_case_begin(struct bench_case *bench, const struct bench_scene *scene,
-                             const struct bench_how *how) {
+                                const struct bench_how *how) {
     *bench = (struct bench_case){.how = *how};
     if (!mf_simd_select(how->isa))
         return mf_status_fail(STATUS_BAD_INPUT, "this processor lacks %s", how->isa);
@@ -109,8 +109,9 @@ static void count_distances(void *context, const float *squared_distances, size_
 static void sample(struct bench_case *bench) {
     const struct simulation *simulation = &bench->simulation;
     const struct neighbours *neighbours = &simulation->neighbours;
-    mf_neighbours_visit_distances(neighbours, &simulation->particles, mf_pair_cutoff(&simulation->law),
-                               count_distances, &bench->in_range);
+    mf_neighbours_visit_distances(neighbours, &simulation->particles,
+                                  mf_pair_cutoff(&simulation->law), count_distances,
+                                  &bench->in_range);
     bench->listed += (double)mf_neighbours_listed(neighbours);
     bench->places += (double)mf_neighbours_entries(neighbours);
     bench->temperature += mf_particles_temperature(&simulation->particles);
@@ -136,7 +137,7 @@ enum status mf_bench_case_repeat(struct bench_case *bench) {
 }
 
 void mf_bench_case_result(const struct bench_case *bench, const char *scene,
-                       struct bench_result *result) {
+                          struct bench_result *result) {
     const double repeats = (double)bench->repeats;
     const double particles = (double)bench->simulation.particles.count;
     const double pairs = bench->in_range / repeats;

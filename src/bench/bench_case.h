@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file One scene timed with one instruction set and one precision.
 ///
-/// Timed is mf_simulation_run without sums, which is what fits spend their time in. Pairs are counted
-/// between the timed parts. A scene without friction is brought to its temperature by scaling
-/// velocities, since a lattice cools as it melts.
+/// Timed is mf_simulation_run without sums, which is what fits spend their time in. Pairs are
+/// counted between the timed parts. A scene without friction is brought to its temperature by
+/// scaling velocities, since a lattice cools as it melts.
 #pragma once
 
 #include "report/run_folder.h"
@@ -25,7 +25,7 @@ struct bench_scene {
 /// Fails: BAD_INPUT, also if the output would replace the scene or a file that it names; IO,
 /// NO_MEMORY. Tested: test_bench_accuracy.
 enum status mf_bench_scene_read(struct bench_scene *scene, const char *file, const char *output,
-                             const struct run_options *options) MUST_USE;
+                                const struct run_options *options) MUST_USE;
 
 /// How to run it.
 struct bench_how {
@@ -75,13 +75,13 @@ double mf_bench_spread(const double *values, uint64_t count);
 /// Place the particles, equilibrate, and find out how many steps a repeat takes. The instruction
 /// set must be there (mf_simd_select). Fails: as mf_simulation_init and mf_simulation_run.
 enum status mf_bench_case_begin(struct bench_case *bench, const struct bench_scene *scene,
-                             const struct bench_how *how) MUST_USE;
+                                const struct bench_how *how) MUST_USE;
 
 /// Time one repeat, at most BENCH_REPEATS in all, and count pairs.
 enum status mf_bench_case_repeat(struct bench_case *bench) MUST_USE;
 
 /// Results of the repeats so far. Tested: test_bench_case.
 void mf_bench_case_result(const struct bench_case *bench, const char *scene,
-                       struct bench_result *result);
+                          struct bench_result *result);
 
 void mf_bench_case_clear(struct bench_case *bench);

@@ -29,8 +29,8 @@ static const struct bench_point *find_partner(const struct bench_point *referenc
 }
 
 struct bench_extrapolation mf_bench_extrapolate(struct bench_point *reference,
-                                             const struct bench_point *points, size_t count,
-                                             size_t bins) {
+                                                const struct bench_point *points, size_t count,
+                                                size_t bins) {
     const struct bench_point *partner = find_partner(reference, points, count);
     if (partner == NULL)
         return (struct bench_extrapolation){0, 0};
@@ -86,8 +86,8 @@ static void find_rdf_errors(const struct bench_point *point, const struct bench_
     value[BENCH_G_RMS_ERROR] = sqrt(fmax(squares / n, 0) + sqrt(variance) / n) - value[BENCH_G_RMS];
 }
 
-struct bench_row mf_bench_row_of(const struct bench_point *point, const struct bench_point *reference,
-                              size_t bins, double wanted) {
+struct bench_row mf_bench_row_of(const struct bench_point *point,
+                                 const struct bench_point *reference, size_t bins, double wanted) {
     struct bench_row row = {.method = point->method->name};
     double *value = row.value, worst = 0;
     for (size_t k = 0; k < bins; k++)

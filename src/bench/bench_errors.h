@@ -37,13 +37,13 @@ struct bench_extrapolation {
     double moved;   ///< largest change of g
 };
 struct bench_extrapolation mf_bench_extrapolate(struct bench_point *reference,
-                                             const struct bench_point *points, size_t count,
-                                             size_t bins);
+                                                const struct bench_point *points, size_t count,
+                                                size_t bins);
 
 /// Errors of a point. @param[in] wanted  standard error for BENCH_CPU_TO_ERROR
 /// Tested: test_bench_errors.
-struct bench_row mf_bench_row_of(const struct bench_point *point, const struct bench_point *reference,
-                              size_t bins, double wanted);
+struct bench_row mf_bench_row_of(const struct bench_point *point,
+                                 const struct bench_point *reference, size_t bins, double wanted);
 
 /// Mean of the largest of |x_k|, x_k normal with standard deviations `error`: ∫ (1 − Π erf(x/√2
 /// σ_k)) dx. Tested: test_bench_errors.

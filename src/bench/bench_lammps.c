@@ -121,7 +121,7 @@ static void write_pair_style(FILE *stream, const struct scene *scene) {
 }
 
 enum status mf_bench_lammps_write(const char *folder, const struct scene *scene,
-                               const struct simulation *simulation) {
+                                  const struct simulation *simulation) {
     struct output output;
     TRY(write_start(folder, &simulation->particles));
     if (scene->potential.curve[0].family == &mf_sampled_family)
@@ -160,7 +160,8 @@ static enum status run_variant(const char *folder, const struct variant *variant
     snprintf(count, sizeof count, "%.0f", ceil(steps));
     for (size_t k = 0, used = 11; k < SUFFIX_WORDS && variant->suffix[k]; k++)
         words[used++] = variant->suffix[k];
-    const enum status status = mf_program_run(folder, words, PROGRAM_EVERYTHING, 0, text, sizeof text);
+    const enum status status =
+        mf_program_run(folder, words, PROGRAM_EVERYTHING, 0, text, sizeof text);
     if (mf_interrupt_requested())
         return mf_status_fail(STATUS_INTERRUPTED, "interrupted");
     TRY(status);
@@ -221,7 +222,7 @@ static enum status take_turns(struct bench_case *bench, const struct bench_scene
 }
 
 enum status mf_bench_lammps_compare(struct bench_case *bench, const struct bench_scene *scene,
-                                 struct bench_result *result) {
+                                    struct bench_result *result) {
     char folder[OUTPUT_PATH_SIZE], path[PATH_SIZE];
     const char *temporary = getenv("TMPDIR");
     snprintf(folder, sizeof folder, "%.3900s/mesofit-lammps-XXXXXX",

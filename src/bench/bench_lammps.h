@@ -16,7 +16,7 @@ const char *mf_bench_lammps_objection(const struct scene *scene);
 /// files in.bench, start.data and, if the law is a table, pair.table in `folder`.
 /// Fails: IO. Tested: test_bench_lammps.
 enum status mf_bench_lammps_write(const char *folder, const struct scene *scene,
-                               const struct simulation *simulation) MUST_USE;
+                                  const struct simulation *simulation) MUST_USE;
 
 /// Steps a second of the last run in what LAMMPS printed, or NaN. Tested: test_bench_lammps.
 double mf_bench_lammps_rate(const char *text);
@@ -26,4 +26,4 @@ double mf_bench_lammps_rate(const char *text);
 /// Fails: IO if LAMMPS fails; INTERRUPTED; as mf_bench_case_repeat.
 /// Threads: one at a time, since the environment is changed.
 enum status mf_bench_lammps_compare(struct bench_case *bench, const struct bench_scene *scene,
-                                 struct bench_result *result) MUST_USE;
+                                    struct bench_result *result) MUST_USE;

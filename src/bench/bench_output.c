@@ -120,7 +120,7 @@ static void append_number(char *const *lines, const struct bench_result *results
 }
 
 enum status mf_bench_output_table(FILE *stream, const struct bench_result *results, size_t count,
-                               bool lammps) {
+                                  bool lammps) {
     enum { LINE_SIZE = (COLUMNS + 2) * (CELL_SIZE + 2) };
     enum status status = STATUS_OK;
     const size_t rows = count + 2;

@@ -10,12 +10,12 @@
 /// @param[in] lammps  show the columns of the comparison instead of those of the engine
 /// Fails: NO_MEMORY. Tested: test_bench_output.
 enum status mf_bench_output_table(FILE *stream, const struct bench_result *results, size_t count,
-                               bool lammps) MUST_USE;
+                                  bool lammps) MUST_USE;
 
 /// Print all results as a JSON list of objects with all digits; what is not finite is left out.
 /// Fails: IO, NO_MEMORY. Tested: test_bench_output.
 enum status mf_bench_output_json(FILE *stream, const struct bench_result *results,
-                              size_t count) MUST_USE;
+                                 size_t count) MUST_USE;
 
 /// Print all results tab-separated under one `#` line with names and units.
 /// Tested: test_bench_output.

@@ -55,7 +55,7 @@ size_t mf_bench_methods(const struct simulation_setup *setup, struct bench_metho
 }
 
 const struct bench_method *mf_bench_reference_method(const struct bench_method *methods,
-                                                  size_t count) {
+                                                     size_t count) {
     for (size_t k = 0; k < count; k++)
         if (methods[k].integrator == &mf_aboba)
             return &methods[k];
@@ -173,7 +173,8 @@ static void find_total(const struct thermodynamics *thermodynamics, const struct
                        double particles, struct bench_point *point) {
     const double *potential =
         mf_thermodynamics_series(thermodynamics, THERMODYNAMICS_POTENTIAL_ENERGY);
-    const double *temperature = mf_thermodynamics_series(thermodynamics, THERMODYNAMICS_TEMPERATURE);
+    const double *temperature =
+        mf_thermodynamics_series(thermodynamics, THERMODYNAMICS_TEMPERATURE);
     const double degrees = box->dimensions * (1 - 1 / particles);
     double energy[BLOCKS] = {0}, along = 0, spread = 0, rest = 0;
     struct running_mean blocks = {0};
@@ -276,13 +277,13 @@ enum status mf_bench_point_run(const struct bench_common *common, struct bench_p
     NEW_ARRAY(point->g, common->bins.count);
     CHECK(mf_simulation_init(&simulation, &setup, common->start));
     CHECK(mf_rdf_init(&rdf, &common->bins.fine, &setup.box, simulation.particles.count,
-                   mf_pair_cutoff(&simulation.law), (size_t)plan.samples));
+                      mf_pair_cutoff(&simulation.law), (size_t)plan.samples));
     CHECK(mf_thermodynamics_init(&thermodynamics, (size_t)plan.samples));
     CHECK(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
     tell(common, point, plan.equilibration);
     if (moves)
         CHECK(mf_motion_init(&motion, &motion_plan, &simulation, plan.equilibration,
-                          plan.samples * plan.every));
+                             plan.samples * plan.every));
     CHECK(sample(common, point, &simulation, &plan, targets));
     CHECK(find_results(common, targets, point));
 done:
@@ -305,9 +306,9 @@ static void scale_velocities(struct simulation *simulation) {
 }
 
 enum status mf_bench_point_prepare(const struct simulation_setup *setup,
-                                const struct simulation_start *start,
-                                const struct bench_method *method, double time_step, double time,
-                                double *values) {
+                                   const struct simulation_start *start,
+                                   const struct bench_method *method, double time_step, double time,
+                                   double *values) {
     enum status status = STATUS_OK;
     struct simulation simulation = {0};
     const struct simulation_setup changed = setup_of(setup, NULL, method, time_step);

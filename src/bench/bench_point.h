@@ -22,7 +22,8 @@ size_t mf_bench_methods(const struct simulation_setup *setup, struct bench_metho
 
 /// The one that others are compared with: it has an error of order Δt² and an unbiased kinetic
 /// temperature. Tested: test_bench_point.
-const struct bench_method *mf_bench_reference_method(const struct bench_method *methods, size_t count);
+const struct bench_method *mf_bench_reference_method(const struct bench_method *methods,
+                                                     size_t count);
 
 /// Bins of g(r) up to the cutoff of the forces. Those within a third of the mean distance hold few
 /// pairs: they count as one.
@@ -79,12 +80,13 @@ uint64_t mf_bench_point_steps(const struct bench_common *common, const struct be
 /// Run a point: equilibration of a twentieth of its time, then 20 blocks. The time of the processor
 /// is that of the calling thread, over steps that nothing is measured in: the median of the blocks.
 /// An unstable run is a result. Fails: BAD_INPUT, NO_MEMORY, INTERRUPTED.
-enum status mf_bench_point_run(const struct bench_common *common, struct bench_point *point) MUST_USE;
+enum status mf_bench_point_run(const struct bench_common *common,
+                               struct bench_point *point) MUST_USE;
 
 /// Equilibrate a scene for `time` with `method` and keep its positions and velocities in `values`,
 /// shape [6, count]. Without ω velocities are scaled to the scene's temperature.
 /// Fails: as mf_simulation_init and mf_simulation_run.
 enum status mf_bench_point_prepare(const struct simulation_setup *setup,
-                                const struct simulation_start *start,
-                                const struct bench_method *method, double time_step, double time,
-                                double *values) MUST_USE;
+                                   const struct simulation_start *start,
+                                   const struct bench_method *method, double time_step, double time,
+                                   double *values) MUST_USE;

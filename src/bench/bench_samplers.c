@@ -36,7 +36,8 @@ static double error_of_g(const struct replicas *replicas, const double *ideal,
             seen[count++] = a;
     *inefficiency = mf_replicas_inefficiency(replicas, ideal, seen, count);
     for (size_t n = 0; n < count; n++)
-        sum += mf_comoments_covariance(counts, seen[n], seen[n]) / (ideal[seen[n]] * ideal[seen[n]]);
+        sum +=
+            mf_comoments_covariance(counts, seen[n], seen[n]) / (ideal[seen[n]] * ideal[seen[n]]);
     return sqrt(sum / (double)count * *inefficiency / counts->count);
 }
 
@@ -79,7 +80,7 @@ static enum status time_size(const struct simulation_setup *setup, size_t partic
         mf_composition_scaled(&setup->composition, (int64_t)particles);
     const struct box box =
         mf_box_scaled(&setup->box, (double)mf_composition_particles(&composition) /
-                                    (double)mf_composition_particles(&setup->composition));
+                                       (double)mf_composition_particles(&setup->composition));
     const struct sampler_system system = {.box = &box,
                                           .composition = &composition,
                                           .potential = setup->potential,
@@ -94,7 +95,8 @@ static enum status time_size(const struct simulation_setup *setup, size_t partic
 
 static enum status time_all(const struct simulation_setup *setup, int threads) {
     if (setup->potential == NULL)
-        return mf_status_fail(STATUS_BAD_INPUT, "a scene without a potential has nothing to sample");
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "a scene without a potential has nothing to sample");
     printf("particles  sampler      ms a sample  inefficiency  error of g * sqrt(s)\n");
     for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++)
         TRY(time_size(setup, sizes[k], threads));

@@ -32,7 +32,7 @@ static enum status read_file(struct bench_scene *scene, const char *file, struct
 }
 
 enum status mf_bench_scene_read(struct bench_scene *scene, const char *file, const char *output,
-                             const struct run_options *options) {
+                                const struct run_options *options) {
     struct heading heading;
     struct input_files inputs = {0};
     enum status status = read_file(scene, file, &heading, &inputs);

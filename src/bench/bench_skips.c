@@ -41,7 +41,8 @@ done:
     return status;
 }
 
-enum status mf_bench_skips(FILE *out, const struct bench_scene *scene, const struct bench_how *how) {
+enum status mf_bench_skips(FILE *out, const struct bench_scene *scene,
+                           const struct bench_how *how) {
     double rate[PARTS];
     fprintf(out, "%s: %lld particles, %s, %s precision\n", scene->name,
             (long long)scene->scene.setup.placement.count, how->isa, how->precision);

@@ -9,4 +9,4 @@
 /// Time the scene as a fit runs it, and then with one part more or less at every step, with the
 /// instruction set and precision of `how`; print a line each. Fails: as mf_bench_case_begin.
 enum status mf_bench_skips(FILE *out, const struct bench_scene *scene,
-                        const struct bench_how *how) MUST_USE;
+                           const struct bench_how *how) MUST_USE;

@@ -15,7 +15,7 @@ static double casteljau(double *control, size_t degree, double t) {
 }
 
 enum status mf_bezier_values(const double *genes, size_t count, const double *t, double *values,
-                          size_t points) {
+                             size_t points) {
     double *control = mf_memory_zeroed(count, sizeof *control);
     if (control == NULL)
         return STATUS_NO_MEMORY;

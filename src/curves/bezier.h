@@ -19,4 +19,4 @@
 /// @param[in]  t, values  shape [points]
 /// Fails: NO_MEMORY. Tested: test_curves.
 enum status mf_bezier_values(const double *genes, size_t count, const double *t, double *values,
-                          size_t points) MUST_USE;
+                             size_t points) MUST_USE;

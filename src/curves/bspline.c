@@ -19,7 +19,7 @@ static double value(gsl_bspline_workspace *basis, gsl_vector *nonzero, const dou
 }
 
 enum status mf_bspline_values(const double *genes, size_t count, const double *t, double *values,
-                           size_t points) {
+                              size_t points) {
     const size_t order = GSL_MIN(ORDER, count + 1), breaks = count + 1 - order + 2;
     gsl_bspline_workspace *basis = gsl_bspline_alloc(order, breaks);
     gsl_vector *nonzero = gsl_vector_alloc(order);

@@ -20,4 +20,4 @@
 /// @param[in]  t, values  shape [points]
 /// Fails: NO_MEMORY. Tested: test_shape.
 enum status mf_bspline_values(const double *genes, size_t count, const double *t, double *values,
-                           size_t points) MUST_USE;
+                              size_t points) MUST_USE;

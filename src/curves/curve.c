@@ -8,7 +8,11 @@
 #include <string.h>
 
 const struct curve_family *const mf_curve_potentials[] = {
-    &mf_formula_lennard_jones, &mf_formula_soft_repulsion, &mf_formula_gaussian, &mf_sampled_family, NULL,
+    &mf_formula_lennard_jones,
+    &mf_formula_soft_repulsion,
+    &mf_formula_gaussian,
+    &mf_sampled_family,
+    NULL,
 };
 
 const struct curve_family *const mf_curve_weights[] = {

@@ -44,7 +44,7 @@ const struct curve_family mf_sampled_family = {
 };
 
 enum status mf_sampled_set_points(struct curve *curve, const double *r, const double *y,
-                               size_t count) {
+                                  size_t count) {
     struct sampled_parameters *p = curve->parameters;
     if (count < 3)
         return mf_status_fail(STATUS_BAD_INPUT, "a table needs at least 3 points, not %zu", count);
@@ -54,8 +54,8 @@ enum status mf_sampled_set_points(struct curve *curve, const double *r, const do
     const double last = r[count - 1];
     // One part in 10^9 forgives a cutoff that was rounded when the table was written.
     if (p->cutoff > last * (1 + 1e-9))
-        return mf_status_fail(STATUS_BAD_INPUT, "the table ends at r = %g, before the cutoff %g", last,
-                           p->cutoff);
+        return mf_status_fail(STATUS_BAD_INPUT, "the table ends at r = %g, before the cutoff %g",
+                              last, p->cutoff);
     if (p->cutoff == 0 || p->cutoff > last)
         p->cutoff = last;
     p->spline = gsl_spline_alloc(gsl_interp_cspline, count);

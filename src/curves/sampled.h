@@ -24,8 +24,8 @@ struct sampled_parameters {
 /// @param[in] r, y  shape [count], r ≥ 0 growing strictly, count ≥ 3   [λ], [curve's unit]
 /// Fails: NO_MEMORY; BAD_INPUT if the last r lies below the cutoff or r does not grow.
 enum status mf_sampled_set_points(struct curve *curve, const double *r, const double *y,
-                               size_t count) MUST_USE;
+                                  size_t count) MUST_USE;
 
 /// A new curve of this family through points in memory.
 enum status mf_sampled_create(struct curve *curve, const double *r, const double *y,
-                           size_t count) MUST_USE;
+                              size_t count) MUST_USE;

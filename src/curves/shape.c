@@ -32,7 +32,7 @@ const struct shape *mf_shape_find(const char *name) {
 }
 
 enum status mf_shape_basis(const struct shape *shape, size_t genes, const double *t, size_t points,
-                        double *basis) {
+                           double *basis) {
     enum status status = STATUS_OK;
     double *unit = NULL, *column = NULL;
     NEW_ARRAY(unit, genes);
@@ -86,7 +86,7 @@ static enum status rows_fill(struct rows *rows, const double *basis, const doubl
         const double root = weights ? sqrt(weights[p]) : 1;
         if (!isfinite(root * values[p]))
             return mf_status_fail(STATUS_BAD_INPUT, "point %zu of a curve is %g, its weight %g", p,
-                               values[p], weights ? weights[p] : 1);
+                                  values[p], weights ? weights[p] : 1);
         gsl_vector_set(rows->values, p, root * values[p]);
         for (size_t k = 0; k < count; k++)
             gsl_matrix_set(rows->basis, p, k, root * basis[p * count + k]);
@@ -108,7 +108,7 @@ static enum status rows_solve(struct rows *rows) {
 }
 
 enum status mf_shape_fit(const struct shape *shape, const double *t, const double *values,
-                      const double *weights, size_t points, double *genes, size_t count) {
+                         const double *weights, size_t points, double *genes, size_t count) {
     enum status status = STATUS_OK;
     struct rows rows = {0};
     double *basis = NULL;

@@ -28,7 +28,7 @@ const struct shape *mf_shape_find(const char *name);
 /// @param[out] basis  shape [points, genes]
 /// Fails: NO_MEMORY. Tested: test_shape.
 enum status mf_shape_basis(const struct shape *shape, size_t genes, const double *t, size_t points,
-                        double *basis) MUST_USE;
+                           double *basis) MUST_USE;
 
 /// Genes x of the curve nearest to `values`: least Σ_p w_p (y_p − Σ_k B_pk x_k)² + λ² Σ_k x_k²,
 /// with λ of 1e-7 times the largest singular value of the weighted basis. That is too little to see
@@ -39,4 +39,5 @@ enum status mf_shape_basis(const struct shape *shape, size_t genes, const double
 /// @param[out] genes      shape [count], count ≥ 1
 /// Fails: NO_MEMORY, BAD_INPUT without points or where numbers are not finite. Tested: test_shape.
 enum status mf_shape_fit(const struct shape *shape, const double *t, const double *values,
-                      const double *weights, size_t points, double *genes, size_t count) MUST_USE;
+                         const double *weights, size_t points, double *genes,
+                         size_t count) MUST_USE;

@@ -155,12 +155,12 @@ double mf_table_inverse_spacing(const struct table *table, int pair) {
 }
 
 void mf_table_evaluate(const struct table *table, double r, double *value, double *slope,
-                    double *curvature) {
+                       double *curvature) {
     mf_table_evaluate_pair(table, 0, r, value, slope, curvature);
 }
 
 void mf_table_evaluate_pair(const struct table *table, int pair, double r, double *value,
-                         double *slope, double *curvature) {
+                            double *slope, double *curvature) {
     const double h = mf_table_inverse_spacing(table, pair);
     const int k = (int)fmin(r * h, TABLE_INTERVALS); // the row of zeros beyond the cutoff
     const double f = r * h - k;

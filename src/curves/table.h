@@ -69,8 +69,8 @@ double mf_table_inverse_spacing(const struct table *table, int pair);
 
 /// Value, slope and curvature in double precision, of a table of one curve; each may be NULL.
 void mf_table_evaluate(const struct table *table, double r, double *value, double *slope,
-                    double *curvature);
+                       double *curvature);
 
 /// The same of the curve of a kind of pairs.
 void mf_table_evaluate_pair(const struct table *table, int pair, double r, double *value,
-                         double *slope, double *curvature);
+                            double *slope, double *curvature);

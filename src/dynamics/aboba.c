@@ -37,7 +37,7 @@ static enum status sweep(struct simulation *simulation) {
 
 static enum status solve(struct simulation *simulation) {
     return mf_friction_solve(&simulation->friction, &simulation->particles,
-                          simulation->setup.integrator_parameters.tolerance);
+                             simulation->setup.integrator_parameters.tolerance);
 }
 
 /// Drift, kick, friction, kick, drift: forces and friction from the positions in the middle. The

@@ -47,8 +47,8 @@ static double first_step(const struct table *potential, double temperature) {
 }
 
 enum status mf_hybrid_init(struct hybrid *hybrid, const struct box *box,
-                        const struct composition *composition, const struct table *potential,
-                        const struct pair_histogram *bins, double temperature, uint64_t seed) {
+                           const struct composition *composition, const struct table *potential,
+                           const struct pair_histogram *bins, double temperature, uint64_t seed) {
     enum status status = STATUS_OK;
     const size_t count = (size_t)mf_composition_particles(composition);
     const struct simulation_setup setup = {
@@ -138,9 +138,9 @@ static void collide(struct hybrid *hybrid) {
         if (particles->id[k] % TURNS != hybrid->trajectory % TURNS)
             continue;
         double normal[4];
-        mf_rng_normal4(mf_rng_philox(hybrid->simulation.setup.seed, RNG_COLLISIONS, hybrid->trajectory,
-                               particles->id[k], 0),
-                    normal);
+        mf_rng_normal4(mf_rng_philox(hybrid->simulation.setup.seed, RNG_COLLISIONS,
+                                     hybrid->trajectory, particles->id[k], 0),
+                       normal);
         for (int d = 0; d < particles->box.dimensions; d++)
             particles->velocity[d][k] = speed * normal[d];
     }

@@ -31,9 +31,9 @@ struct hybrid {
 /// @param[in] bins       of the pairs to be counted, within the cutoff; `counts` is not read
 /// Fails: as mf_simulation_init.
 enum status mf_hybrid_init(struct hybrid *hybrid, const struct box *box,
-                        const struct composition *composition, const struct table *potential,
-                        const struct pair_histogram *bins, double temperature,
-                        uint64_t seed) MUST_USE;
+                           const struct composition *composition, const struct table *potential,
+                           const struct pair_histogram *bins, double temperature,
+                           uint64_t seed) MUST_USE;
 void mf_hybrid_clear(struct hybrid *hybrid);
 
 /// Place the particles anew, without order. Fails: NO_MEMORY.

@@ -28,8 +28,8 @@ static double largest_step(const struct metropolis *metropolis) {
 }
 
 enum status mf_metropolis_init(struct metropolis *metropolis, const struct box *box,
-                            const struct composition *composition, const struct table *potential,
-                            double temperature, uint64_t seed) {
+                               const struct composition *composition, const struct table *potential,
+                               double temperature, uint64_t seed) {
     enum status status = STATUS_OK;
     const size_t count = (size_t)mf_composition_particles(composition);
     *metropolis = (struct metropolis){
@@ -38,13 +38,14 @@ enum status mf_metropolis_init(struct metropolis *metropolis, const struct box *
         .seed = seed};
     CHECK(mf_particles_init(&metropolis->particles, box, count));
     NEW_ARRAY(metropolis->order, count);
-    CHECK(mf_neighbours_init(&metropolis->neighbours, NEIGHBOURS_FULL, box, count, potential->cutoff,
-                          skin_distances * mean_distance(box, count)));
+    CHECK(mf_neighbours_init(&metropolis->neighbours, NEIGHBOURS_FULL, box, count,
+                             potential->cutoff, skin_distances * mean_distance(box, count)));
     if (metropolis->neighbours.skin < 0.05 * potential->cutoff) {
-        status = mf_status_fail(STATUS_BAD_INPUT,
-                             "the box is too small for Monte Carlo: its shortest edge %g must be "
-                             "at least 2.1 times the cutoff %g",
-                             mf_box_shortest(box), potential->cutoff);
+        status =
+            mf_status_fail(STATUS_BAD_INPUT,
+                           "the box is too small for Monte Carlo: its shortest edge %g must be "
+                           "at least 2.1 times the cutoff %g",
+                           mf_box_shortest(box), potential->cutoff);
         goto done;
     }
     metropolis->step = fmin(metropolis->step, largest_step(metropolis));
@@ -83,8 +84,8 @@ static void try_move(struct metropolis *metropolis, size_t k) {
     int32_t to[3] = {0};
     double moved[3];
     for (int d = 0; d < box->dimensions; d++) {
-        moved[d] =
-            particles->position[d][k] + metropolis->step * (2 * mf_rng_uniform(random.word[d], 0) - 1);
+        moved[d] = particles->position[d][k] +
+                   metropolis->step * (2 * mf_rng_uniform(random.word[d], 0) - 1);
         to[d] = box_fraction(moved[d], 1 / box->length[d]);
     }
     const double change =
@@ -150,8 +151,8 @@ enum status mf_metropolis_equilibrate(struct metropolis *metropolis, uint32_t sw
     return STATUS_OK;
 }
 
-void mf_metropolis_count(const struct metropolis *metropolis, const struct pair_histogram *histogram,
-                      struct pair_sums *sums) {
+void mf_metropolis_count(const struct metropolis *metropolis,
+                         const struct pair_histogram *histogram, struct pair_sums *sums) {
     struct pair_law law = metropolis->law;
     law.histogram = histogram;
     mf_move_count_pairs(&law, &metropolis->particles, &metropolis->neighbours, sums);

@@ -22,12 +22,12 @@ static const struct move_kernels *choose(const struct pair_law *law,
 }
 
 double mf_move_energy_change(const struct pair_law *law, const struct particles *particles,
-                          const struct neighbours *neighbours, size_t particle,
-                          const int32_t to[3]) {
+                             const struct neighbours *neighbours, size_t particle,
+                             const int32_t to[3]) {
     return choose(law, particles)->energy_change(law, particles, neighbours, particle, to);
 }
 
 void mf_move_count_pairs(const struct pair_law *law, const struct particles *particles,
-                      const struct neighbours *neighbours, struct pair_sums *sums) {
+                         const struct neighbours *neighbours, struct pair_sums *sums) {
     choose(law, particles)->count_pairs(law, particles, neighbours, sums);
 }

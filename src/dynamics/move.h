@@ -12,12 +12,12 @@
 /// @param[in] neighbours  a full list, complete for the cutoff from both places
 /// Tested: test_move.
 double mf_move_energy_change(const struct pair_law *law, const struct particles *particles,
-                          const struct neighbours *neighbours, size_t particle,
-                          const int32_t to[3]);
+                             const struct neighbours *neighbours, size_t particle,
+                             const int32_t to[3]);
 
 /// Add the pairs nearer than the potential's cutoff to the law's histogram, of one part, and sum Φ
 /// and r·F.
 /// @param[in] neighbours  a full list
 /// Tested: test_move.
 void mf_move_count_pairs(const struct pair_law *law, const struct particles *particles,
-                      const struct neighbours *neighbours, struct pair_sums *sums);
+                         const struct neighbours *neighbours, struct pair_sums *sums);

@@ -51,7 +51,7 @@ static double find_skin(const struct simulation *simulation) {
 }
 
 enum status mf_simulation_init(struct simulation *simulation, const struct simulation_setup *setup,
-                            const struct simulation_start *start) {
+                               const struct simulation_start *start) {
     enum status status = STATUS_OK;
     *simulation = (struct simulation){
         .setup = *setup,
@@ -70,10 +70,10 @@ enum status mf_simulation_init(struct simulation *simulation, const struct simul
     mf_crew_init(&simulation->crew, setup->threads > 1 ? setup->threads : 1);
     simulation->particles.threads = simulation->crew.now;
     CHECK(mf_neighbours_init(&simulation->neighbours, NEIGHBOURS_HALF, &setup->box, count,
-                          mf_pair_cutoff(&simulation->law), find_skin(simulation)));
+                             mf_pair_cutoff(&simulation->law), find_skin(simulation)));
     if (setup->weight && setup->integrator->friction)
         CHECK(mf_friction_init(&simulation->friction, setup->weight, setup->time_step,
-                            setup->temperature, setup->integrator->friction));
+                               setup->temperature, setup->integrator->friction));
     CHECK(place(simulation, start));
     CHECK(mf_neighbours_sort_and_build(&simulation->neighbours, &simulation->particles));
     if (setup->placement.kind == PLACEMENT_RANDOM && setup->potential)
@@ -155,13 +155,13 @@ static enum status fail_unstable(const struct simulation *simulation, double squ
     const struct simulation_setup *setup = &simulation->setup;
     const struct particles *particles = &simulation->particles;
     const double degrees = particles->box.dimensions * ((double)particles->count - 1);
-    return mf_status_fail(STATUS_UNSTABLE,
-                       "unstable at step %llu: kinetic temperature %.3g (limit %g), largest force "
-                       "%.3g; lower \"time_step\" or soften the potential",
-                       (unsigned long long)simulation->step,
-                       mf_visible_number(square_velocities / degrees),
-                       setup->temperature_limit * setup->temperature,
-                       mf_visible_number(mf_particles_largest_force(particles)));
+    return mf_status_fail(
+        STATUS_UNSTABLE,
+        "unstable at step %llu: kinetic temperature %.3g (limit %g), largest force "
+        "%.3g; lower \"time_step\" or soften the potential",
+        (unsigned long long)simulation->step, mf_visible_number(square_velocities / degrees),
+        setup->temperature_limit * setup->temperature,
+        mf_visible_number(mf_particles_largest_force(particles)));
 }
 
 /// Before a list is built: particles flung beyond the reach of box_fraction would meet on a few
@@ -173,11 +173,12 @@ static enum status watch_flight(const struct simulation *simulation) {
                           mf_box_shortest(&particles->box);
     if (flight <= 0x1p18)
         return STATUS_OK;
-    return mf_status_fail(STATUS_UNSTABLE,
-                       "unstable at step %llu: particles fly %.3g times the edge of the box in a "
-                       "step, largest force %.3g; lower \"time_step\" or soften the potential",
-                       (unsigned long long)simulation->step, mf_visible_number(flight),
-                       mf_visible_number(mf_particles_largest_force(particles)));
+    return mf_status_fail(
+        STATUS_UNSTABLE,
+        "unstable at step %llu: particles fly %.3g times the edge of the box in a "
+        "step, largest force %.3g; lower \"time_step\" or soften the potential",
+        (unsigned long long)simulation->step, mf_visible_number(flight),
+        mf_visible_number(mf_particles_largest_force(particles)));
 }
 
 /// Count the time since `begin` to a phase; returns the present time.
@@ -208,13 +209,14 @@ enum status mf_simulation_compute_forces(struct simulation *simulation, double a
     if (simulation->friction.single)
         law.friction = &simulation->friction;
     else if (law.weight)
-        mf_particles_update_motion(particles, ahead); // before a sort, which does not move the forces
+        mf_particles_update_motion(particles,
+                                   ahead); // before a sort, which does not move the forces
     TRY(refresh_list(simulation));
     if (law.friction)
         TRY(mf_friction_reserve(law.friction, neighbours));
     begin = count_ticks(simulation, SIMULATION_LIST, begin);
     mf_pair_forces(&law, particles, neighbours, simulation->step, simulation->wants,
-                &simulation->sums);
+                   &simulation->sums);
     count_ticks(simulation, SIMULATION_FORCES, begin);
     return STATUS_OK;
 }
@@ -224,7 +226,7 @@ enum status mf_simulation_compute_potential(struct simulation *simulation) {
     law.weight = NULL;
     TRY(refresh_list(simulation));
     mf_pair_forces(&law, &simulation->particles, &simulation->neighbours, simulation->step,
-                PAIR_FORCES_AND_SUMS, &simulation->sums);
+                   PAIR_FORCES_AND_SUMS, &simulation->sums);
     return STATUS_OK;
 }
 
@@ -251,7 +253,8 @@ enum status mf_simulation_run(struct simulation *simulation, uint64_t steps) {
         simulation->particles.threads = simulation->crew.now;
         TRY(simulation->setup.integrator->step(simulation));
         TRY(watch(simulation));
-        mf_crew_end_turn(&simulation->crew, count_ticks(simulation, SIMULATION_MOTION, begin) - begin);
+        mf_crew_end_turn(&simulation->crew,
+                         count_ticks(simulation, SIMULATION_MOTION, begin) - begin);
         simulation->ticks[SIMULATION_MOTION] -=
             simulation->ticks[SIMULATION_LIST] + simulation->ticks[SIMULATION_FORCES] - other;
     }
@@ -260,8 +263,8 @@ enum status mf_simulation_run(struct simulation *simulation, uint64_t steps) {
 
 double mf_simulation_pressure(const struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
-    const double temperature =
-        simulation->law.weight ? simulation->setup.temperature : mf_simulation_temperature(simulation);
+    const double temperature = simulation->law.weight ? simulation->setup.temperature
+                                                      : mf_simulation_temperature(simulation);
     return mf_particles_density(particles) * temperature +
            simulation->sums.virial / (particles->box.dimensions * mf_box_volume(&particles->box));
 }

@@ -62,7 +62,7 @@ struct simulation_start {
 /// @param[in] start  for PLACEMENT_FILE, else NULL
 /// Fails: BAD_INPUT (box below twice the cutoff, no room), NO_MEMORY, UNSTABLE.
 enum status mf_simulation_init(struct simulation *simulation, const struct simulation_setup *setup,
-                            const struct simulation_start *start) MUST_USE;
+                               const struct simulation_start *start) MUST_USE;
 void mf_simulation_clear(struct simulation *simulation);
 
 /// Advance by `steps` steps.

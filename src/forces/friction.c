@@ -7,15 +7,16 @@
 #include "base/simd.h"
 
 struct friction_factors mf_friction_factors_of(const struct friction_method *method, double omega,
-                                            double time_step, double temperature) {
+                                               double time_step, double temperature) {
     const double d = method->damping(omega, time_step);
     const double square =
         method->square ? method->square(time_step, temperature) * d * (1 - method->bound * d) : 1;
     return (struct friction_factors){d, sqrt(square)};
 }
 
-enum status mf_friction_init(struct friction *friction, const struct table *weight, double time_step,
-                          double temperature, const struct friction_method *method) {
+enum status mf_friction_init(struct friction *friction, const struct table *weight,
+                             double time_step, double temperature,
+                             const struct friction_method *method) {
     enum status status = STATUS_OK;
     *friction =
         (struct friction){.method = method,
@@ -69,7 +70,8 @@ enum status mf_friction_reserve(struct friction *friction, const struct neighbou
     mf_memory_free(friction->pair);
     friction->capacity = 0;
     // Most of the room is never touched, and so takes no memory.
-    friction->direction = mf_memory_uncleared(neighbours->list_capacity, sizeof *friction->direction);
+    friction->direction =
+        mf_memory_uncleared(neighbours->list_capacity, sizeof *friction->direction);
     friction->pair = mf_memory_uncleared(neighbours->list_capacity, sizeof *friction->pair);
     if (friction->direction == NULL || friction->pair == NULL)
         return STATUS_NO_MEMORY;
@@ -154,7 +156,7 @@ SIMD_CLONES static void apply_pairs(const float (*direction)[4], const struct fr
 }
 
 void mf_friction_apply(const struct friction *friction, const struct particles *particles,
-                    const double (*from)[4], double (*to)[4], bool kicks) {
+                       const double (*from)[4], double (*to)[4], bool kicks) {
     const int threads = particles->threads;
     memset(to, 0, particles->count * sizeof *to);
 #define APPLY(direction, pair, count)                                                              \
@@ -185,7 +187,7 @@ static void add_to_forces(void *context, size_t begin, size_t end) {
 }
 
 enum status mf_friction_add_to_forces(struct friction *friction, struct particles *particles,
-                                   double *const source[3], double scale, bool kicks) {
+                                      double *const source[3], double scale, bool kicks) {
     TRY(mf_friction_reserve_work(friction, particles->count));
     struct addition addition = {particles, source, scale, friction->work[0], friction->work[1]};
     mf_parallel_for(particles->count, particles->threads, scale_source, &addition);

@@ -34,7 +34,7 @@ struct friction_factors {
     double amplitude; ///< standard deviation of the kick [λ/τ]
 };
 struct friction_factors mf_friction_factors_of(const struct friction_method *method, double omega,
-                                            double time_step, double temperature);
+                                               double time_step, double temperature);
 
 enum { FRICTION_WORK = 4 };
 
@@ -56,13 +56,14 @@ struct friction {
 };
 
 /// Tabulate a method for a weight. Fails: NO_MEMORY.
-enum status mf_friction_init(struct friction *friction, const struct table *weight, double time_step,
-                          double temperature, const struct friction_method *method) MUST_USE;
+enum status mf_friction_init(struct friction *friction, const struct table *weight,
+                             double time_step, double temperature,
+                             const struct friction_method *method) MUST_USE;
 void mf_friction_clear(struct friction *friction);
 
 /// Make room for all pairs of a list, and forget those kept. Fails: NO_MEMORY.
 enum status mf_friction_reserve(struct friction *friction,
-                             const struct neighbours *neighbours) MUST_USE;
+                                const struct neighbours *neighbours) MUST_USE;
 
 /// Make room for what is done with all pairs at once, of `count` particles. Fails: NO_MEMORY.
 enum status mf_friction_reserve_work(struct friction *friction, size_t count) MUST_USE;
@@ -76,17 +77,17 @@ void mf_friction_sweep(const struct friction *friction, struct particles *partic
 /// @param[out] to     shape [count, 4]
 /// @param[in]  kicks  whether to include them
 void mf_friction_apply(const struct friction *friction, const struct particles *particles,
-                    const double (*from)[4], double (*to)[4], bool kicks);
+                       const double (*from)[4], double (*to)[4], bool kicks);
 
 /// The same added to the forces of the particles, with velocities scale · source[d].
 /// @param[in] source  shape [count] for each dimension
 /// Fails: NO_MEMORY.
 enum status mf_friction_add_to_forces(struct friction *friction, struct particles *particles,
-                                   double *const source[3], double scale, bool kicks) MUST_USE;
+                                      double *const source[3], double scale, bool kicks) MUST_USE;
 
 /// Solve (1 + G) v' = (1 − G) v + kicks, G v = Σ damping·u e, by conjugate gradients, to a
 /// residual of `tolerance` times the change that friction and noise make; v' replaces the
 /// velocities. The same bits for any number of threads. Fails: NO_MEMORY; UNSTABLE if 1000
 /// iterations are too few for so large a friction, and the velocities stay.
 enum status mf_friction_solve(struct friction *friction, struct particles *particles,
-                           double tolerance) MUST_USE;
+                              double tolerance) MUST_USE;

@@ -66,7 +66,7 @@ static void finish(void *context, size_t begin, size_t end) {
 }
 
 enum status mf_friction_solve(struct friction *friction, struct particles *particles,
-                           double tolerance) {
+                              double tolerance) {
     enum { MOST_ITERATIONS = 1000 };
     TRY(mf_friction_reserve_work(friction, particles->count));
     struct solution s = {.particles = particles,
@@ -92,9 +92,9 @@ enum status mf_friction_solve(struct friction *friction, struct particles *parti
     }
     if (squares > enough)
         return mf_status_fail(STATUS_UNSTABLE,
-                           "the implicit friction is not solved after %d iterations; lower "
-                           "\"time_step\" or raise \"tolerance\"",
-                           MOST_ITERATIONS);
+                              "the implicit friction is not solved after %d iterations; lower "
+                              "\"time_step\" or raise \"tolerance\"",
+                              MOST_ITERATIONS);
     mf_parallel_for(count, threads, finish, &s);
     return STATUS_OK;
 }

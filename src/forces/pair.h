@@ -65,11 +65,11 @@ double mf_pair_cutoff(const struct pair_law *law);
 /// Replace `force` of all particles by the forces of `law`.
 ///
 /// Reads kernel_place, and kernel_motion if the law has a weight; with PAIR_DOUBLE precise_place
-/// and precise_motion, which mf_particles_keep_precise must have asked for. The list must be complete
-/// for mf_pair_cutoff.
+/// and precise_motion, which mf_particles_keep_precise must have asked for. The list must be
+/// complete for mf_pair_cutoff.
 /// @param[in]  step  number of the time step: the counter of the noise
 /// @param[out] sums  NULL unless `wants` asks for them
 /// Fails: never; a NaN shows in the forces. Threads: serial. Tested: test_pair_kernels.
 void mf_pair_forces(const struct pair_law *law, struct particles *particles,
-                 const struct neighbours *neighbours, uint64_t step, enum pair_wants wants,
-                 struct pair_sums *sums);
+                    const struct neighbours *neighbours, uint64_t step, enum pair_wants wants,
+                    struct pair_sums *sums);

@@ -47,8 +47,8 @@ static void gather_forces(void *context, size_t begin, size_t end) {
 }
 
 void mf_pair_forces(const struct pair_law *law, struct particles *particles,
-                 const struct neighbours *neighbours, uint64_t step, enum pair_wants wants,
-                 struct pair_sums *sums) {
+                    const struct neighbours *neighbours, uint64_t step, enum pair_wants wants,
+                    struct pair_sums *sums) {
     const pair_kernel kernel = choose(law, particles->box.dimensions, wants);
     const int parts = kernel ? neighbours->parts : 0, threads = particles->threads;
     struct pair_sums part_sums[NEIGHBOURS_MOST_PARTS] = {{0}};

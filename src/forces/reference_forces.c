@@ -30,7 +30,8 @@ static double friction_and_noise(const struct pair_law *law, const struct partic
                                  size_t i, size_t j, const double r_ij[3], double r,
                                  uint64_t step) {
     double omega, speed = 0;
-    const int pair = mf_composition_pair_of_ids(&law->composition, particles->id[i], particles->id[j]);
+    const int pair =
+        mf_composition_pair_of_ids(&law->composition, particles->id[i], particles->id[j]);
     mf_table_evaluate_pair(law->weight, pair, r, &omega, NULL, NULL);
     for (int d = 0; d < particles->box.dimensions; d++)
         speed += r_ij[d] / r * (particles->velocity[d][i] - particles->velocity[d][j]);
@@ -39,7 +40,7 @@ static double friction_and_noise(const struct pair_law *law, const struct partic
 }
 
 void mf_reference_forces(const struct pair_law *law, struct particles *particles, uint64_t step,
-                      struct pair_sums *sums) {
+                         struct pair_sums *sums) {
     const int dimensions = particles->box.dimensions;
     for (int d = 0; d < dimensions; d++)
         memset(particles->force[d], 0, particles->count * sizeof *particles->force[d]);
@@ -51,8 +52,8 @@ void mf_reference_forces(const struct pair_law *law, struct particles *particles
             double force = 0;
             if (law->potential && r < law->potential->cutoff) {
                 double phi, slope;
-                const int pair =
-                    mf_composition_pair_of_ids(&law->composition, particles->id[i], particles->id[j]);
+                const int pair = mf_composition_pair_of_ids(&law->composition, particles->id[i],
+                                                            particles->id[j]);
                 mf_table_evaluate_pair(law->potential, pair, r, &phi, &slope, NULL);
                 force -= slope;
                 total.energy += phi;
@@ -87,15 +88,15 @@ static double density_at_cutoff(const struct table *potential, int pair, double 
 static double edge_laplacian(const struct table *potential, int pair, double density) {
     double slope;
     mf_table_evaluate_pair(potential, pair, table_reach(potential, pair) * (1 - 1e-9), NULL, &slope,
-                        NULL);
+                           NULL);
     return -2 * slope * density;
 }
 
 enum status mf_reference_configurational(const struct table *potential,
-                                      const struct composition *composition, double temperature,
-                                      const struct particles *particles,
-                                      const struct neighbours *neighbours, double *squares,
-                                      double *laplacian) {
+                                         const struct composition *composition, double temperature,
+                                         const struct particles *particles,
+                                         const struct neighbours *neighbours, double *squares,
+                                         double *laplacian) {
     enum status status = STATUS_OK;
     const int dimensions = particles->box.dimensions;
     double *force = NULL;

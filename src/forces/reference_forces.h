@@ -9,7 +9,7 @@
 /// Reads `velocity` (not kernel_velocity) and writes `force` [k_B T_0 / λ].
 /// @param[out] sums  energy and virial, or NULL
 void mf_reference_forces(const struct pair_law *law, struct particles *particles, uint64_t step,
-                      struct pair_sums *sums);
+                         struct pair_sums *sums);
 
 /// Configurational temperature Σ_i |F_i|² / Σ_i ∇_i² U [k_B T_0] from the potential alone.
 ///   Σ_i ∇_i² U = 2 Σ_pairs [Φ''(r) + (d − 1) Φ'(r)/r]
@@ -22,7 +22,7 @@ void mf_reference_forces(const struct pair_law *law, struct particles *particles
 /// @param[out] laplacian  Σ ∇_i² U [k_B T_0/λ²]; the temperature is ⟨squares⟩ / ⟨laplacian⟩
 /// Fails: NO_MEMORY.
 enum status mf_reference_configurational(const struct table *potential,
-                                      const struct composition *composition, double temperature,
-                                      const struct particles *particles,
-                                      const struct neighbours *neighbours, double *squares,
-                                      double *laplacian) MUST_USE;
+                                         const struct composition *composition, double temperature,
+                                         const struct particles *particles,
+                                         const struct neighbours *neighbours, double *squares,
+                                         double *laplacian) MUST_USE;

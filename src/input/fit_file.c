@@ -60,11 +60,12 @@ static void read_fixed(struct unknown_parameters *p, struct json_object *object)
     if (p->shape != INVERSE_CURVE_POWER)
         mf_json_fault(object, "fixed", "only \"curve\": \"power\" has parameters to hold fixed");
     else if (mf_inverse_free_parameters(p->fixed) == 0)
-        mf_json_fault(object, "fixed", "with all of its parameters fixed nothing is left to be found");
+        mf_json_fault(object, "fixed",
+                      "with all of its parameters fixed nothing is left to be found");
     const double inner = p->fixed[INVERSE_INNER_CUTOFF];
     if (inner < p->inner_cutoff || inner >= p->cutoff)
         mf_json_fault(&fixed, "inner_cutoff", "%g is not between the weight's cutoffs, %g and %g",
-                   inner, p->inner_cutoff, p->cutoff);
+                      inner, p->inner_cutoff, p->cutoff);
 }
 
 /// Genes of a formula are its parameters that are not fixed.
@@ -76,9 +77,9 @@ static void check_genes(struct unknown_parameters *p, struct json_object *object
         p->genes = parameters;
     else if (p->genes != parameters)
         mf_json_fault(object, "genes",
-                   "the curve \"power\" has %d: sigma, exponent, inner cutoff, less those that "
-                   "\"fixed\" holds",
-                   parameters);
+                      "the curve \"power\" has %d: sigma, exponent, inner cutoff, less those that "
+                      "\"fixed\" holds",
+                      parameters);
 }
 
 static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind kind,
@@ -100,7 +101,7 @@ static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind k
         mf_json_fault(object, "maximum", "%g is not above the minimum %g", p->maximum, p->minimum);
     if (kind == UNKNOWN_WEIGHT && p->cutoff <= p->inner_cutoff)
         mf_json_fault(object, "cutoff", "%g is not above the inner cutoff %g", p->cutoff,
-                   p->inner_cutoff);
+                      p->inner_cutoff);
     TRY(mf_scene_law_read(&unknown->start, object, "start", laws, composition, units));
     TRY(mf_scene_law_read(&unknown->truth, object, "truth", laws, composition, units));
     mf_json_finish(object);
@@ -150,7 +151,7 @@ static enum status read_root(struct fit_file *fit, struct json_object *root) {
     // Before what its units convert.
     TRY(read_scene(fit, root));
     TRY(mf_targets_read(&fit->targets, root, &fit->scene.setup.box, &fit->scene.setup.composition,
-                     &fit->scene.units));
+                        &fit->scene.units));
     TRY(read_unknowns(fit, root));
     TRY(read_method(fit, root));
     struct json_object core = mf_json_child(root, "core", false);
@@ -194,16 +195,16 @@ static enum status check_range(const struct fit_file *fit, const char *file, con
     if (mf_box_shortest(box) >= 2 * range)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
-                       "%s: scene.box: the shortest edge %g is below twice the range of the "
-                       "target \"%s\", %g",
-                       file, mf_box_shortest(box), target, range);
+                          "%s: scene.box: the shortest edge %g is below twice the range of the "
+                          "target \"%s\", %g",
+                          file, mf_box_shortest(box), target, range);
 }
 
 static enum status check_unknowns(const struct fit_file *fit, const char *file) {
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (fit->unknown[kind].wanted && !fit->method->fits[kind])
-            return mf_status_fail(STATUS_BAD_INPUT, "%s: method.name: \"%s\" does not find a %s", file,
-                               fit->method->name, mf_inverse_unknown_names[kind]);
+            return mf_status_fail(STATUS_BAD_INPUT, "%s: method.name: \"%s\" does not find a %s",
+                                  file, fit->method->name, mf_inverse_unknown_names[kind]);
     const struct inverse_sampling sampling = fit->method->sampling(fit->method_parameters);
     for (int kind = 0; kind < GOALS && sampling.every == 0; kind++)
         if (kind != GOAL_RDF && kind != GOAL_PRESSURE && goals_ask(&fit->problem.goals, kind))
@@ -214,10 +215,10 @@ static enum status check_unknowns(const struct fit_file *fit, const char *file) 
                 file, mf_goals_names[kind], fit->method->name);
     if (fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->targets.given[GOAL_RDF])
         return mf_status_fail(STATUS_BAD_INPUT, "%s: target.rdf is required to find a potential",
-                           file);
+                              file);
     if (fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->targets.goal[GOAL_RDF].fitted)
         return mf_status_fail(STATUS_BAD_INPUT,
-                           "%s: target.rdf.fitted: a potential is found from its g(r)", file);
+                              "%s: target.rdf.fitted: a potential is found from its g(r)", file);
     return STATUS_OK;
 }
 
@@ -249,12 +250,12 @@ static enum status check_window(const char *file, const char *key, const struct 
     const int64_t window = mf_observation_window(goals, time_step, &longest);
     if (samples * every >= window)
         return STATUS_OK;
-    return mf_status_fail(STATUS_BAD_INPUT,
-                       "%s: %s.samples: %lld, one \"every\" %lld steps, are %lld steps, but \"%s\" "
-                       "looks at %lld; %lld would do",
-                       file, key, (long long)samples, (long long)every,
-                       (long long)(samples * every), mf_goals_names[longest], (long long)window,
-                       (long long)((window + every - 1) / every));
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "%s: %s.samples: %lld, one \"every\" %lld steps, are %lld steps, but \"%s\" "
+        "looks at %lld; %lld would do",
+        file, key, (long long)samples, (long long)every, (long long)(samples * every),
+        mf_goals_names[longest], (long long)window, (long long)((window + every - 1) / every));
 }
 
 static enum status check_windows(const struct fit_file *fit, const char *file) {
@@ -283,10 +284,11 @@ static enum status check(const struct fit_file *fit, const char *file) {
     TRY(check_steps(fit, file));
     TRY(check_windows(fit, file));
     if (fit->scene.setup.placement.kind == PLACEMENT_FILE)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                           "%s: scene.particles.placement: a fit places its particles on a lattice "
-                           "or at random",
-                           file);
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "%s: scene.particles.placement: a fit places its particles on a lattice "
+            "or at random",
+            file);
     const enum status status = try_scene(&fit->problem);
     if (status != STATUS_OK)
         return mf_status_prefix(status, "%s: scene", file);
@@ -311,11 +313,11 @@ static void state_problem(struct fit_file *fit, const struct run_options *option
             unknown->start[pair] = mf_scene_law_curve(&from->start, pair);
     }
     mf_targets_goals(&fit->targets, fit->unknown[UNKNOWN_WEIGHT].wanted, &problem->goals,
-                  &problem->compared);
+                     &problem->compared);
 }
 
 enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
-                           const struct run_options *options) {
+                              const struct run_options *options) {
     *fit = (struct fit_file){0};
     struct json_document *document;
     TRY(mf_json_open(&document, file));
@@ -333,7 +335,7 @@ enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
 }
 
 enum status mf_fit_file_read(struct fit_file *fit, const char *file,
-                          const struct run_options *options) {
+                             const struct run_options *options) {
     TRY(mf_fit_file_parse(fit, file, options));
     return check(fit, file);
 }

@@ -40,12 +40,12 @@ struct fit_file {
 /// Read a run file and those that it names, each for itself. Fails: BAD_INPUT with all faults; IO;
 /// NO_MEMORY. Tested: tests/fuzz.
 enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
-                           const struct run_options *options) MUST_USE;
+                              const struct run_options *options) MUST_USE;
 
 /// Read a run file and check how its parts fit together, by beginning a simulation. Fails:
 /// BAD_INPUT with all faults; IO; NO_MEMORY.
 enum status mf_fit_file_read(struct fit_file *fit, const char *file,
-                          const struct run_options *options) MUST_USE;
+                             const struct run_options *options) MUST_USE;
 void mf_fit_file_clear(struct fit_file *fit);
 
 /// Write all values, defaults filled in, so that running the written file gives the same bits.

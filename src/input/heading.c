@@ -18,14 +18,14 @@ enum status mf_heading_check_scene(const struct json_object *root, const char *f
     if (!has(*root, "scene") || !has(*root, "target"))
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
-                       "%s: this is a run file, with a scene and a target; use: mesofit fit %s",
-                       file, file);
+                          "%s: this is a run file, with a scene and a target; use: mesofit fit %s",
+                          file, file);
 }
 
 enum status mf_heading_check_run(const struct json_object *root, const char *file) {
     if (has(*root, "scene") || has(*root, "target") || !has(*root, "box"))
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
-                       "%s: this is a scene file, without a target; use: mesofit simulate %s", file,
-                       file);
+                          "%s: this is a scene file, without a target; use: mesofit simulate %s",
+                          file, file);
 }

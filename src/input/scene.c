@@ -49,7 +49,7 @@ static void check_weight(const struct scene *scene, struct json_object *object) 
         if (table->coefficient[2 * row] < 0) {
             const int pair = row / (TABLE_INTERVALS + 1), k = row % (TABLE_INTERVALS + 1);
             mf_json_fault(object, "dissipative", "omega is negative at r = %g",
-                       k / mf_table_inverse_spacing(table, pair));
+                          k / mf_table_inverse_spacing(table, pair));
             return;
         }
 }
@@ -63,7 +63,7 @@ static void read_top(struct scene *scene, struct json_object *object) {
         setup->box.length[d] = d < top.dimensions ? top.box[d] : 1;
     if (top.box[0] > 0 && (top.box[2] > 0) != (top.dimensions == 3))
         mf_json_fault(object, "box", "has %d edges, but the scene has %d dimensions",
-                   top.box[2] > 0 ? 3 : 2, (int)top.dimensions);
+                      top.box[2] > 0 ? 3 : 2, (int)top.dimensions);
     setup->temperature = top.temperature;
     setup->time_step = top.time_step;
     setup->skin = top.skin;
@@ -93,8 +93,8 @@ static void read_dynamics(struct scene *scene, struct json_object *object, int u
     if (dynamics.item)
         mf_json_finish(&dynamics);
     if (dissipative && !integrator->dissipative)
-        mf_json_fault(object, "dynamics", "%s knows no friction; use \"aboba\" with \"dissipative\"",
-                   integrator->name);
+        mf_json_fault(object, "dynamics",
+                      "%s knows no friction; use \"aboba\" with \"dissipative\"", integrator->name);
 }
 
 /// Coordinates may be unwrapped, but so far outside they are in other units, as nm and pm.
@@ -110,10 +110,11 @@ static bool are_near(const struct scene *scene, const struct data_table *table,
             const double x = table->values[k * table->columns + (size_t)d];
             if (fabs(x) <= most_boxes * box->length[d])
                 continue;
-            mf_json_fault(particles, "file",
-                       "%s:%zu: the coordinate %g is more than %g boxes of %g away; are the units "
-                       "those of \"box\"?",
-                       scene->setup.placement.file, table->line[k], x, most_boxes, box->length[d]);
+            mf_json_fault(
+                particles, "file",
+                "%s:%zu: the coordinate %g is more than %g boxes of %g away; are the units "
+                "those of \"box\"?",
+                scene->setup.placement.file, table->line[k], x, most_boxes, box->length[d]);
             return false;
         }
     return true;
@@ -132,8 +133,8 @@ static enum status read_positions(struct scene *scene, struct json_object *parti
     if (table.rows != (size_t)placement->count ||
         (table.columns != dimensions && table.columns != 2 * dimensions)) {
         mf_json_fault(particles, "file", "%s: %zu rows of %zu numbers, not %lld of %zu or %zu",
-                   placement->file, table.rows, table.columns, (long long)placement->count,
-                   dimensions, 2 * dimensions);
+                      placement->file, table.rows, table.columns, (long long)placement->count,
+                      dimensions, 2 * dimensions);
         goto done;
     }
     if (!are_near(scene, &table, particles))
@@ -169,7 +170,7 @@ static void read_type(struct scene *scene, struct json_object *types, const char
     scene->setup.placement.count += *count;
     if (!mf_composition_is_name(name))
         mf_json_fault(types, name, "a type is called by up to %d letters, digits and _",
-                   COMPOSITION_NAME_SIZE - 1);
+                      COMPOSITION_NAME_SIZE - 1);
     snprintf(composition->name[composition->types++], COMPOSITION_NAME_SIZE, "%s", name);
 }
 
@@ -182,8 +183,9 @@ static void read_types(struct scene *scene, struct json_object *particles) {
         if (n < COMPOSITION_MOST_TYPES)
             read_type(scene, &types, name);
     if (types.item && (n < 2 || n > COMPOSITION_MOST_TYPES))
-        mf_json_fault(particles, "types", "a mixture has 2 to %d types, not %zu; \"count\" is for one",
-                   COMPOSITION_MOST_TYPES, n);
+        mf_json_fault(particles, "types",
+                      "a mixture has 2 to %d types, not %zu; \"count\" is for one",
+                      COMPOSITION_MOST_TYPES, n);
     if (types.item == NULL || mf_json_fault_count(types.document) > faults)
         scene->setup.composition.types = 0; // not known
 }
@@ -225,9 +227,9 @@ static void check_units(const struct scene *scene, struct json_object *object) {
     struct json_object units = mf_json_child(object, "units", false);
     if (setup->temperature > hottest)
         mf_json_fault(object, "temperature",
-                   "%g is in units of T_0, %g K in \"units\": it would be %g K; 1 is T_0",
-                   setup->temperature, scene->units.temperature,
-                   setup->temperature * scene->units.temperature);
+                      "%g is in units of T_0, %g K in \"units\": it would be %g K; 1 is T_0",
+                      setup->temperature, scene->units.temperature,
+                      setup->temperature * scene->units.temperature);
     const double density = setup->box.dimensions == 3 ? mf_scene_mass_density(scene) : 0;
     if (density > densest && mass >= 1)
         mf_json_fault(&units, "mass", "it is in kg: %g u would be %.6g", mass, mass * atomic_mass);
@@ -249,12 +251,12 @@ enum status mf_scene_read(struct scene *scene, struct json_object *object, int u
         mf_json_child(object, "conservative", true);
     if (!(unknown & SCENE_FITS_POTENTIAL)) {
         TRY(mf_scene_law_read(&scene->potential, object, "conservative", mf_curve_potentials,
-                           &scene->setup.composition, &scene->units));
+                              &scene->setup.composition, &scene->units));
         TRY(mf_scene_law_tabulate(&scene->potential, mf_table_init_potential));
     }
     if (!(unknown & SCENE_FITS_WEIGHT)) {
         TRY(mf_scene_law_read(&scene->weight, object, "dissipative", mf_curve_weights,
-                           &scene->setup.composition, &scene->units));
+                              &scene->setup.composition, &scene->units));
         TRY(mf_scene_law_tabulate(&scene->weight, mf_table_init_weight));
         check_weight(scene, object);
     }

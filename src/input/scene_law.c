@@ -40,7 +40,7 @@ static enum status read_votca(const char *file, const struct units *units, doubl
     for (size_t k = 0; k < table.rows; k++) {
         if (table.x[k] < 0) {
             status = mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: r = %g is negative", file,
-                                 table.line[k], table.x[k]);
+                                    table.line[k], table.x[k]);
             goto done;
         }
         (*r)[k] = table.x[k] / units->length;
@@ -82,7 +82,7 @@ static bool is_usable(const struct curve *curve) {
 }
 
 enum status mf_scene_read_curve(struct curve *curve, struct json_object *parent, const char *key,
-                             const struct curve_family *const *list, const struct units *units) {
+                                const struct curve_family *const *list, const struct units *units) {
     enum { MOST = 16 };
     const char *names[MOST] = {"none"};
     for (size_t k = 0; list[k] && k + 2 < MOST; k++)
@@ -157,10 +157,11 @@ static enum status read_pairs(struct scene_law *law, struct json_object *object,
 }
 
 enum status mf_scene_law_read(struct scene_law *law, struct json_object *parent, const char *key,
-                           const struct curve_family *const *list,
-                           const struct composition *composition, const struct units *units) {
+                              const struct curve_family *const *list,
+                              const struct composition *composition, const struct units *units) {
     if (composition->types == 0) {
-        mf_json_has(parent, key); // a fault of the types is told, those of their pairs would mislead
+        mf_json_has(parent,
+                    key); // a fault of the types is told, those of their pairs would mislead
         return STATUS_OK;
     }
     if (composition_is_mixed(composition)) {
@@ -202,7 +203,7 @@ void mf_scene_law_clear(struct scene_law *law) {
 }
 
 void mf_scene_law_write(const struct scene_law *law, const struct composition *composition,
-                     struct json_writer *writer, const char *key) {
+                        struct json_writer *writer, const char *key) {
     if (law->curves <= 1) {
         mf_scene_write_curve(&law->curve[0], writer, key);
         return;
@@ -219,5 +220,6 @@ void mf_scene_law_write(const struct scene_law *law, const struct composition *c
 void mf_scene_law_digest(const struct scene_law *law, uint64_t *digest) {
     const struct table *table = &law->table;
     const size_t rows = (size_t)table->curves * (TABLE_INTERVALS + 1);
-    mf_checkpoint_digest_add(digest, table->coefficient, rows * (size_t)table->terms * sizeof(double));
+    mf_checkpoint_digest_add(digest, table->coefficient,
+                             rows * (size_t)table->terms * sizeof(double));
 }

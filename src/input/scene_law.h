@@ -25,9 +25,9 @@ typedef enum status scene_law_table(struct table *table, const struct curve *cur
 /// not be read (a composition of none). Faults, among them pairs that are missing, unknown or twice
 /// there, go to the document. Fails: NO_MEMORY.
 enum status mf_scene_law_read(struct scene_law *law, struct json_object *parent, const char *key,
-                           const struct curve_family *const *list,
-                           const struct composition *composition,
-                           const struct units *units) MUST_USE;
+                              const struct curve_family *const *list,
+                              const struct composition *composition,
+                              const struct units *units) MUST_USE;
 
 /// Make the table of the curves. Fails: NO_MEMORY.
 enum status mf_scene_law_tabulate(struct scene_law *law, scene_law_table *tabulate) MUST_USE;
@@ -37,7 +37,7 @@ const struct curve *mf_scene_law_curve(const struct scene_law *law, int pair);
 
 void mf_scene_law_clear(struct scene_law *law);
 void mf_scene_law_write(const struct scene_law *law, const struct composition *composition,
-                     struct json_writer *writer, const char *key);
+                        struct json_writer *writer, const char *key);
 
 /// Add the table to the digest of a checkpoint.
 void mf_scene_law_digest(const struct scene_law *law, uint64_t *digest);
@@ -45,6 +45,6 @@ void mf_scene_law_digest(const struct scene_law *law, uint64_t *digest);
 /// Read {"law": …} at `key` into a curve; an absent object or "none" leaves it empty. `units`
 /// convert VOTCA's tables.
 enum status mf_scene_read_curve(struct curve *curve, struct json_object *parent, const char *key,
-                             const struct curve_family *const *list,
-                             const struct units *units) MUST_USE;
+                                const struct curve_family *const *list,
+                                const struct units *units) MUST_USE;
 void mf_scene_write_curve(const struct curve *curve, struct json_writer *writer, const char *key);

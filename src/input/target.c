@@ -62,7 +62,8 @@ static double cell(const struct data_table *table, size_t row, int64_t column) {
 }
 
 enum status mf_target_error_column(int64_t asked, int64_t first, int64_t second,
-                                const struct data_table *table, const char *file, int64_t *column) {
+                                   const struct data_table *table, const char *file,
+                                   int64_t *column) {
     enum { USUAL = 3 };
     const int64_t columns = (int64_t)table->columns;
     *column = asked;
@@ -86,19 +87,19 @@ static enum status check_errors(const struct target_parameters *p, const struct 
     for (size_t k = 0; k < rows->count; k++) {
         if (!isfinite(rows->error[k]))
             return mf_status_fail(STATUS_BAD_INPUT,
-                               "%s:%zu: column %lld: \"nan\" is not a finite number", p->file,
-                               rows->line[k], (long long)column);
+                                  "%s:%zu: column %lld: \"nan\" is not a finite number", p->file,
+                                  rows->line[k], (long long)column);
         grows = grows && (k == 0 || rows->error[k] >= rows->error[k - 1]);
         seen += rows->g[k] > structure;
         large += rows->g[k] > structure && rows->error[k] > largest_share * rows->g[k];
     }
     if (grows || 2 * large > seen)
         return mf_status_fail(STATUS_BAD_INPUT,
-                           "%s: column %lld cannot be the standard error of g: it %s; "
-                           "\"error_column\" names another, or 0 for none",
-                           p->file, (long long)column,
-                           grows ? "grows from row to row, as a number of neighbours does"
-                                 : "is as large as g");
+                              "%s: column %lld cannot be the standard error of g: it %s; "
+                              "\"error_column\" names another, or 0 for none",
+                              p->file, (long long)column,
+                              grows ? "grows from row to row, as a number of neighbours does"
+                                    : "is as large as g");
     return STATUS_OK;
 }
 
@@ -108,9 +109,9 @@ static enum status read_columns(const struct target_parameters *p, struct target
     struct data_table table = {0};
     int64_t error_column;
     CHECK(mf_data_table_read(&table, p->file,
-                          (size_t)(p->r_column > p->g_column ? p->r_column : p->g_column)));
+                             (size_t)(p->r_column > p->g_column ? p->r_column : p->g_column)));
     CHECK(mf_target_error_column(p->error_column, p->r_column, p->g_column, &table, p->file,
-                              &error_column));
+                                 &error_column));
     CHECK(mf_data_table_check_increasing(&table, p->file, (size_t)p->r_column - 1, 0));
     CHECK(mf_target_rows_allocate(rows, table.rows));
     for (size_t k = 0; k < table.rows; k++) {
@@ -144,7 +145,7 @@ static enum status read_votca(const struct target_parameters *p, const struct un
     for (size_t k = 1; k < rows->count; k++)
         if (!(rows->r[k] > rows->r[k - 1])) {
             status = mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column 1 does not grow", p->file,
-                                 rows->line[k]);
+                                    rows->line[k]);
             goto done;
         }
 done:
@@ -196,17 +197,18 @@ static enum status find_bins(const struct target_rows *rows, const char *file,
     double step;
     const size_t oddest = oddest_row(rows, width, &step);
     if (fabs(step / width - 1) > 0.01)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                           "%s:%zu: the bins are not equally spaced: a step of %g where the mean "
-                           "is %g (a gap in the target?)",
-                           file, rows->line[oddest], step, width);
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "%s:%zu: the bins are not equally spaced: a step of %g where the mean "
+            "is %g (a gap in the target?)",
+            file, rows->line[oddest], step, width);
     // First edges come out as 0 but for the file's rounding.
     const double low = first - 0.5 * width;
     if (low < -0.01 * width)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                           "%s:%zu: r = %g is not the centre of a bin of width %g%s", file,
-                           rows->line[0], first, width,
-                           first == 0 ? ": half a bin that is not empty; leave the row out" : "");
+        return mf_status_fail(
+            STATUS_BAD_INPUT, "%s:%zu: r = %g is not the centre of a bin of width %g%s", file,
+            rows->line[0], first, width,
+            first == 0 ? ": half a bin that is not empty; leave the row out" : "");
     *bins = (struct rdf_bins){
         .low = fabs(low) < 0.01 * width ? 0 : low, .width = width, .count = rows->count};
     return STATUS_OK;
@@ -215,12 +217,13 @@ static enum status find_bins(const struct target_rows *rows, const char *file,
 static enum status check_values(const struct target_rows *rows, const char *file) {
     for (size_t k = 0; k < rows->count; k++) {
         if (rows->g[k] < 0)
-            return mf_status_fail(STATUS_BAD_INPUT,
-                               "%s:%zu: a negative g, %g: a potential, or another column than g?",
-                               file, rows->line[k], rows->g[k]);
+            return mf_status_fail(
+                STATUS_BAD_INPUT,
+                "%s:%zu: a negative g, %g: a potential, or another column than g?", file,
+                rows->line[k], rows->g[k]);
         if (rows->error[k] < 0)
             return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: a negative error of g, %g", file,
-                               rows->line[k], rows->error[k]);
+                                  rows->line[k], rows->error[k]);
     }
     return STATUS_OK;
 }
@@ -276,7 +279,7 @@ done:
 }
 
 enum status mf_target_read(struct target *target, struct json_object *object,
-                        const struct units *units, int dimensions) {
+                           const struct units *units, int dimensions) {
     *target = (struct target){0};
     const size_t faults = mf_json_fault_count(object->document);
     mf_json_fields(object, mf_target_fields, &target->parameters);
@@ -304,7 +307,7 @@ static double possible_share(const struct composition *composition, int pair, do
 }
 
 void mf_target_convert(const struct target *target, const struct box *box,
-                    const struct composition *composition, int pair, double *g, double *error) {
+                       const struct composition *composition, int pair, double *g, double *error) {
     const struct target_parameters *p = &target->parameters;
     const double to = (double)mf_composition_particles(composition);
     const double from = p->particles > 0 ? (double)p->particles : to;

@@ -39,23 +39,23 @@ struct target {
 /// file does not give are estimated from the scatter of its rows, which are then joined to bins.
 /// Fails: NO_MEMORY. Tested: test_target.
 enum status mf_target_read(struct target *target, struct json_object *object,
-                        const struct units *units, int dimensions) MUST_USE;
+                           const struct units *units, int dimensions) MUST_USE;
 
 /// The column with the errors of a table whose values stand in the columns `first` and `second`.
 /// @param[in]  asked   in the run file; −1: 3 if there are so many columns, else none
 /// @param[out] column  from 1; 0: there is none
 /// Fails: BAD_INPUT if the table has fewer columns than `asked`.
 enum status mf_target_error_column(int64_t asked, int64_t first, int64_t second,
-                                const struct data_table *table, const char *file,
-                                int64_t *column) MUST_USE;
+                                   const struct data_table *table, const char *file,
+                                   int64_t *column) MUST_USE;
 
-/// g and its errors in the numbers of the scene, by mf_finite_size_factor_of. VOTCA's g of like pairs
-/// is normalised by N_a², and needs 1/(1 − 1/N_a) with the N_a that was measured.
+/// g and its errors in the numbers of the scene, by mf_finite_size_factor_of. VOTCA's g of like
+/// pairs is normalised by N_a², and needs 1/(1 − 1/N_a) with the N_a that was measured.
 /// @param[in]  box, composition  of the scene
 /// @param[in]  pair              the kind of pairs of this target
 /// @param[out] g, error          shape [bins.count]
 /// Tested: test_target, test_targets_mixture.
 void mf_target_convert(const struct target *target, const struct box *box,
-                    const struct composition *composition, int pair, double *g, double *error);
+                       const struct composition *composition, int pair, double *g, double *error);
 
 void mf_target_clear(struct target *target);

@@ -42,10 +42,10 @@ static double time_of(const struct data_table *table, const struct target_etd_pa
 static enum status check_parameters(const struct target_etd_parameters *p) {
     if (p->time_column >= p->first_column)
         return mf_status_fail(STATUS_BAD_INPUT, "first_column %lld is not behind time_column %lld",
-                           (long long)p->first_column, (long long)p->time_column);
+                              (long long)p->first_column, (long long)p->time_column);
     if (!(p->r_maximum > p->r_minimum))
-        return mf_status_fail(STATUS_BAD_INPUT, "r_maximum %g is not above r_minimum %g", p->r_maximum,
-                           p->r_minimum);
+        return mf_status_fail(STATUS_BAD_INPUT, "r_maximum %g is not above r_minimum %g",
+                              p->r_maximum, p->r_minimum);
     return STATUS_OK;
 }
 
@@ -56,15 +56,16 @@ static enum status find_interval(const struct data_table *table, const char *fil
         return mf_status_fail(STATUS_BAD_INPUT, "%s: only one time", file);
     if (time_of(table, p, 0) != 0)
         return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: the times begin at %g, not at 0", file,
-                           table->line[0], time_of(table, p, 0));
+                              table->line[0], time_of(table, p, 0));
     *interval = time_of(table, p, table->rows - 1) / (double)(table->rows - 1);
     for (size_t row = 1; row < table->rows; row++) {
         const double step = time_of(table, p, row) - time_of(table, p, row - 1);
         if (fabs(step / *interval - 1) > time_tolerance)
-            return mf_status_fail(STATUS_BAD_INPUT,
-                               "%s:%zu: the times are not equally spaced: a step of %g where the "
-                               "mean is %g",
-                               file, table->line[row], step, *interval);
+            return mf_status_fail(
+                STATUS_BAD_INPUT,
+                "%s:%zu: the times are not equally spaced: a step of %g where the "
+                "mean is %g",
+                file, table->line[row], step, *interval);
     }
     return STATUS_OK;
 }
@@ -75,15 +76,15 @@ static enum status read_table(struct data_table *table, const char *file,
     const size_t before = (size_t)p->first_column - 1;
     TRY(mf_data_table_read(table, file, before));
     if (table->columns == before)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: %zu columns, at least %zu are needed", file,
-                           table->line[0], before, before + 1);
+        return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: %zu columns, at least %zu are needed",
+                              file, table->line[0], before, before + 1);
     for (size_t row = 0; row < table->rows; row++)
         for (size_t column = before; column < table->columns; column++) {
             const double value = table->values[row * table->columns + column];
             if (value < 0 || value > largest)
                 return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: %g is not %s", file,
-                                   table->line[row], column + 1, value,
-                                   largest == 1 ? "from 0 to 1" : "a standard error");
+                                      table->line[row], column + 1, value,
+                                      largest == 1 ? "from 0 to 1" : "a standard error");
         }
     return STATUS_OK;
 }
@@ -94,7 +95,7 @@ static enum status check_beginning(const struct data_table *table,
     for (size_t column = (size_t)p->first_column - 1; column < table->columns; column++)
         if (fabs(table->values[column] - 1) > digits)
             return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: %g is not 1 at time 0",
-                               p->file, table->line[0], column + 1, table->values[column]);
+                                  p->file, table->line[0], column + 1, table->values[column]);
     return STATUS_OK;
 }
 
@@ -102,15 +103,15 @@ static enum status check_same(const struct data_table *table, const struct data_
                               const struct target_etd *target) {
     const struct target_etd_parameters *p = &target->parameters;
     if (errors->rows != table->rows || errors->columns != table->columns)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: %zu rows and %zu columns, but %zu and %zu in %s",
-                           p->error_file, errors->rows, errors->columns, table->rows,
-                           table->columns, p->file);
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: %zu rows and %zu columns, but %zu and %zu in %s", p->error_file,
+                              errors->rows, errors->columns, table->rows, table->columns, p->file);
     for (size_t row = 0; row < table->rows; row++)
         if (!(fabs(time_of(errors, p, row) - time_of(table, p, row)) <=
               time_tolerance * target->interval))
             return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: time %g, but %g in %s", p->error_file,
-                               errors->line[row], time_of(errors, p, row), time_of(table, p, row),
-                               p->file);
+                                  errors->line[row], time_of(errors, p, row),
+                                  time_of(table, p, row), p->file);
     return STATUS_OK;
 }
 
@@ -188,9 +189,10 @@ enum status mf_target_etd_steps(const struct target_etd *target, double time_ste
     char above[64] = "";
     if (steps >= 1)
         snprintf(above, sizeof above, " or %.6g", target->interval / floor(steps));
-    return mf_status_fail(STATUS_BAD_INPUT,
-                       "the times of %s are %.6g apart, %.4g time steps of %g: not a whole number, "
-                       "as it would be with a time step of %.6g%s",
-                       target->parameters.file, target->interval, steps, time_step,
-                       target->interval / ceil(steps), above);
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "the times of %s are %.6g apart, %.4g time steps of %g: not a whole number, "
+        "as it would be with a time step of %.6g%s",
+        target->parameters.file, target->interval, steps, time_step, target->interval / ceil(steps),
+        above);
 }

@@ -37,4 +37,4 @@ void mf_target_etd_clear(struct target_etd *target);
 /// Fails: BAD_INPUT, with the nearest time steps that would do, if the interval is not a whole
 /// number of steps to 0.1 %. Tested: test_target_etd.
 enum status mf_target_etd_steps(const struct target_etd *target, double time_step,
-                             int64_t *every) MUST_USE;
+                                int64_t *every) MUST_USE;

@@ -83,7 +83,8 @@ static void print_density(const struct view *view, char *text, size_t size) {
 static double integral_of(const struct view *view, int a, int b) {
     const int pair = mf_composition_pair(&view->targets->composition, a, b);
     const struct view own = view_of(view->targets, view->scene, (size_t)pair);
-    return mf_kirkwood_buff_integrate(own.bins, own.g, own.error, &own.scene->setup.box, 0).integral;
+    return mf_kirkwood_buff_integrate(own.bins, own.g, own.error, &own.scene->setup.box, 0)
+        .integral;
 }
 
 /// What a fault goes on with if two types look demixed, else "": each has more beads of its own
@@ -143,11 +144,12 @@ static enum status check_packing(const struct view *view, const char *file) {
     if (filled <= closest)
         return STATUS_OK;
     print_density(view, density, sizeof density);
-    return mf_status_fail(STATUS_BAD_INPUT,
-                       "%s: target.%s: it has no pairs nearer than %.3g lambda, and the scene a "
-                       "density of %s: rho d^%d = %.3g, while the closest packing has %.3g; is the "
-                       "unit of length, scene.box or the number of particles wrong?",
-                       file, view->name, apart, density, box->dimensions, filled, closest);
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "%s: target.%s: it has no pairs nearer than %.3g lambda, and the scene a "
+        "density of %s: rho d^%d = %.3g, while the closest packing has %.3g; is the "
+        "unit of length, scene.box or the number of particles wrong?",
+        file, view->name, apart, density, box->dimensions, filled, closest);
 }
 
 /// Bins from one range of an integral to the next shorter one: some fifty ranges are enough.
@@ -206,11 +208,12 @@ static enum status check_compressibility(const struct view *view, const char *fi
     print_density(view, density, sizeof density);
     print_compressibility(view, value, sizeof value);
     print_demixing(view, demixing, sizeof demixing);
-    return mf_status_fail(STATUS_BAD_INPUT,
-                       "%s: target.%s: at the density of the scene, %s, it asks for a negative "
-                       "compressibility, %s: the density (scene.box, the number of particles, the "
-                       "unit of length) or the normalisation of g is wrong%s",
-                       file, view->name, density, value, demixing);
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "%s: target.%s: at the density of the scene, %s, it asks for a negative "
+        "compressibility, %s: the density (scene.box, the number of particles, the "
+        "unit of length) or the normalisation of g is wrong%s",
+        file, view->name, density, value, demixing);
 }
 
 static size_t views(const struct targets *targets) {
@@ -218,7 +221,7 @@ static size_t views(const struct targets *targets) {
 }
 
 enum status mf_target_sanity_check(const struct targets *targets, const struct scene *scene,
-                                const char *file) {
+                                   const char *file) {
     for (size_t pair = 0; pair < views(targets); pair++) {
         const struct view view = view_of(targets, scene, pair);
         TRY(check_tail(&view, file));
@@ -268,8 +271,8 @@ static void tell_view(const struct view *view, const struct target_sanity_listen
         "target %s: g from %.4g to %.4g %s, peak %.3g at %.4g %s, tail %.3f(%.0f); density %s%s%s",
         view->name, mf_rdf_bins_centre(bins, 0) * length,
         mf_rdf_bins_centre(bins, bins->count - 1) * length, unit, view->g[peak],
-        mf_rdf_bins_centre(bins, peak) * length, unit, tail->mean, ceil(1e3 * tail->scatter), density,
-        compressibility[0] ? ", " : "", compressibility);
+        mf_rdf_bins_centre(bins, peak) * length, unit, tail->mean, ceil(1e3 * tail->scatter),
+        density, compressibility[0] ? ", " : "", compressibility);
 }
 
 static void tell_origin(const struct view *view, const struct target_sanity_listener *listener) {
@@ -309,7 +312,7 @@ static double neighbours_in_layers(const struct view *view) {
     for (size_t n = 0; n <= second; n++)
         sum += view->density * view->g[n] *
                mf_box_shell_volume(&view->scene->setup.box, mf_rdf_bins_edge(bins, n),
-                                mf_rdf_bins_edge(bins, n + 1));
+                                   mf_rdf_bins_edge(bins, n + 1));
     return sum;
 }
 
@@ -362,7 +365,7 @@ static void tell_normalisation(const struct normalisation *n,
 }
 
 enum status mf_target_sanity_tell(const struct targets *targets, const struct scene *scene,
-                               const struct target_sanity_listener *listener) {
+                                  const struct target_sanity_listener *listener) {
     for (size_t pair = 0; pair < views(targets); pair++) {
         const struct view view = view_of(targets, scene, pair);
         tell_view(&view, listener);

@@ -27,7 +27,7 @@ struct target_sanity_listener {
 /// integrals G of two types are above 0 for pairs alike and below 0 for the others. Fails:
 /// BAD_INPUT with `file`, the key and the likely reason; NO_MEMORY. Tested: test_target_sanity.
 enum status mf_target_sanity_check(const struct targets *targets, const struct scene *scene,
-                                const char *file) MUST_USE;
+                                   const char *file) MUST_USE;
 
 /// Tell a line for each g(r) as it is given, where its errors and bins come from, warnings, and the
 /// normalisation if one was found.
@@ -39,4 +39,4 @@ enum status mf_target_sanity_check(const struct targets *targets, const struct s
 /// dilute gas; and without units a temperature above 50, which may be in kelvins. Fails: NO_MEMORY.
 /// Tested: test_target_sanity.
 enum status mf_target_sanity_tell(const struct targets *targets, const struct scene *scene,
-                               const struct target_sanity_listener *listener) MUST_USE;
+                                  const struct target_sanity_listener *listener) MUST_USE;

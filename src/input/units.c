@@ -29,8 +29,8 @@ void mf_units_read(struct units *units, struct json_object *scene) {
     for (size_t k = 0; k < sizeof derived / sizeof *derived; k++)
         if (mf_json_fault_count(object.document) == faults && !isnormal(derived[k]))
             mf_json_fault(scene, "units",
-                       "no numbers can hold the units of time, energy, pressure and "
-                       "diffusion that these make");
+                          "no numbers can hold the units of time, energy, pressure and "
+                          "diffusion that these make");
 }
 
 bool mf_units_known(const struct units *units) {
@@ -63,7 +63,7 @@ double *mf_units_column(const double *values, size_t count, double factor) {
 }
 
 void mf_units_put(const struct units *units, struct json_writer *writer, double energy,
-               double pressure) {
+                  double pressure) {
     if (!mf_units_known(units))
         return;
     mf_json_begin(writer, "physical");
@@ -71,7 +71,8 @@ void mf_units_put(const struct units *units, struct json_writer *writer, double 
     mf_json_put_number(writer, "time_unit_ps", mf_units_time_ps(units));
     mf_json_put_number(writer, "energy_unit_kJ_per_mol", mf_units_energy_kj_per_mol(units));
     mf_json_put_number(writer, "diffusion_unit_cm2_per_s", mf_units_diffusion_cm2_per_s(units));
-    mf_json_put_number(writer, "potential_energy_kJ_per_mol", energy * mf_units_energy_kj_per_mol(units));
+    mf_json_put_number(writer, "potential_energy_kJ_per_mol",
+                       energy * mf_units_energy_kj_per_mol(units));
     mf_json_put_number(writer, "pressure_bar", pressure * mf_units_pressure_bar(units));
     mf_json_end(writer);
 }

@@ -35,4 +35,4 @@ double *mf_units_column(const double *values, size_t count, double factor);
 /// @param[in] energy    of a particle [k_B T_0]
 /// @param[in] pressure  [k_B T_0/λ³]
 void mf_units_put(const struct units *units, struct json_writer *writer, double energy,
-               double pressure);
+                  double pressure);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Newton steps with the slope of the hypernetted-chain potential: F. Delbary, M. Hanke and D.
-// Ivanizki, J. Inverse Ill-Posed Probl. 28 (2020). With K the slope of h − c (mf_hnc_closure_slope),
+// Ivanizki, J. Inverse Ill-Posed Probl. 28 (2020). With K the slope of h − c
+// (mf_hnc_closure_slope),
 //   Φ ← Φ + k_B T [ln(g/g*) − K (g − g*)],
 // where ibi takes the first term alone. Differs from it: K is that of the target, at all steps. The
 // whole of h − c instead of its slope (D. Levesque, J. J. Weis and L. Reatto, Phys. Rev. Lett. 54,
@@ -39,7 +40,7 @@ enum status mf_hnc_step(const struct inversion *inversion, double ridge, double 
         difference[k] = mf_inversion_g(inversion, k) - target[k];
     }
     CHECK(mf_hnc_closure_slope(&inversion->problem->goals.bins, &inversion->box,
-                            &inversion->composition, target, difference, ridge, indirect));
+                               &inversion->composition, target, difference, ridge, indirect));
     mf_ibi_logarithms(inversion, step);
     for (size_t n = 0; n < grid->known; n++)
         step[grid->known_point[n]] -=

@@ -169,12 +169,13 @@ done:
 }
 
 enum status mf_hnc_closure(const struct rdf_bins *bins, const struct box *box,
-                        const struct composition *composition, const double *g, double *indirect) {
+                           const struct composition *composition, const double *g,
+                           double *indirect) {
     return solve(bins, box, composition, g, NULL, 0, indirect);
 }
 
 enum status mf_hnc_closure_slope(const struct rdf_bins *bins, const struct box *box,
-                              const struct composition *composition, const double *g,
-                              const double *difference, double ridge, double *indirect) {
+                                 const struct composition *composition, const double *g,
+                                 const double *difference, double ridge, double *indirect) {
     return solve(bins, box, composition, g, difference, ridge, indirect);
 }

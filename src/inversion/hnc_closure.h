@@ -17,8 +17,8 @@
 /// @param[out] indirect  shape [pairs, bins.count]
 /// Fails: BAD_INPUT but in three dimensions; NO_MEMORY. Tested: test_hnc_closure.
 enum status mf_hnc_closure(const struct rdf_bins *bins, const struct box *box,
-                        const struct composition *composition, const double *g,
-                        double *indirect) MUST_USE;
+                           const struct composition *composition, const double *g,
+                           double *indirect) MUST_USE;
 
 /// Change of h − c with g, to first order, δS − S⁻¹ δS S⁻¹: between eigenvectors i and j of S, with
 /// eigenvalues s, the transform is (1 − 1/(s_i s_j + ε²)) times that of h. At small q a liquid's S
@@ -30,5 +30,5 @@ enum status mf_hnc_closure(const struct rdf_bins *bins, const struct box *box,
 /// @param[out] indirect    the same shape
 /// Fails: as mf_hnc_closure. Tested: test_hnc_closure.
 enum status mf_hnc_closure_slope(const struct rdf_bins *bins, const struct box *box,
-                              const struct composition *composition, const double *g,
-                              const double *difference, double ridge, double *indirect) MUST_USE;
+                                 const struct composition *composition, const double *g,
+                                 const double *difference, double ridge, double *indirect) MUST_USE;

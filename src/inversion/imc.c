@@ -33,7 +33,7 @@ static const char *const columns[] = {INVERSION_COLUMNS, "regularisation[1]", "m
                                       "directions", NULL};
 
 enum status mf_imc_step(const struct inversion *inversion, const struct imc_parameters *parameters,
-                     double *step, double extra[3]) {
+                        double *step, double extra[3]) {
     const struct inverse_problem *problem = inversion->problem;
     const struct goal *pressure = &problem->goals.goal[GOAL_PRESSURE];
     const bool constrained = goals_ask(&problem->goals, GOAL_PRESSURE);

@@ -189,7 +189,7 @@ static double count_directions(struct workspace *w) {
 }
 
 enum status mf_imc_solve(const struct imc_system *system, double strength, double *x,
-                      struct imc_solution *solution) {
+                         struct imc_solution *solution) {
     enum status status = STATUS_OK;
     struct workspace w = {0};
     const size_t n = system->size;

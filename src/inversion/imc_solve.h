@@ -40,7 +40,7 @@ struct imc_solution {
 /// @param[out] x  shape [size] [k_B T_0]
 /// Fails: NO_MEMORY. Tested: test_imc_solve.
 enum status mf_imc_solve(const struct imc_system *system, double strength, double *x,
-                      struct imc_solution *solution) MUST_USE;
+                         struct imc_solution *solution) MUST_USE;
 
 /// The step as VOTCA's csg_imc_solve takes it, for those who come from there:
 ///   x = −k_B T (AᵀA + λ)⁻¹ Aᵀ · excess,   A = −C (VOTCA's .gmc), excess (its .imc), λ =
@@ -50,17 +50,17 @@ enum status mf_imc_solve(const struct imc_system *system, double strength, doubl
 /// Rosenberger, M. Hanke and N. F. A. van der Vegt, Eur. Phys. J. Spec. Top. 225, 1323 (2016).
 /// Parameters and failures as mf_imc_solve; `spacing` is not read. Tested: test_imc_votca.
 enum status mf_imc_votca(const struct imc_system *system, double strength, double *x,
-                      struct imc_solution *solution) MUST_USE;
+                         struct imc_solution *solution) MUST_USE;
 
 /// The step by truncated singular values of the whitened response B_ab = C_ab/(k_B T σ_a) = U s Vᵀ:
 ///   x = Σ_{k ≤ K} v_k (u_k · excess/σ) / s_k,
 /// each of which is determined within 1/s_k [k_B T_0]. K is the least whose predicted excess is
-/// within the noise, as the strength of mf_imc_solve is the largest; `strength` > 0 keeps those with
-/// s_k > strength · s_1 instead. P. C. Hansen, BIT 27, 534 (1987). With the constraint, x meets it
-/// within the span of the v_k kept, of which there is then one at least.
-/// Parameters and failures as mf_imc_solve; `spacing` is not read. Tested: test_imc_truncated.
+/// within the noise, as the strength of mf_imc_solve is the largest; `strength` > 0 keeps those
+/// with s_k > strength · s_1 instead. P. C. Hansen, BIT 27, 534 (1987). With the constraint, x
+/// meets it within the span of the v_k kept, of which there is then one at least. Parameters and
+/// failures as mf_imc_solve; `spacing` is not read. Tested: test_imc_truncated.
 enum status mf_imc_truncated(const struct imc_system *system, double strength, double *x,
-                          struct imc_solution *solution) MUST_USE;
+                             struct imc_solution *solution) MUST_USE;
 
 /// The whitened response B_ab = C_ab/(k_B T σ_a), shape [size, size].
 void mf_imc_solve_response(const struct imc_system *system, gsl_matrix *response);

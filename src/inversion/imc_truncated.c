@@ -96,7 +96,7 @@ static void solve(struct workspace *w, const struct imc_system *s, size_t most, 
 }
 
 enum status mf_imc_truncated(const struct imc_system *system, double strength, double *x,
-                          struct imc_solution *solution) {
+                             struct imc_solution *solution) {
     enum status status = STATUS_OK;
     struct workspace w = {0};
     CHECK(workspace_allocate(&w, system->size));

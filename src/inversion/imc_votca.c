@@ -77,7 +77,7 @@ done:
 }
 
 enum status mf_imc_votca(const struct imc_system *system, double strength, double *x,
-                      struct imc_solution *solution) {
+                         struct imc_solution *solution) {
     enum status status = STATUS_OK;
     struct workspace w = {0};
     CHECK(workspace_allocate(&w, system->size));

@@ -30,10 +30,10 @@ double mf_inversion_target_g(const struct inversion *inversion, size_t bin) {
 static void assess_rdf(struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
     const struct comoments *counts = &inversion->replicas.counts;
-    inversion->inefficiency =
-        mf_replicas_inefficiency(&inversion->replicas, inversion->ideal, grid->known_bin, grid->known);
-    inversion->disagreement =
-        mf_replicas_disagreement(&inversion->replicas, inversion->ideal, grid->known_bin, grid->known);
+    inversion->inefficiency = mf_replicas_inefficiency(&inversion->replicas, inversion->ideal,
+                                                       grid->known_bin, grid->known);
+    inversion->disagreement = mf_replicas_disagreement(&inversion->replicas, inversion->ideal,
+                                                       grid->known_bin, grid->known);
     const double independent = counts->count / inversion->inefficiency;
     double sum = 0, own = 0, both = 0;
     for (size_t n = 0; n < inversion->bins; n++)
@@ -232,7 +232,8 @@ static enum status go_on(struct inversion *inversion, bool kept) {
 static bool meets_targets(const struct inversion *inversion) {
     for (int kind = 0; kind < GOALS; kind++)
         if (goals_ask(&inversion->problem->goals, kind) &&
-            inversion->distance[kind].rms > mf_inverse_noise_margin * inversion->distance[kind].noise)
+            inversion->distance[kind].rms >
+                mf_inverse_noise_margin * inversion->distance[kind].noise)
             return false;
     return true;
 }
@@ -286,7 +287,7 @@ static void describe(const struct inversion *inversion, const double *own, bool 
 }
 
 enum status mf_inversion_iterate(void *memory, struct inverse_step *step,
-                              const struct inverse_listener *listener) {
+                                 const struct inverse_listener *listener) {
     struct inversion *inversion = memory;
     struct inversion_progress *progress = &inversion->progress;
     double own[INVERSION_OWN_COLUMNS] = {0};
@@ -295,7 +296,8 @@ enum status mf_inversion_iterate(void *memory, struct inverse_step *step,
     TRY(assess_response(inversion));
     inversion->other_step[inversion->grid.known_point[0]] = NAN;
     TRY(inversion->method->update(inversion, own));
-    mf_inversion_drift_add(&progress->drift, find_ramp(inversion), inversion->distance[GOAL_RDF].rms);
+    mf_inversion_drift_add(&progress->drift, find_ramp(inversion),
+                           inversion->distance[GOAL_RDF].rms);
     TRY(judge(inversion, &kept));
     const bool precise = inversion->own_noise <= inversion->settings.common.precision;
     describe(inversion, own, kept && precise && meets_targets(inversion), step);

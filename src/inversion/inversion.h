@@ -8,12 +8,12 @@
 /// until their noise is small against the error, or as small as was asked for: then the fit has
 /// converged when all errors are within their noise.
 ///
-/// It starts from the hypernetted-chain inversion (mf_hnc_closure): for water the error of g is then a
-/// quarter of that of −k_B T ln g. Where that is far off and puts the liquid under tension, or the
-/// first step from there makes it worse, as with targets that end before their oscillations do, it
-/// starts again from −k_B T ln g. Replicas begin from disorder, and again after a potential that
-/// made it worse: a poor one freezes a liquid, or tears it apart, and what is left of that would be
-/// taken for the next potential's structure.
+/// It starts from the hypernetted-chain inversion (mf_hnc_closure): for water the error of g is
+/// then a quarter of that of −k_B T ln g. Where that is far off and puts the liquid under tension,
+/// or the first step from there makes it worse, as with targets that end before their oscillations
+/// do, it starts again from −k_B T ln g. Replicas begin from disorder, and again after a potential
+/// that made it worse: a poor one freezes a liquid, or tears it apart, and what is left of that
+/// would be taken for the next potential's structure.
 #pragma once
 
 #include "inversion/inversion_band.h"
@@ -88,21 +88,22 @@ struct inversion {
 
 struct inverse_sampling mf_inversion_sampling(const void *parameters);
 uint32_t mf_inversion_most_iterations(const struct inverse_method *method,
-                                   const struct inverse_problem *problem, const void *parameters);
+                                      const struct inverse_problem *problem,
+                                      const void *parameters);
 enum status mf_inversion_create(void *inversion, const struct inverse_method *method,
-                             const struct inverse_problem *problem,
-                             const void *parameters) MUST_USE;
+                                const struct inverse_problem *problem,
+                                const void *parameters) MUST_USE;
 void mf_inversion_destroy(void *inversion);
 enum status mf_inversion_iterate(void *inversion, struct inverse_step *step,
-                              const struct inverse_listener *listener) MUST_USE;
+                                 const struct inverse_listener *listener) MUST_USE;
 size_t mf_inversion_spans(void *inversion, struct memory_span *span);
 
 /// What the records of the inversions have in common.
 #define INVERSION_RECORD                                                                           \
     .parameters_size = sizeof(struct inversion_settings), .state_size = sizeof(struct inversion),  \
-    .fits = {[UNKNOWN_POTENTIAL] = true}, .most_iterations = mf_inversion_most_iterations,            \
-    .sampling = mf_inversion_sampling, .destroy = mf_inversion_destroy, .iterate = mf_inversion_iterate,    \
-    .spans = mf_inversion_spans
+    .fits = {[UNKNOWN_POTENTIAL] = true}, .most_iterations = mf_inversion_most_iterations,         \
+    .sampling = mf_inversion_sampling, .destroy = mf_inversion_destroy,                            \
+    .iterate = mf_inversion_iterate, .spans = mf_inversion_spans
 
 /// The first of a method's columns; the others may be its own.
 #define INVERSION_COLUMNS                                                                          \
@@ -160,4 +161,4 @@ struct imc_parameters {
     int regularisation;
 };
 enum status mf_imc_step(const struct inversion *inversion, const struct imc_parameters *parameters,
-                     double *step, double extra[3]) MUST_USE;
+                        double *step, double extra[3]) MUST_USE;

@@ -25,7 +25,8 @@ void mf_inversion_band_clear(struct inversion_band *band) {
     *band = (struct inversion_band){0};
 }
 
-size_t mf_inversion_band_spans(struct inversion_band *band, size_t points, struct memory_span *span) {
+size_t mf_inversion_band_spans(struct inversion_band *band, size_t points,
+                               struct memory_span *span) {
     span[0] = (struct memory_span){band->error, points * sizeof(double)};
     span[1] = (struct memory_span){band->without_ramp, points * sizeof(double)};
     span[2] = (struct memory_span){band->flat, INVERSE_FLAT * points * sizeof(double)};
@@ -34,7 +35,7 @@ size_t mf_inversion_band_spans(struct inversion_band *band, size_t points, struc
 }
 
 enum status mf_inversion_band_covariance(const struct imc_system *system, double *covariance,
-                                      double *directions) {
+                                         double *directions) {
     enum status status = STATUS_OK;
     const size_t size = system->size;
     const double unit = 1 / (system->temperature * system->temperature);

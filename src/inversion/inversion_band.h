@@ -41,9 +41,10 @@ struct inversion_band {
 /// @param[out] directions  that the data determine: trace of F (F + prior)⁻¹
 /// Fails: NO_MEMORY. Tested: test_inversion_band.
 enum status mf_inversion_band_covariance(const struct imc_system *system, double *covariance,
-                                      double *directions) MUST_USE;
+                                         double *directions) MUST_USE;
 
-enum status mf_inversion_band_init(struct inversion_band *band, size_t known, size_t points) MUST_USE;
+enum status mf_inversion_band_init(struct inversion_band *band, size_t known,
+                                   size_t points) MUST_USE;
 void mf_inversion_band_clear(struct inversion_band *band);
 
 /// Fill the band of the present potential. Ramp and flat directions are those of the bins that the
@@ -53,4 +54,5 @@ void mf_inversion_band_clear(struct inversion_band *band);
 enum status mf_inversion_band_find(struct inversion *inversion) MUST_USE;
 
 enum { INVERSION_BAND_SPANS = 4 };
-size_t mf_inversion_band_spans(struct inversion_band *band, size_t points, struct memory_span *span);
+size_t mf_inversion_band_spans(struct inversion_band *band, size_t points,
+                               struct memory_span *span);

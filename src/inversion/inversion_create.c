@@ -48,7 +48,8 @@ struct inverse_sampling mf_inversion_sampling(const void *parameters) {
 }
 
 uint32_t mf_inversion_most_iterations(const struct inverse_method *method,
-                                   const struct inverse_problem *problem, const void *parameters) {
+                                      const struct inverse_problem *problem,
+                                      const void *parameters) {
     (void)method, (void)problem;
     return (uint32_t)((const struct inversion_settings *)parameters)->common.iterations;
 }
@@ -102,8 +103,9 @@ static enum status choose_size(struct inversion *inversion) {
         wanted > 0 ? mf_composition_scaled(&scene->composition, wanted) : scene->composition;
     inversion->box =
         mf_box_scaled(&scene->box, (double)mf_composition_particles(&inversion->composition) /
-                                    (double)mf_composition_particles(&scene->composition));
-    const double distortion = mf_composition_distortion(&scene->composition, &inversion->composition);
+                                       (double)mf_composition_particles(&scene->composition));
+    const double distortion =
+        mf_composition_distortion(&scene->composition, &inversion->composition);
     if (distortion <= most_distortion)
         return STATUS_OK;
     return mf_status_fail(
@@ -126,7 +128,7 @@ static void count_target(struct inversion *inversion) {
         const int pair = (int)(first / bins->count);
         const double factor =
             mf_finite_size_factor_of(bins, goal->value + first, goal->error + first, &scene->box,
-                                  &scene->composition, pair, from, to);
+                                     &scene->composition, pair, from, to);
         for (size_t k = 0; k < bins->count; k++) {
             inversion->ideal[first + k] =
                 mf_rdf_ideal_pairs_of(bins, k, &inversion->box, &inversion->composition, pair);
@@ -160,7 +162,7 @@ static enum status refuse_holes(const struct inversion *inversion) {
 }
 
 enum status mf_inversion_create(void *memory, const struct inverse_method *method,
-                             const struct inverse_problem *problem, const void *parameters) {
+                                const struct inverse_problem *problem, const void *parameters) {
     struct inversion *inversion = memory;
     const struct rdf_bins *bins = &problem->goals.bins;
     inversion->settings = *(const struct inversion_settings *)parameters;
@@ -176,14 +178,14 @@ enum status mf_inversion_create(void *memory, const struct inverse_method *metho
     TRY(mf_inversion_start(inversion));
     TRY(mf_potential_grid_table(&inversion->grid, inversion->phi, &inversion->table));
     TRY(mf_replicas_init(&inversion->replicas, (size_t)p->replicas, (enum sampler_kind)p->sampler,
-                      &(struct sampler_system){.box = &inversion->box,
-                                               .composition = &inversion->composition,
-                                               .potential = &inversion->table,
-                                               .temperature = problem->scene.temperature,
-                                               .low = bins->low,
-                                               .width = bins->width,
-                                               .bins = bins->count,
-                                               .seed = problem->seed}));
+                         &(struct sampler_system){.box = &inversion->box,
+                                                  .composition = &inversion->composition,
+                                                  .potential = &inversion->table,
+                                                  .temperature = problem->scene.temperature,
+                                                  .low = bins->low,
+                                                  .width = bins->width,
+                                                  .bins = bins->count,
+                                                  .seed = problem->seed}));
     inversion->progress = (struct inversion_progress){
         .anew = true, .damping = p->damping, .best[GOAL_RDF].rms = INFINITY};
     return STATUS_OK;

@@ -19,8 +19,8 @@ static double virial_error(const struct replicas *replicas, double inefficiency)
     struct running_mean chains = {0};
     for (size_t k = 0; k < replicas->count; k++)
         mf_statistics_add(&chains, replicas->member[k].counts.mean[virial]);
-    const double sampled = mf_comoments_covariance(&replicas->counts, virial, virial) * inefficiency /
-                           replicas->counts.count;
+    const double sampled = mf_comoments_covariance(&replicas->counts, virial, virial) *
+                           inefficiency / replicas->counts.count;
     return fmax(mf_statistics_standard_error(&chains), sqrt(sampled));
 }
 
@@ -39,8 +39,8 @@ enum status mf_inversion_pressure_slopes(struct inversion *inversion) {
     const struct comoments *counts = &inversion->replicas.counts;
     double *virial = NULL;
     NEW_ARRAY(virial, inversion->bins * grid->known);
-    CHECK(mf_potential_grid_virials(grid, &inversion->problem->goals.bins, inversion->box.dimensions,
-                                 inversion->phi, virial));
+    CHECK(mf_potential_grid_virials(grid, &inversion->problem->goals.bins,
+                                    inversion->box.dimensions, inversion->phi, virial));
     for (size_t b = 0; b < grid->known; b++) {
         double slope = -mf_comoments_covariance(counts, inversion->bins, grid->known_bin[b]) /
                        inversion->problem->scene.temperature;
@@ -71,5 +71,6 @@ void mf_inversion_pressure_add_ramp(const struct inversion *inversion, double *s
         missing -= inversion->pressure.slope[b] * step[grid->known_point[b]];
     const double amplitude = missing / mf_inversion_pressure_ramp_slope(inversion);
     for (size_t n = 0; n < grid->known; n++)
-        step[grid->known_point[n]] += amplitude * mf_potential_grid_ramp(grid, grid->known_point[n]);
+        step[grid->known_point[n]] +=
+            amplitude * mf_potential_grid_ramp(grid, grid->known_point[n]);
 }

@@ -83,7 +83,8 @@ static enum status add_indirect(struct inversion *inversion) {
     NEW_ARRAY(indirect, inversion->bins);
     for (size_t k = 0; k < inversion->bins; k++)
         g[k] = mf_inversion_target_g(inversion, k);
-    CHECK(mf_hnc_closure(&problem->goals.bins, &inversion->box, &inversion->composition, g, indirect));
+    CHECK(mf_hnc_closure(&problem->goals.bins, &inversion->box, &inversion->composition, g,
+                         indirect));
     for (size_t n = 0; n < grid->known; n++)
         inversion->phi[grid->known_point[n]] +=
             problem->scene.temperature * indirect[grid->known_bin[n]];

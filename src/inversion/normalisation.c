@@ -282,9 +282,9 @@ static enum status judge(struct work *work, struct normalisation *normalisation)
 }
 
 enum status mf_normalisation_find(const struct rdf_bins *bins, const struct box *box,
-                               const struct composition *composition, const double *g,
-                               const double *error, double width,
-                               struct normalisation *normalisation) {
+                                  const struct composition *composition, const double *g,
+                                  const double *error, double width,
+                                  struct normalisation *normalisation) {
     enum status status = STATUS_OK;
     struct work work = {.width = width};
     *normalisation = (struct normalisation){.factor = 1, .error = width, .compressibility = NAN};

@@ -29,6 +29,6 @@ struct normalisation {
 /// @param[in] width  standard deviation of ν about 1 before any measurement
 /// Fails: NO_MEMORY. Tested: test_normalisation.
 enum status mf_normalisation_find(const struct rdf_bins *bins, const struct box *box,
-                               const struct composition *composition, const double *g,
-                               const double *error, double width,
-                               struct normalisation *normalisation) MUST_USE;
+                                  const struct composition *composition, const double *g,
+                                  const double *error, double width,
+                                  struct normalisation *normalisation) MUST_USE;

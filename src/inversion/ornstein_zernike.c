@@ -27,7 +27,7 @@ double mf_ornstein_zernike_ball(double q, double edge) {
 }
 
 enum status mf_ornstein_zernike_init(struct ornstein_zernike *oz, const double *edge, size_t cells,
-                                  double density) {
+                                     double density) {
     enum status status = STATUS_OK;
     const double range = edge[cells], spacing = pi / (ranges * range);
     *oz = (struct ornstein_zernike){
@@ -121,7 +121,7 @@ static void shrink(struct ornstein_zernike *oz, const double *h, double *rest) {
 }
 
 enum status mf_ornstein_zernike_solve(struct ornstein_zernike *oz, const double *h,
-                                   double *compressibility) {
+                                      double *compressibility) {
     enum status status = STATUS_OK;
     const size_t cells = oz->cells;
     double *rest = NULL, *squares = NULL, *scaled = NULL, *jacobian = NULL, *step = NULL;

@@ -24,7 +24,7 @@ struct ornstein_zernike {
 /// @param[in] edge  shape [cells + 1], from 0 on
 /// Must be cleared, also after a failure. Fails: NO_MEMORY.
 enum status mf_ornstein_zernike_init(struct ornstein_zernike *oz, const double *edge, size_t cells,
-                                  double density) MUST_USE;
+                                     double density) MUST_USE;
 void mf_ornstein_zernike_clear(struct ornstein_zernike *oz);
 
 /// Find c in the cells from h there, with c = 0 beyond the range and h beyond it as it follows from
@@ -38,4 +38,4 @@ void mf_ornstein_zernike_clear(struct ornstein_zernike *oz);
 ///                              is no stable liquid with this h
 /// Fails: NO_MEMORY. Tested: test_ornstein_zernike, against the exact solution for hard spheres.
 enum status mf_ornstein_zernike_solve(struct ornstein_zernike *oz, const double *h,
-                                   double *compressibility) MUST_USE;
+                                      double *compressibility) MUST_USE;

@@ -9,7 +9,7 @@
 #include <string.h>
 
 enum status mf_replicas_init(struct replicas *replicas, size_t count, enum sampler_kind kind,
-                          const struct sampler_system *system) {
+                             const struct sampler_system *system) {
     enum status status = STATUS_OK;
     const size_t bins = (size_t)mf_composition_pairs(system->composition) * system->bins;
     struct sampler_system own = *system;
@@ -109,21 +109,21 @@ run_all(struct replicas *replicas, const struct replicas_plan *plan, int threads
     return STATUS_OK;
 }
 
-enum status mf_replicas_run(struct replicas *replicas, const struct replicas_plan *plan, int threads,
-                         const struct inverse_progress *progress,
-                         const struct inverse_listener *listener) {
+enum status mf_replicas_run(struct replicas *replicas, const struct replicas_plan *plan,
+                            int threads, const struct inverse_progress *progress,
+                            const struct inverse_listener *listener) {
     return run_all(replicas, plan, threads, progress, listener, run_one);
 }
 
 enum status mf_replicas_double(struct replicas *replicas, struct replicas_plan *plan, int threads,
-                            const struct inverse_progress *progress,
-                            const struct inverse_listener *listener) {
+                               const struct inverse_progress *progress,
+                               const struct inverse_listener *listener) {
     plan->block_samples *= 2;
     return run_all(replicas, plan, threads, progress, listener, double_one);
 }
 
 double mf_replicas_inefficiency(const struct replicas *replicas, const double *ideal,
-                             const size_t *seen, size_t count) {
+                                const size_t *seen, size_t count) {
     const size_t bins = replicas->bins;
     double scatter = 0, variance = 0;
     for (size_t n = 0; n < count; n++) {
@@ -143,7 +143,7 @@ double mf_replicas_inefficiency(const struct replicas *replicas, const double *i
 }
 
 double mf_replicas_disagreement(const struct replicas *replicas, const double *ideal,
-                             const size_t *seen, size_t count) {
+                                const size_t *seen, size_t count) {
     double between = 0, within = 0;
     for (size_t n = 0; n < count; n++) {
         const size_t a = seen[n];

@@ -33,34 +33,34 @@ struct replicas_plan {
 /// `count` samplers of one system, each with a seed of its own. Must be cleared, also after a
 /// failure. Fails: as mf_sampler_init.
 enum status mf_replicas_init(struct replicas *replicas, size_t count, enum sampler_kind kind,
-                          const struct sampler_system *system) MUST_USE;
+                             const struct sampler_system *system) MUST_USE;
 void mf_replicas_clear(struct replicas *replicas);
 
 /// Equilibrate, then sample; the samplers in parallel, merged in order: the same bits for any
 /// number of threads. `progress` is told after each, with `done` and `total` filled in. Fails:
 /// NO_MEMORY, INTERRUPTED. Tested: test_inversion, test_fit.
-enum status mf_replicas_run(struct replicas *replicas, const struct replicas_plan *plan, int threads,
-                         const struct inverse_progress *progress,
-                         const struct inverse_listener *listener) MUST_USE;
+enum status mf_replicas_run(struct replicas *replicas, const struct replicas_plan *plan,
+                            int threads, const struct inverse_progress *progress,
+                            const struct inverse_listener *listener) MUST_USE;
 
 /// Go on with the same potential until there are twice as many samples, and double the plan. As
 /// mf_replicas_run, without equilibration.
 enum status mf_replicas_double(struct replicas *replicas, struct replicas_plan *plan, int threads,
-                            const struct inverse_progress *progress,
-                            const struct inverse_listener *listener) MUST_USE;
+                               const struct inverse_progress *progress,
+                               const struct inverse_listener *listener) MUST_USE;
 
 /// How many samples count as one independent, from the scatter of the block means, averaged over
 /// `count` bins, the numbers of which are in `seen`, because that of one bin is noisy.
 /// @param[in] ideal  shape [bins]: S if g were 1
 double mf_replicas_inefficiency(const struct replicas *replicas, const double *ideal,
-                             const size_t *seen, size_t count);
+                                const size_t *seen, size_t count);
 
 /// Variance of the replicas' means over what the scatter of the blocks within them makes of it:
 /// near 1 if all sample the same, and large if they are frozen in structures of their own. A.
-/// Gelman and D. B. Rubin, Stat. Sci. 7, 457 (1992). Parameters as mf_replicas_inefficiency. Tested:
-/// test_replicas.
+/// Gelman and D. B. Rubin, Stat. Sci. 7, 457 (1992). Parameters as mf_replicas_inefficiency.
+/// Tested: test_replicas.
 double mf_replicas_disagreement(const struct replicas *replicas, const double *ideal,
-                             const size_t *seen, size_t count);
+                                const size_t *seen, size_t count);
 
 /// What a checkpoint keeps; returns the number of spans.
 size_t mf_replicas_spans(struct replicas *replicas, struct memory_span *span);

@@ -6,7 +6,7 @@
 const char *const mf_sampler_kinds[] = {"monte-carlo", "dynamics", NULL};
 
 enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
-                         const struct sampler_system *system) {
+                            const struct sampler_system *system) {
     enum status status = STATUS_OK;
     *sampler =
         (struct sampler){.kind = kind,
@@ -16,10 +16,10 @@ enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
                                        .pairs = (size_t)mf_composition_pairs(system->composition)}};
     if (kind == SAMPLER_DYNAMICS)
         return mf_hybrid_init(&sampler->hybrid, system->box, system->composition, system->potential,
-                           &sampler->histogram, system->temperature, system->seed);
+                              &sampler->histogram, system->temperature, system->seed);
     NEW_ARRAY(sampler->histogram.counts, pair_histogram_size(&sampler->histogram));
     CHECK(mf_metropolis_init(&sampler->chain, system->box, system->composition, system->potential,
-                          system->temperature, system->seed));
+                             system->temperature, system->seed));
 done:
     if (status != STATUS_OK)
         mf_sampler_clear(sampler);

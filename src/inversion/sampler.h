@@ -34,7 +34,7 @@ struct sampler_system {
 
 /// Particles on a lattice. Must be cleared. Fails: as mf_metropolis_init and mf_hybrid_init.
 enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
-                         const struct sampler_system *system) MUST_USE;
+                            const struct sampler_system *system) MUST_USE;
 void mf_sampler_clear(struct sampler *sampler);
 
 /// Forget the configuration: the particles are placed anew, without order. From a lattice, a

@@ -26,7 +26,7 @@ static void put(struct writer *writer, const void *memory, size_t bytes) {
 }
 
 enum status mf_checkpoint_save(const char *file, uint64_t digest, const struct memory_span *spans,
-                            size_t count) {
+                               size_t count) {
     struct output output;
     TRY(mf_output_open(&output, file));
     struct writer writer = {output.stream, offset_basis};
@@ -56,10 +56,11 @@ static enum status check_digest(FILE *stream, const char *file, uint64_t digest)
     uint64_t found;
     if (read_exactly(stream, &found, sizeof found) && found == digest)
         return STATUS_OK;
-    return mf_status_fail(STATUS_BAD_INPUT,
-                       "%s: the run's settings have changed since it was written; begin anew with "
-                       "--force instead of --resume",
-                       file);
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "%s: the run's settings have changed since it was written; begin anew with "
+        "--force instead of --resume",
+        file);
 }
 
 /// The checksum of all bytes but the last eight must be those eight. A byte on the way to memory
@@ -84,10 +85,11 @@ static enum status check_sum(FILE *stream, const char *file, uint64_t *bytes) {
     if (ferror(stream))
         return mf_status_fail(STATUS_IO, "%s: %s", file, strerror(errno));
     if (kept != sizeof found || *bytes < head || found != checksum)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                           "%s: the checkpoint is damaged: its checksum is not that of its bytes; "
-                           "begin anew with --force, or put back a copy of it",
-                           file);
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "%s: the checkpoint is damaged: its checksum is not that of its bytes; "
+            "begin anew with --force, or put back a copy of it",
+            file);
     *bytes -= head;
     return STATUS_OK;
 }
@@ -143,7 +145,7 @@ static bool read_span(FILE *stream, const struct memory_span *span, uint64_t *le
 }
 
 enum status mf_checkpoint_load_span(const char *file, uint64_t digest, size_t number,
-                                 const struct memory_span *span) {
+                                    const struct memory_span *span) {
     FILE *stream;
     uint64_t left, bytes;
     TRY(open_checked(&stream, file, digest, &left));
@@ -156,7 +158,7 @@ enum status mf_checkpoint_load_span(const char *file, uint64_t digest, size_t nu
 }
 
 enum status mf_checkpoint_load(const char *file, uint64_t digest, const struct memory_span *spans,
-                            size_t count) {
+                               size_t count) {
     FILE *stream;
     uint64_t left;
     TRY(open_checked(&stream, file, digest, &left));

@@ -12,17 +12,17 @@
 
 /// Save spans, whole or not at all.
 enum status mf_checkpoint_save(const char *file, uint64_t digest, const struct memory_span *spans,
-                            size_t count) MUST_USE;
+                               size_t count) MUST_USE;
 
 /// Load into the same spans. BAD_INPUT if the file is of other settings (digest), another version
 /// or shape, or if its checksum is not that of its bytes; nothing is loaded then.
 enum status mf_checkpoint_load(const char *file, uint64_t digest, const struct memory_span *spans,
-                            size_t count) MUST_USE;
+                               size_t count) MUST_USE;
 
 /// Load one span alone: number `number`, from 0, of a state whose other lengths depend on it.
 /// Fails: as mf_checkpoint_load; IO.
 enum status mf_checkpoint_load_span(const char *file, uint64_t digest, size_t number,
-                                 const struct memory_span *span) MUST_USE;
+                                    const struct memory_span *span) MUST_USE;
 
 /// Digest of a file's bytes (FNV-1a, 64 bits).
 enum status mf_checkpoint_digest(const char *file, uint64_t *digest) MUST_USE;

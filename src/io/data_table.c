@@ -167,13 +167,13 @@ static enum status measure(struct data_table *table, const char *file, const cha
             table->columns = count_words(&line, demand->separator);
         if (table->columns < least)
             return mf_status_fail(STATUS_BAD_INPUT,
-                               "%s:%zu: %zu columns, at least %zu are needed (blanks, commas or "
-                               "semicolons separate columns)",
-                               file, line.number, table->columns, least);
+                                  "%s:%zu: %zu columns, at least %zu are needed (blanks, commas or "
+                                  "semicolons separate columns)",
+                                  file, line.number, table->columns, least);
     } while (next_line(&line));
     if (table->rows == 0)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: the file ends without a row of numbers", file,
-                           line.number);
+        return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: the file ends without a row of numbers",
+                              file, line.number);
     table->columns -= demand->flagged;
     return STATUS_OK;
 }
@@ -186,9 +186,9 @@ static enum status read_number(const char *file, size_t line, size_t column, siz
     const bool comma = word->length > 0 && memchr(word->begin, ',', word->length) &&
                        strspn(word->begin, "0123456789+-.,eE") >= word->length;
     return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: \"%.*s\" is not a finite number%s",
-                       file, line, column + 1, word->length > 40 ? 40 : (int)word->length,
-                       word->begin,
-                       comma ? ": a decimal comma? decimals begin with a point here" : "");
+                          file, line, column + 1, word->length > 40 ? 40 : (int)word->length,
+                          word->begin,
+                          comma ? ": a decimal comma? decimals begin with a point here" : "");
 }
 
 /// The letter that is exactly `word`.
@@ -199,7 +199,7 @@ static enum status read_flag(const char *file, const struct line *line, const st
     if (of->length == 1 && ((*word >= 'a' && *word <= 'z') || (*word >= 'A' && *word <= 'Z')))
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: the row does not end with a letter", file,
-                       line->number);
+                          line->number);
 }
 
 static enum status read_row(const struct data_table *table, const char *file,
@@ -217,7 +217,7 @@ static enum status read_row(const struct data_table *table, const char *file,
     }
     if (words != wanted)
         return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: %zu columns, the first row has %zu", file,
-                           line->number, words, wanted);
+                              line->number, words, wanted);
     return STATUS_OK;
 }
 
@@ -288,7 +288,7 @@ enum status mf_data_table_read(struct data_table *table, const char *file, size_
 }
 
 enum status mf_data_table_read_flagged(struct data_table *table, const char *file,
-                                    size_t least_columns) {
+                                       size_t least_columns) {
     return read_table(table, file, &(struct demand){.columns = least_columns, .flagged = true});
 }
 
@@ -302,20 +302,20 @@ void mf_data_table_clear(struct data_table *table) {
 }
 
 enum status mf_data_table_check_increasing(const struct data_table *table, const char *file,
-                                        size_t column, double least) {
+                                           size_t column, double least) {
     if (column >= table->columns)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: there is no column %zu", file, column + 1);
     for (size_t row = 0; row < table->rows; row++) {
         const double value = table->values[row * table->columns + column];
         const size_t line = table->line[row];
         if (row == 0 && !(value >= least))
-            return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: %.15g is below %.15g", file,
-                               line, column + 1, value, least);
+            return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: %.15g is below %.15g",
+                                  file, line, column + 1, value, least);
         const double before = row ? table->values[(row - 1) * table->columns + column] : -INFINITY;
         if (!(value > before))
             return mf_status_fail(STATUS_BAD_INPUT,
-                               "%s:%zu: column %zu: %.15g does not grow from %.15g in line %zu",
-                               file, line, column + 1, value, before, table->line[row - 1]);
+                                  "%s:%zu: column %zu: %.15g does not grow from %.15g in line %zu",
+                                  file, line, column + 1, value, before, table->line[row - 1]);
     }
     return STATUS_OK;
 }
@@ -349,7 +349,8 @@ static void write_row(FILE *stream, const struct data_column *columns, size_t co
 }
 
 enum status mf_data_table_write(const char *file, const char *comment,
-                             const struct data_column *columns, size_t column_count, size_t rows) {
+                                const struct data_column *columns, size_t column_count,
+                                size_t rows) {
     struct output output;
     TRY(mf_output_open(&output, file));
     if (comment)

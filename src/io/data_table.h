@@ -27,18 +27,18 @@ struct data_table {
 /// length than the first, fewer than `least_columns` columns, or no row at all. Only beyond the
 /// first `least_columns` may a word be "nan": what the caller did not ask for may be unknown.
 enum status mf_data_table_read(struct data_table *table, const char *file,
-                            size_t least_columns) MUST_USE;
+                               size_t least_columns) MUST_USE;
 
 /// The same for rows that end with a letter, such as "0.24 28.4 i"; it is not among the columns.
 enum status mf_data_table_read_flagged(struct data_table *table, const char *file,
-                                    size_t least_columns) MUST_USE;
+                                       size_t least_columns) MUST_USE;
 
 void mf_data_table_clear(struct data_table *table);
 
 /// Check that column `column` grows strictly and starts at `least` or above.
 /// BAD_INPUT with file:line of the first row that does not.
 enum status mf_data_table_check_increasing(const struct data_table *table, const char *file,
-                                        size_t column, double least) MUST_USE;
+                                           size_t column, double least) MUST_USE;
 
 /// One column to be written.
 struct data_column {
@@ -49,5 +49,5 @@ struct data_column {
 
 /// Write `rows` rows, whole or not at all. `comment` (or NULL) becomes `#` lines above the header.
 enum status mf_data_table_write(const char *file, const char *comment,
-                             const struct data_column *columns, size_t column_count,
-                             size_t rows) MUST_USE;
+                                const struct data_column *columns, size_t column_count,
+                                size_t rows) MUST_USE;

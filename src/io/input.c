@@ -70,10 +70,11 @@ enum status mf_input_files_spare(const struct input_files *inputs, const char *p
     for (size_t k = 0; k < inputs->count; k++) {
         const struct input_file *input = &inputs->file[k];
         if (input->device == about.st_dev && input->number == about.st_ino)
-            return mf_status_fail(STATUS_BAD_INPUT,
-                               "%s would be replaced, but the run reads it as %s: write elsewhere "
-                               "with -o",
-                               path, input->name);
+            return mf_status_fail(
+                STATUS_BAD_INPUT,
+                "%s would be replaced, but the run reads it as %s: write elsewhere "
+                "with -o",
+                path, input->name);
     }
     return STATUS_OK;
 }

@@ -107,7 +107,7 @@ static enum status check_members(const char *file, const cJSON *item) {
     }
     if (cJSON_IsObject(item) && count > JSON_MOST_MEMBERS)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: an object has %d keys; %d are the most", file,
-                           count, JSON_MOST_MEMBERS);
+                              count, JSON_MOST_MEMBERS);
     return STATUS_OK;
 }
 
@@ -121,8 +121,8 @@ static enum status parse(struct json_document *document, const char *text) {
     if (errno == ENOMEM)
         return mf_status_fail(STATUS_NO_MEMORY, "%s: out of memory", document->file);
     const struct text_place place = mf_text_file_place(text, end);
-    return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu:%zu: expected a valid \\u escape", document->file,
-                       place.line, place.column);
+    return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu:%zu: expected a valid \\u escape",
+                          document->file, place.line, place.column);
 }
 
 static void free_document(struct json_document *document) {
@@ -271,8 +271,8 @@ static bool read_whole(struct json_object *object, const char *key, const cJSON 
     }
     if (fabs(*value) >= FIELD_LARGEST_INTEGER) {
         mf_json_fault(object, key,
-                   "%.0f is out of range: whole numbers of 2^53 (%.0f) and beyond lose digits",
-                   *value, FIELD_LARGEST_INTEGER);
+                      "%.0f is out of range: whole numbers of 2^53 (%.0f) and beyond lose digits",
+                      *value, FIELD_LARGEST_INTEGER);
         return false;
     }
     return true;
@@ -285,7 +285,7 @@ static bool is_in_range(struct json_object *object, const char *key, const struc
     char range[64];
     mf_fields_range_text(field, range, sizeof range);
     mf_json_fault(object, key, "%.15g is out of range; allowed: %s%s%s", value, range,
-               field->unit && field->unit[0] ? " " : "", field->unit ? field->unit : "");
+                  field->unit && field->unit[0] ? " " : "", field->unit ? field->unit : "");
     return false;
 }
 
@@ -389,12 +389,12 @@ void mf_json_fields(struct json_object *object, const struct field *fields, void
             read_field(object, field, item, (char *)parameters + field->offset);
         else if (field->required && object->item)
             mf_json_fault(object, field->name, "missing: %s is required (%s)",
-                       expected_name[field->type], field->help ? field->help : field->name);
+                          expected_name[field->type], field->help ? field->help : field->name);
     }
 }
 
 const char *mf_json_choice(struct json_object *object, const char *key, const char *const *known,
-                        const char *fallback) {
+                           const char *fallback) {
     const cJSON *item = ask(object, key);
     if (item == NULL) {
         if (fallback == NULL && object->item)

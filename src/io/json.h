@@ -36,7 +36,8 @@ enum status mf_json_open(struct json_document **document, const char *file) MUST
 
 /// Put the document's own file into `inputs`, and from now on every file that a FIELD_FILE names.
 /// Both live as long as the document. Fails: NO_MEMORY. Tested: test_json.
-enum status mf_json_collect_files(struct json_document *document, struct input_files *inputs) MUST_USE;
+enum status mf_json_collect_files(struct json_document *document,
+                                  struct input_files *inputs) MUST_USE;
 
 /// View of the document's root, which must be an object.
 struct json_object mf_json_root(struct json_document *document);
@@ -62,7 +63,7 @@ void mf_json_fields(struct json_object *object, const struct field *fields, void
 /// `known` lists the allowed values, NULL-terminated, or is NULL; others are a fault that names
 /// the nearest. With `fallback` not NULL the key is optional. The text lives with the document.
 const char *mf_json_choice(struct json_object *object, const char *key, const char *const *known,
-                        const char *fallback);
+                           const char *fallback);
 
 /// Record a fault of the object's own making; `key` may be NULL. The message is printed as
 /// "file: path.key: message".

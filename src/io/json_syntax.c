@@ -34,7 +34,7 @@ static enum status expected(const struct checker *checker, const char *what) {
     else
         snprintf(found, sizeof found, "byte 0x%02x", c);
     return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu:%zu: expected %s, found %s", checker->file,
-                       place.line, place.column, what, found);
+                          place.line, place.column, what, found);
 }
 
 static void skip_space(struct checker *checker) {

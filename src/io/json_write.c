@@ -131,7 +131,7 @@ void mf_json_put_text(struct json_writer *writer, const char *key, const char *v
 }
 
 void mf_json_put_numbers(struct json_writer *writer, const char *key, const double *values,
-                      size_t count) {
+                         size_t count) {
     cJSON *array = cJSON_CreateArray();
     for (size_t k = 0; array && k < count; k++) {
         cJSON *item = create_number(values[k]);
@@ -194,7 +194,7 @@ static void put_field(struct json_writer *writer, const struct field *field, con
 }
 
 void mf_json_put_fields(struct json_writer *writer, const struct field *fields,
-                     const void *parameters) {
+                        const void *parameters) {
     for (const struct field *field = fields; field->name; field++)
         put_field(writer, field, (const char *)parameters + field->offset);
 }

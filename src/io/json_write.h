@@ -30,17 +30,17 @@ void mf_json_put_number(struct json_writer *writer, const char *key, double valu
 void mf_json_put_integer(struct json_writer *writer, const char *key, int64_t value);
 void mf_json_put_text(struct json_writer *writer, const char *key, const char *value);
 void mf_json_put_numbers(struct json_writer *writer, const char *key, const double *values,
-                      size_t count);
+                         size_t count);
 
 /// Write every member that `fields` describes; FIELD_TEXT and FIELD_FILE that are empty, and
 /// FIELD_LENGTHS that are all 0, are left out. Reading the result back gives the same bits, except
 /// that a relative FIELD_FILE is written absolute, so that it names the same file from any folder.
 void mf_json_put_fields(struct json_writer *writer, const struct field *fields,
-                     const void *parameters);
+                        const void *parameters);
 
 /// Write the tree to `file`, whole or not at all (output.h).
 enum status mf_json_write(const struct json_writer *writer, const char *file) MUST_USE;
 
 /// Print the tree to an open stream, which `name` names in messages. Fails: IO, NO_MEMORY.
 enum status mf_json_write_stream(const struct json_writer *writer, FILE *stream,
-                              const char *name) MUST_USE;
+                                 const char *name) MUST_USE;

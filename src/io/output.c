@@ -39,7 +39,7 @@ enum status mf_output_open(struct output *output, const char *path) {
     const int length = snprintf(output->path, sizeof output->path, "%s", path);
     if (length < 0 || (size_t)length >= sizeof output->path)
         return mf_status_fail(STATUS_IO, "%.60s…: the path is longer than %d bytes", path,
-                           OUTPUT_PATH_SIZE - 1);
+                              OUTPUT_PATH_SIZE - 1);
     snprintf(output->temporary, sizeof output->temporary, "%s.%ld" OUTPUT_PARTIAL, output->path,
              (long)getpid());
     // A file of our own: never one that is there, nor one that a link leads to.
@@ -124,15 +124,16 @@ static enum status make_one_folder(const char *folder, const char *path) {
         return STATUS_OK;
     if (error == EEXIST)
         return mf_status_fail(STATUS_IO, "cannot make folder %s: %s is not a folder", path, folder);
-    return mf_status_fail(STATUS_IO, "cannot make folder %s: %s: %s", path, folder, strerror(error));
+    return mf_status_fail(STATUS_IO, "cannot make folder %s: %s: %s", path, folder,
+                          strerror(error));
 }
 
 enum status mf_output_make_folder(const char *path) {
     char folder[OUTPUT_PATH_SIZE];
     const int length = snprintf(folder, sizeof folder, "%s", path);
     if (length <= 0 || (size_t)length >= sizeof folder)
-        return mf_status_fail(STATUS_IO, "cannot make folder \"%.60s\": its length is %d bytes", path,
-                           length);
+        return mf_status_fail(STATUS_IO, "cannot make folder \"%.60s\": its length is %d bytes",
+                              path, length);
     for (char *slash = strchr(folder + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
         *slash = '\0';
         TRY(make_one_folder(folder, path));

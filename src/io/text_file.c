@@ -70,7 +70,7 @@ static enum status check_is_text(const char *file, const char *text, size_t leng
         return STATUS_OK;
     const struct text_place place = mf_text_file_place(text, nul);
     return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu:%zu: a NUL byte: this is not a UTF-8 text file",
-                       file, place.line, place.column);
+                          file, place.line, place.column);
 }
 
 enum status mf_text_file_read(const char *file, char **text, size_t *length) {

@@ -12,8 +12,8 @@
 /// Read `file` into a new NUL-terminated text; a byte order mark at its start is dropped.
 /// @param[out] text    to be freed with mf_memory_free; NULL on failure
 /// @param[out] length  bytes without the terminating NUL
-/// Fails: IO as mf_input_open; BAD_INPUT if it is larger than TEXT_FILE_LARGEST, empty or holds a NUL
-/// byte, so that the text ends where the file ends. Tested: test_data_table, test_json.
+/// Fails: IO as mf_input_open; BAD_INPUT if it is larger than TEXT_FILE_LARGEST, empty or holds a
+/// NUL byte, so that the text ends where the file ends. Tested: test_data_table, test_json.
 enum status mf_text_file_read(const char *file, char **text, size_t *length) MUST_USE;
 
 /// Where a byte of a text stands; both count from 1, columns in characters of UTF-8.

@@ -13,11 +13,11 @@ static enum status check_row(const struct data_table *table, const char *file, s
     const char flag = table->flags[row];
     if (strchr("iou", flag) == NULL)
         return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: the flag \"%c\" is none of i, o, u", file,
-                           table->line[row], flag);
+                              table->line[row], flag);
     for (size_t column = 0; flag == 'i' && column < table->columns; column++)
         if (!isfinite(table->values[row * table->columns + column]))
-            return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: nan in a row flagged i", file,
-                               table->line[row], column + 1);
+            return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: nan in a row flagged i",
+                                  file, table->line[row], column + 1);
     return STATUS_OK;
 }
 
@@ -38,8 +38,8 @@ static enum status find_range(const struct data_table *table, const char *file, 
     for (size_t row = *begin; row < *end; row++)
         if (table->flags[row] != 'i')
             return mf_status_fail(STATUS_BAD_INPUT,
-                               "%s:%zu: flagged %c between rows that are flagged i", file,
-                               table->line[row], table->flags[row]);
+                                  "%s:%zu: flagged %c between rows that are flagged i", file,
+                                  table->line[row], table->flags[row]);
     return STATUS_OK;
 }
 
@@ -64,8 +64,8 @@ enum status mf_votca_read(struct votca_table *votca, const char *file) {
     CHECK(read_table(&table, file));
     if (table.columns != 2 && table.columns != 3) {
         status = mf_status_fail(STATUS_BAD_INPUT,
-                             "%s:%zu: not \"x y flag\" or \"x y error flag\" as VOTCA writes it",
-                             file, table.line[0]);
+                                "%s:%zu: not \"x y flag\" or \"x y error flag\" as VOTCA writes it",
+                                file, table.line[0]);
         goto done;
     }
     CHECK(find_range(&table, file, &begin, &end));
@@ -98,7 +98,7 @@ void mf_votca_clear(struct votca_table *table) {
 }
 
 enum status mf_votca_write(const char *file, const double *x, const double *y, size_t rows,
-                        size_t first) {
+                           size_t first) {
     struct output output;
     TRY(mf_output_open(&output, file));
     for (size_t k = 0; k < rows; k++)

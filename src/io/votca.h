@@ -24,4 +24,4 @@ void mf_votca_clear(struct votca_table *table);
 
 /// Write rows "x y flag": o before row `first`, i from there on. Fails: IO.
 enum status mf_votca_write(const char *file, const double *x, const double *y, size_t rows,
-                        size_t first) MUST_USE;
+                           size_t first) MUST_USE;

@@ -35,8 +35,9 @@ const struct field mf_candidates_fields[] = {
      .help = "relative standard error of an error with which its simulation stops; 0: never"},
     {"warm_start", FIELD_CHOICE, MEMBER(candidates.warm_start), .choices = mf_candidates_no_or_yes,
      .initial = 0, .unit = "", .help = "begin where the best simulation of the last round ended"},
-    {"common_noise", FIELD_CHOICE, MEMBER(candidates.common_noise), .choices = mf_candidates_no_or_yes,
-     .initial = 0, .unit = "", .help = "the same random numbers for all candidates of a round"},
+    {"common_noise", FIELD_CHOICE, MEMBER(candidates.common_noise),
+     .choices = mf_candidates_no_or_yes, .initial = 0, .unit = "",
+     .help = "the same random numbers for all candidates of a round"},
     FIELD_END,
 };
 
@@ -54,7 +55,7 @@ static size_t coordinates(const struct candidates *candidates) {
 }
 
 enum status mf_candidates_init(struct candidates *candidates, const struct decoder *decoder,
-                            const struct candidates_parameters *parameters) {
+                               const struct candidates_parameters *parameters) {
     enum status status = STATUS_OK;
     *candidates = (struct candidates){.decoder = decoder, .parameters = *parameters, .best = NAN};
     NEW_ARRAY(candidates->errors, CANDIDATES_MOST);
@@ -68,7 +69,7 @@ enum status mf_candidates_init(struct candidates *candidates, const struct decod
     NEW_ARRAY(candidates->target_error, features);
     mf_goals_take_features(goals, NULL, candidates->target, candidates->target_error);
     CHECK(mf_surrogate_init(&candidates->surrogate, decoder->genes, features, CANDIDATES_MOST,
-                         candidates->target, candidates->target_error));
+                            candidates->target, candidates->target_error));
     NEW_ARRAY(candidates->position, coordinates(candidates));
     NEW_ARRAY(candidates->best_position, coordinates(candidates));
     mf_candidates_next_round(candidates);
@@ -110,7 +111,7 @@ void mf_candidates_forget_survey(struct candidates *candidates) {
 }
 
 void mf_candidates_tell_failure(const struct candidates *candidates, const char *why,
-                             char reason[INVERSE_REASON_SIZE]) {
+                                char reason[INVERSE_REASON_SIZE]) {
     if (candidates->surrogate.rows.added > 0)
         snprintf(reason, INVERSE_REASON_SIZE, "%llu of %llu simulations succeeded, %s",
                  (unsigned long long)candidates->surrogate.rows.added,
@@ -143,7 +144,7 @@ static enum status measure(const struct candidates *candidates, const double *ge
     };
     if (status == STATUS_OK)
         status = mf_evaluate(candidates->decoder->problem, &candidate,
-                          &candidates->parameters.evaluate, features, end_column, result);
+                             &candidates->parameters.evaluate, features, end_column, result);
     if (status == STATUS_UNSTABLE || (status == STATUS_OK && !isfinite(result->error))) {
         result->error = OPTIMISER_FAILED;
         result->variance = 0;
@@ -216,7 +217,7 @@ static uint64_t seed_of(const struct candidates *candidates, const struct optimi
                                 ? copies_before(round, candidates->decoder->genes, index)
                                 : (uint32_t)index;
     return mf_rng_child_seed(candidates->decoder->problem->seed, RNG_EVALUATION,
-                          (uint32_t)candidates->totals.rounds, number);
+                             (uint32_t)candidates->totals.rounds, number);
 }
 
 /// Measure one candidate unless it was measured before an interruption.
@@ -259,14 +260,15 @@ static void remember(struct candidates *candidates, const double *genes, double 
         mf_surrogate_add(&candidates->surrogate, genes, features);
 }
 
-enum status mf_candidates_measure(struct candidates *candidates, const struct optimiser_round *round,
-                               double hopeless, const struct inverse_listener *listener) {
+enum status mf_candidates_measure(struct candidates *candidates,
+                                  const struct optimiser_round *round, double hopeless,
+                                  const struct inverse_listener *listener) {
     enum status status = STATUS_OK;
     char reason[512] = "";
     const int threads = candidates->decoder->problem->threads;
     if (round->count > CANDIDATES_MOST)
-        return mf_status_fail(STATUS_BAD_INPUT, "a round of %zu candidates: at most %d", round->count,
-                           CANDIDATES_MOST);
+        return mf_status_fail(STATUS_BAD_INPUT, "a round of %zu candidates: at most %d",
+                              round->count, CANDIDATES_MOST);
     const int inside = round->count == 1 ? threads_inside(candidates->decoder->problem) : 1;
     memcpy(candidates->first, round->genes, candidates->decoder->genes * sizeof *round->genes);
 #pragma omp parallel for schedule(dynamic) num_threads(threads) if (round->count > 1)
@@ -299,9 +301,9 @@ static struct goal_distance mean_distance(const struct evaluate_result *results,
     return mean;
 }
 
-enum status mf_candidates_remeasure(struct candidates *candidates, const double *genes, size_t count,
-                                 double *error, double *noise, double *variance,
-                                 struct goal_distance *distance) {
+enum status mf_candidates_remeasure(struct candidates *candidates, const double *genes,
+                                    size_t count, double *error, double *noise, double *variance,
+                                    struct goal_distance *distance) {
     enum status status = STATUS_OK;
     struct evaluate_result *results = NULL;
     double *end = NULL, *features = NULL;
@@ -313,8 +315,8 @@ enum status mf_candidates_remeasure(struct candidates *candidates, const double 
     NEW_ARRAY(features, count * each);
 #pragma omp parallel for schedule(dynamic) num_threads(problem->threads)
     for (size_t k = 0; k < count; k++) {
-        const uint64_t seed = mf_rng_child_seed(problem->seed, RNG_REMEASUREMENT,
-                                             (uint32_t)candidates->totals.remeasured, (uint32_t)k);
+        const uint64_t seed = mf_rng_child_seed(
+            problem->seed, RNG_REMEASUREMENT, (uint32_t)candidates->totals.remeasured, (uint32_t)k);
         const enum status here = measure(candidates, genes, seed, HUGE_VAL, 1, features + k * each,
                                          end + k * size, &results[k]);
         if (here != STATUS_OK)

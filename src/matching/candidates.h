@@ -66,14 +66,15 @@ struct candidates {
 
 /// Fails: NO_MEMORY.
 enum status mf_candidates_init(struct candidates *candidates, const struct decoder *decoder,
-                            const struct candidates_parameters *parameters) MUST_USE;
+                               const struct candidates_parameters *parameters) MUST_USE;
 void mf_candidates_clear(struct candidates *candidates);
 
 /// Measure all candidates that have no error yet. A failed simulation is the worst error.
 /// Seeds depend on the round and the candidate's number alone: the same bits for any threads.
 /// Fails: INTERRUPTED, with what was measured kept for a checkpoint; NO_MEMORY; BAD_INPUT.
-enum status mf_candidates_measure(struct candidates *candidates, const struct optimiser_round *round,
-                               double hopeless, const struct inverse_listener *listener) MUST_USE;
+enum status mf_candidates_measure(struct candidates *candidates,
+                                  const struct optimiser_round *round, double hopeless,
+                                  const struct inverse_listener *listener) MUST_USE;
 
 /// Forget the errors, and begin the next round's simulations where the best of this one ended.
 void mf_candidates_next_round(struct candidates *candidates);
@@ -81,15 +82,15 @@ void mf_candidates_next_round(struct candidates *candidates);
 /// Mean error of `count` fresh measurements of one candidate, the noise in each, and the variance
 /// of the mean; OPTIMISER_FAILED if one of them fails.
 /// @param[out] distance  shape [GOALS]: means, or NULL
-enum status mf_candidates_remeasure(struct candidates *candidates, const double *genes, size_t count,
-                                 double *error, double *noise, double *variance,
-                                 struct goal_distance *distance) MUST_USE;
+enum status mf_candidates_remeasure(struct candidates *candidates, const double *genes,
+                                    size_t count, double *error, double *noise, double *variance,
+                                    struct goal_distance *distance) MUST_USE;
 
 void mf_candidates_forget_survey(struct candidates *candidates);
 
 /// Say into `reason` that simulations succeeded, but `why` there is no result; nothing if none did.
 void mf_candidates_tell_failure(const struct candidates *candidates, const char *why,
-                             char reason[INVERSE_REASON_SIZE]);
+                                char reason[INVERSE_REASON_SIZE]);
 
 enum { CANDIDATES_SPANS = 9 + SURROGATE_SPANS };
 size_t mf_candidates_spans(struct candidates *candidates, struct memory_span *spans);

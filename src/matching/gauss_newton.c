@@ -92,7 +92,8 @@ static size_t round_size(const struct state *state) {
     const size_t genes = state->decoder.genes;
     const size_t wanted = state->own.spread > 0 ? (size_t)state->own.spread : (3 * genes + 1) / 2;
     // Some may fail.
-    const size_t least = state->progress.iteration == 0 ? 11 * mf_surrogate_least_rows(genes) / 10 : 4;
+    const size_t least =
+        state->progress.iteration == 0 ? 11 * mf_surrogate_least_rows(genes) / 10 : 4;
     return ((wanted > least ? wanted : least) + 1) / 2 * 2;
 }
 
@@ -159,9 +160,9 @@ static void spread(struct state *state, size_t count) {
     for (size_t pair = 0; pair < count / 2; pair++)
         for (size_t n = 0; n < genes; n++) {
             double normal[4];
-            mf_rng_normal4(mf_rng_philox(state->problem->seed, RNG_SELECTION, state->progress.iteration,
-                                   (uint32_t)pair, (uint32_t)n),
-                        normal);
+            mf_rng_normal4(mf_rng_philox(state->problem->seed, RNG_SELECTION,
+                                         state->progress.iteration, (uint32_t)pair, (uint32_t)n),
+                           normal);
             const double step = spread_part * state->progress.reach * normal[0];
             double *one = state->round + 2 * pair * genes + n;
             one[0] = fmin(1, fmax(0, state->best[n] + step));
@@ -213,18 +214,18 @@ static enum status propose(struct state *state) {
     bool known;
     double error, noise, variance;
     CHECK(mf_surrogate_fit(&state->candidates.surrogate, state->best, state->progress.reach, &model,
-                        &known));
+                           &known));
     if (known) {
         memcpy(state->proposal, model.best, state->decoder.genes * sizeof *model.best);
-        CHECK(mf_candidates_remeasure(&state->candidates, state->proposal, (size_t)state->own.checks,
-                                   &error, &noise, &variance, NULL));
+        CHECK(mf_candidates_remeasure(&state->candidates, state->proposal,
+                                      (size_t)state->own.checks, &error, &noise, &variance, NULL));
         judge(state, error, noise, variance);
         if (state->progress.known)
             watch(&state->progress);
     }
     state->has_model = known;
     CHECK(mf_decoder_curves_bands(&state->decoder, state->best, known ? model.covariance : NULL,
-                               &state->curves));
+                                  &state->curves));
 done:
     mf_surrogate_model_clear(&model);
     return status;
@@ -270,7 +271,7 @@ static bool has_narrowed(const struct state *state) {
 static void settle(const struct state *state, struct inverse_step *step) {
     const struct progress *progress = &state->progress;
     const struct goals *goals = &state->problem->goals;
-    const char *what = mf_goals_count(goals) > 1       ? "the weighted error of all targets is"
+    const char *what = mf_goals_count(goals) > 1    ? "the weighted error of all targets is"
                        : goals_ask(goals, GOAL_RDF) ? "g(r) is still off by"
                                                     : "the target is still off by";
     char why[64] = "its steps have become small";

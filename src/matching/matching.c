@@ -119,7 +119,7 @@ static enum status create(void *memory, const struct inverse_method *method,
     CHECK(mf_decoder_curves_init(&state->decoder, &state->curves));
     CHECK(create_optimiser(state));
     CHECK(mf_candidates_init(&state->candidates, &state->decoder,
-                          &state->parameters.settings.candidates));
+                             &state->parameters.settings.candidates));
     state->candidates.iterations = most_iterations(method, problem, parameters);
 done:
     return status;
@@ -134,7 +134,7 @@ static bool is_full(const struct candidates_survey *survey, size_t next_round) {
 static enum status take_round(struct state *state, const struct optimiser_round *round,
                               const struct inverse_listener *listener) {
     TRY(mf_candidates_measure(&state->candidates, round,
-                           state->optimiser->hopeless(state->optimiser_state), listener));
+                              state->optimiser->hopeless(state->optimiser_state), listener));
     TRY(state->optimiser->tell(state->optimiser_state, state->candidates.errors,
                                state->candidates.variances));
     mf_candidates_next_round(&state->candidates);
@@ -155,8 +155,8 @@ static bool wants_check(const struct state *state, bool last) {
 /// `slack` standard errors.
 static enum status check_favourite(struct state *state, double slack) {
     double error, noise, variance;
-    TRY(mf_candidates_remeasure(&state->candidates, state->favourite, (size_t)state->parameters.checks,
-                             &error, &noise, &variance, NULL));
+    TRY(mf_candidates_remeasure(&state->candidates, state->favourite,
+                                (size_t)state->parameters.checks, &error, &noise, &variance, NULL));
     if (error >= OPTIMISER_FAILED ||
         (state->progress.known && error > state->progress.error + slack * sqrt(variance)))
         return STATUS_OK;
@@ -179,7 +179,7 @@ static enum status try_surrogate(struct state *state) {
     if (state->progress.known)
         CHECK(mf_surrogate_fit(&state->candidates.surrogate, state->best, reach, &model, &known));
     CHECK(mf_decoder_curves_bands(&state->decoder, state->best, known ? model.covariance : NULL,
-                               &state->curves));
+                                  &state->curves));
     if (!known || !state->parameters.surrogate)
         goto done;
     memcpy(state->favourite, model.best, state->decoder.genes * sizeof(double));
@@ -195,8 +195,8 @@ static void conclude(const struct state *state, struct inverse_step *step) {
     step->finished = true;
     if (!state->progress.known)
         mf_candidates_tell_failure(&state->candidates,
-                                "but what seemed best failed when it was measured again",
-                                step->reason);
+                                   "but what seemed best failed when it was measured again",
+                                   step->reason);
     else if (optimiser->settled && optimiser->settled(state->optimiser_state))
         step->converged = true;
     else if (optimiser->gave_up && optimiser->gave_up(state->optimiser_state))
@@ -220,8 +220,8 @@ static void describe(struct state *state, struct inverse_step *step, bool finish
     if (finished)
         conclude(state, step);
     mf_decoder_curves_show(&state->decoder,
-                        state->progress.known ? state->best : state->candidates.first,
-                        &state->curves, step);
+                           state->progress.known ? state->best : state->candidates.first,
+                           &state->curves, step);
 }
 
 /// Measure what the optimiser, and then the linear model, thinks best. Each stage is done once,
@@ -279,10 +279,11 @@ static size_t spans(void *memory, struct memory_span *span) {
 #define MATCHING(its_name, its_optimiser, its_fields, its_summary)                                 \
     {                                                                                              \
         .name = its_name, .summary = its_summary,                                                  \
-        .tables = (const struct field *const[]){its_fields, mf_candidates_fields, own_fields, NULL},  \
+        .tables =                                                                                  \
+            (const struct field *const[]){its_fields, mf_candidates_fields, own_fields, NULL},     \
         .parameters_size = sizeof(struct parameters), .state_size = sizeof(struct state),          \
         .fits = {true, true}, .optimiser = &(its_optimiser), .most_iterations = most_iterations,   \
-        .sampling = mf_candidates_sampling, .keeps_parts = true, .columns = columns,                  \
+        .sampling = mf_candidates_sampling, .keeps_parts = true, .columns = columns,               \
         .create = create, .destroy = destroy, .iterate = iterate, .spans = spans,                  \
     }
 

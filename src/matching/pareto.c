@@ -83,7 +83,8 @@ static enum status create(void *memory, const struct inverse_method *method,
             state->goal[state->objectives++] = kind;
     if (state->objectives < 2)
         return mf_status_fail(STATUS_BAD_INPUT,
-                           "method.name: \"%s\" needs two fitted targets at least", method->name);
+                              "method.name: \"%s\" needs two fitted targets at least",
+                              method->name);
     CHECK(mf_decoder_init(&state->decoder, problem));
     CHECK(create_nsga2(state));
     NEW_ARRAY(state->value, CANDIDATES_MOST * state->objectives);
@@ -169,7 +170,7 @@ static enum status check_one(struct pareto_state *state, size_t parent) {
     struct goal_distance distance[GOALS];
     double error, noise, variance, value[GOALS];
     TRY(mf_candidates_remeasure(&state->candidates, mf_nsga2_parent(&state->nsga2, parent),
-                             (size_t)state->own.checks, &error, &noise, &variance, distance));
+                                (size_t)state->own.checks, &error, &noise, &variance, distance));
     take_distances(state, error, distance, value);
     for (size_t m = 0; m < state->objectives && error < OPTIMISER_FAILED; m++)
         state->progress.noise[m] = distance[state->goal[m]].noise;
@@ -207,9 +208,10 @@ static enum status ask_surrogate(struct pareto_state *state) {
     for (int64_t k = 0; known && (k == 0 || k < state->own.surrogate); k++) {
         mf_surrogate_model_clear(&model);
         CHECK(mf_surrogate_fit(&state->candidates.surrogate, chosen, ldexp(reach, (int)-k), &model,
-                            &known));
+                               &known));
         if (known && k == 0)
-            CHECK(mf_decoder_curves_bands(&state->decoder, chosen, model.covariance, &state->curves));
+            CHECK(
+                mf_decoder_curves_bands(&state->decoder, chosen, model.covariance, &state->curves));
         if (known && k < state->own.surrogate)
             mf_nsga2_plant(&state->nsga2, model.best);
     }
@@ -225,7 +227,8 @@ static void describe(struct pareto_state *state, struct inverse_step *step) {
         .iteration = progress->iteration,
         .evaluations = state->candidates.totals.evaluations,
         .engine_steps = state->candidates.totals.steps,
-        .error = progress->known ? mf_pareto_error(state, mf_pareto_value(state, progress->chosen)) : NAN,
+        .error = progress->known ? mf_pareto_error(state, mf_pareto_value(state, progress->chosen))
+                                 : NAN,
         .noise = progress->known ? mf_pareto_error(state, progress->noise) : NAN,
         .variance = progress->variance,
         .extra = {survey->least, survey->alive.count > 0 ? survey->alive.mean : NAN,
@@ -236,12 +239,12 @@ static void describe(struct pareto_state *state, struct inverse_step *step) {
         mf_inverse_use_up(step, "generations", progress->last_better);
     else if (step->finished)
         mf_candidates_tell_failure(&state->candidates,
-                                "but what seemed best failed when it was measured again",
-                                step->reason);
+                                   "but what seemed best failed when it was measured again",
+                                   step->reason);
     mf_decoder_curves_show(&state->decoder,
-                        progress->known ? mf_nsga2_parent(&state->nsga2, progress->chosen)
-                                        : state->candidates.first,
-                        &state->curves, step);
+                           progress->known ? mf_nsga2_parent(&state->nsga2, progress->chosen)
+                                           : state->candidates.first,
+                           &state->curves, step);
 }
 
 static void log_front(struct pareto_state *state) {
@@ -288,7 +291,8 @@ static size_t spans(void *memory, struct memory_span *span) {
 const struct inverse_method mf_pareto = {
     .name = "pareto",
     .summary = "the front of all goals by NSGA-II, without weights; K. Deb et al. (2002)",
-    .tables = (const struct field *const[]){mf_nsga2_fields, own_fields, mf_candidates_fields, NULL},
+    .tables =
+        (const struct field *const[]){mf_nsga2_fields, own_fields, mf_candidates_fields, NULL},
     .parameters_size = sizeof(struct candidates_settings),
     .state_size = sizeof(struct pareto_state),
     .fits = {true, true},

@@ -64,7 +64,8 @@ static enum status write_front(const struct pareto_state *state,
     for (size_t c = 0; c < most; c++) {
         const size_t m = (c - EXTRA_COLUMNS) % objectives;
         if (c >= EXTRA_COLUMNS)
-            snprintf(names[c - EXTRA_COLUMNS], NAME_SIZE, "%s_%s[1]", mf_goals_names[state->goal[m]],
+            snprintf(names[c - EXTRA_COLUMNS], NAME_SIZE, "%s_%s[1]",
+                     mf_goals_names[state->goal[m]],
                      c < EXTRA_COLUMNS + objectives ? "rmse" : "noise");
         value[c] = begin_column(&column[c], c < EXTRA_COLUMNS ? extra[c] : names[c - EXTRA_COLUMNS],
                                 memory + c * (rows + 1), NULL);
@@ -136,7 +137,7 @@ static enum status write_curve(const struct pareto_state *state, enum unknown_ki
     for (size_t k = 0; k < members; k++) {
         snprintf(names + k * NAME_SIZE, NAME_SIZE, "%zu", k + 1);
         mf_decoder_curve(decoder, kind, mf_nsga2_parent(&state->nsga2, lines[k].parent),
-                      curves + k * points);
+                         curves + k * points);
         column[k + 1] =
             (struct data_column){names + k * NAME_SIZE, curves + k * points + first, "%.8g"};
     }

@@ -16,7 +16,7 @@ static const double prior_width = 0.28867513459481287;
 static const double least_error = 1e-4;
 
 enum status mf_surrogate_init(struct surrogate *surrogate, size_t genes, size_t features,
-                           size_t capacity, const double *target, const double *target_error) {
+                              size_t capacity, const double *target, const double *target_error) {
     enum status status = STATUS_OK;
     *surrogate = (struct surrogate){.genes = genes,
                                     .features = features,
@@ -250,7 +250,7 @@ static enum status find_covariance(const struct surrogate *surrogate, const doub
 }
 
 enum status mf_surrogate_fit(const struct surrogate *surrogate, const double *centre, double reach,
-                          struct surrogate_model *model, bool *known) {
+                             struct surrogate_model *model, bool *known) {
     enum status status = STATUS_OK;
     const size_t genes = surrogate->genes, added = (size_t)surrogate->rows.added;
     const size_t kept = added < surrogate->capacity ? added : surrogate->capacity;

@@ -2,8 +2,8 @@
 /// @file What the simulations of a fit have shown, as a linear model: where the goals would be met,
 /// and what they leave open.
 ///
-/// Every candidate that was measured is a row of genes x and features y (mf_goals_take_features). Near
-/// a centre x_c the features are taken to be linear,
+/// Every candidate that was measured is a row of genes x and features y (mf_goals_take_features).
+/// Near a centre x_c the features are taken to be linear,
 ///   y = y_c + J (x − x_c) + noise,
 /// fitted to the nearest rows by least squares, so that the whole g(r) or E(t, r_0) of each
 /// simulation is used where an optimiser sees one number. The genes that meet the target t best,
@@ -31,8 +31,8 @@ struct surrogate {
 };
 
 enum status mf_surrogate_init(struct surrogate *surrogate, size_t genes, size_t features,
-                           size_t capacity, const double *target,
-                           const double *target_error) MUST_USE;
+                              size_t capacity, const double *target,
+                              const double *target_error) MUST_USE;
 void mf_surrogate_clear(struct surrogate *surrogate);
 
 /// Remember a measurement.
@@ -55,7 +55,7 @@ struct surrogate_model {
 /// @param[in] reach   largest rms of the step over the genes
 /// Fails: NO_MEMORY. Tested: test_surrogate.
 enum status mf_surrogate_fit(const struct surrogate *surrogate, const double *centre, double reach,
-                          struct surrogate_model *model, bool *known) MUST_USE;
+                             struct surrogate_model *model, bool *known) MUST_USE;
 void mf_surrogate_model_clear(struct surrogate_model *model);
 
 enum { SURROGATE_SPANS = 3 };

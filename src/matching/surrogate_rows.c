@@ -139,7 +139,7 @@ static void find_spread(struct surrogate_work *work) {
 }
 
 enum status mf_surrogate_fit_rows(struct surrogate_work *work, const struct surrogate *surrogate,
-                               const double *centre, size_t kept, size_t rows) {
+                                  const double *centre, size_t kept, size_t rows) {
     TRY(work_init(work, surrogate, kept, rows));
     choose_rows(work, centre, kept);
     factor(work);

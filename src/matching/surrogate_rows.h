@@ -34,7 +34,7 @@ struct surrogate_work {
 /// Fit the model to the `rows` nearest to the centre among `kept`. Must be cleared, also after a
 /// failure. Fails: NO_MEMORY.
 enum status mf_surrogate_fit_rows(struct surrogate_work *work, const struct surrogate *surrogate,
-                               const double *centre, size_t kept, size_t rows) MUST_USE;
+                                  const double *centre, size_t kept, size_t rows) MUST_USE;
 void mf_surrogate_clear_rows(struct surrogate_work *work);
 
 /// Σ += share · δ δᵀ, shape [size, size].

@@ -40,12 +40,12 @@ static const uint32_t no_record = UINT32_MAX;
 static enum status check(const struct etd_grid *grid, const struct box *box) {
     if (!(grid->r_maximum > grid->r_minimum))
         return mf_status_fail(STATUS_BAD_INPUT, "etd: r_maximum %g is not above r_minimum %g",
-                           grid->r_maximum, grid->r_minimum);
+                              grid->r_maximum, grid->r_minimum);
     if (mf_box_shortest(box) < 2 * grid->r_maximum)
         return mf_status_fail(STATUS_BAD_INPUT,
-                           "etd: the box is too small: its shortest edge %g is below twice "
-                           "r_maximum, %g",
-                           mf_box_shortest(box), grid->r_maximum);
+                              "etd: the box is too small: its shortest edge %g is below twice "
+                              "r_maximum, %g",
+                              mf_box_shortest(box), grid->r_maximum);
     return STATUS_OK;
 }
 
@@ -53,9 +53,9 @@ static enum status count_origins(struct etd *etd, int64_t steps) {
     const int64_t window = etd->grid.times - 1, samples = steps / etd->plan.every;
     if (samples < window)
         return mf_status_fail(STATUS_BAD_INPUT,
-                           "etd: %lld times of %lld steps are longer than the %lld steps of the "
-                           "measurement",
-                           (long long)window, (long long)etd->plan.every, (long long)steps);
+                              "etd: %lld times of %lld steps are longer than the %lld steps of the "
+                              "measurement",
+                              (long long)window, (long long)etd->plan.every, (long long)steps);
     etd->origins = (size_t)((samples - window) / etd->plan.origin_every + 1);
     etd->blocks = etd->origins < ETD_BLOCKS ? etd->origins : ETD_BLOCKS;
     // A window is closed before the next is opened.
@@ -64,7 +64,7 @@ static enum status count_origins(struct etd *etd, int64_t steps) {
 }
 
 enum status mf_etd_init(struct etd *etd, const struct etd_grid *grid, const struct etd_plan *plan,
-                     const struct simulation *simulation, int64_t begin, int64_t steps) {
+                        const struct simulation *simulation, int64_t begin, int64_t steps) {
     enum status status = STATUS_OK;
     const struct box *box = &simulation->setup.box;
     const size_t count = simulation->particles.count;

@@ -70,7 +70,7 @@ static inline size_t etd_cells(const struct etd *etd) {
 /// Fails: BAD_INPUT if there is no whole window, r_maximum is not above r_minimum, or the box is
 /// below 2 r_maximum; NO_MEMORY.
 enum status mf_etd_init(struct etd *etd, const struct etd_grid *grid, const struct etd_plan *plan,
-                     const struct simulation *simulation, int64_t begin, int64_t steps) MUST_USE;
+                        const struct simulation *simulation, int64_t begin, int64_t steps) MUST_USE;
 void mf_etd_clear(struct etd *etd);
 
 /// The step of the next sample, or INT64_MAX after the last.
@@ -99,7 +99,7 @@ enum status mf_etd_sample(struct etd *etd, const struct simulation *simulation) 
 /// @param[out] pairs            shape [bins]: begun, sum over origins; may be NULL
 /// Fails: NO_MEMORY. Tested: test_etd, test_etd_brute_force.
 enum status mf_etd_result(const struct etd *const *replicas, size_t count, double *survival,
-                       double *error, uint64_t *pairs) MUST_USE;
+                          double *error, uint64_t *pairs) MUST_USE;
 
 /// What goes with a checkpoint. The first span is `state`: read it before the others and call
 /// mf_etd_make_room, since their lengths depend on it.

@@ -63,7 +63,7 @@ static struct tally advance(const struct etd *const *replicas, size_t count, siz
 }
 
 enum status mf_etd_result(const struct etd *const *replicas, size_t count, double *survival,
-                       double *error, uint64_t *pairs) {
+                          double *error, uint64_t *pairs) {
     enum status status = STATUS_OK;
     const size_t times = (size_t)replicas[0]->grid.times, bins = (size_t)replicas[0]->grid.bins;
     size_t block_count = 0;

@@ -25,9 +25,10 @@ static double measure(const struct rdf_bins *bins, const double *g, const double
         const double part = shortest_range + (1 - shortest_range) * k / RANGES;
         struct rdf_bins fewer = *bins;
         fewer.count = (size_t)ceil(part * (double)bins->count);
-        squares += pow(mf_kirkwood_buff_integrate(&fewer, g, error, box, particles).compressibility -
-                           whole.compressibility,
-                       2);
+        squares +=
+            pow(mf_kirkwood_buff_integrate(&fewer, g, error, box, particles).compressibility -
+                    whole.compressibility,
+                2);
     }
     *variance = squares / RANGES + whole.compressibility_error * whole.compressibility_error;
     return whole.compressibility;
@@ -43,8 +44,8 @@ static double least(const struct composition *composition, int pair) {
 }
 
 double mf_finite_size_factor_of(const struct rdf_bins *bins, const double *g, const double *error,
-                             const struct box *box, const struct composition *composition, int pair,
-                             double from, double to) {
+                                const struct box *box, const struct composition *composition,
+                                int pair, double from, double to) {
     double s = 0, variance;
     if (from == to)
         return 1;

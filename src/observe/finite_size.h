@@ -23,14 +23,14 @@
 /// Tested against the exact g of N hard rods: test_finite_size.
 double mf_finite_size_factor(double s, double from, double to);
 
-/// The same with the s that g itself shows: 1 + ρG by mf_kirkwood_buff_integrate, drawn towards 0, the
-/// value of a liquid, by the share that its error has in it: s (1 − error²/s²), or 0. The error is
-/// that by statistics and the scatter of s with the range of the integral, since the last
+/// The same with the s that g itself shows: 1 + ρG by mf_kirkwood_buff_integrate, drawn towards 0,
+/// the value of a liquid, by the share that its error has in it: s (1 − error²/s²), or 0. The error
+/// is that by statistics and the scatter of s with the range of the integral, since the last
 /// oscillations may be cut off. An s beyond N/20 is one of types that have parted, for which the
 /// box is no part of a larger one: it counts as 0, and so does that in two dimensions.
 /// @param[in] g, error    shape [bins.count], of this kind of pairs in a system of `from` particles
 /// @param[in] box, composition  densities and shares of both systems
 /// @param[in] pair        kind of pairs
 double mf_finite_size_factor_of(const struct rdf_bins *bins, const double *g, const double *error,
-                             const struct box *box, const struct composition *composition, int pair,
-                             double from, double to);
+                                const struct box *box, const struct composition *composition,
+                                int pair, double from, double to);

@@ -16,23 +16,24 @@ static enum status check(const struct simulation *simulation, double range) {
     const struct simulation_setup *setup = &simulation->setup;
     if (setup->weight == NULL)
         return mf_status_fail(STATUS_BAD_INPUT,
-                           "force_covariance: the scene has no dissipative weight to be seen");
+                              "force_covariance: the scene has no dissipative weight to be seen");
     if (setup->integrator->friction)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                           "force_covariance: \"%s\" splits friction and noise off the forces; use "
-                           "\"dynamics\": {\"integrator\": \"dpd-verlet\"}",
-                           setup->integrator->name);
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "force_covariance: \"%s\" splits friction and noise off the forces; use "
+            "\"dynamics\": {\"integrator\": \"dpd-verlet\"}",
+            setup->integrator->name);
     // A part in 10⁹ forgives a range that was rounded in another unit.
     if (range > mf_pair_cutoff(&simulation->law) * (1 + 1e-9))
         return mf_status_fail(STATUS_BAD_INPUT,
-                           "force_covariance: the range %g exceeds %g, that of the forces", range,
-                           mf_pair_cutoff(&simulation->law));
+                              "force_covariance: the range %g exceeds %g, that of the forces",
+                              range, mf_pair_cutoff(&simulation->law));
     return STATUS_OK;
 }
 
 enum status mf_force_covariance_init(struct force_covariance *covariance,
-                                  const struct force_covariance_plan *plan,
-                                  const struct simulation *simulation, size_t planned) {
+                                     const struct force_covariance_plan *plan,
+                                     const struct simulation *simulation, size_t planned) {
     enum status status = STATUS_OK;
     const struct table *weight = simulation->setup.weight;
     const double range = plan->range > 0 || weight == NULL ? plan->range : weight->cutoff;
@@ -66,7 +67,7 @@ static double distance(const struct particles *particles, size_t i, size_t j) {
 }
 
 void mf_force_covariance_sample(struct force_covariance *covariance,
-                             const struct simulation *simulation) {
+                                const struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
     const struct neighbours *neighbours = &simulation->neighbours;
     const size_t most = FORCE_COVARIANCE_BLOCKS - 1, sample = covariance->samples++;
@@ -106,7 +107,7 @@ static double find_error(const struct force_covariance *covariance, size_t bin, 
 }
 
 void mf_force_covariance_result(const struct force_covariance *covariance, double *kappa,
-                             double *error) {
+                                double *error) {
     for (size_t bin = 0; bin < covariance->bins; bin++) {
         double products = 0, pairs = 0;
         for (size_t b = 0; b < FORCE_COVARIANCE_BLOCKS; b++) {
@@ -119,8 +120,8 @@ void mf_force_covariance_result(const struct force_covariance *covariance, doubl
 }
 
 void mf_force_covariance_extrapolate(const double time_step[2], const double *const kappa[2],
-                                  const double *const error[2], size_t bins, double *squared,
-                                  double *squared_error) {
+                                     const double *const error[2], size_t bins, double *squared,
+                                     double *squared_error) {
     const double first = time_step[1] / (time_step[1] - time_step[0]), second = 1 - first;
     for (size_t k = 0; k < bins; k++) {
         squared[k] = first * kappa[0][k] + second * kappa[1][k];

@@ -44,19 +44,19 @@ struct force_covariance {
 /// Fails: BAD_INPUT if the simulation has no ω, if its integrator does not take friction as a
 /// force, or if the range exceeds that of the forces; NO_MEMORY.
 enum status mf_force_covariance_init(struct force_covariance *covariance,
-                                  const struct force_covariance_plan *plan,
-                                  const struct simulation *simulation, size_t planned) MUST_USE;
+                                     const struct force_covariance_plan *plan,
+                                     const struct simulation *simulation, size_t planned) MUST_USE;
 void mf_force_covariance_clear(struct force_covariance *covariance);
 
 /// Add the pairs of the present configuration, the forces being those of its step.
 void mf_force_covariance_sample(struct force_covariance *covariance,
-                             const struct simulation *simulation);
+                                const struct simulation *simulation);
 
 /// κ and its standard error, by jackknife over blocks of consecutive samples.
 /// @param[out] kappa, error  shape [bins]; NaN without pairs; [(k_B T_0)² τ/λ² = k_B T_0 μ/τ]
 /// Tested: test_force_covariance (unit, physics).
 void mf_force_covariance_result(const struct force_covariance *covariance, double *kappa,
-                             double *error);
+                                double *error);
 
 /// Combine the results of two time steps; errors as of independent runs.
 /// @param[in]  time_step    of each [τ]; not equal
@@ -64,8 +64,8 @@ void mf_force_covariance_result(const struct force_covariance *covariance, doubl
 /// @param[out] squared, squared_error  2 k_B T ω², shape [bins]
 /// Tested: test_force_covariance.
 void mf_force_covariance_extrapolate(const double time_step[2], const double *const kappa[2],
-                                  const double *const error[2], size_t bins, double *squared,
-                                  double *squared_error);
+                                     const double *const error[2], size_t bins, double *squared,
+                                     double *squared_error);
 
 enum { FORCE_COVARIANCE_SPANS = 3 };
 size_t mf_force_covariance_spans(struct force_covariance *covariance, struct memory_span *spans);

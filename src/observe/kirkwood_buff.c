@@ -13,8 +13,8 @@ static double weight_below(double r, double range) {
 }
 
 struct kirkwood_buff mf_kirkwood_buff_integrate(const struct rdf_bins *bins, const double *g,
-                                             const double *error, const struct box *box,
-                                             size_t count) {
+                                                const double *error, const struct box *box,
+                                                size_t count) {
     const double range = mf_rdf_bins_range(bins);
     const double volume = box->length[0] * box->length[1] * box->length[2];
     const double density = (double)count / volume, all = weight_below(range, range);

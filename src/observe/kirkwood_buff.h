@@ -24,5 +24,5 @@ struct kirkwood_buff {
 /// @param[in] box, count  of the system that g comes from, in three dimensions
 /// Tested: test_kirkwood_buff.
 struct kirkwood_buff mf_kirkwood_buff_integrate(const struct rdf_bins *bins, const double *g,
-                                             const double *error, const struct box *box,
-                                             size_t count);
+                                                const double *error, const struct box *box,
+                                                size_t count);

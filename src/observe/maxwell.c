@@ -16,12 +16,12 @@ void mf_maxwell_clear(struct maxwell *maxwell) {
     *maxwell = (struct maxwell){0};
 }
 
-void mf_maxwell_sample(struct maxwell *maxwell, const struct particles *particles, double temperature,
-                    uint64_t seed, uint64_t step) {
+void mf_maxwell_sample(struct maxwell *maxwell, const struct particles *particles,
+                       double temperature, uint64_t seed, uint64_t step) {
     const double count = (double)particles->count;
     double normal[4];
-    mf_rng_normal4(mf_rng_philox(seed, RNG_MEAN_VELOCITY, (uint32_t)step, (uint32_t)(step >> 32), 0),
-                normal);
+    mf_rng_normal4(
+        mf_rng_philox(seed, RNG_MEAN_VELOCITY, (uint32_t)step, (uint32_t)(step >> 32), 0), normal);
     for (int d = 0; d < particles->box.dimensions; d++) {
         // The order is that of the list, which is the same for any number of threads.
         const double *v = particles->velocity[d];

@@ -24,8 +24,8 @@ void mf_maxwell_clear(struct maxwell *maxwell);
 /// momentum 0 is then exactly dN independent numbers N(0, T).
 /// @param[in] temperature  that was set [k_B T_0]
 /// @param[in] seed, step   of the drawn mean: the same for any order of particles or threads
-void mf_maxwell_sample(struct maxwell *maxwell, const struct particles *particles, double temperature,
-                    uint64_t seed, uint64_t step);
+void mf_maxwell_sample(struct maxwell *maxwell, const struct particles *particles,
+                       double temperature, uint64_t seed, uint64_t step);
 
 struct maxwell_summary {
     double numbers;     ///< velocity components in all

@@ -42,7 +42,7 @@ static enum status run_until(struct simulation *simulation, int64_t step,
 }
 
 enum status mf_measure_equilibrate(struct simulation *simulation, const struct measure_plan *plan,
-                                double *temperature, const struct measure_listener *listener) {
+                                   double *temperature, const struct measure_listener *listener) {
     // Pieces short enough to tell of progress; their temperatures over the last tenth are averaged.
     enum { PIECES = 100, LAST = 10 };
     double sum = 0;
@@ -111,8 +111,8 @@ static enum status run_sampled_step(struct simulation *simulation, int64_t due,
 }
 
 enum status mf_measure_sample(struct simulation *simulation, const struct measure_plan *plan,
-                           struct measure_targets targets,
-                           const struct measure_listener *listener) {
+                              struct measure_targets targets,
+                              const struct measure_listener *listener) {
     const int64_t begun = (int64_t)simulation->step - plan->equilibration;
     for (int64_t sample = begun / plan->every; sample < plan->samples; sample++) {
         const int64_t due = plan->equilibration + (sample + 1) * plan->every;
@@ -123,7 +123,7 @@ enum status mf_measure_sample(struct simulation *simulation, const struct measur
             mf_force_covariance_sample(targets.force_covariance, simulation);
         if (targets.rdf_force)
             TRY(mf_rdf_force_sample(targets.rdf_force, &simulation->particles,
-                                 &simulation->neighbours));
+                                    &simulation->neighbours));
         if (targets.thermodynamics)
             TRY(mf_thermodynamics_sample(targets.thermodynamics, simulation));
         tell(listener, simulation, plan);

@@ -42,11 +42,11 @@ struct measure_listener {
 /// that are still due by the number of the simulation's step.
 /// Fails: as mf_simulation_run; NO_MEMORY. What was sampled before a failure stays.
 enum status mf_measure_sample(struct simulation *simulation, const struct measure_plan *plan,
-                           struct measure_targets targets,
-                           const struct measure_listener *listener) MUST_USE;
+                              struct measure_targets targets,
+                              const struct measure_listener *listener) MUST_USE;
 
 /// Mean kinetic temperature over the last tenth of an equilibration of plan->equilibration steps,
 /// which it runs [k_B T_0].
 enum status mf_measure_equilibrate(struct simulation *simulation, const struct measure_plan *plan,
-                                double *temperature,
-                                const struct measure_listener *listener) MUST_USE;
+                                   double *temperature,
+                                   const struct measure_listener *listener) MUST_USE;

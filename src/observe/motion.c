@@ -32,7 +32,7 @@ static size_t complete_origins(const struct motion_plan *plan, size_t last) {
 }
 
 enum status mf_motion_init(struct motion *motion, const struct motion_plan *plan,
-                        const struct simulation *simulation, int64_t begin, int64_t steps) {
+                           const struct simulation *simulation, int64_t begin, int64_t steps) {
     enum status status = STATUS_OK;
     *motion = (struct motion){.plan = *plan,
                               .dimensions = simulation->setup.box.dimensions,
@@ -42,10 +42,11 @@ enum status mf_motion_init(struct motion *motion, const struct motion_plan *plan
                               .slots = (size_t)(plan->lags / plan->origin_every + 1)};
     const size_t origins = complete_origins(plan, (size_t)(steps / plan->every));
     if (origins == 0)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                           "motion: %lld lags of %lld steps are longer than the %lld steps of the "
-                           "measurement",
-                           (long long)plan->lags, (long long)plan->every, (long long)steps);
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "motion: %lld lags of %lld steps are longer than the %lld steps of the "
+            "measurement",
+            (long long)plan->lags, (long long)plan->every, (long long)steps);
     // Blocks of the same size: the mean over them is the mean over their origins.
     motion->each = (origins + MOST_BLOCKS - 1) / MOST_BLOCKS;
     motion->blocks = origins / motion->each;
@@ -156,7 +157,8 @@ static void correlate(struct motion *motion, size_t origin, int threads) {
                                       motion->count};
     const size_t place = origin / motion->each * ((size_t)motion->plan.lags + 1) + lag;
     const double count = (double)motion->count;
-    motion->squares[place] += mf_parallel_sum(motion->count, threads, sum_squares, &positions) / count;
+    motion->squares[place] +=
+        mf_parallel_sum(motion->count, threads, sum_squares, &positions) / count;
     motion->products[place] +=
         mf_parallel_sum(motion->count, threads, sum_products, &velocities) / count;
 }
@@ -176,7 +178,7 @@ void mf_motion_sample(struct motion *motion, const struct simulation *simulation
         correlate(motion, origin, particles->threads);
     if (setup->weight && sample % lags == 0)
         mf_maxwell_sample(&motion->maxwell, particles, setup->temperature, setup->seed,
-                       simulation->step);
+                          simulation->step);
     motion->samples++;
 }
 
@@ -290,7 +292,7 @@ static void find_systematic(const struct motion *motion, struct motion_summary *
 }
 
 struct motion_summary mf_motion_result(const struct motion *motion,
-                                    const struct motion_curves *curves) {
+                                       const struct motion_curves *curves) {
     struct motion_summary s = {0};
     const size_t lags = (size_t)motion->plan.lags;
     for (size_t lag = 0; curves && lag <= lags; lag++) {
@@ -318,15 +320,17 @@ enum status mf_motion_judge(const struct motion_summary *summary) {
     const struct motion_summary *s = summary;
     const double error = mf_motion_green_kubo_uncertainty(s);
     if (s->green_kubo_sampling > fmax(coarse * fabs(s->green_kubo), s->green_kubo_error))
-        return mf_status_fail(STATUS_UNCONVERGED,
-                           "D by Green and Kubo, %.3g, may be off by %.2g: the VACF falls by %.0f "
-                           "%% from one sample to the next; lower \"motion.every\"",
-                           s->green_kubo, s->green_kubo_sampling, 100 * s->vacf_drop);
+        return mf_status_fail(
+            STATUS_UNCONVERGED,
+            "D by Green and Kubo, %.3g, may be off by %.2g: the VACF falls by %.0f "
+            "%% from one sample to the next; lower \"motion.every\"",
+            s->green_kubo, s->green_kubo_sampling, 100 * s->vacf_drop);
     // An error of 0 is not known: there was one window.
     if (s->msd_error > 0 && fabs(s->msd - s->green_kubo) > deviations * hypot(s->msd_error, error))
-        return mf_status_fail(STATUS_UNCONVERGED,
-                           "D is %.3g by the MSD and %.3g by Green and Kubo, with errors of %.1g "
-                           "and %.1g: a longer window (\"motion.lags\") may bring them together",
-                           s->msd, s->green_kubo, s->msd_error, error);
+        return mf_status_fail(
+            STATUS_UNCONVERGED,
+            "D is %.3g by the MSD and %.3g by Green and Kubo, with errors of %.1g "
+            "and %.1g: a longer window (\"motion.lags\") may bring them together",
+            s->msd, s->green_kubo, s->msd_error, error);
     return STATUS_OK;
 }

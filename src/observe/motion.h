@@ -46,7 +46,8 @@ struct motion {
 /// within them are begun.
 /// Fails: BAD_INPUT if there is no whole window; NO_MEMORY.
 enum status mf_motion_init(struct motion *motion, const struct motion_plan *plan,
-                        const struct simulation *simulation, int64_t begin, int64_t steps) MUST_USE;
+                           const struct simulation *simulation, int64_t begin,
+                           int64_t steps) MUST_USE;
 void mf_motion_clear(struct motion *motion);
 
 /// The step of the next sample, or INT64_MAX after the last.
@@ -92,7 +93,7 @@ struct motion_summary {
 /// the width differ by; `green_kubo_truncation` what the second half of the window adds beyond its
 /// statistical error: a VACF that has decayed adds nothing there.
 struct motion_summary mf_motion_result(const struct motion *motion,
-                                    const struct motion_curves *curves);
+                                       const struct motion_curves *curves);
 
 /// The error of D of the VACF with sampling and truncation [λ²/τ].
 double mf_motion_green_kubo_uncertainty(const struct motion_summary *summary);

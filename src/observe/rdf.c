@@ -21,14 +21,16 @@ double mf_rdf_bins_range(const struct rdf_bins *bins) {
     return mf_rdf_bins_edge(bins, bins->count);
 }
 
-double mf_rdf_ideal_pairs(const struct rdf_bins *bins, size_t k, const struct box *box, size_t count) {
+double mf_rdf_ideal_pairs(const struct rdf_bins *bins, size_t k, const struct box *box,
+                          size_t count) {
     const double pairs = 0.5 * (double)count * ((double)count - 1);
-    return pairs * mf_box_shell_volume(box, mf_rdf_bins_edge(bins, k), mf_rdf_bins_edge(bins, k + 1)) /
+    return pairs *
+           mf_box_shell_volume(box, mf_rdf_bins_edge(bins, k), mf_rdf_bins_edge(bins, k + 1)) /
            mf_box_volume(box);
 }
 
 double mf_rdf_ideal_pairs_of(const struct rdf_bins *bins, size_t k, const struct box *box,
-                          const struct composition *composition, int pair) {
+                             const struct composition *composition, int pair) {
     return mf_composition_possible_pairs(composition, pair) *
            mf_box_shell_volume(box, mf_rdf_bins_edge(bins, k), mf_rdf_bins_edge(bins, k + 1)) /
            mf_box_volume(box);
@@ -52,9 +54,10 @@ static void count_batch(void *context, const float *squared_distances, size_t co
 }
 
 void mf_rdf_count_pairs(const struct rdf_bins *bins, const struct particles *particles,
-                     const struct neighbours *neighbours, double *histogram) {
+                        const struct neighbours *neighbours, double *histogram) {
     struct counting counting = {bins, NULL, histogram};
-    mf_neighbours_visit_distances(neighbours, particles, mf_rdf_bins_range(bins), count_batch, &counting);
+    mf_neighbours_visit_distances(neighbours, particles, mf_rdf_bins_range(bins), count_batch,
+                                  &counting);
 }
 
 static void count_batch_of(void *context, const struct neighbours_batch *batch) {
@@ -71,18 +74,18 @@ static void count_batch_of(void *context, const struct neighbours_batch *batch) 
 }
 
 void mf_rdf_count_pairs_of(const struct rdf_bins *bins, const struct composition *composition,
-                        const struct particles *particles, const struct neighbours *neighbours,
-                        double *histogram) {
+                           const struct particles *particles, const struct neighbours *neighbours,
+                           double *histogram) {
     struct counting counting = {bins, composition, histogram};
     if (composition_is_mixed(composition))
         mf_neighbours_visit_pairs(neighbours, particles, mf_rdf_bins_range(bins), count_batch_of,
-                               &counting);
+                                  &counting);
     else
         mf_rdf_count_pairs(bins, particles, neighbours, histogram);
 }
 
 enum status mf_rdf_init(struct rdf *rdf, const struct rdf_bins *bins, const struct box *box,
-                     size_t particle_count, double list_cutoff, size_t planned) {
+                        size_t particle_count, double list_cutoff, size_t planned) {
     const struct composition composition = mf_composition_of_one((int64_t)particle_count);
     return mf_rdf_init_mixture(rdf, bins, box, &composition, list_cutoff, planned);
 }
@@ -95,8 +98,8 @@ static size_t count_all(const struct composition *composition) {
 }
 
 enum status mf_rdf_init_mixture(struct rdf *rdf, const struct rdf_bins *bins, const struct box *box,
-                             const struct composition *composition, double list_cutoff,
-                             size_t planned) {
+                                const struct composition *composition, double list_cutoff,
+                                size_t planned) {
     enum status status = STATUS_OK;
     const size_t particle_count = count_all(composition);
     *rdf = (struct rdf){.bins = *bins,
@@ -114,15 +117,16 @@ enum status mf_rdf_init_mixture(struct rdf *rdf, const struct rdf_bins *bins, co
     NEW_ARRAY(rdf->counted.counts, NEIGHBOURS_MOST_PARTS * pair_histogram_size(&rdf->counted));
     if (rdf->needs_own_list) {
         if (mf_box_shortest(box) < 2 * mf_rdf_bins_range(bins)) {
-            status = mf_status_fail(STATUS_BAD_INPUT,
-                                 "the box is too small for the RDF: its shortest edge %g is below "
-                                 "twice the range %g",
-                                 mf_box_shortest(box), mf_rdf_bins_range(bins));
+            status =
+                mf_status_fail(STATUS_BAD_INPUT,
+                               "the box is too small for the RDF: its shortest edge %g is below "
+                               "twice the range %g",
+                               mf_box_shortest(box), mf_rdf_bins_range(bins));
             goto done;
         }
         CHECK(mf_particles_init(&rdf->own_particles, box, particle_count));
         CHECK(mf_neighbours_init(&rdf->own_list, NEIGHBOURS_HALF, box, particle_count,
-                              mf_rdf_bins_range(bins), 0));
+                                 mf_rdf_bins_range(bins), 0));
     }
 done:
     if (status != STATUS_OK)
@@ -180,12 +184,12 @@ void mf_rdf_sample_counted(struct rdf *rdf) {
 }
 
 enum status mf_rdf_sample(struct rdf *rdf, const struct particles *particles,
-                       const struct neighbours *neighbours) {
+                          const struct neighbours *neighbours) {
     double *histogram = next_block(rdf);
     if (rdf->needs_own_list) {
         TRY(make_own_list(rdf, particles));
         mf_rdf_count_pairs_of(&rdf->bins, &rdf->composition, &rdf->own_particles, &rdf->own_list,
-                           histogram);
+                              histogram);
     } else {
         mf_rdf_count_pairs_of(&rdf->bins, &rdf->composition, particles, neighbours, histogram);
     }
@@ -195,7 +199,7 @@ enum status mf_rdf_sample(struct rdf *rdf, const struct particles *particles,
 /// Expected pairs in place k of an array over kinds and bins.
 static double ideal_at(const struct rdf *rdf, size_t k) {
     return mf_rdf_ideal_pairs_of(&rdf->bins, k % rdf->bins.count, &rdf->box, &rdf->composition,
-                              (int)(k / rdf->bins.count));
+                                 (int)(k / rdf->bins.count));
 }
 
 /// Blocks with samples, of the replica that has fewest.
@@ -291,7 +295,7 @@ static double jackknife(const struct rdf *replicas, size_t count, const double *
 }
 
 enum status mf_rdf_distance(const struct rdf *replicas, size_t count, const double *target,
-                         double *rmse, double *error) {
+                            double *rmse, double *error) {
     enum status status = STATUS_OK;
     const size_t all = all_bins(replicas), blocks = filled_blocks(replicas, count);
     const double values = (double)(count * blocks);

@@ -5,7 +5,8 @@
 /// with S_k the pairs in bin k and v_k the exact volume of its shell (area of its ring in 2D). A
 /// mixture has a partial g for each kind of pairs,
 ///   g_ab(r_k) = (V / (N_a N_b)) ⟨S_ab,k⟩ / v_k for a ≠ b, and as above with N_a for a = b.
-/// Arrays over kinds and bins have shape [pairs, bins], the kinds in the order of mf_composition_pair.
+/// Arrays over kinds and bins have shape [pairs, bins], the kinds in the order of
+/// mf_composition_pair.
 #pragma once
 
 #include "base/status.h"
@@ -21,24 +22,25 @@ struct rdf_bins {
 
 double mf_rdf_bins_edge(const struct rdf_bins *bins, size_t k);   ///< lower edge of bin k [λ]
 double mf_rdf_bins_centre(const struct rdf_bins *bins, size_t k); ///< [λ]
-double mf_rdf_bins_range(const struct rdf_bins *bins);            ///< upper edge of the last bin [λ]
+double mf_rdf_bins_range(const struct rdf_bins *bins); ///< upper edge of the last bin [λ]
 
 /// Expected S_k if g were 1 [pairs]: N (N − 1) v_k / (2 V).
-double mf_rdf_ideal_pairs(const struct rdf_bins *bins, size_t k, const struct box *box, size_t count);
+double mf_rdf_ideal_pairs(const struct rdf_bins *bins, size_t k, const struct box *box,
+                          size_t count);
 
 /// The same of one kind of pairs: N_a N_b v_k / V if they are unlike.
 double mf_rdf_ideal_pairs_of(const struct rdf_bins *bins, size_t k, const struct box *box,
-                          const struct composition *composition, int pair);
+                             const struct composition *composition, int pair);
 
 /// Add the pairs of one configuration to `histogram`, shape [bins], uncleared, whatever their
 /// types. The list must be a half list complete for the range of the bins.
 void mf_rdf_count_pairs(const struct rdf_bins *bins, const struct particles *particles,
-                     const struct neighbours *neighbours, double *histogram);
+                        const struct neighbours *neighbours, double *histogram);
 
 /// The same by kinds of pairs: shape [pairs, bins].
 void mf_rdf_count_pairs_of(const struct rdf_bins *bins, const struct composition *composition,
-                        const struct particles *particles, const struct neighbours *neighbours,
-                        double *histogram);
+                           const struct particles *particles, const struct neighbours *neighbours,
+                           double *histogram);
 
 /// Accumulates configurations into consecutive blocks.
 struct rdf {
@@ -61,12 +63,12 @@ struct rdf {
 /// complete up to `list_cutoff`. Fails: NO_MEMORY; BAD_INPUT if the box is shorter than twice the
 /// range of the bins.
 enum status mf_rdf_init(struct rdf *rdf, const struct rdf_bins *bins, const struct box *box,
-                     size_t particle_count, double list_cutoff, size_t planned) MUST_USE;
+                        size_t particle_count, double list_cutoff, size_t planned) MUST_USE;
 
 /// The same for the partial g of a mixture, which counts its types.
 enum status mf_rdf_init_mixture(struct rdf *rdf, const struct rdf_bins *bins, const struct box *box,
-                             const struct composition *composition, double list_cutoff,
-                             size_t planned) MUST_USE;
+                                const struct composition *composition, double list_cutoff,
+                                size_t planned) MUST_USE;
 void mf_rdf_clear(struct rdf *rdf);
 
 /// What a force pass is to count for the next sample, cleared: for pair_law.histogram. NULL if the
@@ -78,21 +80,22 @@ void mf_rdf_sample_counted(struct rdf *rdf);
 
 /// Add the present configuration. Fails: NO_MEMORY.
 enum status mf_rdf_sample(struct rdf *rdf, const struct particles *particles,
-                       const struct neighbours *neighbours) MUST_USE;
+                          const struct neighbours *neighbours) MUST_USE;
 
 /// g and its standard error over the blocks of all replicas, whose correlation the bins of a kind
-/// of pairs tell together (mf_statistics_inefficiency): of close samples even the means of blocks are
-/// correlated.
+/// of pairs tell together (mf_statistics_inefficiency): of close samples even the means of blocks
+/// are correlated.
 /// @param[in]  replicas  shape [count], same bins, box and composition
 /// @param[out] g, error  shape [pairs, bins.count]; error may be NULL
 /// Fails: NO_MEMORY, with an error asked for. Tested: test_rdf, test_errors.
-enum status mf_rdf_result(const struct rdf *replicas, size_t count, double *g, double *error) MUST_USE;
+enum status mf_rdf_result(const struct rdf *replicas, size_t count, double *g,
+                          double *error) MUST_USE;
 
 /// Root mean square of g − g* over all bins of all kinds of pairs, with its standard error by
 /// leaving out blocks (jackknife), whose correlation is that of the bins; `error` may be NULL.
 /// Fails: NO_MEMORY.
 enum status mf_rdf_distance(const struct rdf *replicas, size_t count, const double *target,
-                         double *rmse, double *error) MUST_USE;
+                            double *rmse, double *error) MUST_USE;
 
 /// sqrt(mean of (g − g*)²) over `count` bins.
 double mf_rdf_rmse(const double *g, const double *target, size_t count);

@@ -28,9 +28,9 @@ bool mf_rdf_force_applies(const struct table *potential, double temperature) {
 }
 
 enum status mf_rdf_force_init(struct rdf_force *force, const struct rdf_bins *bins,
-                           const struct box *box, size_t particle_count,
-                           const struct table *potential, double temperature, double list_cutoff,
-                           size_t planned) {
+                              const struct box *box, size_t particle_count,
+                              const struct table *potential, double temperature, double list_cutoff,
+                              size_t planned) {
     enum status status = STATUS_OK;
     const double range = mf_rdf_bins_range(bins);
     *force = (struct rdf_force){.bins = *bins,
@@ -42,10 +42,11 @@ enum status mf_rdf_force_init(struct rdf_force *force, const struct rdf_bins *bi
                                 .blocks = planned < BLOCKS ? planned : BLOCKS,
                                 .needs_own_list = range > list_cutoff * (1 + 1e-9)};
     if (mf_box_shortest(box) < 2 * range)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                           "the box is too small for the RDF: its shortest edge %g is below twice "
-                           "the range %g",
-                           mf_box_shortest(box), range);
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "the box is too small for the RDF: its shortest edge %g is below twice "
+            "the range %g",
+            mf_box_shortest(box), range);
     NEW_ARRAY(force->sums, force->blocks * RDF_FORCE_SUMS * bins->count);
     NEW_ARRAY(force->totals, force->blocks);
     NEW_ARRAY(force->pairs, bins->count + 2);
@@ -53,7 +54,7 @@ enum status mf_rdf_force_init(struct rdf_force *force, const struct rdf_bins *bi
     CHECK(mf_particles_init(&force->own_particles, box, particle_count));
     if (force->needs_own_list)
         CHECK(mf_neighbours_init(&force->own_list, NEIGHBOURS_HALF, box, particle_count,
-                              fmax(range, potential->cutoff), 0));
+                                 fmax(range, potential->cutoff), 0));
 done:
     if (status != STATUS_OK)
         mf_rdf_force_clear(force);
@@ -212,7 +213,7 @@ static void add_sample(const struct rdf_force *force, double *sums,
 }
 
 enum status mf_rdf_force_sample(struct rdf_force *force, struct particles *particles,
-                             const struct neighbours *neighbours) {
+                                const struct neighbours *neighbours) {
     if (force->needs_own_list) {
         TRY(add_own_pairs(force, particles));
     } else {
@@ -345,7 +346,7 @@ done:
 }
 
 enum status mf_rdf_force_result(const struct rdf_force *replicas, size_t count,
-                             enum rdf_force_version version, double *g, double *error) {
+                                enum rdf_force_version version, double *g, double *error) {
     enum status status = STATUS_OK;
     struct pool pool = {.bins = replicas->bins.count};
     NEW_ARRAY(pool.sums, RDF_FORCE_SUMS * pool.bins);

@@ -93,9 +93,9 @@ bool mf_rdf_force_applies(const struct table *potential, double temperature);
 /// Prepare for `planned` samples of a system whose list is complete up to `list_cutoff`.
 /// Fails: NO_MEMORY; BAD_INPUT if the box is shorter than twice the range of the bins.
 enum status mf_rdf_force_init(struct rdf_force *force, const struct rdf_bins *bins,
-                           const struct box *box, size_t particle_count,
-                           const struct table *potential, double temperature, double list_cutoff,
-                           size_t planned) MUST_USE;
+                              const struct box *box, size_t particle_count,
+                              const struct table *potential, double temperature, double list_cutoff,
+                              size_t planned) MUST_USE;
 void mf_rdf_force_clear(struct rdf_force *force);
 
 /// Add the present configuration. Its conservative forces are computed by a pass of its own; the
@@ -104,7 +104,7 @@ void mf_rdf_force_clear(struct rdf_force *force);
 ///                        read if that was beyond the list
 /// Fails: NO_MEMORY. Tested: test_rdf_force_brute_force.
 enum status mf_rdf_force_sample(struct rdf_force *force, struct particles *particles,
-                             const struct neighbours *neighbours) MUST_USE;
+                                const struct neighbours *neighbours) MUST_USE;
 
 /// g and its standard error by leaving out blocks of all replicas (jackknife), the combination's
 /// weights each time anew, so that what they cost is in the error.
@@ -112,7 +112,7 @@ enum status mf_rdf_force_sample(struct rdf_force *force, struct particles *parti
 /// @param[out] g, error  shape [bins.count]; error may be NULL
 /// Fails: NO_MEMORY. Tested: test_rdf_force (physics).
 enum status mf_rdf_force_result(const struct rdf_force *replicas, size_t count,
-                             enum rdf_force_version version, double *g, double *error) MUST_USE;
+                                enum rdf_force_version version, double *g, double *error) MUST_USE;
 
 /// @name Restart
 enum { RDF_FORCE_SPANS = 3 };

@@ -22,7 +22,7 @@ void mf_thermodynamics_clear(struct thermodynamics *thermodynamics) {
 }
 
 enum status mf_thermodynamics_sample(struct thermodynamics *thermodynamics,
-                                  const struct simulation *simulation) {
+                                     const struct simulation *simulation) {
     double *here = thermodynamics->values + thermodynamics->samples;
     const size_t stride = thermodynamics->planned;
     const double count = (double)simulation->particles.count;
@@ -31,16 +31,16 @@ enum status mf_thermodynamics_sample(struct thermodynamics *thermodynamics,
     here[THERMODYNAMICS_PRESSURE * stride] = mf_simulation_pressure(simulation);
     if (simulation->law.potential)
         TRY(mf_reference_configurational(simulation->law.potential, &simulation->law.composition,
-                                      simulation->setup.temperature, &simulation->particles,
-                                      &simulation->neighbours,
-                                      &here[THERMODYNAMICS_FORCE_SQUARES * stride],
-                                      &here[THERMODYNAMICS_LAPLACIAN * stride]));
+                                         simulation->setup.temperature, &simulation->particles,
+                                         &simulation->neighbours,
+                                         &here[THERMODYNAMICS_FORCE_SQUARES * stride],
+                                         &here[THERMODYNAMICS_LAPLACIAN * stride]));
     thermodynamics->samples++;
     return STATUS_OK;
 }
 
 const double *mf_thermodynamics_series(const struct thermodynamics *thermodynamics,
-                                    enum thermodynamics_quantity quantity) {
+                                       enum thermodynamics_quantity quantity) {
     return thermodynamics->values + (size_t)quantity * thermodynamics->planned;
 }
 
@@ -59,8 +59,8 @@ static double mean_of(const struct thermodynamics *replicas, size_t count, int q
     struct running_mean mean = {0};
     for (size_t r = 0; quantity >= 0 && r < count; r++)
         for (size_t k = 0; k < replicas[r].samples; k++)
-            mf_statistics_add(&mean, mf_thermodynamics_series(&replicas[r],
-                                                        (enum thermodynamics_quantity)quantity)[k]);
+            mf_statistics_add(&mean, mf_thermodynamics_series(
+                                         &replicas[r], (enum thermodynamics_quantity)quantity)[k]);
     return quantity < 0 ? 1 : mean.mean;
 }
 
@@ -93,7 +93,7 @@ static size_t ratio(const struct thermodynamics *replicas, size_t count,
 }
 
 struct thermodynamics_summary mf_thermodynamics_result(const struct thermodynamics *replicas,
-                                                    size_t count) {
+                                                       size_t count) {
     struct thermodynamics_summary s;
     s.blocks = ratio(replicas, count, THERMODYNAMICS_TEMPERATURE, -1, &s.temperature,
                      &s.temperature_error);
@@ -118,7 +118,7 @@ static bool agrees(double temperature, double error, double wanted) {
 }
 
 enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary,
-                                 const struct simulation_setup *setup) {
+                                    const struct simulation_setup *setup) {
     const struct thermodynamics_summary *s = summary;
     const double wanted = setup->weight ? setup->temperature : s->temperature;
     if (s->blocks < LEAST_BLOCKS)
@@ -127,14 +127,15 @@ enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary
         (isnan(s->temperature_configurational) ||
          agrees(s->temperature_configurational, s->temperature_configurational_error, wanted)))
         return STATUS_OK;
-    return mf_status_fail(STATUS_UNSTABLE,
-                       "the temperature is %.3g by the velocities and %.3g by the positions, not "
-                       "%.3g: lower \"time_step\", or equilibrate for longer",
-                       s->temperature, s->temperature_configurational, wanted);
+    return mf_status_fail(
+        STATUS_UNSTABLE,
+        "the temperature is %.3g by the velocities and %.3g by the positions, not "
+        "%.3g: lower \"time_step\", or equilibrate for longer",
+        s->temperature, s->temperature_configurational, wanted);
 }
 
 enum status mf_thermodynamics_judge_fit(const struct thermodynamics_summary *summary,
-                                     const struct simulation_setup *setup) {
+                                        const struct simulation_setup *setup) {
     static const double least = 0.025, errors = 3;
     const struct thermodynamics_summary *s = summary;
     TRY(mf_thermodynamics_judge(summary, setup));
@@ -143,10 +144,11 @@ enum status mf_thermodynamics_judge_fit(const struct thermodynamics_summary *sum
     if (s->blocks < LEAST_BLOCKS ||
         !(fabs(off) > fmax(least * wanted, errors * s->temperature_configurational_error)))
         return STATUS_OK;
-    return mf_status_fail(STATUS_UNSTABLE,
-                       "the temperature by the positions is %.3f(%.0f), %.1f %% off: the time step "
-                       "is coarse for this potential, or its force ends abruptly; a shorter "
-                       "\"verification.time_step\" tells which",
-                       s->temperature_configurational,
-                       ceil(1e3 * s->temperature_configurational_error), 100 * off / wanted);
+    return mf_status_fail(
+        STATUS_UNSTABLE,
+        "the temperature by the positions is %.3f(%.0f), %.1f %% off: the time step "
+        "is coarse for this potential, or its force ends abruptly; a shorter "
+        "\"verification.time_step\" tells which",
+        s->temperature_configurational, ceil(1e3 * s->temperature_configurational_error),
+        100 * off / wanted);
 }

@@ -24,11 +24,11 @@ void mf_thermodynamics_clear(struct thermodynamics *thermodynamics);
 
 /// Add a sample; the simulation's last step must have wanted its sums. Fails: NO_MEMORY.
 enum status mf_thermodynamics_sample(struct thermodynamics *thermodynamics,
-                                  const struct simulation *simulation) MUST_USE;
+                                     const struct simulation *simulation) MUST_USE;
 
 /// The series of one quantity, shape [samples].
 const double *mf_thermodynamics_series(const struct thermodynamics *thermodynamics,
-                                    enum thermodynamics_quantity quantity);
+                                       enum thermodynamics_quantity quantity);
 
 /// Means over all replicas with standard errors that see the correlation of each series, by
 /// mf_statistics_correlated_error.
@@ -40,7 +40,7 @@ struct thermodynamics_summary {
     double pressure, pressure_error;
 };
 struct thermodynamics_summary mf_thermodynamics_result(const struct thermodynamics *replicas,
-                                                    size_t count);
+                                                       size_t count);
 
 /// Whether the temperatures of a summary agree with the set one of a simulation: kinetic and
 /// configurational within 10 % and four standard errors, where there are five blocks to know them
@@ -51,11 +51,11 @@ struct thermodynamics_summary mf_thermodynamics_result(const struct thermodynami
 /// has 1.03 and 0.75. Fails: UNSTABLE with the temperatures in the message. Tested:
 /// test_thermodynamics.
 enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary,
-                                 const struct simulation_setup *setup) MUST_USE;
+                                    const struct simulation_setup *setup) MUST_USE;
 
 /// A stricter look at what was fitted: the configurational temperature off by more than 2.5 % and
 /// three standard errors says that the potential and its time step do not belong together, though
 /// the velocities look right. Fails: UNSTABLE with the numbers in the message. Tested:
 /// test_thermodynamics.
 enum status mf_thermodynamics_judge_fit(const struct thermodynamics_summary *summary,
-                                     const struct simulation_setup *setup) MUST_USE;
+                                        const struct simulation_setup *setup) MUST_USE;

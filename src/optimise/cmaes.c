@@ -3,9 +3,9 @@
 // CMA-ES by ask and tell. Inside, genes are fractions of their range.
 //
 // Bounds: the distribution knows none; a candidate beyond one is measured at its mirror image
-// inside (mf_optimiser_reflect). To the strategy the error is an even, periodic function, so there is
-// no penalty to scale, which noise and failed candidates would spoil, and an optimum at a bound is
-// in the middle of its neighbourhood.
+// inside (mf_optimiser_reflect). To the strategy the error is an even, periodic function, so there
+// is no penalty to scale, which noise and failed candidates would spoil, and an optimum at a bound
+// is in the middle of its neighbourhood.
 //
 // Noise: as UH-CMA-ES (N. Hansen et al., IEEE Trans. Evol. Comput. 13, 180 (2009)) it acts when
 // ranks are noise; but that shows from the told variances, and needs no candidate twice. The share
@@ -147,7 +147,7 @@ static void sample(struct state *state) {
     for (size_t row = 0; row < state->strategy.population; row++) {
         double *step = state->steps + row * n;
         mf_cmaes_sample(&state->distribution, state->space.seed, (uint32_t)state->progress.rounds,
-                     (uint32_t)row, step);
+                        (uint32_t)row, step);
         for (size_t k = 0; k < n; k++) {
             const double x =
                 state->distribution.mean[k] + state->distribution.moments.sigma * step[k];
@@ -164,7 +164,7 @@ static enum status create(void *memory, const struct optimiser_space *space,
     CHECK(mf_optimiser_check_space(space));
     if (state->parameters.population > 0 && state->parameters.population < 4)
         CHECK(mf_status_fail(STATUS_BAD_INPUT, "cma-es: a population of %d is below 4",
-                          (int)state->parameters.population));
+                             (int)state->parameters.population));
     state->space = *space;
     state->space.start = NULL;
     const size_t usual = usual_population(&state->parameters, space->genes);
@@ -299,8 +299,8 @@ static void keep_descent(struct state *state) {
 
 /// A new descent from anywhere.
 static void restart(struct state *state) {
-    struct rng_sequence random =
-        mf_rng_sequence_begin(state->space.seed, RNG_INITIAL, (uint32_t)++state->progress.descents, 0);
+    struct rng_sequence random = mf_rng_sequence_begin(state->space.seed, RNG_INITIAL,
+                                                       (uint32_t)++state->progress.descents, 0);
     begin_descent(state);
     for (size_t k = 0; k < state->space.genes; k++)
         state->distribution.mean[k] = mf_rng_sequence_uniform(&random);

@@ -57,7 +57,7 @@ void mf_cmaes_begin(struct cmaes_distribution *distribution, double sigma);
 /// @param[in]  seed, round, row  of its random numbers
 /// @param[out] step              shape [genes]
 void mf_cmaes_sample(const struct cmaes_distribution *distribution, uint64_t seed, uint32_t round,
-                  uint32_t row, double *step);
+                     uint32_t row, double *step);
 
 /// Move and reshape the distribution by the steps of a round (eq. 38–47): both evolution paths,
 /// rank-one and rank-µ update with negative weights ("active"), cumulative step-size control.
@@ -66,8 +66,8 @@ void mf_cmaes_sample(const struct cmaes_distribution *distribution, uint64_t see
 /// @param[in] errors  shape [population]
 /// Fails: NO_MEMORY.
 enum status mf_cmaes_update(struct cmaes_distribution *distribution,
-                         const struct cmaes_strategy *strategy, const double *steps,
-                         const double *errors) MUST_USE;
+                            const struct cmaes_strategy *strategy, const double *steps,
+                            const double *errors) MUST_USE;
 
 /// Standard deviation of a gene.
 double mf_cmaes_deviation(const struct cmaes_distribution *distribution, size_t gene);

@@ -78,14 +78,15 @@ void mf_cmaes_begin(struct cmaes_distribution *d, double sigma) {
         d->covariance[k * n + k] = d->axes[k * n + k] = d->lengths[k] = 1;
 }
 
-void mf_cmaes_sample(const struct cmaes_distribution *d, uint64_t seed, uint32_t round, uint32_t row,
-                  double *step) {
+void mf_cmaes_sample(const struct cmaes_distribution *d, uint64_t seed, uint32_t round,
+                     uint32_t row, double *step) {
     const size_t n = d->genes;
     double normal[4];
     memset(step, 0, n * sizeof *step);
     for (size_t axis = 0; axis < n; axis++) {
         if (axis % 4 == 0)
-            mf_rng_normal4(mf_rng_philox(seed, RNG_SELECTION, round, row, (uint32_t)(axis / 4)), normal);
+            mf_rng_normal4(mf_rng_philox(seed, RNG_SELECTION, round, row, (uint32_t)(axis / 4)),
+                           normal);
         const double length = d->lengths[axis] * normal[axis % 4];
         for (size_t k = 0; k < n; k++)
             step[k] += d->axes[k * n + axis] * length;
@@ -225,7 +226,7 @@ static void decompose(struct cmaes_distribution *d, const struct cmaes_strategy 
 }
 
 enum status mf_cmaes_update(struct cmaes_distribution *d, const struct cmaes_strategy *s,
-                         const double *steps, const double *errors) {
+                            const double *steps, const double *errors) {
     bool goes_on;
     struct ranked *ranked = mf_memory_zeroed(s->population, sizeof *ranked);
     if (ranked == NULL)

@@ -40,7 +40,7 @@ static void *run(void *memory) {
 }
 
 struct coroutine *mf_coroutine_begin(void (*body)(struct coroutine *self, void *context),
-                                  void *context) {
+                                     void *context) {
     struct coroutine *coroutine = mf_memory_zeroed(1, sizeof *coroutine);
     if (coroutine == NULL)
         return NULL;

@@ -14,7 +14,7 @@ struct coroutine;
 /// Begin `body`, which calls mf_coroutine_measure as often as it likes and returns.
 /// @return NULL if there is no memory or no thread; the message is set. End it by mf_coroutine_end.
 struct coroutine *mf_coroutine_begin(void (*body)(struct coroutine *self, void *context),
-                                  void *context) MUST_USE;
+                                     void *context) MUST_USE;
 
 /// Wait until the body asks.
 /// @return what it gave mf_coroutine_measure, valid until the answer; NULL if it has returned.

@@ -49,7 +49,7 @@ static size_t total_genes(const struct genetic *genetic) {
 }
 
 enum status mf_genetic_init(struct genetic *genetic, const struct genetic_parameters *parameters,
-                         uint64_t seed) {
+                            uint64_t seed) {
     enum status status = STATUS_OK;
     *genetic = (struct genetic){.parameters = *parameters,
                                 .seed = seed,
@@ -63,8 +63,8 @@ enum status mf_genetic_init(struct genetic *genetic, const struct genetic_parame
     struct rng_sequence random = mf_rng_sequence_begin(seed, RNG_INITIAL, 0, 0);
     for (size_t k = 0; k < total_genes(genetic); k++)
         genetic->population[k] =
-            parameters->gene_minimum +
-            (parameters->gene_maximum - parameters->gene_minimum) * mf_rng_sequence_uniform(&random);
+            parameters->gene_minimum + (parameters->gene_maximum - parameters->gene_minimum) *
+                                           mf_rng_sequence_uniform(&random);
 done:
     if (status != STATUS_OK)
         mf_genetic_clear(genetic);
@@ -101,7 +101,7 @@ static void copy_winner(const struct genetic *genetic, const double *errors, dou
                         struct rng_sequence *random) {
     const struct genetic_parameters *p = &genetic->parameters;
     const int64_t winner = mf_genetic_tournament(errors, genetic->rows, p->tournament_size,
-                                              p->tournament_probability, random);
+                                                 p->tournament_probability, random);
     memcpy(child, mf_genetic_individual(genetic, winner), (size_t)p->genes * sizeof *child);
 }
 
@@ -118,8 +118,8 @@ void mf_genetic_next_generation(struct genetic *genetic, const double *errors) {
     const struct genetic_parameters *p = &genetic->parameters;
     genetic->generation++;
     for (int64_t pair = 0; pair < p->population; pair += 2) {
-        struct rng_sequence random =
-            mf_rng_sequence_begin(genetic->seed, RNG_SELECTION, genetic->generation, (uint32_t)pair);
+        struct rng_sequence random = mf_rng_sequence_begin(genetic->seed, RNG_SELECTION,
+                                                           genetic->generation, (uint32_t)pair);
         double *first = genetic->offspring + pair * p->genes, *second = first + p->genes;
         copy_winner(genetic, errors, first, &random);
         copy_winner(genetic, errors, second, &random);

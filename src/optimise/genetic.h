@@ -2,9 +2,10 @@
 /// @file Genetic algorithm over real genes; knows nothing of what they mean.
 ///
 /// Read `population`, measure each individual, hand the errors to mf_genetic_next_generation;
-/// `mf_genetic_optimiser` (genetic_optimiser.c) does it by ask and tell. The elite is kept apart from
-/// the population with the mean of all its measurements, and a challenger replaces it only by fresh
-/// measurements (mf_genetic_offer), so that no individual survives by one lucky draw of a noisy error.
+/// `mf_genetic_optimiser` (genetic_optimiser.c) does it by ask and tell. The elite is kept apart
+/// from the population with the mean of all its measurements, and a challenger replaces it only by
+/// fresh measurements (mf_genetic_offer), so that no individual survives by one lucky draw of a
+/// noisy error.
 ///
 /// Operators: A. G. Baydin (thesis, 2008), as its text describes them; D. E. Goldberg, Genetic
 /// Algorithms in Search, Optimization and Machine Learning (1989).
@@ -57,7 +58,7 @@ struct genetic {
 /// First generation: genes uniform in their range.
 /// Fails: NO_MEMORY.
 enum status mf_genetic_init(struct genetic *genetic, const struct genetic_parameters *parameters,
-                         uint64_t seed) MUST_USE;
+                            uint64_t seed) MUST_USE;
 void mf_genetic_clear(struct genetic *genetic);
 
 /// Genes of one individual, shape [genes].
@@ -91,17 +92,18 @@ enum { GENETIC_LARGEST_TOURNAMENT = 64 };
 /// the worst then wins in one tournament of four if it is drawn last, and with the thesis's
 /// parameters the error of a generation's best stood still at 0.14.
 int64_t mf_genetic_tournament(const double *errors, int64_t population, int64_t size,
-                           double probability, struct rng_sequence *random);
+                              double probability, struct rng_sequence *random);
 
 /// Cross two individuals in place, in the way that `crossover_kind` names.
 void mf_genetic_recombine(double *a, double *b, const struct genetic_parameters *parameters,
-                       struct rng_sequence *random);
+                          struct rng_sequence *random);
 
 /// Exchange the genes beyond one random point of two individuals, in place.
 void mf_genetic_crossover(double *a, double *b, int64_t genes, struct rng_sequence *random);
 
 /// Exchange the genes between two random points, in place.
-void mf_genetic_crossover_two_points(double *a, double *b, int64_t genes, struct rng_sequence *random);
+void mf_genetic_crossover_two_points(double *a, double *b, int64_t genes,
+                                     struct rng_sequence *random);
 
 /// Blend two curves along their genes without a step:
 ///   a_k ← w_k a_k + (1 − w_k) b_k,  b_k the other way round,  w_k = 1/(1 + exp((k − c)/s)),
@@ -112,7 +114,7 @@ void mf_genetic_blend(double *a, double *b, int64_t genes, struct rng_sequence *
 
 /// A child mutates with probability `mutation`, in the way that `mutation_kind` names.
 void mf_genetic_mutate(double *genes, const struct genetic_parameters *parameters,
-                    struct rng_sequence *random);
+                       struct rng_sequence *random);
 
 /// Each gene, with probability `mutated_genes`, is scaled by 2^u, u uniform in (−1, 1), which has
 /// no drift; or, in a share `additive` of cases, a normal number of a tenth of the range is added,
@@ -122,7 +124,7 @@ void mf_genetic_mutate(double *genes, const struct genetic_parameters *parameter
 /// the individuals then never come closer to each other (measured: diversity grows over 15
 /// generations).
 void mf_genetic_mutate_scale(double *genes, const struct genetic_parameters *parameters,
-                          struct rng_sequence *random);
+                             struct rng_sequence *random);
 
 /// A smooth bump is added: range · 0.1 z · 2^(−6u) · exp(−((k − c)/s)²/2), z normal, u uniform in
 /// (0, 1), c uniform along the genes, s half of `mutated_genes` of their number, at least a half.
@@ -130,4 +132,4 @@ void mf_genetic_mutate_scale(double *genes, const struct genetic_parameters *par
 /// H. Mühlenbein and D. Schlierkamp-Voosen, Evol. Comput. 1, 25 (1993), explore at first and refine
 /// in the end.
 void mf_genetic_mutate_correlated(double *genes, const struct genetic_parameters *parameters,
-                               struct rng_sequence *random);
+                                  struct rng_sequence *random);

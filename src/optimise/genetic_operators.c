@@ -5,7 +5,7 @@
 #include <math.h>
 
 int64_t mf_genetic_tournament(const double *errors, int64_t population, int64_t size,
-                           double probability, struct rng_sequence *random) {
+                              double probability, struct rng_sequence *random) {
     int64_t ranked[GENETIC_LARGEST_TOURNAMENT] = {0};
     for (int64_t drawn = 0; drawn < size; drawn++) {
         const int64_t rival = mf_rng_sequence_below(random, (uint32_t)population);
@@ -35,7 +35,7 @@ void mf_genetic_crossover(double *a, double *b, int64_t genes, struct rng_sequen
 }
 
 void mf_genetic_crossover_two_points(double *a, double *b, int64_t genes,
-                                  struct rng_sequence *random) {
+                                     struct rng_sequence *random) {
     if (genes < 2)
         return;
     // Two different places before genes. So the last gene stays: to exchange a stretch that ends
@@ -60,7 +60,7 @@ void mf_genetic_blend(double *a, double *b, int64_t genes, struct rng_sequence *
 }
 
 void mf_genetic_recombine(double *a, double *b, const struct genetic_parameters *parameters,
-                       struct rng_sequence *random) {
+                          struct rng_sequence *random) {
     switch ((enum genetic_crossover_kind)parameters->crossover_kind) {
     case GENETIC_ONE_POINT:
         mf_genetic_crossover(a, b, parameters->genes, random);
@@ -83,7 +83,7 @@ static double normal(double u, double v) {
 static const double added = 0.1;
 
 void mf_genetic_mutate_scale(double *genes, const struct genetic_parameters *parameters,
-                          struct rng_sequence *random) {
+                             struct rng_sequence *random) {
     const double range = parameters->gene_maximum - parameters->gene_minimum;
     for (int64_t k = 0; k < parameters->genes; k++) {
         if (mf_rng_sequence_uniform(random) >= parameters->mutated_genes)
@@ -97,7 +97,7 @@ void mf_genetic_mutate_scale(double *genes, const struct genetic_parameters *par
 }
 
 void mf_genetic_mutate_correlated(double *genes, const struct genetic_parameters *parameters,
-                               struct rng_sequence *random) {
+                                  struct rng_sequence *random) {
     const double count = (double)parameters->genes;
     const double range = parameters->gene_maximum - parameters->gene_minimum;
     const double u = mf_rng_sequence_uniform(random), v = mf_rng_sequence_uniform(random);
@@ -111,7 +111,7 @@ void mf_genetic_mutate_correlated(double *genes, const struct genetic_parameters
 }
 
 void mf_genetic_mutate(double *genes, const struct genetic_parameters *parameters,
-                    struct rng_sequence *random) {
+                       struct rng_sequence *random) {
     if (mf_rng_sequence_uniform(random) >= parameters->mutation)
         return;
     switch ((enum genetic_mutation_kind)parameters->mutation_kind) {

@@ -193,7 +193,7 @@ static enum status catch_up(struct state *state, const double **question) {
     }
     if (*question == NULL && state->played == 0)
         return mf_status_fail(STATUS_BAD_INPUT, "nlopt: %s cannot begin with %zu genes",
-                           names[state->parameters.algorithm], state->space.genes);
+                              names[state->parameters.algorithm], state->space.genes);
     return STATUS_OK;
 }
 

@@ -60,7 +60,8 @@ bool mf_nsga2_is_over(const struct nsga2 *nsga2) {
 static void make_first(struct nsga2 *nsga2, const double *start) {
     const double spread = nsga2->parameters.spread;
     for (size_t k = 0; k < nsga2->population; k++) {
-        struct rng_sequence random = mf_rng_sequence_begin(nsga2->seed, RNG_INITIAL, (uint32_t)k, 0);
+        struct rng_sequence random =
+            mf_rng_sequence_begin(nsga2->seed, RNG_INITIAL, (uint32_t)k, 0);
         const double width = spread * pow(least_spread, mf_rng_sequence_uniform(&random));
         double *x = row(nsga2, nsga2->population + k);
         for (size_t n = 0; n < nsga2->genes; n++) {
@@ -74,7 +75,7 @@ static void make_first(struct nsga2 *nsga2, const double *start) {
 }
 
 enum status mf_nsga2_init(struct nsga2 *nsga2, const struct nsga2_parameters *parameters,
-                       const struct nsga2_space *space) {
+                          const struct nsga2_space *space) {
     enum status status = STATUS_OK;
     const size_t population = (size_t)parameters->population;
     *nsga2 = (struct nsga2){.parameters = *parameters,
@@ -84,7 +85,7 @@ enum status mf_nsga2_init(struct nsga2 *nsga2, const struct nsga2_parameters *pa
                             .seed = space->seed};
     if (space->genes < 1 || space->objectives < 1)
         return mf_status_fail(STATUS_BAD_INPUT, "nothing to optimise: %zu genes, %zu objectives",
-                           space->genes, space->objectives);
+                              space->genes, space->objectives);
     NEW_ARRAY(nsga2->x, 3 * population * space->genes);
     NEW_ARRAY(nsga2->value, 2 * population * space->objectives);
     NEW_ARRAY(nsga2->measured, 2 * population);
@@ -148,8 +149,8 @@ static void mutate(const struct nsga2 *nsga2, double *child, struct rng_sequence
 static void make_children(struct nsga2 *nsga2) {
     const struct nsga2_parameters *p = &nsga2->parameters;
     for (size_t k = 0; k < nsga2->population; k += 2) {
-        struct rng_sequence random =
-            mf_rng_sequence_begin(nsga2->seed, RNG_SELECTION, nsga2->progress.generation, (uint32_t)k);
+        struct rng_sequence random = mf_rng_sequence_begin(nsga2->seed, RNG_SELECTION,
+                                                           nsga2->progress.generation, (uint32_t)k);
         // The second of the last pair of an odd population stands where `again` is copied to.
         double *a = row(nsga2, nsga2->population + k), *b = a + nsga2->genes;
         copy_winner(nsga2, a, &random);
@@ -237,7 +238,7 @@ static enum status sort(struct nsga2 *nsga2, size_t first, size_t count) {
     const double *value = value_of(nsga2, first);
     TRY(mf_nsga2_sort(value, count, nsga2->objectives, nsga2->rank + first));
     return mf_nsga2_crowd(value, count, nsga2->objectives, nsga2->rank + first,
-                       nsga2->crowding + first);
+                          nsga2->crowding + first);
 }
 
 enum status mf_nsga2_add_measurement(struct nsga2 *nsga2, size_t parent, const double *value) {

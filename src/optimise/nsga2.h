@@ -51,9 +51,10 @@ struct nsga2 {
     } progress;
 };
 
-/// Fails: NO_MEMORY; BAD_INPUT without genes or objectives. mf_nsga2_clear must follow all the same.
+/// Fails: NO_MEMORY; BAD_INPUT without genes or objectives. mf_nsga2_clear must follow all the
+/// same.
 enum status mf_nsga2_init(struct nsga2 *nsga2, const struct nsga2_parameters *parameters,
-                       const struct nsga2_space *space) MUST_USE;
+                          const struct nsga2_space *space) MUST_USE;
 void mf_nsga2_clear(struct nsga2 *nsga2);
 
 /// The candidates of the next round; asking again gives the same.
@@ -66,7 +67,8 @@ struct optimiser_round mf_nsga2_ask(struct nsga2 *nsga2);
 enum status mf_nsga2_tell(struct nsga2 *nsga2, const double *value) MUST_USE;
 
 /// Add a measurement to the means of a parent, and sort the parents anew. Fails: NO_MEMORY.
-enum status mf_nsga2_add_measurement(struct nsga2 *nsga2, size_t parent, const double *value) MUST_USE;
+enum status mf_nsga2_add_measurement(struct nsga2 *nsga2, size_t parent,
+                                     const double *value) MUST_USE;
 
 /// Let the next round have a child of these genes; once the round has been asked for, the one
 /// after. More than NSGA2_PLANTED, or than half the population, are forgotten.
@@ -96,16 +98,17 @@ bool mf_nsga2_dominates(const double *a, const double *b, size_t objectives);
 /// @param[out] rank   shape [count]
 /// Fails: NO_MEMORY.
 enum status mf_nsga2_sort(const double *value, size_t count, size_t objectives,
-                       uint32_t *rank) MUST_USE;
+                          uint32_t *rank) MUST_USE;
 
 /// Crowding distances: the sum over objectives of the difference between both neighbours on the
 /// front, as a part of the front's range. Fails: NO_MEMORY.
-enum status mf_nsga2_crowd(const double *value, size_t count, size_t objectives, const uint32_t *rank,
-                        double *crowding) MUST_USE;
+enum status mf_nsga2_crowd(const double *value, size_t count, size_t objectives,
+                           const uint32_t *rank, double *crowding) MUST_USE;
 
 /// Simulated binary crossover of two individuals in place, within [0, 1]: K. Deb and R. B. Agrawal,
 /// Complex Systems 9, 115 (1995). Children are as near to their parents as the exponent is large.
-void mf_nsga2_cross(double *a, double *b, size_t genes, double exponent, struct rng_sequence *random);
+void mf_nsga2_cross(double *a, double *b, size_t genes, double exponent,
+                    struct rng_sequence *random);
 
 /// A gene moved by polynomial mutation within [0, 1].
 double mf_nsga2_mutate(double gene, double exponent, struct rng_sequence *random);

@@ -14,7 +14,8 @@ static double within(double x) {
     return fmin(1, fmax(0, x));
 }
 
-void mf_nsga2_cross(double *a, double *b, size_t genes, double exponent, struct rng_sequence *random) {
+void mf_nsga2_cross(double *a, double *b, size_t genes, double exponent,
+                    struct rng_sequence *random) {
     static const double same = 1e-14;
     for (size_t k = 0; k < genes; k++) {
         const double low = fmin(a[k], b[k]), high = fmax(a[k], b[k]), apart = high - low;

@@ -21,7 +21,8 @@ enum status mf_nsga2_sort(const double *value, size_t count, size_t objectives, 
     for (size_t a = 0; a < count; a++) {
         rank[a] = 0;
         for (size_t b = 0; b < count; b++)
-            above[a] += mf_nsga2_dominates(value + b * objectives, value + a * objectives, objectives);
+            above[a] +=
+                mf_nsga2_dominates(value + b * objectives, value + a * objectives, objectives);
     }
     for (uint32_t front = 1; left > 0; front++) {
         for (size_t a = 0; a < count; a++)
@@ -60,8 +61,8 @@ static void crowd_along(struct place *place, size_t count, double *crowding) {
         crowding[place[k].index] += (place[k + 1].value - place[k - 1].value) / range;
 }
 
-enum status mf_nsga2_crowd(const double *value, size_t count, size_t objectives, const uint32_t *rank,
-                        double *crowding) {
+enum status mf_nsga2_crowd(const double *value, size_t count, size_t objectives,
+                           const uint32_t *rank, double *crowding) {
     enum status status = STATUS_OK;
     struct place *place = NULL;
     size_t done_with = 0;

@@ -4,7 +4,7 @@
 #include <string.h>
 
 const struct optimiser *const mf_optimisers[] = {&mf_genetic_optimiser, &mf_cmaes_optimiser,
-                                              &mf_nlopt_optimiser, NULL};
+                                                 &mf_nlopt_optimiser, NULL};
 
 const struct optimiser *mf_optimiser_find(const char *name) {
     for (const struct optimiser *const *known = mf_optimisers; *known; known++)
@@ -19,10 +19,11 @@ enum status mf_optimiser_check_space(const struct optimiser_space *space) {
         return mf_status_fail(STATUS_BAD_INPUT, "an optimiser needs at least one gene");
     if (!(range > 0 && range < HUGE_VAL))
         return mf_status_fail(STATUS_BAD_INPUT, "genes from %g to %g have no range to search",
-                           space->minimum, space->maximum);
+                              space->minimum, space->maximum);
     for (size_t k = 0; space->start && k < space->genes; k++)
         if (!isfinite(space->start[k]))
-            return mf_status_fail(STATUS_BAD_INPUT, "gene %zu of the start is %g", k, space->start[k]);
+            return mf_status_fail(STATUS_BAD_INPUT, "gene %zu of the start is %g", k,
+                                  space->start[k]);
     return STATUS_OK;
 }
 
@@ -30,8 +31,8 @@ enum status mf_optimiser_check_round(const struct optimiser_space *space, size_t
     if (space->most == 0 || count <= space->most)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
-                       "\"population\" makes rounds of %zu candidates, and %zu are the most", count,
-                       space->most);
+                          "\"population\" makes rounds of %zu candidates, and %zu are the most",
+                          count, space->most);
 }
 
 double mf_optimiser_reflect(double x) {

@@ -23,7 +23,7 @@ bool mf_decoder_fits(const struct decoder *decoder, enum unknown_kind kind, size
 }
 
 void mf_decoder_curve_name(const struct decoder *decoder, enum unknown_kind kind, size_t curve,
-                        char name[DECODER_NAME_SIZE]) {
+                           char name[DECODER_NAME_SIZE]) {
     char pair[COMPOSITION_PAIR_NAME_SIZE] = "";
     if (kind == UNKNOWN_POTENTIAL)
         mf_composition_pair_name(&decoder->problem->scene.composition, (int)curve, pair);
@@ -85,7 +85,7 @@ static enum status fill_block(struct decoder *decoder, enum unknown_kind kind, s
     NEW_ARRAY(block, moving * own);
     find_places(decoder, kind, curve, place);
     CHECK(mf_shape_basis(mf_shapes[unknown_of(decoder, kind)->parameters.shape], own, place, moving,
-                      block));
+                         block));
     for (size_t k = 0; k < moving; k++)
         memcpy(decoder->basis[kind] + (curve * points + first + k) * genes + curve * own,
                block + k * own, own * sizeof *block);
@@ -99,7 +99,8 @@ static enum status make_basis(struct decoder *decoder, enum unknown_kind kind) {
     enum status status = STATUS_OK;
     if (is_formula(decoder, kind))
         return STATUS_OK;
-    NEW_ARRAY(decoder->basis[kind], mf_decoder_points(decoder, kind) * mf_decoder_genes(decoder, kind));
+    NEW_ARRAY(decoder->basis[kind],
+              mf_decoder_points(decoder, kind) * mf_decoder_genes(decoder, kind));
     for (size_t curve = 0; curve < mf_decoder_curve_count(decoder, kind); curve++)
         CHECK(fill_block(decoder, kind, curve));
 done:
@@ -159,7 +160,7 @@ static struct span parameter_span(const struct unknown_parameters *p, int parame
 }
 
 const char *mf_decoder_parameter_bound(const struct unknown_parameters *p, int parameter,
-                                    double value) {
+                                       double value) {
     static const double near = 1e-3;
     const struct span span = parameter_span(p, parameter);
     const double part = (value - span.least) / span.range;
@@ -169,8 +170,8 @@ const char *mf_decoder_parameter_bound(const struct unknown_parameters *p, int p
 }
 
 void mf_decoder_parameters(const struct decoder *decoder, const double *genes,
-                        const double *covariance,
-                        struct inverse_parameter parameter[INVERSE_PARAMETERS]) {
+                           const double *covariance,
+                           struct inverse_parameter parameter[INVERSE_PARAMETERS]) {
     const struct unknown_parameters *p = &unknown_of(decoder, UNKNOWN_WEIGHT)->parameters;
     const bool formula =
         unknown_of(decoder, UNKNOWN_WEIGHT)->wanted && is_formula(decoder, UNKNOWN_WEIGHT);
@@ -205,7 +206,7 @@ static void power_curve(const struct decoder *decoder, const double *genes, doub
 }
 
 void mf_decoder_curve(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
-                   double *curve) {
+                      double *curve) {
     if (is_formula(decoder, kind))
         power_curve(decoder, genes, curve);
     else
@@ -215,13 +216,13 @@ void mf_decoder_curve(const struct decoder *decoder, enum unknown_kind kind, con
 }
 
 enum status mf_decoder_table(const struct decoder *decoder, enum unknown_kind kind,
-                          const double *curve, struct table *table) {
+                             const double *curve, struct table *table) {
     return kind == UNKNOWN_POTENTIAL ? mf_potential_grid_table(&decoder->potential, curve, table)
                                      : mf_weight_grid_table(&decoder->weight, curve, table);
 }
 
 enum status mf_decoder_laws(const struct decoder *decoder, const double *genes,
-                         struct decoder_laws *laws) {
+                            struct decoder_laws *laws) {
     enum status status = STATUS_OK;
     const struct simulation_setup *scene = &decoder->problem->scene;
     double *curve = NULL;
@@ -297,7 +298,8 @@ static enum status start_of_curve(const struct decoder *decoder, enum unknown_ki
     for (size_t k = first; k < points; k++)
         for (size_t n = 0; n < count; n++)
             curve[k] -= middle * block[k * all + n];
-    CHECK(mf_shape_fit(mf_shapes[p->shape], place, curve + first, NULL, points - first, genes, count));
+    CHECK(mf_shape_fit(mf_shapes[p->shape], place, curve + first, NULL, points - first, genes,
+                       count));
     for (size_t k = 0; k < count; k++)
         genes[k] = fmin(1, fmax(0, 0.5 + genes[k] / range));
 done:

@@ -19,7 +19,8 @@ struct decoder {
 };
 
 /// Fails: NO_MEMORY; BAD_INPUT as mf_potential_grid_init.
-enum status mf_decoder_init(struct decoder *decoder, const struct inverse_problem *problem) MUST_USE;
+enum status mf_decoder_init(struct decoder *decoder,
+                            const struct inverse_problem *problem) MUST_USE;
 void mf_decoder_clear(struct decoder *decoder);
 
 /// Genes of an unknown; 0 if it is known.
@@ -38,34 +39,35 @@ bool mf_decoder_fits(const struct decoder *decoder, enum unknown_kind kind, size
 /// What files call one of them: "potential", or "potential_A-B" in a mixture.
 enum { DECODER_NAME_SIZE = COMPOSITION_PAIR_NAME_SIZE + 16 };
 void mf_decoder_curve_name(const struct decoder *decoder, enum unknown_kind kind, size_t curve,
-                        char name[DECODER_NAME_SIZE]);
+                           char name[DECODER_NAME_SIZE]);
 
 /// Curve of some genes, shape [points]. A weight that would be negative is 0.
 void mf_decoder_curve(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
-                   double *curve);
+                      double *curve);
 
 /// Parameters of a weight that is a formula, and their standard errors from the covariance of the
 /// genes as in mf_decoder_band; that may be NULL. Tested: test_decoder.
 void mf_decoder_parameters(const struct decoder *decoder, const double *genes,
-                        const double *covariance,
-                        struct inverse_parameter parameter[INVERSE_PARAMETERS]);
+                           const double *covariance,
+                           struct inverse_parameter parameter[INVERSE_PARAMETERS]);
 
 /// The end of its range, "minimum" or "maximum", that a parameter of the formula has come to within
 /// a thousandth of the range; NULL if none, or if it is held fixed. Tested: test_decoder.
 const char *mf_decoder_parameter_bound(const struct unknown_parameters *p, int parameter,
-                                    double value);
+                                       double value);
 
 /// Standard errors of the curve of some genes, shape [points], from the covariance of the genes,
 /// shape [genes, genes] of all unknowns; NaN if that is NULL, and in the core, which is set.
 /// @param[out] flat  as curve_flat of an inverse_step: principal components of the curve's errors,
 ///                   each upwards where it is largest; NaN as the errors
 /// Fails: NO_MEMORY.
-enum status mf_decoder_band(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
-                         const double *covariance, double *error, double *flat) MUST_USE;
+enum status mf_decoder_band(const struct decoder *decoder, enum unknown_kind kind,
+                            const double *genes, const double *covariance, double *error,
+                            double *flat) MUST_USE;
 
 /// Table for the kernels from a curve. Fails: NO_MEMORY.
 enum status mf_decoder_table(const struct decoder *decoder, enum unknown_kind kind,
-                          const double *curve, struct table *table) MUST_USE;
+                             const double *curve, struct table *table) MUST_USE;
 
 /// Tables of all unknowns from genes, and those of the scene for what is known. What was made must
 /// be cleared with laws_clear, even after a failure.
@@ -74,7 +76,7 @@ struct decoder_laws {
     const struct table *table[UNKNOWNS];
 };
 enum status mf_decoder_laws(const struct decoder *decoder, const double *genes,
-                         struct decoder_laws *laws) MUST_USE;
+                            struct decoder_laws *laws) MUST_USE;
 void mf_decoder_laws_clear(struct decoder_laws *laws);
 
 /// Genes nearest to the curves that the fit begins with: those of the run file, or the potential of
@@ -89,17 +91,18 @@ struct decoder_curves {
     struct inverse_parameter parameter[INVERSE_PARAMETERS];
 };
 enum status mf_decoder_curves_init(const struct decoder *decoder,
-                                struct decoder_curves *curves) MUST_USE;
+                                   struct decoder_curves *curves) MUST_USE;
 void mf_decoder_curves_clear(struct decoder_curves *curves);
 
 /// Put the curves of some genes into a step.
 void mf_decoder_curves_show(const struct decoder *decoder, const double *genes,
-                         struct decoder_curves *curves, struct inverse_step *step);
+                            struct decoder_curves *curves, struct inverse_step *step);
 
 /// Standard errors of all curves and parameters, as mf_decoder_band. Fails: NO_MEMORY.
 enum status mf_decoder_curves_bands(const struct decoder *decoder, const double *genes,
-                                 const double *covariance, struct decoder_curves *curves) MUST_USE;
+                                    const double *covariance,
+                                    struct decoder_curves *curves) MUST_USE;
 
 /// The errors, for a checkpoint.
 size_t mf_decoder_curves_spans(const struct decoder *decoder, struct decoder_curves *curves,
-                            struct memory_span *spans);
+                               struct memory_span *spans);

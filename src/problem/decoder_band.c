@@ -120,8 +120,9 @@ static void forget_core(const struct decoder *decoder, enum unknown_kind kind, d
             values[k] = NAN;
 }
 
-enum status mf_decoder_band(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
-                         const double *covariance, double *error, double *flat) {
+enum status mf_decoder_band(const struct decoder *decoder, enum unknown_kind kind,
+                            const double *genes, const double *covariance, double *error,
+                            double *flat) {
     enum status status = STATUS_OK;
     const size_t count = mf_decoder_genes(decoder, kind), at = decoder->first[kind];
     const size_t points = mf_decoder_points(decoder, kind);

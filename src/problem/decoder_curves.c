@@ -32,7 +32,7 @@ void mf_decoder_curves_clear(struct decoder_curves *curves) {
 }
 
 void mf_decoder_curves_show(const struct decoder *decoder, const double *genes,
-                         struct decoder_curves *curves, struct inverse_step *step) {
+                            struct decoder_curves *curves, struct inverse_step *step) {
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         if (curves->value[kind] == NULL)
             continue;
@@ -47,17 +47,17 @@ void mf_decoder_curves_show(const struct decoder *decoder, const double *genes,
 }
 
 enum status mf_decoder_curves_bands(const struct decoder *decoder, const double *genes,
-                                 const double *covariance, struct decoder_curves *curves) {
+                                    const double *covariance, struct decoder_curves *curves) {
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (curves->error[kind])
             TRY(mf_decoder_band(decoder, kind, genes, covariance, curves->error[kind],
-                             curves->flat[kind]));
+                                curves->flat[kind]));
     mf_decoder_parameters(decoder, genes, covariance, curves->parameter);
     return STATUS_OK;
 }
 
 size_t mf_decoder_curves_spans(const struct decoder *decoder, struct decoder_curves *curves,
-                            struct memory_span *spans) {
+                               struct memory_span *spans) {
     size_t n = 0;
     spans[n++] = (struct memory_span){curves->parameter, sizeof curves->parameter};
     for (int kind = 0; kind < UNKNOWNS; kind++) {

@@ -24,8 +24,9 @@ static enum status equilibrate(struct simulation *simulation, const struct measu
     TRY(mf_measure_equilibrate(simulation, plan, &temperature, NULL));
     const double wanted = simulation->setup.temperature;
     if (!(fabs(temperature / wanted - 1) <= tolerance))
-        return mf_status_fail(STATUS_UNSTABLE, "the temperature is %.3g after equilibration, not %.3g",
-                           temperature, wanted);
+        return mf_status_fail(STATUS_UNSTABLE,
+                              "the temperature is %.3g after equilibration, not %.3g", temperature,
+                              wanted);
     if (has_collapsed(simulation))
         return mf_status_fail(STATUS_UNSTABLE, "the particles have collapsed into a drop");
     return STATUS_OK;
@@ -87,9 +88,9 @@ static void copy_positions(const struct particles *particles, double *const *pos
 }
 
 enum status mf_evaluate(const struct inverse_problem *problem,
-                     const struct evaluate_candidate *candidate,
-                     const struct evaluate_parameters *parameters, double *features,
-                     double *const *position, struct evaluate_result *result) {
+                        const struct evaluate_candidate *candidate,
+                        const struct evaluate_parameters *parameters, double *features,
+                        double *const *position, struct evaluate_result *result) {
     enum status status = STATUS_OK;
     struct observation observation = {0};
     struct observed observed = {0};

@@ -8,8 +8,8 @@
 struct evaluate_parameters {
     struct measure_plan plan;
     double temperature_tolerance; ///< largest |T/T_set − 1| at the end of the equilibration
-    int estimator;    ///< of g(r), enum rdf_force_estimator; without a barrier (mf_rdf_force_applies)
-                      ///< the histogram
+    int estimator; ///< of g(r), enum rdf_force_estimator; without a barrier (mf_rdf_force_applies)
+                   ///< the histogram
     double patience;  ///< standard errors by which a running error must be beyond `hopeless` before
                       ///< a simulation is stopped; 0: never
     double precision; ///< relative standard error of the error that is enough to stop; 0: never
@@ -41,6 +41,6 @@ struct evaluate_result {
 /// Fails: UNSTABLE if it blows up, leaves its temperature or collapses into a drop (which would
 /// also be slow); INTERRUPTED; NO_MEMORY; BAD_INPUT as mf_observation_init.
 enum status mf_evaluate(const struct inverse_problem *problem,
-                     const struct evaluate_candidate *candidate,
-                     const struct evaluate_parameters *parameters, double *features,
-                     double *const *position, struct evaluate_result *result) MUST_USE;
+                        const struct evaluate_candidate *candidate,
+                        const struct evaluate_parameters *parameters, double *features,
+                        double *const *position, struct evaluate_result *result) MUST_USE;

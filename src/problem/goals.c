@@ -27,7 +27,7 @@ static double rms_variance(double rms, double square, double count) {
 }
 
 struct goal_distance mf_goals_distance(const struct goal *goal, const double *value,
-                                    const double *error) {
+                                       const double *error) {
     struct goal_distance distance = {0};
     double squares = 0, noise = 0, own = 0;
     for (size_t k = 0; k < goal->count; k++) {
@@ -152,7 +152,7 @@ static struct feature block_of(const struct goals *goals, const double *observed
 }
 
 void mf_goals_take_features(const struct goals *goals, double *const *observed, double *value,
-                         double *error) {
+                            double *error) {
     size_t n = 0;
     for (int kind = 0; kind < GOALS; kind++)
         for (size_t k = 0; k < features_of(goals, kind); k++, n++) {

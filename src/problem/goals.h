@@ -46,7 +46,7 @@ size_t mf_goals_count(const struct goals *goals);
 
 /// @param[in] value, error  shape [goal->count]; NaN: not measured
 struct goal_distance mf_goals_distance(const struct goal *goal, const double *value,
-                                    const double *error);
+                                       const double *error);
 
 /// Weight of a goal in the sum: its own, or one over the rms of its standard errors.
 double mf_goals_weight(const struct goal *goal);
@@ -72,4 +72,4 @@ size_t mf_goals_features(const struct goals *goals);
 /// @param[in]  observed      shape [GOALS][goal.count], or NULL
 /// @param[out] value, error  shape [mf_goals_features]; error may be NULL with observed values
 void mf_goals_take_features(const struct goals *goals, double *const *observed, double *value,
-                         double *error);
+                            double *error);

@@ -25,7 +25,7 @@ static int64_t lags_of(const struct goals *goals, double time_step) {
 }
 
 void mf_observation_plans(const struct goals *goals, double time_step, struct etd_plan *etd,
-                       struct motion_plan *motion) {
+                          struct motion_plan *motion) {
     *etd = (struct etd_plan){.every = steps_of(goals->etd_interval, time_step)};
     if (goals_ask(goals, GOAL_ETD))
         etd->origin_every = steps_of(goals->etd_origins, goals->etd_interval);
@@ -35,7 +35,8 @@ void mf_observation_plans(const struct goals *goals, double time_step, struct et
                                    .fit_from = 0.5};
 }
 
-int64_t mf_observation_window(const struct goals *goals, double time_step, enum goal_kind *longest) {
+int64_t mf_observation_window(const struct goals *goals, double time_step,
+                              enum goal_kind *longest) {
     int64_t window = 0;
     *longest = GOALS;
     if (goals_ask(goals, GOAL_ETD)) {
@@ -64,11 +65,11 @@ static enum status begin_rdf(struct observation *observation, const struct simul
         mf_rdf_force_applies(scene->potential, scene->temperature)) {
         observation->targets.rdf_force = &observation->rdf_force;
         return mf_rdf_force_init(&observation->rdf_force, &goals->bins, &scene->box, count,
-                              scene->potential, scene->temperature, cutoff, samples);
+                                 scene->potential, scene->temperature, cutoff, samples);
     }
     observation->targets.rdf = &observation->rdf;
     return mf_rdf_init_mixture(&observation->rdf, &goals->bins, &scene->box, &scene->composition,
-                            cutoff, samples);
+                               cutoff, samples);
 }
 
 static enum status begin_dynamics(struct observation *observation,
@@ -92,8 +93,9 @@ static enum status begin_dynamics(struct observation *observation,
     return STATUS_OK;
 }
 
-enum status mf_observation_init(struct observation *observation, const struct inverse_problem *problem,
-                             const struct observation_setup *setup) {
+enum status mf_observation_init(struct observation *observation,
+                                const struct inverse_problem *problem,
+                                const struct observation_setup *setup) {
     *observation = (struct observation){.goals = setup->goals};
     struct simulation_setup scene = problem->scene;
     struct simulation_start start = {0};
@@ -159,7 +161,7 @@ static enum status result_rdf(const struct observation *replicas, size_t count,
     }
     if (replicas->targets.rdf_force)
         CHECK(mf_rdf_force_result(force, count, RDF_FORCE_COUNTED, observed->value[GOAL_RDF],
-                               observed->error[GOAL_RDF]));
+                                  observed->error[GOAL_RDF]));
     else
         CHECK(mf_rdf_result(rdf, count, observed->value[GOAL_RDF], observed->error[GOAL_RDF]));
 done:
@@ -268,7 +270,7 @@ done:
 }
 
 enum status mf_observation_result(const struct observation *replicas, size_t count,
-                               struct observed *observed) {
+                                  struct observed *observed) {
     const struct goals *goals = replicas->goals;
     clear_values(observed, goals);
     if (goals_ask(goals, GOAL_RDF))
@@ -286,10 +288,10 @@ enum status mf_observation_result(const struct observation *replicas, size_t cou
 }
 
 void mf_observation_distance(const struct observed *observed, const struct goals *goals,
-                          struct goal_distance distance[GOALS]) {
+                             struct goal_distance distance[GOALS]) {
     for (int kind = 0; kind < GOALS; kind++)
-        distance[kind] =
-            goals_ask(goals, kind)
-                ? mf_goals_distance(&goals->goal[kind], observed->value[kind], observed->error[kind])
-                : (struct goal_distance){0};
+        distance[kind] = goals_ask(goals, kind)
+                             ? mf_goals_distance(&goals->goal[kind], observed->value[kind],
+                                                 observed->error[kind])
+                             : (struct goal_distance){0};
 }

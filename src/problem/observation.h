@@ -32,7 +32,7 @@ struct observation_setup {
 
 /// When escape times and motion are sampled, if they are.
 void mf_observation_plans(const struct goals *goals, double time_step, struct etd_plan *etd,
-                       struct motion_plan *motion);
+                          struct motion_plan *motion);
 
 /// Whether VACF, MSD or D is asked for.
 bool mf_observation_moves(const struct goals *goals);
@@ -43,21 +43,23 @@ int64_t mf_observation_window(const struct goals *goals, double time_step, enum 
 
 /// Begin the simulation, at step 0. Must be cleared, also after a failure.
 /// Fails: as mf_simulation_init; BAD_INPUT if the plan is shorter than the window of a goal.
-enum status mf_observation_init(struct observation *observation, const struct inverse_problem *problem,
-                             const struct observation_setup *setup) MUST_USE;
+enum status mf_observation_init(struct observation *observation,
+                                const struct inverse_problem *problem,
+                                const struct observation_setup *setup) MUST_USE;
 void mf_observation_clear(struct observation *observation);
 
 /// Values and errors of all goals, one behind the other: shape [goals_values].
 struct observed {
     double *value[GOALS], *error[GOALS]; ///< shape [goal.count], NaN: not measured
 };
-enum status mf_observation_values_init(struct observed *observed, const struct goals *goals) MUST_USE;
+enum status mf_observation_values_init(struct observed *observed,
+                                       const struct goals *goals) MUST_USE;
 void mf_observation_values_clear(struct observed *observed);
 
 /// Results of replicas together. Fails: NO_MEMORY.
 enum status mf_observation_result(const struct observation *replicas, size_t count,
-                               struct observed *observed) MUST_USE;
+                                  struct observed *observed) MUST_USE;
 
 /// Distances of what was observed from all goals.
 void mf_observation_distance(const struct observed *observed, const struct goals *goals,
-                          struct goal_distance distance[GOALS]);
+                             struct goal_distance distance[GOALS]);

@@ -17,7 +17,7 @@ static enum status find_core(struct potential_grid *grid, const struct inverse_p
         char name[COMPOSITION_PAIR_NAME_SIZE];
         mf_composition_pair_name(&problem->scene.composition, (int)pair, name);
         return mf_status_fail(STATUS_BAD_INPUT, "the target%s%s is nowhere above %g",
-                           name[0] ? " of " : "", name, problem->core_threshold);
+                              name[0] ? " of " : "", name, problem->core_threshold);
     }
     grid->known_of[pair] = grid->bins - *core;
     grid->known += grid->known_of[pair];
@@ -35,12 +35,13 @@ static void index_known(struct potential_grid *grid) {
 }
 
 enum status mf_potential_grid_init(struct potential_grid *grid,
-                                const struct inverse_problem *problem) {
+                                   const struct inverse_problem *problem) {
     enum status status = STATUS_OK;
     const struct rdf_bins *bins = &problem->goals.bins;
-    *grid = (struct potential_grid){.pairs = (size_t)mf_composition_pairs(&problem->scene.composition),
-                                    .bins = bins->count,
-                                    .stiffness = problem->core_stiffness};
+    *grid =
+        (struct potential_grid){.pairs = (size_t)mf_composition_pairs(&problem->scene.composition),
+                                .bins = bins->count,
+                                .stiffness = problem->core_stiffness};
     grid->points = grid->pairs * (bins->count + 1);
     NEW_ARRAY(grid->core, grid->pairs);
     NEW_ARRAY(grid->known_of, grid->pairs);
@@ -102,7 +103,7 @@ static enum status make_part(const struct potential_grid *grid, const double *ph
 }
 
 enum status mf_potential_grid_table(const struct potential_grid *grid, const double *phi,
-                                 struct table *table) {
+                                    struct table *table) {
     enum status status = STATUS_OK;
     struct table part[COMPOSITION_MOST_PAIRS] = {{0}};
     if (grid->pairs == 1)
@@ -116,8 +117,8 @@ done:
     return status;
 }
 
-void mf_potential_grid_start(const struct potential_grid *grid, const struct inverse_problem *problem,
-                          double *phi) {
+void mf_potential_grid_start(const struct potential_grid *grid,
+                             const struct inverse_problem *problem, double *phi) {
     for (size_t n = 0; n < grid->known; n++) {
         const size_t point = grid->known_point[n], pair = point / (grid->bins + 1);
         const struct curve *start = problem->unknown[UNKNOWN_POTENTIAL].start[pair];
@@ -175,8 +176,9 @@ static enum status add_virials(const struct potential_grid *grid, const struct r
     return STATUS_OK;
 }
 
-enum status mf_potential_grid_virials(const struct potential_grid *grid, const struct rdf_bins *bins,
-                                   int dimensions, const double *phi, double *virial) {
+enum status mf_potential_grid_virials(const struct potential_grid *grid,
+                                      const struct rdf_bins *bins, int dimensions,
+                                      const double *phi, double *virial) {
     // The table is linear in its values but for the kink of the core: any small step will do.
     const double change = 1e-3;
     enum status status = STATUS_OK;

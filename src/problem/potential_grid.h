@@ -23,7 +23,7 @@ struct potential_grid {
 
 /// Fails: NO_MEMORY; BAD_INPUT if a target is nowhere above the threshold.
 enum status mf_potential_grid_init(struct potential_grid *grid,
-                                const struct inverse_problem *problem) MUST_USE;
+                                   const struct inverse_problem *problem) MUST_USE;
 void mf_potential_grid_clear(struct potential_grid *grid);
 
 /// First point of a block.
@@ -37,11 +37,11 @@ void mf_potential_grid_complete(const struct potential_grid *grid, double *phi);
 
 /// Table for the kernels from a completed phi. Fails: NO_MEMORY.
 enum status mf_potential_grid_table(const struct potential_grid *grid, const double *phi,
-                                 struct table *table) MUST_USE;
+                                    struct table *table) MUST_USE;
 
 /// Where a fit begins: the problem's start curves, or the potentials of mean force −k_B T ln g*.
-void mf_potential_grid_start(const struct potential_grid *grid, const struct inverse_problem *problem,
-                          double *phi);
+void mf_potential_grid_start(const struct potential_grid *grid,
+                             const struct inverse_problem *problem, double *phi);
 
 /// The virial of pairs, by the bin that they are in and the value that makes it: the mean over a
 /// bin's shell of −r ∂Φ'(r)/∂Φ_b, so that W = Σ_a S_a Σ_b virial_ab Φ_b + what the core's stiffness
@@ -50,8 +50,9 @@ void mf_potential_grid_start(const struct potential_grid *grid, const struct inv
 /// @param[in]  phi     completed, shape [points]
 /// @param[out] virial  shape [pairs · bins, known], row-major
 /// Fails: NO_MEMORY. Tested: test_potential_grid, test_inversion_pressure.
-enum status mf_potential_grid_virials(const struct potential_grid *grid, const struct rdf_bins *bins,
-                                   int dimensions, const double *phi, double *virial) MUST_USE;
+enum status mf_potential_grid_virials(const struct potential_grid *grid,
+                                      const struct rdf_bins *bins, int dimensions,
+                                      const double *phi, double *virial) MUST_USE;
 
 /// Whether the target has so many pairs in a bin, g* > 0.1, that it tells the potential there.
 bool mf_potential_grid_well_known(const struct inverse_problem *problem, size_t bin);

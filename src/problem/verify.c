@@ -119,8 +119,8 @@ static enum status find_rdf_error(const struct observation *replicas, size_t cou
     for (size_t k = 0; k < count; k++)
         rdf[k] = replicas[k].rdf;
     CHECK(mf_rdf_distance(rdf, count, goals->goal[GOAL_RDF].value,
-                       &verification->distance[GOAL_RDF].rms,
-                       &verification->distance_error[GOAL_RDF]));
+                          &verification->distance[GOAL_RDF].rms,
+                          &verification->distance_error[GOAL_RDF]));
 done:
     mf_memory_free(rdf);
     return status;
@@ -157,8 +157,8 @@ done:
 }
 
 enum status mf_verify(const struct inverse_problem *problem, const struct table *potential,
-                   const struct table *weight, const struct verify_parameters *parameters,
-                   const struct inverse_listener *listener, struct verification *verification) {
+                      const struct table *weight, const struct verify_parameters *parameters,
+                      const struct inverse_listener *listener, struct verification *verification) {
     enum status status = STATUS_OK;
     const size_t count = (size_t)parameters->replicas;
     struct observation *replicas = NULL;

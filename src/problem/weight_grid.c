@@ -34,7 +34,7 @@ static double cutoff(const void *parameters) {
 }
 
 enum status mf_weight_grid_table(const struct weight_grid *grid, const double *omega,
-                              struct table *table) {
+                                 struct table *table) {
     static const struct curve_family family = {
         .name = "points", .size = sizeof(struct points), .value = value, .cutoff = cutoff};
     struct points points = {grid, omega};

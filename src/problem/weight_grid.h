@@ -22,4 +22,4 @@ double mf_weight_grid_value(const struct weight_grid *grid, const double *omega,
 
 /// Table for the kernels. Fails: NO_MEMORY.
 enum status mf_weight_grid_table(const struct weight_grid *grid, const double *omega,
-                              struct table *table) MUST_USE;
+                                 struct table *table) MUST_USE;

@@ -148,9 +148,9 @@ static enum status check_lengths(const struct compared *fits, size_t count,
             continue;
         if (first && fabs(*length / *first - 1) > rounding)
             return mf_status_fail(STATUS_BAD_INPUT,
-                               "compare: the unit of length is %.6g nm in %s and %.6g nm in %s: "
-                               "tables over r in it do not go together",
-                               *first, folders[at], *length, folders[k]);
+                                  "compare: the unit of length is %.6g nm in %s and %.6g nm in %s: "
+                                  "tables over r in it do not go together",
+                                  *first, folders[at], *length, folders[k]);
         if (first == NULL) {
             first = length;
             at = k;
@@ -159,7 +159,8 @@ static enum status check_lengths(const struct compared *fits, size_t count,
     return STATUS_OK;
 }
 
-enum status mf_compare_folders(const char *const *folders, size_t count, const char *out, bool quiet) {
+enum status mf_compare_folders(const char *const *folders, size_t count, const char *out,
+                               bool quiet) {
     enum status status = STATUS_OK;
     struct compared *fits = NULL;
     if (count == 0)

@@ -24,4 +24,4 @@
 /// Fails: BAD_INPUT, also if two units of length differ, or IO with one line that names the file. A
 /// figure that fails is a warning on stderr. Tested: test_compare.
 enum status mf_compare_folders(const char *const *folders, size_t count, const char *out,
-                            bool quiet) MUST_USE;
+                               bool quiet) MUST_USE;

@@ -23,4 +23,4 @@ enum status mf_compare_table_print(const struct compared *fits, size_t count) MU
 /// there, nan where one does not have them. Comment lines give each index its name and texts.
 /// Fails: NO_MEMORY, IO. Tested: test_compare.
 enum status mf_compare_table_write(const char *out, const struct compared *fits,
-                                size_t count) MUST_USE;
+                                   size_t count) MUST_USE;

@@ -246,9 +246,9 @@ enum status mf_figures_draw_again(const char *folder) {
     TRY(draw_all(folder, &count));
     return count > 0 ? STATUS_OK
                      : mf_status_fail(STATUS_BAD_INPUT,
-                                   "%s: there is nothing to draw: no table that a fit or a "
-                                   "simulation leaves",
-                                   folder);
+                                      "%s: there is nothing to draw: no table that a fit or a "
+                                      "simulation leaves",
+                                      folder);
 }
 
 enum status mf_figures_draw_comparison(const char *folder) {

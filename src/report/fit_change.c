@@ -22,7 +22,7 @@ static void find_lower(double value, double r, double *lowest, double *at) {
 }
 
 struct fit_change mf_fit_change_find(const struct decoder *decoder, enum unknown_kind kind,
-                                  size_t curve, const double *first, const double *last) {
+                                     size_t curve, const double *first, const double *last) {
     struct fit_change change = {.well = INFINITY, .first_well = INFINITY};
     const size_t points = mf_decoder_points(decoder, kind) / mf_decoder_curve_count(decoder, kind);
     const double *r = mf_decoder_r(decoder, kind);

@@ -15,4 +15,4 @@ struct fit_change {
 /// @param[in] first, last  of all curves of the unknown, shape [mf_decoder_points]
 /// Tested: test_fit_change.
 struct fit_change mf_fit_change_find(const struct decoder *decoder, enum unknown_kind kind,
-                                  size_t curve, const double *first, const double *last);
+                                     size_t curve, const double *first, const double *last);

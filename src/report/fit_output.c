@@ -46,7 +46,8 @@ static enum status write_potential(const struct fit_file *fit, const struct deco
         force[k] = -force[k];
     }
     nanometres = mf_units_column(r, points, units->length);
-    energy = mf_units_column(phi, points, mf_units_known(units) ? mf_units_energy_kj_per_mol(units) : 0);
+    energy =
+        mf_units_column(phi, points, mf_units_known(units) ? mf_units_energy_kj_per_mol(units) : 0);
     truth = truth_at(fit, UNKNOWN_POTENTIAL, pair, r, points);
     CHECK(nanometres && energy && truth ? STATUS_OK : STATUS_NO_MEMORY);
     struct data_column columns[8] = {
@@ -135,13 +136,13 @@ static enum status write_flat(enum unknown_kind kind, size_t curve, const struct
     }
     curve_file(decoder, kind, curve, "_flat.tsv", folder, path);
     return mf_data_table_write(path,
-                            "changes of the curve that the data say least of, widest first; one "
-                            "standard error each",
-                            columns, 1 + INVERSE_FLAT, points);
+                               "changes of the curve that the data say least of, widest first; one "
+                               "standard error each",
+                               columns, 1 + INVERSE_FLAT, points);
 }
 
 enum status mf_fit_output_curves(const struct fit_file *fit, const struct decoder *decoder,
-                              const struct fit_result *result, const struct run_folder *folder) {
+                                 const struct fit_result *result, const struct run_folder *folder) {
     for (int kind = 0; kind < UNKNOWNS; kind++)
         for (size_t n = 0; result->curve[kind] && n < mf_decoder_curve_count(decoder, kind); n++)
             TRY(write_flat(kind, n, decoder, result, folder));
@@ -255,7 +256,8 @@ static enum status write_motion(const struct fit_file *fit, const struct target_
     NEW_ARRAY(time, target->times);
     for (size_t k = 0; k < target->times; k++)
         time[k] = (double)k * target->interval;
-    picoseconds = mf_units_column(time, target->times, mf_units_known(units) ? mf_units_time_ps(units) : 0);
+    picoseconds =
+        mf_units_column(time, target->times, mf_units_known(units) ? mf_units_time_ps(units) : 0);
     CHECK(picoseconds ? STATUS_OK : STATUS_NO_MEMORY);
     columns[0] = (struct data_column){"time[tau]", time, NULL};
     columns[5] = (struct data_column){"time[ps]", picoseconds, NULL};
@@ -278,7 +280,7 @@ done:
 }
 
 enum status mf_fit_output_observables(const struct fit_file *fit, const struct fit_result *result,
-                                   const struct run_folder *folder) {
+                                      const struct run_folder *folder) {
     const struct targets *targets = &fit->targets;
     const struct observed *observed = &result->verification->observed;
     for (size_t pair = 0; targets->given[GOAL_RDF] && pair < targets->pairs; pair++)

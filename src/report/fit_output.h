@@ -26,17 +26,17 @@ struct fit_result {
 
 /// potential.tsv and omega.tsv, what of them was fitted.
 enum status mf_fit_output_curves(const struct fit_file *fit, const struct decoder *decoder,
-                              const struct fit_result *result,
-                              const struct run_folder *folder) MUST_USE;
+                                 const struct fit_result *result,
+                                 const struct run_folder *folder) MUST_USE;
 
 /// From the verification: rdf.tsv, etd.tsv and motion.tsv, as far as there are targets.
 enum status mf_fit_output_observables(const struct fit_file *fit, const struct fit_result *result,
-                                   const struct run_folder *folder) MUST_USE;
+                                      const struct run_folder *folder) MUST_USE;
 
 /// summary.json.
 enum status mf_fit_output_summary(const struct fit_file *fit, const struct decoder *decoder,
-                               const struct fit_result *result,
-                               const struct run_folder *folder) MUST_USE;
+                                  const struct fit_result *result,
+                                  const struct run_folder *folder) MUST_USE;
 
 /// How far the fitted potential of a kind of pairs is from the known true one, over the bins with a
 /// target above 0.1.
@@ -46,4 +46,4 @@ struct fit_truth {
     double rms_without_ramp; ///< of what is left
 };
 struct fit_truth mf_fit_output_truth(const struct fit_file *fit, const struct decoder *decoder,
-                                  const double *phi, size_t pair);
+                                     const double *phi, size_t pair);

@@ -33,7 +33,7 @@ static void say_parameters(struct progress *to, const struct fit_file *fit,
 static void say_changes(struct progress *to, const struct decoder *decoder,
                         const struct fit_result *result) {
     mf_progress_say(to, "error of the fit: %.4g at first, %.4g at the end", result->first_error,
-                 result->error);
+                    result->error);
     for (int kind = 0; kind < UNKNOWNS; kind++)
         for (size_t n = 0; result->first[kind] && n < mf_decoder_curve_count(decoder, kind); n++) {
             char name[DECODER_NAME_SIZE], well[128] = "";
@@ -60,13 +60,13 @@ static void say_distances(struct progress *to, const struct fit_file *fit,
         mf_number_text(v->distance[kind].rms, v->distance_error[kind], rms);
         const double noises = v->distance[kind].rms / v->distance[kind].noise;
         mf_progress_say(to, "verified: rms of %s - target = %s, statistics alone %.2g%s",
-                     mf_goals_names[kind], rms, v->distance[kind].noise,
-                     noises > missed ? ": not met, though nothing better was found" : "");
+                        mf_goals_names[kind], rms, v->distance[kind].noise,
+                        noises > missed ? ": not met, though nothing better was found" : "");
     }
 }
 
-void mf_fit_report_say(struct progress *to, const struct fit_file *fit, const struct decoder *decoder,
-                    const struct fit_result *result) {
+void mf_fit_report_say(struct progress *to, const struct fit_file *fit,
+                       const struct decoder *decoder, const struct fit_result *result) {
     const struct verification *v = result->verification;
     say_changes(to, decoder, result);
     say_parameters(to, fit, result->parameter);
@@ -74,10 +74,11 @@ void mf_fit_report_say(struct progress *to, const struct fit_file *fit, const st
     if (goals_ask(&fit->problem.compared, GOAL_DIFFUSION)) {
         char diffusion[NUMBER_TEXT_SIZE];
         mf_number_text(*v->observed.value[GOAL_DIFFUSION], *v->observed.error[GOAL_DIFFUSION],
-                    diffusion);
+                       diffusion);
         mf_progress_say(to, "D = %s, the slope of the MSD from %.4g to %.4g tau", diffusion,
-                     v->diffusion_begin, v->diffusion_end);
+                        v->diffusion_begin, v->diffusion_end);
     }
-    mf_progress_say(to, "T = %.4f, configurational %.4f, pressure %.3f", v->thermodynamics.temperature,
-                 v->thermodynamics.temperature_configurational, v->thermodynamics.pressure);
+    mf_progress_say(to, "T = %.4f, configurational %.4f, pressure %.3f",
+                    v->thermodynamics.temperature, v->thermodynamics.temperature_configurational,
+                    v->thermodynamics.pressure);
 }

@@ -8,9 +8,10 @@
 #include <math.h>
 
 struct fit_truth mf_fit_output_truth(const struct fit_file *fit, const struct decoder *decoder,
-                                  const double *phi, size_t pair) {
+                                     const double *phi, size_t pair) {
     const struct potential_grid *grid = &decoder->potential;
-    const struct curve *curve = mf_scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair);
+    const struct curve *curve =
+        mf_scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair);
     double count = 0, squares = 0, with_ramp = 0, ramp_squares = 0;
     for (size_t n = 0; n < grid->known; n++) {
         const size_t point = grid->known_point[n];
@@ -258,13 +259,14 @@ static void put_verification(struct json_writer *writer, const struct fit_file *
 }
 
 enum status mf_fit_output_summary(const struct fit_file *fit, const struct decoder *decoder,
-                               const struct fit_result *result, const struct run_folder *folder) {
+                                  const struct fit_result *result,
+                                  const struct run_folder *folder) {
     struct json_writer *writer = mf_json_writer_create();
     char path[OUTPUT_PATH_SIZE];
     mf_json_put_text(writer, "status",
-                  result->status != STATUS_OK ? mf_status_name(result->status)
-                  : result->settled           ? "converged"
-                                              : "finished");
+                     result->status != STATUS_OK ? mf_status_name(result->status)
+                     : result->settled           ? "converged"
+                                                 : "finished");
     if (result->reason[0])
         mf_json_put_text(writer, "reason", result->reason);
     mf_json_put_text(writer, "method", fit->method->name);

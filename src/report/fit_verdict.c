@@ -24,8 +24,8 @@ static const char *find_cause(const struct thermodynamics_summary *found, double
 }
 
 bool mf_fit_verdict_contradicts(const struct verification *verification, bool pressure_is_fitted,
-                             double temperature, double noise_margin,
-                             char reason[INVERSE_REASON_SIZE]) {
+                                double temperature, double noise_margin,
+                                char reason[INVERSE_REASON_SIZE]) {
     const struct goal_distance *rdf = &verification->distance[GOAL_RDF];
     const struct thermodynamics_summary *found = &verification->thermodynamics;
     const struct goal_distance *pressure = &verification->distance[GOAL_PRESSURE];
@@ -47,7 +47,7 @@ bool mf_fit_verdict_contradicts(const struct verification *verification, bool pr
 }
 
 bool mf_fit_verdict_is_worse(const struct verification *verification, const struct goals *goals,
-                          double error, double variance, char reason[INVERSE_REASON_SIZE]) {
+                             double error, double variance, char reason[INVERSE_REASON_SIZE]) {
     static const double deviations = 5, part = 0.25;
     const double verified = mf_goals_error(goals, verification->distance);
     const double own = mf_goals_variance(goals, verification->distance);

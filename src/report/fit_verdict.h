@@ -13,8 +13,8 @@
 /// @param[in] noise_margin  either may be off by this many times its statistical error
 /// Returns whether there is something to say. Tested: test_fit_verdict.
 bool mf_fit_verdict_contradicts(const struct verification *verification, bool pressure_is_fitted,
-                             double temperature, double noise_margin,
-                             char reason[INVERSE_REASON_SIZE]);
+                                double temperature, double noise_margin,
+                                char reason[INVERSE_REASON_SIZE]);
 
 /// Why the verified error of all targets is not the one that a method measured itself: it is larger
 /// by five standard errors of the difference and by a quarter. The best of many candidates is a
@@ -23,4 +23,4 @@ bool mf_fit_verdict_contradicts(const struct verification *verification, bool pr
 /// @param[in] error, variance  mf_goals_error by the method, and its variance
 /// Returns whether there is something to say. Tested: test_fit_verdict.
 bool mf_fit_verdict_is_worse(const struct verification *verification, const struct goals *goals,
-                          double error, double variance, char reason[INVERSE_REASON_SIZE]);
+                             double error, double variance, char reason[INVERSE_REASON_SIZE]);

@@ -10,7 +10,7 @@
 enum { COMMON = 5, MOST_COLUMNS = COMMON + INVERSE_EXTRA };
 
 enum status mf_history_init(struct history *history, const struct inverse_method *method,
-                         const size_t points[UNKNOWNS], size_t capacity) {
+                            const size_t points[UNKNOWNS], size_t capacity) {
     enum status status = STATUS_OK;
     *history = (struct history){.capacity = capacity};
     while (method->columns[history->extra])
@@ -117,7 +117,8 @@ static enum status write_curve(const struct history *history, const struct decod
     char path[OUTPUT_PATH_SIZE], name[DECODER_NAME_SIZE], file[DECODER_NAME_SIZE + 16];
     NEW_ARRAY(columns, history->iterations + 1);
     NEW_ARRAY(names, history->iterations * NAME_SIZE);
-    columns[0] = (struct data_column){"r[lambda]", mf_decoder_r(decoder, kind) + curve * points, NULL};
+    columns[0] =
+        (struct data_column){"r[lambda]", mf_decoder_r(decoder, kind) + curve * points, NULL};
     for (size_t k = 0; k < history->iterations; k++) {
         snprintf(names + k * NAME_SIZE, NAME_SIZE, "%zu", k);
         columns[k + 1] = (struct data_column){
@@ -135,7 +136,7 @@ done:
 }
 
 enum status mf_history_write(const struct history *history, const struct inverse_method *method,
-                          const struct decoder *decoder, const struct run_folder *folder) {
+                             const struct decoder *decoder, const struct run_folder *folder) {
     TRY(write_history(history, method, folder));
     TRY(write_timing(history, folder));
     for (int kind = 0; kind < UNKNOWNS; kind++)

@@ -20,7 +20,7 @@ struct history {
 
 /// Room for `capacity` iterations of a method. Fails: NO_MEMORY.
 enum status mf_history_init(struct history *history, const struct inverse_method *method,
-                         const size_t points[UNKNOWNS], size_t capacity) MUST_USE;
+                            const size_t points[UNKNOWNS], size_t capacity) MUST_USE;
 /// Error of the first iteration; NaN before it.
 double mf_history_first_error(const struct history *history);
 
@@ -31,7 +31,8 @@ void mf_history_add(struct history *history, const struct inverse_step *step, do
 
 /// Write the tables.
 enum status mf_history_write(const struct history *history, const struct inverse_method *method,
-                          const struct decoder *decoder, const struct run_folder *folder) MUST_USE;
+                             const struct decoder *decoder,
+                             const struct run_folder *folder) MUST_USE;
 
 /// Pieces for a checkpoint.
 enum { HISTORY_SPANS = 3 + UNKNOWNS };

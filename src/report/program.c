@@ -99,11 +99,12 @@ static enum status judge(const char *name, int state, char *text) {
         return mf_status_fail(STATUS_IO, "%s was ended by signal %d", name, WTERMSIG(state));
     if (WEXITSTATUS(state) == EXIT_NOT_FOUND)
         return mf_status_fail(STATUS_IO, "%s is not installed", name);
-    return mf_status_fail(STATUS_IO, "%s failed: %s", name, text[0] ? last_line(text) : "no reason");
+    return mf_status_fail(STATUS_IO, "%s failed: %s", name,
+                          text[0] ? last_line(text) : "no reason");
 }
 
 enum status mf_program_run(const char *folder, const char *const *words, enum program_says says,
-                        double seconds, char *text, size_t size) {
+                           double seconds, char *text, size_t size) {
     int ends[2];
     text[0] = '\0';
     if (pipe(ends) != 0)
@@ -124,7 +125,7 @@ enum status mf_program_run(const char *folder, const char *const *words, enum pr
         kill(-child, SIGKILL); // with the programs that it has started
         wait_for(child, INFINITY, &state);
         return mf_status_fail(STATUS_IO, "%s had not ended after %g s and was stopped", words[0],
-                           seconds);
+                              seconds);
     }
     return judge(words[0], state, text);
 }

@@ -19,7 +19,7 @@ enum program_says {
 /// Fails: IO with one line that names the program: not installed, ended by a signal, stopped as
 /// too slow, or failed with the last line that it said. Tested: test_program.
 enum status mf_program_run(const char *folder, const char *const *words, enum program_says says,
-                        double seconds, char *text, size_t size) MUST_USE;
+                           double seconds, char *text, size_t size) MUST_USE;
 
 /// Find a folder that ships with this program, such as "plots", by a file that it must have.
 ///
@@ -29,7 +29,7 @@ enum status mf_program_run(const char *folder, const char *const *words, enum pr
 /// @param[out] path  of `size` bytes
 /// Fails: IO. Tested: test_program.
 enum status mf_program_find_folder(char *path, size_t size, const char *name,
-                                const char *file) MUST_USE;
+                                   const char *file) MUST_USE;
 
 /// Begin this program again, with other waiting: threads of libgomp wait for each other turning in
 /// circles, for so long that two of them on busy cores are 15 to 60 times slower than one. A

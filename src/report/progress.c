@@ -29,7 +29,7 @@ static void format_duration(double seconds, char text[32]) {
 }
 
 void mf_progress_tell(struct progress *progress, uint64_t done, uint64_t total, const char *unit,
-                   const char *text) {
+                      const char *text) {
     const double now = clock_seconds();
     const double interval = progress->terminal ? terminal_interval : pipe_interval;
     if (progress->quiet || (now - progress->last < interval && done < total))

@@ -22,7 +22,7 @@ double mf_progress_seconds(const struct progress *progress);
 
 /// Tell that `done` of `total` parts are done; `text` says the rest. Adds rate and time left.
 void mf_progress_tell(struct progress *progress, uint64_t done, uint64_t total, const char *unit,
-                   const char *text);
+                      const char *text);
 
 /// End the updating line, if there is one, and print a line of its own unless quiet.
 void mf_progress_say(struct progress *progress, const char *format, ...)

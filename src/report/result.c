@@ -75,8 +75,8 @@ static enum status check_folder(const char *folder, const char *summary) {
     if (!S_ISDIR(about.st_mode))
         return mf_status_fail(STATUS_BAD_INPUT, "%s: not a folder", folder);
     if (access(summary, F_OK) != 0)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: missing, so this is no folder of a finished fit",
-                           summary);
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: missing, so this is no folder of a finished fit", summary);
     return STATUS_OK;
 }
 
@@ -189,8 +189,8 @@ static enum status read_row(double *row, const struct wish *wishes, size_t count
         char *end;
         const double value = strtod(line, &end);
         if (end == line || strchr(" \t\r", *end) == NULL)
-            return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu is not a number", file, number,
-                               place);
+            return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu is not a number", file,
+                                  number, place);
         for (size_t k = 0; k < count; k++)
             if (wishes[k].place == place)
                 row[k] = value;

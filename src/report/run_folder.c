@@ -112,9 +112,9 @@ static enum status spare_input(const char *path, const void *context) {
 static enum status refuse_stranger(const char *path, const void *context) {
     (void)context;
     return mf_status_fail(STATUS_BAD_INPUT,
-                       "%s is there, but no used.json, so no run wrote it: -o OTHER keeps it, "
-                       "--force replaces it",
-                       path);
+                          "%s is there, but no used.json, so no run wrote it: -o OTHER keeps it, "
+                          "--force replaces it",
+                          path);
 }
 
 /// Do something with every file of the folder that is one of those.
@@ -179,15 +179,15 @@ static enum status check_replaced(const struct run_folder *folder, enum run_kind
         return kind == RUN_SIMULATION
                    ? STATUS_OK
                    : mf_status_fail(STATUS_BAD_INPUT,
-                                 "%s holds a simulation: --force replaces it, -o OTHER keeps it",
-                                 folder->path);
+                                    "%s holds a simulation: --force replaces it, -o OTHER keeps it",
+                                    folder->path);
     if (summary && !says(folder, "summary.json", "status", mf_status_name(STATUS_INTERRUPTED)))
         return mf_status_fail(STATUS_BAD_INPUT,
-                           "%s holds a finished fit: --force replaces it, -o OTHER keeps it",
-                           folder->path);
+                              "%s holds a finished fit: --force replaces it, -o OTHER keeps it",
+                              folder->path);
     return mf_status_fail(STATUS_BAD_INPUT,
-                       "%s holds an unfinished fit: --resume goes on, --force begins anew",
-                       folder->path);
+                          "%s holds an unfinished fit: --resume goes on, --force begins anew",
+                          folder->path);
 }
 
 static enum status check_resumed(const struct run_folder *folder) {
@@ -214,7 +214,7 @@ static enum status lock(struct run_folder *folder) {
     if (flock(folder->lock, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT, "%s: another process is running in this folder",
-                       folder->path);
+                          folder->path);
 }
 
 static enum status choose(struct run_folder *folder, const char *input,
@@ -226,12 +226,14 @@ static enum status choose(struct run_folder *folder, const char *input,
                                       slash ? (int)(slash - input + 1) : 0, input);
     if (length >= 0 && length <= LONGEST_FOLDER)
         return STATUS_OK;
-    return mf_status_fail(STATUS_BAD_INPUT, "%.60s…: the path of a run's folder has at most %d bytes",
-                       folder->path, LONGEST_FOLDER);
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%.60s…: the path of a run's folder has at most %d bytes", folder->path,
+                          LONGEST_FOLDER);
 }
 
 enum status mf_run_folder_open(struct run_folder *folder, enum run_kind kind, const char *input,
-                            const struct input_files *inputs, const struct run_options *options) {
+                               const struct input_files *inputs,
+                               const struct run_options *options) {
     TRY(choose(folder, input, options));
     TRY(mf_output_make_folder(folder->path));
     TRY(check_writable(folder));
@@ -260,7 +262,7 @@ void mf_run_folder_file(const struct run_folder *folder, const char *name, char 
 }
 
 void mf_run_folder_rdf(const struct run_folder *folder, const struct composition *composition,
-                    int pair, char *path) {
+                       int pair, char *path) {
     char kind[COMPOSITION_PAIR_NAME_SIZE], name[COMPOSITION_PAIR_NAME_SIZE + 8];
     mf_composition_pair_name(composition, pair, kind);
     snprintf(name, sizeof name, "rdf%s%s.tsv", kind[0] ? "_" : "", kind);

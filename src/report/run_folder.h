@@ -28,8 +28,8 @@ struct run_folder {
 /// --force may replace: those of an earlier fit, of a simulation if this is a fit, and files with
 /// such names that are of no run (there is no used.json); IO. Tested: test_folder.
 enum status mf_run_folder_open(struct run_folder *folder, enum run_kind kind, const char *input,
-                            const struct input_files *inputs,
-                            const struct run_options *options) MUST_USE;
+                               const struct input_files *inputs,
+                               const struct run_options *options) MUST_USE;
 
 /// Remove what killed processes had begun to write and, unless the run goes on with them, the
 /// results of an earlier run, so that a folder never mixes two: once used.json and checkpoint.bin
@@ -44,7 +44,7 @@ void mf_run_folder_file(const struct run_folder *folder, const char *name, char 
 
 /// Path of the g(r) of a kind of pairs: rdf.tsv, or rdf_A-B.tsv in a mixture.
 void mf_run_folder_rdf(const struct run_folder *folder, const struct composition *composition,
-                    int pair, char *path);
+                       int pair, char *path);
 
 /// Draw the figures of the folder; what fails is a warning on stderr.
 void mf_run_folder_draw(const struct run_folder *folder);

@@ -24,8 +24,8 @@ struct close_rows {
 /// @param[in] limit  first place of the list that must not be written
 /// @return the new length of the list, or SIZE_MAX if there might not be room
 size_t mf_close_portable(struct neighbours *neighbours, const struct particles *particles,
-                      const struct close_rows *rows, size_t used, size_t limit);
+                         const struct close_rows *rows, size_t used, size_t limit);
 size_t mf_close_avx2(struct neighbours *neighbours, const struct particles *particles,
-                  const struct close_rows *rows, size_t used, size_t limit);
+                     const struct close_rows *rows, size_t used, size_t limit);
 size_t mf_close_avx512(struct neighbours *neighbours, const struct particles *particles,
-                    const struct close_rows *rows, size_t used, size_t limit);
+                       const struct close_rows *rows, size_t used, size_t limit);

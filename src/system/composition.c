@@ -28,7 +28,8 @@ struct composition mf_composition_scaled(const struct composition *composition, 
 }
 
 double mf_composition_distortion(const struct composition *from, const struct composition *to) {
-    const double scale = (double)mf_composition_particles(from) / (double)mf_composition_particles(to);
+    const double scale =
+        (double)mf_composition_particles(from) / (double)mf_composition_particles(to);
     double largest = 0;
     for (int type = 0; type < from->types; type++)
         if (from->count[type] > 0)
@@ -38,7 +39,7 @@ double mf_composition_distortion(const struct composition *from, const struct co
 }
 
 int64_t mf_composition_least_particles(const struct composition *composition, int64_t particles,
-                                    double distortion) {
+                                       double distortion) {
     for (;; particles++) { // a multiple of the whole is exact
         const struct composition scaled = mf_composition_scaled(composition, particles);
         if (mf_composition_distortion(composition, &scaled) <= distortion)
@@ -67,7 +68,7 @@ int mf_composition_pair_of_ids(const struct composition *composition, uint32_t i
     if (!composition_is_mixed(composition))
         return 0;
     return mf_composition_pair(composition, mf_composition_type(composition, i),
-                            mf_composition_type(composition, j));
+                               mf_composition_type(composition, j));
 }
 
 void mf_composition_pair_types(const struct composition *composition, int pair, int type[2]) {
@@ -85,7 +86,7 @@ double mf_composition_possible_pairs(const struct composition *composition, int 
 }
 
 void mf_composition_pair_name(const struct composition *composition, int pair,
-                           char text[COMPOSITION_PAIR_NAME_SIZE]) {
+                              char text[COMPOSITION_PAIR_NAME_SIZE]) {
     int type[2];
     text[0] = '\0';
     if (!composition_is_mixed(composition))

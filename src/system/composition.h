@@ -36,10 +36,10 @@ struct composition mf_composition_scaled(const struct composition *composition, 
 /// Largest relative change of a type's share of all beads from one mixture to another.
 double mf_composition_distortion(const struct composition *from, const struct composition *to);
 
-/// The smallest number of beads from `particles` on for which mf_composition_scaled changes no share
-/// by more than `distortion`.
+/// The smallest number of beads from `particles` on for which mf_composition_scaled changes no
+/// share by more than `distortion`.
 int64_t mf_composition_least_particles(const struct composition *composition, int64_t particles,
-                                    double distortion);
+                                       double distortion);
 
 static inline bool composition_is_mixed(const struct composition *composition) {
     return composition->types > 1;
@@ -65,7 +65,7 @@ double mf_composition_possible_pairs(const struct composition *composition, int 
 
 /// Print the name of a kind of pairs, "A-B", or nothing for beads without names.
 void mf_composition_pair_name(const struct composition *composition, int pair,
-                           char text[COMPOSITION_PAIR_NAME_SIZE]);
+                              char text[COMPOSITION_PAIR_NAME_SIZE]);
 
 /// The kind of pairs called "A-B" or "B-A", or −1.
 int mf_composition_find_pair(const struct composition *composition, const char *name);

@@ -58,15 +58,16 @@ static double expect_entries(const struct neighbours *neighbours, const struct b
 }
 
 enum status mf_neighbours_init(struct neighbours *neighbours, enum neighbours_kind kind,
-                            const struct box *box, size_t count, double cutoff, double skin) {
+                               const struct box *box, size_t count, double cutoff, double skin) {
     enum status status = STATUS_OK;
     *neighbours = (struct neighbours){
         .kind = kind, .range = cutoff + skin, .skin = skin, .count = count, .cell_total = 1};
     if (mf_box_shortest(box) < 2 * cutoff)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                           "the box is too small: its shortest edge %g is below twice the cutoff "
-                           "%g, so the nearest image is not the only one in range",
-                           mf_box_shortest(box), cutoff);
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "the box is too small: its shortest edge %g is below twice the cutoff "
+            "%g, so the nearest image is not the only one in range",
+            mf_box_shortest(box), cutoff);
     // A particle may meet only the nearest image of another, also in the skin.
     if (neighbours->range > mf_box_shortest(box) / 2) {
         neighbours->range = mf_box_shortest(box) / 2;
@@ -118,7 +119,8 @@ size_t mf_neighbours_listed(const struct neighbours *neighbours) {
     return listed;
 }
 
-enum status mf_neighbours_sort_and_build(struct neighbours *neighbours, struct particles *particles) {
+enum status mf_neighbours_sort_and_build(struct neighbours *neighbours,
+                                         struct particles *particles) {
     mf_particles_wrap(particles);
     mf_particles_update_fractions(particles);
     mf_neighbours_sort(neighbours, particles);
@@ -172,7 +174,8 @@ SIMD_CLONES static double has_moved(const void *context, size_t begin, size_t en
     return moved;
 }
 
-bool mf_neighbours_are_stale(const struct neighbours *neighbours, const struct particles *particles) {
+bool mf_neighbours_are_stale(const struct neighbours *neighbours,
+                             const struct particles *particles) {
     const struct watched watched = {neighbours, particles};
     if (neighbours->skin <= 0)
         return true;
@@ -217,10 +220,10 @@ void mf_neighbours_visit_distances(
     visit(context, squared, found);
 }
 
-void mf_neighbours_visit_pairs(const struct neighbours *neighbours, const struct particles *particles,
-                            double range,
-                            void (*visit)(void *context, const struct neighbours_batch *batch),
-                            void *context) {
+void mf_neighbours_visit_pairs(const struct neighbours *neighbours,
+                               const struct particles *particles, double range,
+                               void (*visit)(void *context, const struct neighbours_batch *batch),
+                               void *context) {
     const float limit = (float)(range * range);
     struct neighbours_batch batch = {0};
     float scale[3];

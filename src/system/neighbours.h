@@ -73,8 +73,8 @@ struct neighbours {
 /// Prepare for particles in `box`. Fails: NO_MEMORY; BAD_INPUT if the box is shorter than twice the
 /// cutoff, where the nearest image is no longer the only one in range.
 enum status mf_neighbours_init(struct neighbours *neighbours, enum neighbours_kind kind,
-                            const struct box *box, size_t count, double cutoff,
-                            double skin) MUST_USE;
+                               const struct box *box, size_t count, double cutoff,
+                               double skin) MUST_USE;
 void mf_neighbours_clear(struct neighbours *neighbours);
 
 /// Whether the cells within reach along an axis are all that there are.
@@ -90,14 +90,16 @@ size_t mf_neighbours_listed(const struct neighbours *neighbours);
 
 /// Wrap and sort the particles in space, then build the list. Fails: NO_MEMORY.
 enum status mf_neighbours_sort_and_build(struct neighbours *neighbours,
-                                      struct particles *particles) MUST_USE;
+                                         struct particles *particles) MUST_USE;
 
 /// Build the list for the present order of the particles, as left by an earlier sort, from the
 /// positions in `built`; for a restart. Fails: NO_MEMORY.
-enum status mf_neighbours_rebuild(struct neighbours *neighbours, struct particles *particles) MUST_USE;
+enum status mf_neighbours_rebuild(struct neighbours *neighbours,
+                                  struct particles *particles) MUST_USE;
 
 /// True if some particle has moved by half the skin or more since the last build.
-bool mf_neighbours_are_stale(const struct neighbours *neighbours, const struct particles *particles);
+bool mf_neighbours_are_stale(const struct neighbours *neighbours,
+                             const struct particles *particles);
 
 /// Pairs in range, for a mixture, whose types follow from the ids.
 struct neighbours_batch {
@@ -107,10 +109,10 @@ struct neighbours_batch {
 };
 
 /// mf_neighbours_visit_distances with the ids of the pairs.
-void mf_neighbours_visit_pairs(const struct neighbours *neighbours, const struct particles *particles,
-                            double range,
-                            void (*visit)(void *context, const struct neighbours_batch *batch),
-                            void *context);
+void mf_neighbours_visit_pairs(const struct neighbours *neighbours,
+                               const struct particles *particles, double range,
+                               void (*visit)(void *context, const struct neighbours_batch *batch),
+                               void *context);
 
 /// Hand the squared distances [λ²] of all pairs nearer than `range` (≤ the complete range of a half
 /// list) to `visit`, in batches, in the order of the list.

@@ -12,4 +12,4 @@ void mf_neighbours_sort(struct neighbours *neighbours, const struct particles *p
 
 /// Build the list of sorted particles. Fails: NO_MEMORY.
 enum status mf_neighbours_build(struct neighbours *neighbours,
-                             const struct particles *particles) MUST_USE;
+                                const struct particles *particles) MUST_USE;

@@ -210,7 +210,7 @@ static void permute_precise_motions(void *context, size_t begin, size_t end) {
     do {                                                                                           \
         struct permutation permutation = {(order), (array), (spare)};                              \
         void *old = (array);                                                                       \
-        mf_parallel_for((particles)->count, (particles)->threads, (permute), &permutation);           \
+        mf_parallel_for((particles)->count, (particles)->threads, (permute), &permutation);        \
         (array) = (spare);                                                                         \
         (spare) = old;                                                                             \
     } while (0)

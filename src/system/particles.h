@@ -55,7 +55,7 @@ struct particles {
 };
 
 enum status mf_particles_init(struct particles *particles, const struct box *box,
-                           size_t count) MUST_USE;
+                              size_t count) MUST_USE;
 void mf_particles_clear(struct particles *particles);
 
 /// Keep also what the kernels read in double precision, from the next updates on. Fails: NO_MEMORY.

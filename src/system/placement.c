@@ -146,13 +146,15 @@ enum status mf_placement_random(struct particles *particles, double separation, 
         uint32_t trial = 0;
         do {
             if (trial == TRIALS) {
-                status = mf_status_fail(STATUS_BAD_INPUT,
-                                     "no room for particle %zu of %zu at a least distance of %g: "
-                                     "lower \"separation\" or place on a lattice",
-                                     k + 1, particles->count, separation);
+                status =
+                    mf_status_fail(STATUS_BAD_INPUT,
+                                   "no room for particle %zu of %zu at a least distance of %g: "
+                                   "lower \"separation\" or place on a lattice",
+                                   k + 1, particles->count, separation);
                 goto done;
             }
-            const struct rng_block block = mf_rng_philox(seed, RNG_PLACEMENT, (uint32_t)k, ++trial, 0);
+            const struct rng_block block =
+                mf_rng_philox(seed, RNG_PLACEMENT, (uint32_t)k, ++trial, 0);
             for (int d = 0; d < box->dimensions; d++)
                 x[d] = box->length[d] * mf_rng_uniform(block.word[d], block.word[3]);
         } while (!is_free(&occupied, particles, x, separation));
@@ -174,6 +176,7 @@ done:
 enum status mf_placement_disordered(struct particles *particles, uint64_t seed) {
     static const double share = 0.7;
     const struct box *box = &particles->box;
-    const double distance = pow(mf_box_volume(box) / (double)particles->count, 1.0 / box->dimensions);
+    const double distance =
+        pow(mf_box_volume(box) / (double)particles->count, 1.0 / box->dimensions);
     return mf_placement_random(particles, share * distance, seed);
 }

@@ -37,7 +37,7 @@ void mf_placement_mix(struct particles *particles, uint64_t seed);
 /// Uniform random positions no two of which are nearer than `separation` (sequential addition).
 /// Fails: BAD_INPUT when no place is found in 10,000 trials: the density is too high for it.
 enum status mf_placement_random(struct particles *particles, double separation,
-                             uint64_t seed) MUST_USE;
+                                uint64_t seed) MUST_USE;
 
 /// Without order: at random, no two nearer than 0.7 of their mean distance, so that there is room
 /// for all (sequential addition fills a box up to 0.9 of it) and moves soon undo the overlaps.

@@ -164,7 +164,7 @@ static void add_etd(struct plan *plan, const struct simulation_setup *setup,
 }
 
 void mf_explain_scene(FILE *out, const struct simulation_setup *setup,
-                   const struct explain_measured *measured) {
+                      const struct explain_measured *measured) {
     struct plan plan = {0};
     add(&plan, "motion", true, cost.move, "%s, and a watch over the velocities",
         setup->integrator->name);

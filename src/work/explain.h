@@ -25,4 +25,4 @@ struct explain_measured {
 /// Print the stages of a step with the share of the time that each is expected to take, from costs
 /// measured on one processor: shares are good to some percent of the whole.
 void mf_explain_scene(FILE *out, const struct simulation_setup *setup,
-                   const struct explain_measured *measured);
+                      const struct explain_measured *measured);

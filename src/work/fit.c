@@ -130,7 +130,8 @@ static enum status create(struct run *run) {
     CHECK(mf_history_init(
         &run->history, fit->method, points,
         fit->method->most_iterations(fit->method, &fit->problem, fit->method_parameters)));
-    CHECK((run->state = mf_memory_zeroed(1, fit->method->state_size)) ? STATUS_OK : STATUS_NO_MEMORY);
+    CHECK((run->state = mf_memory_zeroed(1, fit->method->state_size)) ? STATUS_OK
+                                                                      : STATUS_NO_MEMORY);
     run->created = true;
     CHECK(fit->method->create(run->state, fit->method, &fit->problem, fit->method_parameters));
 done:
@@ -146,10 +147,10 @@ static enum status tell_targets(struct run *run) {
     const struct target_etd *etd = &run->fit.targets.etd;
     if (etd->left_out > 0)
         mf_progress_say(&run->progress,
-                     "target.etd: %zu of %zu cells of the target are not known and left out",
-                     etd->left_out, (size_t)(etd->grid.times * etd->grid.bins));
+                        "target.etd: %zu of %zu cells of the target are not known and left out",
+                        etd->left_out, (size_t)(etd->grid.times * etd->grid.bins));
     return mf_target_sanity_tell(&run->fit.targets, &run->fit.scene,
-                              &(struct target_sanity_listener){say_line, &run->progress});
+                                 &(struct target_sanity_listener){say_line, &run->progress});
 }
 
 static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
@@ -264,7 +265,8 @@ static enum status record(struct run *run, const struct inverse_step *step) {
         TRY(run->fit.method->write(run->state, &own));
     }
     mf_progress_say(&run->progress, "iteration %u  error %.4f  noise %.4f  %.1f s", step->iteration,
-                 mf_visible_number(step->error), mf_visible_number(step->noise), run->standing.seconds);
+                    mf_visible_number(step->error), mf_visible_number(step->noise),
+                    run->standing.seconds);
     return save(run);
 }
 
@@ -286,26 +288,27 @@ static enum status iterate(struct run *run) {
 static void tell_unconverged(const struct run *run) {
     const char *folder = run->folder.path, *reason = run->standing.reason;
     if (isfinite(run->standing.error))
-        mf_status_fail(STATUS_UNCONVERGED, "the fit has not converged%s%s; its best curves are in %s",
-                    reason[0] ? ": " : "", reason, folder);
+        mf_status_fail(STATUS_UNCONVERGED,
+                       "the fit has not converged%s%s; its best curves are in %s",
+                       reason[0] ? ": " : "", reason, folder);
     else if (reason[0])
         mf_status_fail(STATUS_UNCONVERGED,
-                    "the fit has no result: %s; the failures are counted in %s/history.tsv", reason,
-                    folder);
+                       "the fit has no result: %s; the failures are counted in %s/history.tsv",
+                       reason, folder);
     else
         mf_status_fail(STATUS_UNCONVERGED,
-                    "not one simulation of the fit succeeded; the failures are counted in "
-                    "%s/history.tsv",
-                    folder);
+                       "not one simulation of the fit succeeded; the failures are counted in "
+                       "%s/history.tsv",
+                       folder);
 }
 
 /// A result whose verification blows up leaves a summary that says so.
 static enum status write_unstable(struct run *run) {
     const struct fit_result result = result_so_far(run, STATUS_UNSTABLE);
     mf_status_prefix(STATUS_UNSTABLE, "the verification of what was fitted%s",
-                  isfinite(run->standing.error) ? ""
-                  : run->standing.reason[0]     ? " (the fit has no result)"
-                                                : " (not one simulation of the fit succeeded)");
+                     isfinite(run->standing.error) ? ""
+                     : run->standing.reason[0]     ? " (the fit has no result)"
+                                                   : " (not one simulation of the fit succeeded)");
     char reason[512];
     snprintf(reason, sizeof reason, "%s", mf_status_message());
     TRY(mf_fit_output_summary(&run->fit, &run->decoder, &result, &run->folder));
@@ -317,11 +320,11 @@ static void say_verified(struct run *run, const struct fit_result *result) {
     struct progress *to = &run->progress;
     const struct standing *standing = &run->standing;
     mf_progress_say(to, "%s after %llu iterations, %.1f s%s%s",
-                 standing->converged ? "converged"
-                 : standing->used_up ? "finished"
-                                     : "not converged",
-                 (unsigned long long)standing->iterations, standing->seconds,
-                 standing->used_up ? ": " : "", standing->used_up ? standing->reason : "");
+                    standing->converged ? "converged"
+                    : standing->used_up ? "finished"
+                                        : "not converged",
+                    (unsigned long long)standing->iterations, standing->seconds,
+                    standing->used_up ? ": " : "", standing->used_up ? standing->reason : "");
     mf_fit_report_say(to, &run->fit, &run->decoder, result);
     mf_progress_say(to, "results in %s", run->folder.path);
 }
@@ -338,10 +341,10 @@ static void doubt(struct run *run, const struct verification *verification) {
         return;
     if (run->fit.method->update
             ? mf_fit_verdict_contradicts(verification, goals_ask(goals, GOAL_PRESSURE),
-                                      run->fit.problem.scene.temperature, noise_margin,
-                                      standing->reason)
+                                         run->fit.problem.scene.temperature, noise_margin,
+                                         standing->reason)
             : mf_fit_verdict_is_worse(verification, goals, standing->error, standing->variance,
-                                   standing->reason))
+                                      standing->reason))
         standing->converged = standing->used_up = false;
 }
 
@@ -360,7 +363,7 @@ static enum status verify_and_write(struct run *run) {
         laws.table[kind] = &laws.own[kind];
     }
     status = mf_verify(&run->fit.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_WEIGHT],
-                    &run->fit.verification, &listener, &verification);
+                       &run->fit.verification, &listener, &verification);
     if (status == STATUS_UNSTABLE)
         status = write_unstable(run);
     CHECK(status);
@@ -391,9 +394,9 @@ static enum status write_interrupted(struct run *run) {
         mf_run_folder_draw(&run->folder);
     }
     return mf_status_fail(STATUS_INTERRUPTED,
-                       "interrupted after %llu iterations; what there is, is in %s; go on with "
-                       "--resume",
-                       (unsigned long long)run->standing.iterations, run->folder.path);
+                          "interrupted after %llu iterations; what there is, is in %s; go on with "
+                          "--resume",
+                          (unsigned long long)run->standing.iterations, run->folder.path);
 }
 
 enum status mf_fit_run(const char *file, const struct run_options *options) {

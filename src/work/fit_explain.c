@@ -97,7 +97,7 @@ enum status mf_fit_explain(const char *file, const struct run_options *options) 
     CHECK(mf_decoder_start(&decoder, genes));
     CHECK(mf_decoder_laws(&decoder, genes, &laws));
     CHECK(mf_target_sanity_tell(&fit.targets, &fit.scene,
-                             &(struct target_sanity_listener){print_line, stdout}));
+                                &(struct target_sanity_listener){print_line, stdout}));
     print_simulations(&fit, &laws);
 done:
     mf_decoder_laws_clear(&laws);

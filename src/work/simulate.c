@@ -263,7 +263,8 @@ static enum status write_thermodynamics(const struct run *run) {
     // bar is a force on an area.
     const bool known = mf_units_known(units), in_space = run->scene.setup.box.dimensions == 3;
     physical[0] = mf_units_column(time, t->samples, known ? mf_units_time_ps(units) : 0);
-    physical[1] = mf_units_column(energy, t->samples, known ? mf_units_energy_kj_per_mol(units) : 0);
+    physical[1] =
+        mf_units_column(energy, t->samples, known ? mf_units_energy_kj_per_mol(units) : 0);
     physical[2] = mf_units_column(pressure, t->samples, known ? mf_units_pressure_bar(units) : 0);
     CHECK(physical[0] && physical[1] && physical[2] ? STATUS_OK : STATUS_NO_MEMORY);
     const struct data_column columns[] = {
@@ -298,13 +299,13 @@ static enum status write_summary(const struct run *run, double seconds) {
     mf_json_put_number(writer, "seconds", seconds);
     mf_json_put_number(writer, "engine_steps", (double)run->simulation.step);
     mf_json_put_number(writer, "steps_per_second",
-                    (double)(run->simulation.step - run->progress.done_before) / seconds);
+                       (double)(run->simulation.step - run->progress.done_before) / seconds);
     mf_json_put_number(writer, "temperature", s.temperature);
     mf_json_put_number(writer, "temperature_error", s.temperature_error);
     if (isfinite(s.temperature_configurational)) {
         mf_json_put_number(writer, "temperature_configurational", s.temperature_configurational);
         mf_json_put_number(writer, "temperature_configurational_error",
-                        s.temperature_configurational_error);
+                           s.temperature_configurational_error);
     }
     mf_json_put_number(writer, "potential_energy", s.potential_energy);
     mf_json_put_number(writer, "potential_energy_error", s.potential_energy_error);
@@ -324,15 +325,17 @@ static enum status write_summary(const struct run *run, double seconds) {
 static enum status prepare_force(struct run *run, const struct rdf_bins *bins) {
     const struct simulation_setup *setup = &run->scene.setup;
     if (composition_is_mixed(&setup->composition))
-        return mf_status_fail(STATUS_BAD_INPUT, "rdf: \"estimator\": \"force\" is not for mixtures; "
-                                             "\"histogram\" counts their partial g(r)");
-    if (!mf_rdf_force_applies(setup->potential, setup->temperature))
         return mf_status_fail(STATUS_BAD_INPUT,
-                           "rdf: \"estimator\": \"force\" wants a potential that keeps particles "
-                           "apart, of 10 k_B T at least where r is 0");
+                              "rdf: \"estimator\": \"force\" is not for mixtures; "
+                              "\"histogram\" counts their partial g(r)");
+    if (!mf_rdf_force_applies(setup->potential, setup->temperature))
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "rdf: \"estimator\": \"force\" wants a potential that keeps particles "
+            "apart, of 10 k_B T at least where r is 0");
     return mf_rdf_force_init(&run->rdf_force, bins, &setup->box, run->simulation.particles.count,
-                          setup->potential, setup->temperature, mf_pair_cutoff(&run->simulation.law),
-                          (size_t)run->plan.samples);
+                             setup->potential, setup->temperature,
+                             mf_pair_cutoff(&run->simulation.law), (size_t)run->plan.samples);
 }
 
 static enum status begin_measuring(struct run *run, const char *file) {
@@ -345,7 +348,7 @@ static enum status begin_measuring(struct run *run, const char *file) {
     const struct rdf_bins bins = {.width = range / (double)run->rdf_parameters.bins,
                                   .count = (size_t)run->rdf_parameters.bins};
     status = mf_rdf_init_mixture(&run->rdf, &bins, &setup->box, &setup->composition, cutoff,
-                              (size_t)run->plan.samples);
+                                 (size_t)run->plan.samples);
     if (status == STATUS_OK && uses_force(run))
         status = prepare_force(run, &bins);
     if (status != STATUS_OK)
@@ -355,8 +358,8 @@ static enum status begin_measuring(struct run *run, const char *file) {
     if (status == STATUS_OK)
         status = mf_simulate_etd_begin(&run->etd, &run->simulation, &run->plan);
     if (status == STATUS_OK)
-        status =
-            mf_simulate_force_covariance_begin(&run->force_covariance, &run->simulation, &run->plan);
+        status = mf_simulate_force_covariance_begin(&run->force_covariance, &run->simulation,
+                                                    &run->plan);
     if (status != STATUS_OK)
         return mf_status_prefix(status, "%s", file);
     return STATUS_OK;
@@ -405,7 +408,7 @@ static enum status write_results(struct run *run) {
         mf_progress_say(&run->progress, "mesofit: warning: %s", mf_status_message());
     mf_simulate_motion_say(&run->motion, &run->progress);
     mf_progress_say(&run->progress, "%llu steps in %.3g s; results in %s",
-                 (unsigned long long)run->simulation.step, seconds, run->folder.path);
+                    (unsigned long long)run->simulation.step, seconds, run->folder.path);
     return STATUS_OK;
 }
 
@@ -435,7 +438,7 @@ enum status mf_simulate_file(const char *file, const struct run_options *options
     if (status == STATUS_INTERRUPTED) {
         CHECK(save(run));
         status = mf_status_fail(STATUS_INTERRUPTED, "interrupted at step %llu; go on with --resume",
-                             (unsigned long long)run->simulation.step);
+                                (unsigned long long)run->simulation.step);
     }
     if (status == STATUS_OK)
         status = write_results(run);

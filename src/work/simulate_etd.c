@@ -24,12 +24,12 @@ void mf_simulate_etd_write_used(const struct simulate_etd *etd, struct json_writ
 }
 
 enum status mf_simulate_etd_begin(struct simulate_etd *etd, const struct simulation *simulation,
-                               const struct measure_plan *measure) {
+                                  const struct measure_plan *measure) {
     if (!etd->on)
         return STATUS_OK;
     etd->interval = (double)etd->plan.every * simulation->setup.time_step;
     return mf_etd_init(&etd->etd, &etd->grid, &etd->plan, simulation, measure->equilibration,
-                    measure->samples * measure->every);
+                       measure->samples * measure->every);
 }
 
 void mf_simulate_etd_clear(struct simulate_etd *etd) {

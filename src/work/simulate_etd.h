@@ -25,19 +25,20 @@ void mf_simulate_etd_write_used(const struct simulate_etd *etd, struct json_writ
 /// Make room for all samples that `measure` has time for.
 /// Fails: BAD_INPUT if there is no time for one window, or no room in the box; NO_MEMORY.
 enum status mf_simulate_etd_begin(struct simulate_etd *etd, const struct simulation *simulation,
-                               const struct measure_plan *measure) MUST_USE;
+                                  const struct measure_plan *measure) MUST_USE;
 void mf_simulate_etd_clear(struct simulate_etd *etd);
 
 /// For measure_targets: NULL if it is off.
 struct etd *mf_simulate_etd_target(struct simulate_etd *etd);
 
-/// Spans of a checkpoint, ETD_SPANS or none; returns their number. As mf_etd_spans says, the first is
-/// to be read, followed by mf_etd_make_room, before the others are asked for.
+/// Spans of a checkpoint, ETD_SPANS or none; returns their number. As mf_etd_spans says, the first
+/// is to be read, followed by mf_etd_make_room, before the others are asked for.
 size_t mf_simulate_etd_spans(struct simulate_etd *etd, struct memory_span *spans);
 
 /// Write, into `folder`, etd.tsv and etd_error.tsv: time, then E or its standard error for each bin
 /// of r_0, nan where no pair began; and etd_bins.tsv: r_0, pairs. Fails: IO, NO_MEMORY.
-enum status mf_simulate_etd_write_tables(const struct simulate_etd *etd, const char *folder) MUST_USE;
+enum status mf_simulate_etd_write_tables(const struct simulate_etd *etd,
+                                         const char *folder) MUST_USE;
 
 /// Add the object "etd" to summary.json; nothing if it is off.
 void mf_simulate_etd_write_summary(const struct simulate_etd *etd, struct json_writer *writer);

@@ -5,7 +5,7 @@
 #include "io/data_table.h"
 
 void mf_simulate_force_covariance_read(struct simulate_force_covariance *covariance,
-                                    struct json_object *root) {
+                                       struct json_object *root) {
     struct json_object object = mf_json_child(root, "force_covariance", false);
     covariance->on = object.item != NULL;
     mf_json_fields(&object, mf_force_covariance_fields, &covariance->plan);
@@ -14,7 +14,7 @@ void mf_simulate_force_covariance_read(struct simulate_force_covariance *covaria
 }
 
 void mf_simulate_force_covariance_write_used(const struct simulate_force_covariance *covariance,
-                                          struct json_writer *writer) {
+                                             struct json_writer *writer) {
     if (!covariance->on)
         return;
     mf_json_begin(writer, "force_covariance");
@@ -23,12 +23,12 @@ void mf_simulate_force_covariance_write_used(const struct simulate_force_covaria
 }
 
 enum status mf_simulate_force_covariance_begin(struct simulate_force_covariance *covariance,
-                                            const struct simulation *simulation,
-                                            const struct measure_plan *measure) {
+                                               const struct simulation *simulation,
+                                               const struct measure_plan *measure) {
     if (!covariance->on)
         return STATUS_OK;
     return mf_force_covariance_init(&covariance->covariance, &covariance->plan, simulation,
-                                 (size_t)measure->samples);
+                                    (size_t)measure->samples);
 }
 
 void mf_simulate_force_covariance_clear(struct simulate_force_covariance *covariance) {
@@ -41,13 +41,13 @@ mf_simulate_force_covariance_target(struct simulate_force_covariance *covariance
 }
 
 size_t mf_simulate_force_covariance_spans(struct simulate_force_covariance *covariance,
-                                       struct memory_span *spans) {
+                                          struct memory_span *spans) {
     return covariance->on ? mf_force_covariance_spans(&covariance->covariance, spans) : 0;
 }
 
 enum status
 mf_simulate_force_covariance_write_table(const struct simulate_force_covariance *covariance,
-                                      const char *file) {
+                                         const char *file) {
     enum status status = STATUS_OK;
     const size_t bins = (size_t)covariance->plan.bins;
     double *values = NULL;

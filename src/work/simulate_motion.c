@@ -13,7 +13,8 @@ void mf_simulate_motion_read(struct simulate_motion *motion, struct json_object 
         mf_json_finish(&object);
 }
 
-void mf_simulate_motion_write_used(const struct simulate_motion *motion, struct json_writer *writer) {
+void mf_simulate_motion_write_used(const struct simulate_motion *motion,
+                                   struct json_writer *writer) {
     if (!motion->on)
         return;
     mf_json_begin(writer, "motion");
@@ -22,12 +23,12 @@ void mf_simulate_motion_write_used(const struct simulate_motion *motion, struct 
 }
 
 enum status mf_simulate_motion_begin(struct simulate_motion *motion,
-                                  const struct simulation *simulation,
-                                  const struct measure_plan *measure) {
+                                     const struct simulation *simulation,
+                                     const struct measure_plan *measure) {
     if (!motion->on)
         return STATUS_OK;
     return mf_motion_init(&motion->motion, &motion->plan, simulation, measure->equilibration,
-                       measure->samples * measure->every);
+                          measure->samples * measure->every);
 }
 
 void mf_simulate_motion_clear(struct simulate_motion *motion) {
@@ -43,7 +44,7 @@ size_t mf_simulate_motion_spans(struct simulate_motion *motion, struct memory_sp
 }
 
 enum status mf_simulate_motion_write_table(const struct simulate_motion *motion,
-                                        const struct units *units, const char *file) {
+                                           const struct units *units, const char *file) {
     enum status status = STATUS_OK;
     const size_t rows = (size_t)motion->plan.lags + 1;
     const bool known = mf_units_known(units);
@@ -82,8 +83,8 @@ done:
     return status;
 }
 
-void mf_simulate_motion_write_summary(const struct simulate_motion *motion, const struct units *units,
-                                   struct json_writer *writer) {
+void mf_simulate_motion_write_summary(const struct simulate_motion *motion,
+                                      const struct units *units, struct json_writer *writer) {
     if (!motion->on)
         return;
     const struct motion_summary s = mf_motion_result(&motion->motion, NULL);
@@ -122,7 +123,7 @@ void mf_simulate_motion_say(const struct simulate_motion *motion, struct progres
     mf_number_text(s.msd, s.msd_error, msd);
     mf_number_text(s.green_kubo, mf_motion_green_kubo_uncertainty(&s), green_kubo);
     mf_progress_say(to, "D = %s by the MSD from %.4g to %.4g tau, %s by Green and Kubo", msd,
-                 s.fit_begin, s.fit_end, green_kubo);
+                    s.fit_begin, s.fit_end, green_kubo);
     if (mf_motion_judge(&s) != STATUS_OK)
         mf_progress_say(to, "mesofit: warning: %s", mf_status_message());
 }

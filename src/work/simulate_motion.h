@@ -19,13 +19,14 @@ struct simulate_motion {
 void mf_simulate_motion_read(struct simulate_motion *motion, struct json_object *root);
 
 /// Write the settings as they were read; nothing if it is off.
-void mf_simulate_motion_write_used(const struct simulate_motion *motion, struct json_writer *writer);
+void mf_simulate_motion_write_used(const struct simulate_motion *motion,
+                                   struct json_writer *writer);
 
 /// Make room for all samples that `measure` has time for.
 /// Fails: BAD_INPUT if there is no time for one window; NO_MEMORY.
 enum status mf_simulate_motion_begin(struct simulate_motion *motion,
-                                  const struct simulation *simulation,
-                                  const struct measure_plan *measure) MUST_USE;
+                                     const struct simulation *simulation,
+                                     const struct measure_plan *measure) MUST_USE;
 void mf_simulate_motion_clear(struct simulate_motion *motion);
 
 /// For measure_targets: NULL if it is off.
@@ -36,12 +37,12 @@ size_t mf_simulate_motion_spans(struct simulate_motion *motion, struct memory_sp
 
 /// Write motion.tsv: time, MSD, VACF, each with its standard error. Fails: IO, NO_MEMORY.
 enum status mf_simulate_motion_write_table(const struct simulate_motion *motion,
-                                        const struct units *units, const char *file) MUST_USE;
+                                           const struct units *units, const char *file) MUST_USE;
 
 /// Add the object "motion" to summary.json: diffusion coefficients with errors, in cm²/s too when
 /// the units are known, and the test of the velocities; nothing if it is off.
-void mf_simulate_motion_write_summary(const struct simulate_motion *motion, const struct units *units,
-                                   struct json_writer *writer);
+void mf_simulate_motion_write_summary(const struct simulate_motion *motion,
+                                      const struct units *units, struct json_writer *writer);
 
 /// Say both diffusion coefficients, and a warning where they are not to be trusted.
 void mf_simulate_motion_say(const struct simulate_motion *motion, struct progress *to);

@@ -25,7 +25,7 @@ static void sample_g(const struct table *potential, const struct fluid *fluid, u
                      struct comoments *blocks) {
     struct metropolis metropolis;
     assert_ok(mf_metropolis_init(&metropolis, &fluid->setup.box, &composition, potential,
-                              fluid->setup.temperature, seed));
+                                 fluid->setup.temperature, seed));
     assert_ok(mf_metropolis_equilibrate(&metropolis, 600));
     assert_ok(mf_comoments_init(blocks, BINS));
     for (int block = 0; block < BLOCKS; block++) {

@@ -102,7 +102,8 @@ static void test_errors_of_close_samples_are_the_scatter_of_g(void **state) {
         assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
         assert_ok(mf_rdf_init(&rdf, &bins, &fluid.setup.box, PARTICLES, 2.5, SAMPLES));
         assert_ok(mf_measure_equilibrate(&simulation, &when, &temperature, NULL));
-        assert_ok(mf_measure_sample(&simulation, &when, (struct measure_targets){.rdf = &rdf}, NULL));
+        assert_ok(
+            mf_measure_sample(&simulation, &when, (struct measure_targets){.rdf = &rdf}, NULL));
         assert_ok(mf_rdf_result(&rdf, 1, value, error));
         for (int n = 0; n < BINS; n++) {
             mf_statistics_add(&g[n], value[n]);

@@ -32,7 +32,7 @@ static void sample(struct fluid *fluid, int64_t samples, struct rdf *rdf) {
     double temperature;
     assert_ok(mf_simulation_init(&simulation, &fluid->setup, NULL));
     assert_ok(mf_rdf_init_mixture(rdf, &bins, &fluid->setup.box, &fluid->setup.composition, 1,
-                               (size_t)samples));
+                                  (size_t)samples));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
     assert_ok(mf_measure_sample(&simulation, &plan, (struct measure_targets){.rdf = rdf}, NULL));
     mf_simulation_clear(&simulation);
@@ -43,14 +43,14 @@ static double convert(const struct rdf *rdf, const double *g, const double *erro
     const struct composition *composition = &rdf->composition;
     double sum = 0, volume = 0;
     for (size_t k = 0; k < BINS; k++) {
-        const double shell =
-            mf_box_shell_volume(&rdf->box, mf_rdf_bins_edge(&bins, k), mf_rdf_bins_edge(&bins, k + 1));
+        const double shell = mf_box_shell_volume(&rdf->box, mf_rdf_bins_edge(&bins, k),
+                                                 mf_rdf_bins_edge(&bins, k + 1));
         sum += shell * g[k];
         volume += shell;
     }
     return sum / volume *
            mf_finite_size_factor_of(&bins, g, error, &rdf->box, composition, pair,
-                                 (double)mf_composition_particles(composition), MANY);
+                                    (double)mf_composition_particles(composition), MANY);
 }
 
 static struct means measure(int64_t particles, const struct table *potential, int64_t samples) {
@@ -67,7 +67,8 @@ static struct means measure(int64_t particles, const struct table *potential, in
         sample(&fluid, samples, &rdf);
         assert_ok(mf_rdf_result(&rdf, 1, g, error));
         for (int pair = 0; pair < PAIRS; pair++)
-            mf_statistics_add(&sum[pair], convert(&rdf, g + pair * BINS, error + pair * BINS, pair));
+            mf_statistics_add(&sum[pair],
+                              convert(&rdf, g + pair * BINS, error + pair * BINS, pair));
         mf_rdf_clear(&rdf);
         fluid_clear(&fluid);
     }

@@ -19,7 +19,7 @@ static void measure(struct force_covariance *covariance, const struct fluid *flu
     assert_ok(mf_force_covariance_init(covariance, &plan, &simulation, (size_t)samples));
     assert_ok(mf_measure_equilibrate(&simulation, &when, &temperature, NULL));
     assert_ok(mf_measure_sample(&simulation, &when,
-                             (struct measure_targets){.force_covariance = covariance}, NULL));
+                                (struct measure_targets){.force_covariance = covariance}, NULL));
     mf_simulation_clear(&simulation);
 }
 
@@ -49,8 +49,8 @@ static void assert_recovered(struct fluid *fluid, const double time_step[2], int
         mf_force_covariance_clear(&covariance);
     }
     mf_force_covariance_extrapolate(time_step, (const double *const[]){kappa[0], kappa[1]},
-                                 (const double *const[]){error[0], error[1]}, BINS, squared,
-                                 squared_error);
+                                    (const double *const[]){error[0], error[1]}, BINS, squared,
+                                    squared_error);
     for (size_t bin = 6; bin < 16; bin++) {
         assert_close_relative(squared[bin], exact(bin), 0.03);
         assert_close(squared[bin], exact(bin), 4 * squared_error[bin] + 0.01 * exact(bin));

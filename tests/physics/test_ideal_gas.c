@@ -101,8 +101,8 @@ static void sample_monte_carlo(const struct box *box, const struct table *nothin
     struct metropolis metropolis;
     struct rdf rdf;
     assert_ok(mf_metropolis_init(&metropolis, box,
-                              &(struct composition){.types = 1, .count = {PARTICLES}}, nothing, 1,
-                              seed));
+                                 &(struct composition){.types = 1, .count = {PARTICLES}}, nothing,
+                                 1, seed));
     // Steps up to 0.07 to 0.09: what is left of the lattice's order is far below the noise.
     assert_ok(mf_metropolis_equilibrate(&metropolis, 1000));
     assert_ok(mf_rdf_init(&rdf, &bins, box, PARTICLES, 0, SAMPLES));

@@ -47,8 +47,8 @@ static void measure_target(const struct fluid *fluid, const struct rdf_bins *bin
     struct metropolis metropolis;
     struct rdf rdf;
     assert_ok(mf_metropolis_init(&metropolis, &fluid->setup.box,
-                              &(struct composition){.types = 1, .count = {PARTICLES}},
-                              &fluid->potential, fluid->setup.temperature, 77));
+                                 &(struct composition){.types = 1, .count = {PARTICLES}},
+                                 &fluid->potential, fluid->setup.temperature, 77));
     assert_ok(mf_metropolis_equilibrate(&metropolis, 500));
     assert_ok(mf_rdf_init(&rdf, bins, &fluid->setup.box, PARTICLES, 0, SAMPLES));
     for (int sample = 0; sample < SAMPLES; sample++) {

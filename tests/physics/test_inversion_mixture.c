@@ -48,7 +48,7 @@ static void measure(struct mixture *mixture, const double *a, uint64_t seed) {
     struct rdf rdf, all;
     make_fluid(&mixture->fluid, a);
     assert_ok(mf_metropolis_init(&metropolis, &setup->box, &setup->composition, setup->potential,
-                              setup->temperature, seed));
+                                 setup->temperature, seed));
     assert_ok(mf_metropolis_equilibrate(&metropolis, 500));
     assert_ok(mf_rdf_init_mixture(&rdf, &bins, &setup->box, &setup->composition, 0, SAMPLES));
     assert_ok(mf_rdf_init(&all, &bins, &setup->box, PARTICLES, 0, SAMPLES));
@@ -99,8 +99,8 @@ static void compare_with_truth(const struct mixture *mixture, const double *phi,
     for (size_t pair = 0; pair < PAIRS; pair++) {
         double truth[BINS];
         for (size_t k = 0; k < BINS; k++)
-            mf_table_evaluate_pair(&mixture->fluid.potential, (int)pair, mf_rdf_bins_centre(&bins, k),
-                                &truth[k], NULL, NULL);
+            mf_table_evaluate_pair(&mixture->fluid.potential, (int)pair,
+                                   mf_rdf_bins_centre(&bins, k), &truth[k], NULL, NULL);
         compare(mixture->g + pair * BINS, phi + pair * stride, truth, &ramp[pair], &rms[pair]);
     }
 }

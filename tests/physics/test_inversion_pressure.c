@@ -77,8 +77,9 @@ static void check_slopes(const struct fluid *fluid, const struct rdf_bins *bins,
     for (int kind = 0; kind < 2; kind++) {
         double predicted = 0;
         for (size_t b = 0; b < at.grid.known; b++)
-            predicted += 2 * amount * at.pressure.slope[b] *
-                         change_of(kind, at.grid.r[at.grid.known_point[b]], mf_rdf_bins_range(bins));
+            predicted +=
+                2 * amount * at.pressure.slope[b] *
+                change_of(kind, at.grid.r[at.grid.known_point[b]], mf_rdf_bins_range(bins));
         const double found = pressure_when_changed(fluid, bins, g, &at, kind, amount) -
                              pressure_when_changed(fluid, bins, g, &at, kind, -amount);
         print_message("pressure %.3f(%.3f), change predicted %.4f, found %.4f\n", at.pressure.value,

@@ -61,7 +61,7 @@ static void measure_dynamics(const struct simulation_setup *setup, const struct 
         struct rdf rdf;
         double energy = 0;
         assert_ok(mf_rdf_init(&rdf, bins, &setup->box, (size_t)setup->placement.count,
-                           setup->potential->cutoff, SAMPLES));
+                              setup->potential->cutoff, SAMPLES));
         assert_ok(mf_simulation_run(&simulation, schedule->gap));
         for (int sample = 0; sample < SAMPLES; sample++) {
             assert_ok(mf_simulation_run(&simulation, schedule->every));
@@ -84,8 +84,8 @@ static void measure_monte_carlo(const struct simulation_setup *setup, const stru
     const double edge = setup->potential->cutoff * fabs(slope);
     measurement_init(measurement);
     assert_ok(mf_metropolis_init(&metropolis, &setup->box,
-                              &(struct composition){.types = 1, .count = {(int64_t)count}},
-                              setup->potential, setup->temperature, setup->seed));
+                                 &(struct composition){.types = 1, .count = {(int64_t)count}},
+                                 setup->potential, setup->temperature, setup->seed));
     assert_ok(mf_metropolis_equilibrate(&metropolis, (uint32_t)schedule->equilibration));
     for (int block = 0; block < BLOCKS; block++) {
         struct rdf rdf;
@@ -118,8 +118,8 @@ static void measure_hybrid(const struct simulation_setup *setup, const struct rd
     struct hybrid hybrid;
     measurement_init(measurement);
     assert_ok(mf_hybrid_init(&hybrid, &setup->box,
-                          &(struct composition){.types = 1, .count = {(int64_t)count}},
-                          setup->potential, &pairs, setup->temperature, setup->seed));
+                             &(struct composition){.types = 1, .count = {(int64_t)count}},
+                             setup->potential, &pairs, setup->temperature, setup->seed));
     assert_ok(mf_hybrid_equilibrate(&hybrid, schedule->equilibration));
     hybrid.simulation.setup.time_step *= 2.5;
     for (int block = 0; block < BLOCKS; block++) {
@@ -221,8 +221,8 @@ static void test_hybrid_survives_when_the_potential_is_wild(void **state) {
     const struct pair_histogram pairs = {0, 0.1, BINS, 0, NULL};
     fluid_groot_warren(&fluid, 300, 0.01);
     assert_ok(mf_hybrid_init(&hybrid, &fluid.setup.box,
-                          &(struct composition){.types = 1, .count = {300}}, &fluid.potential,
-                          &pairs, 1, 3));
+                             &(struct composition){.types = 1, .count = {300}}, &fluid.potential,
+                             &pairs, 1, 3));
     assert_ok(mf_hybrid_equilibrate(&hybrid, 100));
     for (int k = 0; k <= TABLE_INTERVALS; k++)
         for (int n = 0; n < 4; n++)
@@ -270,8 +270,8 @@ static void test_metropolis_list_is_complete_when_the_step_is_the_first_or_tuned
     struct metropolis metropolis;
     fluid_groot_warren(&fluid, 300, 0.01);
     assert_ok(mf_metropolis_init(&metropolis, &fluid.setup.box,
-                              &(struct composition){.types = 1, .count = {300}}, &fluid.potential,
-                              1, 3));
+                                 &(struct composition){.types = 1, .count = {300}},
+                                 &fluid.potential, 1, 3));
     for (int sweep = 0; sweep < 30; sweep++) {
         assert_ok(mf_metropolis_run(&metropolis, 1));
         assert_int_equal(count_missing(&metropolis), 0);
@@ -304,12 +304,12 @@ static void add_configurational(const struct metropolis *metropolis, double *squ
     for (int d = 0; d < 3; d++)
         memcpy(copy.position[d], metropolis->particles.position[d], count * sizeof(double));
     assert_ok(mf_neighbours_init(&half, NEIGHBOURS_HALF, &copy.box, count,
-                              metropolis->law.potential->cutoff, 0));
+                                 metropolis->law.potential->cutoff, 0));
     assert_ok(mf_neighbours_sort_and_build(&half, &copy));
     const struct composition alike = {0};
     assert_ok(mf_reference_configurational(metropolis->law.potential, &alike,
-                                        metropolis->law.temperature, &copy, &half, &here[0],
-                                        &here[1]));
+                                           metropolis->law.temperature, &copy, &half, &here[0],
+                                           &here[1]));
     *squares += here[0];
     *laplacian += here[1];
     mf_neighbours_clear(&half);

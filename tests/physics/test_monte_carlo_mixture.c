@@ -64,7 +64,7 @@ static void measure_dynamics(const struct fluid *fluid, struct comoments *blocks
             double sample[PAIRS * BINS] = {0};
             assert_ok(mf_simulation_run(&simulation, 20));
             mf_rdf_count_pairs_of(&bins, &fluid->setup.composition, &simulation.particles,
-                               &simulation.neighbours, sample);
+                                  &simulation.neighbours, sample);
             for (int k = 0; k + 1 < SIZE; k++)
                 mean[k] += sample[k] / SAMPLES;
             mean[SIZE - 1] += simulation.sums.virial / SAMPLES;
@@ -78,15 +78,15 @@ static void assert_equal_within_errors(const struct comoments *first,
                                        const struct comoments *second) {
     const double p = hotelling_two_samples(first, second);
     for (int pair = 0; pair < PAIRS; pair++)
-        print_message(
-            "pairs of kind %d at contact: %.1f(%.1f), %.1f(%.1f)\n", pair,
-            first->mean[pair * BINS + 1],
-            sqrt(mf_comoments_covariance(first, (size_t)(pair * BINS + 1), (size_t)(pair * BINS + 1)) /
-                 BLOCKS),
-            second->mean[pair * BINS + 1],
-            sqrt(
-                mf_comoments_covariance(second, (size_t)(pair * BINS + 1), (size_t)(pair * BINS + 1)) /
-                BLOCKS));
+        print_message("pairs of kind %d at contact: %.1f(%.1f), %.1f(%.1f)\n", pair,
+                      first->mean[pair * BINS + 1],
+                      sqrt(mf_comoments_covariance(first, (size_t)(pair * BINS + 1),
+                                                   (size_t)(pair * BINS + 1)) /
+                           BLOCKS),
+                      second->mean[pair * BINS + 1],
+                      sqrt(mf_comoments_covariance(second, (size_t)(pair * BINS + 1),
+                                                   (size_t)(pair * BINS + 1)) /
+                           BLOCKS));
     print_message("p = %.3f\n", p);
     assert_true(p > false_alarm_rate);
 }

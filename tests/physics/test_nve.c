@@ -32,7 +32,8 @@ struct energies {
 };
 
 static double total_energy(const struct simulation *simulation) {
-    return (simulation->sums.energy + 0.5 * mf_particles_square_velocities(&simulation->particles)) /
+    return (simulation->sums.energy +
+            0.5 * mf_particles_square_velocities(&simulation->particles)) /
            (double)simulation->particles.count;
 }
 

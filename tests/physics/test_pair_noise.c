@@ -207,7 +207,7 @@ static void make_scene(struct scene *scene, const struct plan *plan) {
     if (plan->reversed)
         reverse(&scene->particles);
     assert_ok(mf_neighbours_init(&scene->neighbours, NEIGHBOURS_HALF, &box, scene->particles.count,
-                              mf_pair_cutoff(&scene->law), 0.1));
+                                 mf_pair_cutoff(&scene->law), 0.1));
     assert_ok(mf_neighbours_sort_and_build(&scene->neighbours, &scene->particles));
     mf_particles_update_motion(&scene->particles, 0);
     find_places(scene);

@@ -125,7 +125,8 @@ test_forces_are_as_exact_as_their_precision_when_the_fluid_is_lennard_jones(void
 }
 
 static double total_energy(const struct simulation *simulation) {
-    return (simulation->sums.energy + 0.5 * mf_particles_square_velocities(&simulation->particles)) /
+    return (simulation->sums.energy +
+            0.5 * mf_particles_square_velocities(&simulation->particles)) /
            (double)simulation->particles.count;
 }
 
@@ -142,7 +143,7 @@ static double energy_drift(const struct simulation_setup *setup, const struct si
         simulation.wants = PAIR_FORCES_AND_SUMS;
         assert_ok(mf_simulation_run(&simulation, 1));
         mf_comoments_add(&moments, (double[]){(double)simulation.step * setup->time_step,
-                                           total_energy(&simulation)});
+                                              total_energy(&simulation)});
     }
     const double slope =
         mf_comoments_covariance(&moments, 0, 1) / mf_comoments_covariance(&moments, 0, 0);
@@ -209,7 +210,7 @@ static void measure(const struct simulation_setup *setup, struct measured *measu
     assert_ok(mf_thermodynamics_init(&thermodynamics, SAMPLES));
     // Beyond the cutoff, so that the RDF makes its own list.
     assert_ok(mf_rdf_init(&rdf, &(struct rdf_bins){0, 0.05, BINS}, &setup->box,
-                       simulation.particles.count, 1, SAMPLES));
+                          simulation.particles.count, 1, SAMPLES));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
     const struct measure_targets targets = {.rdf = &rdf, .thermodynamics = &thermodynamics};
     assert_ok(mf_measure_sample(&simulation, &plan, targets, NULL));

@@ -36,12 +36,12 @@ static void measure(const struct fluid *fluid, const struct plan *plan, const st
     const struct simulation_setup *setup = &fluid->setup;
     struct metropolis metropolis;
     assert_ok(mf_metropolis_init(&metropolis, &setup->box,
-                              &(struct composition){.types = 1, .count = {(int64_t)plan->count}},
-                              &fluid->potential, setup->temperature, plan->seed));
+                                 &(struct composition){.types = 1, .count = {(int64_t)plan->count}},
+                                 &fluid->potential, setup->temperature, plan->seed));
     assert_ok(mf_metropolis_equilibrate(&metropolis, 300));
     assert_ok(mf_rdf_init(&both->rdf, bins, &setup->box, plan->count, 0, plan->samples));
     assert_ok(mf_rdf_force_init(&both->force, bins, &setup->box, plan->count, &fluid->potential,
-                             setup->temperature, 0, plan->samples));
+                                setup->temperature, 0, plan->samples));
     for (size_t sample = 0; sample < plan->samples; sample++) {
         assert_ok(mf_metropolis_run(&metropolis, plan->sweeps));
         assert_ok(mf_rdf_sample(&both->rdf, &metropolis.particles, NULL));
@@ -137,7 +137,7 @@ static void test_force_rdf_errors_cover_the_mean_when_seeds_differ(void **state)
         measure(&fluid, &(struct plan){120, 100, 8, 100 + (uint64_t)seed}, &bins, &both);
         for (int v = 0; v < VERSIONS; v++)
             assert_ok(mf_rdf_force_result(&both.force, 1, (enum rdf_force_version)v, g[v][seed],
-                                       error[v][seed]));
+                                          error[v][seed]));
         clear(&both);
     }
     for (int v = 0; v < VERSIONS; v++) {
@@ -184,7 +184,7 @@ static void test_force_rdf_is_off_as_known_when_the_time_step_is_large(void **st
         mf_rdf_force_init(&force, &bins, &fluid.setup.box, PARTICLES, &fluid.potential, 1, 1, 300));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
     assert_ok(mf_measure_sample(&simulation, &plan,
-                             (struct measure_targets){.rdf = &rdf, .rdf_force = &force}, NULL));
+                                (struct measure_targets){.rdf = &rdf, .rdf_force = &force}, NULL));
     const double zero = distance(&rdf, &force, RDF_FORCE_FROM_ZERO),
                  infinity = distance(&rdf, &force, RDF_FORCE_FROM_INFINITY),
                  counted = distance(&rdf, &force, RDF_FORCE_COUNTED);

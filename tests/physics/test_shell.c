@@ -30,7 +30,7 @@ static void check_temperatures(const struct simulation_setup *setup) {
     assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)plan.samples));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
     assert_ok(mf_measure_sample(&simulation, &plan,
-                             (struct measure_targets){.thermodynamics = &thermodynamics}, NULL));
+                                (struct measure_targets){.thermodynamics = &thermodynamics}, NULL));
     const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
     print_message("%-15s temperature %.4f(%.4f), configurational %.4f(%.4f)\n",
                   setup->integrator->name, s.temperature, s.temperature_error,
@@ -68,7 +68,7 @@ static void check_velocities(const struct simulation_setup *setup) {
     for (int n = 0; n < SAMPLES; n++) {
         assert_ok(mf_simulation_run(&simulation, EVERY));
         mf_maxwell_sample(&maxwell, &simulation.particles, setup->temperature, setup->seed,
-                       simulation.step);
+                          simulation.step);
     }
     const struct maxwell_summary s = mf_maxwell_result(&maxwell);
     print_message("%-15s velocities against Maxwell's: D = %.2e, p = %.2g\n",

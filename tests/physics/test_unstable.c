@@ -177,8 +177,8 @@ static void test_metropolis_ends_when_the_table_is_wild(void **state) {
         make_wild_table(wild[k], &table);
         const clock_t begin = clock();
         assert_ok(mf_metropolis_init(&metropolis, &fluid.setup.box,
-                                  &(struct composition){.types = 1, .count = {PARTICLES / 2}},
-                                  &table, 1, 5));
+                                     &(struct composition){.types = 1, .count = {PARTICLES / 2}},
+                                     &table, 1, 5));
         assert_ok(mf_metropolis_equilibrate(&metropolis, 20));
         assert_ok(mf_metropolis_run(&metropolis, 20));
         for (size_t i = 0; i < metropolis.particles.count; i++)

@@ -75,7 +75,8 @@ static void check_law(const struct box *box, size_t count, const struct pair_law
         kept.law.precision = variants[v].precision;
         kept_pairs_keep(&kept, step);
         assert_int_equal(kept_pairs_count(&kept.friction), scales.near);
-        assert_ok(mf_friction_add_to_forces(&kept.friction, particles, particles->velocity, 1, true));
+        assert_ok(
+            mf_friction_add_to_forces(&kept.friction, particles, particles->velocity, 1, true));
         for (int d = 0; d < box->dimensions; d++)
             for (size_t k = 0; k < count; k++)
                 if (!is_close(particles->force[d][k], expected[d][k],
@@ -236,13 +237,14 @@ static void test_factors_keep_the_temperature_when_the_time_step_is_anything(voi
     const double temperature = 1.3, omega[] = {0, 1e-9, 1e-3, 1, 10, 30};
     for (double time_step = 1e-9; time_step < 1e9; time_step *= 10)
         for (int n = 0; n < 6; n++) {
-            const struct friction_factors exact = mf_friction_factors_of(mf_aboba.friction, omega[n],
-                                                                      time_step, temperature),
-                                          split = mf_friction_factors_of(mf_shardlow.friction, omega[n],
-                                                                      time_step, temperature),
-                                          implicit =
-                                              mf_friction_factors_of(mf_aboba_implicit.friction, omega[n],
-                                                                  time_step, temperature);
+            const struct friction_factors exact = mf_friction_factors_of(
+                                              mf_aboba.friction, omega[n], time_step, temperature),
+                                          split =
+                                              mf_friction_factors_of(mf_shardlow.friction, omega[n],
+                                                                     time_step, temperature),
+                                          implicit = mf_friction_factors_of(
+                                              mf_aboba_implicit.friction, omega[n], time_step,
+                                              temperature);
             assert_close_relative(exact.amplitude * exact.amplitude,
                                   2 * temperature * exact.damping * (1 - exact.damping), 1e-12);
             assert_close_relative(implicit.amplitude * implicit.amplitude,
@@ -261,7 +263,7 @@ static double balanced_square(const struct integrator *integrator, double d,
     if (integrator == &mf_dpd_vv)
         return 2 * law->temperature * d / law->time_step;
     return integrator == &mf_aboba_implicit ? 4 * law->temperature * d
-                                         : 2 * law->temperature * d * (1 - d);
+                                            : 2 * law->temperature * d * (1 - d);
 }
 
 /// Rounding of d, and of 1 − d where it is near 1, in single precision.
@@ -293,7 +295,8 @@ static void check_balance(const struct integrator *integrator, const struct tabl
 /// of r, a third of them in the intervals of the table in which it jumps.
 static void test_kick_balances_the_damping_when_friction_jumps(void **state) {
     (void)state;
-    static const struct integrator *const with[] = {&mf_aboba, &mf_shardlow, &mf_aboba_implicit, &mf_dpd_vv};
+    static const struct integrator *const with[] = {&mf_aboba, &mf_shardlow, &mf_aboba_implicit,
+                                                    &mf_dpd_vv};
     struct table shell, steep;
     make_weight(&shell, (struct formula_power_weight_parameters){10, 1e-6, 0.97, 1});
     make_weight(&steep, (struct formula_power_weight_parameters){8, 2, 0, 1});

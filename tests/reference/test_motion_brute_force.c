@@ -44,7 +44,7 @@ static void make_trajectory(struct trajectory *trajectory, const struct simulati
     trajectory->count = (size_t)setup->placement.count;
     trajectory->values =
         mf_memory_zeroed((size_t)(SAMPLES * 2 * trajectory->dimensions) * trajectory->count,
-                      sizeof *trajectory->values);
+                         sizeof *trajectory->values);
     assert_non_null(trajectory->values);
     assert_ok(mf_simulation_init(&simulation, setup, NULL));
     assert_ok(mf_simulation_run(&simulation, EQUILIBRATION));

@@ -221,7 +221,7 @@ static void test_neighbours_are_complete_when_there_are_several_cells_to_the_ran
             struct neighbours neighbours;
             make_gas(&particles, &cases[c].box, cases[c].count, 1);
             assert_ok(mf_neighbours_init(&neighbours, (enum neighbours_kind)kind, &cases[c].box,
-                                      cases[c].count, 1.7, 0.3));
+                                         cases[c].count, 1.7, 0.3));
             assert_memory_equal(neighbours.reach, cases[c].reach, sizeof neighbours.reach);
             assert_ok(mf_neighbours_sort_and_build(&neighbours, &particles));
             uint8_t *entries = count_entries(&neighbours);
@@ -437,11 +437,11 @@ static void test_neighbours_list_a_pair_when_it_is_at_the_very_cutoff(void **sta
 static void test_neighbours_init_refuses_when_the_box_is_below_two_cutoffs(void **state) {
     (void)state;
     struct neighbours neighbours;
-    assert_fails(
-        mf_neighbours_init(&neighbours, NEIGHBOURS_HALF, &(struct box){3, {6, 1.99, 6}}, 10, 1, 0.3),
-        STATUS_BAD_INPUT, "twice the cutoff");
-    assert_ok(
-        mf_neighbours_init(&neighbours, NEIGHBOURS_HALF, &(struct box){2, {6, 2.1, 1}}, 10, 1, 0.3));
+    assert_fails(mf_neighbours_init(&neighbours, NEIGHBOURS_HALF, &(struct box){3, {6, 1.99, 6}},
+                                    10, 1, 0.3),
+                 STATUS_BAD_INPUT, "twice the cutoff");
+    assert_ok(mf_neighbours_init(&neighbours, NEIGHBOURS_HALF, &(struct box){2, {6, 2.1, 1}}, 10, 1,
+                                 0.3));
     assert_close(neighbours.range, 1.05, 1e-12); // the skin gives way
     assert_close(neighbours.skin, 0.05, 1e-12);
     mf_neighbours_clear(&neighbours);

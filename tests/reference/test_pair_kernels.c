@@ -132,7 +132,7 @@ static void make_system(struct particles *particles, struct neighbours *neighbou
                         const struct system *system, const struct pair_law *law) {
     make_particles(particles, system);
     assert_ok(mf_neighbours_init(neighbours, NEIGHBOURS_HALF, &system->box, system->count,
-                              mf_pair_cutoff(law), system->skin));
+                                 mf_pair_cutoff(law), system->skin));
     assert_ok(mf_neighbours_sort_and_build(neighbours, particles));
     mf_particles_update_motion(particles, 0);
 }
@@ -418,7 +418,7 @@ static double *shuffled_forces(const struct system *system, const struct pair_la
     }
     mf_particles_permute(&particles, order);
     assert_ok(mf_neighbours_init(&neighbours, NEIGHBOURS_HALF, &system->box, system->count,
-                              mf_pair_cutoff(law), skin));
+                                 mf_pair_cutoff(law), skin));
     assert_ok(mf_neighbours_sort_and_build(&neighbours, &particles));
     mf_particles_update_motion(&particles, 0);
     mf_pair_forces(law, &particles, &neighbours, 3, PAIR_FORCES, NULL);

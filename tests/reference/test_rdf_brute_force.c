@@ -86,7 +86,8 @@ static void assert_passing_counts(const struct rdf_bins *bins, struct simulation
     struct counts counts;
     struct rdf rdf;
     count_all(bins, &simulation->particles, &counts);
-    assert_ok(mf_rdf_init(&rdf, bins, &simulation->particles.box, simulation->particles.count, 1, 1));
+    assert_ok(
+        mf_rdf_init(&rdf, bins, &simulation->particles.box, simulation->particles.count, 1, 1));
     struct pair_law law = simulation->law;
     law.histogram = mf_rdf_histogram(&rdf);
     assert_non_null(law.histogram);
@@ -207,8 +208,8 @@ static void test_rdf_counts_every_pair_twice_when_the_list_is_full(void **state)
     struct metropolis metropolis;
     fluid_groot_warren(&fluid, PARTICLES, 0.01);
     assert_ok(mf_metropolis_init(&metropolis, &fluid.setup.box,
-                              &(struct composition){.types = 1, .count = {PARTICLES}},
-                              &fluid.potential, 1, 6));
+                                 &(struct composition){.types = 1, .count = {PARTICLES}},
+                                 &fluid.potential, 1, 6));
     assert_ok(mf_metropolis_equilibrate(&metropolis, 51));
     count_all(&bins, &metropolis.particles, &counts);
     mf_rdf_count_pairs(&bins, &metropolis.particles, &metropolis.neighbours, counted);
@@ -233,7 +234,8 @@ static void test_rdf_counts_the_end_of_the_step_when_forces_are_midway(void **st
     assert_ok(mf_rdf_init(&measured, &bins, &fluid.setup.box, 1000, 1, 1));
     assert_ok(mf_rdf_init(&end, &bins, &fluid.setup.box, 1000, 1, 1));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
-    assert_ok(mf_measure_sample(&simulation, &plan, (struct measure_targets){.rdf = &measured}, NULL));
+    assert_ok(
+        mf_measure_sample(&simulation, &plan, (struct measure_targets){.rdf = &measured}, NULL));
     assert_ok(mf_rdf_sample(&end, &simulation.particles, &simulation.neighbours));
     for (int k = 0; k < BINS; k++)
         differences += fabs(measured.histogram[k] - end.histogram[k]);

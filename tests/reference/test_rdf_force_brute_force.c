@@ -84,8 +84,8 @@ static void assert_sample(const struct rdf_bins *bins, struct simulation *simula
     count_all(bins, &brute, 0.7, &answer);
     for (int d = 0; d < particles->box.dimensions; d++)
         memcpy(brute.force[d], particles->force[d], bytes);
-    assert_ok(mf_rdf_force_init(&force, bins, &particles->box, particles->count, setup->potential, 0.7,
-                             list_cutoff, 1));
+    assert_ok(mf_rdf_force_init(&force, bins, &particles->box, particles->count, setup->potential,
+                                0.7, list_cutoff, 1));
     assert_int_equal(force.needs_own_list, mf_rdf_bins_range(bins) > list_cutoff);
     assert_ok(mf_rdf_force_sample(&force, particles, &simulation->neighbours));
     for (size_t k = 0; k < bins->count; k++) {

@@ -19,7 +19,7 @@ void kept_pairs_init(struct kept_pairs *kept, const struct box *box, size_t coun
     assert_ok(mf_placement_random(&kept->particles, separation, 5));
     mf_particles_draw_velocities(&kept->particles, kept->law.temperature, 6);
     assert_ok(mf_neighbours_init(&kept->neighbours, NEIGHBOURS_HALF, box, count,
-                              mf_pair_cutoff(&kept->law), 0.2));
+                                 mf_pair_cutoff(&kept->law), 0.2));
     assert_ok(mf_neighbours_sort_and_build(&kept->neighbours, &kept->particles));
 }
 
@@ -34,7 +34,7 @@ struct pair_law kept_pairs_law(const struct table *potential, const struct table
 
 void kept_pairs_use(struct kept_pairs *kept, const struct integrator *integrator) {
     assert_ok(mf_friction_init(&kept->friction, kept->law.weight, kept->law.time_step,
-                            kept->law.temperature, integrator->friction));
+                               kept->law.temperature, integrator->friction));
 }
 
 /// The force pass of a step.

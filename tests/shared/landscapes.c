@@ -88,7 +88,8 @@ void landscape_end(struct landscape_run *run) {
 /// An error as it is measured, measurement number `number`.
 static double measure(const struct landscape_drive *drive, double exact, uint64_t number) {
     static const double failures[] = {OPTIMISER_FAILED, NAN, HUGE_VAL, -HUGE_VAL, 1e300};
-    const struct rng_block block = mf_rng_philox(drive->seed, RNG_EVALUATION, (uint32_t)number, 0, 0);
+    const struct rng_block block =
+        mf_rng_philox(drive->seed, RNG_EVALUATION, (uint32_t)number, 0, 0);
     double normal[4];
     mf_rng_normal4(mf_rng_philox(drive->seed, RNG_EVALUATION, (uint32_t)number, 1, 0), normal);
     if (mf_rng_uniform(block.word[0], block.word[1]) < drive->failing)

@@ -28,7 +28,7 @@ static double dissipative_scale(const struct pair_law *law, int pair, double r) 
     for (int side = -1; side <= 1; side++) {
         double value, steepness;
         mf_table_evaluate_pair(law->weight, pair, fmin(r * (1 + 1e-6 * side), law->weight->cutoff),
-                            &value, &steepness, NULL);
+                               &value, &steepness, NULL);
         omega = fmax(omega, fabs(value));
         slope = fmax(slope, fabs(steepness));
     }

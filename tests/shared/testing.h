@@ -18,14 +18,14 @@
 #define assert_ok(call)                                                                            \
     do {                                                                                           \
         if ((call) != STATUS_OK)                                                                   \
-            fail_msg("%s: %s", #call, mf_status_message());                                           \
+            fail_msg("%s: %s", #call, mf_status_message());                                        \
     } while (0)
 
 /// The call fails with `status` and a message that contains `part`.
 #define assert_fails(call, status, part)                                                           \
     do {                                                                                           \
         assert_int_equal((call), (status));                                                        \
-        assert_contains(mf_status_message(), (part));                                                 \
+        assert_contains(mf_status_message(), (part));                                              \
     } while (0)
 
 #define assert_contains(text, part)                                                                \

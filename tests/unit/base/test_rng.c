@@ -196,7 +196,7 @@ static void test_rng_normal4_is_finite_when_words_are_extreme(void **state) {
         for (int b = 0; b < 4; b++) {
             double x[4];
             mf_rng_normal4((struct rng_block){{extremes[a], extremes[b], extremes[b], extremes[a]}},
-                        x);
+                           x);
             for (int k = 0; k < 4; k++)
                 assert_true(isfinite(x[k]));
         }

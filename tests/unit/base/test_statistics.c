@@ -127,8 +127,8 @@ static double cover(double phi, size_t chains, uint64_t seed) {
         make_autoregressive(series, phi, seed, trial);
         for (int k = 0; k < LENGTH; k++)
             sum += series[k];
-        covered +=
-            fabs(sum / LENGTH) < 2 * mf_statistics_correlated_error(series, LENGTH / chains, chains);
+        covered += fabs(sum / LENGTH) <
+                   2 * mf_statistics_correlated_error(series, LENGTH / chains, chains);
     }
     print_message("phi = %.2f: the truth within two errors in %.1f %% of %d series\n", phi,
                   100 * covered / TRIALS, TRIALS);

@@ -91,8 +91,8 @@ static void test_bench_lammps_write_gives_the_same_table(void **state) {
 static void test_bench_lammps_rate_is_that_of_the_last_run(void **state) {
     (void)state;
     assert_close(mf_bench_lammps_rate("Loop time of 1 on 1 procs for 50 steps with 500 atoms\n"
-                                   "Loop time of 0.25 on 1 procs for 300 steps with 500 atoms\n"
-                                   "Total wall time: 0:00:01\n"),
+                                      "Loop time of 0.25 on 1 procs for 300 steps with 500 atoms\n"
+                                      "Total wall time: 0:00:01\n"),
                  1200, 1e-9);
     assert_true(isnan(mf_bench_lammps_rate("ERROR: no\n")));
     assert_true(isnan(mf_bench_lammps_rate("Loop time of nothing")));

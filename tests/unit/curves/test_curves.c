@@ -19,8 +19,10 @@ static struct curve make(const struct curve_family *family) {
 
 static void test_curve_find_knows_every_family_when_named(void **state) {
     (void)state;
-    assert_ptr_equal(mf_curve_find(mf_curve_potentials, "lennard-jones"), &mf_formula_lennard_jones);
-    assert_ptr_equal(mf_curve_find(mf_curve_potentials, "soft-repulsion"), &mf_formula_soft_repulsion);
+    assert_ptr_equal(mf_curve_find(mf_curve_potentials, "lennard-jones"),
+                     &mf_formula_lennard_jones);
+    assert_ptr_equal(mf_curve_find(mf_curve_potentials, "soft-repulsion"),
+                     &mf_formula_soft_repulsion);
     assert_ptr_equal(mf_curve_find(mf_curve_potentials, "gaussian"), &mf_formula_gaussian);
     assert_ptr_equal(mf_curve_find(mf_curve_potentials, "table"), &mf_sampled_family);
     assert_ptr_equal(mf_curve_find(mf_curve_weights, "power"), &mf_formula_power_weight);
@@ -115,7 +117,8 @@ static struct difference compare(const struct curve *curve, const struct table *
         const double r = first + (cutoff - first - 1e-4) * (k + 0.5) / 7919;
         double value, slope;
         mf_table_evaluate(table, r, &value, &slope, NULL);
-        const double expected = (mf_curve_value(curve, r + h) - mf_curve_value(curve, r - h)) / (2 * h);
+        const double expected =
+            (mf_curve_value(curve, r + h) - mf_curve_value(curve, r - h)) / (2 * h);
         largest.value = fmax(largest.value, fabs(value - mf_curve_value(curve, r)));
         largest.slope = fmax(largest.slope, fabs(slope - expected) / (1 + fabs(expected)));
     }

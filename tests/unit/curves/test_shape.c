@@ -182,7 +182,8 @@ static void test_shape_fit_fails_when_points_say_nothing(void **state) {
     double genes[2];
     (void)state;
     const struct shape *shape = mf_shape_find("bspline");
-    assert_fails(mf_shape_fit(shape, t, zero, NULL, 0, genes, 2), STATUS_BAD_INPUT, "without points");
+    assert_fails(mf_shape_fit(shape, t, zero, NULL, 0, genes, 2), STATUS_BAD_INPUT,
+                 "without points");
     assert_fails(mf_shape_fit(shape, t, nan, NULL, 2, genes, 2), STATUS_BAD_INPUT, "nan");
     assert_fails(mf_shape_fit(shape, t, zero, zero, 2, genes, 2), STATUS_BAD_INPUT, "weight");
 }

@@ -32,8 +32,8 @@ static double energy_at(const struct metropolis *metropolis, size_t self, const 
         }
         if (j == self || sqrt(square) >= metropolis->law.potential->cutoff)
             continue;
-        const int pair = mf_composition_pair_of_ids(&metropolis->law.composition, particles->id[self],
-                                                 particles->id[j]);
+        const int pair = mf_composition_pair_of_ids(&metropolis->law.composition,
+                                                    particles->id[self], particles->id[j]);
         mf_table_evaluate_pair(metropolis->law.potential, pair, sqrt(square), &value, &slope, NULL);
         sum += value;
         *virial -= sqrt(square) * slope;
@@ -71,7 +71,7 @@ static void check_sums(const struct metropolis *metropolis) {
     double histogram[MOST_PAIRS * BINS] = {0}, energy = 0, virial = 0, differences = 0;
     struct pair_sums sums;
     mf_rdf_count_pairs_of(&bins, composition, &metropolis->particles, &metropolis->neighbours,
-                       histogram);
+                          histogram);
     for (size_t k = 0; k < COUNT; k++) {
         double at[3] = {0};
         for (int d = 0; d < metropolis->particles.box.dimensions; d++)
@@ -79,7 +79,7 @@ static void check_sums(const struct metropolis *metropolis) {
         energy += 0.5 * energy_at(metropolis, k, at, &virial);
     }
     mf_metropolis_count(metropolis, &(struct pair_histogram){0, bins.width, BINS, pairs, counts},
-                     &sums);
+                        &sums);
     assert_close(sums.energy, energy, energy_tolerance * COUNT);
     assert_close(sums.virial, 0.5 * virial, 10 * energy_tolerance * COUNT);
     // The list is full, and distances at an edge are rounded to either side.
@@ -109,7 +109,7 @@ static void check_all_sets(const struct fluid *fluid) {
     const char *best = mf_simd_name();
     struct metropolis metropolis;
     assert_ok(mf_metropolis_init(&metropolis, &fluid->setup.box, &fluid->setup.composition,
-                              &fluid->potential, fluid->setup.temperature, 3));
+                                 &fluid->potential, fluid->setup.temperature, 3));
     assert_ok(mf_metropolis_equilibrate(&metropolis, 60));
     // A list has room for the moves of the sweep that it was looked at for, and no more.
     assert_ok(mf_metropolis_refresh(&metropolis));

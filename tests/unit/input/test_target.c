@@ -18,7 +18,8 @@ static enum status read(void **state, const char *table, const char *members,
     struct json_document *document;
     temporary_folder_write(*state, "g.tsv", table, strlen(table));
     const int length = snprintf(text, sizeof text, "{\"rdf\": {\"file\": \"g.tsv\"%s}}", members);
-    assert_ok(mf_json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
+    assert_ok(
+        mf_json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
     struct json_object root = mf_json_root(document);
     struct json_object object = mf_json_child(&root, "rdf", true);
     assert_ok(mf_target_read(target, &object, &units, 3));

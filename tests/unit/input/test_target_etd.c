@@ -19,7 +19,8 @@ static enum status read_members(void **state, const char *members, struct target
     struct json_document *document;
     const int length = snprintf(text, sizeof text, "{\"etd\": {%s}}", members);
     assert_in_range(length, 1, sizeof text - 1);
-    assert_ok(mf_json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
+    assert_ok(
+        mf_json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
     struct json_object root = mf_json_root(document);
     struct json_object object = mf_json_child(&root, "etd", true);
     assert_ok(mf_target_etd_read(target, &object));
@@ -163,7 +164,8 @@ static void test_target_etd_steps_names_the_time_steps_that_would_do(void **stat
                  "0.0333333 or 0.05");
     assert_fails(mf_target_etd_steps(&target, 0.1002, &every), STATUS_BAD_INPUT,
                  "with a time step of 0.1");
-    assert_fails(mf_target_etd_steps(&target, 7, &every), STATUS_BAD_INPUT, "with a time step of 0.1");
+    assert_fails(mf_target_etd_steps(&target, 7, &every), STATUS_BAD_INPUT,
+                 "with a time step of 0.1");
     mf_target_etd_clear(&target);
 }
 

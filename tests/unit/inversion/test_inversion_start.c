@@ -28,8 +28,8 @@ static void make(struct made *made, int start) {
     for (int k = 0; k < BINS; k++) {
         double normal[4];
         mf_rng_normal4(mf_rng_philox(5, RNG_INITIAL, (uint32_t)k, 0, 0), normal);
-        mf_table_evaluate(&made->fluid.potential, mf_rdf_bins_centre(&bins, (size_t)k), &made->exact[k],
-                       NULL, NULL);
+        mf_table_evaluate(&made->fluid.potential, mf_rdf_bins_centre(&bins, (size_t)k),
+                          &made->exact[k], NULL, NULL);
         const double g = exp(-made->exact[k] / temperature);
         made->g[k] = g * (1 + noise * normal[0]);
         made->error[k] = noise * g;

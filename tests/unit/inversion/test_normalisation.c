@@ -38,7 +38,7 @@ static struct normalisation find(struct fluid *fluid, double factor) {
         error[k] = 1e-4 * g[k];
     }
     assert_ok(mf_normalisation_find(&fluid->bins, &fluid->box, &fluid->composition, g, error, width,
-                                 &found));
+                                    &found));
     print_message("factor %.4f: %s %.5f(%.5f), S(0) = %.3f\n", factor,
                   found.found ? "found" : "kept", found.factor, found.error, found.compressibility);
     return found;

@@ -71,13 +71,13 @@ static void test_replicas_scatter_their_particles_when_the_plan_says_so(void **s
             struct replicas_plan plan = {.scatter = scatter, .block_samples = 1, .every = 1};
             assert_ok(
                 mf_replicas_init(&replicas, 2, kind,
-                              &(struct sampler_system){.box = &fluid.setup.box,
-                                                       .composition = &fluid.setup.composition,
-                                                       .potential = &fluid.potential,
-                                                       .temperature = 1,
-                                                       .width = 0.1,
-                                                       .bins = 25,
-                                                       .seed = 3}));
+                                 &(struct sampler_system){.box = &fluid.setup.box,
+                                                          .composition = &fluid.setup.composition,
+                                                          .potential = &fluid.potential,
+                                                          .temperature = 1,
+                                                          .width = 0.1,
+                                                          .bins = 25,
+                                                          .seed = 3}));
             assert_ok(mf_replicas_run(&replicas, &plan, 1, &progress, &listener));
             for (size_t k = 0; k < 2; k++) {
                 const struct sampler *sampler = &replicas.member[k].sampler;

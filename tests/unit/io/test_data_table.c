@@ -46,8 +46,8 @@ static void test_data_table_read_finds_rows_when_comments_and_blanks_surround_th
 
 static void test_data_table_read_takes_windows_line_ends_when_present(void **state) {
     struct data_table table;
-    assert_ok(
-        mf_data_table_read(&table, write_text(state, "\xEF\xBB\xBF# r g\r\n1 2\r\n\r\n3 4\r\n"), 2));
+    assert_ok(mf_data_table_read(&table,
+                                 write_text(state, "\xEF\xBB\xBF# r g\r\n1 2\r\n\r\n3 4\r\n"), 2));
     assert_int_equal(table.rows, 2);
     assert_int_equal(table.columns, 2);
     assert_identical(table.values[3], 4.0);
@@ -148,8 +148,8 @@ static void test_data_table_read_says_so_when_there_is_nothing_to_read(void **st
         STATUS_BAD_INPUT, "t.dat:2:3: a NUL byte");
     assert_fails(mf_data_table_read(&table, temporary_folder_file(*state, "none"), 2), STATUS_IO,
                  "none: No such file or directory");
-    assert_fails(mf_data_table_read(&table, ((struct temporary_folder *)*state)->path, 2), STATUS_IO,
-                 "is a folder, not a file");
+    assert_fails(mf_data_table_read(&table, ((struct temporary_folder *)*state)->path, 2),
+                 STATUS_IO, "is a folder, not a file");
 }
 
 /// Devices have no end, and a file of a gigabyte is no table.
@@ -215,8 +215,9 @@ static void test_data_table_write_prints_comment_header_and_rows_when_asked(void
 
 static void test_data_table_write_names_the_file_when_it_cannot_be_made(void **state) {
     const struct data_column columns[] = {{"x", (double[]){1}, NULL}};
-    assert_fails(mf_data_table_write(temporary_folder_file(*state, "no/t.dat"), NULL, columns, 1, 1),
-                 STATUS_IO, "no/t.dat: No such file or directory");
+    assert_fails(
+        mf_data_table_write(temporary_folder_file(*state, "no/t.dat"), NULL, columns, 1, 1),
+        STATUS_IO, "no/t.dat: No such file or directory");
 }
 
 #define IN_FOLDER(test)                                                                            \

@@ -296,7 +296,8 @@ static void test_json_close_drops_whole_lines_when_faults_are_long(void **state)
     struct json_object root = mf_json_root(document);
     for (int k = 0; k < 10; k++)
         mf_json_fault(&root, NULL, "%01500d end", k);
-    assert_fails(mf_json_close(document, STATUS_OK), STATUS_BAD_INPUT, "04 end\n… and 5 more faults");
+    assert_fails(mf_json_close(document, STATUS_OK), STATUS_BAD_INPUT,
+                 "04 end\n… and 5 more faults");
 }
 
 // Writing -----------------------------------------------------------------------------------------

@@ -18,7 +18,7 @@ static void assert_refused(void **state, const char *text, const char *part) {
 static void test_votca_read_takes_the_rows_in_range(void **state) {
     struct votca_table table;
     assert_ok(mf_votca_read(&table, put(state, "# made by hand\n0 nan u\n0.1 1e6 o\n0.2 3.5 i\n"
-                                            "0.3 -1 i\n0.4 0 i\n0.5 0 o\n")));
+                                               "0.3 -1 i\n0.4 0 i\n0.5 0 o\n")));
     assert_int_equal(table.rows, 3);
     assert_false(table.has_error);
     assert_identical(table.x[0], 0.2);

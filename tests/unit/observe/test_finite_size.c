@@ -47,7 +47,8 @@ static void test_finite_size_factor_is_one_for_an_ideal_gas(void **state) {
     (void)state;
     assert_identical(mf_finite_size_factor(1, 20, 1000), 1.0);
     assert_close(mf_finite_size_factor(0, 2, 4), 0.5 / 0.75, 1e-12);
-    assert_close(mf_finite_size_factor(0.3, 70, 900) * mf_finite_size_factor(0.3, 900, 70), 1, 1e-12);
+    assert_close(mf_finite_size_factor(0.3, 70, 900) * mf_finite_size_factor(0.3, 900, 70), 1,
+                 1e-12);
 }
 
 /// A hole of radius 1 whose outside is `outside`, with noise, and the factor to ten times as many.
@@ -74,8 +75,8 @@ static void test_finite_size_factor_of_finds_s_in_g(void **state) {
     const double s = 1 - 4 * M_PI / 3 * densities * depth;
     // In a closed system the outside lies by −G/V above 1.
     const double outside = 1 + 4 * M_PI / 3 * depth / 1e3;
-    assert_close(factor_of(1 - depth, outside, 1e-6, &one, 0, 1), mf_finite_size_factor(s, 1e3, 1e4),
-                 integral);
+    assert_close(factor_of(1 - depth, outside, 1e-6, &one, 0, 1),
+                 mf_finite_size_factor(s, 1e3, 1e4), integral);
     assert_close(factor_of(1, 1, 1e-6, &one, 0, 1), 1, 1e-6);
 }
 

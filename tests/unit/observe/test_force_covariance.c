@@ -58,8 +58,8 @@ static void test_force_covariance_extrapolate_removes_what_grows_with_the_time_s
     const double error[2][2] = {{0.2, 0}, {0.1, 0.3}};
     double squared[2], squared_error[2];
     mf_force_covariance_extrapolate(time_step, (const double *const[]){kappa[0], kappa[1]},
-                                 (const double *const[]){error[0], error[1]}, 2, squared,
-                                 squared_error);
+                                    (const double *const[]){error[0], error[1]}, 2, squared,
+                                    squared_error);
     for (int k = 0; k < 2; k++) {
         assert_close(squared[k], a[k], 1e-14);
         assert_close(squared_error[k], hypot(1.5 * error[0][k], 0.5 * error[1][k]), 1e-14);

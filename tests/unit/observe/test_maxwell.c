@@ -21,8 +21,8 @@ static void test_maxwell_probability_is_that_of_tables(void **state) {
     assert_close(mf_maxwell_probability(0, n), 1, 0);
     assert_close(mf_maxwell_probability(0.1 / root, n), 1, 1e-12);
     // Both series, where they meet.
-    assert_close(mf_maxwell_probability(0.999999 / root, n), mf_maxwell_probability(1.000001 / root, n),
-                 1e-5);
+    assert_close(mf_maxwell_probability(0.999999 / root, n),
+                 mf_maxwell_probability(1.000001 / root, n), 1e-5);
     // Ten numbers: the exact critical value at 5 % is 0.409.
     assert_close(mf_maxwell_probability(0.409, 10), 0.05, 0.002);
 }
@@ -34,7 +34,7 @@ static double test_velocities(double drawn_at, double tested_at, uint64_t seed) 
     assert_ok(mf_maxwell_init(&maxwell));
     for (uint64_t step = 0; step < 3; step++) {
         mf_particles_draw_velocities(&particles, drawn_at,
-                                  mf_rng_child_seed(seed, RNG_INITIAL, 1, (uint32_t)step));
+                                     mf_rng_child_seed(seed, RNG_INITIAL, 1, (uint32_t)step));
         mf_maxwell_sample(&maxwell, &particles, tested_at, seed, step);
     }
     const struct maxwell_summary s = mf_maxwell_result(&maxwell);

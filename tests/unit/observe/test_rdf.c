@@ -84,9 +84,10 @@ static void test_rdf_result_is_of_the_kind_when_types_differ(void **state) {
         assert_ok(mf_rdf_sample(&rdf, &particles, NULL));
     assert_ok(mf_rdf_result(&rdf, 1, g, error));
     for (int k = 0; k < 6; k++) {
-        assert_close(
-            g[k], pairs[k] / mf_rdf_ideal_pairs_of(&bins, (size_t)k % 2, &cube, &composition, k / 2),
-            rounding * (1 + g[k]));
+        assert_close(g[k],
+                     pairs[k] /
+                         mf_rdf_ideal_pairs_of(&bins, (size_t)k % 2, &cube, &composition, k / 2),
+                     rounding * (1 + g[k]));
         assert_close(error[k], 0, rounding);
         g[k] += k == 5 ? 6 : 0;
     }
@@ -158,11 +159,13 @@ static void make_samples(struct rdf *rdf, uint32_t trial, uint32_t replica, doub
         double normal[4] = {0};
         for (uint32_t k = 0; k < BINS; k++) {
             if (k % 4 == 0)
-                mf_rng_normal4(mf_rng_philox(9, RNG_INITIAL, trial, replica * BINS + k, sample), normal);
+                mf_rng_normal4(mf_rng_philox(9, RNG_INITIAL, trial, replica * BINS + k, sample),
+                               normal);
             deviation[k] = sample == 0 ? normal[k % 4]
                                        : phi * deviation[k] + sqrt(1 - phi * phi) * normal[k % 4];
-            rdf->histogram[sample / EACH * BINS + k] += mf_rdf_ideal_pairs(&few_bins, k, &cube, MANY) *
-                                                        true_g(k) * (1 + scatter(k) * deviation[k]);
+            rdf->histogram[sample / EACH * BINS + k] +=
+                mf_rdf_ideal_pairs(&few_bins, k, &cube, MANY) * true_g(k) *
+                (1 + scatter(k) * deviation[k]);
         }
         rdf->block_samples[sample / EACH] += 1;
         rdf->samples++;

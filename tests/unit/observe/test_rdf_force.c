@@ -96,7 +96,8 @@ static void test_rdf_force_is_known_when_there_is_one_pair(void **state) {
         assert_ok(mf_rdf_force_result(&force, 1, RDF_FORCE_FROM_ZERO, g, NULL));
         // β F r / (Ω I r^d), I = 1/V, beyond the bin of the pair.
         const double solid = dimensions == 3 ? 4 * M_PI : 2 * M_PI;
-        const double whole = 25 * 0.45 / 2 * mf_box_volume(&box) / (solid * pow(0.55, dimensions - 1));
+        const double whole =
+            25 * 0.45 / 2 * mf_box_volume(&box) / (solid * pow(0.55, dimensions - 1));
         const double low = pow(0.5, dimensions), high = pow(0.6, dimensions);
         for (size_t k = 0; k < BINS; k++)
             assert_close_relative(g[k],

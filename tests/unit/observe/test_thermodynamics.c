@@ -178,12 +178,14 @@ static void test_judge_tells_when_a_temperature_is_off(void **state) {
                                        .temperature_error = 0.002,
                                        .temperature_configurational = 0.75,
                                        .temperature_configurational_error = 0.01};
-    assert_fails(mf_thermodynamics_judge(&s, &fluid.setup), STATUS_UNSTABLE, "0.75 by the positions");
+    assert_fails(mf_thermodynamics_judge(&s, &fluid.setup), STATUS_UNSTABLE,
+                 "0.75 by the positions");
     s.temperature_configurational_error = 0.04; // it may be 0.9
     assert_ok(mf_thermodynamics_judge(&s, &fluid.setup));
     s.temperature_configurational = 1.05;
     s.temperature = 1.12;
-    assert_fails(mf_thermodynamics_judge(&s, &fluid.setup), STATUS_UNSTABLE, "1.12 by the velocities");
+    assert_fails(mf_thermodynamics_judge(&s, &fluid.setup), STATUS_UNSTABLE,
+                 "1.12 by the velocities");
     s.temperature_configurational = NAN;
     s.temperature = 1.02;
     assert_ok(mf_thermodynamics_judge(&s, &fluid.setup));
@@ -196,7 +198,8 @@ static void test_judge_tells_when_a_temperature_is_off(void **state) {
     s.temperature_configurational_error = 0.01;
     assert_ok(mf_thermodynamics_judge(&s, &fluid.setup));
     s.temperature_configurational = 1.1;
-    assert_fails(mf_thermodynamics_judge(&s, &fluid.setup), STATUS_UNSTABLE, "1.1 by the positions");
+    assert_fails(mf_thermodynamics_judge(&s, &fluid.setup), STATUS_UNSTABLE,
+                 "1.1 by the positions");
     s.blocks = 4;
     assert_ok(mf_thermodynamics_judge(&s, &fluid.setup));
     fluid_clear(&fluid);

@@ -156,8 +156,8 @@ static void test_cmaes_refuses_a_population_below_4(void **state) {
     (void)state;
     assert_non_null(memory);
     landscape_set(&mf_cmaes_optimiser, parameters, "population", 3);
-    assert_fails(mf_cmaes_optimiser.create(memory, &(struct optimiser_space){.genes = 2, .maximum = 1},
-                                        parameters),
+    assert_fails(mf_cmaes_optimiser.create(
+                     memory, &(struct optimiser_space){.genes = 2, .maximum = 1}, parameters),
                  STATUS_BAD_INPUT, "below 4");
     mf_cmaes_optimiser.destroy(memory);
     mf_memory_free(memory);

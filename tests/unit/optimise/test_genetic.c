@@ -42,7 +42,8 @@ static double sphere(const double *genes) {
 
 static double measure(struct problem *problem, const double *genes) {
     double normal[4];
-    mf_rng_normal4(mf_rng_philox(problem->seed, RNG_EVALUATION, problem->measurements++, 0, 0), normal);
+    mf_rng_normal4(mf_rng_philox(problem->seed, RNG_EVALUATION, problem->measurements++, 0, 0),
+                   normal);
     return sphere(genes) + problem->noise * normal[0];
 }
 
@@ -100,7 +101,8 @@ static void test_genetic_never_loses_its_elite_when_there_is_no_noise(void **sta
     for (int k = 0; k < 30; k++) {
         step(&genetic, &problem, errors);
         assert_true(genetic.elite_error <= best * (1 + 1e-12));
-        assert_memory_equal(mf_genetic_individual(&genetic, 0), genetic.elite, GENES * sizeof(double));
+        assert_memory_equal(mf_genetic_individual(&genetic, 0), genetic.elite,
+                            GENES * sizeof(double));
         best = genetic.elite_error;
     }
     mf_genetic_clear(&genetic);

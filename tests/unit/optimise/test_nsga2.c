@@ -315,7 +315,8 @@ static void test_mutation_is_polynomial(void **state) {
     double squares = 0, mean = 0;
     (void)state;
     for (int k = 0; k < 20000; k++) {
-        const double x = mf_nsga2_mutate(0.5, 20, &random), edge = mf_nsga2_mutate(k % 2, 20, &random);
+        const double x = mf_nsga2_mutate(0.5, 20, &random),
+                     edge = mf_nsga2_mutate(k % 2, 20, &random);
         assert_true(edge >= 0 && edge <= 1);
         squares += (x - 0.5) * (x - 0.5) / 20000;
         mean += (x - 0.5) / 20000;

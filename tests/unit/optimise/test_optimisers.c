@@ -26,7 +26,7 @@ static const struct variant {
     double sphere, rosenbrock, rastrigin, edge, noisy, failing;
 } variants[] = {
 #define GENETIC(crossover, mutation)                                                               \
-    &mf_genetic_optimiser, {                                                                          \
+    &mf_genetic_optimiser, {                                                                       \
         {"crossover_kind", crossover}, {"mutation_kind", mutation}, {"population", 60},            \
             {"mutation", 1}, {"mutated_genes", 0.3}, {                                             \
             "generations", 50                                                                      \
@@ -39,7 +39,7 @@ static const struct variant {
     {GENETIC(GENETIC_TWO_POINT, GENETIC_CORRELATED), 6e-7, 8, 12, 1e-3, 0.011, 1e-5},
     {GENETIC(GENETIC_BLEND, GENETIC_CORRELATED), 6e-7, 8, 12, 1e-3, 0.011, 1e-5},
 #define NLOPT(algorithm)                                                                           \
-    &mf_nlopt_optimiser, {                                                                            \
+    &mf_nlopt_optimiser, {                                                                         \
         {"algorithm", algorithm}, {                                                                \
             "evaluations", EVALUATIONS                                                             \
         }                                                                                          \

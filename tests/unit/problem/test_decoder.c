@@ -242,7 +242,8 @@ static void test_decoder_power_holds_what_is_fixed(void **state) {
     both.genes[0] = 0.8; // σ = 4
     mf_decoder_curve(&both.decoder, UNKNOWN_WEIGHT, both.genes, curve);
     for (size_t k = 0; k < WEIGHT_POINTS; k++)
-        assert_close(curve[k], 4 / 2.5 * mf_curve_value(&both.weight, both.decoder.weight.r[k]), 1e-9);
+        assert_close(curve[k], 4 / 2.5 * mf_curve_value(&both.weight, both.decoder.weight.r[k]),
+                     1e-9);
     mf_decoder_clear(&both.decoder);
     begin_power_with(&both, 2, 2.5, NAN, NAN);
     assert_int_equal(both.decoder.genes, 2);
@@ -283,8 +284,8 @@ static void test_decoder_band_of_the_formula_follows_its_genes(void **state) {
     covariance[0] = 0.01 * 0.01;
     assert_ok(mf_decoder_band(&both.decoder, UNKNOWN_WEIGHT, both.genes, covariance, error, flat));
     for (size_t k = 0; k < WEIGHT_POINTS; k++)
-        assert_close(error[k], mf_curve_value(&both.weight, both.decoder.weight.r[k]) / 2.5 * 5 * 0.01,
-                     1e-9);
+        assert_close(error[k],
+                     mf_curve_value(&both.weight, both.decoder.weight.r[k]) / 2.5 * 5 * 0.01, 1e-9);
     mf_decoder_clear(&both.decoder);
 }
 

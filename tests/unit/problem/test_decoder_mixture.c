@@ -64,7 +64,8 @@ static void test_decoder_start_gives_back_each_potential_of_a_mixture(void **sta
         assert_int_equal(mf_decoder_fits(&m.decoder, UNKNOWN_POTENTIAL, n),
                          k >= cores[pair] && k < BINS);
         if (k >= cores[pair])
-            assert_close(curve[n], mf_curve_value(&m.potential[pair], m.decoder.potential.r[n]), 0.1);
+            assert_close(curve[n], mf_curve_value(&m.potential[pair], m.decoder.potential.r[n]),
+                         0.1);
     }
     mf_decoder_curve(&m.decoder, UNKNOWN_WEIGHT, m.genes, weight);
     assert_close(weight[WEIGHT_POINTS / 2],

@@ -118,7 +118,7 @@ static void test_evaluate_begins_where_it_is_told(void **state) {
         .threads = 1,
         .seed = 11};
     assert_ok(mf_evaluate(&made.problem, &candidate, &made.parameters, NULL,
-                       (double *const[]){to[0], to[1], to[2]}, &result));
+                          (double *const[]){to[0], to[1], to[2]}, &result));
     for (int d = 0; d < 3; d++)
         for (int k = 0; k < COUNT; k++)
             assert_close(to[d][k], from[d][k], 1e-6);

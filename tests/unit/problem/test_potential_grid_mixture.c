@@ -170,7 +170,7 @@ static void test_potential_grid_virials_of_a_block_act_on_its_own_bins(void **st
         one.goals.goal[GOAL_RDF].value = target + pair * BINS;
         assert_ok(mf_potential_grid_init(&own, &one));
         assert_ok(mf_potential_grid_virials(&own, &problem.goals.bins, 3,
-                                         phi + mf_potential_grid_block(&grid, pair), alone));
+                                            phi + mf_potential_grid_block(&grid, pair), alone));
         for (size_t a = 0; a < PAIRS * BINS; a++)
             for (size_t b = 0; b < own.known; b++) {
                 const double found = virial[a * KNOWN + first + b];

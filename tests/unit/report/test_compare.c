@@ -102,7 +102,8 @@ static enum status compare(const char *first, const char *second, bool quiet) {
     snprintf(paths[0], PATH, "%s/%s", root, first);
     snprintf(paths[1], PATH, "%s/%s", root, second ? second : "");
     snprintf(out, sizeof out, "%s/cmp", root);
-    return mf_compare_folders((const char *const[]){paths[0], paths[1]}, second ? 2 : 1, out, quiet);
+    return mf_compare_folders((const char *const[]){paths[0], paths[1]}, second ? 2 : 1, out,
+                              quiet);
 }
 
 static char *compare_text(const char *table) {

@@ -35,7 +35,8 @@ static void test_change_of_a_potential_is_that_beyond_its_core(void **state) {
     last[CORE] = -50;
     first[CORE - 3] = 1000;
     last[CORE - 3] = -1000;
-    const struct fit_change change = mf_fit_change_find(&decoder, UNKNOWN_POTENTIAL, 0, first, last);
+    const struct fit_change change =
+        mf_fit_change_find(&decoder, UNKNOWN_POTENTIAL, 0, first, last);
     assert_close(change.first_well, -1, 0);
     assert_close(change.first_well_at, 2.05, 1e-12);
     assert_close(change.well, -0.5, 0);

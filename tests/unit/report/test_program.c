@@ -68,8 +68,8 @@ static void test_program_run_stops_what_takes_too_long(void **state) {
     for (int k = 0; k < 3; k++) {
         const char *const words[] = {"sh", "-c", scripts[k], NULL};
         const double begun = clock_seconds();
-        assert_fails(mf_program_run("/", words, PROGRAM_EVERYTHING, 0.3, text, sizeof text), STATUS_IO,
-                     "sh had not ended after 0.3 s and was stopped");
+        assert_fails(mf_program_run("/", words, PROGRAM_EVERYTHING, 0.3, text, sizeof text),
+                     STATUS_IO, "sh had not ended after 0.3 s and was stopped");
         assert_true(clock_seconds() - begun < 60);
     }
     const pid_t left = (pid_t)atol(text);

@@ -19,7 +19,7 @@ static void draw(struct comoments *samples, uint32_t trial, uint32_t set, double
         double normal[4];
         mf_rng_normal4(mf_rng_philox(5, RNG_INITIAL, trial, set, k), normal);
         mf_comoments_add(samples, (double[SIZE]){normal[0], normal[0] + 0.3 * normal[1],
-                                              normal[2] - normal[1] + shift});
+                                                 normal[2] - normal[1] + shift});
     }
 }
 

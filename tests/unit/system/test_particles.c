@@ -51,7 +51,8 @@ static void test_particles_density_is_per_area_when_in_two_dimensions(void **sta
 static void test_particles_init_fails_when_there_are_too_many(void **state) {
     (void)state;
     struct particles particles;
-    assert_fails(mf_particles_init(&particles, &three, SIZE_MAX / 2), STATUS_NO_MEMORY, "too large");
+    assert_fails(mf_particles_init(&particles, &three, SIZE_MAX / 2), STATUS_NO_MEMORY,
+                 "too large");
 }
 
 static void check_wrap(const struct box *box) {
