@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# make                build/mesofit (also ./mesofit) and build/libmesofit.a
+# make                build/mesofit (also ./mesofit), build/libmesofit.a and build/libmesofit.so
+# make install        program, library, headers, figures' scripts, to PREFIX=/usr/local (and DESTDIR)
 # make test           builds and passes all tests: check, then check-physics
 # make check          unit, reference and command-line tests (about a minute)
 # make check-physics  laws and exact limits (minutes)
@@ -25,7 +26,8 @@ WARN     = -Wall -Wextra -Wshadow -Wpointer-arith -Wstrict-prototypes -Wmissing-
 # nothing here reads, and let sqrt and comparisons vectorise.
 OPTIMISE = -O3 -fno-math-errno -fno-trapping-math -ffp-contract=fast
 CFLAGS  ?= $(OPTIMISE) -g
-override CFLAGS += -std=c11 -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 -fopenmp $(WARN) \
+# Hidden: the shared library shows what include/ declares, and calls inside it go straight.
+override CFLAGS += -std=c11 -fPIC -fvisibility=hidden -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 -fopenmp $(WARN) \
            -Iinclude -Isrc -MMD -MP $(shell pkg-config --cflags $(PACKAGES)) $(SANITIZE)
 LDLIBS  := $(shell pkg-config --libs $(PACKAGES)) -lm
 override LDFLAGS += -fopenmp $(SANITIZE)
@@ -34,9 +36,12 @@ SOURCES  = $(wildcard src/*/*.c)
 OBJECTS  = $(SOURCES:%.c=$(BUILD)/%.o)
 LIBRARY  = $(BUILD)/libmesofit.a
 PROGRAM  = $(BUILD)/mesofit
+VERSION := $(shell sed -n 's/^.define MESOFIT_VERSION "\(.*\)"/\1/p' include/mesofit.h)
+SONAME   = libmesofit.so.$(word 1,$(subst ., ,$(VERSION)))
+SHARED_LIBRARY = $(BUILD)/libmesofit.so.$(VERSION)
 
 .PHONY: all check check-physics check-stress asan tsan fuzz lint bench clean
-all: $(PROGRAM) mesofit
+all: $(PROGRAM) mesofit $(SHARED_LIBRARY)
 
 mesofit: $(PROGRAM)
 	ln -sf $(PROGRAM) $@
@@ -45,6 +50,12 @@ $(LIBRARY): $(filter-out $(BUILD)/src/app/%,$(OBJECTS))
 	@rm -f $@
 	@echo "ar $@"
 	$(AT)ar rcs $@ $^
+
+$(SHARED_LIBRARY): $(filter-out $(BUILD)/src/app/%,$(OBJECTS))
+	@echo "ld $@"
+	$(AT)$(CC) -shared -Wl,-soname,$(SONAME) -Wl,--no-undefined $(LDFLAGS) -o $@ $^ $(LDLIBS)
+	@ln -sf $(@F) $(BUILD)/$(SONAME)
+	@ln -sf $(SONAME) $(BUILD)/libmesofit.so
 
 $(PROGRAM): $(filter $(BUILD)/src/app/%,$(OBJECTS)) $(LIBRARY)
 	@echo "ld $@"
@@ -77,7 +88,7 @@ test:
 	$(MAKE) check
 	$(MAKE) check-physics
 
-check: all $(UNIT) $(REFERENCE) $(CLI)
+check: all $(UNIT) $(REFERENCE) $(CLI) check-install
 	MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(UNIT) $(REFERENCE) $(CLI)
 
 check-physics: all $(PHYSICS)
@@ -142,6 +153,28 @@ check-threads: $(PROGRAM) $(THREADED)
 check-all: $(PROGRAM) $(TESTS)
 	MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(TESTS)
 
+PREFIX ?= /usr/local
+LIBDIR ?= $(PREFIX)/lib
+.PHONY: install check-install
+install: all
+	install -d $(addprefix $(DESTDIR),$(PREFIX)/bin $(PREFIX)/include/mesofit $(LIBDIR)/pkgconfig $(PREFIX)/share/mesofit/plots)
+	install $(PROGRAM) $(DESTDIR)$(PREFIX)/bin
+	install -m 644 include/mesofit.h $(DESTDIR)$(PREFIX)/include
+	install -m 644 include/mesofit/*.h $(DESTDIR)$(PREFIX)/include/mesofit
+	install -m 644 $(LIBRARY) $(SHARED_LIBRARY) $(DESTDIR)$(LIBDIR)
+	ln -sf $(notdir $(SHARED_LIBRARY)) $(DESTDIR)$(LIBDIR)/$(SONAME)
+	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libmesofit.so
+	sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|' mesofit.pc.in \
+	    >$(DESTDIR)$(LIBDIR)/pkgconfig/mesofit.pc
+	install -m 644 plots/*.gp $(DESTDIR)$(PREFIX)/share/mesofit/plots
+
+# Into a folder of the build's own, where the examples are built and run as a user's programs.
+STAGE = $(abspath $(BUILD))/stage
+check-install: all
+	@rm -rf $(STAGE)
+	$(MAKE) install PREFIX=$(STAGE) >/dev/null
+	CC="$(CC)" tests/tools/check_install.sh $(STAGE) $(BUILD)
+
 lint: $(LIBRARY)
 	tests/tools/lint.sh $(LIBRARY)
 
@@ -151,4 +184,5 @@ bench: $(PROGRAM)
 clean:
 	rm -rf build mesofit
 
--include $(OBJECTS:.o=.d) $(TESTS:=.d) $(STRESS:=.d) $(SHARED:.o=.d)
+-include $(OBJECTS:.o=.d) $(TESTS:=.d) $(STRESS:=.d) $(SHARED:.o=.d) \
+         $(BUILD)/tests/fuzz/fuzz_readers.d

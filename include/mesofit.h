@@ -1,5 +1,12 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The version of the library and the program.
-#pragma once
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/** @file mesofit: turn a measured structure or motion back into the interactions that cause it. */
+#ifndef MESOFIT_H
+#define MESOFIT_H
+
+#include "mesofit/fit.h"
+#include "mesofit/optimiser.h"
+#include "mesofit/simulation.h"
 
 #define MESOFIT_VERSION "0.1.0"
+
+#endif

@@ -39,3 +39,7 @@ void mf_interrupt_install(void) {
 bool mf_interrupt_requested(void) {
     return requested != 0;
 }
+
+bool mf_interrupt_wanted(const atomic_bool *cancel) {
+    return mf_interrupt_requested() || (cancel && atomic_load(cancel));
+}

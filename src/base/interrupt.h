@@ -3,6 +3,7 @@
 /// or since nobody listens any more (SIGHUP, SIGPIPE).
 #pragma once
 
+#include <stdatomic.h>
 #include <stdbool.h>
 
 /// Catch SIGINT and SIGTERM from now on, a second one of which ends the program at once, and SIGHUP
@@ -11,3 +12,6 @@ void mf_interrupt_install(void);
 
 /// True once the user has asked to stop. Any thread may ask, as often as it likes.
 bool mf_interrupt_requested(void);
+
+/// The same, or once who owns the work has set `cancel`, unless that is NULL.
+bool mf_interrupt_wanted(const atomic_bool *cancel);

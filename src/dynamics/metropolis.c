@@ -119,7 +119,7 @@ static enum status refresh_if_needed(struct metropolis *metropolis) {
 /// an energy 0.4 % too high and single states off by 16 % of the largest probability.
 static enum status sweep(struct metropolis *metropolis) {
     const struct particles *particles = &metropolis->particles;
-    if (mf_interrupt_requested())
+    if (mf_interrupt_wanted(metropolis->cancel))
         return mf_status_fail(STATUS_INTERRUPTED, "interrupted");
     TRY(refresh_if_needed(metropolis));
     uint32_t *place = particles->spare_words; // of each id

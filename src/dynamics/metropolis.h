@@ -8,6 +8,8 @@
 
 #include "forces/pair.h"
 
+#include <stdatomic.h>
+
 struct metropolis {
     struct particles particles;
     struct neighbours neighbours; ///< full list
@@ -15,7 +17,8 @@ struct metropolis {
     uint32_t *order;              ///< ids, in the order in which a sweep moves them
     double step;                  ///< half edge of the cube of moves [λ]
     uint64_t seed;
-    uint32_t sweep; ///< sweeps so far: the counter of the random numbers
+    const atomic_bool *cancel; ///< stops the sweeps once it is set, or NULL; borrowed
+    uint32_t sweep;            ///< sweeps so far: the counter of the random numbers
     uint64_t accepted, tried;
 };
 

@@ -201,6 +201,16 @@ static enum status refresh_list(struct simulation *simulation) {
     return STATUS_OK;
 }
 
+/// Forces of all that acts beside the pairs.
+static enum status add_interactions(struct simulation *simulation, enum pair_wants wants) {
+    for (int k = 0; k < simulation->interactions; k++) {
+        const struct interaction_use *use = &simulation->interaction[k];
+        TRY(use->kind->add(use->state, &simulation->particles, simulation->step, wants,
+                           &simulation->sums));
+    }
+    return STATUS_OK;
+}
+
 enum status mf_simulation_compute_forces(struct simulation *simulation, double ahead) {
     struct particles *particles = &simulation->particles;
     struct neighbours *neighbours = &simulation->neighbours;
@@ -217,8 +227,9 @@ enum status mf_simulation_compute_forces(struct simulation *simulation, double a
     begin = count_ticks(simulation, SIMULATION_LIST, begin);
     mf_pair_forces(&law, particles, neighbours, simulation->step, simulation->wants,
                    &simulation->sums);
+    const enum status status = add_interactions(simulation, simulation->wants);
     count_ticks(simulation, SIMULATION_FORCES, begin);
-    return STATUS_OK;
+    return status;
 }
 
 enum status mf_simulation_compute_potential(struct simulation *simulation) {
@@ -227,7 +238,7 @@ enum status mf_simulation_compute_potential(struct simulation *simulation) {
     TRY(refresh_list(simulation));
     mf_pair_forces(&law, &simulation->particles, &simulation->neighbours, simulation->step,
                    PAIR_FORCES_AND_SUMS, &simulation->sums);
-    return STATUS_OK;
+    return add_interactions(simulation, PAIR_FORCES_AND_SUMS);
 }
 
 /// Σ v² tells at once of NaN, overflow and a runaway temperature.
@@ -243,7 +254,7 @@ static enum status watch(const struct simulation *simulation) {
 
 enum status mf_simulation_run(struct simulation *simulation, uint64_t steps) {
     for (uint64_t k = 0; k < steps; k++) {
-        if (mf_interrupt_requested())
+        if (mf_interrupt_wanted(simulation->setup.cancel))
             return mf_status_fail(STATUS_INTERRUPTED, "interrupted");
         const uint64_t begin = clock_ticks();
         const uint64_t other =

@@ -6,9 +6,12 @@
 #include "base/memory.h"
 #include "dynamics/integrator.h"
 #include "dynamics/skin.h"
+#include "forces/interaction.h"
 #include "forces/pair.h"
 #include "system/neighbours.h"
 #include "system/placement.h"
+
+#include <stdatomic.h>
 
 /// Everything that defines a simulation, but for its tables. Plain data; copy it freely.
 struct simulation_setup {
@@ -25,8 +28,13 @@ struct simulation_setup {
     const struct table *weight;    ///< ω(r), the same, or NULL; borrowed
     uint64_t seed;
     int precision; ///< enum pair_precision
-    int threads;   ///< that a step may take, at least 1: the same bits for any number
+    /// Set by another thread to stop the simulation, or NULL. Borrowed.
+    const atomic_bool *cancel;
+    int threads; ///< that a step may take, at least 1: the same bits for any number
 };
+
+/// Interactions beside the pair law.
+enum { SIMULATION_MOST_INTERACTIONS = 8 };
 
 /// What a simulation spends its time on.
 enum simulation_phase {
@@ -43,6 +51,8 @@ struct simulation {
     struct pair_law law;
     struct crew crew;         ///< threads of a step
     struct friction friction; ///< of an integrator that splits it off
+    struct interaction_use interaction[SIMULATION_MOST_INTERACTIONS]; ///< beside the pair law
+    int interactions;
     uint64_t step;
     enum pair_wants wants; ///< set before a step whose sums will be read
     struct pair_sums sums; ///< of the last step, if it was asked for them

@@ -271,7 +271,7 @@ static enum status check_windows(const struct fit_file *fit, const char *file) {
 }
 
 /// What only the parts together can get wrong.
-static enum status check(const struct fit_file *fit, const char *file) {
+enum status mf_fit_file_check(const struct fit_file *fit, const char *file) {
     const struct targets *targets = &fit->targets;
     TRY(check_unknowns(fit, file));
     if (targets->given[GOAL_RDF])
@@ -337,7 +337,7 @@ enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
 enum status mf_fit_file_read(struct fit_file *fit, const char *file,
                              const struct run_options *options) {
     TRY(mf_fit_file_parse(fit, file, options));
-    return check(fit, file);
+    return mf_fit_file_check(fit, file);
 }
 
 void mf_fit_file_clear(struct fit_file *fit) {

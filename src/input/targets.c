@@ -69,8 +69,9 @@ static enum status check_times(const struct target_curve *curve, const struct da
     for (size_t k = 0; k < table->rows; k++)
         if (fabs(cell(table, k, p->time_column) - (double)k * curve->interval) >
             0.01 * curve->interval)
-            return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: the times are not equally spaced from 0",
-                               p->file, table->line[k]);
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s:%zu: the times are not equally spaced from 0", p->file,
+                                  table->line[k]);
     return STATUS_OK;
 }
 
@@ -82,7 +83,7 @@ static enum status load_curve(struct target_curve *curve, struct data_table *tab
         (size_t)(p->time_column > p->value_column ? p->time_column : p->value_column)));
     int64_t error_column;
     CHECK(mf_target_error_column(p->error_column, p->time_column, p->value_column, table, p->file,
-                              &error_column));
+                                 &error_column));
     if (table->rows < 3)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu times", p->file, table->rows);
     CHECK(mf_data_table_check_increasing(table, p->file, (size_t)p->time_column - 1, 0));
@@ -97,7 +98,7 @@ static enum status load_curve(struct target_curve *curve, struct data_table *tab
         if (!(curve->error[k] >= 0)) {
             status =
                 mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %lld: %g is not a standard error",
-                            p->file, table->line[k], (long long)error_column, curve->error[k]);
+                               p->file, table->line[k], (long long)error_column, curve->error[k]);
             goto done;
         }
     }
@@ -168,7 +169,7 @@ static enum status collect_rdf(struct targets *targets, const struct box *box) {
     NEW_ARRAY(targets->rdf_given, targets->pairs * bins);
     for (size_t pair = 0; pair < targets->pairs; pair++)
         mf_target_convert(&targets->rdf[pair], box, &targets->composition, (int)pair,
-                       targets->rdf_g + pair * bins, targets->rdf_error + pair * bins);
+                          targets->rdf_g + pair * bins, targets->rdf_error + pair * bins);
     memcpy(targets->rdf_given, targets->rdf_g, targets->pairs * bins * sizeof(double));
 done:
     return status;
@@ -224,8 +225,9 @@ static enum status read_kind(struct targets *targets, enum goal_kind kind,
 static void check_window(const struct targets *targets, struct json_object *object) {
     if (targets->diffusion.window > 0 &&
         (targets->vacf.times > 0 || targets->msd.times > 0 || targets->given[GOAL_ETD]))
-        mf_json_fault(object, "diffusion",
-                   "has a \"window\" of its own beside \"vacf\", \"msd\" or \"etd\", which say it");
+        mf_json_fault(
+            object, "diffusion",
+            "has a \"window\" of its own beside \"vacf\", \"msd\" or \"etd\", which say it");
 }
 
 /// VACF and MSD come from the same samples.
@@ -236,8 +238,9 @@ static void check_motion(const struct targets *targets, struct json_object *obje
         mf_json_fault(object, "msd", "must have the times of \"vacf\"");
 }
 
-enum status mf_targets_read(struct targets *targets, struct json_object *root, const struct box *box,
-                         const struct composition *composition, const struct units *units) {
+enum status mf_targets_read(struct targets *targets, struct json_object *root,
+                            const struct box *box, const struct composition *composition,
+                            const struct units *units) {
     *targets = (struct targets){.composition = *composition,
                                 .pairs = (size_t)mf_composition_pairs(composition)};
     struct json_object object = mf_json_child(root, "target", true);
@@ -373,14 +376,14 @@ enum status mf_targets_normalise(struct targets *targets, const struct box *box)
     if (given > 0)
         return STATUS_OK;
     TRY(mf_normalisation_find(&targets->rdf[0].bins, box, &targets->composition, targets->rdf_g,
-                           targets->rdf_error, width, &targets->normalisation));
+                              targets->rdf_error, width, &targets->normalisation));
     for (size_t pair = 0; pair < targets->pairs; pair++)
         divide(targets, pair, targets->normalisation.factor);
     return STATUS_OK;
 }
 
 void mf_targets_goals(struct targets *targets, bool moves, struct goals *fitted,
-                   struct goals *compared) {
+                      struct goals *compared) {
     static const double unknown = NAN;
     const struct target_etd *etd = &targets->etd;
     *compared = (struct goals){.bins = targets->rdf[0].bins,
@@ -420,10 +423,10 @@ static enum status check_interval(const struct target_curve *curve, double time_
     if (curve->times == 0 || (steps > 0.5 && fabs(steps / fmax(1, round(steps)) - 1) < 1e-3))
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
-                       "%s: its interval %.6g is not a whole number of time steps of %g; %.6g "
-                       "would do",
-                       curve->parameters.file, curve->interval, time_step,
-                       curve->interval / fmax(1, ceil(steps)));
+                          "%s: its interval %.6g is not a whole number of time steps of %g; %.6g "
+                          "would do",
+                          curve->parameters.file, curve->interval, time_step,
+                          curve->interval / fmax(1, ceil(steps)));
 }
 
 enum status mf_targets_check_steps(const struct targets *targets, double time_step) {

@@ -49,23 +49,25 @@ struct targets {
 
 /// Read the object "target" of a scene of this box and composition; `units` convert VOTCA's tables.
 /// Faults go to the document. Fails: NO_MEMORY.
-enum status mf_targets_read(struct targets *targets, struct json_object *root, const struct box *box,
-                         const struct composition *composition, const struct units *units) MUST_USE;
+enum status mf_targets_read(struct targets *targets, struct json_object *root,
+                            const struct box *box, const struct composition *composition,
+                            const struct units *units) MUST_USE;
 void mf_targets_clear(struct targets *targets);
 void mf_targets_write(const struct targets *targets, struct json_writer *writer);
 
 /// Add what was read from files to the digest of a checkpoint.
 void mf_targets_digest(const struct targets *targets, uint64_t *digest);
 
-/// Divide g(r) by its normalisation: what the file says, else what mf_normalisation_find makes of the
-/// target in this box. If the file says some of a mixture's, the others are 1. Fails: NO_MEMORY.
+/// Divide g(r) by its normalisation: what the file says, else what mf_normalisation_find makes of
+/// the target in this box. If the file says some of a mixture's, the others are 1. Fails:
+/// NO_MEMORY.
 enum status mf_targets_normalise(struct targets *targets, const struct box *box) MUST_USE;
 
 /// The goals of the scene: those to be fitted, and all. With `moves`, D is among
 /// those to be compared even if no value is given, so that a result knows its own, if another
 /// target says in what window.
 void mf_targets_goals(struct targets *targets, bool moves, struct goals *fitted,
-                   struct goals *compared);
+                      struct goals *compared);
 
 /// BAD_INPUT with the time steps that would do if an interval is not a whole number of steps.
 enum status mf_targets_check_steps(const struct targets *targets, double time_step) MUST_USE;

@@ -178,7 +178,8 @@ enum status mf_inversion_create(void *memory, const struct inverse_method *metho
     TRY(mf_inversion_start(inversion));
     TRY(mf_potential_grid_table(&inversion->grid, inversion->phi, &inversion->table));
     TRY(mf_replicas_init(&inversion->replicas, (size_t)p->replicas, (enum sampler_kind)p->sampler,
-                         &(struct sampler_system){.box = &inversion->box,
+                         &(struct sampler_system){.cancel = problem->scene.cancel,
+                                                  .box = &inversion->box,
                                                   .composition = &inversion->composition,
                                                   .potential = &inversion->table,
                                                   .temperature = problem->scene.temperature,

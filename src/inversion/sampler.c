@@ -14,12 +14,16 @@ enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
                                        .width = system->width,
                                        .bins = system->bins,
                                        .pairs = (size_t)mf_composition_pairs(system->composition)}};
-    if (kind == SAMPLER_DYNAMICS)
-        return mf_hybrid_init(&sampler->hybrid, system->box, system->composition, system->potential,
-                              &sampler->histogram, system->temperature, system->seed);
+    if (kind == SAMPLER_DYNAMICS) {
+        TRY(mf_hybrid_init(&sampler->hybrid, system->box, system->composition, system->potential,
+                           &sampler->histogram, system->temperature, system->seed));
+        sampler->hybrid.simulation.setup.cancel = system->cancel;
+        return STATUS_OK;
+    }
     NEW_ARRAY(sampler->histogram.counts, pair_histogram_size(&sampler->histogram));
     CHECK(mf_metropolis_init(&sampler->chain, system->box, system->composition, system->potential,
                              system->temperature, system->seed));
+    sampler->chain.cancel = system->cancel;
 done:
     if (status != STATUS_OK)
         mf_sampler_clear(sampler);

@@ -30,6 +30,7 @@ struct sampler_system {
     double low, width; ///< of the bins that count pairs, within the potential's cutoff [λ]
     size_t bins;       ///< of each kind of pairs
     uint64_t seed;
+    const atomic_bool *cancel; ///< stops the sweeps once it is set, or NULL
 };
 
 /// Particles on a lattice. Must be cleared. Fails: as mf_metropolis_init and mf_hybrid_init.

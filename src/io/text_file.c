@@ -73,10 +73,39 @@ static enum status check_is_text(const char *file, const char *text, size_t leng
                           file, place.line, place.column);
 }
 
+static _Thread_local const struct text_lent *lent_texts;
+static _Thread_local size_t lent_count;
+
+void mf_text_file_lend(const struct text_lent *lent, size_t count) {
+    lent_texts = lent;
+    lent_count = count;
+}
+
+static const char *find_lent(const char *file) {
+    for (size_t k = 0; k < lent_count; k++)
+        if (strcmp(lent_texts[k].name, file) == 0)
+            return lent_texts[k].text;
+    return NULL;
+}
+
+static enum status copy_lent(const char *file, const char *lent, char **text, size_t *length) {
+    enum status status = STATUS_OK;
+    const size_t bytes = strlen(lent);
+    CHECK(check_is_text(file, lent, bytes));
+    NEW_ARRAY(*text, bytes + 1);
+    memcpy(*text, lent, bytes + 1);
+    *length = bytes;
+done:
+    return status;
+}
+
 enum status mf_text_file_read(const char *file, char **text, size_t *length) {
     enum status status = STATUS_OK;
     *text = NULL;
     *length = 0;
+    const char *lent = find_lent(file);
+    if (lent)
+        return copy_lent(file, lent, text, length);
     FILE *stream;
     struct stat about;
     TRY(mf_input_open(&stream, file));

@@ -16,6 +16,16 @@
 /// NUL byte, so that the text ends where the file ends. Tested: test_data_table, test_json.
 enum status mf_text_file_read(const char *file, char **text, size_t *length) MUST_USE;
 
+/// A text in memory that stands for a file.
+struct text_lent {
+    const char *name; ///< of the file, exactly as the reader will ask for it
+    const char *text;
+};
+
+/// Until the next call, mf_text_file_read of this thread finds these texts in place of files of
+/// their names, for callers who have no files. Borrowed; NULL and 0 end it. Tested: test_library.
+void mf_text_file_lend(const struct text_lent *lent, size_t count);
+
 /// Where a byte of a text stands; both count from 1, columns in characters of UTF-8.
 struct text_place {
     size_t line, column;

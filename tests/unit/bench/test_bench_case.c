@@ -91,7 +91,7 @@ static void test_bench_case_counts_pairs_and_keeps_the_temperature(void **state)
     assert_in_range(result.list_efficiency * 100, 30, 100);
     assert_in_range(result.row_filling * 1000, 500, 999); // some rows are not full
     assert_close(result.phase_share[0] + result.phase_share[1] + result.phase_share[2], 1, 1e-12);
-    assert_true(bench.steps > 1); // how long they last depends on what else the machine does
+    assert_true(bench.steps >= 1); // as many as the machine finds time for
     mf_bench_case_clear(&bench);
     fluid_clear(&fluid);
 }

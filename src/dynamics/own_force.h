@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Forces of whoever uses the library, as an interaction.
+#pragma once
+
+#include "forces/interaction.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/// Adds to `force`, shape [dimensions][count] in the order of `id`, and returns the energy.
+typedef double own_force_function(void *context, size_t count, const uint32_t *id,
+                                  const double *const *position, double *const *force);
+
+struct own_force {
+    own_force_function *function;
+    void *context;
+};
+
+/// State: struct own_force. Its energy counts, its virial does not: forces from outside are no
+/// part of the pressure.
+extern const struct interaction mf_own_force;

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesofit/fit.h"
+
+#include "base/memory.h"
+#include "input/fit_file.h"
+#include "library/fit.h"
+#include "library/fit_text.h"
+#include "library/guard.h"
+#include "library/lend.h"
+#include "library/scene_text.h"
+
+#include <math.h>
+
+/// Name of a text that is no file, in messages.
+static const char in_memory[] = "run";
+
+static void tell(void *context, const struct inverse_progress *p) {
+    struct mesofit_fit *fit = context;
+    if (fit->progress && fit->progress(fit->context, p->iteration, p->done, p->total) != 0)
+        atomic_store(&fit->cancel, true);
+}
+
+static enum status begin(struct mesofit_fit *fit) {
+    enum status status = STATUS_OK;
+    const struct inverse_method *method = fit->file.method;
+    TRY(mf_targets_normalise(&fit->file.targets, &fit->file.scene.setup.box));
+    fit->file.problem.scene.cancel = &fit->cancel;
+    TRY(mf_decoder_init(&fit->decoder, &fit->file.problem));
+    CHECK((fit->state = mf_memory_zeroed(1, method->state_size)) ? STATUS_OK : STATUS_NO_MEMORY);
+    status = method->create(fit->state, method, &fit->file.problem, fit->file.method_parameters);
+done:
+    return status;
+}
+
+static enum status add_own_laws(struct mesofit_fit *fit, const struct mesofit_scene *own) {
+    struct scene *scene = &fit->file.scene;
+    TRY(mf_scene_text_add_own(own, scene));
+    fit->file.problem.scene.potential = scene->setup.potential;
+    fit->file.problem.scene.weight = scene->setup.weight;
+    return STATUS_OK;
+}
+
+/// Make a fit of a run file, or of what is lent in its place.
+static enum status open_run(struct mesofit_fit **made, const char *file,
+                            const struct mesofit_scene *own, int threads,
+                            mesofit_fit_progress *progress, void *context) {
+    enum status status = STATUS_OK;
+    struct mesofit_fit *fit = NULL;
+    const struct run_options options = {.threads = threads > 0 ? threads : 1};
+    NEW_ARRAY(fit, 1);
+    fit->progress = progress;
+    fit->context = context;
+    CHECK(mf_fit_file_parse(&fit->file, file, &options));
+    if (own)
+        CHECK(add_own_laws(fit, own));
+    CHECK(mf_fit_file_check(&fit->file, file));
+    CHECK(begin(fit));
+done:
+    if (status != STATUS_OK) {
+        mesofit_fit_free(fit);
+        fit = NULL;
+    }
+    *made = fit;
+    return status;
+}
+
+struct mesofit_fit *mesofit_fit_open(const char *file, int threads, mesofit_fit_progress *progress,
+                                     void *context) {
+    struct mesofit_fit *fit = NULL;
+    mf_guard_enter();
+    mf_guard_return(open_run(&fit, file, NULL, threads, progress, context));
+    return fit;
+}
+
+struct mesofit_fit *mesofit_fit_parse(const char *text, const struct mesofit_table *tables,
+                                      size_t table_count, int threads,
+                                      mesofit_fit_progress *progress, void *context) {
+    struct mesofit_fit *fit = NULL;
+    struct lend lend;
+    mf_guard_enter();
+    if (mf_lend_begin(&lend, in_memory, text, tables, table_count) == STATUS_OK) {
+        if (open_run(&fit, in_memory, NULL, threads, progress, context) != STATUS_OK)
+            fit = NULL;
+        mf_lend_end(&lend);
+    }
+    mf_guard_leave();
+    return fit;
+}
+
+struct mesofit_fit *mesofit_fit_create(const struct mesofit_fit_options *options) {
+    struct mesofit_fit *fit = NULL;
+    struct fit_text run;
+    struct lend lend;
+    mf_guard_enter();
+    if (mf_fit_text_write(&run, options) == STATUS_OK &&
+        mf_lend_begin(&lend, in_memory, run.text, run.table, run.tables) == STATUS_OK) {
+        if (open_run(&fit, in_memory, &options->scene, options->scene.threads, options->progress,
+                     options->context) != STATUS_OK)
+            fit = NULL;
+        mf_lend_end(&lend);
+    }
+    mf_fit_text_clear(&run);
+    mf_guard_leave();
+    return fit;
+}
+
+void mesofit_fit_free(struct mesofit_fit *fit) {
+    if (fit == NULL)
+        return;
+    if (fit->state)
+        fit->file.method->destroy(fit->state);
+    mf_memory_free(fit->state);
+    mf_decoder_clear(&fit->decoder);
+    mf_fit_file_clear(&fit->file);
+    mf_memory_free(fit);
+}
+
+static void describe(struct mesofit_fit *fit, struct mesofit_fit_state *state) {
+    const struct inverse_step *step = &fit->step;
+    *state = (struct mesofit_fit_state){.iteration = step->iteration + 1,
+                                        .simulations = step->evaluations,
+                                        .engine_steps = step->engine_steps,
+                                        .error = step->error,
+                                        .noise = step->noise,
+                                        .finished = step->finished,
+                                        .converged = step->converged,
+                                        .reason = step->reason};
+}
+
+enum mesofit_status mesofit_fit_iterate(struct mesofit_fit *fit, struct mesofit_fit_state *state) {
+    const struct inverse_listener listener = {tell, fit};
+    enum status status = STATUS_OK;
+    mf_guard_enter();
+    if (!fit->step.finished)
+        status = fit->file.method->iterate(fit->state, &fit->step, &listener);
+    fit->iterated = fit->iterated || status == STATUS_OK;
+    if (status == STATUS_OK && state)
+        describe(fit, state);
+    return mf_guard_return(status);
+}
+
+struct mesofit_curve mesofit_fit_curve(const struct mesofit_fit *fit, enum mesofit_law_kind kind) {
+    const enum unknown_kind unknown =
+        kind == MESOFIT_POTENTIAL ? UNKNOWN_POTENTIAL : UNKNOWN_WEIGHT;
+    if (!fit->iterated || fit->step.curve[unknown] == NULL)
+        return (struct mesofit_curve){0};
+    return (struct mesofit_curve){.count = mf_decoder_points(&fit->decoder, unknown),
+                                  .r = mf_decoder_r(&fit->decoder, unknown),
+                                  .value = fit->step.curve[unknown],
+                                  .error = fit->step.curve_error[unknown]};
+}
+
+// Verification ------------------------------------------------------------------------------------
+
+/// What was not compared is not known.
+static double known(const struct goal_distance *distance, double value) {
+    return distance->count > 0 ? value : NAN;
+}
+
+static enum status verify(struct mesofit_fit *fit, struct mesofit_verification *out) {
+    enum status status = STATUS_OK;
+    const struct inverse_listener listener = {tell, fit};
+    struct table own[UNKNOWNS] = {{0}};
+    const struct table *table[UNKNOWNS] = {fit->file.scene.setup.potential,
+                                           fit->file.scene.setup.weight};
+    struct verification v = {0};
+    if (!fit->iterated)
+        return mf_status_fail(STATUS_BAD_INPUT, "there is nothing to verify before an iteration");
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        if (fit->step.curve[kind] == NULL)
+            continue;
+        CHECK(mf_decoder_table(&fit->decoder, kind, fit->step.curve[kind], &own[kind]));
+        table[kind] = &own[kind];
+    }
+    CHECK(mf_verify(&fit->file.problem, table[UNKNOWN_POTENTIAL], table[UNKNOWN_WEIGHT],
+                    &fit->file.verification, &listener, &v));
+    const struct goal_distance *rdf = &v.distance[GOAL_RDF], *etd = &v.distance[GOAL_ETD];
+    *out = (struct mesofit_verification){.rdf_rms = known(rdf, rdf->rms),
+                                         .rdf_rms_error = known(rdf, v.distance_error[GOAL_RDF]),
+                                         .rdf_noise = known(rdf, rdf->noise),
+                                         .etd_rms = known(etd, etd->rms),
+                                         .etd_noise = known(etd, etd->noise),
+                                         .temperature = v.thermodynamics.temperature,
+                                         .pressure = v.thermodynamics.pressure,
+                                         .pressure_error = v.thermodynamics.pressure_error};
+done:
+    mf_verify_clear(&v);
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        mf_table_clear(&own[kind]);
+    return status;
+}
+
+enum mesofit_status mesofit_fit_verify(struct mesofit_fit *fit,
+                                       struct mesofit_verification *verification) {
+    mf_guard_enter();
+    return mf_guard_return(verify(fit, verification));
+}

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What stands behind a fit of the library.
+#pragma once
+
+#include "input/fit_file.h"
+#include "mesofit/fit.h"
+#include "problem/decoder.h"
+
+#include <stdatomic.h>
+
+struct mesofit_fit {
+    struct fit_file file;
+    struct decoder decoder;
+    void *state; ///< of file.method
+    struct inverse_step step;
+    bool iterated;
+    atomic_bool cancel;
+    mesofit_fit_progress *progress;
+    void *context;
+};

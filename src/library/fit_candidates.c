@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Single candidates of a fit, for optimisers of the caller's own.
+#include "library/fit.h"
+#include "library/guard.h"
+#include "matching/candidates.h"
+
+#include <math.h>
+
+size_t mesofit_fit_coefficients(const struct mesofit_fit *fit) {
+    return fit->decoder.genes;
+}
+
+enum mesofit_status mesofit_fit_start(const struct mesofit_fit *fit, double *coefficients) {
+    mf_guard_enter();
+    return mf_guard_return(mf_decoder_start(&fit->decoder, coefficients));
+}
+
+static enum status evaluate(const struct mesofit_fit *fit, const double *coefficients,
+                            uint64_t seed, double *error, double *variance) {
+    enum status status = STATUS_OK;
+    const struct inverse_method *method = fit->file.method;
+    struct decoder_laws laws = {0};
+    struct evaluate_result result;
+    if (method->sampling(fit->file.method_parameters).every == 0)
+        return mf_status_fail(STATUS_BAD_INPUT, "the method \"%s\" does not measure candidates",
+                              method->name);
+    const struct candidates_settings *settings = fit->file.method_parameters;
+    CHECK(mf_decoder_laws(&fit->decoder, coefficients, &laws));
+    const struct evaluate_candidate candidate = {.potential = laws.table[UNKNOWN_POTENTIAL],
+                                                 .weight = laws.table[UNKNOWN_WEIGHT],
+                                                 .hopeless = HUGE_VAL,
+                                                 .threads = 1,
+                                                 .seed = seed};
+    status = mf_evaluate(&fit->file.problem, &candidate, &settings->candidates.evaluate, NULL, NULL,
+                         &result);
+    *error = status == STATUS_OK ? result.error : HUGE_VAL;
+    if (variance)
+        *variance = status == STATUS_OK ? result.variance : 0;
+    if (status == STATUS_UNSTABLE)
+        status = STATUS_OK;
+done:
+    mf_decoder_laws_clear(&laws);
+    return status;
+}
+
+enum mesofit_status mesofit_fit_evaluate(const struct mesofit_fit *fit, const double *coefficients,
+                                         uint64_t seed, double *error, double *variance) {
+    mf_guard_enter();
+    return mf_guard_return(evaluate(fit, coefficients, seed, error, variance));
+}

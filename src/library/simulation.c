@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesofit/simulation.h"
+
+#include "base/memory.h"
+#include "dynamics/own_force.h"
+#include "input/heading.h"
+#include "input/scene.h"
+#include "library/guard.h"
+#include "library/lend.h"
+#include "library/scene_text.h"
+#include "observe/measure.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct mesofit_simulation {
+    struct scene scene;
+    struct simulation engine;
+    struct own_force force;
+};
+
+/// Name of a text that is no file, in messages.
+static const char in_memory[] = "scene";
+
+static enum status read_scene(struct scene *scene, const char *file) {
+    struct json_document *document;
+    struct heading heading;
+    TRY(mf_json_open(&document, file));
+    struct json_object root = mf_json_root(document);
+    mf_json_fields(&root, mf_heading_fields, &heading);
+    const enum status status = mf_scene_read(scene, &root, SCENE_FITS_NOTHING);
+    // What `mesofit simulate` measures is the caller's business here.
+    for (const char *const *key =
+             (const char *const[]){"measure", "rdf", "motion", "etd", "force_covariance", NULL};
+         *key; key++)
+        mf_json_has(&root, *key);
+    mf_json_finish(&root);
+    scene->setup.seed = heading.seed;
+    scene->setup.threads = 1;
+    return mf_json_close(document, status);
+}
+
+static enum status begin(struct mesofit_simulation *simulation) {
+    return mf_simulation_init(&simulation->engine, &simulation->scene.setup,
+                              &simulation->scene.start);
+}
+
+/// Make a simulation of a file, or of what is lent in its place.
+static enum status open_scene(struct mesofit_simulation **simulation, const char *file,
+                              const struct mesofit_scene *own) {
+    enum status status = STATUS_OK;
+    NEW_ARRAY(*simulation, 1);
+    CHECK(read_scene(&(*simulation)->scene, file));
+    if (own) {
+        (*simulation)->scene.setup.threads = own->threads;
+        CHECK(mf_scene_text_add_own(own, &(*simulation)->scene));
+    }
+    CHECK(begin(*simulation));
+done:
+    if (status != STATUS_OK) {
+        mesofit_simulation_free(*simulation);
+        *simulation = NULL;
+    }
+    return status;
+}
+
+struct mesofit_simulation *mesofit_simulation_open(const char *file) {
+    struct mesofit_simulation *simulation = NULL;
+    mf_guard_enter();
+    mf_guard_return(open_scene(&simulation, file, NULL));
+    return simulation;
+}
+
+struct mesofit_simulation *
+mesofit_simulation_parse(const char *text, const struct mesofit_table *tables, size_t table_count) {
+    struct mesofit_simulation *simulation = NULL;
+    struct lend lend;
+    mf_guard_enter();
+    if (mf_lend_begin(&lend, in_memory, text, tables, table_count) == STATUS_OK) {
+        if (open_scene(&simulation, in_memory, NULL) != STATUS_OK)
+            simulation = NULL;
+        mf_lend_end(&lend);
+    }
+    mf_guard_leave();
+    return simulation;
+}
+
+static char *write_text(const struct mesofit_scene *scene) {
+    char *text = NULL;
+    size_t length;
+    FILE *stream = open_memstream(&text, &length);
+    if (stream == NULL)
+        return NULL;
+    fprintf(stream, "{\"seed\": %llu, ", (unsigned long long)scene->seed);
+    mf_scene_text_write(scene, stream);
+    fputc('}', stream);
+    fclose(stream);
+    return text;
+}
+
+struct mesofit_simulation *mesofit_simulation_create(const struct mesofit_scene *scene) {
+    struct mesofit_simulation *simulation = NULL;
+    struct lend lend;
+    mf_guard_enter();
+    char *text = write_text(scene);
+    if (mf_lend_begin(&lend, in_memory, text, NULL, 0) == STATUS_OK) {
+        if (open_scene(&simulation, in_memory, scene) != STATUS_OK)
+            simulation = NULL;
+        mf_lend_end(&lend);
+    }
+    free(text);
+    mf_guard_leave();
+    return simulation;
+}
+
+void mesofit_simulation_free(struct mesofit_simulation *simulation) {
+    if (simulation == NULL)
+        return;
+    mf_simulation_clear(&simulation->engine);
+    mf_scene_clear(&simulation->scene);
+    mf_memory_free(simulation);
+}
+
+void mesofit_simulation_set_force(struct mesofit_simulation *simulation, mesofit_force *force,
+                                  void *context) {
+    struct simulation *engine = &simulation->engine;
+    simulation->force = (struct own_force){force, context};
+    engine->interactions = 0;
+    if (force)
+        engine->interaction[engine->interactions++] =
+            (struct interaction_use){&mf_own_force, &simulation->force};
+}
+
+enum mesofit_status mesofit_simulation_run(struct mesofit_simulation *simulation, uint64_t steps) {
+    mf_guard_enter();
+    return mf_guard_return(mf_simulation_run(&simulation->engine, steps));
+}
+
+uint64_t mesofit_simulation_step(const struct mesofit_simulation *simulation) {
+    return simulation->engine.step;
+}
+
+size_t mesofit_simulation_count(const struct mesofit_simulation *simulation) {
+    return simulation->engine.particles.count;
+}
+
+int mesofit_simulation_dimensions(const struct mesofit_simulation *simulation) {
+    return simulation->engine.particles.box.dimensions;
+}
+
+const uint32_t *mesofit_simulation_ids(const struct mesofit_simulation *simulation) {
+    return simulation->engine.particles.id;
+}
+
+static bool has_axis(const struct mesofit_simulation *simulation, int axis) {
+    return axis >= 0 && axis < simulation->engine.particles.box.dimensions;
+}
+
+const double *mesofit_simulation_positions(const struct mesofit_simulation *simulation, int axis) {
+    return has_axis(simulation, axis) ? simulation->engine.particles.position[axis] : NULL;
+}
+
+const double *mesofit_simulation_velocities(const struct mesofit_simulation *simulation, int axis) {
+    return has_axis(simulation, axis) ? simulation->engine.particles.velocity[axis] : NULL;
+}
+
+double mesofit_simulation_temperature(const struct mesofit_simulation *simulation) {
+    return mf_particles_temperature(&simulation->engine.particles);
+}
+
+// Measurements ------------------------------------------------------------------------------------
+
+/// From now on.
+static struct measure_plan plan_from_now(const struct mesofit_simulation *simulation,
+                                         size_t samples, uint64_t every) {
+    return (struct measure_plan){.equilibration = (int64_t)simulation->engine.step,
+                                 .samples = (int64_t)samples,
+                                 .every = (int64_t)every};
+}
+
+static enum status check_plan(size_t samples, uint64_t every) {
+    if (samples > 0 && every > 0)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT, "samples and the steps between them must be positive");
+}
+
+struct mesofit_rdf_plan mesofit_rdf_plan_default(void) {
+    return (struct mesofit_rdf_plan){.bins = 100, .samples = 200, .every = 25};
+}
+
+static enum status measure_rdf(struct mesofit_simulation *simulation,
+                               const struct mesofit_rdf_plan *plan, double *r, double *g,
+                               double *error) {
+    enum status status = STATUS_OK;
+    struct simulation *engine = &simulation->engine;
+    const double cutoff = mf_pair_cutoff(&engine->law);
+    const double range = plan->range > 0 ? plan->range : cutoff;
+    struct rdf rdf = {0};
+    TRY(check_plan(plan->samples, plan->every));
+    if (!(range > 0) || plan->bins == 0)
+        return mf_status_fail(STATUS_BAD_INPUT, "g(r) needs bins and, without forces, a range");
+    const struct rdf_bins bins = {.width = range / (double)plan->bins, .count = plan->bins};
+    const struct measure_plan when = plan_from_now(simulation, plan->samples, plan->every);
+    CHECK(mf_rdf_init(&rdf, &bins, &engine->particles.box, engine->particles.count, cutoff,
+                      plan->samples));
+    CHECK(mf_measure_sample(engine, &when, (struct measure_targets){.rdf = &rdf}, NULL));
+    CHECK(mf_rdf_result(&rdf, 1, g, error));
+    for (size_t k = 0; k < bins.count; k++)
+        r[k] = mf_rdf_bins_centre(&bins, k);
+done:
+    mf_rdf_clear(&rdf);
+    return status;
+}
+
+enum mesofit_status mesofit_simulation_rdf(struct mesofit_simulation *simulation,
+                                           const struct mesofit_rdf_plan *plan, double *r,
+                                           double *g, double *error) {
+    mf_guard_enter();
+    return mf_guard_return(measure_rdf(simulation, plan, r, g, error));
+}
+
+static enum status measure_means(struct mesofit_simulation *simulation, size_t samples,
+                                 uint64_t every, struct mesofit_means *means) {
+    enum status status = STATUS_OK;
+    struct thermodynamics thermodynamics = {0};
+    TRY(check_plan(samples, every));
+    const struct measure_plan when = plan_from_now(simulation, samples, every);
+    CHECK(mf_thermodynamics_init(&thermodynamics, samples));
+    CHECK(mf_measure_sample(&simulation->engine, &when,
+                            (struct measure_targets){.thermodynamics = &thermodynamics}, NULL));
+    const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
+    *means = (struct mesofit_means){.temperature = s.temperature,
+                                    .temperature_error = s.temperature_error,
+                                    .energy = s.potential_energy,
+                                    .energy_error = s.potential_energy_error,
+                                    .pressure = s.pressure,
+                                    .pressure_error = s.pressure_error};
+done:
+    mf_thermodynamics_clear(&thermodynamics);
+    return status;
+}
+
+enum mesofit_status mesofit_simulation_means(struct mesofit_simulation *simulation, size_t samples,
+                                             uint64_t every, struct mesofit_means *means) {
+    mf_guard_enter();
+    return mf_guard_return(measure_means(simulation, samples, every, means));
+}
