@@ -35,10 +35,11 @@ static enum status read(void **state, const char *members, struct targets *targe
     struct json_document *document;
     const int length = snprintf(text, sizeof text, "{\"target\": {%s}}", members);
     assert_in_range(length, 1, sizeof text - 1);
-    assert_ok(mf_json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
+    assert_ok(
+        mf_json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
     struct json_object root = mf_json_root(document);
-    assert_ok(mf_targets_read(targets, &root, &box, &(struct composition){.types = 1, .count = {100}},
-                           &units));
+    assert_ok(mf_targets_read(targets, &root, &box,
+                              &(struct composition){.types = 1, .count = {100}}, &units));
     mf_json_finish(&root);
     return mf_json_close(document, STATUS_OK);
 }
@@ -192,7 +193,8 @@ static void test_targets_check_steps_tells_the_time_step_that_would_do(void **st
     assert_fails(mf_targets_check_steps(&t, 0.15), STATUS_BAD_INPUT, "0.1 would do");
     mf_targets_clear(&t);
     assert_ok(read(state, ETD, &t));
-    assert_fails(mf_targets_check_steps(&t, 0.03), STATUS_BAD_INPUT, "a time step of 0.025 or 0.0333");
+    assert_fails(mf_targets_check_steps(&t, 0.03), STATUS_BAD_INPUT,
+                 "a time step of 0.025 or 0.0333");
     mf_targets_clear(&t);
 }
 

@@ -33,7 +33,8 @@ static enum status read(void **state, const char *members, struct targets *targe
     struct json_document *document;
     const int length = snprintf(text, sizeof text, "{\"target\": {\"rdf\": {%s}}}", members);
     assert_in_range(length, 1, sizeof text - 1);
-    assert_ok(mf_json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
+    assert_ok(
+        mf_json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
     struct json_object root = mf_json_root(document);
     assert_ok(mf_targets_read(targets, &root, &box, &binary, &units));
     mf_json_finish(&root);
