@@ -9,6 +9,11 @@ const double mf_inversion_least_damping = 1.0 / 64;
 /// Largest change of the potential in one iteration where the target is well known [k_B T_0].
 static const double largest_change = 1;
 
+/// The same of a single bin where it is not [k_B T_0]. A bin at the edge of the core that the
+/// samples have hardly seen responds to nothing: to fill it, one step lowered the potential by
+/// 26,000 there.
+static const double largest_unknown_change = 3;
+
 /// Samples are doubled until their noise is this share of the error, or as small as was asked for.
 static const double noise_share = 1.0 / 3;
 
@@ -84,7 +89,8 @@ static enum status assess_response(struct inversion *inversion) {
     return mf_inversion_pressure_slopes(inversion);
 }
 
-/// phi = best + damping · best_step, with a bound where the target is well known.
+/// phi = best + damping · best_step, bounded as a whole where the target is well known, and bin by
+/// bin elsewhere.
 static void take_step(struct inversion *inversion) {
     const struct potential_grid *grid = &inversion->grid;
     double largest = 0;
@@ -94,7 +100,10 @@ static void take_step(struct inversion *inversion) {
     const double share = fmin(inversion->progress.damping, largest_change / fmax(largest, 1e-300));
     for (size_t a = 0; a < grid->known; a++) {
         const size_t point = grid->known_point[a];
-        inversion->phi[point] = inversion->best[point] + share * inversion->best_step[point];
+        double change = share * inversion->best_step[point];
+        if (!mf_potential_grid_well_known(inversion->problem, grid->known_bin[a]))
+            change = fmax(-largest_unknown_change, fmin(largest_unknown_change, change));
+        inversion->phi[point] = inversion->best[point] + change;
     }
     mf_potential_grid_complete(grid, inversion->phi);
 }
