@@ -143,16 +143,20 @@ void mf_friction_sweep(const struct friction *friction, struct particles *partic
     mf_parallel_for(particles->count, threads, store_velocities, particles);
 }
 
+static inline void apply_pair(const float direction[4], const struct friction_pair *pair,
+                              const lanes_double4 *from, lanes_double4 *to, double kicks) {
+    const lanes_double4 e = lanes_load_double4(direction);
+    const double u = sum_of(e * (from[pair->i] - from[pair->j]));
+    const lanes_double4 change = (kicks * pair->kick - pair->damping * u) * e;
+    to[pair->i] += change;
+    to[pair->j] -= change;
+}
+
 SIMD_CLONES static void apply_pairs(const float (*direction)[4], const struct friction_pair *pair,
                                     size_t count, const lanes_double4 *from, lanes_double4 *to,
                                     double kicks) {
-    for (size_t k = 0; k < count; k++) {
-        const lanes_double4 e = lanes_load_double4(direction[k]);
-        const double u = sum_of(e * (from[pair[k].i] - from[pair[k].j]));
-        const lanes_double4 change = (kicks * pair[k].kick - pair[k].damping * u) * e;
-        to[pair[k].i] += change;
-        to[pair[k].j] -= change;
-    }
+    for (size_t k = 0; k < count; k++)
+        apply_pair(direction[k], &pair[k], from, to, kicks);
 }
 
 void mf_friction_apply(const struct friction *friction, const struct particles *particles,

@@ -393,13 +393,22 @@ void mf_targets_goals(struct targets *targets, bool moves, struct goals *fitted,
     set_motion(targets, compared);
     const size_t cells = (size_t)(etd->grid.times * etd->grid.bins);
     const struct goal goals[GOALS] = {
-        [GOAL_RDF] = {targets->pairs * targets->rdf[0].bins.count, targets->rdf_g,
-                      targets->rdf_error},
-        [GOAL_ETD] = {cells, etd->survival, etd->error},
-        [GOAL_VACF] = {targets->vacf.times, targets->vacf.value, targets->vacf.error},
-        [GOAL_MSD] = {targets->msd.times, targets->msd.value, targets->msd.error},
-        [GOAL_DIFFUSION] = {1, &targets->diffusion.value, &targets->diffusion.error},
-        [GOAL_PRESSURE] = {1, &targets->pressure.value, &targets->pressure.error},
+        [GOAL_RDF] = {.count = targets->pairs * targets->rdf[0].bins.count,
+                      .value = targets->rdf_g,
+                      .error = targets->rdf_error},
+        [GOAL_ETD] = {.count = cells, .value = etd->survival, .error = etd->error},
+        [GOAL_VACF] = {.count = targets->vacf.times,
+                       .value = targets->vacf.value,
+                       .error = targets->vacf.error},
+        [GOAL_MSD] = {.count = targets->msd.times,
+                      .value = targets->msd.value,
+                      .error = targets->msd.error},
+        [GOAL_DIFFUSION] = {.count = 1,
+                            .value = &targets->diffusion.value,
+                            .error = &targets->diffusion.error},
+        [GOAL_PRESSURE] = {.count = 1,
+                           .value = &targets->pressure.value,
+                           .error = &targets->pressure.error},
     };
     for (int kind = 0; kind < GOALS; kind++) {
         if (!targets->given[kind])
