@@ -30,6 +30,8 @@ enum status mf_lend_begin(struct lend *lend, const char *name, const char *text,
                           const struct mesofit_table *tables, size_t table_count) {
     enum status status = STATUS_OK;
     *lend = (struct lend){0};
+    if (text == NULL)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: there is no text", name);
     NEW_ARRAY(lend->text, table_count + 1);
     lend->text[lend->count++] = (struct text_lent){name, text};
     for (size_t k = 0; k < table_count; k++) {

@@ -149,7 +149,7 @@ static void test_simulations_of_two_threads_are_those_of_one(void **state) {
     assert_true(found[0] != found[1]);
 }
 
-/// g(r) of the Gaussian core, made by the library itself, and fitted.
+/// g(r) of the soft fluid, measured by the library itself, to be fitted.
 enum { BINS = 40 };
 
 static void make_target(double *r, double *g, double *error) {
@@ -208,12 +208,12 @@ static int cancel(void *context, uint32_t iteration, uint64_t done, uint64_t tot
     return 1;
 }
 
-static void test_fit_is_cancelled_by_its_listener_alone(void **state) {
-    (void)state;
+static void check_cancel(const char *settings) {
     double r[BINS], g[BINS], error[BINS];
     int told = 0;
     make_target(r, g, error);
     struct mesofit_fit_options options = small_fit(r, g, error);
+    options.settings = settings;
     struct mesofit_fit *other = mesofit_fit_create(&options);
     options.progress = cancel;
     options.context = &told;
@@ -228,6 +228,12 @@ static void test_fit_is_cancelled_by_its_listener_alone(void **state) {
 
 static void handler(const char *reason, const char *file, int line, int number) {
     (void)reason, (void)file, (void)line, (void)number;
+}
+
+static void test_fit_is_cancelled_by_its_listener_alone(void **state) {
+    (void)state;
+    check_cancel("{\"replicas\": 4, \"iterations\": 6, \"precision\": 0.02}");
+    check_cancel("{\"sampler\": \"dynamics\", \"replicas\": 4, \"precision\": 0.02}");
 }
 
 static void test_handler_of_gsl_is_again_the_callers(void **state) {
