@@ -147,10 +147,10 @@ static void tell(const struct bench_common *common, struct bench_point *point, i
 /// Run between samples by itself, timed; mf_measure_sample then does the one step that is left.
 static enum status sample(const struct bench_common *common, struct bench_point *point,
                           struct simulation *simulation, const struct measure_plan *plan,
-                          struct measure_targets targets) {
+                          struct measure_observables observables) {
     double seconds[BLOCKS] = {0}, times[BLOCKS] = {0};
-    if (targets.motion)
-        mf_motion_sample(targets.motion, simulation);
+    if (observables.motion)
+        mf_motion_sample(observables.motion, simulation);
     for (int64_t k = 0; k < plan->samples; k++) {
         const struct measure_plan next = {plan->equilibration, k + 1, plan->every};
         const int64_t block = k * BLOCKS / plan->samples;
@@ -159,7 +159,7 @@ static enum status sample(const struct bench_common *common, struct bench_point 
         TRY(mf_simulation_run(simulation, (uint64_t)plan->every - 1));
         seconds[block] += processor_seconds() - begin;
         times[block] += (double)(plan->every - 1) * point->time_step;
-        TRY(mf_measure_sample(simulation, &next, targets, NULL));
+        TRY(mf_measure_sample(simulation, &next, observables, NULL));
         tell(common, point, plan->every);
     }
     for (int b = 0; b < BLOCKS; b++)
@@ -215,12 +215,12 @@ static void join_bins(const struct bench_bins *bins, const struct rdf *rdf, cons
         joined[k - bins->core + 1] = (struct bench_number){g[k], error[k]};
 }
 
-static enum status find_results(const struct bench_common *common, struct measure_targets targets,
-                                struct bench_point *point) {
+static enum status find_results(const struct bench_common *common,
+                                struct measure_observables observables, struct bench_point *point) {
     enum status status = STATUS_OK;
     const struct bench_bins *bins = &common->bins;
-    const struct rdf *rdf = targets.rdf;
-    const struct thermodynamics_summary s = mf_thermodynamics_result(targets.thermodynamics, 1);
+    const struct rdf *rdf = observables.rdf;
+    const struct thermodynamics_summary s = mf_thermodynamics_result(observables.thermodynamics, 1);
     double *g = NULL, *error = NULL;
     NEW_ARRAY(g, bins->fine.count);
     NEW_ARRAY(error, bins->fine.count);
@@ -233,11 +233,11 @@ static enum status find_results(const struct bench_common *common, struct measur
     quantity[BENCH_ENERGY] = (struct bench_number){s.potential_energy, s.potential_energy_error};
     quantity[BENCH_PRESSURE] = (struct bench_number){s.pressure, s.pressure_error};
     quantity[BENCH_DIFFUSION] = (struct bench_number){NAN, NAN};
-    if (targets.motion) {
-        const struct motion_summary motion = mf_motion_result(targets.motion, NULL);
+    if (observables.motion) {
+        const struct motion_summary motion = mf_motion_result(observables.motion, NULL);
         quantity[BENCH_DIFFUSION] = (struct bench_number){motion.msd, motion.msd_error};
     }
-    find_total(targets.thermodynamics, &rdf->box, (double)rdf->particle_count, point);
+    find_total(observables.thermodynamics, &rdf->box, (double)rdf->particle_count, point);
 done:
     mf_memory_free(g);
     mf_memory_free(error);
@@ -268,7 +268,7 @@ enum status mf_bench_point_run(const struct bench_common *common, struct bench_p
     const struct measure_plan plan = plan_of(common, point);
     const struct motion_plan motion_plan = motion_plan_of(common, point, &plan);
     const bool moves = plan.samples >= LEAST_WINDOWS * motion_plan.lags;
-    const struct measure_targets targets = {
+    const struct measure_observables observables = {
         .rdf = &rdf, .thermodynamics = &thermodynamics, .motion = moves ? &motion : NULL};
     double temperature;
     setup.seed = point->seed;
@@ -284,8 +284,8 @@ enum status mf_bench_point_run(const struct bench_common *common, struct bench_p
     if (moves)
         CHECK(mf_motion_init(&motion, &motion_plan, &simulation, plan.equilibration,
                              plan.samples * plan.every));
-    CHECK(sample(common, point, &simulation, &plan, targets));
-    CHECK(find_results(common, targets, point));
+    CHECK(sample(common, point, &simulation, &plan, observables));
+    CHECK(find_results(common, observables, point));
 done:
     point->status = status;
     mf_simulation_clear(&simulation);

@@ -150,8 +150,8 @@ static enum status read_root(struct fit_file *fit, struct json_object *root) {
     mf_json_fields(root, mf_heading_fields, &fit->heading);
     // Before what its units convert.
     TRY(read_scene(fit, root));
-    TRY(mf_targets_read(&fit->targets, root, &fit->scene.setup.box, &fit->scene.setup.composition,
-                        &fit->scene.units));
+    TRY(mf_target_files_read(&fit->files, root, &fit->scene.setup.box,
+                             &fit->scene.setup.composition, &fit->scene.units));
     TRY(read_unknowns(fit, root));
     TRY(read_method(fit, root));
     struct json_object core = mf_json_child(root, "core", false);
@@ -206,24 +206,25 @@ static enum status check_unknowns(const struct fit_file *fit, const char *file) 
             return mf_status_fail(STATUS_BAD_INPUT, "%s: method.name: \"%s\" does not find a %s",
                                   file, fit->method->name, mf_inverse_unknown_names[kind]);
     const struct inverse_sampling sampling = fit->method->sampling(fit->method_parameters);
-    for (int kind = 0; kind < GOALS && sampling.every == 0; kind++)
-        if (kind != GOAL_RDF && kind != GOAL_PRESSURE && goals_ask(&fit->problem.goals, kind))
+    for (int kind = 0; kind < TARGETS && sampling.every == 0; kind++)
+        if (kind != TARGET_RDF && kind != TARGET_PRESSURE &&
+            targets_ask(&fit->problem.targets, kind))
             return mf_status_fail(
                 STATUS_BAD_INPUT,
                 "%s: target.%s.fitted: \"%s\" fits g(r) and pressure; \"no\" compares it "
                 "with the result",
-                file, mf_goals_names[kind], fit->method->name);
-    if (fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->targets.given[GOAL_RDF])
+                file, mf_targets_names[kind], fit->method->name);
+    if (fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->files.given[TARGET_RDF])
         return mf_status_fail(STATUS_BAD_INPUT, "%s: target.rdf is required to find a potential",
                               file);
-    if (fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->targets.goal[GOAL_RDF].fitted)
+    if (fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->files.use[TARGET_RDF].fitted)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: target.rdf.fitted: a potential is found from its g(r)", file);
     return STATUS_OK;
 }
 
 static enum status check_bins(const struct fit_file *fit, const char *file) {
-    const size_t bins = fit->problem.goals.goal[GOAL_RDF].count;
+    const size_t bins = fit->problem.targets.target[TARGET_RDF].count;
     if (fit->method->update == NULL || bins <= INVERSION_MOST_BINS)
         return STATUS_OK;
     return mf_status_fail(
@@ -234,20 +235,20 @@ static enum status check_bins(const struct fit_file *fit, const char *file) {
 }
 
 static enum status check_steps(const struct fit_file *fit, const char *file) {
-    enum status status = mf_targets_check_steps(&fit->targets, fit->scene.setup.time_step);
+    enum status status = mf_target_files_check_steps(&fit->files, fit->scene.setup.time_step);
     if (status != STATUS_OK)
         return mf_status_prefix(status, "%s: scene.time_step", file);
     if (fit->verification.time_step > 0)
-        status = mf_targets_check_steps(&fit->targets, fit->verification.time_step);
+        status = mf_target_files_check_steps(&fit->files, fit->verification.time_step);
     return status == STATUS_OK ? STATUS_OK
                                : mf_status_prefix(status, "%s: verification.time_step", file);
 }
 
 /// A simulation must be as long as the longest window of what is measured in it.
-static enum status check_window(const char *file, const char *key, const struct goals *goals,
+static enum status check_window(const char *file, const char *key, const struct targets *targets,
                                 double time_step, int64_t samples, int64_t every) {
-    enum goal_kind longest;
-    const int64_t window = mf_observation_window(goals, time_step, &longest);
+    enum target_kind longest;
+    const int64_t window = mf_observation_window(targets, time_step, &longest);
     if (samples * every >= window)
         return STATUS_OK;
     return mf_status_fail(
@@ -255,7 +256,7 @@ static enum status check_window(const char *file, const char *key, const struct 
         "%s: %s.samples: %lld, one \"every\" %lld steps, are %lld steps, but \"%s\" "
         "looks at %lld; %lld would do",
         file, key, (long long)samples, (long long)every, (long long)(samples * every),
-        mf_goals_names[longest], (long long)window, (long long)((window + every - 1) / every));
+        mf_targets_names[longest], (long long)window, (long long)((window + every - 1) / every));
 }
 
 static enum status check_windows(const struct fit_file *fit, const char *file) {
@@ -263,7 +264,7 @@ static enum status check_windows(const struct fit_file *fit, const char *file) {
     const struct verify_parameters *verification = &fit->verification;
     const double time_step = fit->scene.setup.time_step;
     if (sampling.every > 0)
-        TRY(check_window(file, "method", &fit->problem.goals, time_step, sampling.samples,
+        TRY(check_window(file, "method", &fit->problem.targets, time_step, sampling.samples,
                          sampling.every));
     return check_window(file, "verification", &fit->problem.compared,
                         verification->time_step > 0 ? verification->time_step : time_step,
@@ -272,13 +273,13 @@ static enum status check_windows(const struct fit_file *fit, const char *file) {
 
 /// What only the parts together can get wrong.
 enum status mf_fit_file_check(const struct fit_file *fit, const char *file) {
-    const struct targets *targets = &fit->targets;
+    const struct target_files *files = &fit->files;
     TRY(check_unknowns(fit, file));
-    if (targets->given[GOAL_RDF])
-        TRY(check_range(fit, file, "rdf", mf_rdf_bins_range(&targets->rdf[0].bins)));
-    if (targets->given[GOAL_ETD])
-        TRY(check_range(fit, file, "etd", targets->etd.grid.r_maximum));
-    if (mf_goals_count(&fit->problem.goals) == 0)
+    if (files->given[TARGET_RDF])
+        TRY(check_range(fit, file, "rdf", mf_rdf_bins_range(&files->rdf[0].bins)));
+    if (files->given[TARGET_ETD])
+        TRY(check_range(fit, file, "etd", files->etd.grid.r_maximum));
+    if (mf_targets_count(&fit->problem.targets) == 0)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: target: nothing is to be fitted", file);
     TRY(check_bins(fit, file));
     TRY(check_steps(fit, file));
@@ -292,7 +293,7 @@ enum status mf_fit_file_check(const struct fit_file *fit, const char *file) {
     const enum status status = try_scene(&fit->problem);
     if (status != STATUS_OK)
         return mf_status_prefix(status, "%s: scene", file);
-    return mf_target_sanity_check(targets, &fit->scene, file);
+    return mf_target_sanity_check(files, &fit->scene, file);
 }
 
 static void state_problem(struct fit_file *fit, const struct run_options *options) {
@@ -312,8 +313,8 @@ static void state_problem(struct fit_file *fit, const struct run_options *option
         for (int pair = 0; pair < mf_composition_pairs(&problem->scene.composition); pair++)
             unknown->start[pair] = mf_scene_law_curve(&from->start, pair);
     }
-    mf_targets_goals(&fit->targets, fit->unknown[UNKNOWN_WEIGHT].wanted, &problem->goals,
-                     &problem->compared);
+    mf_target_files_targets(&fit->files, fit->unknown[UNKNOWN_WEIGHT].wanted, &problem->targets,
+                            &problem->compared);
 }
 
 enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
@@ -341,7 +342,7 @@ enum status mf_fit_file_read(struct fit_file *fit, const char *file,
 }
 
 void mf_fit_file_clear(struct fit_file *fit) {
-    mf_targets_clear(&fit->targets);
+    mf_target_files_clear(&fit->files);
     mf_scene_clear(&fit->scene);
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         mf_scene_law_clear(&fit->unknown[kind].start);
@@ -381,7 +382,7 @@ static void write_unknowns(const struct fit_file *fit, struct json_writer *write
 enum status mf_fit_file_write(const struct fit_file *fit, const char *path) {
     struct json_writer *writer = mf_json_writer_create();
     mf_json_put_fields(writer, mf_heading_fields, &fit->heading);
-    mf_targets_write(&fit->targets, writer);
+    mf_target_files_write(&fit->files, writer);
     write_unknowns(fit, writer);
     mf_json_begin(writer, "scene");
     mf_scene_write(&fit->scene, writer);

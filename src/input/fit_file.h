@@ -6,7 +6,7 @@
 #include "input/heading.h"
 #include "input/run_options.h"
 #include "input/scene.h"
-#include "input/targets.h"
+#include "input/target_files.h"
 
 /// Numbers of the object "core".
 struct fit_core {
@@ -26,7 +26,7 @@ struct fit_unknown {
 /// Owns everything that the problem borrows.
 struct fit_file {
     struct heading heading;
-    struct targets targets;
+    struct target_files files;
     struct scene scene;
     struct fit_unknown unknown[UNKNOWNS];
     struct fit_core core;

@@ -34,8 +34,8 @@ static const double hot = 50;
 /// g(r) of one kind of pairs, and how many beads there are.
 struct view {
     char name[sizeof "rdf." + COMPOSITION_PAIR_NAME_SIZE];
-    const struct targets *targets; ///< of all kinds of pairs
-    const struct target *target;
+    const struct target_files *files; ///< of all kinds of pairs
+    const struct target_rdf *target;
     const struct rdf_bins *bins;
     const double *g, *error; ///< shape [bins->count]
     const struct scene *scene;
@@ -43,15 +43,16 @@ struct view {
     double density; ///< of beads of all types [λ^-d]
 };
 
-static struct view view_of(const struct targets *targets, const struct scene *scene, size_t pair) {
-    const size_t bins = targets->rdf[0].bins.count;
-    const struct composition *composition = &targets->composition;
+static struct view view_of(const struct target_files *files, const struct scene *scene,
+                           size_t pair) {
+    const size_t bins = files->rdf[0].bins.count;
+    const struct composition *composition = &files->composition;
     struct view view = {.name = "rdf",
-                        .targets = targets,
-                        .target = &targets->rdf[pair],
-                        .bins = &targets->rdf[0].bins,
-                        .g = targets->rdf_given + pair * bins,
-                        .error = targets->rdf_error + pair * bins,
+                        .files = files,
+                        .target = &files->rdf[pair],
+                        .bins = &files->rdf[0].bins,
+                        .g = files->rdf_given + pair * bins,
+                        .error = files->rdf_error + pair * bins,
                         .scene = scene};
     int type[2];
     mf_composition_pair_types(composition, (int)pair, type);
@@ -81,8 +82,8 @@ static void print_density(const struct view *view, char *text, size_t size) {
 
 /// ∫ (g − 1) d³r of the pairs of two types.
 static double integral_of(const struct view *view, int a, int b) {
-    const int pair = mf_composition_pair(&view->targets->composition, a, b);
-    const struct view own = view_of(view->targets, view->scene, (size_t)pair);
+    const int pair = mf_composition_pair(&view->files->composition, a, b);
+    const struct view own = view_of(view->files, view->scene, (size_t)pair);
     return mf_kirkwood_buff_integrate(own.bins, own.g, own.error, &own.scene->setup.box, 0)
         .integral;
 }
@@ -90,7 +91,7 @@ static double integral_of(const struct view *view, int a, int b) {
 /// What a fault goes on with if two types look demixed, else "": each has more beads of its own
 /// around it than on the whole, and fewer of the other's, as within the phases of a box with two.
 static void print_demixing(const struct view *view, char *text, size_t size) {
-    const struct composition *composition = &view->targets->composition;
+    const struct composition *composition = &view->files->composition;
     text[0] = '\0';
     for (int b = 1; b < composition->types && view->scene->setup.box.dimensions == 3; b++)
         for (int a = 0; a < b && text[0] == '\0'; a++) {
@@ -107,8 +108,8 @@ static void print_demixing(const struct view *view, char *text, size_t size) {
 
 static enum status check_tail(const struct view *view, const char *file) {
     const struct target_tail *tail = &view->target->tail;
-    const struct target_parameters *p = &view->target->parameters;
-    const bool votca = p->format == TARGET_VOTCA;
+    const struct target_rdf_parameters *p = &view->target->parameters;
+    const bool votca = p->format == TARGET_RDF_VOTCA;
     const double away = fabs(tail->mean - 1);
     if (away <= fmax(far_from_1, 2 * tail->scatter) && !(tail->grows && away > far_from_1))
         return STATUS_OK;
@@ -216,14 +217,14 @@ static enum status check_compressibility(const struct view *view, const char *fi
         file, view->name, density, value, demixing);
 }
 
-static size_t views(const struct targets *targets) {
-    return targets->given[GOAL_RDF] ? targets->pairs : 0;
+static size_t views(const struct target_files *files) {
+    return files->given[TARGET_RDF] ? files->pairs : 0;
 }
 
-enum status mf_target_sanity_check(const struct targets *targets, const struct scene *scene,
+enum status mf_target_sanity_check(const struct target_files *files, const struct scene *scene,
                                    const char *file) {
-    for (size_t pair = 0; pair < views(targets); pair++) {
-        const struct view view = view_of(targets, scene, pair);
+    for (size_t pair = 0; pair < views(files); pair++) {
+        const struct view view = view_of(files, scene, pair);
         TRY(check_tail(&view, file));
         TRY(check_packing(&view, file));
         TRY(check_compressibility(&view, file));
@@ -276,7 +277,7 @@ static void tell_view(const struct view *view, const struct target_sanity_listen
 }
 
 static void tell_origin(const struct view *view, const struct target_sanity_listener *listener) {
-    const struct target *target = view->target;
+    const struct target_rdf *target = view->target;
     double length;
     const char *unit = unit_of(view, &length);
     if (target->joined > 1)
@@ -364,16 +365,16 @@ static void tell_normalisation(const struct normalisation *n,
             n->factor > 1 ? "large" : "small", n->factor, ceil(n->error * 1e4));
 }
 
-enum status mf_target_sanity_tell(const struct targets *targets, const struct scene *scene,
+enum status mf_target_sanity_tell(const struct target_files *files, const struct scene *scene,
                                   const struct target_sanity_listener *listener) {
-    for (size_t pair = 0; pair < views(targets); pair++) {
-        const struct view view = view_of(targets, scene, pair);
+    for (size_t pair = 0; pair < views(files); pair++) {
+        const struct view view = view_of(files, scene, pair);
         tell_view(&view, listener);
         tell_origin(&view, listener);
         TRY(warn_of_normalisation(&view, listener));
         warn_of_density(&view, listener);
     }
-    tell_normalisation(&targets->normalisation, listener);
+    tell_normalisation(&files->normalisation, listener);
     if (scene->setup.temperature > hot && !mf_units_known(&scene->units))
         say(listener,
             "mesofit: warning: scene.temperature: %g in units of k_B T_0, which is 1 as a rule; "

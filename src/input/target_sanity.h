@@ -7,7 +7,7 @@
 #pragma once
 
 #include "input/scene.h"
-#include "input/targets.h"
+#include "input/target_files.h"
 
 /// Takes one line at a time, without its end.
 struct target_sanity_listener {
@@ -26,7 +26,7 @@ struct target_sanity_listener {
 /// with 1.03 g, too. In a mixture a fault of the mean or of 1 + ρG asks for demixing if the
 /// integrals G of two types are above 0 for pairs alike and below 0 for the others. Fails:
 /// BAD_INPUT with `file`, the key and the likely reason; NO_MEMORY. Tested: test_target_sanity.
-enum status mf_target_sanity_check(const struct targets *targets, const struct scene *scene,
+enum status mf_target_sanity_check(const struct target_files *files, const struct scene *scene,
                                    const char *file) MUST_USE;
 
 /// Tell a line for each g(r) as it is given, where its errors and bins come from, warnings, and the
@@ -38,5 +38,5 @@ enum status mf_target_sanity_check(const struct targets *targets, const struct s
 /// so, too, which is why it is no fault); ρ d³ < 0.01 with d where g exceeds 1/2, the density of a
 /// dilute gas; and without units a temperature above 50, which may be in kelvins. Fails: NO_MEMORY.
 /// Tested: test_target_sanity.
-enum status mf_target_sanity_tell(const struct targets *targets, const struct scene *scene,
+enum status mf_target_sanity_tell(const struct target_files *files, const struct scene *scene,
                                   const struct target_sanity_listener *listener) MUST_USE;

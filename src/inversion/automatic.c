@@ -42,14 +42,14 @@ static bool predicts(const struct inversion *inversion) {
 /// Whether the last step was Newton's, which keeps the other in reserve, and halved the error.
 static bool newton_helped(const struct inversion *inversion) {
     return !isnan(inversion->best_other[inversion->grid.known_point[0]]) &&
-           inversion->distance[GOAL_RDF].rms < 0.5 * inversion->progress.best[GOAL_RDF].rms;
+           inversion->distance[TARGET_RDF].rms < 0.5 * inversion->progress.best[TARGET_RDF].rms;
 }
 
 /// Inside the basin of inverse Monte Carlo: near the noise, where its response holds, or where its
 /// steps converge.
 static bool in_basin(const struct inversion *inversion) {
-    const struct goal_distance *rdf = &inversion->distance[GOAL_RDF];
-    const bool first = isinf(inversion->progress.best[GOAL_RDF].rms);
+    const struct target_distance *rdf = &inversion->distance[TARGET_RDF];
+    const bool first = isinf(inversion->progress.best[TARGET_RDF].rms);
     return rdf->rms < 2 * rdf->noise ||
            (!first && (newton_helped(inversion) || predicts(inversion)));
 }

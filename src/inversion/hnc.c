@@ -39,7 +39,7 @@ enum status mf_hnc_step(const struct inversion *inversion, double ridge, double 
         target[k] = mf_inversion_target_g(inversion, k);
         difference[k] = mf_inversion_g(inversion, k) - target[k];
     }
-    CHECK(mf_hnc_closure_slope(&inversion->problem->goals.bins, &inversion->box,
+    CHECK(mf_hnc_closure_slope(&inversion->problem->targets.bins, &inversion->box,
                                &inversion->composition, target, difference, ridge, indirect));
     mf_ibi_logarithms(inversion, step);
     for (size_t n = 0; n < grid->known; n++)

@@ -35,8 +35,8 @@ static const char *const columns[] = {INVERSION_COLUMNS, "regularisation[1]", "m
 enum status mf_imc_step(const struct inversion *inversion, const struct imc_parameters *parameters,
                         double *step, double extra[3]) {
     const struct inverse_problem *problem = inversion->problem;
-    const struct goal *pressure = &problem->goals.goal[GOAL_PRESSURE];
-    const bool constrained = goals_ask(&problem->goals, GOAL_PRESSURE);
+    const struct target *pressure = &problem->targets.target[TARGET_PRESSURE];
+    const bool constrained = targets_ask(&problem->targets, TARGET_PRESSURE);
     const struct potential_grid *grid = &inversion->grid;
     enum status status = STATUS_OK;
     struct imc_solution solution;

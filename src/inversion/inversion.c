@@ -46,7 +46,8 @@ static void assess_rdf(struct inversion *inversion) {
     for (size_t a = 0; a < grid->known; a++) {
         const size_t bin = grid->known_bin[a];
         const double ideal = inversion->ideal[bin];
-        const double target_error = ideal * inversion->problem->goals.goal[GOAL_RDF].error[bin];
+        const double target_error =
+            ideal * inversion->problem->targets.target[TARGET_RDF].error[bin];
         // An empty bin still has the uncertainty of one pair.
         const double sampled =
             fmax(mf_comoments_covariance(counts, bin, bin), 1 / counts->count) / independent;
@@ -56,8 +57,8 @@ static void assess_rdf(struct inversion *inversion) {
         both += inversion->variance[a] / (ideal * ideal);
     }
     const double bins = (double)inversion->bins;
-    inversion->distance[GOAL_RDF] =
-        (struct goal_distance){.rms = sqrt(sum / bins), .noise = sqrt(both / bins)};
+    inversion->distance[TARGET_RDF] =
+        (struct target_distance){.rms = sqrt(sum / bins), .noise = sqrt(both / bins)};
     inversion->own_noise = sqrt(own / bins);
 }
 
@@ -69,19 +70,20 @@ struct imc_system mf_inversion_system(const struct inversion *inversion) {
                                .excess = inversion->excess,
                                .variance = inversion->variance,
                                .temperature = inversion->problem->scene.temperature,
-                               .spacing = inversion->problem->goals.bins.width};
+                               .spacing = inversion->problem->targets.bins.width};
 }
 
 /// What the samples say besides g: how far the pressure is from what is asked for, and how all
 /// respond to the potential.
 static enum status assess_response(struct inversion *inversion) {
-    const struct goals *goals = &inversion->problem->goals;
+    const struct targets *targets = &inversion->problem->targets;
     const struct potential_grid *grid = &inversion->grid;
     const struct comoments *counts = &inversion->replicas.counts;
     mf_inversion_pressure_measure(inversion);
-    if (goals_ask(goals, GOAL_PRESSURE))
-        inversion->distance[GOAL_PRESSURE] = mf_goals_distance(
-            &goals->goal[GOAL_PRESSURE], &inversion->pressure.value, &inversion->pressure.error);
+    if (targets_ask(targets, TARGET_PRESSURE))
+        inversion->distance[TARGET_PRESSURE] =
+            mf_targets_distance(&targets->target[TARGET_PRESSURE], &inversion->pressure.value,
+                                &inversion->pressure.error);
     for (size_t a = 0; a < grid->known; a++)
         for (size_t b = 0; b < grid->known; b++)
             inversion->covariance[a * grid->known + b] =
@@ -138,7 +140,7 @@ static struct replicas_plan plan(const struct inversion *inversion) {
 /// asked for. Replicas that are stuck would never be told apart from noise.
 static bool needs_samples(const struct inversion *inversion, int doublings) {
     return inversion->own_noise > fmax(inversion->settings.common.precision,
-                                       noise_share * inversion->distance[GOAL_RDF].rms) &&
+                                       noise_share * inversion->distance[TARGET_RDF].rms) &&
            doublings < MOST_DOUBLINGS;
 }
 
@@ -151,7 +153,7 @@ static enum status sample(struct inversion *inversion, const struct inverse_list
     const struct inverse_progress progress = {
         .iteration = state->iteration,
         .iterations = (uint32_t)inversion->settings.common.iterations,
-        .best = mf_goals_error(&inversion->problem->goals, state->best),
+        .best = mf_targets_error(&inversion->problem->targets, state->best),
         .least = NAN,
         .mean = NAN,
     };
@@ -171,10 +173,10 @@ static enum status sample(struct inversion *inversion, const struct inverse_list
 
 /// Distances from all targets together, each in units of the noise of the present samples.
 static double count_noises(const struct inversion *inversion,
-                           const struct goal_distance distance[GOALS]) {
+                           const struct target_distance distance[TARGETS]) {
     double sum = 0;
-    for (int kind = 0; kind < GOALS; kind++)
-        if (goals_ask(&inversion->problem->goals, kind))
+    for (int kind = 0; kind < TARGETS; kind++)
+        if (targets_ask(&inversion->problem->targets, kind))
             sum += pow(distance[kind].rms / inversion->distance[kind].noise, 2);
     return sqrt(sum);
 }
@@ -196,7 +198,7 @@ bool mf_inversion_keeps(struct inversion *inversion) {
     struct inversion_progress *progress = &inversion->progress;
     const double now = count_noises(inversion, inversion->distance);
     const double least =
-        isinf(progress->best[GOAL_RDF].rms) ? INFINITY : count_noises(inversion, progress->least);
+        isinf(progress->best[TARGET_RDF].rms) ? INFINITY : count_noises(inversion, progress->least);
     if (now < least)
         memcpy(progress->least, inversion->distance, sizeof progress->least);
     return now <= least + 2;
@@ -206,8 +208,8 @@ bool mf_inversion_keeps(struct inversion *inversion) {
 /// Replicas that a worse potential may have frozen or torn apart are not gone on with.
 static enum status judge(struct inversion *inversion, bool *kept) {
     struct inversion_progress *progress = &inversion->progress;
-    const double error = inversion->distance[GOAL_RDF].rms;
-    const bool start = isinf(progress->best[GOAL_RDF].rms);
+    const double error = inversion->distance[TARGET_RDF].rms;
+    const bool start = isinf(progress->best[TARGET_RDF].rms);
     *kept = mf_inversion_keeps(inversion);
     progress->anew = !*kept;
     if (start)
@@ -230,7 +232,7 @@ static enum status go_on(struct inversion *inversion, bool kept) {
         take_step(inversion);
         return STATUS_OK;
     }
-    progress->best[GOAL_RDF].rms = INFINITY;
+    progress->best[TARGET_RDF].rms = INFINITY;
     progress->drift.count = 0;
     progress->damping = inversion->settings.common.damping;
     progress->anew = true;
@@ -239,8 +241,8 @@ static enum status go_on(struct inversion *inversion, bool kept) {
 
 /// Whether the present potential meets all targets as far as their noise lets see.
 static bool meets_targets(const struct inversion *inversion) {
-    for (int kind = 0; kind < GOALS; kind++)
-        if (goals_ask(&inversion->problem->goals, kind) &&
+    for (int kind = 0; kind < TARGETS; kind++)
+        if (targets_ask(&inversion->problem->targets, kind) &&
             inversion->distance[kind].rms >
                 mf_inverse_noise_margin * inversion->distance[kind].noise)
             return false;
@@ -248,7 +250,7 @@ static bool meets_targets(const struct inversion *inversion) {
 }
 
 bool mf_inversion_runs_away(const struct inversion *inversion) {
-    return !goals_ask(&inversion->problem->goals, GOAL_PRESSURE) &&
+    return !targets_ask(&inversion->problem->targets, TARGET_PRESSURE) &&
            mf_inversion_drifts(&inversion->progress.drift, inversion->problem->scene.temperature);
 }
 
@@ -276,10 +278,10 @@ static void describe(const struct inversion *inversion, const double *own, bool 
         .iteration = progress->iteration,
         .evaluations = progress->evaluations,
         .engine_steps = progress->sweeps,
-        .error = mf_goals_error(&inversion->problem->goals, progress->best),
-        .noise = mf_goals_noise(&inversion->problem->goals, progress->best),
+        .error = mf_targets_error(&inversion->problem->targets, progress->best),
+        .noise = mf_targets_noise(&inversion->problem->targets, progress->best),
         .extra = {progress->damping, inversion->own_noise, inversion->disagreement,
-                  inversion->distance[GOAL_RDF].rms, inversion->pressure.value,
+                  inversion->distance[TARGET_RDF].rms, inversion->pressure.value,
                   inversion->pressure.error},
         .curve = {inversion->best},
         .curve_error = {inversion->band.error},
@@ -306,7 +308,7 @@ enum status mf_inversion_iterate(void *memory, struct inverse_step *step,
     inversion->other_step[inversion->grid.known_point[0]] = NAN;
     TRY(inversion->method->update(inversion, own));
     mf_inversion_drift_add(&progress->drift, find_ramp(inversion),
-                           inversion->distance[GOAL_RDF].rms);
+                           inversion->distance[TARGET_RDF].rms);
     TRY(judge(inversion, &kept));
     const bool precise = inversion->own_noise <= inversion->settings.common.precision;
     describe(inversion, own, kept && precise && meets_targets(inversion), step);

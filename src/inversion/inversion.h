@@ -57,13 +57,13 @@ struct inversion {
     size_t bins; ///< of all kinds of pairs
     struct table table;
     struct replicas replicas;
-    double *ideal, *target_counts;        ///< shape [bins]
-    double *excess, *variance;            ///< of S in the known bins, shape [known]
-    double *covariance;                   ///< C of S in the known bins, shape [known, known]
-    double inefficiency;                  ///< samples that count as one independent
-    double disagreement;                  ///< of the replicas, mf_replicas_disagreement
-    struct goal_distance distance[GOALS]; ///< of the samples from what is asked for
-    double own_noise;                     ///< of g by the samples alone, rms
+    double *ideal, *target_counts;            ///< shape [bins]
+    double *excess, *variance;                ///< of S in the known bins, shape [known]
+    double *covariance;                       ///< C of S in the known bins, shape [known, known]
+    double inefficiency;                      ///< samples that count as one independent
+    double disagreement;                      ///< of the replicas, mf_replicas_disagreement
+    struct target_distance distance[TARGETS]; ///< of the samples from what is asked for
+    double own_noise;                         ///< of g by the samples alone, rms
     struct inversion_pressure pressure;
     double *phi, *step; ///< present potential and the step from it, shape [points]
     double *other_step; ///< what to do if the step makes it worse; NaN: half of it
@@ -76,9 +76,9 @@ struct inversion {
         bool anew; ///< the replicas are placed anew
         uint64_t evaluations, sweeps;
         double damping;
-        struct goal_distance best[GOALS];  ///< rms of g infinite: there is none yet
-        struct goal_distance least[GOALS]; ///< nearest so far, of all that was kept
-        struct inversion_drift drift;      ///< of the potentials sampled since the start
+        struct target_distance best[TARGETS];  ///< rms of g infinite: there is none yet
+        struct target_distance least[TARGETS]; ///< nearest so far, of all that was kept
+        struct inversion_drift drift;          ///< of the potentials sampled since the start
         double best_own_noise, best_disagreement;
         double first_error, second_error; ///< of g, in the first two iterations from a start
     } progress;

@@ -96,9 +96,9 @@ static void add_pressure(struct inversion *inversion, double *scratch) {
     const size_t n = inversion->grid.known;
     const double open = spread(inversion, inversion->pressure.slope, scratch);
     inversion->band.ramp.pressure_open = sqrt(open);
-    if (!goals_ask(&inversion->problem->goals, GOAL_PRESSURE))
+    if (!targets_ask(&inversion->problem->targets, TARGET_PRESSURE))
         return;
-    const double noise = inversion->distance[GOAL_PRESSURE].noise;
+    const double noise = inversion->distance[TARGET_PRESSURE].noise;
     for (size_t a = 0; a < n; a++)
         for (size_t b = 0; b < n; b++)
             inversion->band.covariance[a * n + b] -=

@@ -120,20 +120,20 @@ static enum status choose_size(struct inversion *inversion) {
 static void count_target(struct inversion *inversion) {
     const struct inverse_problem *problem = inversion->problem;
     const struct simulation_setup *scene = &problem->scene;
-    const struct rdf_bins *bins = &problem->goals.bins;
-    const struct goal *goal = &problem->goals.goal[GOAL_RDF];
+    const struct rdf_bins *bins = &problem->targets.bins;
+    const struct target *target = &problem->targets.target[TARGET_RDF];
     const double from = (double)mf_composition_particles(&scene->composition);
     const double to = (double)mf_composition_particles(&inversion->composition);
     for (size_t first = 0; first < inversion->bins; first += bins->count) {
         const int pair = (int)(first / bins->count);
         const double factor =
-            mf_finite_size_factor_of(bins, goal->value + first, goal->error + first, &scene->box,
-                                     &scene->composition, pair, from, to);
+            mf_finite_size_factor_of(bins, target->value + first, target->error + first,
+                                     &scene->box, &scene->composition, pair, from, to);
         for (size_t k = 0; k < bins->count; k++) {
             inversion->ideal[first + k] =
                 mf_rdf_ideal_pairs_of(bins, k, &inversion->box, &inversion->composition, pair);
             inversion->target_counts[first + k] =
-                inversion->ideal[first + k] * goal->value[first + k] * factor;
+                inversion->ideal[first + k] * target->value[first + k] * factor;
         }
     }
 }
@@ -146,9 +146,9 @@ static enum status refuse_holes(const struct inversion *inversion) {
     for (size_t n = 0; n < grid->known; n++) {
         const size_t bin = grid->known_bin[n], next = grid->known_bin[n] + 1;
         if (next % grid->bins == 0 || !mf_potential_grid_well_known(problem, bin) ||
-            problem->goals.goal[GOAL_RDF].value[next] > problem->core_threshold)
+            problem->targets.target[TARGET_RDF].value[next] > problem->core_threshold)
             continue;
-        const double r = mf_rdf_bins_centre(&problem->goals.bins, next % grid->bins);
+        const double r = mf_rdf_bins_centre(&problem->targets.bins, next % grid->bins);
         char kind[COMPOSITION_PAIR_NAME_SIZE];
         mf_composition_pair_name(&problem->scene.composition, (int)(bin / grid->bins), kind);
         return mf_status_fail(
@@ -156,7 +156,7 @@ static enum status refuse_holes(const struct inversion *inversion) {
             "%s%sthe target is empty at r = %g, where the bin before it has g = %.3g: no "
             "potential of pairs makes such a hole; mend the target there, or end "
             "it before by \"cutoff\"",
-            kind, kind[0] ? ": " : "", r, problem->goals.goal[GOAL_RDF].value[bin]);
+            kind, kind[0] ? ": " : "", r, problem->targets.target[TARGET_RDF].value[bin]);
     }
     return STATUS_OK;
 }
@@ -164,11 +164,11 @@ static enum status refuse_holes(const struct inversion *inversion) {
 enum status mf_inversion_create(void *memory, const struct inverse_method *method,
                                 const struct inverse_problem *problem, const void *parameters) {
     struct inversion *inversion = memory;
-    const struct rdf_bins *bins = &problem->goals.bins;
+    const struct rdf_bins *bins = &problem->targets.bins;
     inversion->settings = *(const struct inversion_settings *)parameters;
     inversion->method = method;
     inversion->problem = problem;
-    inversion->bins = problem->goals.goal[GOAL_RDF].count;
+    inversion->bins = problem->targets.target[TARGET_RDF].count;
     const struct inversion_parameters *p = &inversion->settings.common;
     TRY(choose_size(inversion));
     TRY(mf_potential_grid_init(&inversion->grid, problem));
@@ -188,7 +188,7 @@ enum status mf_inversion_create(void *memory, const struct inverse_method *metho
                                                   .bins = bins->count,
                                                   .seed = problem->seed}));
     inversion->progress = (struct inversion_progress){
-        .anew = true, .damping = p->damping, .best[GOAL_RDF].rms = INFINITY};
+        .anew = true, .damping = p->damping, .best[TARGET_RDF].rms = INFINITY};
     return STATUS_OK;
 }
 

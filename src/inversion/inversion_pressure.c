@@ -39,7 +39,7 @@ enum status mf_inversion_pressure_slopes(struct inversion *inversion) {
     const struct comoments *counts = &inversion->replicas.counts;
     double *virial = NULL;
     NEW_ARRAY(virial, inversion->bins * grid->known);
-    CHECK(mf_potential_grid_virials(grid, &inversion->problem->goals.bins,
+    CHECK(mf_potential_grid_virials(grid, &inversion->problem->targets.bins,
                                     inversion->box.dimensions, inversion->phi, virial));
     for (size_t b = 0; b < grid->known; b++) {
         double slope = -mf_comoments_covariance(counts, inversion->bins, grid->known_bin[b]) /
@@ -63,10 +63,10 @@ double mf_inversion_pressure_ramp_slope(const struct inversion *inversion) {
 
 void mf_inversion_pressure_add_ramp(const struct inversion *inversion, double *step) {
     const struct potential_grid *grid = &inversion->grid;
-    const struct goals *goals = &inversion->problem->goals;
-    if (!goals_ask(goals, GOAL_PRESSURE))
+    const struct targets *targets = &inversion->problem->targets;
+    if (!targets_ask(targets, TARGET_PRESSURE))
         return;
-    double missing = *goals->goal[GOAL_PRESSURE].value - inversion->pressure.value;
+    double missing = *targets->target[TARGET_PRESSURE].value - inversion->pressure.value;
     for (size_t b = 0; b < grid->known; b++)
         missing -= inversion->pressure.slope[b] * step[grid->known_point[b]];
     const double amplitude = missing / mf_inversion_pressure_ramp_slope(inversion);

@@ -12,7 +12,7 @@ static const double frozen = 4;
 void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]) {
     const struct inversion_progress *p = &inversion->progress;
     const struct inversion_parameters *settings = &inversion->settings.common;
-    const struct goal_distance *rdf = &p->best[GOAL_RDF], *pressure = &p->best[GOAL_PRESSURE];
+    const struct target_distance *rdf = &p->best[TARGET_RDF], *pressure = &p->best[TARGET_PRESSURE];
     const bool stuck = p->damping < mf_inversion_least_damping * settings->damping;
     const bool agrees = rdf->rms <= mf_inverse_noise_margin * rdf->noise;
     const double improved = rdf->rms / p->first_error;
@@ -35,7 +35,7 @@ void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INV
                  "helped: the start is outside the basin of \"%s\"; the method \"auto\" or "
                  "another start may lead there",
                  p->first_error, p->second_error, inversion->method->name);
-    else if (agrees && goals_ask(&inversion->problem->goals, GOAL_PRESSURE) &&
+    else if (agrees && targets_ask(&inversion->problem->targets, TARGET_PRESSURE) &&
              pressure->rms > mf_inverse_noise_margin * pressure->noise)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "g agrees, but the pressure is %.3g off, with an error of %.2g", pressure->rms,

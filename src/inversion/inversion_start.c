@@ -30,7 +30,7 @@ static bool is_from_hnc(const struct inversion *inversion) {
 /// Variance of −k_B T ln g* in the known bins; false if the target does not say it of all.
 static bool find_variance(const struct inversion *inversion, double *variance) {
     const struct potential_grid *grid = &inversion->grid;
-    const struct goal *target = &inversion->problem->goals.goal[GOAL_RDF];
+    const struct target *target = &inversion->problem->targets.target[TARGET_RDF];
     for (size_t a = 0; a < grid->known; a++) {
         const size_t bin = grid->known_bin[a];
         const double g = fmax(target->value[bin], inversion->problem->core_threshold);
@@ -83,7 +83,7 @@ static enum status add_indirect(struct inversion *inversion) {
     NEW_ARRAY(indirect, inversion->bins);
     for (size_t k = 0; k < inversion->bins; k++)
         g[k] = mf_inversion_target_g(inversion, k);
-    CHECK(mf_hnc_closure(&problem->goals.bins, &inversion->box, &inversion->composition, g,
+    CHECK(mf_hnc_closure(&problem->targets.bins, &inversion->box, &inversion->composition, g,
                          indirect));
     for (size_t n = 0; n < grid->known; n++)
         inversion->phi[grid->known_point[n]] +=
@@ -116,7 +116,7 @@ bool mf_inversion_start_is_poor(const struct inversion *inversion, bool kept) {
         return false;
     if (iteration == 1)
         return !kept;
-    return inversion->distance[GOAL_RDF].rms > poor * find_structure(inversion) &&
+    return inversion->distance[TARGET_RDF].rms > poor * find_structure(inversion) &&
            inversion->pressure.value < 0;
 }
 

@@ -23,7 +23,7 @@ static void tell(void *context, const struct inverse_progress *p) {
 static enum status begin(struct mesofit_fit *fit) {
     enum status status = STATUS_OK;
     const struct inverse_method *method = fit->file.method;
-    TRY(mf_targets_normalise(&fit->file.targets, &fit->file.scene.setup.box));
+    TRY(mf_target_files_normalise(&fit->file.files, &fit->file.scene.setup.box));
     fit->file.problem.scene.cancel = &fit->cancel;
     TRY(mf_decoder_init(&fit->decoder, &fit->file.problem));
     CHECK((fit->state = mf_memory_zeroed(1, method->state_size)) ? STATUS_OK : STATUS_NO_MEMORY);
@@ -153,7 +153,7 @@ struct mesofit_curve mesofit_fit_curve(const struct mesofit_fit *fit, enum mesof
 // Verification ------------------------------------------------------------------------------------
 
 /// What was not compared is not known.
-static double known(const struct goal_distance *distance, double value) {
+static double known(const struct target_distance *distance, double value) {
     return distance->count > 0 ? value : NAN;
 }
 
@@ -174,9 +174,9 @@ static enum status verify(struct mesofit_fit *fit, struct mesofit_verification *
     }
     CHECK(mf_verify(&fit->file.problem, table[UNKNOWN_POTENTIAL], table[UNKNOWN_WEIGHT],
                     &fit->file.verification, &listener, &v));
-    const struct goal_distance *rdf = &v.distance[GOAL_RDF], *etd = &v.distance[GOAL_ETD];
+    const struct target_distance *rdf = &v.distance[TARGET_RDF], *etd = &v.distance[TARGET_ETD];
     *out = (struct mesofit_verification){.rdf_rms = known(rdf, rdf->rms),
-                                         .rdf_rms_error = known(rdf, v.distance_error[GOAL_RDF]),
+                                         .rdf_rms_error = known(rdf, v.distance_error[TARGET_RDF]),
                                          .rdf_noise = known(rdf, rdf->noise),
                                          .etd_rms = known(etd, etd->rms),
                                          .etd_noise = known(etd, etd->noise),

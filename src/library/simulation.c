@@ -203,7 +203,7 @@ static enum status measure_rdf(struct mesofit_simulation *simulation,
     const struct measure_plan when = plan_from_now(simulation, plan->samples, plan->every);
     CHECK(mf_rdf_init(&rdf, &bins, &engine->particles.box, engine->particles.count, cutoff,
                       plan->samples));
-    CHECK(mf_measure_sample(engine, &when, (struct measure_targets){.rdf = &rdf}, NULL));
+    CHECK(mf_measure_sample(engine, &when, (struct measure_observables){.rdf = &rdf}, NULL));
     CHECK(mf_rdf_result(&rdf, 1, g, error));
     for (size_t k = 0; k < bins.count; k++)
         r[k] = mf_rdf_bins_centre(&bins, k);
@@ -227,7 +227,7 @@ static enum status measure_means(struct mesofit_simulation *simulation, size_t s
     const struct measure_plan when = plan_from_now(simulation, samples, every);
     CHECK(mf_thermodynamics_init(&thermodynamics, samples));
     CHECK(mf_measure_sample(&simulation->engine, &when,
-                            (struct measure_targets){.thermodynamics = &thermodynamics}, NULL));
+                            (struct measure_observables){.thermodynamics = &thermodynamics}, NULL));
     const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
     *means = (struct mesofit_means){.temperature = s.temperature,
                                     .temperature_error = s.temperature_error,

@@ -60,14 +60,14 @@ enum status mf_candidates_init(struct candidates *candidates, const struct decod
     *candidates = (struct candidates){.decoder = decoder, .parameters = *parameters, .best = NAN};
     NEW_ARRAY(candidates->errors, CANDIDATES_MOST);
     NEW_ARRAY(candidates->variances, CANDIDATES_MOST);
-    NEW_ARRAY(candidates->distances, CANDIDATES_MOST * GOALS);
+    NEW_ARRAY(candidates->distances, CANDIDATES_MOST * TARGETS);
     NEW_ARRAY(candidates->first, decoder->genes);
-    const struct goals *goals = &decoder->problem->goals;
-    const size_t features = mf_goals_features(goals);
+    const struct targets *targets = &decoder->problem->targets;
+    const size_t features = mf_targets_features(targets);
     NEW_ARRAY(candidates->features, CANDIDATES_MOST * features);
     NEW_ARRAY(candidates->target, features);
     NEW_ARRAY(candidates->target_error, features);
-    mf_goals_take_features(goals, NULL, candidates->target, candidates->target_error);
+    mf_targets_take_features(targets, NULL, candidates->target, candidates->target_error);
     CHECK(mf_surrogate_init(&candidates->surrogate, decoder->genes, features, CANDIDATES_MOST,
                             candidates->target, candidates->target_error));
     NEW_ARRAY(candidates->position, coordinates(candidates));
@@ -190,7 +190,7 @@ static void take(struct candidates *candidates, size_t index, const struct evalu
     struct candidates_totals *totals = &candidates->totals;
     candidates->errors[index] = result->error;
     candidates->variances[index] = result->variance;
-    memcpy(candidates->distances + index * GOALS, result->distance, sizeof result->distance);
+    memcpy(candidates->distances + index * TARGETS, result->distance, sizeof result->distance);
     totals->evaluations++;
     totals->steps += result->engine_steps;
     const bool better = result->error < totals->best_error ||
@@ -291,9 +291,9 @@ enum status mf_candidates_measure(struct candidates *candidates,
     return STATUS_OK;
 }
 
-static struct goal_distance mean_distance(const struct evaluate_result *results, size_t count,
-                                          enum goal_kind kind) {
-    struct goal_distance mean = {.count = results[0].distance[kind].count};
+static struct target_distance mean_distance(const struct evaluate_result *results, size_t count,
+                                            enum target_kind kind) {
+    struct target_distance mean = {.count = results[0].distance[kind].count};
     for (size_t k = 0; k < count; k++) {
         mean.rms += results[k].distance[kind].rms / (double)count;
         mean.noise += results[k].distance[kind].noise / (double)count;
@@ -303,7 +303,7 @@ static struct goal_distance mean_distance(const struct evaluate_result *results,
 
 enum status mf_candidates_remeasure(struct candidates *candidates, const double *genes,
                                     size_t count, double *error, double *noise, double *variance,
-                                    struct goal_distance *distance) {
+                                    struct target_distance *distance) {
     enum status status = STATUS_OK;
     struct evaluate_result *results = NULL;
     double *end = NULL, *features = NULL;
@@ -332,7 +332,7 @@ enum status mf_candidates_remeasure(struct candidates *candidates, const double 
     }
     candidates->totals.remeasured++;
     *error = *noise = *variance = 0;
-    for (int kind = 0; kind < GOALS && distance; kind++)
+    for (int kind = 0; kind < TARGETS && distance; kind++)
         distance[kind] = mean_distance(results, count, kind);
     for (size_t k = 0; k < count; k++) {
         *error += results[k].error / (double)count;
@@ -360,7 +360,7 @@ size_t mf_candidates_spans(struct candidates *candidates, struct memory_span *sp
     span[n++] = (struct memory_span){candidates->errors, errors};
     span[n++] = (struct memory_span){candidates->variances, errors};
     span[n++] = (struct memory_span){candidates->distances,
-                                     CANDIDATES_MOST * GOALS * sizeof *candidates->distances};
+                                     CANDIDATES_MOST * TARGETS * sizeof *candidates->distances};
     span[n++] = (struct memory_span){candidates->position, positions};
     span[n++] = (struct memory_span){candidates->best_position, positions};
     span[n++] =

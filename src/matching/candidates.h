@@ -45,15 +45,15 @@ struct candidates {
     const struct decoder *decoder;
     struct candidates_parameters parameters;
     double *errors, *variances; ///< shape [CANDIDATES_MOST]; an error is negative if not measured
-    struct goal_distance *distances; ///< shape [CANDIDATES_MOST, GOALS]; not set of what failed
-    double *features;                ///< shape [CANDIDATES_MOST, features] of the goals
-    struct surrogate surrogate;      ///< that remembers them
-    double *target, *target_error;   ///< shape [features]
-    double *first;                   ///< shape [genes]: the first candidate of the last round
-    double *position;                ///< shape [dimensions, particles]: where simulations begin
-    double *best_position;           ///< where the best of this round ended
-    uint32_t iteration, iterations;  ///< for progress: of the method, at most
-    double best;                     ///< for progress: the method's error so far, or NaN
+    struct target_distance *distances; ///< shape [CANDIDATES_MOST, TARGETS]; not set of what failed
+    double *features;                  ///< shape [CANDIDATES_MOST, features] of the targets
+    struct surrogate surrogate;        ///< that remembers them
+    double *target, *target_error;     ///< shape [features]
+    double *first;                     ///< shape [genes]: the first candidate of the last round
+    double *position;                  ///< shape [dimensions, particles]: where simulations begin
+    double *best_position;             ///< where the best of this round ended
+    uint32_t iteration, iterations;    ///< for progress: of the method, at most
+    double best;                       ///< for progress: the method's error so far, or NaN
     struct candidates_survey survey;
     struct candidates_totals {
         uint64_t rounds, evaluations, steps;
@@ -81,10 +81,10 @@ void mf_candidates_next_round(struct candidates *candidates);
 
 /// Mean error of `count` fresh measurements of one candidate, the noise in each, and the variance
 /// of the mean; OPTIMISER_FAILED if one of them fails.
-/// @param[out] distance  shape [GOALS]: means, or NULL
+/// @param[out] distance  shape [TARGETS]: means, or NULL
 enum status mf_candidates_remeasure(struct candidates *candidates, const double *genes,
                                     size_t count, double *error, double *noise, double *variance,
-                                    struct goal_distance *distance) MUST_USE;
+                                    struct target_distance *distance) MUST_USE;
 
 void mf_candidates_forget_survey(struct candidates *candidates);
 

@@ -115,7 +115,7 @@ static void destroy(void *memory) {
 
 /// The pressure, the last of the features, is met exactly.
 static enum status constrain_pressure(struct state *state) {
-    if (!goals_ask(&state->problem->goals, GOAL_PRESSURE))
+    if (!targets_ask(&state->problem->targets, TARGET_PRESSURE))
         return mf_status_fail(
             STATUS_BAD_INPUT,
             "method.pressure: \"constraint\" needs a target.pressure that is fitted");
@@ -256,10 +256,10 @@ static void tell_reason(const struct state *state, char reason[INVERSE_REASON_SI
 /// Whether some potential meets all that is fitted: g(r) and the pressure. What moves may be out of
 /// reach of any friction.
 static bool can_be_met(const struct inverse_problem *problem) {
-    const struct goals *goals = &problem->goals;
+    const struct targets *targets = &problem->targets;
     return problem->unknown[UNKNOWN_POTENTIAL].wanted &&
-           mf_goals_count(goals) ==
-               (size_t)goals_ask(goals, GOAL_RDF) + (size_t)goals_ask(goals, GOAL_PRESSURE);
+           mf_targets_count(targets) == (size_t)targets_ask(targets, TARGET_RDF) +
+                                            (size_t)targets_ask(targets, TARGET_PRESSURE);
 }
 
 static bool has_narrowed(const struct state *state) {
@@ -270,10 +270,10 @@ static bool has_narrowed(const struct state *state) {
 /// is fitted cannot be met.
 static void settle(const struct state *state, struct inverse_step *step) {
     const struct progress *progress = &state->progress;
-    const struct goals *goals = &state->problem->goals;
-    const char *what = mf_goals_count(goals) > 1    ? "the weighted error of all targets is"
-                       : goals_ask(goals, GOAL_RDF) ? "g(r) is still off by"
-                                                    : "the target is still off by";
+    const struct targets *targets = &state->problem->targets;
+    const char *what = mf_targets_count(targets) > 1      ? "the weighted error of all targets is"
+                       : targets_ask(targets, TARGET_RDF) ? "g(r) is still off by"
+                                                          : "the target is still off by";
     char why[64] = "its steps have become small";
     step->finished = true;
     step->converged = progress->error <= mf_inverse_noise_margin * progress->noise;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Matching: genes → curves → simulation → observables → distance from the goals, which an
+// Matching: genes → curves → simulation → observables → distance from the targets, which an
 // optimiser makes small. A. G. Baydin (thesis on DPD coarse-graining by evolutionary optimisation,
 // 2008) does it with a genetic algorithm; the optimiser is a record of its own here.
 #include "problem/inverse.h"

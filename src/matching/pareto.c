@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Several goals without weights: NSGA-II (optimise/nsga2.h) on the distance from each. What comes
-// of it is a front, on which one goal is only met better if another is met worse; the weighted
-// error of the goals chooses from it.
+// Several targets without weights: NSGA-II (optimise/nsga2.h) on the distance from each. What comes
+// of it is a front, on which one target is only met better if another is met worse; the weighted
+// error of the targets chooses from it.
 #include "pareto_state.h"
 
 #include "base/memory.h"
@@ -78,9 +78,9 @@ static enum status create(void *memory, const struct inverse_method *method,
     const struct candidates_settings *settings = parameters;
     memcpy(&state->own, &settings->method, sizeof state->own);
     state->problem = problem;
-    for (int kind = 0; kind < GOALS; kind++)
-        if (goals_ask(&problem->goals, kind))
-            state->goal[state->objectives++] = kind;
+    for (int kind = 0; kind < TARGETS; kind++)
+        if (targets_ask(&problem->targets, kind))
+            state->target[state->objectives++] = kind;
     if (state->objectives < 2)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "method.name: \"%s\" needs two fitted targets at least",
@@ -98,20 +98,20 @@ done:
 }
 
 double mf_pareto_error(const struct pareto_state *state, const double *value) {
-    struct goal_distance distance[GOALS] = {0};
+    struct target_distance distance[TARGETS] = {0};
     for (size_t m = 0; m < state->objectives; m++) {
         if (value[m] >= OPTIMISER_FAILED)
             return OPTIMISER_FAILED;
-        distance[state->goal[m]].rms = value[m];
+        distance[state->target[m]].rms = value[m];
     }
-    return mf_goals_error(&state->problem->goals, distance);
+    return mf_targets_error(&state->problem->targets, distance);
 }
 
 /// Distances of a measurement as a row of objectives.
 static void take_distances(const struct pareto_state *state, double error,
-                           const struct goal_distance distance[GOALS], double *value) {
+                           const struct target_distance distance[TARGETS], double *value) {
     for (size_t m = 0; m < state->objectives; m++)
-        value[m] = error < OPTIMISER_FAILED ? distance[state->goal[m]].rms : OPTIMISER_FAILED;
+        value[m] = error < OPTIMISER_FAILED ? distance[state->target[m]].rms : OPTIMISER_FAILED;
 }
 
 const double *mf_pareto_value(const struct pareto_state *state, size_t parent) {
@@ -140,7 +140,7 @@ static enum status take_round(struct pareto_state *state, const struct inverse_l
     TRY(mf_candidates_measure(candidates, &round, HUGE_VAL, listener));
     for (size_t k = 0; k < round.count; k++) {
         double *value = state->value + k * state->objectives;
-        take_distances(state, candidates->errors[k], candidates->distances + k * GOALS, value);
+        take_distances(state, candidates->errors[k], candidates->distances + k * TARGETS, value);
         add_to_log(state, LOG_MEASURED, value);
     }
     TRY(mf_nsga2_tell(&state->nsga2, state->value));
@@ -167,13 +167,13 @@ static bool find_best(const struct pareto_state *state, size_t *best) {
 
 /// Measure a parent until it is checked.
 static enum status check_one(struct pareto_state *state, size_t parent) {
-    struct goal_distance distance[GOALS];
-    double error, noise, variance, value[GOALS];
+    struct target_distance distance[TARGETS];
+    double error, noise, variance, value[TARGETS];
     TRY(mf_candidates_remeasure(&state->candidates, mf_nsga2_parent(&state->nsga2, parent),
                                 (size_t)state->own.checks, &error, &noise, &variance, distance));
     take_distances(state, error, distance, value);
     for (size_t m = 0; m < state->objectives && error < OPTIMISER_FAILED; m++)
-        state->progress.noise[m] = distance[state->goal[m]].noise;
+        state->progress.noise[m] = distance[state->target[m]].noise;
     if (error < OPTIMISER_FAILED)
         state->progress.variance = variance;
     // The mean of some measurements counts as many times.
@@ -198,7 +198,7 @@ static enum status choose(struct pareto_state *state) {
     return STATUS_OK;
 }
 
-/// Standard errors of the curves, and children where the linear model sees the goals met best.
+/// Standard errors of the curves, and children where the linear model sees the targets met best.
 static enum status ask_surrogate(struct pareto_state *state) {
     enum status status = STATUS_OK;
     struct surrogate_model model = {0};
@@ -290,7 +290,7 @@ static size_t spans(void *memory, struct memory_span *span) {
 
 const struct inverse_method mf_pareto = {
     .name = "pareto",
-    .summary = "the front of all goals by NSGA-II, without weights; K. Deb et al. (2002)",
+    .summary = "the front of all targets by NSGA-II, without weights; K. Deb et al. (2002)",
     .tables =
         (const struct field *const[]){mf_nsga2_fields, own_fields, mf_candidates_fields, NULL},
     .parameters_size = sizeof(struct candidates_settings),

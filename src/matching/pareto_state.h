@@ -24,19 +24,19 @@ struct pareto_state {
     struct candidates candidates;
     struct nsga2 nsga2;
     size_t objectives;
-    enum goal_kind goal[GOALS];   ///< of each objective
-    double *value;                ///< shape [candidates, objectives]: scratch
-    double *log;                  ///< shape [rows, LOG_OBJECTIVES + objectives]
-    struct decoder_curves curves; ///< of the chosen
+    enum target_kind target[TARGETS]; ///< of each objective
+    double *value;                    ///< shape [candidates, objectives]: scratch
+    double *log;                      ///< shape [rows, LOG_OBJECTIVES + objectives]
+    struct decoder_curves curves;     ///< of the chosen
     struct progress {
         uint32_t iteration, stage;
-        uint64_t rows;        ///< of the log
-        uint64_t chosen;      ///< parent
-        bool known;           ///< whether there is a chosen one
-        double noise[GOALS];  ///< of one simulation's distances, by objective
-        double variance;      ///< of the error of what was checked last
-        uint32_t last_better; ///< iteration in which the least error fell last
-        double least;         ///< chosen so far
+        uint64_t rows;         ///< of the log
+        uint64_t chosen;       ///< parent
+        bool known;            ///< whether there is a chosen one
+        double noise[TARGETS]; ///< of one simulation's distances, by objective
+        double variance;       ///< of the error of what was checked last
+        uint32_t last_better;  ///< iteration in which the least error fell last
+        double least;          ///< chosen so far
     } progress;
 };
 

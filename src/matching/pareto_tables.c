@@ -53,19 +53,19 @@ static enum status write_front(const struct pareto_state *state,
                                size_t rows) {
     enum status status = STATUS_OK;
     const size_t objectives = state->objectives, most = EXTRA_COLUMNS + 2 * objectives;
-    char names[2 * GOALS][NAME_SIZE], path[OUTPUT_PATH_SIZE];
+    char names[2 * TARGETS][NAME_SIZE], path[OUTPUT_PATH_SIZE];
     struct data_column *column = NULL;
     double *memory = NULL;
     NEW_ARRAY(column, most);
     NEW_ARRAY(memory, most * (rows + 1));
-    double *value[EXTRA_COLUMNS + 2 * GOALS];
+    double *value[EXTRA_COLUMNS + 2 * TARGETS];
     static const char *const extra[EXTRA_COLUMNS] = {"member", "rank", "chosen", "measured",
                                                      "error[1]"};
     for (size_t c = 0; c < most; c++) {
         const size_t m = (c - EXTRA_COLUMNS) % objectives;
         if (c >= EXTRA_COLUMNS)
             snprintf(names[c - EXTRA_COLUMNS], NAME_SIZE, "%s_%s[1]",
-                     mf_goals_names[state->goal[m]],
+                     mf_targets_names[state->target[m]],
                      c < EXTRA_COLUMNS + objectives ? "rmse" : "noise");
         value[c] = begin_column(&column[c], c < EXTRA_COLUMNS ? extra[c] : names[c - EXTRA_COLUMNS],
                                 memory + c * (rows + 1), NULL);
@@ -96,14 +96,14 @@ static enum status write_log(const struct pareto_state *state,
     enum status status = STATUS_OK;
     static const char *const first[LOG_OBJECTIVES] = {"iteration", "front", "error[1]"};
     const size_t rows = state->progress.rows, width = mf_pareto_log_width(state);
-    char names[GOALS][NAME_SIZE], path[OUTPUT_PATH_SIZE];
-    struct data_column column[LOG_OBJECTIVES + GOALS];
+    char names[TARGETS][NAME_SIZE], path[OUTPUT_PATH_SIZE];
+    struct data_column column[LOG_OBJECTIVES + TARGETS];
     double *memory = NULL;
     NEW_ARRAY(memory, width * (rows + 1));
     for (size_t c = 0; c < width; c++) {
         if (c >= LOG_OBJECTIVES)
             snprintf(names[c - LOG_OBJECTIVES], NAME_SIZE, "%s_rmse[1]",
-                     mf_goals_names[state->goal[c - LOG_OBJECTIVES]]);
+                     mf_targets_names[state->target[c - LOG_OBJECTIVES]]);
         double *value =
             begin_column(&column[c], c < LOG_OBJECTIVES ? first[c] : names[c - LOG_OBJECTIVES],
                          memory + c * (rows + 1), NULL);

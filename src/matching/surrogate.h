@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file What the simulations of a fit have shown, as a linear model: where the goals would be met,
-/// and what they leave open.
+/// @file What the simulations of a fit have shown, as a linear model: where the targets would be
+/// met, and what they leave open.
 ///
-/// Every candidate that was measured is a row of genes x and features y (mf_goals_take_features).
+/// Every candidate that was measured is a row of genes x and features y (mf_targets_take_features).
 /// Near a centre x_c the features are taken to be linear,
 ///   y = y_c + J (x − x_c) + noise,
 /// fitted to the nearest rows by least squares, so that the whole g(r) or E(t, r_0) of each

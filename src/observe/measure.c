@@ -62,20 +62,20 @@ enum status mf_measure_equilibrate(struct simulation *simulation, const struct m
 
 /// Run until `step`, and sample what has an interval of its own whenever it is due.
 static enum status run_moving(struct simulation *simulation, int64_t step,
-                              const struct measure_targets *targets,
+                              const struct measure_observables *observables,
                               const struct measure_plan *plan,
                               const struct measure_listener *listener) {
     for (;;) {
-        const int64_t motion = targets->motion ? mf_motion_due(targets->motion) : INT64_MAX;
-        const int64_t etd = targets->etd ? mf_etd_due(targets->etd) : INT64_MAX;
+        const int64_t motion = observables->motion ? mf_motion_due(observables->motion) : INT64_MAX;
+        const int64_t etd = observables->etd ? mf_etd_due(observables->etd) : INT64_MAX;
         const int64_t due = motion < etd ? motion : etd;
         TRY(run_until(simulation, due < step ? due : step, plan, listener));
         if (due > step)
             return STATUS_OK;
         if (motion == due)
-            mf_motion_sample(targets->motion, simulation);
+            mf_motion_sample(observables->motion, simulation);
         if (etd == due)
-            TRY(mf_etd_sample(targets->etd, simulation));
+            TRY(mf_etd_sample(observables->etd, simulation));
     }
 }
 
@@ -88,15 +88,15 @@ static bool potential_reaches(const struct pair_law *law) {
 /// The last step before a sample. The force pass counts and sums what the sample needs; if that
 /// belongs to the middle of the step, a pass of the potential at its end does.
 static enum status run_sampled_step(struct simulation *simulation, int64_t due,
-                                    struct measure_targets targets,
+                                    struct measure_observables observables,
                                     const struct measure_plan *plan) {
     struct pair_law *law = &simulation->law;
     const bool midway = simulation->setup.integrator->forces_midway;
-    const bool counts = targets.rdf && (!midway || potential_reaches(law));
-    const struct pair_histogram *histogram = counts ? mf_rdf_histogram(targets.rdf) : NULL;
-    simulation->wants = targets.thermodynamics ? PAIR_FORCES_AND_SUMS : PAIR_FORCES;
+    const bool counts = observables.rdf && (!midway || potential_reaches(law));
+    const struct pair_histogram *histogram = counts ? mf_rdf_histogram(observables.rdf) : NULL;
+    simulation->wants = observables.thermodynamics ? PAIR_FORCES_AND_SUMS : PAIR_FORCES;
     law->histogram = midway ? NULL : histogram;
-    enum status status = run_moving(simulation, due, &targets, plan, NULL);
+    enum status status = run_moving(simulation, due, &observables, plan, NULL);
     if (midway && status == STATUS_OK) {
         law->histogram = histogram;
         status = mf_simulation_compute_potential(simulation);
@@ -104,28 +104,28 @@ static enum status run_sampled_step(struct simulation *simulation, int64_t due,
     law->histogram = NULL;
     TRY(status);
     if (histogram)
-        mf_rdf_sample_counted(targets.rdf);
-    else if (targets.rdf)
-        TRY(mf_rdf_sample(targets.rdf, &simulation->particles, &simulation->neighbours));
+        mf_rdf_sample_counted(observables.rdf);
+    else if (observables.rdf)
+        TRY(mf_rdf_sample(observables.rdf, &simulation->particles, &simulation->neighbours));
     return STATUS_OK;
 }
 
 enum status mf_measure_sample(struct simulation *simulation, const struct measure_plan *plan,
-                              struct measure_targets targets,
+                              struct measure_observables observables,
                               const struct measure_listener *listener) {
     const int64_t begun = (int64_t)simulation->step - plan->equilibration;
     for (int64_t sample = begun / plan->every; sample < plan->samples; sample++) {
         const int64_t due = plan->equilibration + (sample + 1) * plan->every;
         simulation->wants = PAIR_FORCES;
-        TRY(run_moving(simulation, due - 1, &targets, plan, listener));
-        TRY(run_sampled_step(simulation, due, targets, plan));
-        if (targets.force_covariance) // while the forces are still those of the step
-            mf_force_covariance_sample(targets.force_covariance, simulation);
-        if (targets.rdf_force)
-            TRY(mf_rdf_force_sample(targets.rdf_force, &simulation->particles,
+        TRY(run_moving(simulation, due - 1, &observables, plan, listener));
+        TRY(run_sampled_step(simulation, due, observables, plan));
+        if (observables.force_covariance) // while the forces are still those of the step
+            mf_force_covariance_sample(observables.force_covariance, simulation);
+        if (observables.rdf_force)
+            TRY(mf_rdf_force_sample(observables.rdf_force, &simulation->particles,
                                     &simulation->neighbours));
-        if (targets.thermodynamics)
-            TRY(mf_thermodynamics_sample(targets.thermodynamics, simulation));
+        if (observables.thermodynamics)
+            TRY(mf_thermodynamics_sample(observables.thermodynamics, simulation));
         tell(listener, simulation, plan);
     }
     return STATUS_OK;

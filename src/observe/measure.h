@@ -22,7 +22,7 @@ extern const struct field mf_measure_plan_fields[];
 uint64_t mf_measure_steps(const struct measure_plan *plan);
 
 /// What to measure; NULL members are not computed.
-struct measure_targets {
+struct measure_observables {
     struct rdf *rdf;
     struct rdf_force *rdf_force;
     struct thermodynamics *thermodynamics;
@@ -42,7 +42,7 @@ struct measure_listener {
 /// that are still due by the number of the simulation's step.
 /// Fails: as mf_simulation_run; NO_MEMORY. What was sampled before a failure stays.
 enum status mf_measure_sample(struct simulation *simulation, const struct measure_plan *plan,
-                              struct measure_targets targets,
+                              struct measure_observables observables,
                               const struct measure_listener *listener) MUST_USE;
 
 /// Mean kinetic temperature over the last tenth of an equilibration of plan->equilibration steps,

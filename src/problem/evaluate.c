@@ -34,12 +34,12 @@ static enum status equilibrate(struct simulation *simulation, const struct measu
 
 static enum status score(const struct observation *observation, struct observed *observed,
                          struct evaluate_result *result) {
-    const struct goals *goals = observation->goals;
+    const struct targets *targets = observation->targets;
     TRY(mf_observation_result(observation, 1, observed));
-    mf_observation_distance(observed, goals, result->distance);
-    result->error = mf_goals_error(goals, result->distance);
-    result->noise = mf_goals_noise(goals, result->distance);
-    result->variance = mf_goals_variance(goals, result->distance);
+    mf_observation_distance(observed, targets, result->distance);
+    result->error = mf_targets_error(targets, result->distance);
+    result->noise = mf_targets_noise(targets, result->distance);
+    result->variance = mf_targets_variance(targets, result->distance);
     return STATUS_OK;
 }
 
@@ -65,13 +65,13 @@ static enum status sample(struct observation *observation, double hopeless,
         so_far.samples = plan->samples * part / PARTS;
         if (so_far.samples < LEAST_SAMPLES)
             continue;
-        TRY(mf_measure_sample(&observation->simulation, &so_far, observation->targets, NULL));
+        TRY(mf_measure_sample(&observation->simulation, &so_far, observation->observables, NULL));
         TRY(score(observation, observed, result));
         result->stopped = says_enough(result, hopeless, parameters);
         if (result->stopped)
             return STATUS_OK;
     }
-    TRY(mf_measure_sample(&observation->simulation, plan, observation->targets, NULL));
+    TRY(mf_measure_sample(&observation->simulation, plan, observation->observables, NULL));
     return score(observation, observed, result);
 }
 
@@ -96,7 +96,7 @@ enum status mf_evaluate(const struct inverse_problem *problem,
     struct observed observed = {0};
     struct measure_plan plan = parameters->plan;
     *result = (struct evaluate_result){0};
-    const struct observation_setup setup = {.goals = &problem->goals,
+    const struct observation_setup setup = {.targets = &problem->targets,
                                             .potential = candidate->potential,
                                             .weight = candidate->weight,
                                             .position = candidate->position,
@@ -105,12 +105,12 @@ enum status mf_evaluate(const struct inverse_problem *problem,
                                                 parameters->estimator == RDF_FORCE_USED,
                                             .threads = candidate->threads,
                                             .seed = candidate->seed};
-    CHECK(mf_observation_values_init(&observed, &problem->goals));
+    CHECK(mf_observation_values_init(&observed, &problem->targets));
     CHECK(mf_observation_init(&observation, problem, &setup));
     CHECK(equilibrate(&observation.simulation, &plan, parameters->temperature_tolerance));
     CHECK(sample(&observation, candidate->hopeless, parameters, &observed, result));
     if (features)
-        mf_goals_take_features(&problem->goals, observed.value, features, NULL);
+        mf_targets_take_features(&problem->targets, observed.value, features, NULL);
     if (position)
         copy_positions(&observation.simulation.particles, position);
 done:

@@ -26,8 +26,8 @@ struct evaluate_candidate {
 
 /// Result of one short simulation.
 struct evaluate_result {
-    struct goal_distance distance[GOALS];
-    double error;          ///< mf_goals_error
+    struct target_distance distance[TARGETS];
+    double error;          ///< mf_targets_error
     double noise;          ///< expected from the statistical errors of both
     double variance;       ///< of the error
     bool stopped;          ///< before its time
@@ -35,7 +35,7 @@ struct evaluate_result {
 };
 
 /// One simulation of the problem's scene.
-/// @param[out] features  of what was measured, shape [mf_goals_features], or NULL
+/// @param[out] features  of what was measured, shape [mf_targets_features], or NULL
 /// @param[out] position  where the particles were at the end, shape [dimensions][count] by particle
 ///                       number, or NULL
 /// Fails: UNSTABLE if it blows up, leaves its temperature or collapses into a drop (which would

@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "curves/curve.h"
 #include "dynamics/simulation.h"
-#include "problem/goals.h"
+#include "problem/targets.h"
 
 enum unknown_kind { UNKNOWN_POTENTIAL, UNKNOWN_WEIGHT, UNKNOWNS };
 
@@ -58,8 +58,8 @@ struct unknown {
 
 /// What is to be fitted. Borrowed by the methods.
 struct inverse_problem {
-    struct goals goals;    ///< to be fitted
-    struct goals compared; ///< by the verification: those and others
+    struct targets targets;  ///< to be fitted
+    struct targets compared; ///< by the verification: those and others
     struct unknown unknown[UNKNOWNS];
     struct simulation_setup scene; ///< all but the unknowns; its composition is set
     double core_threshold;         ///< bins below the first with g* above this are the hard core
@@ -91,9 +91,9 @@ struct inverse_step {
     uint32_t iteration;    ///< from 0
     uint64_t evaluations;  ///< simulations so far
     uint64_t engine_steps; ///< time steps or Monte Carlo sweeps so far, over all replicas
-    double error;          ///< mf_goals_error of the best curves so far, as the method measured it
-    double noise;          ///< what the statistical errors alone would give
-    double variance;       ///< of error by the noise of what was measured; 0: not known
+    double error;    ///< mf_targets_error of the best curves so far, as the method measured it
+    double noise;    ///< what the statistical errors alone would give
+    double variance; ///< of error by the noise of what was measured; 0: not known
     double extra[INVERSE_EXTRA];         ///< columns of the method's own
     const double *curve[UNKNOWNS];       ///< on the unknown's points, best so far; NULL: not fitted
     const double *curve_error[UNKNOWNS]; ///< standard errors; NULL where the method has none

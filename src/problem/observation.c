@@ -5,9 +5,9 @@
 
 #include <math.h>
 
-bool mf_observation_moves(const struct goals *goals) {
-    return goals_ask(goals, GOAL_VACF) || goals_ask(goals, GOAL_MSD) ||
-           goals_ask(goals, GOAL_DIFFUSION);
+bool mf_observation_moves(const struct targets *targets) {
+    return targets_ask(targets, TARGET_VACF) || targets_ask(targets, TARGET_MSD) ||
+           targets_ask(targets, TARGET_DIFFUSION);
 }
 
 /// Steps in an interval, which input/fit_file has found to be whole if a target says it.
@@ -18,35 +18,36 @@ static int64_t steps_of(double interval, double time_step) {
 
 /// Intervals in the window of motion: as many of whole steps as are as long. Those of a curve,
 /// which says both, are whole anyway.
-static int64_t lags_of(const struct goals *goals, double time_step) {
-    const double interval = time_step * (double)steps_of(goals->motion_interval, time_step);
-    const int64_t lags = llround((double)goals->motion_lags * goals->motion_interval / interval);
+static int64_t lags_of(const struct targets *targets, double time_step) {
+    const double interval = time_step * (double)steps_of(targets->motion_interval, time_step);
+    const int64_t lags =
+        llround((double)targets->motion_lags * targets->motion_interval / interval);
     return lags > 2 ? lags : 2;
 }
 
-void mf_observation_plans(const struct goals *goals, double time_step, struct etd_plan *etd,
+void mf_observation_plans(const struct targets *targets, double time_step, struct etd_plan *etd,
                           struct motion_plan *motion) {
-    *etd = (struct etd_plan){.every = steps_of(goals->etd_interval, time_step)};
-    if (goals_ask(goals, GOAL_ETD))
-        etd->origin_every = steps_of(goals->etd_origins, goals->etd_interval);
-    *motion = (struct motion_plan){.every = steps_of(goals->motion_interval, time_step),
-                                   .lags = lags_of(goals, time_step),
+    *etd = (struct etd_plan){.every = steps_of(targets->etd_interval, time_step)};
+    if (targets_ask(targets, TARGET_ETD))
+        etd->origin_every = steps_of(targets->etd_origins, targets->etd_interval);
+    *motion = (struct motion_plan){.every = steps_of(targets->motion_interval, time_step),
+                                   .lags = lags_of(targets, time_step),
                                    .origin_every = 5,
                                    .fit_from = 0.5};
 }
 
-int64_t mf_observation_window(const struct goals *goals, double time_step,
-                              enum goal_kind *longest) {
+int64_t mf_observation_window(const struct targets *targets, double time_step,
+                              enum target_kind *longest) {
     int64_t window = 0;
-    *longest = GOALS;
-    if (goals_ask(goals, GOAL_ETD)) {
-        window = (goals->etd.times - 1) * steps_of(goals->etd_interval, time_step);
-        *longest = GOAL_ETD;
+    *longest = TARGETS;
+    if (targets_ask(targets, TARGET_ETD)) {
+        window = (targets->etd.times - 1) * steps_of(targets->etd_interval, time_step);
+        *longest = TARGET_ETD;
     }
-    for (int kind = GOAL_VACF; kind <= GOAL_DIFFUSION; kind++) {
+    for (int kind = TARGET_VACF; kind <= TARGET_DIFFUSION; kind++) {
         const int64_t steps =
-            lags_of(goals, time_step) * steps_of(goals->motion_interval, time_step);
-        if (!goals_ask(goals, kind) || steps <= window)
+            lags_of(targets, time_step) * steps_of(targets->motion_interval, time_step);
+        if (!targets_ask(targets, kind) || steps <= window)
             continue;
         window = steps;
         *longest = kind;
@@ -56,39 +57,39 @@ int64_t mf_observation_window(const struct goals *goals, double time_step,
 
 static enum status begin_rdf(struct observation *observation, const struct simulation_setup *scene,
                              const struct observation_setup *setup) {
-    const struct goals *goals = observation->goals;
+    const struct targets *targets = observation->targets;
     const size_t count = (size_t)scene->placement.count, samples = (size_t)setup->plan.samples;
     const double cutoff = scene->potential ? scene->potential->cutoff : 0;
-    if (!goals_ask(goals, GOAL_RDF))
+    if (!targets_ask(targets, TARGET_RDF))
         return STATUS_OK;
     if (setup->force_estimator && scene->potential && !composition_is_mixed(&scene->composition) &&
         mf_rdf_force_applies(scene->potential, scene->temperature)) {
-        observation->targets.rdf_force = &observation->rdf_force;
-        return mf_rdf_force_init(&observation->rdf_force, &goals->bins, &scene->box, count,
+        observation->observables.rdf_force = &observation->rdf_force;
+        return mf_rdf_force_init(&observation->rdf_force, &targets->bins, &scene->box, count,
                                  scene->potential, scene->temperature, cutoff, samples);
     }
-    observation->targets.rdf = &observation->rdf;
-    return mf_rdf_init_mixture(&observation->rdf, &goals->bins, &scene->box, &scene->composition,
+    observation->observables.rdf = &observation->rdf;
+    return mf_rdf_init_mixture(&observation->rdf, &targets->bins, &scene->box, &scene->composition,
                                cutoff, samples);
 }
 
 static enum status begin_dynamics(struct observation *observation,
                                   const struct observation_setup *setup) {
-    const struct goals *goals = observation->goals;
+    const struct targets *targets = observation->targets;
     const struct simulation *simulation = &observation->simulation;
     const double time_step = simulation->setup.time_step;
     const int64_t begin = setup->plan.equilibration;
     const int64_t steps = setup->plan.samples * setup->plan.every;
     struct etd_plan etd;
     struct motion_plan motion;
-    mf_observation_plans(goals, time_step, &etd, &motion);
-    if (goals_ask(goals, GOAL_ETD)) {
-        TRY(mf_etd_init(&observation->etd, &goals->etd, &etd, simulation, begin, steps));
-        observation->targets.etd = &observation->etd;
+    mf_observation_plans(targets, time_step, &etd, &motion);
+    if (targets_ask(targets, TARGET_ETD)) {
+        TRY(mf_etd_init(&observation->etd, &targets->etd, &etd, simulation, begin, steps));
+        observation->observables.etd = &observation->etd;
     }
-    if (mf_observation_moves(goals)) {
+    if (mf_observation_moves(targets)) {
         TRY(mf_motion_init(&observation->motion, &motion, simulation, begin, steps));
-        observation->targets.motion = &observation->motion;
+        observation->observables.motion = &observation->motion;
     }
     return STATUS_OK;
 }
@@ -96,7 +97,7 @@ static enum status begin_dynamics(struct observation *observation,
 enum status mf_observation_init(struct observation *observation,
                                 const struct inverse_problem *problem,
                                 const struct observation_setup *setup) {
-    *observation = (struct observation){.goals = setup->goals};
+    *observation = (struct observation){.targets = setup->targets};
     struct simulation_setup scene = problem->scene;
     struct simulation_start start = {0};
     scene.potential = setup->potential;
@@ -110,9 +111,9 @@ enum status mf_observation_init(struct observation *observation,
     if (setup->position)
         scene.placement.kind = PLACEMENT_FILE;
     TRY(begin_rdf(observation, &scene, setup));
-    if (setup->thermodynamics || goals_ask(setup->goals, GOAL_PRESSURE)) {
+    if (setup->thermodynamics || targets_ask(setup->targets, TARGET_PRESSURE)) {
         TRY(mf_thermodynamics_init(&observation->thermodynamics, (size_t)setup->plan.samples));
-        observation->targets.thermodynamics = &observation->thermodynamics;
+        observation->observables.thermodynamics = &observation->thermodynamics;
     }
     TRY(mf_simulation_init(&observation->simulation, &scene, setup->position ? &start : NULL));
     return begin_dynamics(observation, setup);
@@ -127,21 +128,21 @@ void mf_observation_clear(struct observation *observation) {
     mf_thermodynamics_clear(&observation->thermodynamics);
 }
 
-enum status mf_observation_values_init(struct observed *observed, const struct goals *goals) {
+enum status mf_observation_values_init(struct observed *observed, const struct targets *targets) {
     enum status status = STATUS_OK;
     *observed = (struct observed){0};
-    for (int kind = 0; kind < GOALS; kind++) {
-        if (!goals_ask(goals, kind))
+    for (int kind = 0; kind < TARGETS; kind++) {
+        if (!targets_ask(targets, kind))
             continue;
-        NEW_ARRAY(observed->value[kind], goals->goal[kind].count);
-        NEW_ARRAY(observed->error[kind], goals->goal[kind].count);
+        NEW_ARRAY(observed->value[kind], targets->target[kind].count);
+        NEW_ARRAY(observed->error[kind], targets->target[kind].count);
     }
 done:
     return status;
 }
 
 void mf_observation_values_clear(struct observed *observed) {
-    for (int kind = 0; kind < GOALS; kind++) {
+    for (int kind = 0; kind < TARGETS; kind++) {
         mf_memory_free(observed->value[kind]);
         mf_memory_free(observed->error[kind]);
     }
@@ -159,11 +160,11 @@ static enum status result_rdf(const struct observation *replicas, size_t count,
         rdf[k] = replicas[k].rdf;
         force[k] = replicas[k].rdf_force;
     }
-    if (replicas->targets.rdf_force)
-        CHECK(mf_rdf_force_result(force, count, RDF_FORCE_COUNTED, observed->value[GOAL_RDF],
-                                  observed->error[GOAL_RDF]));
+    if (replicas->observables.rdf_force)
+        CHECK(mf_rdf_force_result(force, count, RDF_FORCE_COUNTED, observed->value[TARGET_RDF],
+                                  observed->error[TARGET_RDF]));
     else
-        CHECK(mf_rdf_result(rdf, count, observed->value[GOAL_RDF], observed->error[GOAL_RDF]));
+        CHECK(mf_rdf_result(rdf, count, observed->value[TARGET_RDF], observed->error[TARGET_RDF]));
 done:
     mf_memory_free(rdf);
     mf_memory_free(force);
@@ -177,17 +178,18 @@ static enum status result_etd(const struct observation *replicas, size_t count,
     NEW_ARRAY(etd, count);
     for (size_t k = 0; k < count; k++)
         etd[k] = &replicas[k].etd;
-    CHECK(mf_etd_result(etd, count, observed->value[GOAL_ETD], observed->error[GOAL_ETD], NULL));
+    CHECK(
+        mf_etd_result(etd, count, observed->value[TARGET_ETD], observed->error[TARGET_ETD], NULL));
     // At time 0 all are there: no measurement.
-    for (size_t k = 0; k < (size_t)replicas->goals->etd.bins; k++)
-        observed->value[GOAL_ETD][k] = NAN;
+    for (size_t k = 0; k < (size_t)replicas->targets->etd.bins; k++)
+        observed->value[TARGET_ETD][k] = NAN;
 done:
     mf_memory_free(etd);
     return status;
 }
 
 /// Add a replica's values to the means over `count` of them, and its errors squared.
-static void add_mean(struct observed *observed, enum goal_kind kind, size_t values,
+static void add_mean(struct observed *observed, enum target_kind kind, size_t values,
                      const double *value, const double *error, double count) {
     if (observed->value[kind] == NULL)
         return;
@@ -197,13 +199,13 @@ static void add_mean(struct observed *observed, enum goal_kind kind, size_t valu
     }
 }
 
-static void clear_values(struct observed *observed, const struct goals *goals) {
-    for (int kind = 0; kind < GOALS; kind++)
-        for (size_t k = 0; k < goals->goal[kind].count; k++)
+static void clear_values(struct observed *observed, const struct targets *targets) {
+    for (int kind = 0; kind < TARGETS; kind++)
+        for (size_t k = 0; k < targets->target[kind].count; k++)
             observed->value[kind][k] = observed->error[kind][k] = 0;
 }
 
-/// A replica's results of one kind of goal, and how many blocks of time its errors rest on.
+/// A replica's results of one kind of target, and how many blocks of time its errors rest on.
 struct replica_curve {
     const double *value, *error;
     double blocks;
@@ -213,7 +215,7 @@ struct replica_curve {
 /// the mean over `count` of them: the variance by blocks of time, of which each replica has B, with
 /// count (B − 1) degrees of freedom, and that by the scatter of the replicas, with count − 1,
 /// count as much as they know. A replica of one window alone has B = 1, and no error of its own.
-static void join_scatter(struct observed *observed, enum goal_kind kind, size_t values,
+static void join_scatter(struct observed *observed, enum target_kind kind, size_t values,
                          const struct replica_curve *replicas, size_t count) {
     if (observed->value[kind] == NULL || count < 2)
         return;
@@ -228,8 +230,8 @@ static void join_scatter(struct observed *observed, enum goal_kind kind, size_t 
     }
 }
 
-/// Mean and errors of one kind of goal over the replicas.
-static void combine(struct observed *observed, enum goal_kind kind, size_t values,
+/// Mean and errors of one kind of target over the replicas.
+static void combine(struct observed *observed, enum target_kind kind, size_t values,
                     const struct replica_curve *replicas, size_t count) {
     for (size_t k = 0; k < count; k++)
         add_mean(observed, kind, values, replicas[k].value, replicas[k].error, (double)count);
@@ -257,9 +259,9 @@ static enum status result_motion(const struct observation *replicas, size_t coun
         msd[k] = (struct replica_curve){curves.msd, curves.msd_error, blocks};
         diffusion[k] = (struct replica_curve){&summary[k].msd, &summary[k].msd_error, blocks};
     }
-    combine(observed, GOAL_VACF, values, vacf, count);
-    combine(observed, GOAL_MSD, values, msd, count);
-    combine(observed, GOAL_DIFFUSION, 1, diffusion, count);
+    combine(observed, TARGET_VACF, values, vacf, count);
+    combine(observed, TARGET_MSD, values, msd, count);
+    combine(observed, TARGET_DIFFUSION, 1, diffusion, count);
 done:
     mf_memory_free(summary);
     mf_memory_free(vacf);
@@ -271,27 +273,27 @@ done:
 
 enum status mf_observation_result(const struct observation *replicas, size_t count,
                                   struct observed *observed) {
-    const struct goals *goals = replicas->goals;
-    clear_values(observed, goals);
-    if (goals_ask(goals, GOAL_RDF))
+    const struct targets *targets = replicas->targets;
+    clear_values(observed, targets);
+    if (targets_ask(targets, TARGET_RDF))
         TRY(result_rdf(replicas, count, observed));
-    if (goals_ask(goals, GOAL_ETD))
+    if (targets_ask(targets, TARGET_ETD))
         TRY(result_etd(replicas, count, observed));
-    if (mf_observation_moves(goals))
+    if (mf_observation_moves(targets))
         TRY(result_motion(replicas, count, observed));
-    for (size_t k = 0; k < count && goals_ask(goals, GOAL_PRESSURE); k++) {
+    for (size_t k = 0; k < count && targets_ask(targets, TARGET_PRESSURE); k++) {
         const struct thermodynamics_summary t =
             mf_thermodynamics_result(&replicas[k].thermodynamics, 1);
-        add_mean(observed, GOAL_PRESSURE, 1, &t.pressure, &t.pressure_error, (double)count);
+        add_mean(observed, TARGET_PRESSURE, 1, &t.pressure, &t.pressure_error, (double)count);
     }
     return STATUS_OK;
 }
 
-void mf_observation_distance(const struct observed *observed, const struct goals *goals,
-                             struct goal_distance distance[GOALS]) {
-    for (int kind = 0; kind < GOALS; kind++)
-        distance[kind] = goals_ask(goals, kind)
-                             ? mf_goals_distance(&goals->goal[kind], observed->value[kind],
-                                                 observed->error[kind])
-                             : (struct goal_distance){0};
+void mf_observation_distance(const struct observed *observed, const struct targets *targets,
+                             struct target_distance distance[TARGETS]) {
+    for (int kind = 0; kind < TARGETS; kind++)
+        distance[kind] = targets_ask(targets, kind)
+                             ? mf_targets_distance(&targets->target[kind], observed->value[kind],
+                                                   observed->error[kind])
+                             : (struct target_distance){0};
 }

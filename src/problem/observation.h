@@ -1,65 +1,66 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The observables of one simulation that the goals of a fit ask for.
+/// @file The observables of one simulation that the targets of a fit ask for.
 #pragma once
 
 #include "problem/inverse.h"
 #include "observe/measure.h"
 
 struct observation {
-    const struct goals *goals; ///< borrowed
+    const struct targets *targets; ///< borrowed
     struct simulation simulation;
     struct rdf rdf;
     struct rdf_force rdf_force;
     struct etd etd;
     struct motion motion;
     struct thermodynamics thermodynamics;
-    struct measure_targets targets; ///< those of the above that are in use
+    struct measure_observables observables; ///< those of the above that are in use
 };
 
 /// What a simulation is to have.
 struct observation_setup {
-    const struct goals *goals;              ///< to be observed; borrowed
+    const struct targets *targets;          ///< to be observed; borrowed
     const struct table *potential, *weight; ///< borrowed
     const double *const
         *position;    ///< shape [dimensions][count] to begin with, or NULL: as the scene
     double time_step; ///< 0: that of the scene [τ]
     struct measure_plan plan;
     bool force_estimator; ///< of g(r), where it applies
-    bool thermodynamics;  ///< also if no goal needs it
+    bool thermodynamics;  ///< also if no target needs it
     int threads;
     uint64_t seed;
 };
 
 /// When escape times and motion are sampled, if they are.
-void mf_observation_plans(const struct goals *goals, double time_step, struct etd_plan *etd,
+void mf_observation_plans(const struct targets *targets, double time_step, struct etd_plan *etd,
                           struct motion_plan *motion);
 
 /// Whether VACF, MSD or D is asked for.
-bool mf_observation_moves(const struct goals *goals);
+bool mf_observation_moves(const struct targets *targets);
 
-/// Steps of the longest window of what is asked for, and the goal that it belongs to: a plan must
+/// Steps of the longest window of what is asked for, and the target that it belongs to: a plan must
 /// have as many behind its equilibration. 0 if nothing has a window.
-int64_t mf_observation_window(const struct goals *goals, double time_step, enum goal_kind *longest);
+int64_t mf_observation_window(const struct targets *targets, double time_step,
+                              enum target_kind *longest);
 
 /// Begin the simulation, at step 0. Must be cleared, also after a failure.
-/// Fails: as mf_simulation_init; BAD_INPUT if the plan is shorter than the window of a goal.
+/// Fails: as mf_simulation_init; BAD_INPUT if the plan is shorter than the window of a target.
 enum status mf_observation_init(struct observation *observation,
                                 const struct inverse_problem *problem,
                                 const struct observation_setup *setup) MUST_USE;
 void mf_observation_clear(struct observation *observation);
 
-/// Values and errors of all goals, one behind the other: shape [goals_values].
+/// Values and errors of all targets, one behind the other: shape [targets_values].
 struct observed {
-    double *value[GOALS], *error[GOALS]; ///< shape [goal.count], NaN: not measured
+    double *value[TARGETS], *error[TARGETS]; ///< shape [target.count], NaN: not measured
 };
 enum status mf_observation_values_init(struct observed *observed,
-                                       const struct goals *goals) MUST_USE;
+                                       const struct targets *targets) MUST_USE;
 void mf_observation_values_clear(struct observed *observed);
 
 /// Results of replicas together. Fails: NO_MEMORY.
 enum status mf_observation_result(const struct observation *replicas, size_t count,
                                   struct observed *observed) MUST_USE;
 
-/// Distances of what was observed from all goals.
-void mf_observation_distance(const struct observed *observed, const struct goals *goals,
-                             struct goal_distance distance[GOALS]);
+/// Distances of what was observed from all targets.
+void mf_observation_distance(const struct observed *observed, const struct targets *targets,
+                             struct target_distance distance[TARGETS]);

@@ -9,7 +9,7 @@
 
 static enum status find_core(struct potential_grid *grid, const struct inverse_problem *problem,
                              size_t pair) {
-    const double *g = problem->goals.goal[GOAL_RDF].value + pair * grid->bins;
+    const double *g = problem->targets.target[TARGET_RDF].value + pair * grid->bins;
     size_t *core = &grid->core[pair];
     while (*core < grid->bins && g[*core] <= problem->core_threshold)
         (*core)++;
@@ -37,7 +37,7 @@ static void index_known(struct potential_grid *grid) {
 enum status mf_potential_grid_init(struct potential_grid *grid,
                                    const struct inverse_problem *problem) {
     enum status status = STATUS_OK;
-    const struct rdf_bins *bins = &problem->goals.bins;
+    const struct rdf_bins *bins = &problem->targets.bins;
     *grid =
         (struct potential_grid){.pairs = (size_t)mf_composition_pairs(&problem->scene.composition),
                                 .bins = bins->count,
@@ -123,8 +123,8 @@ void mf_potential_grid_start(const struct potential_grid *grid,
         const size_t point = grid->known_point[n], pair = point / (grid->bins + 1);
         const struct curve *start = problem->unknown[UNKNOWN_POTENTIAL].start[pair];
         // A bin without pairs beyond the core is as high as one with the threshold's few.
-        const double g =
-            fmax(problem->goals.goal[GOAL_RDF].value[grid->known_bin[n]], problem->core_threshold);
+        const double g = fmax(problem->targets.target[TARGET_RDF].value[grid->known_bin[n]],
+                              problem->core_threshold);
         phi[point] =
             start ? mf_curve_value(start, grid->r[point]) : -problem->scene.temperature * log(g);
     }
@@ -132,7 +132,7 @@ void mf_potential_grid_start(const struct potential_grid *grid,
 }
 
 bool mf_potential_grid_well_known(const struct inverse_problem *problem, size_t bin) {
-    return problem->goals.goal[GOAL_RDF].value[bin] > 0.1;
+    return problem->targets.target[TARGET_RDF].value[bin] > 0.1;
 }
 
 double mf_potential_grid_ramp(const struct potential_grid *grid, size_t point) {

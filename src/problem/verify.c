@@ -30,7 +30,7 @@ static enum status run_replica(const struct inverse_problem *problem, const stru
                                struct observation *replica) {
     double temperature;
     const struct observation_setup setup = {
-        .goals = &problem->compared,
+        .targets = &problem->compared,
         .potential = potential,
         .weight = weight,
         .time_step = parameters->time_step,
@@ -40,7 +40,7 @@ static enum status run_replica(const struct inverse_problem *problem, const stru
         .seed = mf_rng_child_seed(problem->seed, RNG_VERIFICATION, number, 0)};
     TRY(mf_observation_init(replica, problem, &setup));
     TRY(mf_measure_equilibrate(&replica->simulation, &parameters->plan, &temperature, NULL));
-    return mf_measure_sample(&replica->simulation, &parameters->plan, replica->targets, NULL);
+    return mf_measure_sample(&replica->simulation, &parameters->plan, replica->observables, NULL);
 }
 
 /// All replicas in parallel.
@@ -83,23 +83,23 @@ static void exchange_with_last(struct observation *replicas, size_t count, size_
 static enum status find_errors(struct observation *replicas, size_t count,
                                struct verification *verification) {
     enum status status = STATUS_OK;
-    const struct goals *goals = replicas->goals;
+    const struct targets *targets = replicas->targets;
     struct observed without = {0};
-    double squares[GOALS] = {0};
-    CHECK(mf_observation_values_init(&without, goals));
+    double squares[TARGETS] = {0};
+    CHECK(mf_observation_values_init(&without, targets));
     for (size_t k = 0; k < count && count > 1; k++) {
-        struct goal_distance distance[GOALS];
+        struct target_distance distance[TARGETS];
         exchange_with_last(replicas, count, k);
         status = mf_observation_result(replicas, count - 1, &without);
         exchange_with_last(replicas, count, k);
         CHECK(status);
-        mf_observation_distance(&without, goals, distance);
-        for (int kind = 0; kind < GOALS; kind++) {
+        mf_observation_distance(&without, targets, distance);
+        for (int kind = 0; kind < TARGETS; kind++) {
             const double difference = distance[kind].rms - verification->distance[kind].rms;
             squares[kind] += difference * difference;
         }
     }
-    for (int kind = 0; kind < GOALS; kind++)
+    for (int kind = 0; kind < TARGETS; kind++)
         verification->distance_error[kind] =
             count > 1 ? sqrt(squares[kind] * (double)(count - 1) / (double)count) : NAN;
 done:
@@ -112,15 +112,15 @@ static enum status find_rdf_error(const struct observation *replicas, size_t cou
                                   struct verification *verification) {
     enum status status = STATUS_OK;
     struct rdf *rdf = NULL;
-    const struct goals *goals = replicas->goals;
-    if (!goals_ask(goals, GOAL_RDF))
+    const struct targets *targets = replicas->targets;
+    if (!targets_ask(targets, TARGET_RDF))
         return STATUS_OK;
     NEW_ARRAY(rdf, count);
     for (size_t k = 0; k < count; k++)
         rdf[k] = replicas[k].rdf;
-    CHECK(mf_rdf_distance(rdf, count, goals->goal[GOAL_RDF].value,
-                          &verification->distance[GOAL_RDF].rms,
-                          &verification->distance_error[GOAL_RDF]));
+    CHECK(mf_rdf_distance(rdf, count, targets->target[TARGET_RDF].value,
+                          &verification->distance[TARGET_RDF].rms,
+                          &verification->distance_error[TARGET_RDF]));
 done:
     mf_memory_free(rdf);
     return status;
@@ -130,7 +130,7 @@ done:
 static enum status summarise(struct observation *replicas, size_t count,
                              struct verification *verification) {
     enum status status = STATUS_OK;
-    const struct goals *goals = replicas->goals;
+    const struct targets *targets = replicas->targets;
     struct thermodynamics *thermodynamics = NULL;
     NEW_ARRAY(thermodynamics, count);
     for (size_t k = 0; k < count; k++) {
@@ -141,14 +141,14 @@ static enum status summarise(struct observation *replicas, size_t count,
     if (mf_thermodynamics_judge_fit(&verification->thermodynamics, &replicas->simulation.setup) !=
         STATUS_OK)
         snprintf(verification->warning, sizeof verification->warning, "%s", mf_status_message());
-    if (mf_observation_moves(goals)) {
+    if (mf_observation_moves(targets)) {
         const struct motion_summary motion = mf_motion_result(&replicas->motion, NULL);
         verification->diffusion_begin = motion.fit_begin;
         verification->diffusion_end = motion.fit_end;
     }
-    CHECK(mf_observation_values_init(&verification->observed, goals));
+    CHECK(mf_observation_values_init(&verification->observed, targets));
     CHECK(mf_observation_result(replicas, count, &verification->observed));
-    mf_observation_distance(&verification->observed, goals, verification->distance);
+    mf_observation_distance(&verification->observed, targets, verification->distance);
     CHECK(find_errors(replicas, count, verification));
     CHECK(find_rdf_error(replicas, count, verification));
 done:

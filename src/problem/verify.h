@@ -14,9 +14,9 @@ extern const struct field mf_verify_fields[];
 
 struct verification {
     struct observed observed;
-    struct goal_distance distance[GOALS];
-    double distance_error[GOALS]; ///< standard error of each distance, by leaving out replicas;
-                                  ///< that of g(r) by leaving out blocks. NaN with one replica
+    struct target_distance distance[TARGETS];
+    double distance_error[TARGETS]; ///< standard error of each distance, by leaving out replicas;
+                                    ///< that of g(r) by leaving out blocks. NaN with one replica
     struct thermodynamics_summary thermodynamics;
     double diffusion_begin, diffusion_end; ///< times between which D is the MSD's slope [τ]; or 0
     char warning[256]; ///< why its temperatures are not to be trusted; "" if they are

@@ -155,8 +155,8 @@ enum status mf_fit_output_curves(const struct fit_file *fit, const struct decode
 static enum status write_rdf(const struct fit_file *fit, const struct observed *observed,
                              size_t pair, const struct run_folder *folder) {
     enum status status = STATUS_OK;
-    const struct targets *targets = &fit->targets;
-    const struct rdf_bins *bins = &targets->rdf[0].bins;
+    const struct target_files *files = &fit->files;
+    const struct rdf_bins *bins = &files->rdf[0].bins;
     const struct units *units = &fit->scene.units;
     const size_t first = pair * bins->count;
     double *r = NULL, *nanometres = NULL;
@@ -168,12 +168,12 @@ static enum status write_rdf(const struct fit_file *fit, const struct observed *
     CHECK(nanometres ? STATUS_OK : STATUS_NO_MEMORY);
     const struct data_column columns[] = {
         {"r[lambda]", r, NULL},
-        {"target[1]", targets->rdf_g + first, "%.8g"},
-        {"target_error[1]", targets->rdf_error + first, "%.3g"},
-        {"result[1]", observed->value[GOAL_RDF] + first, "%.8g"},
-        {"result_error[1]", observed->error[GOAL_RDF] + first, "%.3g"},
+        {"target[1]", files->rdf_g + first, "%.8g"},
+        {"target_error[1]", files->rdf_error + first, "%.3g"},
+        {"result[1]", observed->value[TARGET_RDF] + first, "%.8g"},
+        {"result_error[1]", observed->error[TARGET_RDF] + first, "%.3g"},
         {"r[nm]", nanometres, NULL}};
-    mf_run_folder_rdf(folder, &targets->composition, (int)pair, path);
+    mf_run_folder_rdf(folder, &files->composition, (int)pair, path);
     CHECK(mf_data_table_write(path, NULL, columns, mf_units_known(units) ? 6 : 5, bins->count));
 done:
     mf_memory_free(r);
@@ -185,7 +185,7 @@ done:
 static enum status write_etd(const struct fit_file *fit, const struct observed *observed,
                              const struct run_folder *folder) {
     enum status status = STATUS_OK;
-    const struct target_etd *target = &fit->targets.etd;
+    const struct target_etd *target = &fit->files.etd;
     const size_t bins = (size_t)target->grid.bins, cells = (size_t)target->grid.times * bins;
     const double width = (target->grid.r_maximum - target->grid.r_minimum) / (double)bins;
     const struct units *units = &fit->scene.units;
@@ -205,8 +205,8 @@ static enum status write_etd(const struct fit_file *fit, const struct observed *
                                           {"r0[lambda]", r, "%.6f"},
                                           {"target[1]", target->survival, "%.6f"},
                                           {"target_error[1]", target->error, "%.3g"},
-                                          {"result[1]", observed->value[GOAL_ETD], "%.6f"},
-                                          {"result_error[1]", observed->error[GOAL_ETD], "%.3g"},
+                                          {"result[1]", observed->value[TARGET_ETD], "%.6f"},
+                                          {"result_error[1]", observed->error[TARGET_ETD], "%.3g"},
                                           {"time[ps]", picoseconds, "%.6g"},
                                           {"r0[nm]", nanometres, "%.6g"}};
     mf_run_folder_file(folder, "etd_cells.tsv", path);
@@ -225,9 +225,9 @@ struct motion_names {
     double unit; ///< of VACF or MSD in nm and ps
 };
 
-static struct motion_names motion_names(enum goal_kind kind, const struct units *units) {
+static struct motion_names motion_names(enum target_kind kind, const struct units *units) {
     const double nm2 = units->length * units->length;
-    if (kind == GOAL_MSD)
+    if (kind == TARGET_MSD)
         return (struct motion_names){
             {"target[lambda^2]", "target_error[lambda^2]", "result[lambda^2]",
              "result_error[lambda^2]"},
@@ -243,7 +243,7 @@ static struct motion_names motion_names(enum goal_kind kind, const struct units 
 
 /// VACF or MSD beside its target.
 static enum status write_motion(const struct fit_file *fit, const struct target_curve *target,
-                                const struct observed *observed, enum goal_kind kind,
+                                const struct observed *observed, enum target_kind kind,
                                 const struct run_folder *folder) {
     enum status status = STATUS_OK;
     const struct units *units = &fit->scene.units;
@@ -268,7 +268,7 @@ static enum status write_motion(const struct fit_file *fit, const struct target_
         columns[1 + k] = (struct data_column){names.columns[k], values[k], format};
         columns[6 + k] = (struct data_column){names.physical[k], physical[k], format};
     }
-    snprintf(name, sizeof name, "%s.tsv", mf_goals_names[kind]);
+    snprintf(name, sizeof name, "%s.tsv", mf_targets_names[kind]);
     mf_run_folder_file(folder, name, path);
     CHECK(mf_data_table_write(path, NULL, columns, mf_units_known(units) ? 10 : 5, target->times));
 done:
@@ -281,15 +281,15 @@ done:
 
 enum status mf_fit_output_observables(const struct fit_file *fit, const struct fit_result *result,
                                       const struct run_folder *folder) {
-    const struct targets *targets = &fit->targets;
+    const struct target_files *files = &fit->files;
     const struct observed *observed = &result->verification->observed;
-    for (size_t pair = 0; targets->given[GOAL_RDF] && pair < targets->pairs; pair++)
+    for (size_t pair = 0; files->given[TARGET_RDF] && pair < files->pairs; pair++)
         TRY(write_rdf(fit, observed, pair, folder));
-    if (targets->given[GOAL_ETD])
+    if (files->given[TARGET_ETD])
         TRY(write_etd(fit, observed, folder));
-    if (targets->given[GOAL_VACF])
-        TRY(write_motion(fit, &targets->vacf, observed, GOAL_VACF, folder));
-    if (targets->given[GOAL_MSD])
-        TRY(write_motion(fit, &targets->msd, observed, GOAL_MSD, folder));
+    if (files->given[TARGET_VACF])
+        TRY(write_motion(fit, &files->vacf, observed, TARGET_VACF, folder));
+    if (files->given[TARGET_MSD])
+        TRY(write_motion(fit, &files->msd, observed, TARGET_MSD, folder));
     return STATUS_OK;
 }

@@ -53,14 +53,14 @@ static const double missed = 20;
 
 static void say_distances(struct progress *to, const struct fit_file *fit,
                           const struct verification *v) {
-    for (int kind = 0; kind < GOALS; kind++) {
+    for (int kind = 0; kind < TARGETS; kind++) {
         char rms[NUMBER_TEXT_SIZE];
-        if (!fit->targets.given[kind])
+        if (!fit->files.given[kind])
             continue;
         mf_number_text(v->distance[kind].rms, v->distance_error[kind], rms);
         const double noises = v->distance[kind].rms / v->distance[kind].noise;
         mf_progress_say(to, "verified: rms of %s - target = %s, statistics alone %.2g%s",
-                        mf_goals_names[kind], rms, v->distance[kind].noise,
+                        mf_targets_names[kind], rms, v->distance[kind].noise,
                         noises > missed ? ": not met, though nothing better was found" : "");
     }
 }
@@ -71,9 +71,9 @@ void mf_fit_report_say(struct progress *to, const struct fit_file *fit,
     say_changes(to, decoder, result);
     say_parameters(to, fit, result->parameter);
     say_distances(to, fit, v);
-    if (goals_ask(&fit->problem.compared, GOAL_DIFFUSION)) {
+    if (targets_ask(&fit->problem.compared, TARGET_DIFFUSION)) {
         char diffusion[NUMBER_TEXT_SIZE];
-        mf_number_text(*v->observed.value[GOAL_DIFFUSION], *v->observed.error[GOAL_DIFFUSION],
+        mf_number_text(*v->observed.value[TARGET_DIFFUSION], *v->observed.error[TARGET_DIFFUSION],
                        diffusion);
         mf_progress_say(to, "D = %s, the slope of the MSD from %.4g to %.4g tau", diffusion,
                         v->diffusion_begin, v->diffusion_end);

@@ -44,7 +44,7 @@ static double weight_truth(const struct fit_file *fit, const struct decoder *dec
             mf_curve_value(mf_scene_law_curve(&fit->unknown[UNKNOWN_WEIGHT].truth, 0), r);
         largest = fmax(largest, truth);
         // Closer pairs than the target follows do not exist.
-        if (fit->targets.given[GOAL_ETD] && r < fit->targets.etd.grid.r_minimum)
+        if (fit->files.given[TARGET_ETD] && r < fit->files.etd.grid.r_minimum)
             continue;
         squares += (omega[k] - truth) * (omega[k] - truth);
         count += 1;
@@ -62,14 +62,14 @@ static void put_known(struct json_writer *writer, const char *key, double value)
 static void put_distances(struct json_writer *writer, const struct fit_file *fit,
                           const struct verification *v) {
     char key[64];
-    for (int kind = 0; kind < GOALS; kind++) {
-        if (!fit->targets.given[kind])
+    for (int kind = 0; kind < TARGETS; kind++) {
+        if (!fit->files.given[kind])
             continue;
-        snprintf(key, sizeof key, "%s_rmse", mf_goals_names[kind]);
+        snprintf(key, sizeof key, "%s_rmse", mf_targets_names[kind]);
         put_known(writer, key, v->distance[kind].rms);
-        snprintf(key, sizeof key, "%s_rmse_error", mf_goals_names[kind]);
+        snprintf(key, sizeof key, "%s_rmse_error", mf_targets_names[kind]);
         put_known(writer, key, v->distance_error[kind]);
-        snprintf(key, sizeof key, "%s_noise", mf_goals_names[kind]);
+        snprintf(key, sizeof key, "%s_noise", mf_targets_names[kind]);
         mf_json_put_number(writer, key, v->distance[kind].noise);
     }
 }
@@ -77,10 +77,10 @@ static void put_distances(struct json_writer *writer, const struct fit_file *fit
 static void put_diffusion(struct json_writer *writer, const struct fit_file *fit,
                           const struct verification *v) {
     const struct units *units = &fit->scene.units;
-    if (!goals_ask(&fit->problem.compared, GOAL_DIFFUSION))
+    if (!targets_ask(&fit->problem.compared, TARGET_DIFFUSION))
         return;
-    const double value = *v->observed.value[GOAL_DIFFUSION];
-    const double error = *v->observed.error[GOAL_DIFFUSION];
+    const double value = *v->observed.value[TARGET_DIFFUSION];
+    const double error = *v->observed.error[TARGET_DIFFUSION];
     put_known(writer, "diffusion", value);
     if (error > 0) // one replica of one window has none
         put_known(writer, "diffusion_error", error);
@@ -206,10 +206,10 @@ static void put_truth(struct json_writer *writer, const struct fit_file *fit,
 
 /// What the targets g(r) were divided by. In a mixture those that the file states are left out.
 static void put_normalisation(struct json_writer *writer, const struct fit_file *fit) {
-    const struct normalisation *found = &fit->targets.normalisation;
-    const double given = fit->targets.rdf[0].parameters.normalisation;
+    const struct normalisation *found = &fit->files.normalisation;
+    const double given = fit->files.rdf[0].parameters.normalisation;
     const bool mixed = composition_is_mixed(&fit->scene.setup.composition);
-    if (!fit->targets.given[GOAL_RDF])
+    if (!fit->files.given[TARGET_RDF])
         return;
     mf_json_put_number(writer, "normalisation", !mixed && given > 0 ? given : found->factor);
     mf_json_put_number(writer, "normalisation_error", !mixed && given > 0 ? 0 : found->error);
@@ -219,15 +219,15 @@ static void put_normalisation(struct json_writer *writer, const struct fit_file 
 static void put_kirkwood_buff(struct json_writer *writer, const struct fit_file *fit,
                               const struct verification *v) {
     const struct box *box = &fit->scene.setup.box;
-    const struct rdf_bins *bins = &fit->targets.rdf[0].bins;
+    const struct rdf_bins *bins = &fit->files.rdf[0].bins;
     const size_t count = (size_t)fit->scene.setup.placement.count;
-    if (!fit->targets.given[GOAL_RDF] || box->dimensions != 3 ||
+    if (!fit->files.given[TARGET_RDF] || box->dimensions != 3 ||
         composition_is_mixed(&fit->scene.setup.composition))
         return;
     const struct kirkwood_buff target =
-        mf_kirkwood_buff_integrate(bins, fit->targets.rdf_g, fit->targets.rdf_error, box, count);
+        mf_kirkwood_buff_integrate(bins, fit->files.rdf_g, fit->files.rdf_error, box, count);
     const struct kirkwood_buff found = mf_kirkwood_buff_integrate(
-        bins, v->observed.value[GOAL_RDF], v->observed.error[GOAL_RDF], box, count);
+        bins, v->observed.value[TARGET_RDF], v->observed.error[TARGET_RDF], box, count);
     put_known(writer, "target_kirkwood_buff", target.integral);
     put_known(writer, "target_kirkwood_buff_error", target.integral_error);
     put_known(writer, "kirkwood_buff", found.integral);
@@ -287,8 +287,8 @@ enum status mf_fit_output_summary(const struct fit_file *fit, const struct decod
     put_ramp(writer, &result->ramp);
     put_parameters(writer, fit, result->parameter);
     put_start(writer, decoder, result);
-    if (fit->targets.given[GOAL_ETD])
-        mf_json_put_number(writer, "etd_cells_left_out", (double)fit->targets.etd.left_out);
+    if (fit->files.given[TARGET_ETD])
+        mf_json_put_number(writer, "etd_cells_left_out", (double)fit->files.etd.left_out);
     mf_json_put_number(writer, "seed", (double)fit->heading.seed);
     mf_json_put_text(writer, "version", MESOFIT_VERSION);
     mf_run_folder_file(folder, "summary.json", path);

@@ -26,9 +26,9 @@ static const char *find_cause(const struct thermodynamics_summary *found, double
 bool mf_fit_verdict_contradicts(const struct verification *verification, bool pressure_is_fitted,
                                 double temperature, double noise_margin,
                                 char reason[INVERSE_REASON_SIZE]) {
-    const struct goal_distance *rdf = &verification->distance[GOAL_RDF];
+    const struct target_distance *rdf = &verification->distance[TARGET_RDF];
     const struct thermodynamics_summary *found = &verification->thermodynamics;
-    const struct goal_distance *pressure = &verification->distance[GOAL_PRESSURE];
+    const struct target_distance *pressure = &verification->distance[TARGET_PRESSURE];
     if (pressure_is_fitted && pressure->rms > noise_margin * pressure->noise) {
         snprintf(reason, INVERSE_REASON_SIZE,
                  "the verification's pressure, %.4g, is off by %.2g (%.2g by statistics): its time "
@@ -46,11 +46,11 @@ bool mf_fit_verdict_contradicts(const struct verification *verification, bool pr
     return true;
 }
 
-bool mf_fit_verdict_is_worse(const struct verification *verification, const struct goals *goals,
+bool mf_fit_verdict_is_worse(const struct verification *verification, const struct targets *targets,
                              double error, double variance, char reason[INVERSE_REASON_SIZE]) {
     static const double deviations = 5, part = 0.25;
-    const double verified = mf_goals_error(goals, verification->distance);
-    const double own = mf_goals_variance(goals, verification->distance);
+    const double verified = mf_targets_error(targets, verification->distance);
+    const double own = mf_targets_variance(targets, verification->distance);
     if (!(verified > error + deviations * sqrt(variance + own) && verified > (1 + part) * error))
         return false;
     snprintf(

@@ -20,7 +20,7 @@ bool mf_fit_verdict_contradicts(const struct verification *verification, bool pr
 /// by five standard errors of the difference and by a quarter. The best of many candidates is a
 /// lucky draw of one to two standard errors, and a finer time step of the verification makes some
 /// per cent.
-/// @param[in] error, variance  mf_goals_error by the method, and its variance
+/// @param[in] error, variance  mf_targets_error by the method, and its variance
 /// Returns whether there is something to say. Tested: test_fit_verdict.
-bool mf_fit_verdict_is_worse(const struct verification *verification, const struct goals *goals,
+bool mf_fit_verdict_is_worse(const struct verification *verification, const struct targets *targets,
                              double error, double variance, char reason[INVERSE_REASON_SIZE]);

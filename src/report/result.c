@@ -2,7 +2,7 @@
 #include "report/result.h"
 
 #include "base/memory.h"
-#include "problem/goals.h"
+#include "problem/targets.h"
 #include "io/json.h"
 #include "io/output.h"
 #include "io/text_file.h"
@@ -84,8 +84,8 @@ static enum status check_folder(const char *folder, const char *summary) {
 static bool has_distance(struct json_object *root) {
     char key[64];
     bool found = false;
-    for (int kind = 0; kind < GOALS; kind++) {
-        snprintf(key, sizeof key, "%s_rmse", mf_goals_names[kind]);
+    for (int kind = 0; kind < TARGETS; kind++) {
+        snprintf(key, sizeof key, "%s_rmse", mf_targets_names[kind]);
         found = mf_json_has(root, key) || found;
     }
     return found;

@@ -104,7 +104,7 @@ static enum status write_used(struct run *run, bool resume) {
     mf_run_folder_file(&run->folder, resume ? "used.json.resumed" : "used.json", path);
     TRY(mf_fit_file_write(fit, path));
     TRY(mf_checkpoint_digest(path, &run->digest));
-    mf_targets_digest(&fit->targets, &run->digest);
+    mf_target_files_digest(&fit->files, &run->digest);
     mf_scene_digest(&fit->scene, &run->digest);
     digest_starts(run);
     if (resume)
@@ -144,19 +144,19 @@ static void say_line(void *progress, const char *line) {
 
 /// What is to be fitted, so that a wrong column or unit is seen before the work.
 static enum status tell_targets(struct run *run) {
-    const struct target_etd *etd = &run->fit.targets.etd;
+    const struct target_etd *etd = &run->fit.files.etd;
     if (etd->left_out > 0)
         mf_progress_say(&run->progress,
                         "target.etd: %zu of %zu cells of the target are not known and left out",
                         etd->left_out, (size_t)(etd->grid.times * etd->grid.bins));
-    return mf_target_sanity_tell(&run->fit.targets, &run->fit.scene,
+    return mf_target_sanity_tell(&run->fit.files, &run->fit.scene,
                                  &(struct target_sanity_listener){say_line, &run->progress});
 }
 
 static enum status prepare(struct run *run, const char *file, const struct run_options *options) {
     TRY(mf_fit_file_read(&run->fit, file, options));
     TRY(mf_run_folder_open(&run->folder, RUN_FIT, file, &run->fit.inputs, options));
-    TRY(mf_targets_normalise(&run->fit.targets, &run->fit.scene.setup.box));
+    TRY(mf_target_files_normalise(&run->fit.files, &run->fit.scene.setup.box));
     const enum status status = create(run);
     if (status != STATUS_OK)
         return mf_status_prefix(status, "%s", file);
@@ -336,14 +336,14 @@ static void say_verified(struct run *run, const struct fit_result *result) {
 static void doubt(struct run *run, const struct verification *verification) {
     static const double noise_margin = 3;
     struct standing *standing = &run->standing;
-    const struct goals *goals = &run->fit.problem.goals;
+    const struct targets *targets = &run->fit.problem.targets;
     if (!standing->converged && !standing->used_up)
         return;
     if (run->fit.method->update
-            ? mf_fit_verdict_contradicts(verification, goals_ask(goals, GOAL_PRESSURE),
+            ? mf_fit_verdict_contradicts(verification, targets_ask(targets, TARGET_PRESSURE),
                                          run->fit.problem.scene.temperature, noise_margin,
                                          standing->reason)
-            : mf_fit_verdict_is_worse(verification, goals, standing->error, standing->variance,
+            : mf_fit_verdict_is_worse(verification, targets, standing->error, standing->variance,
                                       standing->reason))
         standing->converged = standing->used_up = false;
 }

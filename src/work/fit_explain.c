@@ -6,33 +6,33 @@
 #include "work/fit.h"
 #include "input/fit_file.h"
 
-/// What is measured of goals in simulations with some time step.
+/// What is measured of targets in simulations with some time step.
 struct measured {
     struct motion_plan motion;
     struct etd_plan etd;
     struct explain_measured explain;
 };
 
-static struct measured measured_of(const struct goals *goals, const struct simulation_setup *setup,
-                                   int64_t every) {
+static struct measured measured_of(const struct targets *targets,
+                                   const struct simulation_setup *setup, int64_t every) {
     const struct pair_law law = {.potential = setup->potential, .weight = setup->weight};
     struct measured measured;
-    mf_observation_plans(goals, setup->time_step, &measured.etd, &measured.motion);
+    mf_observation_plans(targets, setup->time_step, &measured.etd, &measured.motion);
     measured.explain = (struct explain_measured){
         .has_potential = setup->potential != NULL,
         .cutoff = mf_pair_cutoff(&law),
-        .rdf_range = goals_ask(goals, GOAL_RDF) ? mf_rdf_bins_range(&goals->bins) : 0,
+        .rdf_range = targets_ask(targets, TARGET_RDF) ? mf_rdf_bins_range(&targets->bins) : 0,
         .every = every,
-        .sums = goals_ask(goals, GOAL_PRESSURE)};
+        .sums = targets_ask(targets, TARGET_PRESSURE)};
     return measured;
 }
 
-static void print_simulation(const struct measured *measured, const struct goals *goals,
+static void print_simulation(const struct measured *measured, const struct targets *targets,
                              const struct simulation_setup *setup) {
     struct explain_measured explain = measured->explain;
     explain.etd_plan = &measured->etd;
-    explain.etd_grid = goals_ask(goals, GOAL_ETD) ? &goals->etd : NULL;
-    explain.motion = mf_observation_moves(goals) ? &measured->motion : NULL;
+    explain.etd_grid = targets_ask(targets, TARGET_ETD) ? &targets->etd : NULL;
+    explain.motion = mf_observation_moves(targets) ? &measured->motion : NULL;
     mf_explain_scene(stdout, setup, &explain);
 }
 
@@ -44,12 +44,12 @@ static void print_simulations(const struct fit_file *fit, const struct decoder_l
     setup.potential = laws->table[UNKNOWN_POTENTIAL];
     setup.weight = laws->table[UNKNOWN_WEIGHT];
     if (sampling.every > 0) {
-        struct measured measured = measured_of(&problem->goals, &setup, sampling.every);
+        struct measured measured = measured_of(&problem->targets, &setup, sampling.every);
         measured.explain.rdf_force = measured.explain.rdf_force_alone =
-            sampling.rdf_force && goals_ask(&problem->goals, GOAL_RDF) &&
+            sampling.rdf_force && targets_ask(&problem->targets, TARGET_RDF) &&
             !composition_is_mixed(&setup.composition);
         printf("An evaluation of the method \"%s\", one a thread:\n", fit->method->name);
-        print_simulation(&measured, &problem->goals, &setup);
+        print_simulation(&measured, &problem->targets, &setup);
     } else {
         printf("The method \"%s\" samples by a Monte Carlo of its own, not by the dynamics of the "
                "scene.\n",
@@ -88,7 +88,7 @@ enum status mf_fit_explain(const char *file, const struct run_options *options) 
     struct decoder_laws laws = {0};
     double *genes = NULL;
     CHECK(mf_fit_file_read(&fit, file, options));
-    CHECK(mf_targets_normalise(&fit.targets, &fit.scene.setup.box));
+    CHECK(mf_target_files_normalise(&fit.files, &fit.scene.setup.box));
     status = mf_decoder_init(&decoder, &fit.problem);
     if (status == STATUS_OK)
         status = try_method(&fit);
@@ -96,7 +96,7 @@ enum status mf_fit_explain(const char *file, const struct run_options *options) 
     NEW_ARRAY(genes, decoder.genes);
     CHECK(mf_decoder_start(&decoder, genes));
     CHECK(mf_decoder_laws(&decoder, genes, &laws));
-    CHECK(mf_target_sanity_tell(&fit.targets, &fit.scene,
+    CHECK(mf_target_sanity_tell(&fit.files, &fit.scene,
                                 &(struct target_sanity_listener){print_line, stdout}));
     print_simulations(&fit, &laws);
 done:

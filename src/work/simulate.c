@@ -377,7 +377,7 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
 
 static enum status carry_out(struct run *run) {
     const struct measure_listener listener = {tell, run};
-    const struct measure_targets targets = {
+    const struct measure_observables observables = {
         .rdf = &run->rdf,
         .rdf_force = uses_force(run) ? &run->rdf_force : NULL,
         .thermodynamics = &run->thermodynamics,
@@ -386,7 +386,7 @@ static enum status carry_out(struct run *run) {
         .etd = mf_simulate_etd_target(&run->etd)};
     double temperature;
     TRY(mf_measure_equilibrate(&run->simulation, &run->plan, &temperature, &listener));
-    return mf_measure_sample(&run->simulation, &run->plan, targets, &listener);
+    return mf_measure_sample(&run->simulation, &run->plan, observables, &listener);
 }
 
 static enum status write_results(struct run *run) {

@@ -28,7 +28,7 @@ enum status mf_simulate_etd_begin(struct simulate_etd *etd, const struct simulat
                                   const struct measure_plan *measure) MUST_USE;
 void mf_simulate_etd_clear(struct simulate_etd *etd);
 
-/// For measure_targets: NULL if it is off.
+/// For measure_observables: NULL if it is off.
 struct etd *mf_simulate_etd_target(struct simulate_etd *etd);
 
 /// Spans of a checkpoint, ETD_SPANS or none; returns their number. As mf_etd_spans says, the first

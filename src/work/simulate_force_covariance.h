@@ -27,7 +27,7 @@ enum status mf_simulate_force_covariance_begin(struct simulate_force_covariance 
                                                const struct measure_plan *measure) MUST_USE;
 void mf_simulate_force_covariance_clear(struct simulate_force_covariance *covariance);
 
-/// For measure_targets: NULL if it is off.
+/// For measure_observables: NULL if it is off.
 struct force_covariance *
 mf_simulate_force_covariance_target(struct simulate_force_covariance *covariance);
 

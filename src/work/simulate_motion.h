@@ -29,7 +29,7 @@ enum status mf_simulate_motion_begin(struct simulate_motion *motion,
                                      const struct measure_plan *measure) MUST_USE;
 void mf_simulate_motion_clear(struct simulate_motion *motion);
 
-/// For measure_targets: NULL if it is off.
+/// For measure_observables: NULL if it is off.
 struct motion *mf_simulate_motion_target(struct simulate_motion *motion);
 
 /// Spans of a checkpoint, MOTION_SPANS at most; returns their number.

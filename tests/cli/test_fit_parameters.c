@@ -153,7 +153,7 @@ static void test_every_method_fits_sigma_alone(void **state) {
     for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
         small_inputs_write(*state, "run.json", fit, GAUSS_NEWTON, methods[k]);
         char *text = temporary_folder_read("run.json");
-        if (strstr(methods[k], "pareto")) // which wants two goals
+        if (strstr(methods[k], "pareto")) // which wants two targets
             small_inputs_write(*state, "run.json", text, MSD,
                                MSD ", \"diffusion\": {\"value\": 0.233}");
         free(text);

@@ -93,7 +93,7 @@ static void test_core_model_does_not_matter_when_the_potential_is_fitted(void **
     for (size_t k = 0; k < BINS; k++)
         error[k] = sqrt(mf_comoments_covariance(&target, k, k) / (BLOCKS - 1));
     struct inverse_problem problem = {
-        .goals = {.bins = bins, .goal[GOAL_RDF] = {BINS, target.mean, error, 0}},
+        .targets = {.bins = bins, .target[TARGET_RDF] = {BINS, target.mean, error, 0}},
         .unknown[UNKNOWN_POTENTIAL] = {.wanted = true},
         .scene = fluid.setup,
         .core_threshold = 1e-3,

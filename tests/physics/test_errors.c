@@ -37,8 +37,9 @@ static void measure(const struct simulation_setup *setup, struct measured *measu
     assert_ok(mf_motion_init(&motion, &plan, &simulation, when.equilibration, 1200));
     assert_ok(mf_thermodynamics_init(&thermodynamics, 300));
     assert_ok(mf_measure_equilibrate(&simulation, &when, &temperature, NULL));
-    const struct measure_targets targets = {.thermodynamics = &thermodynamics, .motion = &motion};
-    assert_ok(mf_measure_sample(&simulation, &when, targets, NULL));
+    const struct measure_observables observables = {.thermodynamics = &thermodynamics,
+                                                    .motion = &motion};
+    assert_ok(mf_measure_sample(&simulation, &when, observables, NULL));
     const struct thermodynamics_summary t = mf_thermodynamics_result(&thermodynamics, 1);
     const struct motion_summary m = mf_motion_result(&motion, NULL);
     *measured =
@@ -103,7 +104,7 @@ static void test_errors_of_close_samples_are_the_scatter_of_g(void **state) {
         assert_ok(mf_rdf_init(&rdf, &bins, &fluid.setup.box, PARTICLES, 2.5, SAMPLES));
         assert_ok(mf_measure_equilibrate(&simulation, &when, &temperature, NULL));
         assert_ok(
-            mf_measure_sample(&simulation, &when, (struct measure_targets){.rdf = &rdf}, NULL));
+            mf_measure_sample(&simulation, &when, (struct measure_observables){.rdf = &rdf}, NULL));
         assert_ok(mf_rdf_result(&rdf, 1, value, error));
         for (int n = 0; n < BINS; n++) {
             mf_statistics_add(&g[n], value[n]);

@@ -34,7 +34,8 @@ static void sample(struct fluid *fluid, int64_t samples, struct rdf *rdf) {
     assert_ok(mf_rdf_init_mixture(rdf, &bins, &fluid->setup.box, &fluid->setup.composition, 1,
                                   (size_t)samples));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
-    assert_ok(mf_measure_sample(&simulation, &plan, (struct measure_targets){.rdf = rdf}, NULL));
+    assert_ok(
+        mf_measure_sample(&simulation, &plan, (struct measure_observables){.rdf = rdf}, NULL));
     mf_simulation_clear(&simulation);
 }
 

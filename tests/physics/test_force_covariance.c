@@ -18,8 +18,8 @@ static void measure(struct force_covariance *covariance, const struct fluid *flu
     assert_ok(mf_simulation_init(&simulation, &fluid->setup, NULL));
     assert_ok(mf_force_covariance_init(covariance, &plan, &simulation, (size_t)samples));
     assert_ok(mf_measure_equilibrate(&simulation, &when, &temperature, NULL));
-    assert_ok(mf_measure_sample(&simulation, &when,
-                                (struct measure_targets){.force_covariance = covariance}, NULL));
+    assert_ok(mf_measure_sample(
+        &simulation, &when, (struct measure_observables){.force_covariance = covariance}, NULL));
     mf_simulation_clear(&simulation);
 }
 

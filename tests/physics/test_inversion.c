@@ -71,11 +71,11 @@ static void compare_with_truth(const struct inverse_problem *problem, const doub
                                double *ramp, double *rms) {
     double above = 0, below = 0, sum = 0, count = 0;
     for (int pass = 0; pass < 2; pass++) {
-        for (size_t k = 0; k < problem->goals.bins.count; k++) {
-            if (problem->goals.goal[GOAL_RDF].value[k] < well_known)
+        for (size_t k = 0; k < problem->targets.bins.count; k++) {
+            if (problem->targets.target[TARGET_RDF].value[k] < well_known)
                 continue;
-            const double r = mf_rdf_bins_centre(&problem->goals.bins, k);
-            const double shape = 1 - r / mf_rdf_bins_range(&problem->goals.bins);
+            const double r = mf_rdf_bins_centre(&problem->targets.bins, k);
+            const double shape = 1 - r / mf_rdf_bins_range(&problem->targets.bins);
             double truth;
             mf_table_evaluate(problem->scene.potential, r, &truth, NULL, NULL);
             if (pass == 0) {
@@ -101,9 +101,9 @@ static void assert_truth_is_found(const struct inverse_method *method, const str
     struct inverse_step step;
     measure_target(fluid, bins, g, error, &pressure);
     const struct inverse_problem problem = {
-        .goals = {.bins = *bins,
-                  .goal[GOAL_RDF] = {bins->count, g, error, 0},
-                  .goal[GOAL_PRESSURE] = {with_pressure, &pressure, &pressure_error, 0}},
+        .targets = {.bins = *bins,
+                    .target[TARGET_RDF] = {bins->count, g, error, 0},
+                    .target[TARGET_PRESSURE] = {with_pressure, &pressure, &pressure_error, 0}},
         .unknown[UNKNOWN_POTENTIAL] = {.wanted = true},
         .scene = fluid->setup,
         .core_threshold = 1e-3,

@@ -66,7 +66,8 @@ static void measure(struct mixture *mixture, const double *a, uint64_t seed) {
 
 static struct inverse_problem problem_of(const struct mixture *mixture) {
     return (struct inverse_problem){
-        .goals = {.bins = bins, .goal[GOAL_RDF] = {PAIRS * BINS, mixture->g, mixture->error, 0}},
+        .targets = {.bins = bins,
+                    .target[TARGET_RDF] = {PAIRS * BINS, mixture->g, mixture->error, 0}},
         .unknown[UNKNOWN_POTENTIAL] = {.wanted = true},
         .scene = mixture->fluid.setup,
         .core_threshold = 1e-3,
@@ -176,7 +177,7 @@ static void test_imc_finds_equal_potentials_when_the_types_are_alike(void **stat
     inversions_run(&mf_imc, &problem, 0, phi, &step);
     assert_true(step.converged);
     problem.scene.composition = mf_composition_of_one(PARTICLES);
-    problem.goals.goal[GOAL_RDF] = (struct goal){BINS, mixture.all, mixture.all_error, 0};
+    problem.targets.target[TARGET_RDF] = (struct target){BINS, mixture.all, mixture.all_error, 0};
     inversions_run(&mf_imc, &problem, 0, alone, &step);
     assert_true(step.converged);
     for (size_t pair = 0; pair < PAIRS; pair++) {

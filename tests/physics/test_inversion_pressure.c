@@ -32,7 +32,7 @@ static void measure(const struct fluid *fluid, const struct rdf_bins *bins, cons
                                                      .precision = 1,
                                                      .damping = 1}};
     const struct inverse_problem problem = {
-        .goals = {.bins = *bins, .goal[GOAL_RDF] = {bins->count, g, errors, 0}},
+        .targets = {.bins = *bins, .target[TARGET_RDF] = {bins->count, g, errors, 0}},
         .unknown[UNKNOWN_POTENTIAL] = {.wanted = true, .start = {potential}},
         .scene = fluid->setup,
         .core_threshold = 1e-3,

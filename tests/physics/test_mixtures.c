@@ -38,8 +38,8 @@ static void measure(const struct simulation_setup *setup, int64_t equilibration,
     assert_ok(mf_rdf_init_mixture(&rdf, &bins, &setup->box, mixed ? &setup->composition : &one, 1,
                                   SAMPLES));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
-    const struct measure_targets targets = {.rdf = &rdf, .thermodynamics = &thermodynamics};
-    assert_ok(mf_measure_sample(&simulation, &plan, targets, NULL));
+    const struct measure_observables observables = {.rdf = &rdf, .thermodynamics = &thermodynamics};
+    assert_ok(mf_measure_sample(&simulation, &plan, observables, NULL));
     measured->summary = mf_thermodynamics_result(&thermodynamics, 1);
     assert_ok(mf_rdf_result(&rdf, 1, measured->g, measured->error));
     print_message("%d types: configurational %.4f(%.4f), pressure %.4f(%.4f)\n",

@@ -212,8 +212,8 @@ static void measure(const struct simulation_setup *setup, struct measured *measu
     assert_ok(mf_rdf_init(&rdf, &(struct rdf_bins){0, 0.05, BINS}, &setup->box,
                           simulation.particles.count, 1, SAMPLES));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
-    const struct measure_targets targets = {.rdf = &rdf, .thermodynamics = &thermodynamics};
-    assert_ok(mf_measure_sample(&simulation, &plan, targets, NULL));
+    const struct measure_observables observables = {.rdf = &rdf, .thermodynamics = &thermodynamics};
+    assert_ok(mf_measure_sample(&simulation, &plan, observables, NULL));
     measured->thermodynamics = mf_thermodynamics_result(&thermodynamics, 1);
     assert_ok(mf_rdf_result(&rdf, 1, measured->g, measured->g_error));
     mf_rdf_clear(&rdf);

@@ -29,8 +29,8 @@ static void check_temperatures(const struct simulation_setup *setup) {
     assert_ok(mf_simulation_init(&simulation, setup, NULL));
     assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)plan.samples));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
-    assert_ok(mf_measure_sample(&simulation, &plan,
-                                (struct measure_targets){.thermodynamics = &thermodynamics}, NULL));
+    assert_ok(mf_measure_sample(
+        &simulation, &plan, (struct measure_observables){.thermodynamics = &thermodynamics}, NULL));
     const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
     print_message("%-15s temperature %.4f(%.4f), configurational %.4f(%.4f)\n",
                   setup->integrator->name, s.temperature, s.temperature_error,

@@ -84,8 +84,8 @@ static void measure(const struct simulation_setup *setup, struct etd *etd,
     assert_ok(mf_etd_init(etd, grid, plan, &simulation, EQUILIBRATION, steps));
     assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)when.samples));
     assert_ok(mf_measure_equilibrate(&simulation, &when, &temperature, NULL));
-    const struct measure_targets targets = {.thermodynamics = &thermodynamics, .etd = etd};
-    assert_ok(mf_measure_sample(&simulation, &when, targets, NULL));
+    const struct measure_observables observables = {.thermodynamics = &thermodynamics, .etd = etd};
+    assert_ok(mf_measure_sample(&simulation, &when, observables, NULL));
     assert_true(mf_etd_due(etd) == INT64_MAX);
     // The list was built, and particles sorted, many times.
     assert_true(simulation.list_builds > 10);

@@ -119,8 +119,9 @@ static void assert_motion(const struct simulation_setup *setup) {
     assert_ok(mf_motion_init(&motion, &plan, &simulation, EQUILIBRATION, 990));
     assert_ok(mf_thermodynamics_init(&thermodynamics, 99));
     assert_ok(mf_measure_equilibrate(&simulation, &when, &temperature, NULL));
-    const struct measure_targets targets = {.thermodynamics = &thermodynamics, .motion = &motion};
-    assert_ok(mf_measure_sample(&simulation, &when, targets, NULL));
+    const struct measure_observables observables = {.thermodynamics = &thermodynamics,
+                                                    .motion = &motion};
+    assert_ok(mf_measure_sample(&simulation, &when, observables, NULL));
     const struct motion_summary s = mf_motion_result(&motion, &curves);
     // Whole windows begin at 0, 4, … 304: 77 of them, of which 64 blocks of equal size take 76.
     assert_int_equal(motion.blocks * motion.each, 76);

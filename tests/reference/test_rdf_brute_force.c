@@ -234,8 +234,8 @@ static void test_rdf_counts_the_end_of_the_step_when_forces_are_midway(void **st
     assert_ok(mf_rdf_init(&measured, &bins, &fluid.setup.box, 1000, 1, 1));
     assert_ok(mf_rdf_init(&end, &bins, &fluid.setup.box, 1000, 1, 1));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
-    assert_ok(
-        mf_measure_sample(&simulation, &plan, (struct measure_targets){.rdf = &measured}, NULL));
+    assert_ok(mf_measure_sample(&simulation, &plan, (struct measure_observables){.rdf = &measured},
+                                NULL));
     assert_ok(mf_rdf_sample(&end, &simulation.particles, &simulation.neighbours));
     for (int k = 0; k < BINS; k++)
         differences += fabs(measured.histogram[k] - end.histogram[k]);

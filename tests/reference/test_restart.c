@@ -38,9 +38,9 @@ static void clear(struct run *run) {
 static void sample(struct run *run, int64_t samples) {
     struct measure_plan part = plan;
     part.samples = samples;
-    const struct measure_targets targets = {.rdf = &run->rdf,
-                                            .thermodynamics = &run->thermodynamics};
-    assert_ok(mf_measure_sample(&run->simulation, &part, targets, NULL));
+    const struct measure_observables observables = {.rdf = &run->rdf,
+                                                    .thermodynamics = &run->thermodynamics};
+    assert_ok(mf_measure_sample(&run->simulation, &part, observables, NULL));
 }
 
 /// All samples that are complete after `steps` steps, and the steps.

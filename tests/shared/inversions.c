@@ -13,7 +13,7 @@ void inversions_run(const struct inverse_method *method, const struct inverse_pr
                     double precision, double *phi, struct inverse_step *step) {
     const struct inverse_listener listener = {ignore, NULL};
     const size_t pairs = (size_t)mf_composition_pairs(&problem->scene.composition);
-    const size_t points = pairs * (problem->goals.bins.count + 1);
+    const size_t points = pairs * (problem->targets.bins.count + 1);
     void *state = calloc(1, method->state_size);
     struct inversion_settings *settings = calloc(1, method->parameters_size);
     assert_non_null(state);

@@ -18,7 +18,7 @@ static enum status measure(const struct simulation_setup *setup,
     CHECK(mf_simulation_init(&simulation, setup, start));
     CHECK(mf_measure_equilibrate(&simulation, plan, &temperature, NULL));
     CHECK(mf_measure_sample(&simulation, plan,
-                            (struct measure_targets){.thermodynamics = &thermodynamics}, NULL));
+                            (struct measure_observables){.thermodynamics = &thermodynamics}, NULL));
     *summary = mf_thermodynamics_result(&thermodynamics, 1);
 done:
     mf_thermodynamics_clear(&thermodynamics);

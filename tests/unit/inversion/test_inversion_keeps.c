@@ -10,14 +10,14 @@
 /// An inversion to g(r), and perhaps a pressure, that has no potential yet.
 static void begin(struct inversion *inversion, struct inverse_problem *problem, bool pressure) {
     *problem = (struct inverse_problem){
-        .goals.goal = {[GOAL_RDF].count = 10, [GOAL_PRESSURE].count = pressure}};
+        .targets.target = {[TARGET_RDF].count = 10, [TARGET_PRESSURE].count = pressure}};
     *inversion = (struct inversion){.problem = problem};
-    inversion->progress.best[GOAL_RDF].rms = INFINITY;
+    inversion->progress.best[TARGET_RDF].rms = INFINITY;
 }
 
 /// Samples say that g is this far off; what is kept becomes the best, as in an iteration.
 static bool keeps(struct inversion *inversion, double rms, double noise) {
-    inversion->distance[GOAL_RDF] = (struct goal_distance){.rms = rms, .noise = noise};
+    inversion->distance[TARGET_RDF] = (struct target_distance){.rms = rms, .noise = noise};
     const bool kept = mf_inversion_keeps(inversion);
     if (kept)
         memcpy(inversion->progress.best, inversion->distance, sizeof inversion->progress.best);
@@ -51,8 +51,8 @@ static void test_inversion_keeps_no_slow_divergence(void **state) {
     for (; kept < 20 && keeps(&inversion, error, error / 3); kept++)
         error *= 1.6;
     assert_in_range(kept, 1, 3);
-    assert_true(inversion.progress.best[GOAL_RDF].rms <= 3 * 0.01);
-    assert_true(inversion.progress.least[GOAL_RDF].rms == 0.01);
+    assert_true(inversion.progress.best[TARGET_RDF].rms <= 3 * 0.01);
+    assert_true(inversion.progress.least[TARGET_RDF].rms == 0.01);
 }
 
 /// Several targets count in units of their noise; a new start begins anew.
@@ -61,13 +61,13 @@ static void test_inversion_keeps_by_all_targets_since_its_start(void **state) {
     struct inversion inversion;
     struct inverse_problem problem;
     begin(&inversion, &problem, true);
-    inversion.distance[GOAL_PRESSURE] = (struct goal_distance){.rms = 1, .noise = 1};
+    inversion.distance[TARGET_PRESSURE] = (struct target_distance){.rms = 1, .noise = 1};
     assert_true(keeps(&inversion, 0.01, 0.01));
-    inversion.distance[GOAL_PRESSURE].rms = 3.1;
+    inversion.distance[TARGET_PRESSURE].rms = 3.1;
     assert_true(keeps(&inversion, 0.01, 0.01)); // sqrt(1 + 9.6) of sqrt(2) + 2
-    inversion.distance[GOAL_PRESSURE].rms = 3.4;
+    inversion.distance[TARGET_PRESSURE].rms = 3.4;
     assert_false(keeps(&inversion, 0.01, 0.01));
-    inversion.progress.best[GOAL_RDF].rms = INFINITY;
+    inversion.progress.best[TARGET_RDF].rms = INFINITY;
     assert_true(keeps(&inversion, 0.5, 0.01));
     assert_false(keeps(&inversion, 0.6, 0.01));
 }

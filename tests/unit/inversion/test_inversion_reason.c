@@ -9,15 +9,15 @@
 static struct inversion make_inversion(struct inverse_problem *problem, double rms, bool pressure) {
     static const double target = 5;
     *problem = (struct inverse_problem){0};
-    problem->goals.goal[GOAL_RDF].count = 1;
-    problem->goals.goal[GOAL_PRESSURE] = (struct goal){pressure, &target, &target, 0};
+    problem->targets.target[TARGET_RDF].count = 1;
+    problem->targets.target[TARGET_PRESSURE] = (struct target){pressure, &target, &target, 0};
     return (struct inversion){
         .problem = problem,
         .method = &mf_imc,
         .settings.common = {.iterations = 30, .precision = 0.002, .damping = 1},
         .progress = {.damping = 1,
-                     .best[GOAL_RDF] = {.rms = rms, .noise = 0.003},
-                     .best[GOAL_PRESSURE] = {.rms = 2, .noise = 0.1},
+                     .best[TARGET_RDF] = {.rms = rms, .noise = 0.003},
+                     .best[TARGET_PRESSURE] = {.rms = 2, .noise = 0.1},
                      .best_own_noise = 0.0025,
                      .first_error = 0.11,
                      .second_error = 0.08}};
@@ -75,7 +75,7 @@ static void test_inversion_reason_is_the_pressure_when_only_that_is_off(void **s
     struct inverse_problem problem;
     struct inversion inversion = make_inversion(&problem, 0.004, true);
     assert_says(&inversion, "the pressure is 2 off, with an error of 0.1");
-    inversion.progress.best[GOAL_PRESSURE].rms = 0.1;
+    inversion.progress.best[TARGET_PRESSURE].rms = 0.1;
     assert_says(&inversion, "\"precision\"");
 }
 

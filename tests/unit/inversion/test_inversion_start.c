@@ -35,7 +35,7 @@ static void make(struct made *made, int start) {
         made->error[k] = noise * g;
     }
     made->problem = (struct inverse_problem){
-        .goals = {.bins = bins, .goal[GOAL_RDF] = {BINS, made->g, made->error, 0}},
+        .targets = {.bins = bins, .target[TARGET_RDF] = {BINS, made->g, made->error, 0}},
         .unknown[UNKNOWN_POTENTIAL] = {.wanted = true},
         .scene = made->fluid.setup,
         .core_threshold = 1e-3,
@@ -101,14 +101,14 @@ static void test_inversion_start_is_poor_when_g_is_far_off_under_tension(void **
     struct made made;
     make(&made, INVERSION_FROM_HNC);
     assert_ok(mf_inversion_create(&made.inversion, &mf_imc, &made.problem, &made.settings));
-    made.inversion.distance[GOAL_RDF].rms = 0.5;
+    made.inversion.distance[TARGET_RDF].rms = 0.5;
     made.inversion.pressure.value = 0.1;
     assert_false(mf_inversion_start_is_poor(&made.inversion, true));
     made.inversion.pressure.value = -4;
     assert_true(mf_inversion_start_is_poor(&made.inversion, true));
-    made.inversion.distance[GOAL_RDF].rms = 0.01;
+    made.inversion.distance[TARGET_RDF].rms = 0.01;
     assert_false(mf_inversion_start_is_poor(&made.inversion, true));
-    made.inversion.distance[GOAL_RDF].rms = 0.5;
+    made.inversion.distance[TARGET_RDF].rms = 0.5;
     made.inversion.progress.iteration = 1;
     assert_false(mf_inversion_start_is_poor(&made.inversion, true));
     assert_true(mf_inversion_start_is_poor(&made.inversion, false));

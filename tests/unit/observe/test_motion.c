@@ -41,7 +41,7 @@ static struct motion_summary measure(struct simulation *simulation, struct motio
     assert_ok(mf_motion_init(motion, &plan, simulation, when.equilibration, 1300));
     assert_ok(mf_measure_equilibrate(simulation, &when, &temperature, NULL));
     assert_ok(
-        mf_measure_sample(simulation, &when, (struct measure_targets){.motion = motion}, NULL));
+        mf_measure_sample(simulation, &when, (struct measure_observables){.motion = motion}, NULL));
     assert_int_equal(simulation->step, 1330);
     return mf_motion_result(motion, &curves);
 }

@@ -37,7 +37,8 @@ static void begin(struct both *both, bool potential, bool weight) {
     both->weight = (struct curve){&mf_formula_power_weight, &both->power};
     const int bspline = index_of(mf_shape_find("bspline"));
     both->problem = (struct inverse_problem){
-        .goals = {.bins = {0, 0.1, BINS}, .goal[GOAL_RDF] = {.count = BINS, .value = both->g}},
+        .targets = {.bins = {0, 0.1, BINS},
+                    .target[TARGET_RDF] = {.count = BINS, .value = both->g}},
         .unknown = {{potential, {bspline, POTENTIAL_GENES, -20, 80, 0, 0}, {&both->potential}},
                     {weight, {bspline, WEIGHT_GENES, 0, 5, 0.1, 1.5}, {&both->weight}}},
         .scene = {.temperature = 1},

@@ -28,8 +28,8 @@ struct mixture {
 static void begin(struct mixture *mixture) {
     *mixture = (struct mixture){.soft = {{25, 4}, {40, 4}, {10, 4}}, .power = {3, 1, 0, 1.5}};
     mixture->problem = (struct inverse_problem){
-        .goals = {.bins = {0, 0.1, BINS},
-                  .goal[GOAL_RDF] = {.count = PAIRS * BINS, .value = mixture->g}},
+        .targets = {.bins = {0, 0.1, BINS},
+                    .target[TARGET_RDF] = {.count = PAIRS * BINS, .value = mixture->g}},
         .unknown = {{true, {INVERSE_CURVE_BSPLINE, GENES, -20, 80, 0, 0}, {NULL}},
                     {true, {INVERSE_CURVE_BSPLINE, WEIGHT_GENES, 0, 5, 0.1, 1.5}, {NULL}}},
         .scene = {.temperature = 1,

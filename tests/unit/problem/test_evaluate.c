@@ -29,7 +29,7 @@ static void begin(struct made *made) {
         made->error[k] = 0.01;
     }
     made->problem = (struct inverse_problem){
-        .goals = {.bins = {0, 0.05, BINS}, .goal[GOAL_RDF] = {BINS, made->g, made->error, 0}},
+        .targets = {.bins = {0, 0.05, BINS}, .target[TARGET_RDF] = {BINS, made->g, made->error, 0}},
         .unknown[UNKNOWN_WEIGHT] = {true, {0, GENES, 0, 6, 0, 1}, {NULL}},
         .scene = made->fluid.setup,
         .seed = 3,

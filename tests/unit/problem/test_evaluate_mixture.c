@@ -42,7 +42,7 @@ static void begin(struct slabs *slabs) {
     for (int d = 0; d < 3; d++)
         slabs->position[d] = slabs->memory[d];
     slabs->problem = (struct inverse_problem){
-        .goals = {.bins = bins, .goal[GOAL_RDF] = {PAIRS * BINS, slabs->g, slabs->error, 0}},
+        .targets = {.bins = bins, .target[TARGET_RDF] = {PAIRS * BINS, slabs->g, slabs->error, 0}},
         .scene = slabs->fluid.setup,
         .threads = 1};
 }

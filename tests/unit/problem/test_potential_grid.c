@@ -21,7 +21,7 @@ static void make_target(double *target) {
 
 static struct inverse_problem make_problem(const double *target) {
     return (struct inverse_problem){
-        .goals = {.bins = {0, 0.1, BINS}, .goal[GOAL_RDF] = {.count = BINS, .value = target}},
+        .targets = {.bins = {0, 0.1, BINS}, .target[TARGET_RDF] = {.count = BINS, .value = target}},
         .scene = {.temperature = 1.3},
         .core_threshold = 1e-3,
         .core_stiffness = 2000};
@@ -186,7 +186,7 @@ static void test_potential_grid_virials_are_those_of_a_changed_table(void **stat
     struct potential_grid grid;
     make_target(target);
     const struct inverse_problem problem = make_problem(target);
-    const struct rdf_bins *bins = &problem.goals.bins;
+    const struct rdf_bins *bins = &problem.targets.bins;
     assert_ok(mf_potential_grid_init(&grid, &problem));
     mf_potential_grid_start(&grid, &problem, phi);
     assert_ok(mf_potential_grid_virials(&grid, bins, 3, phi, virial));

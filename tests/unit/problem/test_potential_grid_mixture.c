@@ -28,8 +28,8 @@ static void make_target(double *target) {
 
 static struct inverse_problem make_problem(const double *target) {
     return (struct inverse_problem){
-        .goals = {.bins = {0, 0.1, BINS},
-                  .goal[GOAL_RDF] = {.count = PAIRS * BINS, .value = target}},
+        .targets = {.bins = {0, 0.1, BINS},
+                    .target[TARGET_RDF] = {.count = PAIRS * BINS, .value = target}},
         .scene = {.temperature = temperature,
                   .composition = {.types = 2, .count = {20, 30}, .name = {"A", "B"}}},
         .core_threshold = 1e-3,
@@ -161,15 +161,15 @@ static void test_potential_grid_virials_of_a_block_act_on_its_own_bins(void **st
     struct inverse_problem problem;
     begin(&grid, &problem, target);
     mf_potential_grid_start(&grid, &problem, phi);
-    assert_ok(mf_potential_grid_virials(&grid, &problem.goals.bins, 3, phi, virial));
+    assert_ok(mf_potential_grid_virials(&grid, &problem.targets.bins, 3, phi, virial));
     for (size_t pair = 0, first = 0; pair < PAIRS; first += grid.known_of[pair++]) {
         struct potential_grid own;
         struct inverse_problem one = problem;
         double largest = 0;
         one.scene.composition = mf_composition_of_one(50);
-        one.goals.goal[GOAL_RDF].value = target + pair * BINS;
+        one.targets.target[TARGET_RDF].value = target + pair * BINS;
         assert_ok(mf_potential_grid_init(&own, &one));
-        assert_ok(mf_potential_grid_virials(&own, &problem.goals.bins, 3,
+        assert_ok(mf_potential_grid_virials(&own, &problem.targets.bins, 3,
                                             phi + mf_potential_grid_block(&grid, pair), alone));
         for (size_t a = 0; a < PAIRS * BINS; a++)
             for (size_t b = 0; b < own.known; b++) {

@@ -47,7 +47,7 @@ static void test_draws_what_the_tables_allow(void **state) {
     assert_false(figure_folders_drawn(folder, "simulation"));
 }
 
-/// Two goals, with one member on the front and errors that are not known, and three.
+/// Two targets, with one member on the front and errors that are not known, and three.
 static void test_draws_the_front_of_several_goals(void **state) {
     (void)state;
     figure_folders_skip_without_gnuplot();

@@ -75,7 +75,7 @@ static void test_names_of_tables_are_no_commands(void **state) {
     assert_true(figure_folders_drawn(folder, "simulation"));
 }
 
-/// What stands in a table is no command either: here the names of goals on the axes of a front.
+/// What stands in a table is no command either: here the names of targets on the axes of a front.
 static void test_words_of_tables_are_no_commands(void **state) {
     (void)state;
     figure_folders_skip_without_gnuplot();

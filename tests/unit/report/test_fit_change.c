@@ -13,7 +13,7 @@ static void begin(struct decoder *decoder, struct inverse_problem *problem, doub
     for (int k = 0; k < BINS; k++)
         g[k] = k < CORE ? 0 : k == CORE ? 0.05 : 1;
     *problem = (struct inverse_problem){
-        .goals = {.bins = {0, 0.1, BINS}, .goal[GOAL_RDF] = {.count = BINS, .value = g}},
+        .targets = {.bins = {0, 0.1, BINS}, .target[TARGET_RDF] = {.count = BINS, .value = g}},
         .unknown = {{true, {INVERSE_CURVE_BSPLINE, 12, -20, 80, 0, 0}, {NULL}},
                     {true, {INVERSE_CURVE_BSPLINE, 10, 0, 5, 0.1, 1.5}, {NULL}}},
         .scene = {.temperature = 1},

@@ -6,7 +6,7 @@
 #include <string.h>
 
 static struct verification make(double rms, double temperature, double pressure) {
-    return (struct verification){.distance[GOAL_RDF] = {.rms = rms, .noise = 0.002},
+    return (struct verification){.distance[TARGET_RDF] = {.rms = rms, .noise = 0.002},
                                  .thermodynamics = {.temperature = temperature,
                                                     .temperature_configurational = temperature,
                                                     .temperature_configurational_error = 0.002,
@@ -44,11 +44,11 @@ static void test_fit_verdict_names_the_pressure_when_it_was_fitted_and_is_off(vo
     (void)state;
     char reason[INVERSE_REASON_SIZE];
     struct verification found = make(0.0021, 1.5, 1.9);
-    found.distance[GOAL_PRESSURE] = (struct goal_distance){.rms = 0.4, .noise = 0.1};
+    found.distance[TARGET_PRESSURE] = (struct target_distance){.rms = 0.4, .noise = 0.1};
     assert_false(mf_fit_verdict_contradicts(&found, false, 1.5, 3, reason));
     assert_true(mf_fit_verdict_contradicts(&found, true, 1.5, 3, reason));
     assert_contains(reason, "pressure, 1.9, is off by 0.4 (0.1 by statistics)");
-    found.distance[GOAL_PRESSURE].rms = 0.29;
+    found.distance[TARGET_PRESSURE].rms = 0.29;
     assert_false(mf_fit_verdict_contradicts(&found, true, 1.5, 3, reason));
 }
 
@@ -56,13 +56,14 @@ static void test_fit_verdict_names_the_pressure_when_it_was_fitted_and_is_off(vo
 static void test_fit_verdict_is_worse_when_the_difference_is_no_chance(void **state) {
     (void)state;
     static const double value[10] = {0}, error[10] = {0};
-    const struct goals goals = {.goal[GOAL_RDF] = {10, value, error, 10},
-                                .goal[GOAL_DIFFUSION] = {1, value, error, 100}};
-    struct goals one = goals;
+    const struct targets targets = {.target[TARGET_RDF] = {10, value, error, 10},
+                                    .target[TARGET_DIFFUSION] = {1, value, error, 100}};
+    struct targets one = targets;
     char reason[INVERSE_REASON_SIZE];
-    struct verification found = {.distance = {[GOAL_RDF] = {.rms = 1.12, .variance = 1e-4},
-                                              [GOAL_DIFFUSION] = {.rms = 0.02, .variance = 1e-6}}};
-    one.goal[GOAL_DIFFUSION].count = 0;
+    struct verification found = {
+        .distance = {[TARGET_RDF] = {.rms = 1.12, .variance = 1e-4},
+                     [TARGET_DIFFUSION] = {.rms = 0.02, .variance = 1e-6}}};
+    one.target[TARGET_DIFFUSION].count = 0;
     assert_true(mf_fit_verdict_is_worse(&found, &one, 0.088, 0.0001, reason));
     assert_contains(reason, "own error is 0.088 +- 0.01, that of its verification 1.1 +- 0.01");
     assert_true(strlen(reason) + 1 < INVERSE_REASON_SIZE);
@@ -71,9 +72,9 @@ static void test_fit_verdict_is_worse_when_the_difference_is_no_chance(void **st
     assert_false(mf_fit_verdict_is_worse(&found, &one, 0.8, 0.0063, reason));
     assert_false(mf_fit_verdict_is_worse(&found, &one, 1.0, 0, reason));
     // sqrt(((10 1.12)² + (100 0.02)²)/2) = 8.04.
-    assert_true(mf_fit_verdict_is_worse(&found, &goals, 6, 0, reason));
+    assert_true(mf_fit_verdict_is_worse(&found, &targets, 6, 0, reason));
     assert_contains(reason, "verification 8 +- ");
-    assert_false(mf_fit_verdict_is_worse(&found, &goals, 7, 0, reason));
+    assert_false(mf_fit_verdict_is_worse(&found, &targets, 7, 0, reason));
 }
 
 int main(void) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "problem/goals.h"
+#include "problem/targets.h"
 
 #include "base/rng.h"
 #include "shared/is_close.h"
@@ -15,8 +15,8 @@ static void test_goals_distance_is_the_rms_of_what_both_know(void **state) {
     (void)state;
     const double wanted[] = {1, 2, NAN, 4, 5}, wanted_error[] = {0.3, NAN, 1, 0, 9};
     const double value[] = {2, 0, 7, 5, NAN}, error[] = {0.4, 2, 1, NAN, 9};
-    const struct goal goal = {5, wanted, wanted_error, 0};
-    const struct goal_distance distance = mf_goals_distance(&goal, value, error);
+    const struct target target = {5, wanted, wanted_error, 0};
+    const struct target_distance distance = mf_targets_distance(&target, value, error);
     assert_int_equal(distance.count, 3);
     assert_close(distance.rms, sqrt((1 + 4 + 1) / 3.0), rounding);
     assert_close(distance.noise, sqrt((0.25 + 4 + 0) / 3.0), rounding);
@@ -25,8 +25,8 @@ static void test_goals_distance_is_the_rms_of_what_both_know(void **state) {
 static void test_goals_distance_is_infinite_when_nothing_is_common(void **state) {
     (void)state;
     const double wanted[] = {1, NAN}, value[] = {NAN, 1}, error[] = {0, 0};
-    const struct goal goal = {2, wanted, error, 0};
-    const struct goal_distance distance = mf_goals_distance(&goal, value, error);
+    const struct target target = {2, wanted, error, 0};
+    const struct target_distance distance = mf_targets_distance(&target, value, error);
     assert_int_equal(distance.count, 0);
     assert_true(distance.rms > 1e300);
     assert_close(distance.noise, 0, 0);
@@ -35,39 +35,41 @@ static void test_goals_distance_is_infinite_when_nothing_is_common(void **state)
 static void test_goals_weight_is_one_over_the_errors_when_none_is_given(void **state) {
     (void)state;
     const double value[] = {1, 2, 3, 4}, error[] = {0.3, 0, NAN, 0.4}, none[4] = {0};
-    assert_close(mf_goals_weight(&(struct goal){4, value, error, 0}), 1 / sqrt(0.125), rounding);
-    assert_close(mf_goals_weight(&(struct goal){4, value, error, 7}), 7, 0);
+    assert_close(mf_targets_weight(&(struct target){4, value, error, 0}), 1 / sqrt(0.125),
+                 rounding);
+    assert_close(mf_targets_weight(&(struct target){4, value, error, 7}), 7, 0);
     // Without any error it is a number all the same.
-    assert_close(mf_goals_weight(&(struct goal){4, value, none, 0}), 100, 1e-10);
+    assert_close(mf_targets_weight(&(struct target){4, value, none, 0}), 100, 1e-10);
 }
 
 static void test_goals_error_is_that_of_a_single_goal_as_it_is(void **state) {
     (void)state;
     const double value[] = {1}, error[] = {0.5};
-    struct goal_distance distance[GOALS] = {[GOAL_MSD] = {3, 0.25, 1}, [GOAL_VACF] = {99, 99, 1}};
-    const struct goals goals = {.goal[GOAL_MSD] = {1, value, error, 8}};
-    assert_int_equal(mf_goals_count(&goals), 1);
-    assert_close(mf_goals_error(&goals, distance), 3, 0);
-    assert_close(mf_goals_noise(&goals, distance), 0.25, 0);
+    struct target_distance distance[TARGETS] = {
+        [TARGET_MSD] = {3, 0.25, 1}, [TARGET_VACF] = {99, 99, 1}};
+    const struct targets targets = {.target[TARGET_MSD] = {1, value, error, 8}};
+    assert_int_equal(mf_targets_count(&targets), 1);
+    assert_close(mf_targets_error(&targets, distance), 3, 0);
+    assert_close(mf_targets_noise(&targets, distance), 0.25, 0);
 }
 
 static void test_goals_error_is_1_at_the_errors_of_several_goals(void **state) {
     (void)state;
     const double value[] = {1, 1}, small[] = {0.01, 0.01}, large[] = {5, 5};
-    const struct goals goals = {.goal[GOAL_RDF] = {2, value, small, 0},
-                                .goal[GOAL_DIFFUSION] = {1, value, large, 0}};
-    struct goal_distance distance[GOALS] = {
-        [GOAL_RDF] = {0.01, 0.02, 2}, [GOAL_DIFFUSION] = {5, 10, 1}};
-    assert_int_equal(mf_goals_count(&goals), 2);
-    assert_close(mf_goals_error(&goals, distance), 1, rounding);
-    assert_close(mf_goals_noise(&goals, distance), 2, rounding);
-    distance[GOAL_DIFFUSION].rms = INFINITY;
-    assert_true(mf_goals_error(&goals, distance) > 1e300);
-    struct goals weighted = goals;
-    weighted.goal[GOAL_RDF].weight = 300;
-    weighted.goal[GOAL_DIFFUSION].weight = 0.8;
-    distance[GOAL_DIFFUSION].rms = 5;
-    assert_close(mf_goals_error(&weighted, distance), sqrt(0.5 * (9 + 16)), 1e-12);
+    const struct targets targets = {.target[TARGET_RDF] = {2, value, small, 0},
+                                    .target[TARGET_DIFFUSION] = {1, value, large, 0}};
+    struct target_distance distance[TARGETS] = {
+        [TARGET_RDF] = {0.01, 0.02, 2}, [TARGET_DIFFUSION] = {5, 10, 1}};
+    assert_int_equal(mf_targets_count(&targets), 2);
+    assert_close(mf_targets_error(&targets, distance), 1, rounding);
+    assert_close(mf_targets_noise(&targets, distance), 2, rounding);
+    distance[TARGET_DIFFUSION].rms = INFINITY;
+    assert_true(mf_targets_error(&targets, distance) > 1e300);
+    struct targets weighted = targets;
+    weighted.target[TARGET_RDF].weight = 300;
+    weighted.target[TARGET_DIFFUSION].weight = 0.8;
+    distance[TARGET_DIFFUSION].rms = 5;
+    assert_close(mf_targets_error(&weighted, distance), sqrt(0.5 * (9 + 16)), 1e-12);
 }
 
 /// E of time and bin; the first time, which is no measurement, would spoil every mean.
@@ -79,17 +81,18 @@ static void make_cells(double *value, double *error) {
         }
 }
 
-static struct goals escape_goals(const double *value, const double *error) {
-    return (struct goals){.etd = {0.5, 1, BINS, TIMES}, .goal[GOAL_ETD] = {CELLS, value, error, 0}};
+static struct targets escape_goals(const double *value, const double *error) {
+    return (struct targets){.etd = {0.5, 1, BINS, TIMES},
+                            .target[TARGET_ETD] = {CELLS, value, error, 0}};
 }
 
 static void test_goals_features_are_means_over_ten_by_ten_blocks_of_escape_times(void **state) {
     (void)state;
     double cell[CELLS], cell_error[CELLS], value[BLOCKS], error[BLOCKS];
     make_cells(cell, cell_error);
-    const struct goals goals = escape_goals(cell, cell_error);
-    assert_int_equal(mf_goals_features(&goals), BLOCKS);
-    mf_goals_take_features(&goals, NULL, value, error);
+    const struct targets targets = escape_goals(cell, cell_error);
+    assert_int_equal(mf_targets_features(&targets), BLOCKS);
+    mf_targets_take_features(&targets, NULL, value, error);
     for (int row = 0; row < 10; row++)
         for (int column = 0; column < 10; column++) {
             // Two times and three bins in each block.
@@ -105,12 +108,12 @@ static void test_goals_features_use_every_cell_once_when_ten_does_not_divide_the
     enum { FEW_TIMES = 18, FEW_BINS = 7 };
     double cell[FEW_TIMES * FEW_BINS] = {0}, value[BLOCKS];
     const double error[FEW_TIMES * FEW_BINS] = {0};
-    const struct goals goals = {.etd = {0.5, 1, FEW_BINS, FEW_TIMES},
-                                .goal[GOAL_ETD] = {FEW_TIMES * FEW_BINS, cell, error, 0}};
+    const struct targets targets = {.etd = {0.5, 1, FEW_BINS, FEW_TIMES},
+                                    .target[TARGET_ETD] = {FEW_TIMES * FEW_BINS, cell, error, 0}};
     for (int k = FEW_BINS; k < FEW_TIMES * FEW_BINS; k++) {
         int seen = 0;
         cell[k] = 1;
-        mf_goals_take_features(&goals, NULL, value, NULL);
+        mf_targets_take_features(&targets, NULL, value, NULL);
         for (int n = 0; n < BLOCKS; n++)
             seen += value[n] > 0;
         assert_int_equal(seen, 1);
@@ -129,10 +132,10 @@ static void test_goals_features_of_the_target_stand_in_for_what_was_not_measured
     seen[2 * BINS + 1] += 5; // a difference
     for (int b = 27; b < BINS; b++)
         seen[BINS + b] = seen[2 * BINS + b] = NAN; // a whole block
-    const struct goals goals = escape_goals(cell, cell_error);
-    double *observed[GOALS] = {[GOAL_ETD] = seen};
-    mf_goals_take_features(&goals, NULL, wanted, NULL);
-    mf_goals_take_features(&goals, observed, value, NULL);
+    const struct targets targets = escape_goals(cell, cell_error);
+    double *observed[TARGETS] = {[TARGET_ETD] = seen};
+    mf_targets_take_features(&targets, NULL, wanted, NULL);
+    mf_targets_take_features(&targets, observed, value, NULL);
     assert_close(value[0] - wanted[0], 1, 1e-12); // 5 over five cells
     for (int n = 1; n < BLOCKS; n++)
         assert_close(value[n], wanted[n], 0);
@@ -142,18 +145,18 @@ static void test_goals_features_are_0_when_the_target_does_not_know(void **state
     (void)state;
     const double g[] = {1, NAN, 3}, g_error[] = {0.1, 0.2, NAN}, d[] = {NAN}, d_error[] = {NAN};
     double seen_g[] = {2, 5, NAN}, seen_d[] = {4}, value[4], error[4];
-    const struct goals goals = {.goal[GOAL_RDF] = {3, g, g_error, 0},
-                                .goal[GOAL_DIFFUSION] = {1, d, d_error, 0}};
-    double *observed[GOALS] = {[GOAL_RDF] = seen_g, [GOAL_DIFFUSION] = seen_d};
-    assert_int_equal(mf_goals_features(&goals), 4);
-    mf_goals_take_features(&goals, NULL, value, error);
+    const struct targets targets = {.target[TARGET_RDF] = {3, g, g_error, 0},
+                                    .target[TARGET_DIFFUSION] = {1, d, d_error, 0}};
+    double *observed[TARGETS] = {[TARGET_RDF] = seen_g, [TARGET_DIFFUSION] = seen_d};
+    assert_int_equal(mf_targets_features(&targets), 4);
+    mf_targets_take_features(&targets, NULL, value, error);
     const double wanted[] = {1, 0, 3, 0}, wanted_error[] = {0.1, 0, 0, 0};
     const double measured[] = {2, 0, 3, 0};
     for (int k = 0; k < 4; k++) {
         assert_close(value[k], wanted[k], 0);
         assert_close(error[k], wanted_error[k], rounding);
     }
-    mf_goals_take_features(&goals, observed, value, NULL);
+    mf_targets_take_features(&targets, observed, value, NULL);
     for (int k = 0; k < 4; k++)
         assert_close(value[k], measured[k], 0);
 }
@@ -164,7 +167,7 @@ static void test_goals_variance_is_that_of_repeated_measurements(void **state) {
     (void)state;
     enum { MEASUREMENTS = 4000 };
     static const double wanted = 1, target_error = 7, truth = 1.5, error = 0.1;
-    const struct goals goals = {.goal[GOAL_DIFFUSION] = {1, &wanted, &target_error, 0}};
+    const struct targets targets = {.target[TARGET_DIFFUSION] = {1, &wanted, &target_error, 0}};
     struct rng_sequence random = mf_rng_sequence_begin(3, RNG_INITIAL, 0, 0);
     double mean = 0, square = 0, variance = 0;
     for (int k = 0; k < MEASUREMENTS; k++) {
@@ -173,12 +176,13 @@ static void test_goals_variance_is_that_of_repeated_measurements(void **state) {
         for (int n = 0; n < 12; n++)
             value += mf_rng_sequence_uniform(&random);
         value = truth + error * value;
-        struct goal_distance distance[GOALS] = {0};
-        distance[GOAL_DIFFUSION] = mf_goals_distance(&goals.goal[GOAL_DIFFUSION], &value, &error);
-        const double e = mf_goals_error(&goals, distance);
+        struct target_distance distance[TARGETS] = {0};
+        distance[TARGET_DIFFUSION] =
+            mf_targets_distance(&targets.target[TARGET_DIFFUSION], &value, &error);
+        const double e = mf_targets_error(&targets, distance);
         mean += e / MEASUREMENTS;
         square += e * e / MEASUREMENTS;
-        variance += mf_goals_variance(&goals, distance) / MEASUREMENTS;
+        variance += mf_targets_variance(&targets, distance) / MEASUREMENTS;
     }
     assert_close(variance / (square - mean * mean), 1, 0.1);
 }

@@ -2,10 +2,10 @@
 /// @file "target" of a run file: the measured observables that a fit is to reproduce.
 #pragma once
 
-#include "problem/goals.h"
+#include "problem/targets.h"
 #include "inversion/normalisation.h"
 #include "io/json_write.h"
-#include "input/target.h"
+#include "input/target_rdf.h"
 #include "input/target_etd.h"
 
 /// A measured function of time: VACF or MSD.
@@ -26,14 +26,14 @@ struct target_number {
     double window; ///< of D: the slope of the MSD over its second half; 0: of other targets [τ]
 };
 
-extern const struct field mf_targets_curve_fields[], mf_targets_number_fields[];
-extern const struct field mf_targets_diffusion_fields[], mf_targets_goal_fields[];
+extern const struct field mf_target_files_curve_fields[], mf_target_files_number_fields[];
+extern const struct field mf_target_files_diffusion_fields[], mf_target_files_use_fields[];
 
-struct targets {
-    bool given[GOALS];
-    struct target rdf[COMPOSITION_MOST_PAIRS]; ///< of each kind of pairs
-    struct composition composition;            ///< of the scene
-    size_t pairs;                              ///< kinds of its pairs
+struct target_files {
+    bool given[TARGETS];
+    struct target_rdf rdf[COMPOSITION_MOST_PAIRS]; ///< of each kind of pairs
+    struct composition composition;                ///< of the scene
+    size_t pairs;                                  ///< kinds of its pairs
     /// Of all, one behind the other, in the numbers of the scene: shape [pairs, bins].
     double *rdf_g, *rdf_error;
     double *rdf_given;                  ///< g before it was divided by its normalisation
@@ -41,33 +41,34 @@ struct targets {
     struct target_etd etd;
     struct target_curve vacf, msd;
     struct target_number diffusion, pressure;
-    struct target_goal {
+    struct target_use {
         double weight; ///< 0: by the errors
         int fitted;    ///< 0: only compared with the result
-    } goal[GOALS];
+    } use[TARGETS];
 };
 
 /// Read the object "target" of a scene of this box and composition; `units` convert VOTCA's tables.
 /// Faults go to the document. Fails: NO_MEMORY.
-enum status mf_targets_read(struct targets *targets, struct json_object *root,
-                            const struct box *box, const struct composition *composition,
-                            const struct units *units) MUST_USE;
-void mf_targets_clear(struct targets *targets);
-void mf_targets_write(const struct targets *targets, struct json_writer *writer);
+enum status mf_target_files_read(struct target_files *files, struct json_object *root,
+                                 const struct box *box, const struct composition *composition,
+                                 const struct units *units) MUST_USE;
+void mf_target_files_clear(struct target_files *files);
+void mf_target_files_write(const struct target_files *files, struct json_writer *writer);
 
 /// Add what was read from files to the digest of a checkpoint.
-void mf_targets_digest(const struct targets *targets, uint64_t *digest);
+void mf_target_files_digest(const struct target_files *files, uint64_t *digest);
 
 /// Divide g(r) by its normalisation: what the file says, else what mf_normalisation_find makes of
 /// the target in this box. If the file says some of a mixture's, the others are 1. Fails:
 /// NO_MEMORY.
-enum status mf_targets_normalise(struct targets *targets, const struct box *box) MUST_USE;
+enum status mf_target_files_normalise(struct target_files *files, const struct box *box) MUST_USE;
 
-/// The goals of the scene: those to be fitted, and all. With `moves`, D is among
+/// The targets of the scene: those to be fitted, and all. With `moves`, D is among
 /// those to be compared even if no value is given, so that a result knows its own, if another
 /// target says in what window.
-void mf_targets_goals(struct targets *targets, bool moves, struct goals *fitted,
-                      struct goals *compared);
+void mf_target_files_targets(struct target_files *files, bool moves, struct targets *fitted,
+                             struct targets *compared);
 
 /// BAD_INPUT with the time steps that would do if an interval is not a whole number of steps.
-enum status mf_targets_check_steps(const struct targets *targets, double time_step) MUST_USE;
+enum status mf_target_files_check_steps(const struct target_files *files,
+                                        double time_step) MUST_USE;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // "rdf" of a mixture in a run file: a partial g(r) for each kind of pairs.
-#include "input/targets.h"
+#include "input/target_files.h"
 
 #include "shared/is_close.h"
 #include "shared/temporary_folder.h"
@@ -28,7 +28,7 @@ static void write_tables(void **state) {
 }
 
 /// Read "rdf" with `members`; the status is that of the document.
-static enum status read(void **state, const char *members, struct targets *targets) {
+static enum status read(void **state, const char *members, struct target_files *targets) {
     char text[1024];
     struct json_document *document;
     const int length = snprintf(text, sizeof text, "{\"target\": {\"rdf\": {%s}}}", members);
@@ -36,7 +36,7 @@ static enum status read(void **state, const char *members, struct targets *targe
     assert_ok(
         mf_json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
     struct json_object root = mf_json_root(document);
-    assert_ok(mf_targets_read(targets, &root, &box, &binary, &units));
+    assert_ok(mf_target_files_read(targets, &root, &box, &binary, &units));
     mf_json_finish(&root);
     return mf_json_close(document, STATUS_OK);
 }
@@ -46,13 +46,14 @@ static enum status read(void **state, const char *members, struct targets *targe
 #define BA "\"B-A\": {\"file\": \"ab.tsv\"}"
 #define BB "\"B-B\": {\"file\": \"bb.tsv\"}"
 
-static void check_values(const struct goals *goals) {
+static void check_values(const struct targets *targets) {
     static const double first[] = {0, 0.5, 1.5, 1}, errors[] = {0, 0.1, 0.2, 0.3};
-    assert_int_equal(goals->bins.count, BINS);
-    assert_int_equal(goals->goal[GOAL_RDF].count, 3 * BINS);
+    assert_int_equal(targets->bins.count, BINS);
+    assert_int_equal(targets->target[TARGET_RDF].count, 3 * BINS);
     for (int n = 0; n < 3 * BINS; n++) {
-        assert_close(goals->goal[GOAL_RDF].value[n], first[n % BINS] + 0.1 * (n / BINS), 1e-12);
-        assert_close(goals->goal[GOAL_RDF].error[n], errors[n % BINS], 1e-12);
+        assert_close(targets->target[TARGET_RDF].value[n], first[n % BINS] + 0.1 * (n / BINS),
+                     1e-12);
+        assert_close(targets->target[TARGET_RDF].error[n], errors[n % BINS], 1e-12);
     }
 }
 
@@ -60,22 +61,22 @@ static void test_targets_read_takes_pairs_in_any_order_and_either_name(void **st
     static const char *const members[] = {AA ", " AB ", " BB, BB ", " BA ", " AA ", \"weight\": 7"};
     write_tables(state);
     for (int k = 0; k < 2; k++) {
-        struct targets t;
-        struct goals fitted, compared;
+        struct target_files t;
+        struct targets fitted, compared;
         assert_ok(read(state, members[k], &t));
-        mf_targets_goals(&t, false, &fitted, &compared);
+        mf_target_files_targets(&t, false, &fitted, &compared);
         check_values(&fitted);
-        assert_close(fitted.goal[GOAL_RDF].weight, k ? 7 : 0, 0);
-        mf_targets_clear(&t);
+        assert_close(fitted.target[TARGET_RDF].weight, k ? 7 : 0, 0);
+        mf_target_files_clear(&t);
     }
 }
 
 static void assert_refused(void **state, const char *members, const char *first,
                            const char *second) {
-    struct targets t;
+    struct target_files t;
     assert_fails(read(state, members, &t), STATUS_BAD_INPUT, first);
     assert_contains(mf_status_message(), second);
-    mf_targets_clear(&t);
+    mf_target_files_clear(&t);
 }
 
 static void test_targets_read_refuses_a_mixture_that_is_not_complete(void **state) {
@@ -100,63 +101,63 @@ static void test_targets_read_refuses_a_mixture_that_is_not_complete(void **stat
 
 /// What is written is read again as it was.
 static void test_targets_write_gives_a_mixture_back(void **state) {
-    struct targets t, again;
-    struct goals fitted, compared;
+    struct target_files t, again;
+    struct targets fitted, compared;
     struct json_document *document;
     write_tables(state);
     assert_ok(read(state, BA ", " BB ", \"fitted\": \"yes\", " AA, &t));
     struct json_writer *writer = mf_json_writer_create();
-    mf_targets_write(&t, writer);
+    mf_target_files_write(&t, writer);
     const char *path = temporary_folder_file(*state, "b.json");
     assert_ok(mf_json_write(writer, path));
     mf_json_writer_free(writer);
     assert_ok(mf_json_open(&document, path));
     struct json_object root = mf_json_root(document);
-    assert_ok(mf_targets_read(&again, &root, &box, &binary, &units));
+    assert_ok(mf_target_files_read(&again, &root, &box, &binary, &units));
     mf_json_finish(&root);
     assert_ok(mf_json_close(document, STATUS_OK));
-    mf_targets_goals(&again, false, &fitted, &compared);
+    mf_target_files_targets(&again, false, &fitted, &compared);
     check_values(&compared);
-    mf_targets_clear(&t);
-    mf_targets_clear(&again);
+    mf_target_files_clear(&t);
+    mf_target_files_clear(&again);
 }
 
 /// Isotopes have the g of the whole for every kind of pairs, whatever their shares are. In two
 /// dimensions the whole counts as incompressible.
 static void test_targets_read_converts_every_pair_by_all_particles(void **state) {
 #define FROM(file) "{\"file\": \"" file "\", \"particles\": 50}"
-    struct targets t;
-    struct goals fitted, compared;
+    struct target_files t;
+    struct targets fitted, compared;
     write_tables(state);
     assert_ok(read(
         state, "\"A-A\": " FROM("aa.tsv") ", \"A-B\": " FROM("ab.tsv") ", \"B-B\": " FROM("bb.tsv"),
         &t));
     const double factor = (1 - 1.0 / 50) / (1 - 1.0 / 400);
     for (int again = 0; again < 2; again++) {
-        mf_targets_goals(&t, false, &fitted, &compared);
-        const double *g = fitted.goal[GOAL_RDF].value, *error = fitted.goal[GOAL_RDF].error;
+        mf_target_files_targets(&t, false, &fitted, &compared);
+        const double *g = fitted.target[TARGET_RDF].value, *error = fitted.target[TARGET_RDF].error;
         for (int pair = 0; pair < 3; pair++) {
             assert_close(g[pair * BINS + 2], (1.5 + 0.1 * pair) * factor, 1e-12);
             assert_close(error[pair * BINS + 2], 0.2 * factor, 1e-12);
         }
     }
-    mf_targets_clear(&t);
+    mf_target_files_clear(&t);
 }
 
 static void test_targets_digest_knows_every_pair(void **state) {
-    struct targets t;
+    struct target_files t;
     uint64_t before = 1;
     write_tables(state);
     assert_ok(read(state, AA ", " AB ", " BB, &t));
-    mf_targets_digest(&t, &before);
+    mf_target_files_digest(&t, &before);
     for (int n = 0; n < 3 * BINS; n++) {
         uint64_t after = 1;
         t.rdf_g[n] += 1;
-        mf_targets_digest(&t, &after);
+        mf_target_files_digest(&t, &after);
         assert_true(after != before);
         t.rdf_g[n] -= 1;
     }
-    mf_targets_clear(&t);
+    mf_target_files_clear(&t);
 }
 
 #define TEST(name)                                                                                 \

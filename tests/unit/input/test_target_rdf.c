@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "input/target.h"
+#include "input/target_rdf.h"
 #include "shared/is_close.h"
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
@@ -13,7 +13,7 @@ static const struct units units = {.length = 0.5, .temperature = 300.68, .mass =
 
 /// Read the target `table` with more members of its object; the status is that of the document.
 static enum status read(void **state, const char *table, const char *members,
-                        struct target *target) {
+                        struct target_rdf *target) {
     char text[512];
     struct json_document *document;
     temporary_folder_write(*state, "g.tsv", table, strlen(table));
@@ -22,20 +22,20 @@ static enum status read(void **state, const char *table, const char *members,
         mf_json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
     struct json_object root = mf_json_root(document);
     struct json_object object = mf_json_child(&root, "rdf", true);
-    assert_ok(mf_target_read(target, &object, &units, 3));
+    assert_ok(mf_target_rdf_read(target, &object, &units, 3));
     mf_json_finish(&root);
     return mf_json_close(document, STATUS_OK);
 }
 
 static void assert_refused(void **state, const char *table, const char *members, const char *part) {
-    struct target target;
+    struct target_rdf target;
     assert_fails(read(state, table, members, &target), STATUS_BAD_INPUT, part);
     assert_contains(mf_status_message(), "a.json: rdf");
-    mf_target_clear(&target);
+    mf_target_rdf_clear(&target);
 }
 
 static void test_target_read_takes_the_bins_from_their_centres(void **state) {
-    struct target target;
+    struct target_rdf target;
     assert_ok(
         read(state, "# r g\n0.05 0 0\n0.15 0.5 0.1\n0.25 1.5 0.2\n0.35 1 0.3\n", "", &target));
     assert_int_equal(target.bins.count, 4);
@@ -43,28 +43,28 @@ static void test_target_read_takes_the_bins_from_their_centres(void **state) {
     assert_close(target.bins.width, 0.1, 1e-15);
     assert_close(target.g[2], 1.5, 0);
     assert_close(target.error[3], 0.3, 0);
-    mf_target_clear(&target);
+    mf_target_rdf_clear(&target);
 }
 
 static void test_target_read_lets_the_first_bin_begin_above_0(void **state) {
-    struct target target;
+    struct target_rdf target;
     assert_ok(read(state, "0.25 0 0\n0.35 0.5 0\n0.45 1.5 0\n0.55 1 0\n", "", &target));
     assert_close(target.bins.low, 0.2, 1e-15);
-    mf_target_clear(&target);
+    mf_target_rdf_clear(&target);
 }
 
 static void test_target_read_forgives_the_rounding_of_the_file(void **state) {
-    struct target target;
+    struct target_rdf target;
     // Bins of 1/300, given with five decimals.
     assert_ok(read(state, "0.00167 0 0\n0.005 0.5 0\n0.00833 1.5 0\n0.01167 1 0\n0.015 1 0\n", "",
                    &target));
     assert_close(target.bins.low, 0, 0);
     assert_close_relative(target.bins.width, 1.0 / 300, 1e-3);
-    mf_target_clear(&target);
+    mf_target_rdf_clear(&target);
 }
 
 static void test_target_read_takes_the_columns_it_is_told(void **state) {
-    struct target target;
+    struct target_rdf target;
     static const char table[] = "9 0.1 8 0.5\n9 0.2 8 1.5\n9 0.3 8 1\n9 0.4 8 2\n";
     assert_ok(
         read(state, table, ", \"r_column\": 2, \"g_column\": 4, \"error_column\": 0", &target));
@@ -72,7 +72,7 @@ static void test_target_read_takes_the_columns_it_is_told(void **state) {
     assert_close(target.g[3], 2, 0);
     // No errors, and too few rows to tell their scatter: 0.002 at g = 1 in the last bin.
     assert_close(target.error[3], 0.002 * sqrt(2), 1e-15);
-    mf_target_clear(&target);
+    mf_target_rdf_clear(&target);
     assert_refused(state, table, ", \"g_column\": 5", "g.tsv:1: 4 columns, at least 5");
     assert_refused(state, table, ", \"r_column\": 0", "rdf.r_column: 0 is out of range");
 }
@@ -106,7 +106,7 @@ static void test_target_read_refuses_what_is_no_g_of_r(void **state) {
 }
 
 static void test_target_read_leaves_the_empty_half_bin_out(void **state) {
-    struct target target;
+    struct target_rdf target;
     // The grid of gmx rdf, two columns, "&" at the end.
     assert_ok(read(state,
                    "@ title \"g\"\n@TYPE xy\n0.000 0\n0.002 0\n0.004 0.5\n0.006 1.5\n0.008 1\n&\n",
@@ -115,17 +115,17 @@ static void test_target_read_leaves_the_empty_half_bin_out(void **state) {
     assert_close(target.bins.low, 0.001, 1e-12);
     assert_close(target.bins.width, 0.002, 1e-12);
     assert_close(target.g[1], 0.5, 0);
-    mf_target_clear(&target);
+    mf_target_rdf_clear(&target);
 }
 
 static void test_target_read_takes_comma_separated_columns_with_names(void **state) {
-    struct target target;
+    struct target_rdf target;
     assert_ok(
         read(state, "r,g,err\n0.05,0,0\n0.15,0.5,0.1\n0.25,1.5,0.2\n0.35,1,0.3\n", "", &target));
     assert_close(target.g[2], 1.5, 0);
     assert_close(target.error[2], 0.2, 0);
     assert_close(target.estimated_error, 0, 0);
-    mf_target_clear(&target);
+    mf_target_rdf_clear(&target);
 }
 
 static void test_target_read_refuses_errors_that_are_none(void **state) {
@@ -144,7 +144,7 @@ static void test_target_read_refuses_errors_that_are_none(void **state) {
 
 /// Eight rows of width 0.1, 0.1 the half-width of VOTCA's first: joined in pairs.
 static void test_target_read_joins_rows_to_the_width_that_is_asked_for(void **state) {
-    struct target target;
+    struct target_rdf target;
     static const char table[] = "0.05 0 0\n0.15 0 0\n0.25 1 0.1\n0.35 2 0.1\n0.45 1 0.1\n"
                                 "0.55 1 0.1\n0.65 1 0.1\n0.75 1 0.1\n0.85 1 0.1\n";
     assert_ok(read(state, table, ", \"bin_width\": 0.21", &target));
@@ -155,15 +155,15 @@ static void test_target_read_joins_rows_to_the_width_that_is_asked_for(void **st
     // Shells of 0.2 to 0.3 and 0.3 to 0.4 have the volumes 19 and 37.
     assert_close(target.g[1], (19 * 1 + 37 * 2) / 56.0, 1e-12);
     assert_close(target.error[1], 0.1 * sqrt(19 * 19 + 37 * 37) / 56, 1e-12);
-    mf_target_clear(&target);
+    mf_target_rdf_clear(&target);
     assert_ok(read(state, table, ", \"bin_width\": 0.02", &target));
     assert_int_equal(target.bins.count, 9);
-    mf_target_clear(&target);
+    mf_target_rdf_clear(&target);
 }
 
 static void test_target_read_joins_rows_by_itself_when_there_are_too_many(void **state) {
     enum { ROWS = 1001 };
-    struct target target;
+    struct target_rdf target;
     char *table = calloc(ROWS, 32);
     size_t length = 0;
     for (int k = 0; k < ROWS; k++)
@@ -176,11 +176,11 @@ static void test_target_read_joins_rows_by_itself_when_there_are_too_many(void *
     // A step has no scatter; what is assumed is assumed of the bins.
     assert_true(target.assumed);
     assert_close(target.error[332], 0.002, 1e-9);
-    mf_target_clear(&target);
+    mf_target_rdf_clear(&target);
     assert_ok(read(state, table, ", \"cutoff\": 0.7", &target));
     assert_int_equal(target.joined, 1);
     assert_int_equal(target.bins.count, 350);
-    mf_target_clear(&target);
+    mf_target_rdf_clear(&target);
     free(table);
 }
 
@@ -190,7 +190,7 @@ static void test_target_read_joins_rows_by_itself_when_there_are_too_many(void *
 #define VOTCA ", \"format\": \"votca\""
 
 static void test_target_read_takes_votca_in_nanometres(void **state) {
-    struct target target;
+    struct target_rdf target;
     // A bin about 0 is half a bin, and what is not flagged i is not measured.
     assert_ok(read(state, "0 0 i\n0.1 0 i\n0.2 0.5 i\n0.3 1.5 i\n0.4 1 i\n0.5 1 i\n0.6 9 o\n",
                    VOTCA ", \"cutoff\": 0.8", &target));
@@ -199,7 +199,7 @@ static void test_target_read_takes_votca_in_nanometres(void **state) {
     assert_close(target.bins.width, 0.2, 1e-15);
     assert_identical(target.g[2], 1.5);
     assert_true(target.assumed);
-    mf_target_clear(&target);
+    mf_target_rdf_clear(&target);
 }
 
 /// Normalised by N_a² for alike pairs, of the system that was measured.
@@ -208,26 +208,26 @@ static void test_target_convert_takes_votca_to_possible_pairs(void **state) {
     static const struct composition one = {.types = 1, .count = {11}},
                                     binary = {.types = 2, .count = {20, 80}};
     static const char table[] = "0.1 0 i\n0.2 0.5 i\n0.3 1.5 i\n0.4 1 i\n0.5 1 i\n";
-    struct target target;
+    struct target_rdf target;
     double g[5], error[5];
     assert_ok(read(state, table, VOTCA, &target));
-    mf_target_convert(&target, &square, &one, 0, g, error);
+    mf_target_rdf_convert(&target, &square, &one, 0, g, error);
     assert_close(g[2], 1.65, 1e-15);
-    mf_target_convert(&target, &square, &binary, 0, g, error);
+    mf_target_rdf_convert(&target, &square, &binary, 0, g, error);
     assert_close(g[2], 1.5 * 20 / 19, 1e-15);
-    mf_target_convert(&target, &square, &binary, 1, g, error);
+    mf_target_rdf_convert(&target, &square, &binary, 1, g, error);
     assert_close(g[2], 1.5, 0);
-    mf_target_clear(&target);
+    mf_target_rdf_clear(&target);
     // Of an incompressible liquid, the tail of a g that is normalised by N² knows no N.
     assert_ok(read(state, table, VOTCA ", \"particles\": 1000", &target));
-    mf_target_convert(&target, &square, &one, 0, g, error);
+    mf_target_rdf_convert(&target, &square, &one, 0, g, error);
     assert_close(g[2], 1.65, 1e-14);
     // 200 A of 1000: measured 1 − 1/200 below the possible pairs.
-    mf_target_convert(&target, &square, &binary, 0, g, error);
+    mf_target_rdf_convert(&target, &square, &binary, 0, g, error);
     assert_close(g[2], 1.5 * 200 / 199 * (1 - 1e-3) / (1 - 1e-2), 1e-14);
-    mf_target_convert(&target, &square, &binary, 1, g, error);
+    mf_target_rdf_convert(&target, &square, &binary, 1, g, error);
     assert_close(g[2], 1.5 * (1 - 1e-3) / (1 - 1e-2), 1e-14);
-    mf_target_clear(&target);
+    mf_target_rdf_clear(&target);
 }
 
 static void test_target_read_refuses_what_votca_does_not_write(void **state) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "input/targets.h"
+#include "input/target_files.h"
 
 #include "shared/is_close.h"
 #include "shared/temporary_folder.h"
@@ -30,7 +30,7 @@ static void put(void **state, const char *name, const char *text) {
 }
 
 /// Read the targets in `members`; the status is that of the document.
-static enum status read(void **state, const char *members, struct targets *targets) {
+static enum status read(void **state, const char *members, struct target_files *targets) {
     char text[1024];
     struct json_document *document;
     const int length = snprintf(text, sizeof text, "{\"target\": {%s}}", members);
@@ -38,8 +38,8 @@ static enum status read(void **state, const char *members, struct targets *targe
     assert_ok(
         mf_json_open(&document, temporary_folder_write(*state, "a.json", text, (size_t)length)));
     struct json_object root = mf_json_root(document);
-    assert_ok(mf_targets_read(targets, &root, &box,
-                              &(struct composition){.types = 1, .count = {100}}, &units));
+    assert_ok(mf_target_files_read(targets, &root, &box,
+                                   &(struct composition){.types = 1, .count = {100}}, &units));
     mf_json_finish(&root);
     return mf_json_close(document, STATUS_OK);
 }
@@ -52,36 +52,36 @@ static void write_tables(void **state) {
 }
 
 static void test_targets_read_takes_all_kinds(void **state) {
-    struct targets t;
-    struct goals fitted, compared;
+    struct target_files t;
+    struct targets fitted, compared;
     write_tables(state);
     assert_ok(read(state, RDF ", " ETD ", " VACF ", " MSD ", " NUMBERS, &t));
-    mf_targets_goals(&t, true, &fitted, &compared);
-    assert_int_equal(mf_goals_count(&compared), 6);
-    assert_int_equal(mf_goals_count(&fitted), 5);
-    assert_false(goals_ask(&fitted, GOAL_PRESSURE));
-    assert_close(*compared.goal[GOAL_PRESSURE].value, -3, 0);
-    assert_close(*fitted.goal[GOAL_DIFFUSION].value, 0.02, 0);
-    assert_close(*fitted.goal[GOAL_DIFFUSION].error, 0.001, 0);
-    assert_close(fitted.goal[GOAL_DIFFUSION].weight, 7, 0);
-    assert_close(fitted.goal[GOAL_RDF].weight, 0, 0);
-    assert_int_equal(fitted.goal[GOAL_RDF].count, 4);
-    assert_int_equal(fitted.goal[GOAL_ETD].count, 6);
-    assert_close(fitted.goal[GOAL_ETD].value[2], 0.9, 0);
-    assert_true(isnan(fitted.goal[GOAL_ETD].value[4]));
+    mf_target_files_targets(&t, true, &fitted, &compared);
+    assert_int_equal(mf_targets_count(&compared), 6);
+    assert_int_equal(mf_targets_count(&fitted), 5);
+    assert_false(targets_ask(&fitted, TARGET_PRESSURE));
+    assert_close(*compared.target[TARGET_PRESSURE].value, -3, 0);
+    assert_close(*fitted.target[TARGET_DIFFUSION].value, 0.02, 0);
+    assert_close(*fitted.target[TARGET_DIFFUSION].error, 0.001, 0);
+    assert_close(fitted.target[TARGET_DIFFUSION].weight, 7, 0);
+    assert_close(fitted.target[TARGET_RDF].weight, 0, 0);
+    assert_int_equal(fitted.target[TARGET_RDF].count, 4);
+    assert_int_equal(fitted.target[TARGET_ETD].count, 6);
+    assert_close(fitted.target[TARGET_ETD].value[2], 0.9, 0);
+    assert_true(isnan(fitted.target[TARGET_ETD].value[4]));
     assert_int_equal(t.etd.left_out, 1);
     assert_close(fitted.etd_interval, 0.1, 1e-12);
     assert_close(fitted.etd_origins, 1, 1e-12);
-    assert_int_equal(fitted.goal[GOAL_VACF].count, 3);
-    assert_close(fitted.goal[GOAL_VACF].value[2], -0.1, 0);
-    assert_close(fitted.goal[GOAL_MSD].error[2], 0.002, 0);
+    assert_int_equal(fitted.target[TARGET_VACF].count, 3);
+    assert_close(fitted.target[TARGET_VACF].value[2], -0.1, 0);
+    assert_close(fitted.target[TARGET_MSD].error[2], 0.002, 0);
     assert_close(fitted.motion_interval, 0.1, 1e-12);
     assert_int_equal(fitted.motion_lags, 2);
-    mf_targets_clear(&t);
+    mf_target_files_clear(&t);
 }
 
 static void test_targets_read_takes_the_columns_of_a_curve(void **state) {
-    struct targets t;
+    struct target_files t;
     put(state, "v.tsv", "9 0 8 3\n9 0.5 8 2\n9 1 8 1\n");
     assert_ok(read(state,
                    "\"vacf\": {\"file\": \"v.tsv\", \"time_column\": 2, \"value_column\": 4, "
@@ -90,42 +90,43 @@ static void test_targets_read_takes_the_columns_of_a_curve(void **state) {
     assert_close(t.vacf.interval, 0.5, 0);
     assert_close(t.vacf.value[2], 1, 0);
     assert_close(t.vacf.error[2], 0, 0);
-    mf_targets_clear(&t);
+    mf_target_files_clear(&t);
 }
 
 /// The window of motion is that of a curve, else that of the escape times, else its own.
 static void test_targets_goals_measure_motion_as_the_targets_do(void **state) {
-    struct targets t;
-    struct goals fitted, compared;
+    struct target_files t;
+    struct targets fitted, compared;
     write_tables(state);
     put(state, "v.tsv", "0 3 0\n0.3 2 0\n0.6 1 0\n0.9 1 0\n");
     assert_ok(read(state, ETD ", " VACF, &t));
-    mf_targets_goals(&t, true, &fitted, &compared);
+    mf_target_files_targets(&t, true, &fitted, &compared);
     assert_close(compared.motion_interval, 0.3, 1e-12);
     assert_int_equal(compared.motion_lags, 3);
-    assert_true(goals_ask(&compared, GOAL_DIFFUSION) && !goals_ask(&fitted, GOAL_DIFFUSION));
-    assert_true(isnan(*compared.goal[GOAL_DIFFUSION].value));
-    mf_targets_goals(&t, false, &fitted, &compared);
-    assert_false(goals_ask(&compared, GOAL_DIFFUSION));
-    mf_targets_clear(&t);
+    assert_true(targets_ask(&compared, TARGET_DIFFUSION) &&
+                !targets_ask(&fitted, TARGET_DIFFUSION));
+    assert_true(isnan(*compared.target[TARGET_DIFFUSION].value));
+    mf_target_files_targets(&t, false, &fitted, &compared);
+    assert_false(targets_ask(&compared, TARGET_DIFFUSION));
+    mf_target_files_clear(&t);
     assert_ok(read(state, ETD, &t));
-    mf_targets_goals(&t, true, &fitted, &compared);
+    mf_target_files_targets(&t, true, &fitted, &compared);
     assert_close(compared.motion_interval, 0.1, 1e-12);
     assert_int_equal(compared.motion_lags, 2);
-    mf_targets_clear(&t);
+    mf_target_files_clear(&t);
     assert_ok(read(state, "\"diffusion\": {\"value\": 1}", &t));
-    mf_targets_goals(&t, true, &fitted, &compared);
+    mf_target_files_targets(&t, true, &fitted, &compared);
     assert_close(compared.motion_interval * (double)compared.motion_lags, 1.6, 1e-12);
-    mf_targets_clear(&t);
+    mf_target_files_clear(&t);
 }
 
 static void assert_refused(void **state, const char *members, const char *first,
                            const char *second) {
-    struct targets t;
+    struct target_files t;
     assert_fails(read(state, members, &t), STATUS_BAD_INPUT, first);
     assert_contains(mf_status_message(), second);
     assert_contains(mf_status_message(), "a.json: target");
-    mf_targets_clear(&t);
+    mf_target_files_clear(&t);
 }
 
 static void refuse_curve(void **state, const char *table, const char *part) {
@@ -150,13 +151,13 @@ static void test_targets_read_refuses_what_is_no_function_of_time(void **state) 
 }
 
 static void test_targets_read_takes_curves_without_errors(void **state) {
-    struct targets t;
+    struct target_files t;
     put(state, "v.tsv", "t,vacf\n0,3\n0.1,2\n0.2,1\n");
     assert_ok(read(state, VACF, &t));
     assert_int_equal(t.vacf.times, 3);
     assert_close(t.vacf.value[1], 2, 0);
     assert_close(t.vacf.error[1], 0, 0);
-    mf_targets_clear(&t);
+    mf_target_files_clear(&t);
     assert_refused(state, "\"vacf\": {\"file\": \"v.tsv\", \"error_column\": 3}",
                    "v.tsv:2: 2 columns, at least 3", "\"error_column\"; 0 if");
 }
@@ -183,38 +184,38 @@ static void test_targets_read_tells_what_is_wrong_and_where(void **state) {
 }
 
 static void test_targets_check_steps_tells_the_time_step_that_would_do(void **state) {
-    struct targets t;
+    struct target_files t;
     write_tables(state);
     assert_ok(read(state, VACF, &t));
-    assert_ok(mf_targets_check_steps(&t, 0.1));
-    assert_ok(mf_targets_check_steps(&t, 0.025));
-    assert_fails(mf_targets_check_steps(&t, 0.03), STATUS_BAD_INPUT, "v.tsv");
+    assert_ok(mf_target_files_check_steps(&t, 0.1));
+    assert_ok(mf_target_files_check_steps(&t, 0.025));
+    assert_fails(mf_target_files_check_steps(&t, 0.03), STATUS_BAD_INPUT, "v.tsv");
     assert_contains(mf_status_message(), "0.025 would do");
-    assert_fails(mf_targets_check_steps(&t, 0.15), STATUS_BAD_INPUT, "0.1 would do");
-    mf_targets_clear(&t);
+    assert_fails(mf_target_files_check_steps(&t, 0.15), STATUS_BAD_INPUT, "0.1 would do");
+    mf_target_files_clear(&t);
     assert_ok(read(state, ETD, &t));
-    assert_fails(mf_targets_check_steps(&t, 0.03), STATUS_BAD_INPUT,
+    assert_fails(mf_target_files_check_steps(&t, 0.03), STATUS_BAD_INPUT,
                  "a time step of 0.025 or 0.0333");
-    mf_targets_clear(&t);
+    mf_target_files_clear(&t);
 }
 
 static void test_targets_digest_knows_every_number(void **state) {
-    struct targets t;
+    struct target_files t;
     uint64_t before = 1, after;
     write_tables(state);
     assert_ok(read(state, RDF ", " ETD ", " VACF ", " MSD, &t));
-    mf_targets_digest(&t, &before);
+    mf_target_files_digest(&t, &before);
     double *const numbers[] = {t.rdf_g,      t.rdf_error,  t.etd.survival, t.etd.error,
                                t.vacf.value, t.vacf.error, t.msd.value,    t.msd.error};
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
         const double good = numbers[k][2];
         numbers[k][2] = good + 1;
         after = 1;
-        mf_targets_digest(&t, &after);
+        mf_target_files_digest(&t, &after);
         assert_true(after != before);
         numbers[k][2] = good;
     }
-    mf_targets_clear(&t);
+    mf_target_files_clear(&t);
 }
 
 #define TEST(name)                                                                                 \

@@ -9,12 +9,12 @@
 #include "input/units.h"
 
 /// Of the file: columns in units of the scene, or a .dist.tgt of VOTCA.
-enum { TARGET_COLUMNS, TARGET_VOTCA };
+enum { TARGET_RDF_COLUMNS, TARGET_RDF_VOTCA };
 
 /// "rdf" among the targets of a run file.
-struct target_parameters {
+struct target_rdf_parameters {
     char file[FIELD_TEXT_SIZE];
-    int format;                               ///< TARGET_…
+    int format;                               ///< TARGET_RDF_…
     double cutoff;                            ///< bins beyond are left out; 0: none [λ]
     int64_t r_column, g_column, error_column; ///< from 1; error_column 0: none, −1: 3 or none
     double bin_width;  ///< of bins that rows are joined to; 0: by itself [λ]
@@ -22,10 +22,10 @@ struct target_parameters {
     double normalisation, normalisation_error; ///< of g; 0: found, with this width about 1
 };
 
-extern const struct field mf_target_fields[];
+extern const struct field mf_target_rdf_fields[];
 
-struct target {
-    struct target_parameters parameters;
+struct target_rdf {
+    struct target_rdf_parameters parameters;
     struct rdf_bins bins;
     double *g, *error;       ///< shape [bins.count]
     size_t joined;           ///< rows of the file that make a bin
@@ -37,25 +37,26 @@ struct target {
 /// Read the members of {"file": …}. Faults (gaps, negative values, …) go to the document and leave
 /// the target empty. `units` convert VOTCA's nm; `dimensions` are those of space. Errors that the
 /// file does not give are estimated from the scatter of its rows, which are then joined to bins.
-/// Fails: NO_MEMORY. Tested: test_target.
-enum status mf_target_read(struct target *target, struct json_object *object,
-                           const struct units *units, int dimensions) MUST_USE;
+/// Fails: NO_MEMORY. Tested: test_target_rdf.
+enum status mf_target_rdf_read(struct target_rdf *target, struct json_object *object,
+                               const struct units *units, int dimensions) MUST_USE;
 
 /// The column with the errors of a table whose values stand in the columns `first` and `second`.
 /// @param[in]  asked   in the run file; −1: 3 if there are so many columns, else none
 /// @param[out] column  from 1; 0: there is none
 /// Fails: BAD_INPUT if the table has fewer columns than `asked`.
-enum status mf_target_error_column(int64_t asked, int64_t first, int64_t second,
-                                   const struct data_table *table, const char *file,
-                                   int64_t *column) MUST_USE;
+enum status mf_target_rdf_error_column(int64_t asked, int64_t first, int64_t second,
+                                       const struct data_table *table, const char *file,
+                                       int64_t *column) MUST_USE;
 
 /// g and its errors in the numbers of the scene, by mf_finite_size_factor_of. VOTCA's g of like
 /// pairs is normalised by N_a², and needs 1/(1 − 1/N_a) with the N_a that was measured.
 /// @param[in]  box, composition  of the scene
 /// @param[in]  pair              the kind of pairs of this target
 /// @param[out] g, error          shape [bins.count]
-/// Tested: test_target, test_targets_mixture.
-void mf_target_convert(const struct target *target, const struct box *box,
-                       const struct composition *composition, int pair, double *g, double *error);
+/// Tested: test_target_rdf, test_target_files_mixture.
+void mf_target_rdf_convert(const struct target_rdf *target, const struct box *box,
+                           const struct composition *composition, int pair, double *g,
+                           double *error);
 
-void mf_target_clear(struct target *target);
+void mf_target_rdf_clear(struct target_rdf *target);

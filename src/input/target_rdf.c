@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "input/target.h"
+#include "input/target_rdf.h"
 
 #include "base/memory.h"
 #include "io/data_table.h"
@@ -19,12 +19,12 @@ static const double assumed_error = 0.002;
 
 static const char *const formats[] = {"columns", "votca", NULL};
 
-#define MEMBER(name) .offset = offsetof(struct target_parameters, name)
+#define MEMBER(name) .offset = offsetof(struct target_rdf_parameters, name)
 #define COLUMN .maximum = 1000, .unit = ""
-const struct field mf_target_fields[] = {
+const struct field mf_target_rdf_fields[] = {
     {"file", FIELD_FILE, MEMBER(file), .required = true, .unit = "",
      .help = "g(r) at equally spaced bin centres, in units of the scene"},
-    {"format", FIELD_CHOICE, MEMBER(format), .choices = formats, .initial = TARGET_COLUMNS,
+    {"format", FIELD_CHOICE, MEMBER(format), .choices = formats, .initial = TARGET_RDF_COLUMNS,
      .unit = "",
      .help = "votca: a .dist.tgt in nm, by the scene's \"units\"; its columns are known"},
     {"cutoff", FIELD_NUMBER, MEMBER(cutoff), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
@@ -61,9 +61,9 @@ static double cell(const struct data_table *table, size_t row, int64_t column) {
     return table->values[row * table->columns + (size_t)column - 1];
 }
 
-enum status mf_target_error_column(int64_t asked, int64_t first, int64_t second,
-                                   const struct data_table *table, const char *file,
-                                   int64_t *column) {
+enum status mf_target_rdf_error_column(int64_t asked, int64_t first, int64_t second,
+                                       const struct data_table *table, const char *file,
+                                       int64_t *column) {
     enum { USUAL = 3 };
     const int64_t columns = (int64_t)table->columns;
     *column = asked;
@@ -79,8 +79,8 @@ enum status mf_target_error_column(int64_t asked, int64_t first, int64_t second,
 }
 
 /// Errors are small beside g, and they do not add up.
-static enum status check_errors(const struct target_parameters *p, const struct target_rows *rows,
-                                int64_t column) {
+static enum status check_errors(const struct target_rdf_parameters *p,
+                                const struct target_rows *rows, int64_t column) {
     static const double structure = 0.1, largest_share = 0.5;
     size_t large = 0, seen = 0;
     bool grows = rows->error[rows->count - 1] > 1;
@@ -103,15 +103,15 @@ static enum status check_errors(const struct target_parameters *p, const struct 
     return STATUS_OK;
 }
 
-static enum status read_columns(const struct target_parameters *p, struct target_rows *rows,
+static enum status read_columns(const struct target_rdf_parameters *p, struct target_rows *rows,
                                 bool *has_errors) {
     enum status status = STATUS_OK;
     struct data_table table = {0};
     int64_t error_column;
     CHECK(mf_data_table_read(&table, p->file,
                              (size_t)(p->r_column > p->g_column ? p->r_column : p->g_column)));
-    CHECK(mf_target_error_column(p->error_column, p->r_column, p->g_column, &table, p->file,
-                                 &error_column));
+    CHECK(mf_target_rdf_error_column(p->error_column, p->r_column, p->g_column, &table, p->file,
+                                     &error_column));
     CHECK(mf_data_table_check_increasing(&table, p->file, (size_t)p->r_column - 1, 0));
     CHECK(mf_target_rows_allocate(rows, table.rows));
     for (size_t k = 0; k < table.rows; k++) {
@@ -129,7 +129,7 @@ done:
 }
 
 /// From nm.
-static enum status read_votca(const struct target_parameters *p, const struct units *units,
+static enum status read_votca(const struct target_rdf_parameters *p, const struct units *units,
                               struct target_rows *rows, bool *has_errors) {
     enum status status = STATUS_OK;
     struct votca_table table = {0};
@@ -154,7 +154,7 @@ done:
 }
 
 /// Leave out what lies beyond the cutoff.
-static void cut(const struct target_parameters *p, struct target_rows *rows) {
+static void cut(const struct target_rdf_parameters *p, struct target_rows *rows) {
     // One part in 10^9 forgives a rounded cutoff.
     while (p->cutoff > 0 && rows->count > 0 && rows->r[rows->count - 1] > p->cutoff * (1 + 1e-9))
         rows->count--;
@@ -230,7 +230,7 @@ static enum status check_values(const struct target_rows *rows, const char *file
 
 /// Join the rows to bins; errors that the file does not give come from the scatter of the rows, or,
 /// where that cannot be told, are those that are assumed of the bins.
-static enum status join(struct target *target, struct target_rows *rows, bool has_errors) {
+static enum status join(struct target_rdf *target, struct target_rows *rows, bool has_errors) {
     double scatter = NAN;
     if (!has_errors)
         TRY(mf_target_rows_scatter(rows, &scatter));
@@ -248,20 +248,20 @@ static enum status join(struct target *target, struct target_rows *rows, bool ha
 }
 
 /// Rows that make one bin.
-static size_t rows_of_a_bin(const struct target_parameters *p, const struct rdf_bins *bins) {
+static size_t rows_of_a_bin(const struct target_rdf_parameters *p, const struct rdf_bins *bins) {
     if (p->bin_width > 0)
         return (size_t)fmin(fmax(1, round(p->bin_width / bins->width)), (double)bins->count);
     return (size_t)ceil((double)bins->count / most_bins);
 }
 
-static enum status load(struct target *target, const struct units *units, int dimensions) {
+static enum status load(struct target_rdf *target, const struct units *units, int dimensions) {
     enum status status = STATUS_OK;
-    const struct target_parameters *p = &target->parameters;
+    const struct target_rdf_parameters *p = &target->parameters;
     struct target_rows rows = {.dimensions = dimensions};
     struct rdf_bins bins;
     bool has_errors = false;
-    CHECK(p->format == TARGET_VOTCA ? read_votca(p, units, &rows, &has_errors)
-                                    : read_columns(p, &rows, &has_errors));
+    CHECK(p->format == TARGET_RDF_VOTCA ? read_votca(p, units, &rows, &has_errors)
+                                        : read_columns(p, &rows, &has_errors));
     leave_out_half_bin(&rows);
     target->tail = mf_target_rows_tail(&rows);
     cut(p, &rows);
@@ -278,15 +278,15 @@ done:
     return status;
 }
 
-enum status mf_target_read(struct target *target, struct json_object *object,
-                           const struct units *units, int dimensions) {
-    *target = (struct target){0};
+enum status mf_target_rdf_read(struct target_rdf *target, struct json_object *object,
+                               const struct units *units, int dimensions) {
+    *target = (struct target_rdf){0};
     const size_t faults = mf_json_fault_count(object->document);
-    mf_json_fields(object, mf_target_fields, &target->parameters);
+    mf_json_fields(object, mf_target_rdf_fields, &target->parameters);
     mf_json_finish(object);
     if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
-    if (target->parameters.format == TARGET_VOTCA && !mf_units_known(units)) {
+    if (target->parameters.format == TARGET_RDF_VOTCA && !mf_units_known(units)) {
         mf_json_fault(object, "format", "VOTCA's nm need \"units\" in the scene");
         return STATUS_OK;
     }
@@ -306,13 +306,14 @@ static double possible_share(const struct composition *composition, int pair, do
     return type[0] == type[1] ? 1 - 1 / (share * (double)composition->count[type[0]]) : 1;
 }
 
-void mf_target_convert(const struct target *target, const struct box *box,
-                       const struct composition *composition, int pair, double *g, double *error) {
-    const struct target_parameters *p = &target->parameters;
+void mf_target_rdf_convert(const struct target_rdf *target, const struct box *box,
+                           const struct composition *composition, int pair, double *g,
+                           double *error) {
+    const struct target_rdf_parameters *p = &target->parameters;
     const double to = (double)mf_composition_particles(composition);
     const double from = p->particles > 0 ? (double)p->particles : to;
     const double votca =
-        p->format == TARGET_VOTCA ? 1 / possible_share(composition, pair, from) : 1;
+        p->format == TARGET_RDF_VOTCA ? 1 / possible_share(composition, pair, from) : 1;
     for (size_t k = 0; k < target->bins.count; k++) {
         g[k] = votca * target->g[k];
         error[k] = votca * target->error[k];
@@ -325,8 +326,8 @@ void mf_target_convert(const struct target *target, const struct box *box,
     }
 }
 
-void mf_target_clear(struct target *target) {
+void mf_target_rdf_clear(struct target_rdf *target) {
     mf_memory_free(target->g);
     mf_memory_free(target->error);
-    *target = (struct target){0};
+    *target = (struct target_rdf){0};
 }

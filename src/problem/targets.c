@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "problem/targets.h"
+
+#include <math.h>
+
+const char *const mf_targets_names[TARGETS] = {"rdf", "etd",       "vacf",
+                                               "msd", "diffusion", "pressure"};
+
+/// Values of an observable that count as independent, for the variance of its rms: bins of g(r) and
+/// cells of E(t, r_0) next to each other see the same pairs.
+static const double most_independent = 10;
+
+/// Weight of a target without errors: as if they were this [unit of the target].
+static const double assumed_error = 0.01;
+
+size_t mf_targets_count(const struct targets *targets) {
+    size_t count = 0;
+    for (int kind = 0; kind < TARGETS; kind++)
+        count += targets_ask(targets, kind);
+    return count;
+}
+
+/// Variance of an rms e over n independent values, each with the variance s²: e² has 4 e² s²/n +
+/// 2 s⁴/n, and e that over (2e)².
+static double rms_variance(double rms, double square, double count) {
+    const double independent = fmin(count, most_independent);
+    return (square + 0.5 * square * square / fmax(rms * rms, 1e-300)) / independent;
+}
+
+struct target_distance mf_targets_distance(const struct target *target, const double *value,
+                                           const double *error) {
+    struct target_distance distance = {0};
+    double squares = 0, noise = 0, own = 0;
+    for (size_t k = 0; k < target->count; k++) {
+        if (!isfinite(target->value[k]) || !isfinite(value[k]))
+            continue;
+        const double difference = value[k] - target->value[k];
+        const double target_error = isfinite(target->error[k]) ? target->error[k] : 0;
+        const double own_error = isfinite(error[k]) ? error[k] : 0;
+        squares += difference * difference;
+        noise += own_error * own_error + target_error * target_error;
+        own += own_error * own_error;
+        distance.count++;
+    }
+    const double count = (double)distance.count;
+    // Nothing in common with the target is as bad as a failure.
+    distance.rms = count > 0 ? sqrt(squares / count) : INFINITY;
+    if (count > 0) {
+        distance.noise = sqrt(noise / count);
+        distance.variance = rms_variance(distance.rms, own / count, count);
+    }
+    return distance;
+}
+
+double mf_targets_weight(const struct target *target) {
+    if (target->weight > 0)
+        return target->weight;
+    double sum = 0, count = 0;
+    for (size_t k = 0; k < target->count; k++)
+        if (isfinite(target->error[k]) && target->error[k] > 0) {
+            sum += target->error[k] * target->error[k];
+            count += 1;
+        }
+    return 1 / (count > 0 ? sqrt(sum / count) : assumed_error);
+}
+
+static double combine(const struct targets *targets, const struct target_distance *distance,
+                      double (*part)(const struct target_distance *)) {
+    const size_t count = mf_targets_count(targets);
+    double sum = 0;
+    for (int kind = 0; kind < TARGETS; kind++) {
+        if (!targets_ask(targets, kind))
+            continue;
+        const double weight = count > 1 ? mf_targets_weight(&targets->target[kind]) : 1;
+        const double term = weight * part(&distance[kind]);
+        sum += term * term / (double)count;
+    }
+    return sqrt(sum);
+}
+
+double mf_targets_variance(const struct targets *targets, const struct target_distance *distance) {
+    const size_t count = mf_targets_count(targets);
+    const double error = mf_targets_error(targets, distance);
+    double sum = 0;
+    for (int kind = 0; kind < TARGETS; kind++) {
+        if (!targets_ask(targets, kind))
+            continue;
+        const double weight = count > 1 ? mf_targets_weight(&targets->target[kind]) : 1;
+        const double slope =
+            error > 0 ? weight * weight * distance[kind].rms / ((double)count * error) : weight;
+        sum += slope * slope * distance[kind].variance;
+    }
+    return sum;
+}
+
+static double rms_of(const struct target_distance *distance) {
+    return distance->rms;
+}
+
+static double noise_of(const struct target_distance *distance) {
+    return distance->noise;
+}
+
+double mf_targets_error(const struct targets *targets, const struct target_distance *distance) {
+    return combine(targets, distance, rms_of);
+}
+
+double mf_targets_noise(const struct targets *targets, const struct target_distance *distance) {
+    return combine(targets, distance, noise_of);
+}
+
+/// Blocks of E(t, r_0) along each axis.
+enum { BLOCKS = 10 };
+
+static size_t features_of(const struct targets *targets, enum target_kind kind) {
+    return kind == TARGET_ETD && targets_ask(targets, kind) ? BLOCKS * BLOCKS
+                                                            : targets->target[kind].count;
+}
+
+size_t mf_targets_features(const struct targets *targets) {
+    size_t count = 0;
+    for (int kind = 0; kind < TARGETS; kind++)
+        count += features_of(targets, kind);
+    return count;
+}
+
+/// Sums over what is known of the target in one feature.
+struct feature {
+    double count, value, square;
+};
+
+/// What was not measured of a cell that the target knows is taken to be the target: a mean over the
+/// other cells alone would differ from the target's without any difference between the two.
+static void add_cell(struct feature *feature, const struct target *target, const double *observed,
+                     size_t cell) {
+    const double wanted = target->value[cell];
+    const double error = isfinite(target->error[cell]) ? target->error[cell] : 0;
+    if (!isfinite(wanted))
+        return;
+    feature->count += 1;
+    feature->value += observed && isfinite(observed[cell]) ? observed[cell] : wanted;
+    feature->square += error * error;
+}
+
+/// One block of the cells of E; those at time 0 are no measurement.
+static struct feature block_of(const struct targets *targets, const double *observed,
+                               size_t block) {
+    const size_t bins = (size_t)targets->etd.bins, times = (size_t)targets->etd.times - 1;
+    const size_t row = block / BLOCKS, column = block % BLOCKS;
+    struct feature feature = {0};
+    for (size_t t = times * row / BLOCKS; t < times * (row + 1) / BLOCKS; t++)
+        for (size_t b = bins * column / BLOCKS; b < bins * (column + 1) / BLOCKS; b++)
+            add_cell(&feature, &targets->target[TARGET_ETD], observed, (t + 1) * bins + b);
+    return feature;
+}
+
+void mf_targets_take_features(const struct targets *targets, double *const *observed, double *value,
+                              double *error) {
+    size_t n = 0;
+    for (int kind = 0; kind < TARGETS; kind++)
+        for (size_t k = 0; k < features_of(targets, kind); k++, n++) {
+            const double *of = observed ? observed[kind] : NULL;
+            struct feature feature = {0};
+            if (kind == TARGET_ETD)
+                feature = block_of(targets, of, k);
+            else
+                add_cell(&feature, &targets->target[kind], of, k);
+            value[n] = feature.count > 0 ? feature.value / feature.count : 0;
+            if (error)
+                error[n] = feature.count > 0 ? sqrt(feature.square / feature.count) : 0;
+        }
+}

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What a fit is to reproduce: measured observables, and how far a simulation is from them.
+#pragma once
+
+#include "observe/etd.h"
+#include "observe/rdf.h"
+
+enum target_kind {
+    TARGET_RDF,
+    TARGET_ETD,
+    TARGET_VACF,
+    TARGET_MSD,
+    TARGET_DIFFUSION,
+    TARGET_PRESSURE,
+    TARGETS
+};
+
+/// Names in run files and tables, shape [TARGETS].
+extern const char *const mf_targets_names[TARGETS];
+
+/// Measured values of one observable. Borrowed.
+struct target {
+    size_t count;        ///< 0: not asked for
+    const double *value; ///< shape [count]; NaN: not known, left out
+    const double *error; ///< standard errors, shape [count]; NaN: not known, left out
+    double weight;       ///< of its error in the sum; 0: one over the rms of its errors
+};
+
+/// Everything that is asked for, and how it was measured.
+struct targets {
+    struct target target[TARGETS];
+    struct rdf_bins bins;   ///< of g(r)
+    struct etd_grid etd;    ///< of E(t, r_0); its target has shape [times, bins]
+    double etd_interval;    ///< between its times [τ]
+    double etd_origins;     ///< between time origins [τ]
+    double motion_interval; ///< of VACF, MSD and D [τ]
+    size_t motion_lags;     ///< intervals in the window of VACF, MSD and D
+};
+
+/// Distance of measured values from one target.
+struct target_distance {
+    double rms;      ///< of measured − wanted over what is known of both
+    double noise;    ///< rms of their standard errors
+    double variance; ///< of rms by the noise of what was measured: another measurement differs so
+    size_t count;    ///< values compared
+};
+
+static inline bool targets_ask(const struct targets *targets, enum target_kind kind) {
+    return targets->target[kind].count > 0;
+}
+
+/// Number of targets that are asked for.
+size_t mf_targets_count(const struct targets *targets);
+
+/// @param[in] value, error  shape [target->count]; NaN: not measured
+struct target_distance mf_targets_distance(const struct target *target, const double *value,
+                                           const double *error);
+
+/// Weight of a target in the sum: its own, or one over the rms of its standard errors.
+double mf_targets_weight(const struct target *target);
+
+/// All distances in one number: that of a single target as it is; of several the weighted rms,
+/// sqrt(Σ (w rms)² / count), in which 1 is as far as the statistical errors of the targets alone.
+double mf_targets_error(const struct targets *targets, const struct target_distance *distance);
+
+/// Variance of that sum.
+double mf_targets_variance(const struct targets *targets, const struct target_distance *distance);
+
+/// The same sum over the noise of each.
+double mf_targets_noise(const struct targets *targets, const struct target_distance *distance);
+
+/// @name Features: the targets in few enough numbers for a linear model
+/// g(r), VACF, MSD, D and pressure as they are; E(t, r_0) as means over blocks of cells, 10 by 10.
+
+size_t mf_targets_features(const struct targets *targets);
+
+/// Features of observed values, or of the targets themselves if `observed` is NULL. What is not
+/// known of the targets is 0 in both, and what was not observed is as the target. Errors are rms
+/// over a block, as if its cells were one.
+/// @param[in]  observed      shape [TARGETS][target.count], or NULL
+/// @param[out] value, error  shape [mf_targets_features]; error may be NULL with observed values
+void mf_targets_take_features(const struct targets *targets, double *const *observed, double *value,
+                              double *error);
