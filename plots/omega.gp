@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The dissipative weight that was found with its 95 % band, and the true one if it is known.
-# Reads omega.tsv: r, omega, omega_error (nan where not known), and perhaps truth, r[nm]; and weight_flat.tsv
+# The friction weight that was found with its 95 % band, and the true one if it is known.
+# Reads omega.tsv: r, omega, omega_error (nan where not known), and perhaps truth, r[nm]; and omega_flat.tsv
 # if it is there: the change that the data say least of, on the same r.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
@@ -22,11 +22,11 @@ show_band = !has_numbers("omega.tsv", 3) ? "" : "'omega.tsv' " . \
 show_truth = !truth ? "" : ", 'omega.tsv' using ($1 * nm):(column(truth)) " . \
     "with lines title 'truth' @true_line"
 
-both = '"< paste omega.tsv weight_flat.tsv" using ($1 * nm):'
+both = '"< paste omega.tsv omega_flat.tsv" using ($1 * nm):'
 offset = 2 + int(system("awk -F '\t' '/^#/ { print NF; exit }' omega.tsv"))
 flat(sign) = sprintf(", %s($2 %s 1.96 * $%d) with lines linewidth 1.2 dashtype 3 " . \
     "linecolor rgb ink", both, sign, offset)
-show_flat = !has("weight_flat.tsv") ? "" : \
+show_flat = !has("omega_flat.tsv") ? "" : \
     flat("-") . " title 'flattest'" . flat("+") . " notitle"
 
 do for [kind in kinds] {

@@ -23,7 +23,7 @@ MESOFIT_API void mesofit_optimiser_free(struct mesofit_optimiser *optimiser);
 /** The candidates to be measured next, shape [*count, dimensions], which belong to the optimiser;
  *  *count is 0 when it has finished. Fails: NO_MEMORY. */
 MESOFIT_API enum mesofit_status mesofit_optimiser_ask(struct mesofit_optimiser *optimiser,
-                                                      const double **candidates, size_t *count);
+                                                      const double **population, size_t *count);
 
 /** Their errors, shape [count], and the variances of these by noise, or NULL if they are exact.
  *  What could not be measured is infinite. Fails: NO_MEMORY. */

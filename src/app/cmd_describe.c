@@ -28,7 +28,7 @@ static const struct inner run_objects[] = {
 };
 
 static const struct inner target_objects[] = {
-    {"rdf", "g(r); in a mixture one for each kind of pairs, as \"A-B\"", "rdf-target"},
+    {"rdf", "g(r); in a mixture one for each pair type, as \"A-B\"", "rdf-target"},
     {"etd", "escape times of pairs", "etd-target"},
     {"vacf", "velocity autocorrelation", "curve-target"},
     {"msd", "mean-square displacement", "curve-target"},
@@ -39,17 +39,17 @@ static const struct inner target_objects[] = {
 
 static const struct inner unknowns_objects[] = {
     {"potential", "Phi(r)", "potential"},
-    {"weight", "omega(r)", "weight"},
+    {"omega", "omega(r)", "omega"},
     {NULL, NULL, NULL},
 };
 
 static const struct inner potential_objects[] = {
-    {"start", "a law to begin with, in a mixture one for each kind of pairs", "conservative"},
+    {"start", "a law to begin with, in a mixture one for each pair type", "conservative"},
     {"truth", "the law that is known to be true, to be compared with", "conservative"},
     {NULL, NULL, NULL},
 };
 
-static const struct inner weight_objects[] = {
+static const struct inner omega_objects[] = {
     {"fixed", "parameters of the curve \"power\" that are not to be found", "fixed"},
     {"start", "a law to begin with", "dissipative"},
     {"truth", "the law that is known to be true, to be compared with", "dissipative"},
@@ -58,9 +58,9 @@ static const struct inner weight_objects[] = {
 
 static const struct inner scene_objects[] = {
     {"particles", "how many, and where", "particles"},
-    {"conservative", "{\"law\": …}, the potential; in a mixture one for each kind of pairs",
+    {"conservative", "{\"law\": …}, the potential; in a mixture one for each pair type",
      "conservative"},
-    {"dissipative", "{\"law\": …}, the weight; likewise", "dissipative"},
+    {"dissipative", "{\"law\": …}, the friction weight; likewise", "dissipative"},
     {"dynamics", "{\"integrator\": …} and its numbers", "dynamics"},
     {"units", "physical units for the results", "units"},
     {"measure", "when to sample; this and the rest in a scene file only", "measure"},
@@ -77,7 +77,7 @@ static const struct {
     const struct inner *objects;
 } contents[] = {
     {"run", run_objects},           {"scene", scene_objects},         {"target", target_objects},
-    {"unknowns", unknowns_objects}, {"potential", potential_objects}, {"weight", weight_objects},
+    {"unknowns", unknowns_objects}, {"potential", potential_objects}, {"omega", omega_objects},
 };
 
 enum { MAX_TOPICS = 64 };
@@ -133,10 +133,10 @@ static const struct topic fixed_topics[] = {
     {"target", "diffusion-target", "\"diffusion\" besides", {mf_target_files_diffusion_fields}},
     {"unknowns", "unknowns", "\"unknowns\" of a run file", {NULL}},
     {"unknowns", "potential", "Phi(r), to be found", {mf_inverse_potential_fields}},
-    {"unknowns", "weight", "omega(r), to be found", {mf_inverse_weight_fields}},
+    {"unknowns", "omega", "omega(r), to be found", {mf_inverse_omega_fields}},
     {"unknowns",
      "fixed",
-     "\"fixed\" of a weight: parameters of the curve \"power\" that are not to be found",
+     "\"fixed\" of a friction weight: parameters of the curve \"power\" that are not to be found",
      {mf_inverse_fixed_fields}},
 };
 
@@ -152,7 +152,7 @@ static size_t collect(struct topic topics[MAX_TOPICS]) {
     size_t n = sizeof fixed_topics / sizeof *fixed_topics;
     memcpy(topics, fixed_topics, sizeof fixed_topics);
     n = add_curves(topics, n, "conservative", mf_curve_potentials);
-    n = add_curves(topics, n, "dissipative", mf_curve_weights);
+    n = add_curves(topics, n, "dissipative", mf_curve_omegas);
     for (size_t k = 0; mf_integrator_list[k]; k++)
         topics[n++] = (struct topic){"dynamics",
                                      mf_integrator_list[k]->name,

@@ -26,8 +26,9 @@ const char *mf_simd_name(void);
 bool mf_simd_select(const char *name);
 
 /// Compile a function once for each instruction set; the loader picks one when the program starts.
-/// For helpers that are plain loops; kernels have a file for each set (pair_avx2.c, close_avx2.c).
-/// Not with a sanitizer, whose functions are not there yet when the loader asks.
+/// For helpers that are plain loops; kernels have a file for each set (pair_avx2.c,
+/// pair_search_avx2.c). Not with a sanitizer, whose functions are not there yet when the loader
+/// asks.
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define SIMD_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else

@@ -168,7 +168,7 @@ done:
 static enum status plan(struct run *run) {
     enum status status = STATUS_OK;
     const struct simulation_setup *setup = &run->scene.scene.setup;
-    const struct pair_law law = {.potential = setup->potential, .weight = setup->weight};
+    const struct pair_law law = {.potential = setup->potential, .omega = setup->omega};
     const size_t points = run->method_count * run->step_count;
     NEW_ARRAY(run->points, points);
     NEW_ARRAY(run->rows, points);
@@ -306,7 +306,7 @@ static enum status report(struct run *run) {
         .reach = run->reach,
         .method = names,
         .methods = run->method_count,
-        .has_weight = run->scene.scene.setup.weight != NULL};
+        .has_omega = run->scene.scene.setup.omega != NULL};
     mf_progress_say(&run->progress, "%s: %.0f s", run->scene.name,
                     mf_progress_seconds(&run->progress));
     if (run->options->json)

@@ -94,7 +94,7 @@ static void print_row(FILE *stream, const struct bench_diagram *diagram,
     print_change(stream, row, BENCH_PRESSURE, 1);
     print_change(stream, row, BENCH_ENERGY, 1);
     print_change(stream, row, BENCH_DIFFUSION, 100 / there[2 * BENCH_DIFFUSION]);
-    if (!diagram->has_weight) {
+    if (!diagram->has_omega) {
         print_change(stream, row, BENCH_TOTAL, 1);
         print_cell(stream, 13, value[BENCH_VALUES + 2 * BENCH_DRIFT],
                    value[BENCH_VALUES + 2 * BENCH_DRIFT + 1], 1);
@@ -116,7 +116,7 @@ static void print_reference(FILE *stream, const struct bench_diagram *diagram) {
     fprintf(stream, ", %.4g tau:\n ", diagram->reference_time);
     for (int q = 0; q < BENCH_DRIFT; q++) {
         char cell[CELL_SIZE];
-        if ((q == BENCH_TOTAL && diagram->has_weight) || !isfinite(value[BENCH_VALUES + 2 * q]))
+        if ((q == BENCH_TOTAL && diagram->has_omega) || !isfinite(value[BENCH_VALUES + 2 * q]))
             continue;
         mf_bench_number_text(cell, sizeof cell, value[BENCH_VALUES + 2 * q],
                              value[BENCH_VALUES + 2 * q + 1]);
@@ -183,10 +183,10 @@ void mf_bench_accuracy_table(FILE *stream, const struct bench_diagram *diagram) 
     fprintf(stream, "%-16s  %7s  %9s  %7s  %11s  %11s  %13s  %13s  %13s  %13s  %13s", "integrator",
             "step", "cpu", "to err.", "|dg|", "rms dg", "dT kinetic", "dT config.", "dP", "dU",
             "dD");
-    fprintf(stream, diagram->has_weight ? "\n" : "  %13s  %13s\n", "dE", "drift of E");
+    fprintf(stream, diagram->has_omega ? "\n" : "  %13s  %13s\n", "dE", "drift of E");
     fprintf(stream, "%-16s  %7s  %9s  %7s  %11s  %11s  %13s  %13s  %13s  %13s  %13s", "", "tau",
             "ms/tau", "s", "largest", "", "%", "%", "kT/lambda^d", "kT", "%");
-    fprintf(stream, diagram->has_weight ? "\n" : "  %13s  %13s\n", "kT", "kT/tau");
+    fprintf(stream, diagram->has_omega ? "\n" : "  %13s  %13s\n", "kT", "kT/tau");
     for (size_t k = 0; k < diagram->rows; k++)
         print_row(stream, diagram, &diagram->row[k]);
     print_reaches(stream, diagram);

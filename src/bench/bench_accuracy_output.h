@@ -18,7 +18,7 @@ struct bench_diagram {
     const struct bench_reach *reach;          ///< of each method
     const char *const *method;                ///< their names
     size_t methods;
-    bool has_weight;
+    bool has_omega;
 };
 
 /// "0.0312(14)": as many digits as the error allows; "-" if there is no number.

@@ -62,7 +62,7 @@ static void scale_velocities(struct simulation *simulation) {
 static enum status equilibrate(struct simulation *simulation) {
     for (int step = 0; step < EQUILIBRATION; step += SCALE_EVERY) {
         TRY(mf_simulation_run(simulation, SCALE_EVERY));
-        if (simulation->setup.weight == NULL)
+        if (simulation->setup.omega == NULL)
             scale_velocities(simulation);
     }
     return STATUS_OK;

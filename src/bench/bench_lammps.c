@@ -52,7 +52,7 @@ const char *mf_bench_lammps_objection(const struct scene *scene) {
     const struct curve_family *family = scene->potential.curve[0].family;
     if (composition_is_mixed(&scene->setup.composition))
         return "it is a mixture";
-    if (scene->weight.curves)
+    if (scene->omega.curves)
         return "Debian's LAMMPS has no pair style with friction and noise";
     if (scene->setup.integrator != &mf_velocity_verlet)
         return "its integrator is not velocity-verlet";

@@ -39,7 +39,7 @@ size_t mf_bench_methods(const struct simulation_setup *setup, struct bench_metho
     size_t count = 0;
     for (size_t k = 0; mf_integrator_list[k] && count + 2 <= BENCH_MOST_METHODS; k++) {
         const struct integrator *integrator = mf_integrator_list[k];
-        if (integrator->dissipative != (setup->weight != NULL))
+        if (integrator->dissipative != (setup->omega != NULL))
             continue;
         const bool predicts = integrator == &mf_dpd_verlet;
         for (size_t l = 0; l < (predicts ? sizeof lambdas / sizeof *lambdas : 1); l++) {
@@ -315,7 +315,7 @@ enum status mf_bench_point_prepare(const struct simulation_setup *setup,
     CHECK(mf_simulation_init(&simulation, &changed, start));
     for (double done = 0; done < time; done += SCALE_EVERY * time_step) {
         CHECK(mf_simulation_run(&simulation, SCALE_EVERY));
-        if (setup->weight == NULL)
+        if (setup->omega == NULL)
             scale_velocities(&simulation);
     }
     const struct particles *particles = &simulation.particles;

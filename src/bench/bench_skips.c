@@ -22,7 +22,7 @@ static enum status time_part(const struct bench_scene *scene, const struct bench
     struct bench_scene changed = *scene;
     struct pair_histogram histogram = {.bins = BINS};
     if (part == WITHOUT_WEIGHT) {
-        changed.scene.setup.weight = NULL;
+        changed.scene.setup.omega = NULL;
         changed.scene.setup.integrator = &mf_velocity_verlet;
     }
     NEW_ARRAY(histogram.counts, NEIGHBOURS_MOST_PARTS * (BINS + 1));
@@ -48,7 +48,7 @@ enum status mf_bench_skips(FILE *out, const struct bench_scene *scene,
             (long long)scene->scene.setup.placement.count, how->isa, how->precision);
     for (int part = PLAIN; part < PARTS; part++) {
         if (part == WITHOUT_WEIGHT &&
-            (scene->scene.setup.weight == NULL || scene->scene.setup.potential == NULL))
+            (scene->scene.setup.omega == NULL || scene->scene.setup.potential == NULL))
             continue;
         TRY(time_part(scene, how, (enum part)part, &rate[part]));
         fprintf(out, "  %-38s %6.0f steps/s  %+4.0f %% of the time\n", names[part], rate[part],

@@ -14,14 +14,14 @@ static double casteljau(double *control, size_t degree, double t) {
     return control[0];
 }
 
-enum status mf_bezier_values(const double *genes, size_t count, const double *t, double *values,
-                             size_t points) {
+enum status mf_bezier_values(const double *coefficients, size_t count, const double *t,
+                             double *values, size_t points) {
     double *control = mf_memory_zeroed(count, sizeof *control);
     if (control == NULL)
         return STATUS_NO_MEMORY;
     for (size_t p = 0; p < points; p++) {
-        memcpy(control, genes, count * sizeof *genes);
-        values[p] = casteljau(control, count - 1, t[p]) - genes[count - 1];
+        memcpy(control, coefficients, count * sizeof *coefficients);
+        values[p] = casteljau(control, count - 1, t[p]) - coefficients[count - 1];
     }
     mf_memory_free(control);
     return STATUS_OK;

@@ -15,8 +15,8 @@ const struct curve_family *const mf_curve_potentials[] = {
     NULL,
 };
 
-const struct curve_family *const mf_curve_weights[] = {
-    &mf_formula_power_weight,
+const struct curve_family *const mf_curve_omegas[] = {
+    &mf_formula_power_omega,
     &mf_sampled_family,
     NULL,
 };

@@ -29,7 +29,7 @@ struct curve {
 extern const struct curve_family *const mf_curve_potentials[];
 
 /// Weights ω(r) that a scene can name, NULL-terminated.
-extern const struct curve_family *const mf_curve_weights[];
+extern const struct curve_family *const mf_curve_omegas[];
 
 /// Family called `name` in `list`, or NULL.
 const struct curve_family *mf_curve_find(const struct curve_family *const *list, const char *name);

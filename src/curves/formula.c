@@ -107,19 +107,19 @@ const struct curve_family mf_formula_gaussian = {
     .cutoff = gaussian_cutoff,
 };
 
-static double power_weight_value(const void *parameters, double r) {
-    const struct formula_power_weight_parameters *p = parameters;
+static double power_omega_value(const void *parameters, double r) {
+    const struct formula_power_omega_parameters *p = parameters;
     if (r <= p->inner_cutoff || r >= p->cutoff)
         return r == 0 && p->inner_cutoff == 0 ? p->sigma : 0;
     return p->sigma * pow(1 - r / p->cutoff, p->exponent);
 }
 
-static double power_weight_cutoff(const void *parameters) {
-    return ((const struct formula_power_weight_parameters *)parameters)->cutoff;
+static double power_omega_cutoff(const void *parameters) {
+    return ((const struct formula_power_omega_parameters *)parameters)->cutoff;
 }
 
-#define WEIGHT(member) .offset = offsetof(struct formula_power_weight_parameters, member)
-static const struct field power_weight_fields[] = {
+#define WEIGHT(member) .offset = offsetof(struct formula_power_omega_parameters, member)
+static const struct field power_omega_fields[] = {
     {"sigma", FIELD_NUMBER, WEIGHT(sigma), .initial = 2.1213203435596424, AT_LEAST_ZERO,
      .unit = "sqrt(mass/time)",
      .help = "omega extrapolated to r = 0; sigma^2 is Groot and "
@@ -133,11 +133,11 @@ static const struct field power_weight_fields[] = {
     FIELD_END,
 };
 
-const struct curve_family mf_formula_power_weight = {
+const struct curve_family mf_formula_power_omega = {
     .name = "power",
     .summary = "omega = sigma (1 - r/r_c)^s for r_0 < r <= r_c, else 0; omega^2 is the friction",
-    .fields = power_weight_fields,
-    .size = sizeof(struct formula_power_weight_parameters),
-    .value = power_weight_value,
-    .cutoff = power_weight_cutoff,
+    .fields = power_omega_fields,
+    .size = sizeof(struct formula_power_omega_parameters),
+    .value = power_omega_value,
+    .cutoff = power_omega_cutoff,
 };

@@ -19,7 +19,7 @@ extern const struct curve_family mf_formula_gaussian;
 
 /// ω = σ(1 − r/r_c)^s for r_0 < r ≤ r_c, else 0. ω² is the friction: in the notation of Groot and
 /// Warren γ w_D = ω², so γ = 4.5 is σ = sqrt(4.5) here.
-extern const struct curve_family mf_formula_power_weight;
+extern const struct curve_family mf_formula_power_omega;
 
 struct formula_lennard_jones_parameters {
     double epsilon, sigma, cutoff;
@@ -33,6 +33,6 @@ struct formula_gaussian_parameters {
     double epsilon, sigma, cutoff;
 };
 
-struct formula_power_weight_parameters {
+struct formula_power_omega_parameters {
     double sigma, exponent, inner_cutoff, cutoff;
 };

@@ -12,13 +12,14 @@
 
 static const struct shape bezier = {
     .name = "bezier",
-    .summary = "Bezier curve whose control points are the genes; A. G. Baydin (2008)",
+    .summary = "Bezier curve whose control points are the coefficients; A. G. Baydin (2008)",
     .values = mf_bezier_values,
 };
 
 static const struct shape bspline = {
     .name = "bspline",
-    .summary = "clamped uniform cubic B-spline, each gene acts near its place; C. de Boor (1978)",
+    .summary =
+        "clamped uniform cubic B-spline, each coefficient acts near its place; C. de Boor (1978)",
     .values = mf_bspline_values,
 };
 
@@ -31,18 +32,18 @@ const struct shape *mf_shape_find(const char *name) {
     return NULL;
 }
 
-enum status mf_shape_basis(const struct shape *shape, size_t genes, const double *t, size_t points,
-                           double *basis) {
+enum status mf_shape_basis(const struct shape *shape, size_t coefficients, const double *t,
+                           size_t points, double *basis) {
     enum status status = STATUS_OK;
     double *unit = NULL, *column = NULL;
-    NEW_ARRAY(unit, genes);
+    NEW_ARRAY(unit, coefficients);
     NEW_ARRAY(column, points);
-    for (size_t k = 0; k < genes; k++) {
+    for (size_t k = 0; k < coefficients; k++) {
         unit[k] = 1;
-        CHECK(shape->values(unit, genes, t, column, points));
+        CHECK(shape->values(unit, coefficients, t, column, points));
         unit[k] = 0;
         for (size_t p = 0; p < points; p++)
-            basis[p * genes + k] = column[p];
+            basis[p * coefficients + k] = column[p];
     }
 done:
     mf_memory_free(unit);
@@ -56,16 +57,16 @@ static const double ridge = 1e-7;
 
 /// What is solved: GSL wants at least as many rows as columns, so rows of zeros may follow.
 struct rows {
-    gsl_matrix *basis;  ///< sqrt(w) B, shape [rows, count]
-    gsl_vector *values; ///< sqrt(w) y, shape [rows]
-    gsl_vector *genes;  ///< shape [count]
+    gsl_matrix *basis;        ///< sqrt(w) B, shape [rows, count]
+    gsl_vector *values;       ///< sqrt(w) y, shape [rows]
+    gsl_vector *coefficients; ///< shape [count]
     gsl_multifit_linear_workspace *work;
 };
 
 static void rows_clear(struct rows *rows) {
     gsl_matrix_free(rows->basis);
     gsl_vector_free(rows->values);
-    gsl_vector_free(rows->genes);
+    gsl_vector_free(rows->coefficients);
     gsl_multifit_linear_free(rows->work);
 }
 
@@ -73,15 +74,15 @@ static enum status rows_init(struct rows *rows, size_t points, size_t count) {
     const size_t total = points > count ? points : count;
     *rows = (struct rows){gsl_matrix_calloc(total, count), gsl_vector_calloc(total),
                           gsl_vector_calloc(count), gsl_multifit_linear_alloc(total, count)};
-    if (rows->basis && rows->values && rows->genes && rows->work)
+    if (rows->basis && rows->values && rows->coefficients && rows->work)
         return STATUS_OK;
-    return mf_status_fail(STATUS_NO_MEMORY, "out of memory for a fit of %zu genes", count);
+    return mf_status_fail(STATUS_NO_MEMORY, "out of memory for a fit of %zu coefficients", count);
 }
 
 /// Rows scaled by the roots of their weights.
 static enum status rows_fill(struct rows *rows, const double *basis, const double *values,
                              const double *weights, size_t points) {
-    const size_t count = rows->genes->size;
+    const size_t count = rows->coefficients->size;
     for (size_t p = 0; p < points; p++) {
         const double root = weights ? sqrt(weights[p]) : 1;
         if (!isfinite(root * values[p]))
@@ -101,26 +102,26 @@ static enum status rows_solve(struct rows *rows) {
     const double largest = gsl_vector_get(rows->work->S, 0);
     if (!(largest > 0))
         return mf_status_fail(STATUS_BAD_INPUT, "no point of the curve has any weight");
-    if (gsl_multifit_linear_solve(ridge * largest, rows->basis, rows->values, rows->genes,
+    if (gsl_multifit_linear_solve(ridge * largest, rows->basis, rows->values, rows->coefficients,
                                   &residual, &size, rows->work) != 0)
         return mf_status_fail(STATUS_BAD_INPUT, "a curve cannot be fitted");
     return STATUS_OK;
 }
 
 enum status mf_shape_fit(const struct shape *shape, const double *t, const double *values,
-                         const double *weights, size_t points, double *genes, size_t count) {
+                         const double *weights, size_t points, double *coefficients, size_t count) {
     enum status status = STATUS_OK;
     struct rows rows = {0};
     double *basis = NULL;
     if (points < 1)
-        return mf_status_fail(STATUS_BAD_INPUT, "a curve without points has no genes");
+        return mf_status_fail(STATUS_BAD_INPUT, "a curve without points has no coefficients");
     NEW_ARRAY(basis, points * count);
     CHECK(mf_shape_basis(shape, count, t, points, basis));
     CHECK(rows_init(&rows, points, count));
     CHECK(rows_fill(&rows, basis, values, weights, points));
     CHECK(rows_solve(&rows));
     for (size_t k = 0; k < count; k++)
-        genes[k] = gsl_vector_get(rows.genes, k);
+        coefficients[k] = gsl_vector_get(rows.coefficients, k);
 done:
     rows_clear(&rows);
     mf_memory_free(basis);

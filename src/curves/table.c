@@ -102,7 +102,7 @@ done:
     return status;
 }
 
-enum status mf_table_init_weight(struct table *table, const struct curve *curve) {
+enum status mf_table_init_omega(struct table *table, const struct curve *curve) {
     enum status status = STATUS_OK;
     CHECK(allocate(table, mf_curve_cutoff(curve), 2, 1));
     for (int k = 0; k < TABLE_INTERVALS; k++) {

@@ -2,10 +2,10 @@
 /// @file What the pair kernels read: a curve on a uniform grid of polynomials.
 ///
 /// A potential becomes a twice continuously differentiable cubic spline; value and slope come from
-/// the same polynomial, so F = −dΦ/dr holds to rounding. A weight becomes straight pieces, since
-/// ω(r) may jump and a spline would ring there.
+/// the same polynomial, so F = −dΦ/dr holds to rounding. A friction weight becomes straight pieces,
+/// since ω(r) may jump and a spline would ring there.
 ///
-/// A mixture has a curve for each kind of pairs. They stand in one table, one after the other: row
+/// A mixture has a curve for each pair type. They stand in one table, one after the other: row
 /// k of curve p is p (TABLE_INTERVALS + 1) + k. Each keeps the grid it would have alone, up to its
 /// own cutoff, so that none loses its resolution or its end to a longer one.
 #pragma once
@@ -25,7 +25,7 @@ struct table {
     double cutoff;                   ///< the largest of all curves [λ]
     double inverse_spacing;          ///< of a table of one curve: intervals / cutoff [1/λ]
     int terms;                       ///< coefficients an interval: 4 (potential) or 2 (weight)
-    int curves;                      ///< 1, for all pairs, or one for each kind of pairs
+    int curves;                      ///< 1, for all pairs, or one for each pair type
     double reach[TABLE_MOST_CURVES]; ///< cutoff of each curve; 0: it is 0 everywhere [λ]
     double *coefficient; ///< shape [curves, TABLE_INTERVALS + 1, terms]; the last row of each is 0
     /// What kernels want, shape [curves, TABLE_INTERVALS + 1, 4], a row for one load; f is the
@@ -39,9 +39,9 @@ struct table {
 enum status mf_table_init_potential(struct table *table, const struct curve *curve) MUST_USE;
 
 /// Weight: straight pieces.
-enum status mf_table_init_weight(struct table *table, const struct curve *curve) MUST_USE;
+enum status mf_table_init_omega(struct table *table, const struct curve *curve) MUST_USE;
 
-/// One table of the curves of several, of one curve each, for the kinds of pairs in their order. A
+/// One table of the curves of several, of one curve each, for the pair types in their order. A
 /// zeroed part is a curve that is 0 everywhere; one at least is not.
 /// @param[in] parts  shape [curves]; copied
 /// Fails: NO_MEMORY.
@@ -49,17 +49,17 @@ enum status mf_table_stack(struct table *table, const struct table *parts, int c
 
 void mf_table_clear(struct table *table);
 
-/// Which curve a kind of pairs has: a table of one is for all.
+/// Which curve a pair type has: a table of one is for all.
 static inline int table_curve(const struct table *table, int pair) {
     return table->curves > 1 ? pair : 0;
 }
 
-/// From the curve of one kind of pairs to that of the next, in rows.
+/// From the curve of one pair type to that of the next, in rows.
 static inline int table_stride(const struct table *table) {
     return table->curves > 1 ? TABLE_INTERVALS + 1 : 0;
 }
 
-/// Cutoff of the curve of a kind of pairs [λ].
+/// Cutoff of the curve of a pair type [λ].
 static inline double table_reach(const struct table *table, int pair) {
     return table->reach[table_curve(table, pair)];
 }
@@ -71,6 +71,6 @@ double mf_table_inverse_spacing(const struct table *table, int pair);
 void mf_table_evaluate(const struct table *table, double r, double *value, double *slope,
                        double *curvature);
 
-/// The same of the curve of a kind of pairs.
+/// The same of the curve of a pair type.
 void mf_table_evaluate_pair(const struct table *table, int pair, double r, double *value,
                             double *slope, double *curvature);

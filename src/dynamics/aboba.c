@@ -48,7 +48,7 @@ static enum status step_with(struct simulation *simulation, friction_change *cha
     mf_simulation_drift_half(simulation);
     TRY(mf_simulation_compute_forces(simulation, 0));
     mf_simulation_kick(simulation);
-    if (simulation->setup.weight)
+    if (simulation->setup.omega)
         TRY(change(simulation));
     mf_simulation_take_temperature(simulation);
     mf_simulation_kick(simulation);

@@ -19,12 +19,12 @@ static enum status step(struct simulation *simulation) {
     struct friction *friction = &simulation->friction;
     mf_simulation_kick_and_drift(simulation);
     TRY(mf_simulation_compute_forces(simulation, 0));
-    if (simulation->setup.weight)
+    if (simulation->setup.omega)
         TRY(mf_friction_add_to_forces(friction, particles, particles->velocity, 1, true));
     mf_simulation_kick(simulation);
     // Friction is linear in the velocities: what the kick has changed of them changes it.
     const double half_step = 0.5 * simulation->setup.time_step;
-    if (simulation->setup.weight)
+    if (simulation->setup.omega)
         TRY(mf_friction_add_to_forces(friction, particles, particles->force, half_step, false));
     return STATUS_OK;
 }

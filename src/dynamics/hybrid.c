@@ -23,7 +23,7 @@ static double longest_step(const struct table *potential, double temperature) {
     return longest_flight * potential->cutoff / sqrt(temperature);
 }
 
-/// 2 Φ'' where the curve of a kind of pairs bends most, as far up as ten k_B T reach.
+/// 2 Φ'' where the curve of a pair type bends most, as far up as ten k_B T reach.
 static double fastest_of(const struct table *potential, int pair, double temperature) {
     const double spacing = 1 / mf_table_inverse_spacing(potential, pair);
     double lowest = 0, fastest = 0, value, curvature;

@@ -31,7 +31,7 @@ static enum status step(struct simulation *simulation) {
     mf_simulation_kick_and_drift(simulation);
     TRY(mf_simulation_compute_forces(simulation, 0));
     mf_simulation_kick(simulation);
-    if (simulation->setup.weight) {
+    if (simulation->setup.omega) {
         draw_collisions(&simulation->friction, simulation->setup.temperature);
         mf_friction_sweep(&simulation->friction, &simulation->particles);
     }

@@ -19,7 +19,7 @@ static const struct friction_method halves = {.damping = damping, .square = squa
 /// S1: friction for a whole step, then velocity Verlet. The pairs are those of the forces at the
 /// end of the last step.
 static enum status step(struct simulation *simulation) {
-    if (simulation->setup.weight)
+    if (simulation->setup.omega)
         mf_friction_sweep(&simulation->friction, &simulation->particles);
     mf_simulation_kick_and_drift(simulation);
     TRY(mf_simulation_compute_forces(simulation, 0));

@@ -57,7 +57,7 @@ enum status mf_simulation_init(struct simulation *simulation, const struct simul
         .setup = *setup,
         .law = {.composition = setup->composition,
                 .potential = setup->potential,
-                .weight = setup->weight,
+                .omega = setup->omega,
                 .temperature = setup->temperature,
                 .time_step = setup->time_step,
                 .seed = setup->seed,
@@ -71,8 +71,8 @@ enum status mf_simulation_init(struct simulation *simulation, const struct simul
     simulation->particles.threads = simulation->crew.now;
     CHECK(mf_neighbours_init(&simulation->neighbours, NEIGHBOURS_HALF, &setup->box, count,
                              mf_pair_cutoff(&simulation->law), find_skin(simulation)));
-    if (setup->weight && setup->integrator->friction)
-        CHECK(mf_friction_init(&simulation->friction, setup->weight, setup->time_step,
+    if (setup->omega && setup->integrator->friction)
+        CHECK(mf_friction_init(&simulation->friction, setup->omega, setup->time_step,
                                setup->temperature, setup->integrator->friction));
     CHECK(place(simulation, start));
     CHECK(mf_neighbours_sort_and_build(&simulation->neighbours, &simulation->particles));
@@ -218,7 +218,7 @@ enum status mf_simulation_compute_forces(struct simulation *simulation, double a
     uint64_t begin = clock_ticks();
     if (simulation->friction.single)
         law.friction = &simulation->friction;
-    else if (law.weight)
+    else if (law.omega)
         mf_particles_update_motion(particles,
                                    ahead); // before a sort, which does not move the forces
     TRY(refresh_list(simulation));
@@ -234,7 +234,7 @@ enum status mf_simulation_compute_forces(struct simulation *simulation, double a
 
 enum status mf_simulation_compute_potential(struct simulation *simulation) {
     struct pair_law law = simulation->law;
-    law.weight = NULL;
+    law.omega = NULL;
     TRY(refresh_list(simulation));
     mf_pair_forces(&law, &simulation->particles, &simulation->neighbours, simulation->step,
                    PAIR_FORCES_AND_SUMS, &simulation->sums);
@@ -274,8 +274,8 @@ enum status mf_simulation_run(struct simulation *simulation, uint64_t steps) {
 
 double mf_simulation_pressure(const struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
-    const double temperature = simulation->law.weight ? simulation->setup.temperature
-                                                      : mf_simulation_temperature(simulation);
+    const double temperature = simulation->law.omega ? simulation->setup.temperature
+                                                     : mf_simulation_temperature(simulation);
     return mf_particles_density(particles) * temperature +
            simulation->sums.virial / (particles->box.dimensions * mf_box_volume(&particles->box));
 }

@@ -24,8 +24,8 @@ struct simulation_setup {
     double temperature_limit;       ///< above limit × temperature: UNSTABLE
     const struct integrator *integrator;
     struct integrator_parameters integrator_parameters;
-    const struct table *potential; ///< Φ(r), one or for each kind of pairs, or NULL; borrowed
-    const struct table *weight;    ///< ω(r), the same, or NULL; borrowed
+    const struct table *potential; ///< Φ(r), one or for each pair type, or NULL; borrowed
+    const struct table *omega;     ///< ω(r), the same, or NULL; borrowed
     uint64_t seed;
     int precision; ///< enum pair_precision
     /// Set by another thread to stop the simulation, or NULL. Borrowed.

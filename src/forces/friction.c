@@ -14,22 +14,21 @@ struct friction_factors mf_friction_factors_of(const struct friction_method *met
     return (struct friction_factors){d, sqrt(square)};
 }
 
-enum status mf_friction_init(struct friction *friction, const struct table *weight,
-                             double time_step, double temperature,
-                             const struct friction_method *method) {
+enum status mf_friction_init(struct friction *friction, const struct table *table, double time_step,
+                             double temperature, const struct friction_method *method) {
     enum status status = STATUS_OK;
     *friction =
         (struct friction){.method = method,
                           .kick = method->square ? sqrt(method->square(time_step, temperature)) : 0,
                           .bound = method->bound};
     mf_normal_table_init(&friction->normal);
-    const int rows = (TABLE_INTERVALS + 1) * weight->curves;
+    const int rows = (TABLE_INTERVALS + 1) * table->curves;
     NEW_ARRAY(friction->precise, rows);
     NEW_ARRAY(friction->single, rows);
     for (int k = 0; k < rows; k++) {
         if (k % (TABLE_INTERVALS + 1) == TABLE_INTERVALS) // beyond the cutoff is nothing
             continue;
-        const double *omega = weight->coefficient + 2 * k;
+        const double *omega = table->coefficient + 2 * k;
         const double root = sqrt(method->damping(omega[0], time_step));
         const double next = sqrt(method->damping(omega[0] + omega[1], time_step));
         friction->precise[k][0] = root;

@@ -55,10 +55,9 @@ struct friction {
     double (*work[FRICTION_WORK])[4]; ///< of mf_friction_solve; shape [count, 4] each
 };
 
-/// Tabulate a method for a weight. Fails: NO_MEMORY.
-enum status mf_friction_init(struct friction *friction, const struct table *weight,
-                             double time_step, double temperature,
-                             const struct friction_method *method) MUST_USE;
+/// Tabulate a method for a friction weight. Fails: NO_MEMORY.
+enum status mf_friction_init(struct friction *friction, const struct table *omega, double time_step,
+                             double temperature, const struct friction_method *method) MUST_USE;
 void mf_friction_clear(struct friction *friction);
 
 /// Make room for all pairs of a list, and forget those kept. Fails: NO_MEMORY.

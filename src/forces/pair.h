@@ -28,7 +28,7 @@ _Static_assert((int)TABLE_MOST_CURVES >= (int)COMPOSITION_MOST_PAIRS,
 struct pair_histogram {
     double low, width; ///< [λ]
     size_t bins;
-    size_t pairs;     ///< kinds of pairs of a mixture, to count each apart; 0 or 1: all together
+    size_t pairs;     ///< pair types of a mixture, to count each apart; 0 or 1: all together
     uint32_t *counts; ///< shape [NEIGHBOURS_MOST_PARTS, pair_histogram_size]
 };
 
@@ -40,8 +40,8 @@ static inline size_t pair_histogram_size(const struct pair_histogram *histogram)
 /// What acts between pairs, and what is counted of them. The tables belong to the caller.
 struct pair_law {
     struct composition composition; ///< the types of beads, if they are not alike
-    const struct table *potential;  ///< Φ(r), one or for each kind of pairs, or NULL
-    const struct table *weight;     ///< ω(r), the same, or NULL
+    const struct table *potential;  ///< Φ(r), one or for each pair type, or NULL
+    const struct table *omega;      ///< ω(r), the same, or NULL
     double temperature;             ///< of the noise [k_B T_0]
     double time_step;               ///< Δt of the noise [τ]
     uint64_t seed;                  ///< key of the noise
@@ -64,9 +64,9 @@ double mf_pair_cutoff(const struct pair_law *law);
 
 /// Replace `force` of all particles by the forces of `law`.
 ///
-/// Reads kernel_place, and kernel_motion if the law has a weight; with PAIR_DOUBLE precise_place
-/// and precise_motion, which mf_particles_keep_precise must have asked for. The list must be
-/// complete for mf_pair_cutoff.
+/// Reads kernel_place, and kernel_motion if the law has a friction weight; with PAIR_DOUBLE
+/// precise_place and precise_motion, which mf_particles_keep_precise must have asked for. The list
+/// must be complete for mf_pair_cutoff.
 /// @param[in]  step  number of the time step: the counter of the noise
 /// @param[out] sums  NULL unless `wants` asks for them
 /// Fails: never; a NaN shows in the forces. Threads: serial. Tested: test_pair_kernels.

@@ -7,7 +7,7 @@
 #include "base/simd.h"
 
 double mf_pair_cutoff(const struct pair_law *law) {
-    return fmax(law->potential ? law->potential->cutoff : 0, law->weight ? law->weight->cutoff : 0);
+    return fmax(law->potential ? law->potential->cutoff : 0, law->omega ? law->omega->cutoff : 0);
 }
 
 /// Kernels for the instruction set in use.
@@ -26,9 +26,9 @@ static pair_kernels *choose_set(bool is_double) {
 
 static pair_kernel choose(const struct pair_law *law, int dimensions, enum pair_wants wants) {
     const int conservative = law->potential != NULL;
-    const enum pair_friction friction = law->weight == NULL ? PAIR_NO_FRICTION
-                                        : law->friction     ? PAIR_KEEPS_FRICTION
-                                                            : PAIR_ADDS_FRICTION;
+    const enum pair_friction friction = law->omega == NULL ? PAIR_NO_FRICTION
+                                        : law->friction    ? PAIR_KEEPS_FRICTION
+                                                           : PAIR_ADDS_FRICTION;
     pair_kernels *kernels = choose_set(law->precision == PAIR_DOUBLE);
     return (*kernels)[dimensions - 2][conservative][friction][wants]
                      [composition_is_mixed(&law->composition)];

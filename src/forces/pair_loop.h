@@ -97,7 +97,7 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
     const struct neighbours_part *part = &neighbours->part[part_number];
     const struct pair_histogram *histogram = law->histogram;
     const double cutoff = mf_pair_cutoff(law);
-    const double near_cutoff = friction != PAIR_NO_FRICTION ? law->weight->cutoff : cutoff;
+    const double near_cutoff = friction != PAIR_NO_FRICTION ? law->omega->cutoff : cutoff;
     struct pair_scene scene = {.law = law,
                                .particles = particles,
                                .sums = sums,

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file How kernels tell kinds of pairs apart: for the pair loop and for Monte Carlo moves.
+/// @file How kernels tell pair types apart: for the pair loop and for Monte Carlo moves.
 #pragma once
 
 #include "base/lanes.h"
 #include "forces/pair.h"
 
-/// What tells kinds of pairs apart in a mixture.
+/// What tells pair types apart in a mixture.
 struct pair_mixture {
     int types;
     int32_t first[COMPOSITION_MOST_TYPES]; ///< least id of each type
-    /// For each kind of pairs, in a record: intervals of Φ and of ω per length, length of one of Φ.
+    /// For each pair type, in a record: intervals of Φ and of ω per length, length of one of Φ.
     REAL grid[COMPOSITION_MOST_PAIRS][4];
-    int32_t potential_stride, weight_stride; ///< table_stride
-    int32_t bins_apart;                      ///< of the histogram, from kind to kind
+    int32_t potential_stride, omega_stride; ///< table_stride
+    int32_t bins_apart;                     ///< of the histogram, from kind to kind
 };
 
 /// What the pairs of a mixture need to find their curves and bins.
@@ -26,11 +26,11 @@ LANES_INLINE struct pair_mixture pair_mixture_of(const struct pair_law *law) {
             mixture.grid[p][0] = (REAL)mf_table_inverse_spacing(law->potential, p);
             mixture.grid[p][2] = (REAL)(1 / mf_table_inverse_spacing(law->potential, p));
         }
-        if (law->weight)
-            mixture.grid[p][1] = (REAL)mf_table_inverse_spacing(law->weight, p);
+        if (law->omega)
+            mixture.grid[p][1] = (REAL)mf_table_inverse_spacing(law->omega, p);
     }
     mixture.potential_stride = law->potential ? table_stride(law->potential) : 0;
-    mixture.weight_stride = law->weight ? table_stride(law->weight) : 0;
+    mixture.omega_stride = law->omega ? table_stride(law->omega) : 0;
     if (law->histogram && law->histogram->pairs > 1)
         mixture.bins_apart = (int32_t)law->histogram->bins;
     return mixture;

@@ -13,7 +13,7 @@ struct pair_places {
 /// What is computed from a batch, column by column.
 struct pair_columns {
     REAL r[PAIR_BATCH], inverse_r[PAIR_BATCH];
-    struct pair_places potential, weight;
+    struct pair_places potential, omega;
     int32_t kind[PAIR_BATCH]; ///< of a mixture: mf_composition_pair
     REAL force_over_r[PAIR_BATCH];
     REAL r_dot_v[PAIR_BATCH];
@@ -48,7 +48,7 @@ INLINE void pair_place_all(struct pair_columns *columns, int k, const struct pai
         pair_place(&columns->potential, k, lanes_all((REAL)law->potential->inverse_spacing), first,
                    r);
     if (friction != PAIR_NO_FRICTION)
-        pair_place(&columns->weight, k, lanes_all((REAL)law->weight->inverse_spacing), first, r);
+        pair_place(&columns->omega, k, lanes_all((REAL)law->omega->inverse_spacing), first, r);
 }
 
 INLINE void pair_place_mixed(struct pair_columns *columns, int k,
@@ -59,7 +59,7 @@ INLINE void pair_place_mixed(struct pair_columns *columns, int k,
     if (conservative)
         pair_place(&columns->potential, k, grid.word[0], kind * mixture->potential_stride, r);
     if (friction != PAIR_NO_FRICTION)
-        pair_place(&columns->weight, k, grid.word[1], kind * mixture->weight_stride, r);
+        pair_place(&columns->omega, k, grid.word[1], kind * mixture->omega_stride, r);
 }
 
 INLINE void pair_distances(struct pair_columns *columns, const struct pair_batch *batch, int count,
@@ -142,8 +142,8 @@ INLINE void pair_dissipative(struct pair_columns *columns, int count, const stru
     const REAL amplitude = (REAL)(sqrt(2 * law->temperature / law->time_step) * sqrt(12) * 0x1p-32);
     for (int k = 0; k < count; k += LANES) {
         const struct lanes_record c =
-            lanes_load_records(law->weight->PAIR_ROWS, columns->weight.interval + k);
-        const lanes_real omega = c.word[0] + lanes_load(columns->weight.fraction + k) * c.word[1];
+            lanes_load_records(law->omega->PAIR_ROWS, columns->omega.interval + k);
+        const lanes_real omega = c.word[0] + lanes_load(columns->omega.fraction + k) * c.word[1];
         const lanes_real omega_over_r = omega * lanes_load(columns->inverse_r + k);
         const lanes_real noise = amplitude * lanes_to_real(lanes_load_int(columns->noise + k));
         lanes_real force_over_r =
@@ -262,8 +262,8 @@ INLINE void pair_keep(const struct pair_columns *columns, const struct pair_batc
     for (int k = 0; k < count; k += LANES) {
         const lanes_real inverse_r = lanes_load(columns->inverse_r + k);
         const struct lanes_record c =
-            lanes_load_records(friction->PAIR_ROWS, columns->weight.interval + k);
-        const lanes_real f = lanes_load(columns->weight.fraction + k);
+            lanes_load_records(friction->PAIR_ROWS, columns->omega.interval + k);
+        const lanes_real f = lanes_load(columns->omega.fraction + k);
         const lanes_real root = c.word[0] + f * c.word[1], damping = root * root;
         lanes_real kick = lanes_load(columns->zeta + k);
         if (scale > 0) // of the damping, so that the two agree wherever r is

@@ -32,7 +32,7 @@ static double friction_and_noise(const struct pair_law *law, const struct partic
     double omega, speed = 0;
     const int pair =
         mf_composition_pair_of_ids(&law->composition, particles->id[i], particles->id[j]);
-    mf_table_evaluate_pair(law->weight, pair, r, &omega, NULL, NULL);
+    mf_table_evaluate_pair(law->omega, pair, r, &omega, NULL, NULL);
     for (int d = 0; d < particles->box.dimensions; d++)
         speed += r_ij[d] / r * (particles->velocity[d][i] - particles->velocity[d][j]);
     const double zeta = pair_noise(law, particles->id[i], particles->id[j], step);
@@ -59,7 +59,7 @@ void mf_reference_forces(const struct pair_law *law, struct particles *particles
                 total.energy += phi;
                 total.virial -= slope * r;
             }
-            if (law->weight && r < law->weight->cutoff)
+            if (law->omega && r < law->omega->cutoff)
                 force += friction_and_noise(law, particles, i, j, r_ij, r, step);
             for (int d = 0; d < dimensions; d++) {
                 particles->force[d][i] += force * r_ij[d] / r;
@@ -100,7 +100,7 @@ enum status mf_reference_configurational(const struct table *potential,
     enum status status = STATUS_OK;
     const int dimensions = particles->box.dimensions;
     double *force = NULL;
-    double density[COMPOSITION_MOST_PAIRS] = {0}; // of each kind of pairs
+    double density[COMPOSITION_MOST_PAIRS] = {0}; // of each pair type
     *squares = *laplacian = 0;
     NEW_ARRAY(force, 3 * particles->count);
     for (size_t i = 0; i < particles->count; i++)

@@ -13,7 +13,7 @@ void mf_reference_forces(const struct pair_law *law, struct particles *particles
 
 /// Configurational temperature Σ_i |F_i|² / Σ_i ∇_i² U [k_B T_0] from the potential alone.
 ///   Σ_i ∇_i² U = 2 Σ_pairs [Φ''(r) + (d − 1) Φ'(r)/r]
-/// and, where the force of a kind of pairs ends abruptly at its cutoff, the jump of the slope
+/// and, where the force of a pair type ends abruptly at its cutoff, the jump of the slope
 /// there, which needs to know the temperature roughly. H. H. Rugh, Phys. Rev. Lett. 78, 772 (1997);
 /// O. G. Jepps, G. Ayton and D. J. Evans, Phys. Rev. E 62, 4757 (2000), eq. 37. It sees positions
 /// only, so it shows errors of the time step that the kinetic temperature hides.

@@ -42,13 +42,13 @@ static enum status read_method(struct fit_file *fit, struct json_object *root) {
 }
 
 static const struct field *unknown_fields(enum unknown_kind kind) {
-    return kind == UNKNOWN_POTENTIAL ? mf_inverse_potential_fields : mf_inverse_weight_fields;
+    return kind == UNKNOWN_POTENTIAL ? mf_inverse_potential_fields : mf_inverse_omega_fields;
 }
 
-/// Genes of a curve if the file does not say how many.
-static const int64_t genes_of_curve[] = {[INVERSE_CURVE_BEZIER] = 100,
-                                         [INVERSE_CURVE_BSPLINE] = 12,
-                                         [INVERSE_CURVE_POWER] = INVERSE_PARAMETERS};
+/// Coefficients of a curve if the file does not say how many.
+static const int64_t coefficients_of_curve[] = {[INVERSE_CURVE_BEZIER] = 100,
+                                                [INVERSE_CURVE_BSPLINE] = 12,
+                                                [INVERSE_CURVE_POWER] = INVERSE_PARAMETERS};
 
 /// "fixed": {"exponent": 1}, what is not to be found of a formula.
 static void read_fixed(struct unknown_parameters *p, struct json_object *object) {
@@ -64,19 +64,20 @@ static void read_fixed(struct unknown_parameters *p, struct json_object *object)
                       "with all of its parameters fixed nothing is left to be found");
     const double inner = p->fixed[INVERSE_INNER_CUTOFF];
     if (inner < p->inner_cutoff || inner >= p->cutoff)
-        mf_json_fault(&fixed, "inner_cutoff", "%g is not between the weight's cutoffs, %g and %g",
-                      inner, p->inner_cutoff, p->cutoff);
+        mf_json_fault(&fixed, "inner_cutoff",
+                      "%g is not between the friction weight's cutoffs, %g and %g", inner,
+                      p->inner_cutoff, p->cutoff);
 }
 
-/// Genes of a formula are its parameters that are not fixed.
-static void check_genes(struct unknown_parameters *p, struct json_object *object) {
+/// Coefficients of a formula are its parameters that are not fixed.
+static void check_coefficients(struct unknown_parameters *p, struct json_object *object) {
     const int parameters = mf_inverse_free_parameters(p->fixed);
     if (p->shape != INVERSE_CURVE_POWER || parameters == 0)
         return;
-    if (p->genes == 0)
-        p->genes = parameters;
-    else if (p->genes != parameters)
-        mf_json_fault(object, "genes",
+    if (p->coefficients == 0)
+        p->coefficients = parameters;
+    else if (p->coefficients != parameters)
+        mf_json_fault(object, "coefficients",
                       "the curve \"power\" has %d: sigma, exponent, inner cutoff, less those that "
                       "\"fixed\" holds",
                       parameters);
@@ -86,20 +87,21 @@ static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind k
                                 struct json_object *object, const struct composition *composition,
                                 const struct units *units) {
     const struct curve_family *const *laws =
-        kind == UNKNOWN_POTENTIAL ? mf_curve_potentials : mf_curve_weights;
+        kind == UNKNOWN_POTENTIAL ? mf_curve_potentials : mf_curve_omegas;
     mf_json_fields(object, unknown_fields(kind), &unknown->parameters);
     struct unknown_parameters *p = &unknown->parameters;
     mf_fields_set_defaults(mf_inverse_fixed_fields, p->fixed);
-    if (kind == UNKNOWN_WEIGHT)
+    if (kind == UNKNOWN_OMEGA)
         read_fixed(p, object);
-    check_genes(p, object);
-    if (p->genes == 0)
-        p->genes = genes_of_curve[p->shape];
+    check_coefficients(p, object);
+    if (p->coefficients == 0)
+        p->coefficients = coefficients_of_curve[p->shape];
     if (object->item == NULL)
         return STATUS_OK;
+    mf_json_renamed(object, "genes", "coefficients");
     if (p->maximum <= p->minimum)
         mf_json_fault(object, "maximum", "%g is not above the minimum %g", p->maximum, p->minimum);
-    if (kind == UNKNOWN_WEIGHT && p->cutoff <= p->inner_cutoff)
+    if (kind == UNKNOWN_OMEGA && p->cutoff <= p->inner_cutoff)
         mf_json_fault(object, "cutoff", "%g is not above the inner cutoff %g", p->cutoff,
                       p->inner_cutoff);
     TRY(mf_scene_law_read(&unknown->start, object, "start", laws, composition, units));
@@ -108,22 +110,23 @@ static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind k
     return STATUS_OK;
 }
 
-/// "unknowns": {"potential": {…}, "weight": {…}}; a file without it looks for the potential.
+/// "unknowns": {"potential": {…}, "omega": {…}}; a file without it looks for the potential.
 static enum status read_unknowns(struct fit_file *fit, struct json_object *root) {
     struct json_object object = mf_json_child(root, "unknowns", false);
-    // A potential for each kind of pairs, one weight for all.
+    // A potential for each pair type, one friction weight for all.
     const struct composition composition[UNKNOWNS] = {
         [UNKNOWN_POTENTIAL] = fit->scene.setup.composition,
-        [UNKNOWN_WEIGHT] = mf_composition_of_one(fit->scene.setup.placement.count)};
+        [UNKNOWN_OMEGA] = mf_composition_of_one(fit->scene.setup.placement.count)};
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         struct json_object child = mf_json_child(&object, mf_inverse_unknown_names[kind], false);
         fit->unknown[kind].wanted = child.item != NULL;
         TRY(read_unknown(&fit->unknown[kind], kind, &child, &composition[kind], &fit->scene.units));
     }
     if (object.item) {
+        mf_json_renamed(&object, "weight", mf_inverse_unknown_names[UNKNOWN_OMEGA]);
         mf_json_finish(&object);
-        if (!fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->unknown[UNKNOWN_WEIGHT].wanted)
-            mf_json_fault(root, "unknowns", "needs \"potential\", \"weight\" or both");
+        if (!fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->unknown[UNKNOWN_OMEGA].wanted)
+            mf_json_fault(root, "unknowns", "needs \"potential\", \"omega\" or both");
     } else {
         fit->unknown[UNKNOWN_POTENTIAL].wanted = true;
     }
@@ -139,7 +142,7 @@ static enum status read_scene(struct fit_file *fit, struct json_object *root) {
     if (mf_json_has(root, "unknowns")) {
         struct json_object unknowns = mf_json_child(root, "unknowns", false);
         unknown = (mf_json_has(&unknowns, mf_inverse_unknown_names[0]) ? SCENE_FITS_POTENTIAL : 0) |
-                  (mf_json_has(&unknowns, mf_inverse_unknown_names[1]) ? SCENE_FITS_WEIGHT : 0);
+                  (mf_json_has(&unknowns, mf_inverse_unknown_names[1]) ? SCENE_FITS_OMEGA : 0);
     }
     TRY(mf_scene_read(&fit->scene, &scene, unknown));
     mf_json_finish(&scene);
@@ -174,18 +177,18 @@ static enum status try_scene(const struct inverse_problem *problem) {
     struct decoder_laws laws = {0};
     struct simulation simulation = {0};
     struct simulation_setup setup = problem->scene;
-    double *genes = NULL;
+    double *variables = NULL;
     CHECK(mf_decoder_init(&decoder, problem));
-    NEW_ARRAY(genes, decoder.genes);
-    CHECK(mf_decoder_start(&decoder, genes));
-    CHECK(mf_decoder_laws(&decoder, genes, &laws));
-    setup.weight = laws.table[UNKNOWN_WEIGHT];
+    NEW_ARRAY(variables, decoder.variables);
+    CHECK(mf_decoder_start(&decoder, variables));
+    CHECK(mf_decoder_laws(&decoder, variables, &laws));
+    setup.omega = laws.table[UNKNOWN_OMEGA];
     CHECK(mf_simulation_init(&simulation, &setup, NULL));
 done:
     mf_simulation_clear(&simulation);
     mf_decoder_laws_clear(&laws);
     mf_decoder_clear(&decoder);
-    mf_memory_free(genes);
+    mf_memory_free(variables);
     return status;
 }
 
@@ -248,7 +251,7 @@ static enum status check_steps(const struct fit_file *fit, const char *file) {
 static enum status check_window(const char *file, const char *key, const struct targets *targets,
                                 double time_step, int64_t samples, int64_t every) {
     enum target_kind longest;
-    const int64_t window = mf_observation_window(targets, time_step, &longest);
+    const int64_t window = mf_measurement_window(targets, time_step, &longest);
     if (samples * every >= window)
         return STATUS_OK;
     return mf_status_fail(
@@ -313,7 +316,7 @@ static void state_problem(struct fit_file *fit, const struct run_options *option
         for (int pair = 0; pair < mf_composition_pairs(&problem->scene.composition); pair++)
             unknown->start[pair] = mf_scene_law_curve(&from->start, pair);
     }
-    mf_target_files_targets(&fit->files, fit->unknown[UNKNOWN_WEIGHT].wanted, &problem->targets,
+    mf_target_files_targets(&fit->files, fit->unknown[UNKNOWN_OMEGA].wanted, &problem->targets,
                             &problem->compared);
 }
 

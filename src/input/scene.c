@@ -44,7 +44,7 @@ const struct field mf_scene_fields[] = {
 };
 
 static void check_weight(const struct scene *scene, struct json_object *object) {
-    const struct table *table = &scene->weight.table;
+    const struct table *table = &scene->omega.table;
     for (int row = 0; row < table->curves * (TABLE_INTERVALS + 1); row++)
         if (table->coefficient[2 * row] < 0) {
             const int pair = row / (TABLE_INTERVALS + 1), k = row % (TABLE_INTERVALS + 1);
@@ -78,7 +78,7 @@ static void read_dynamics(struct scene *scene, struct json_object *object, int u
     for (size_t k = 0; mf_integrator_list[k] && k + 1 < MOST; k++)
         names[k] = mf_integrator_list[k]->name;
     struct json_object dynamics = mf_json_child(object, "dynamics", false);
-    const bool dissipative = scene->weight.curves > 0 || (unknown & SCENE_FITS_WEIGHT);
+    const bool dissipative = scene->omega.curves > 0 || (unknown & SCENE_FITS_OMEGA);
     const char *name = dissipative ? mf_aboba.name : mf_velocity_verlet.name;
     if (dynamics.item)
         name = mf_json_choice(&dynamics, "integrator", names, name);
@@ -247,28 +247,28 @@ enum status mf_scene_read(struct scene *scene, struct json_object *object, int u
     read_top(scene, object);
     TRY(read_particles(scene, object));
     check_units(scene, object);
-    if (unknown == SCENE_FITS_WEIGHT) // between what particles, a fit would ask in vain
+    if (unknown == SCENE_FITS_OMEGA) // between what particles, a fit would ask in vain
         mf_json_child(object, "conservative", true);
     if (!(unknown & SCENE_FITS_POTENTIAL)) {
         TRY(mf_scene_law_read(&scene->potential, object, "conservative", mf_curve_potentials,
                               &scene->setup.composition, &scene->units));
         TRY(mf_scene_law_tabulate(&scene->potential, mf_table_init_potential));
     }
-    if (!(unknown & SCENE_FITS_WEIGHT)) {
-        TRY(mf_scene_law_read(&scene->weight, object, "dissipative", mf_curve_weights,
+    if (!(unknown & SCENE_FITS_OMEGA)) {
+        TRY(mf_scene_law_read(&scene->omega, object, "dissipative", mf_curve_omegas,
                               &scene->setup.composition, &scene->units));
-        TRY(mf_scene_law_tabulate(&scene->weight, mf_table_init_weight));
+        TRY(mf_scene_law_tabulate(&scene->omega, mf_table_init_omega));
         check_weight(scene, object);
     }
     read_dynamics(scene, object, unknown);
     scene->setup.potential = scene->potential.curves ? &scene->potential.table : NULL;
-    scene->setup.weight = scene->weight.curves ? &scene->weight.table : NULL;
+    scene->setup.omega = scene->omega.curves ? &scene->omega.table : NULL;
     return STATUS_OK;
 }
 
 void mf_scene_clear(struct scene *scene) {
     mf_scene_law_clear(&scene->potential);
-    mf_scene_law_clear(&scene->weight);
+    mf_scene_law_clear(&scene->omega);
     mf_memory_free(scene->start_values);
     *scene = (struct scene){0};
 }
@@ -300,10 +300,10 @@ void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
     write_count(setup, writer);
     mf_json_put_fields(writer, mf_placement_fields, &setup->placement);
     mf_json_end(writer);
-    if (scene->potential.curves || scene->unknown == SCENE_FITS_WEIGHT)
+    if (scene->potential.curves || scene->unknown == SCENE_FITS_OMEGA)
         mf_scene_law_write(&scene->potential, &setup->composition, writer, "conservative");
-    if (scene->weight.curves)
-        mf_scene_law_write(&scene->weight, &setup->composition, writer, "dissipative");
+    if (scene->omega.curves)
+        mf_scene_law_write(&scene->omega, &setup->composition, writer, "dissipative");
     mf_json_begin(writer, "dynamics");
     mf_json_put_text(writer, "integrator", setup->integrator->name);
     mf_json_put_fields(writer, setup->integrator->fields, &setup->integrator_parameters);
@@ -317,7 +317,7 @@ void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
 
 void mf_scene_digest(const struct scene *scene, uint64_t *digest) {
     mf_scene_law_digest(&scene->potential, digest);
-    mf_scene_law_digest(&scene->weight, digest);
+    mf_scene_law_digest(&scene->omega, digest);
     const size_t count = (size_t)scene->setup.placement.count;
     for (int d = 0; d < scene->setup.box.dimensions; d++) {
         mf_checkpoint_digest_add(digest, scene->start.position[d], count * sizeof(double));

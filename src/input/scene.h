@@ -9,13 +9,13 @@
 enum scene_unknown {
     SCENE_FITS_NOTHING = 0,
     SCENE_FITS_POTENTIAL = 1, ///< no "conservative"
-    SCENE_FITS_WEIGHT = 2,    ///< no "dissipative"; there will be friction
+    SCENE_FITS_OMEGA = 2,     ///< no "dissipative"; there will be friction
 };
 
 /// Owns its laws and arrays; `setup` borrows them.
 struct scene {
     struct simulation_setup setup;
-    struct scene_law potential, weight;
+    struct scene_law potential, omega;
     struct units units;
     struct simulation_start start; ///< arrays of a placement file
     int unknown;                   ///< as it was read

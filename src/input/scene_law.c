@@ -127,7 +127,7 @@ static void fault_unknown_pair(struct json_object *object, const struct composit
     mf_json_fault(object, key, "is no pair of the types %s; write \"A-B\"", names);
 }
 
-/// {"A-A": {"law": …}, "A-B": {"law": …}, …}, each kind of pairs once, in any order.
+/// {"A-A": {"law": …}, "A-B": {"law": …}, …}, each pair type once, in any order.
 static enum status read_pairs(struct scene_law *law, struct json_object *object,
                               const struct curve_family *const *list,
                               const struct composition *composition, const struct units *units) {

@@ -13,12 +13,12 @@
 
 /// Owns its curves and its table.
 struct scene_law {
-    int curves; ///< 0: none; 1: for all pairs; else one for each kind of pairs
+    int curves; ///< 0: none; 1: for all pairs; else one for each pair type
     struct curve curve[COMPOSITION_MOST_PAIRS]; ///< family NULL: none
     struct table table;                         ///< of the curves, if there are any
 };
 
-/// mf_table_init_potential or mf_table_init_weight.
+/// mf_table_init_potential or mf_table_init_omega.
 typedef enum status scene_law_table(struct table *table, const struct curve *curve);
 
 /// Read the curves at `key` of `parent`; an absent object leaves none, and so do types that could
@@ -32,7 +32,7 @@ enum status mf_scene_law_read(struct scene_law *law, struct json_object *parent,
 /// Make the table of the curves. Fails: NO_MEMORY.
 enum status mf_scene_law_tabulate(struct scene_law *law, scene_law_table *tabulate) MUST_USE;
 
-/// The curve of a kind of pairs, or NULL.
+/// The curve of a pair type, or NULL.
 const struct curve *mf_scene_law_curve(const struct scene_law *law, int pair);
 
 void mf_scene_law_clear(struct scene_law *law);

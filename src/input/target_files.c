@@ -128,7 +128,7 @@ static enum status read_number(struct target_number *number, struct json_object 
     return STATUS_OK;
 }
 
-/// All kinds of pairs must have the bins of the first.
+/// All pair types must have the bins of the first.
 static void check_bins(const struct target_files *files, struct json_object *object) {
     const struct rdf_bins *first = &files->rdf[0].bins;
     for (size_t pair = 1; pair < files->pairs; pair++) {
@@ -144,7 +144,7 @@ static void check_bins(const struct target_files *files, struct json_object *obj
     }
 }
 
-/// What the file calls a kind of pairs: "A-B" or "B-A".
+/// What the file calls a pair type: "A-B" or "B-A".
 static const char *pair_key(const struct composition *composition, int pair,
                             const struct json_object *object,
                             char name[COMPOSITION_PAIR_NAME_SIZE]) {
@@ -156,7 +156,7 @@ static const char *pair_key(const struct composition *composition, int pair,
     return name;
 }
 
-/// g and errors of all kinds of pairs in the numbers of the scene, one behind the other, if all
+/// g and errors of all pair types in the numbers of the scene, one behind the other, if all
 /// could be read.
 static enum status collect_rdf(struct target_files *files, const struct box *box) {
     enum status status = STATUS_OK;
@@ -175,7 +175,7 @@ done:
     return status;
 }
 
-/// g(r), or in a mixture that of each kind of pairs: {"A-A": {"file": …}, …}.
+/// g(r), or in a mixture that of each pair type: {"A-A": {"file": …}, …}.
 static enum status read_rdf(struct target_files *files, struct json_object *object,
                             const struct box *box, const struct units *units) {
     if (files->composition.types == 0)
@@ -350,7 +350,7 @@ static void set_motion(const struct target_files *files, struct targets *targets
     }
 }
 
-/// Divide g of a kind of pairs.
+/// Divide g of a pair type.
 static void divide(struct target_files *files, size_t pair, double factor) {
     const size_t bins = files->rdf[0].bins.count;
     for (size_t n = pair * bins; n < (pair + 1) * bins; n++) {

@@ -31,9 +31,9 @@ extern const struct field mf_target_files_diffusion_fields[], mf_target_files_us
 
 struct target_files {
     bool given[TARGETS];
-    struct target_rdf rdf[COMPOSITION_MOST_PAIRS]; ///< of each kind of pairs
+    struct target_rdf rdf[COMPOSITION_MOST_PAIRS]; ///< of each pair type
     struct composition composition;                ///< of the scene
-    size_t pairs;                                  ///< kinds of its pairs
+    size_t pairs;                                  ///< its pair types
     /// Of all, one behind the other, in the numbers of the scene: shape [pairs, bins].
     double *rdf_g, *rdf_error;
     double *rdf_given;                  ///< g before it was divided by its normalisation

@@ -52,7 +52,7 @@ enum status mf_target_rdf_error_column(int64_t asked, int64_t first, int64_t sec
 /// g and its errors in the numbers of the scene, by mf_finite_size_factor_of. VOTCA's g of like
 /// pairs is normalised by N_a², and needs 1/(1 − 1/N_a) with the N_a that was measured.
 /// @param[in]  box, composition  of the scene
-/// @param[in]  pair              the kind of pairs of this target
+/// @param[in]  pair              the pair type of this target
 /// @param[out] g, error          shape [bins.count]
 /// Tested: test_target_rdf, test_target_files_mixture.
 void mf_target_rdf_convert(const struct target_rdf *target, const struct box *box,

@@ -31,10 +31,10 @@ static const double dilute = 0.01;
 /// Hardly a multiple of T_0, often a number of kelvins.
 static const double hot = 50;
 
-/// g(r) of one kind of pairs, and how many beads there are.
+/// g(r) of one pair type, and how many beads there are.
 struct view {
     char name[sizeof "rdf." + COMPOSITION_PAIR_NAME_SIZE];
-    const struct target_files *files; ///< of all kinds of pairs
+    const struct target_files *files; ///< of all pair types
     const struct target_rdf *target;
     const struct rdf_bins *bins;
     const double *g, *error; ///< shape [bins->count]

@@ -15,7 +15,7 @@ struct target_sanity_listener {
     void *context;
 };
 
-/// Refuse what cannot be, for g(r) of each kind of pairs, converted to the scene's number of beads.
+/// Refuse what cannot be, for g(r) of each pair type, converted to the scene's number of beads.
 ///
 /// Its mean over the last quarter of the file must be within 0.25 of 1, or within twice the scatter
 /// that oscillations make there. Pairs of one type must have ρ d³ ≤ √2 (in two dimensions ρ d² ≤

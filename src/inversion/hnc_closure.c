@@ -66,13 +66,13 @@ static enum status wave_init(struct wave *wave, const struct box *box,
     return mf_status_fail(STATUS_NO_MEMORY, "no memory for the hypernetted chain");
 }
 
-/// Geometric mean of the densities of a kind of pairs, and its types.
+/// Geometric mean of the densities of a pair type, and its types.
 static double pair_density(const struct wave *wave, int pair, int type[2]) {
     mf_composition_pair_types(wave->composition, pair, type);
     return sqrt(wave->density[type[0]] * wave->density[type[1]]);
 }
 
-/// Transforms of all kinds of pairs at q.
+/// Transforms of all pair types at q.
 static void fill_matrix(const struct wave *wave, const struct rdf_bins *bins, const double *values,
                         double zero, double core, double q, gsl_matrix *matrix) {
     for (int pair = 0; pair < mf_composition_pairs(wave->composition); pair++) {

@@ -22,7 +22,7 @@
 #include "problem/potential_grid.h"
 #include "inversion/replicas.h"
 
-/// Bins of all kinds of pairs. There are some 20 matrices of bins by bins: 2.5 GB with so many, and
+/// Bins of all pair types. There are some 20 matrices of bins by bins: 2.5 GB with so many, and
 /// minutes to solve.
 enum { INVERSION_MOST_BINS = 4000 };
 
@@ -54,7 +54,7 @@ struct inversion {
     struct potential_grid grid;
     struct box box; ///< of the system that is sampled
     struct composition composition;
-    size_t bins; ///< of all kinds of pairs
+    size_t bins; ///< of all pair types
     struct table table;
     struct replicas replicas;
     double *ideal, *target_counts;            ///< shape [bins]

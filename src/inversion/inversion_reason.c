@@ -52,7 +52,7 @@ void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INV
                  "statistical error %.2g%s",
                  1 / p->damping, rdf->rms, rdf->noise,
                  composition_is_mixed(&inversion->problem->scene.composition)
-                     ? "; potentials of so many kinds of pairs may want targets with a shorter "
+                     ? "; potentials of so many pair types may want targets with a shorter "
                        "\"cutoff\""
                      : "");
     else

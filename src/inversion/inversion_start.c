@@ -13,7 +13,7 @@
 /// 40 iterations, its ramp being off by 5 k_B T.
 static const double poor = 0.1;
 
-/// Whether the run file gives a start, of a mixture for any of its kinds of pairs: the others then
+/// Whether the run file gives a start, of a mixture for any of its pair types: the others then
 /// begin with −k_B T ln g.
 static bool has_own(const struct inversion *inversion) {
     for (size_t pair = 0; pair < inversion->grid.pairs; pair++)

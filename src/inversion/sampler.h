@@ -28,7 +28,7 @@ struct sampler_system {
     const struct table *potential;
     double temperature;
     double low, width; ///< of the bins that count pairs, within the potential's cutoff [λ]
-    size_t bins;       ///< of each kind of pairs
+    size_t bins;       ///< of each pair type
     uint64_t seed;
     const atomic_bool *cancel; ///< stops the sweeps once it is set, or NULL
 };
@@ -50,7 +50,7 @@ enum status mf_sampler_begin(struct sampler *sampler) MUST_USE;
 /// INTERRUPTED.
 enum status mf_sampler_equilibrate(struct sampler *sampler, uint64_t sweeps) MUST_USE;
 
-/// Sweeps, then a sample: S of each bin of each kind of pairs, and behind them the virial Σ r·F
+/// Sweeps, then a sample: S of each bin of each pair type, and behind them the virial Σ r·F
 /// [k_B T_0].
 /// @param[out] sample  shape [pairs · bins + 1]
 /// Fails: NO_MEMORY, INTERRUPTED. Tested: test_monte_carlo_mixture.

@@ -203,6 +203,12 @@ bool mf_json_has(struct json_object *object, const char *key) {
     return ask(object, key) != NULL;
 }
 
+void mf_json_renamed(struct json_object *object, const char *old, const char *today) {
+    // Only then: the name is not to be proposed as the nearest one.
+    if (cJSON_GetObjectItemCaseSensitive(object->item, old) && ask(object, old))
+        mf_json_fault(object, old, "is called \"%s\" now", today);
+}
+
 const char *mf_json_key(const struct json_object *object, size_t n) {
     const cJSON *member;
     cJSON_ArrayForEach(member, (const cJSON *)object->item) {

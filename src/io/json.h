@@ -53,6 +53,9 @@ bool mf_json_has(struct json_object *object, const char *key);
 /// The text lives with the document. Counts as nothing: the reader asks for the keys that it takes.
 const char *mf_json_key(const struct json_object *object, size_t n);
 
+/// Refuse the name that a key had in an earlier version, and say its name of today.
+void mf_json_renamed(struct json_object *object, const char *old, const char *today);
+
 /// Read the members described by `fields` into `parameters`, defaults where absent.
 /// FIELD_FILE values are joined to the folder of the document's file unless absolute. An absent
 /// object gives the defaults and no faults: that it is missing was mf_json_child's to say. null, as

@@ -60,7 +60,7 @@ enum status mf_output_open(struct output *output, const char *path) {
 }
 
 /// Close the stream, its bytes on the disk; 0 or the error number of the first write that failed.
-static int close_stream(struct output *output) {
+static int search_stream(struct output *output) {
     const bool flushed = fflush(output->stream) == 0;
     int error = flushed ? 0 : errno;
     // Bytes of an earlier failure are lost even if the disk has room again.
@@ -91,7 +91,7 @@ static void sync_folder(const char *path) {
 }
 
 enum status mf_output_commit(struct output *output) {
-    int error = close_stream(output);
+    int error = search_stream(output);
     if (error == 0 && rename(output->temporary, output->path) != 0)
         error = errno;
     if (error == 0) {

@@ -36,7 +36,7 @@ static enum status add_own_laws(struct mesofit_fit *fit, const struct mesofit_sc
     struct scene *scene = &fit->file.scene;
     TRY(mf_scene_text_add_own(own, scene));
     fit->file.problem.scene.potential = scene->setup.potential;
-    fit->file.problem.scene.weight = scene->setup.weight;
+    fit->file.problem.scene.omega = scene->setup.omega;
     return STATUS_OK;
 }
 
@@ -140,8 +140,7 @@ enum mesofit_status mesofit_fit_iterate(struct mesofit_fit *fit, struct mesofit_
 }
 
 struct mesofit_curve mesofit_fit_curve(const struct mesofit_fit *fit, enum mesofit_law_kind kind) {
-    const enum unknown_kind unknown =
-        kind == MESOFIT_POTENTIAL ? UNKNOWN_POTENTIAL : UNKNOWN_WEIGHT;
+    const enum unknown_kind unknown = kind == MESOFIT_POTENTIAL ? UNKNOWN_POTENTIAL : UNKNOWN_OMEGA;
     if (!fit->iterated || fit->step.curve[unknown] == NULL)
         return (struct mesofit_curve){0};
     return (struct mesofit_curve){.count = mf_decoder_points(&fit->decoder, unknown),
@@ -162,7 +161,7 @@ static enum status verify(struct mesofit_fit *fit, struct mesofit_verification *
     const struct inverse_listener listener = {tell, fit};
     struct table own[UNKNOWNS] = {{0}};
     const struct table *table[UNKNOWNS] = {fit->file.scene.setup.potential,
-                                           fit->file.scene.setup.weight};
+                                           fit->file.scene.setup.omega};
     struct verification v = {0};
     if (!fit->iterated)
         return mf_status_fail(STATUS_BAD_INPUT, "there is nothing to verify before an iteration");
@@ -172,7 +171,7 @@ static enum status verify(struct mesofit_fit *fit, struct mesofit_verification *
         CHECK(mf_decoder_table(&fit->decoder, kind, fit->step.curve[kind], &own[kind]));
         table[kind] = &own[kind];
     }
-    CHECK(mf_verify(&fit->file.problem, table[UNKNOWN_POTENTIAL], table[UNKNOWN_WEIGHT],
+    CHECK(mf_verify(&fit->file.problem, table[UNKNOWN_POTENTIAL], table[UNKNOWN_OMEGA],
                     &fit->file.verification, &listener, &v));
     const struct target_distance *rdf = &v.distance[TARGET_RDF], *etd = &v.distance[TARGET_ETD];
     *out = (struct mesofit_verification){.rdf_rms = known(rdf, rdf->rms),

@@ -3,12 +3,12 @@
 // Single candidates of a fit, for optimisers of the caller's own.
 #include "library/fit.h"
 #include "library/guard.h"
-#include "matching/candidates.h"
+#include "matching/population.h"
 
 #include <math.h>
 
 size_t mesofit_fit_coefficients(const struct mesofit_fit *fit) {
-    return fit->decoder.genes;
+    return fit->decoder.variables;
 }
 
 enum mesofit_status mesofit_fit_start(const struct mesofit_fit *fit, double *coefficients) {
@@ -25,14 +25,14 @@ static enum status evaluate(const struct mesofit_fit *fit, const double *coeffic
     if (method->sampling(fit->file.method_parameters).every == 0)
         return mf_status_fail(STATUS_BAD_INPUT, "the method \"%s\" does not measure candidates",
                               method->name);
-    const struct candidates_settings *settings = fit->file.method_parameters;
+    const struct population_settings *settings = fit->file.method_parameters;
     CHECK(mf_decoder_laws(&fit->decoder, coefficients, &laws));
     const struct evaluate_candidate candidate = {.potential = laws.table[UNKNOWN_POTENTIAL],
-                                                 .weight = laws.table[UNKNOWN_WEIGHT],
-                                                 .hopeless = HUGE_VAL,
+                                                 .omega = laws.table[UNKNOWN_OMEGA],
+                                                 .discard_above = HUGE_VAL,
                                                  .threads = 1,
                                                  .seed = seed};
-    status = mf_evaluate(&fit->file.problem, &candidate, &settings->candidates.evaluate, NULL, NULL,
+    status = mf_evaluate(&fit->file.problem, &candidate, &settings->population.evaluate, NULL, NULL,
                          &result);
     *error = status == STATUS_OK ? result.error : HUGE_VAL;
     if (variance)

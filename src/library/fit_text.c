@@ -84,7 +84,7 @@ static void write_unknowns(const struct mesofit_fit_options *options, FILE *stre
     if (options->find_potential)
         fprintf(stream, "\"potential\": %s", options->potential ? options->potential : "{}");
     if (options->find_friction)
-        fprintf(stream, "%s\"weight\": %s", options->find_potential ? ", " : "",
+        fprintf(stream, "%s\"omega\": %s", options->find_potential ? ", " : "",
                 options->friction ? options->friction : "{}");
     fputs("}, ", stream);
 }

@@ -53,8 +53,11 @@ struct mesofit_optimiser *mesofit_optimiser_create(const char *name, const char 
                                                    size_t dimensions, double minimum,
                                                    double maximum, const double *start,
                                                    uint64_t seed) {
-    const struct optimiser_space space = {
-        .genes = dimensions, .minimum = minimum, .maximum = maximum, .start = start, .seed = seed};
+    const struct optimiser_space space = {.variables = dimensions,
+                                          .minimum = minimum,
+                                          .maximum = maximum,
+                                          .start = start,
+                                          .seed = seed};
     mf_guard_enter();
     struct mesofit_optimiser *optimiser = mf_memory_zeroed(1, sizeof *optimiser);
     if (optimiser && create(optimiser, name, settings, &space) != STATUS_OK) {
@@ -77,11 +80,11 @@ void mesofit_optimiser_free(struct mesofit_optimiser *optimiser) {
 }
 
 enum mesofit_status mesofit_optimiser_ask(struct mesofit_optimiser *optimiser,
-                                          const double **candidates, size_t *count) {
+                                          const double **population, size_t *count) {
     struct optimiser_round round = {0};
     mf_guard_enter();
     const enum status status = optimiser->kind->ask(optimiser->state, &round);
-    *candidates = round.genes;
+    *population = round.variables;
     *count = optimiser->count = round.count;
     return mf_guard_return(status);
 }
@@ -109,7 +112,7 @@ enum mesofit_status mesofit_optimiser_tell(struct mesofit_optimiser *optimiser,
 
 int mesofit_optimiser_best(const struct mesofit_optimiser *optimiser, double *best) {
     mf_guard_enter();
-    const bool known = optimiser->kind->favourite(optimiser->state, best);
+    const bool known = optimiser->kind->incumbent(optimiser->state, best);
     mf_guard_leave();
     return known;
 }

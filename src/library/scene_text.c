@@ -33,7 +33,7 @@ void mf_scene_text_write(const struct mesofit_scene *scene, FILE *stream) {
             scene->particles, scene->temperature, scene->time_step);
     write_law(&scene->conservative, "conservative", stream);
     write_law(&scene->dissipative, "dissipative", stream);
-    // A weight of the caller's own is not in the text, which so cannot choose by it.
+    // A friction weight of the caller's own is not in the text, which so cannot choose by it.
     const char *integrator =
         scene->integrator || scene->dissipative.value == NULL ? scene->integrator : mf_aboba.name;
     if (integrator)
@@ -90,9 +90,9 @@ static enum status add_law(const struct mesofit_law *from, const char *name,
 enum status mf_scene_text_add_own(const struct mesofit_scene *from, struct scene *scene) {
     TRY(add_law(&from->conservative, "conservative", mf_table_init_potential, &scene->potential,
                 &scene->setup.potential));
-    TRY(add_law(&from->dissipative, "dissipative", mf_table_init_weight, &scene->weight,
-                &scene->setup.weight));
-    if (scene->setup.weight && !scene->setup.integrator->dissipative)
+    TRY(add_law(&from->dissipative, "dissipative", mf_table_init_omega, &scene->omega,
+                &scene->setup.omega));
+    if (scene->setup.omega && !scene->setup.integrator->dissipative)
         return mf_status_fail(STATUS_BAD_INPUT, "the integrator \"%s\" knows no friction",
                               scene->setup.integrator->name);
     return STATUS_OK;

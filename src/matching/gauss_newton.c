@@ -9,7 +9,7 @@
 
 #include "base/memory.h"
 #include "base/rng.h"
-#include "matching/candidates.h"
+#include "matching/population.h"
 
 #include <assert.h>
 #include <math.h>
@@ -17,7 +17,7 @@
 #include <string.h>
 
 /// The region's radius is multiplied by these after a step that helped and one that did harm, and
-/// never gets wider than the last [gene].
+/// never gets wider than the last [variable].
 static const double widen = 1.4, narrow = 0.7, widest = 0.3;
 
 /// The error is at its noise up to this multiple of it, which is known to a tenth or two. What is
@@ -42,16 +42,16 @@ struct state {
     struct own own;
     const struct inverse_problem *problem;
     struct decoder decoder;
-    struct candidates candidates;
-    double *round;                ///< shape [candidates, genes]: spread about the best
-    double *proposal;             ///< shape [genes]
-    double *best;                 ///< shape [genes]: the centre of the region
+    struct population population;
+    double *round;                ///< shape [candidates, variables]: spread about the best
+    double *proposal;             ///< shape [variables]
+    double *best;                 ///< shape [variables]: the centre of the region
     struct decoder_curves curves; ///< of the best
     bool has_model;               ///< whether the last iteration had one
     struct progress {
         uint32_t iteration;
         bool known;                    ///< whether the best has been measured
-        double reach;                  ///< radius of the region [gene]
+        double reach;                  ///< radius of the region [variable]
         double error, variance, noise; ///< of the best
         uint32_t at_noise;             ///< iterations since the error is no more than noise
         uint32_t idle;                 ///< since it fell by more than chance,
@@ -63,11 +63,11 @@ struct state {
 static const struct field own_fields[] = {
     {"iterations", FIELD_INTEGER, OWN(iterations), .initial = 20, .minimum = 1, .maximum = 10000,
      .unit = "", .help = "at most; a fit that has not settled by then has not converged"},
-    {"spread", FIELD_INTEGER, OWN(spread), .initial = 0, .minimum = 0, .maximum = CANDIDATES_MOST,
-     .unit = "", .help = "candidates about the best in an iteration; 0: 1.5 for each gene"},
+    {"spread", FIELD_INTEGER, OWN(spread), .initial = 0, .minimum = 0, .maximum = POPULATION_MOST,
+     .unit = "", .help = "candidates about the best in an iteration; 0: 1.5 for each variable"},
     {"reach", FIELD_NUMBER, OWN(reach), .initial = 0.15, .minimum = FIELD_ABOVE_ZERO, .maximum = 1,
-     .unit = "", .help = "radius of the region at first, as a part of a gene's range"},
-    {"checks", FIELD_INTEGER, OWN(checks), .initial = 4, .minimum = 1, .maximum = CANDIDATES_MOST,
+     .unit = "", .help = "radius of the region at first, as a part of a variable's range"},
+    {"checks", FIELD_INTEGER, OWN(checks), .initial = 4, .minimum = 1, .maximum = POPULATION_MOST,
      .unit = "", .help = "measurements of what the model thinks best"},
     {"tolerance", FIELD_NUMBER, OWN(tolerance), .initial = 0.1, .minimum = FIELD_ABOVE_ZERO,
      .maximum = 1, .unit = "", .help = "of the first radius; with a smaller region the fit ends"},
@@ -77,7 +77,7 @@ static const struct field own_fields[] = {
     FIELD_END,
 };
 
-static_assert(sizeof(struct own) <= sizeof((struct candidates_settings){0}.method), "no room");
+static_assert(sizeof(struct own) <= sizeof((struct population_settings){0}.method), "no room");
 
 static const char *const columns[] = {"least[1]", "mean[1]", "reach[1]", "failures", NULL};
 
@@ -89,23 +89,25 @@ static uint32_t most_iterations(const struct inverse_method *method,
 
 /// Candidates of an iteration, an even number; the first must be enough for a model.
 static size_t round_size(const struct state *state) {
-    const size_t genes = state->decoder.genes;
-    const size_t wanted = state->own.spread > 0 ? (size_t)state->own.spread : (3 * genes + 1) / 2;
+    const size_t variables = state->decoder.variables;
+    const size_t wanted =
+        state->own.spread > 0 ? (size_t)state->own.spread : (3 * variables + 1) / 2;
     // Some may fail.
     const size_t least =
-        state->progress.iteration == 0 ? 11 * mf_surrogate_least_rows(genes) / 10 : 4;
+        state->progress.iteration == 0 ? 11 * mf_surrogate_least_rows(variables) / 10 : 4;
     return ((wanted > least ? wanted : least) + 1) / 2 * 2;
 }
 
 static size_t most_candidates(const struct state *state) {
-    const size_t genes = state->decoder.genes, least = 11 * mf_surrogate_least_rows(genes) / 10;
-    const size_t wanted = state->own.spread > 0 ? (size_t)state->own.spread : 2 * genes;
+    const size_t variables = state->decoder.variables,
+                 least = 11 * mf_surrogate_least_rows(variables) / 10;
+    const size_t wanted = state->own.spread > 0 ? (size_t)state->own.spread : 2 * variables;
     return ((wanted > least ? wanted : least) + 1) / 2 * 2;
 }
 
 static void destroy(void *memory) {
     struct state *state = memory;
-    mf_candidates_clear(&state->candidates);
+    mf_population_clear(&state->population);
     mf_decoder_clear(&state->decoder);
     mf_memory_free(state->round);
     mf_memory_free(state->proposal);
@@ -119,7 +121,7 @@ static enum status constrain_pressure(struct state *state) {
         return mf_status_fail(
             STATUS_BAD_INPUT,
             "method.pressure: \"constraint\" needs a target.pressure that is fitted");
-    state->candidates.surrogate.exact = state->candidates.surrogate.features - 1;
+    state->population.surrogate.exact = state->population.surrogate.features - 1;
     return STATUS_OK;
 }
 
@@ -127,27 +129,28 @@ static enum status create(void *memory, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters) {
     enum status status = STATUS_OK;
     struct state *state = memory;
-    const struct candidates_settings *settings = parameters;
+    const struct population_settings *settings = parameters;
     memcpy(&state->own, &settings->method, sizeof state->own);
     state->problem = problem;
     state->progress = (struct progress){
         .reach = state->own.reach, .error = NAN, .noise = NAN, .reference = INFINITY};
     CHECK(mf_decoder_init(&state->decoder, problem));
-    if (most_candidates(state) > CANDIDATES_MOST) {
-        status = mf_status_fail(
-            STATUS_BAD_INPUT,
-            "method.name: \"gauss-newton\" needs %zu candidates in a round for %zu "
-            "genes, and %d are the most",
-            mf_surrogate_least_rows(state->decoder.genes), state->decoder.genes, CANDIDATES_MOST);
+    if (most_candidates(state) > POPULATION_MOST) {
+        status =
+            mf_status_fail(STATUS_BAD_INPUT,
+                           "method.name: \"gauss-newton\" needs %zu candidates in a round for %zu "
+                           "variables, and %d are the most",
+                           mf_surrogate_least_rows(state->decoder.variables),
+                           state->decoder.variables, POPULATION_MOST);
         goto done;
     }
-    NEW_ARRAY(state->round, most_candidates(state) * state->decoder.genes);
-    NEW_ARRAY(state->proposal, state->decoder.genes);
-    NEW_ARRAY(state->best, state->decoder.genes);
+    NEW_ARRAY(state->round, most_candidates(state) * state->decoder.variables);
+    NEW_ARRAY(state->proposal, state->decoder.variables);
+    NEW_ARRAY(state->best, state->decoder.variables);
     CHECK(mf_decoder_curves_init(&state->decoder, &state->curves));
     CHECK(mf_decoder_start(&state->decoder, state->best));
-    CHECK(mf_candidates_init(&state->candidates, &state->decoder, &settings->candidates));
-    state->candidates.iterations = most_iterations(method, problem, parameters);
+    CHECK(mf_population_init(&state->population, &state->decoder, &settings->population));
+    state->population.iterations = most_iterations(method, problem, parameters);
     if (state->own.pressure == PRESSURE_CONSTRAINT)
         CHECK(constrain_pressure(state));
 done:
@@ -156,25 +159,25 @@ done:
 
 /// Pairs on opposite sides of the best, normally distributed.
 static void spread(struct state *state, size_t count) {
-    const size_t genes = state->decoder.genes;
+    const size_t variables = state->decoder.variables;
     for (size_t pair = 0; pair < count / 2; pair++)
-        for (size_t n = 0; n < genes; n++) {
+        for (size_t n = 0; n < variables; n++) {
             double normal[4];
             mf_rng_normal4(mf_rng_philox(state->problem->seed, RNG_SELECTION,
                                          state->progress.iteration, (uint32_t)pair, (uint32_t)n),
                            normal);
             const double step = spread_part * state->progress.reach * normal[0];
-            double *one = state->round + 2 * pair * genes + n;
+            double *one = state->round + 2 * pair * variables + n;
             one[0] = fmin(1, fmax(0, state->best[n] + step));
-            one[genes] = fmin(1, fmax(0, state->best[n] - step));
+            one[variables] = fmin(1, fmax(0, state->best[n] - step));
         }
 }
 
 /// Take a measured place for the best.
-static void move(struct state *state, const double *genes, double error, double noise,
+static void move(struct state *state, const double *variables, double error, double noise,
                  double variance) {
     struct progress *progress = &state->progress;
-    memcpy(state->best, genes, state->decoder.genes * sizeof *genes);
+    memcpy(state->best, variables, state->decoder.variables * sizeof *variables);
     progress->known = true;
     progress->error = error;
     progress->noise = noise;
@@ -213,11 +216,11 @@ static enum status propose(struct state *state) {
     struct surrogate_model model = {0};
     bool known;
     double error, noise, variance;
-    CHECK(mf_surrogate_fit(&state->candidates.surrogate, state->best, state->progress.reach, &model,
+    CHECK(mf_surrogate_fit(&state->population.surrogate, state->best, state->progress.reach, &model,
                            &known));
     if (known) {
-        memcpy(state->proposal, model.best, state->decoder.genes * sizeof *model.best);
-        CHECK(mf_candidates_remeasure(&state->candidates, state->proposal,
+        memcpy(state->proposal, model.best, state->decoder.variables * sizeof *model.best);
+        CHECK(mf_population_remeasure(&state->population, state->proposal,
                                       (size_t)state->own.checks, &error, &noise, &variance, NULL));
         judge(state, error, noise, variance);
         if (state->progress.known)
@@ -246,11 +249,12 @@ static void tell_reason(const struct state *state, char reason[INVERSE_REASON_SI
     if (state->has_model)
         snprintf(why, sizeof why, "but none of what the linear model thought best");
     else
-        snprintf(why, sizeof why,
-                 "too few for a linear model of %zu genes, which needs %zu: more \"iterations\" or "
-                 "\"spread\" would do",
-                 state->decoder.genes, mf_surrogate_least_rows(state->decoder.genes));
-    mf_candidates_tell_failure(&state->candidates, why, reason);
+        snprintf(
+            why, sizeof why,
+            "too few for a linear model of %zu variables, which needs %zu: more \"iterations\" or "
+            "\"spread\" would do",
+            state->decoder.variables, mf_surrogate_least_rows(state->decoder.variables));
+    mf_population_tell_failure(&state->population, why, reason);
 }
 
 /// Whether some potential meets all that is fitted: g(r) and the pressure. What moves may be out of
@@ -282,15 +286,16 @@ static void settle(const struct state *state, struct inverse_step *step) {
         return;
     if (!has_narrowed(state))
         snprintf(why, sizeof why, "its error has not fallen in %u iterations", progress->idle);
-    snprintf(step->reason, sizeof step->reason,
-             "%s, but %s %.2g, %.2g by statistics: more \"genes\", a wider range of the curve or "
-             "another start may lead on%s",
-             why, what, progress->error, progress->noise,
-             step->used_up ? ", if the target can be met at all" : "");
+    snprintf(
+        step->reason, sizeof step->reason,
+        "%s, but %s %.2g, %.2g by statistics: more \"variables\", a wider range of the curve or "
+        "another start may lead on%s",
+        why, what, progress->error, progress->noise,
+        step->used_up ? ", if the target can be met at all" : "");
 }
 
 static void describe(struct state *state, struct inverse_step *step) {
-    const struct candidates_survey *survey = &state->candidates.survey;
+    const struct population_survey *survey = &state->population.survey;
     const struct progress *progress = &state->progress;
     const bool settled =
         progress->known && (has_narrowed(state) || progress->at_noise >= SETTLED_AT_NOISE ||
@@ -298,8 +303,8 @@ static void describe(struct state *state, struct inverse_step *step) {
     const bool last = progress->iteration + 1 >= (uint32_t)state->own.iterations;
     *step = (struct inverse_step){
         .iteration = progress->iteration,
-        .evaluations = state->candidates.totals.evaluations,
-        .engine_steps = state->candidates.totals.steps,
+        .evaluations = state->population.totals.evaluations,
+        .engine_steps = state->population.totals.steps,
         .error = progress->error,
         .noise = progress->noise,
         .variance = progress->variance,
@@ -317,18 +322,18 @@ static void describe(struct state *state, struct inverse_step *step) {
 static enum status iterate(void *memory, struct inverse_step *step,
                            const struct inverse_listener *listener) {
     struct state *state = memory;
-    struct candidates *candidates = &state->candidates;
+    struct population *population = &state->population;
     const struct optimiser_round round = {state->round, round_size(state)};
-    candidates->iteration = state->progress.iteration;
-    candidates->best = state->progress.error;
-    if (candidates->survey.evaluations == 0) {
+    population->iteration = state->progress.iteration;
+    population->best = state->progress.error;
+    if (population->survey.evaluations == 0) {
         spread(state, round.count);
-        TRY(mf_candidates_measure(candidates, &round, HUGE_VAL, listener));
+        TRY(mf_population_measure(population, &round, HUGE_VAL, listener));
     }
     TRY(propose(state));
     describe(state, step);
-    mf_candidates_next_round(candidates);
-    mf_candidates_forget_survey(candidates);
+    mf_population_next_round(population);
+    mf_population_forget_survey(population);
     state->progress.iteration++;
     return STATUS_OK;
 }
@@ -337,21 +342,21 @@ static size_t spans(void *memory, struct memory_span *span) {
     struct state *state = memory;
     size_t n = 0;
     span[n++] = (struct memory_span){&state->progress, sizeof state->progress};
-    span[n++] = (struct memory_span){state->best, state->decoder.genes * sizeof(double)};
+    span[n++] = (struct memory_span){state->best, state->decoder.variables * sizeof(double)};
     n += mf_decoder_curves_spans(&state->decoder, &state->curves, span + n);
-    return n + mf_candidates_spans(&state->candidates, span + n);
+    return n + mf_population_spans(&state->population, span + n);
 }
 
 const struct inverse_method mf_gauss_newton = {
     .name = "gauss-newton",
     .summary = "linear models of all observables in a trust region; J. Nocedal and S. J. Wright "
                "(2006)",
-    .tables = (const struct field *const[]){own_fields, mf_candidates_fields, NULL},
-    .parameters_size = sizeof(struct candidates_settings),
+    .tables = (const struct field *const[]){own_fields, mf_population_fields, NULL},
+    .parameters_size = sizeof(struct population_settings),
     .state_size = sizeof(struct state),
     .fits = {true, true},
     .most_iterations = most_iterations,
-    .sampling = mf_candidates_sampling,
+    .sampling = mf_population_sampling,
     .keeps_parts = true,
     .columns = columns,
     .create = create,

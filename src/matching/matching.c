@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Matching: genes → curves → simulation → observables → distance from the targets, which an
+// Matching: variables → curves → simulation → observables → distance from the targets, which an
 // optimiser makes small. A. G. Baydin (thesis on DPD coarse-graining by evolutionary optimisation,
 // 2008) does it with a genetic algorithm; the optimiser is a record of its own here.
 #include "problem/inverse.h"
 
 #include "base/memory.h"
-#include "matching/candidates.h"
+#include "matching/population.h"
 #include "problem/decoder.h"
 #include "optimise/optimiser.h"
 
@@ -16,7 +16,7 @@
 #include <string.h>
 
 struct parameters {
-    struct candidates_settings settings; ///< with the parameters of the optimiser
+    struct population_settings settings; ///< with the parameters of the optimiser
     int64_t checks;
     int surrogate;
 };
@@ -28,14 +28,14 @@ struct state {
     void *optimiser_state;
     bool created;
     struct decoder decoder;
-    struct candidates candidates;
-    double *favourite;            ///< shape [genes]: what is thought best
-    double *best;                 ///< shape [genes]: the best by fresh measurements
+    struct population population;
+    double *incumbent;            ///< shape [variables]: what is thought best
+    double *best;                 ///< shape [variables]: the best by fresh measurements
     struct decoder_curves curves; ///< of the best, with errors by the linear model
     struct progress {
         uint32_t iteration;
         int stage;            ///< of `check`
-        uint64_t checked;     ///< evaluations when a favourite was last measured
+        uint64_t checked;     ///< evaluations when a incumbent was last measured
         uint32_t last_better; ///< iteration in which the error fell last
         bool known;           ///< whether there is a best
         double error, noise;  ///< of the best: the mean of its fresh measurements
@@ -46,9 +46,9 @@ struct state {
 #define MEMBER(name) .offset = offsetof(struct parameters, name)
 static const struct field own_fields[] = {
     {"checks", FIELD_INTEGER, MEMBER(checks), .initial = 2, .minimum = 1,
-     .maximum = CANDIDATES_MOST, .unit = "",
+     .maximum = POPULATION_MOST, .unit = "",
      .help = "fresh measurements of what is thought best, before it is believed"},
-    {"surrogate", FIELD_CHOICE, MEMBER(surrogate), .choices = mf_candidates_no_or_yes, .initial = 1,
+    {"surrogate", FIELD_CHOICE, MEMBER(surrogate), .choices = mf_population_no_or_yes, .initial = 1,
      .unit = "", .help = "whether to try what a linear model of all simulations thinks best, too"},
     FIELD_END,
 };
@@ -60,17 +60,17 @@ static const char *const columns[] = {"least[1]", "mean[1]", "diversity[1]", "fa
 /// Evaluations of an iteration whose rounds are of one candidate, so that a history stays readable.
 static const size_t least_evaluations = 10;
 
-/// How far the linear model may go from what was measured, as a part of a gene's range.
+/// How far the linear model may go from what was measured, as a part of a variable's range.
 static const double reach = 0.3;
 
-/// Rounds, of which an iteration takes at least one, and a last iteration for the favourite.
+/// Rounds, of which an iteration takes at least one, and a last iteration for the incumbent.
 static uint32_t most_iterations(const struct inverse_method *method,
                                 const struct inverse_problem *problem, const void *parameters) {
-    size_t genes = 0;
+    size_t variables = 0;
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (problem->unknown[kind].wanted)
-            genes += (size_t)problem->unknown[kind].parameters.genes;
-    return method->optimiser->most_rounds(parameters, genes) + 1;
+            variables += (size_t)problem->unknown[kind].parameters.coefficients;
+    return method->optimiser->most_rounds(parameters, variables) + 1;
 }
 
 static void destroy(void *memory) {
@@ -78,9 +78,9 @@ static void destroy(void *memory) {
     if (state->created)
         state->optimiser->destroy(state->optimiser_state);
     mf_memory_free(state->optimiser_state);
-    mf_candidates_clear(&state->candidates);
+    mf_population_clear(&state->population);
     mf_decoder_clear(&state->decoder);
-    mf_memory_free(state->favourite);
+    mf_memory_free(state->incumbent);
     mf_memory_free(state->best);
     mf_decoder_curves_clear(&state->curves);
 }
@@ -88,14 +88,14 @@ static void destroy(void *memory) {
 static enum status create_optimiser(struct state *state) {
     enum status status = STATUS_OK;
     double *start = NULL;
-    NEW_ARRAY(start, state->decoder.genes);
+    NEW_ARRAY(start, state->decoder.variables);
     CHECK(mf_decoder_start(&state->decoder, start));
-    const struct optimiser_space space = {.genes = state->decoder.genes,
+    const struct optimiser_space space = {.variables = state->decoder.variables,
                                           .minimum = 0,
                                           .maximum = 1,
                                           .start = start,
                                           .seed = state->problem->seed,
-                                          .most = CANDIDATES_MOST};
+                                          .most = POPULATION_MOST};
     state->optimiser_state = mf_memory_zeroed(1, state->optimiser->state_size);
     CHECK(state->optimiser_state ? STATUS_OK : STATUS_NO_MEMORY);
     CHECK(state->optimiser->create(state->optimiser_state, &space, &state->parameters));
@@ -114,53 +114,53 @@ static enum status create(void *memory, const struct inverse_method *method,
     state->optimiser = method->optimiser;
     state->progress.error = NAN;
     CHECK(mf_decoder_init(&state->decoder, problem));
-    NEW_ARRAY(state->favourite, state->decoder.genes);
-    NEW_ARRAY(state->best, state->decoder.genes);
+    NEW_ARRAY(state->incumbent, state->decoder.variables);
+    NEW_ARRAY(state->best, state->decoder.variables);
     CHECK(mf_decoder_curves_init(&state->decoder, &state->curves));
     CHECK(create_optimiser(state));
-    CHECK(mf_candidates_init(&state->candidates, &state->decoder,
-                             &state->parameters.settings.candidates));
-    state->candidates.iterations = most_iterations(method, problem, parameters);
+    CHECK(mf_population_init(&state->population, &state->decoder,
+                             &state->parameters.settings.population));
+    state->population.iterations = most_iterations(method, problem, parameters);
 done:
     return status;
 }
 
 /// Whether an iteration has the evaluations that it should.
-static bool is_full(const struct candidates_survey *survey, size_t next_round) {
+static bool is_full(const struct population_survey *survey, size_t next_round) {
     return survey->evaluations >= (next_round == 1 ? least_evaluations : 1);
 }
 
 /// One round of the optimiser: measure what it asks for and tell it.
 static enum status take_round(struct state *state, const struct optimiser_round *round,
                               const struct inverse_listener *listener) {
-    TRY(mf_candidates_measure(&state->candidates, round,
-                              state->optimiser->hopeless(state->optimiser_state), listener));
-    TRY(state->optimiser->tell(state->optimiser_state, state->candidates.errors,
-                               state->candidates.variances));
-    mf_candidates_next_round(&state->candidates);
+    TRY(mf_population_measure(&state->population, round,
+                              state->optimiser->discard_above(state->optimiser_state), listener));
+    TRY(state->optimiser->tell(state->optimiser_state, state->population.errors,
+                               state->population.variances));
+    mf_population_next_round(&state->population);
     return STATUS_OK;
 }
 
 /// Whether what is thought best is to be measured: something new, and not more than one evaluation
 /// in ten goes into such measurements but for the last.
 static bool wants_check(const struct state *state, bool last) {
-    const size_t bytes = state->decoder.genes * sizeof(double);
-    if (state->progress.known && memcmp(state->favourite, state->best, bytes) == 0)
+    const size_t bytes = state->decoder.variables * sizeof(double);
+    if (state->progress.known && memcmp(state->incumbent, state->best, bytes) == 0)
         return false;
-    const uint64_t since = state->candidates.totals.evaluations - state->progress.checked;
+    const uint64_t since = state->population.totals.evaluations - state->progress.checked;
     return last || !state->progress.known || since >= 10 * (uint64_t)state->parameters.checks;
 }
 
-/// Measure the favourite afresh and keep it if it is better than the best so far, or as good within
+/// Measure the incumbent afresh and keep it if it is better than the best so far, or as good within
 /// `slack` standard errors.
-static enum status check_favourite(struct state *state, double slack) {
+static enum status check_incumbent(struct state *state, double slack) {
     double error, noise, variance;
-    TRY(mf_candidates_remeasure(&state->candidates, state->favourite,
+    TRY(mf_population_remeasure(&state->population, state->incumbent,
                                 (size_t)state->parameters.checks, &error, &noise, &variance, NULL));
     if (error >= OPTIMISER_FAILED ||
         (state->progress.known && error > state->progress.error + slack * sqrt(variance)))
         return STATUS_OK;
-    memcpy(state->best, state->favourite, state->decoder.genes * sizeof(double));
+    memcpy(state->best, state->incumbent, state->decoder.variables * sizeof(double));
     if (!state->progress.known || error < state->progress.error)
         state->progress.last_better = state->progress.iteration;
     state->progress.known = true;
@@ -177,13 +177,13 @@ static enum status try_surrogate(struct state *state) {
     struct surrogate_model model = {0};
     bool known = false;
     if (state->progress.known)
-        CHECK(mf_surrogate_fit(&state->candidates.surrogate, state->best, reach, &model, &known));
+        CHECK(mf_surrogate_fit(&state->population.surrogate, state->best, reach, &model, &known));
     CHECK(mf_decoder_curves_bands(&state->decoder, state->best, known ? model.covariance : NULL,
                                   &state->curves));
     if (!known || !state->parameters.surrogate)
         goto done;
-    memcpy(state->favourite, model.best, state->decoder.genes * sizeof(double));
-    CHECK(check_favourite(state, 1));
+    memcpy(state->incumbent, model.best, state->decoder.variables * sizeof(double));
+    CHECK(check_incumbent(state, 1));
 done:
     mf_surrogate_model_clear(&model);
     return status;
@@ -194,7 +194,7 @@ static void conclude(const struct state *state, struct inverse_step *step) {
     const struct optimiser *optimiser = state->optimiser;
     step->finished = true;
     if (!state->progress.known)
-        mf_candidates_tell_failure(&state->candidates,
+        mf_population_tell_failure(&state->population,
                                    "but what seemed best failed when it was measured again",
                                    step->reason);
     else if (optimiser->settled && optimiser->settled(state->optimiser_state))
@@ -206,11 +206,11 @@ static void conclude(const struct state *state, struct inverse_step *step) {
 }
 
 static void describe(struct state *state, struct inverse_step *step, bool finished) {
-    const struct candidates_survey *survey = &state->candidates.survey;
+    const struct population_survey *survey = &state->population.survey;
     *step = (struct inverse_step){
         .iteration = state->progress.iteration,
-        .evaluations = state->candidates.totals.evaluations,
-        .engine_steps = state->candidates.totals.steps,
+        .evaluations = state->population.totals.evaluations,
+        .engine_steps = state->population.totals.steps,
         .error = state->progress.error,
         .noise = state->progress.noise,
         .variance = state->progress.variance,
@@ -220,7 +220,7 @@ static void describe(struct state *state, struct inverse_step *step, bool finish
     if (finished)
         conclude(state, step);
     mf_decoder_curves_show(&state->decoder,
-                           state->progress.known ? state->best : state->candidates.first,
+                           state->progress.known ? state->best : state->population.first,
                            &state->curves, step);
 }
 
@@ -229,18 +229,18 @@ static void describe(struct state *state, struct inverse_step *step, bool finish
 static enum status check(struct state *state, bool last) {
     enum { NOTHING, FAVOURITE, SURROGATE };
     struct progress *progress = &state->progress;
-    if (!state->optimiser->favourite(state->optimiser_state, state->favourite))
+    if (!state->optimiser->incumbent(state->optimiser_state, state->incumbent))
         return STATUS_OK;
     if (progress->stage == NOTHING && wants_check(state, last))
         progress->stage = FAVOURITE;
     if (progress->stage == FAVOURITE) {
-        TRY(check_favourite(state, 0));
+        TRY(check_incumbent(state, 0));
         progress->stage = SURROGATE;
     }
     if (progress->stage == SURROGATE) {
         TRY(try_surrogate(state));
         progress->stage = NOTHING;
-        progress->checked = state->candidates.totals.evaluations;
+        progress->checked = state->population.totals.evaluations;
     }
     return STATUS_OK;
 }
@@ -248,30 +248,30 @@ static enum status check(struct state *state, bool last) {
 static enum status iterate(void *memory, struct inverse_step *step,
                            const struct inverse_listener *listener) {
     struct state *state = memory;
-    state->candidates.iteration = state->progress.iteration;
-    state->candidates.best = state->progress.error;
+    state->population.iteration = state->progress.iteration;
+    state->population.best = state->progress.error;
     struct optimiser_round round;
     TRY(state->optimiser->ask(state->optimiser_state, &round));
-    while (round.count > 0 && !is_full(&state->candidates.survey, round.count)) {
+    while (round.count > 0 && !is_full(&state->population.survey, round.count)) {
         TRY(take_round(state, &round, listener));
         TRY(state->optimiser->ask(state->optimiser_state, &round));
     }
     const bool finished = round.count == 0;
     TRY(check(state, finished));
     describe(state, step, finished);
-    mf_candidates_forget_survey(&state->candidates);
+    mf_population_forget_survey(&state->population);
     state->progress.iteration++;
     return STATUS_OK;
 }
 
 static size_t spans(void *memory, struct memory_span *span) {
     struct state *state = memory;
-    const size_t bytes = state->decoder.genes * sizeof(double);
+    const size_t bytes = state->decoder.variables * sizeof(double);
     size_t n = 0;
     span[n++] = (struct memory_span){&state->progress, sizeof state->progress};
     span[n++] = (struct memory_span){state->best, bytes};
     n += mf_decoder_curves_spans(&state->decoder, &state->curves, span + n);
-    n += mf_candidates_spans(&state->candidates, span + n);
+    n += mf_population_spans(&state->population, span + n);
     n += state->optimiser->spans(state->optimiser_state, span + n);
     return n;
 }
@@ -280,10 +280,10 @@ static size_t spans(void *memory, struct memory_span *span) {
     {                                                                                              \
         .name = its_name, .summary = its_summary,                                                  \
         .tables =                                                                                  \
-            (const struct field *const[]){its_fields, mf_candidates_fields, own_fields, NULL},     \
+            (const struct field *const[]){its_fields, mf_population_fields, own_fields, NULL},     \
         .parameters_size = sizeof(struct parameters), .state_size = sizeof(struct state),          \
         .fits = {true, true}, .optimiser = &(its_optimiser), .most_iterations = most_iterations,   \
-        .sampling = mf_candidates_sampling, .keeps_parts = true, .columns = columns,               \
+        .sampling = mf_population_sampling, .keeps_parts = true, .columns = columns,               \
         .create = create, .destroy = destroy, .iterate = iterate, .spans = spans,                  \
     }
 

@@ -13,7 +13,7 @@
 
 #define OWN(name) .offset = offsetof(struct pareto_own, name)
 static const struct field own_fields[] = {
-    {"checks", FIELD_INTEGER, OWN(checks), .initial = 2, .minimum = 1, .maximum = CANDIDATES_MOST,
+    {"checks", FIELD_INTEGER, OWN(checks), .initial = 2, .minimum = 1, .maximum = POPULATION_MOST,
      .unit = "", .help = "fresh measurements of a member of the front before it is chosen"},
     {"surrogate", FIELD_INTEGER, OWN(surrogate), .initial = 4, .minimum = 0,
      .maximum = NSGA2_PLANTED, .unit = "",
@@ -21,14 +21,14 @@ static const struct field own_fields[] = {
     FIELD_END,
 };
 
-static_assert(sizeof(struct pareto_own) <= sizeof((struct candidates_settings){0}.method),
+static_assert(sizeof(struct pareto_own) <= sizeof((struct population_settings){0}.method),
               "no room");
 static_assert(offsetof(struct pareto_own, nsga2) == 0, "nsga2_fields need it first");
 
 static const char *const columns[] = {"least[1]", "mean[1]", "diversity[1]", "failures", NULL};
 
-/// How far the linear model may go from the chosen, as a part of a gene's range: the first child so
-/// far, each of the others half as far as the one before.
+/// How far the linear model may go from the chosen, as a part of a variable's range: the first
+/// child so far, each of the others half as far as the one before.
 static const double reach = 0.3;
 
 static uint32_t most_iterations(const struct inverse_method *method,
@@ -40,7 +40,7 @@ static uint32_t most_iterations(const struct inverse_method *method,
 static void destroy(void *memory) {
     struct pareto_state *state = memory;
     mf_nsga2_clear(&state->nsga2);
-    mf_candidates_clear(&state->candidates);
+    mf_population_clear(&state->population);
     mf_decoder_clear(&state->decoder);
     mf_memory_free(state->value);
     mf_memory_free(state->log);
@@ -59,9 +59,9 @@ static size_t log_rows(const struct pareto_state *state) {
 static enum status create_nsga2(struct pareto_state *state) {
     enum status status = STATUS_OK;
     double *start = NULL;
-    NEW_ARRAY(start, state->decoder.genes);
+    NEW_ARRAY(start, state->decoder.variables);
     CHECK(mf_decoder_start(&state->decoder, start));
-    const struct nsga2_space space = {.genes = state->decoder.genes,
+    const struct nsga2_space space = {.genes = state->decoder.variables,
                                       .objectives = state->objectives,
                                       .start = start,
                                       .seed = state->problem->seed};
@@ -75,7 +75,7 @@ static enum status create(void *memory, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters) {
     enum status status = STATUS_OK;
     struct pareto_state *state = memory;
-    const struct candidates_settings *settings = parameters;
+    const struct population_settings *settings = parameters;
     memcpy(&state->own, &settings->method, sizeof state->own);
     state->problem = problem;
     for (int kind = 0; kind < TARGETS; kind++)
@@ -87,11 +87,11 @@ static enum status create(void *memory, const struct inverse_method *method,
                               method->name);
     CHECK(mf_decoder_init(&state->decoder, problem));
     CHECK(create_nsga2(state));
-    NEW_ARRAY(state->value, CANDIDATES_MOST * state->objectives);
+    NEW_ARRAY(state->value, POPULATION_MOST * state->objectives);
     NEW_ARRAY(state->log, log_rows(state) * mf_pareto_log_width(state));
     CHECK(mf_decoder_curves_init(&state->decoder, &state->curves));
-    CHECK(mf_candidates_init(&state->candidates, &state->decoder, &settings->candidates));
-    state->candidates.iterations = most_iterations(method, problem, parameters);
+    CHECK(mf_population_init(&state->population, &state->decoder, &settings->population));
+    state->population.iterations = most_iterations(method, problem, parameters);
     state->progress.least = OPTIMISER_FAILED;
 done:
     return status;
@@ -136,15 +136,15 @@ static void add_to_log(struct pareto_state *state, enum pareto_log_kind kind, co
 
 static enum status take_round(struct pareto_state *state, const struct inverse_listener *listener) {
     const struct optimiser_round round = mf_nsga2_ask(&state->nsga2);
-    struct candidates *candidates = &state->candidates;
-    TRY(mf_candidates_measure(candidates, &round, HUGE_VAL, listener));
+    struct population *population = &state->population;
+    TRY(mf_population_measure(population, &round, HUGE_VAL, listener));
     for (size_t k = 0; k < round.count; k++) {
         double *value = state->value + k * state->objectives;
-        take_distances(state, candidates->errors[k], candidates->distances + k * TARGETS, value);
+        take_distances(state, population->errors[k], population->distances + k * TARGETS, value);
         add_to_log(state, LOG_MEASURED, value);
     }
     TRY(mf_nsga2_tell(&state->nsga2, state->value));
-    mf_candidates_next_round(candidates);
+    mf_population_next_round(population);
     return STATUS_OK;
 }
 
@@ -169,7 +169,7 @@ static bool find_best(const struct pareto_state *state, size_t *best) {
 static enum status check_one(struct pareto_state *state, size_t parent) {
     struct target_distance distance[TARGETS];
     double error, noise, variance, value[TARGETS];
-    TRY(mf_candidates_remeasure(&state->candidates, mf_nsga2_parent(&state->nsga2, parent),
+    TRY(mf_population_remeasure(&state->population, mf_nsga2_parent(&state->nsga2, parent),
                                 (size_t)state->own.checks, &error, &noise, &variance, distance));
     take_distances(state, error, distance, value);
     for (size_t m = 0; m < state->objectives && error < OPTIMISER_FAILED; m++)
@@ -207,7 +207,7 @@ static enum status ask_surrogate(struct pareto_state *state) {
     CHECK(mf_decoder_curves_bands(&state->decoder, chosen, NULL, &state->curves));
     for (int64_t k = 0; known && (k == 0 || k < state->own.surrogate); k++) {
         mf_surrogate_model_clear(&model);
-        CHECK(mf_surrogate_fit(&state->candidates.surrogate, chosen, ldexp(reach, (int)-k), &model,
+        CHECK(mf_surrogate_fit(&state->population.surrogate, chosen, ldexp(reach, (int)-k), &model,
                                &known));
         if (known && k == 0)
             CHECK(
@@ -221,12 +221,12 @@ done:
 }
 
 static void describe(struct pareto_state *state, struct inverse_step *step) {
-    const struct candidates_survey *survey = &state->candidates.survey;
+    const struct population_survey *survey = &state->population.survey;
     const struct progress *progress = &state->progress;
     *step = (struct inverse_step){
         .iteration = progress->iteration,
-        .evaluations = state->candidates.totals.evaluations,
-        .engine_steps = state->candidates.totals.steps,
+        .evaluations = state->population.totals.evaluations,
+        .engine_steps = state->population.totals.steps,
         .error = progress->known ? mf_pareto_error(state, mf_pareto_value(state, progress->chosen))
                                  : NAN,
         .noise = progress->known ? mf_pareto_error(state, progress->noise) : NAN,
@@ -238,12 +238,12 @@ static void describe(struct pareto_state *state, struct inverse_step *step) {
     if (step->finished && progress->known)
         mf_inverse_use_up(step, "generations", progress->last_better);
     else if (step->finished)
-        mf_candidates_tell_failure(&state->candidates,
+        mf_population_tell_failure(&state->population,
                                    "but what seemed best failed when it was measured again",
                                    step->reason);
     mf_decoder_curves_show(&state->decoder,
                            progress->known ? mf_nsga2_parent(&state->nsga2, progress->chosen)
-                                           : state->candidates.first,
+                                           : state->population.first,
                            &state->curves, step);
 }
 
@@ -261,8 +261,8 @@ static enum status iterate(void *memory, struct inverse_step *step,
                            const struct inverse_listener *listener) {
     enum { ROUND, CHOICE };
     struct pareto_state *state = memory;
-    state->candidates.iteration = state->progress.iteration;
-    state->candidates.best = state->progress.least < OPTIMISER_FAILED ? state->progress.least : NAN;
+    state->population.iteration = state->progress.iteration;
+    state->population.best = state->progress.least < OPTIMISER_FAILED ? state->progress.least : NAN;
     if (state->progress.stage == ROUND) {
         TRY(take_round(state, listener));
         state->progress.stage = CHOICE;
@@ -271,7 +271,7 @@ static enum status iterate(void *memory, struct inverse_step *step,
     TRY(ask_surrogate(state));
     log_front(state);
     describe(state, step);
-    mf_candidates_forget_survey(&state->candidates);
+    mf_population_forget_survey(&state->population);
     state->progress.stage = ROUND;
     state->progress.iteration++;
     return STATUS_OK;
@@ -285,19 +285,19 @@ static size_t spans(void *memory, struct memory_span *span) {
                                      log_rows(state) * mf_pareto_log_width(state) * sizeof(double)};
     n += mf_decoder_curves_spans(&state->decoder, &state->curves, span + n);
     n += mf_nsga2_spans(&state->nsga2, span + n);
-    return n + mf_candidates_spans(&state->candidates, span + n);
+    return n + mf_population_spans(&state->population, span + n);
 }
 
 const struct inverse_method mf_pareto = {
     .name = "pareto",
     .summary = "the front of all targets by NSGA-II, without weights; K. Deb et al. (2002)",
     .tables =
-        (const struct field *const[]){mf_nsga2_fields, own_fields, mf_candidates_fields, NULL},
-    .parameters_size = sizeof(struct candidates_settings),
+        (const struct field *const[]){mf_nsga2_fields, own_fields, mf_population_fields, NULL},
+    .parameters_size = sizeof(struct population_settings),
     .state_size = sizeof(struct pareto_state),
     .fits = {true, true},
     .most_iterations = most_iterations,
-    .sampling = mf_candidates_sampling,
+    .sampling = mf_population_sampling,
     .keeps_parts = true,
     .columns = columns,
     .create = create,

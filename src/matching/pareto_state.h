@@ -2,7 +2,7 @@
 /// @file State of the method "pareto", and its tables.
 #pragma once
 
-#include "matching/candidates.h"
+#include "matching/population.h"
 #include "problem/inverse.h"
 #include "optimise/nsga2.h"
 
@@ -21,7 +21,7 @@ struct pareto_state {
     struct pareto_own own;
     const struct inverse_problem *problem;
     struct decoder decoder;
-    struct candidates candidates;
+    struct population population;
     struct nsga2 nsga2;
     size_t objectives;
     enum target_kind target[TARGETS]; ///< of each objective

@@ -117,7 +117,7 @@ done:
     return status;
 }
 
-/// pareto_potential.tsv or pareto_weight.tsv, or one of several potentials: a column a member of
+/// pareto_potential.tsv or pareto_omega.tsv, or one of several potentials: a column a member of
 /// the front, named by its number in pareto.tsv.
 static enum status write_curve(const struct pareto_state *state, enum unknown_kind kind,
                                size_t curve, const struct inverse_folder *folder,

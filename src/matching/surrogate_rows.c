@@ -28,7 +28,7 @@ void mf_surrogate_clear_rows(struct surrogate_work *work) {
 static enum status work_init(struct surrogate_work *work, const struct surrogate *surrogate,
                              size_t kept, size_t rows) {
     enum status status = STATUS_OK;
-    const size_t terms = surrogate->genes + 1;
+    const size_t terms = surrogate->variables + 1;
     *work = (struct surrogate_work){.surrogate = surrogate, .rows = rows, .terms = terms};
     NEW_ARRAY(work->near, kept);
     NEW_ARRAY(work->weight, rows);
@@ -39,10 +39,10 @@ static enum status work_init(struct surrogate_work *work, const struct surrogate
     NEW_ARRAY(work->scatter, surrogate->features);
     NEW_ARRAY(work->spread, terms * terms);
     NEW_ARRAY(work->term, terms);
-    NEW_ARRAY(work->hessian, surrogate->genes * surrogate->genes);
+    NEW_ARRAY(work->hessian, surrogate->variables * surrogate->variables);
     NEW_ARRAY(work->miss, surrogate->features);
     NEW_ARRAY(work->scale, surrogate->features);
-    NEW_ARRAY(work->delta, surrogate->genes);
+    NEW_ARRAY(work->delta, surrogate->variables);
 done:
     return status;
 }
@@ -52,8 +52,8 @@ static void choose_rows(struct surrogate_work *work, const double *centre, size_
     const struct surrogate *s = work->surrogate;
     for (size_t k = 0; k < kept; k++) {
         double sum = 0;
-        for (size_t n = 0; n < s->genes; n++) {
-            const double difference = s->x[k * s->genes + n] - centre[n];
+        for (size_t n = 0; n < s->variables; n++) {
+            const double difference = s->x[k * s->variables + n] - centre[n];
             sum += difference * difference;
         }
         work->near[k] = (struct surrogate_near){sum, k};
@@ -61,10 +61,10 @@ static void choose_rows(struct surrogate_work *work, const double *centre, size_
     qsort(work->near, kept, sizeof *work->near, by_distance);
     const double width = fmax(work->near[work->rows / 2].distance, 1e-300);
     for (size_t k = 0; k < work->rows; k++) {
-        const double *x = s->x + work->near[k].row * s->genes;
+        const double *x = s->x + work->near[k].row * s->variables;
         work->weight[k] = exp(-0.5 * work->near[k].distance / width);
         work->design[k * work->terms] = 1;
-        for (size_t n = 0; n < s->genes; n++)
+        for (size_t n = 0; n < s->variables; n++)
             work->design[k * work->terms + n + 1] = x[n] - centre[n];
     }
 }

@@ -14,7 +14,7 @@ struct surrogate_near {
 /// What a fit works on. Matrices are row-major.
 struct surrogate_work {
     const struct surrogate *surrogate;
-    size_t rows, terms;          ///< terms: 1 and the genes
+    size_t rows, terms;          ///< terms: 1 and the variables
     struct surrogate_near *near; ///< shape [kept]: nearest first
     double *weight;              ///< shape [rows]
     double *design;              ///< shape [rows, terms]: 1, x − x_c
@@ -24,10 +24,10 @@ struct surrogate_work {
     double *scatter;             ///< shape [features]: σ_j²
     double *spread;  ///< shape [terms, terms]: covariance of a row of `model` over its scatter
     double *term;    ///< shape [terms]: scratch
-    double *hessian; ///< shape [genes, genes]: Cholesky factor of Jᵀ W J + damping
+    double *hessian; ///< shape [variables, variables]: Cholesky factor of Jᵀ W J + damping
     double *miss;    ///< shape [features]: t − y_c
     double *scale;   ///< shape [features]: scratch
-    double *delta;   ///< shape [genes]: a step
+    double *delta;   ///< shape [variables]: a step
     double freedom;  ///< rows that the scatter rests on
 };
 

@@ -276,7 +276,7 @@ static void find_escapes(struct etd *etd) {
 }
 
 /// Add the window that ends with this sample, if one does.
-static void close_window(struct etd *etd) {
+static void search_window(struct etd *etd) {
     const uint64_t window = (uint64_t)etd->grid.times - 1, every = (uint64_t)etd->plan.origin_every;
     const uint64_t sample = etd->state.samples;
     if (sample < window || (sample - window) % every != 0)
@@ -369,7 +369,7 @@ static enum status open_window(struct etd *etd, const struct simulation *simulat
 enum status mf_etd_sample(struct etd *etd, const struct simulation *simulation) {
     gather(etd, &simulation->particles);
     find_escapes(etd);
-    close_window(etd);
+    search_window(etd);
     TRY(open_window(etd, simulation));
     etd->state.samples++;
     return STATUS_OK;

@@ -34,7 +34,7 @@ static double measure(const struct rdf_bins *bins, const double *g, const double
     return whole.compressibility;
 }
 
-/// The least s of a kind of pairs: fluctuations of a number, 1 + ρ_a G_aa, are not negative.
+/// The least s of a pair type: fluctuations of a number, 1 + ρ_a G_aa, are not negative.
 static double least(const struct composition *composition, int pair) {
     int type[2];
     mf_composition_pair_types(composition, pair, type);

@@ -10,7 +10,7 @@
 /// in 1/N are left out. With s_ab = 1 + ρ G_ab and the densities and numbers of *all* particles,
 /// G_ab/V = (s_ab − 1)/N. One type has s = S(0), ρ k_B T times the compressibility: 0 of a liquid
 /// that yields no more, 1 of an ideal gas, whose g needs no correction. Isotopes have the s of
-/// the whole for every kind of pairs, since each g_ab is then the g of the whole.
+/// the whole for every pair type, since each g_ab is then the g of the whole.
 ///
 /// Left out, an inversion with 729 particles of a target from 2744 sees 0.001 too many pairs
 /// everywhere, and makes a pressure of it: measured for SPC water, 35 instead of 22 k_B T/λ³.
@@ -28,9 +28,9 @@ double mf_finite_size_factor(double s, double from, double to);
 /// is that by statistics and the scatter of s with the range of the integral, since the last
 /// oscillations may be cut off. An s beyond N/20 is one of types that have parted, for which the
 /// box is no part of a larger one: it counts as 0, and so does that in two dimensions.
-/// @param[in] g, error    shape [bins.count], of this kind of pairs in a system of `from` particles
+/// @param[in] g, error    shape [bins.count], of this pair type in a system of `from` particles
 /// @param[in] box, composition  densities and shares of both systems
-/// @param[in] pair        kind of pairs
+/// @param[in] pair        pair type
 double mf_finite_size_factor_of(const struct rdf_bins *bins, const double *g, const double *error,
                                 const struct box *box, const struct composition *composition,
                                 int pair, double from, double to);

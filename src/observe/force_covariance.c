@@ -6,7 +6,7 @@
 #define MEMBER(name) .offset = offsetof(struct force_covariance_plan, name)
 const struct field mf_force_covariance_fields[] = {
     {"range", FIELD_NUMBER, MEMBER(range), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "lambda", .help = "of the bins; 0 means the cutoff of the dissipative weight"},
+     .unit = "lambda", .help = "of the bins; 0 means the cutoff of the friction weight"},
     {"bins", FIELD_INTEGER, MEMBER(bins), .initial = 50, .minimum = 1, .maximum = 100000,
      .unit = "", .help = "from r = 0 on"},
     FIELD_END,
@@ -14,9 +14,9 @@ const struct field mf_force_covariance_fields[] = {
 
 static enum status check(const struct simulation *simulation, double range) {
     const struct simulation_setup *setup = &simulation->setup;
-    if (setup->weight == NULL)
+    if (setup->omega == NULL)
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "force_covariance: the scene has no dissipative weight to be seen");
+                              "force_covariance: the scene has no friction weight to be seen");
     if (setup->integrator->friction)
         return mf_status_fail(
             STATUS_BAD_INPUT,
@@ -35,8 +35,8 @@ enum status mf_force_covariance_init(struct force_covariance *covariance,
                                      const struct force_covariance_plan *plan,
                                      const struct simulation *simulation, size_t planned) {
     enum status status = STATUS_OK;
-    const struct table *weight = simulation->setup.weight;
-    const double range = plan->range > 0 || weight == NULL ? plan->range : weight->cutoff;
+    const struct table *omega = simulation->setup.omega;
+    const double range = plan->range > 0 || omega == NULL ? plan->range : omega->cutoff;
     *covariance = (struct force_covariance){.width = range / (double)plan->bins,
                                             .bins = (size_t)plan->bins,
                                             .planned = planned,

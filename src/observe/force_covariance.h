@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The dissipative weight, seen in the forces: covariance of the forces on two particles.
+/// @file The friction weight, seen in the forces: covariance of the forces on two particles.
 ///
 /// The random forces on the particles of a pair are opposite and grow as Δt^(−1/2), so that for a
 /// small time step they are what is left of the covariance of the total forces F (conservative,

@@ -176,7 +176,7 @@ void mf_motion_sample(struct motion *motion, const struct simulation *simulation
     const size_t first = sample > lags ? (sample - lags + every - 1) / every : 0;
     for (size_t origin = first; origin < all && origin * every <= sample; origin++)
         correlate(motion, origin, particles->threads);
-    if (setup->weight && sample % lags == 0)
+    if (setup->omega && sample % lags == 0)
         mf_maxwell_sample(&motion->maxwell, particles, setup->temperature, setup->seed,
                           simulation->step);
     motion->samples++;

@@ -143,7 +143,7 @@ void mf_rdf_clear(struct rdf *rdf) {
     *rdf = (struct rdf){0};
 }
 
-/// Bins of all kinds of pairs.
+/// Bins of all pair types.
 static size_t all_bins(const struct rdf *rdf) {
     return rdf->pairs * rdf->bins.count;
 }

@@ -3,7 +3,7 @@
 ///
 ///   g(r_k) = (2 V / (N (N − 1))) ⟨S_k⟩ / v_k
 /// with S_k the pairs in bin k and v_k the exact volume of its shell (area of its ring in 2D). A
-/// mixture has a partial g for each kind of pairs,
+/// mixture has a partial g for each pair type,
 ///   g_ab(r_k) = (V / (N_a N_b)) ⟨S_ab,k⟩ / v_k for a ≠ b, and as above with N_a for a = b.
 /// Arrays over kinds and bins have shape [pairs, bins], the kinds in the order of
 /// mf_composition_pair.
@@ -28,7 +28,7 @@ double mf_rdf_bins_range(const struct rdf_bins *bins); ///< upper edge of the la
 double mf_rdf_ideal_pairs(const struct rdf_bins *bins, size_t k, const struct box *box,
                           size_t count);
 
-/// The same of one kind of pairs: N_a N_b v_k / V if they are unlike.
+/// The same of one pair type: N_a N_b v_k / V if they are unlike.
 double mf_rdf_ideal_pairs_of(const struct rdf_bins *bins, size_t k, const struct box *box,
                              const struct composition *composition, int pair);
 
@@ -37,7 +37,7 @@ double mf_rdf_ideal_pairs_of(const struct rdf_bins *bins, size_t k, const struct
 void mf_rdf_count_pairs(const struct rdf_bins *bins, const struct particles *particles,
                         const struct neighbours *neighbours, double *histogram);
 
-/// The same by kinds of pairs: shape [pairs, bins].
+/// The same by pair types: shape [pairs, bins].
 void mf_rdf_count_pairs_of(const struct rdf_bins *bins, const struct composition *composition,
                            const struct particles *particles, const struct neighbours *neighbours,
                            double *histogram);
@@ -48,7 +48,7 @@ struct rdf {
     struct box box;
     size_t particle_count;
     struct composition composition; ///< of what is told apart
-    size_t pairs;                   ///< kinds of pairs
+    size_t pairs;                   ///< pair types
     size_t planned, samples;
     size_t blocks;
     double *histogram;             ///< shape [blocks, pairs, bins.count]
@@ -91,7 +91,7 @@ enum status mf_rdf_sample(struct rdf *rdf, const struct particles *particles,
 enum status mf_rdf_result(const struct rdf *replicas, size_t count, double *g,
                           double *error) MUST_USE;
 
-/// Root mean square of g − g* over all bins of all kinds of pairs, with its standard error by
+/// Root mean square of g − g* over all bins of all pair types, with its standard error by
 /// leaving out blocks (jackknife), whose correlation is that of the bins; `error` may be NULL.
 /// Fails: NO_MEMORY.
 enum status mf_rdf_distance(const struct rdf *replicas, size_t count, const double *target,

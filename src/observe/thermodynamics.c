@@ -120,7 +120,7 @@ static bool agrees(double temperature, double error, double wanted) {
 enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary,
                                     const struct simulation_setup *setup) {
     const struct thermodynamics_summary *s = summary;
-    const double wanted = setup->weight ? setup->temperature : s->temperature;
+    const double wanted = setup->omega ? setup->temperature : s->temperature;
     if (s->blocks < LEAST_BLOCKS)
         return STATUS_OK;
     if (agrees(s->temperature, s->temperature_error, wanted) &&
@@ -139,7 +139,7 @@ enum status mf_thermodynamics_judge_fit(const struct thermodynamics_summary *sum
     static const double least = 0.025, errors = 3;
     const struct thermodynamics_summary *s = summary;
     TRY(mf_thermodynamics_judge(summary, setup));
-    const double wanted = setup->weight ? setup->temperature : s->temperature;
+    const double wanted = setup->omega ? setup->temperature : s->temperature;
     const double off = s->temperature_configurational - wanted;
     if (s->blocks < LEAST_BLOCKS ||
         !(fabs(off) > fmax(least * wanted, errors * s->temperature_configurational_error)))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// CMA-ES by ask and tell. Inside, genes are fractions of their range.
+// CMA-ES by ask and tell. Inside, variables are fractions of their range.
 //
 // Bounds: the distribution knows none; a candidate beyond one is measured at its mirror image
 // inside (mf_optimiser_reflect). To the strategy the error is an even, periodic function, so there
@@ -33,7 +33,7 @@ struct parameters {
 #define MEMBER(name) .offset = offsetof(struct parameters, name)
 const struct field mf_cmaes_fields[] = {
     {"population", FIELD_INTEGER, MEMBER(population), .initial = 0, .minimum = 0, .maximum = 1e5,
-     .unit = "", .help = "candidates of a round, at least 4; 0 for 4 + 3 ln(genes)"},
+     .unit = "", .help = "candidates of a round, at least 4; 0 for 4 + 3 ln(variables)"},
     {"step", FIELD_NUMBER, MEMBER(step), .initial = 0.3, .minimum = FIELD_ABOVE_ZERO, .maximum = 1,
      .unit = "", .help = "first standard deviation, as a fraction of the range"},
     {"rounds", FIELD_INTEGER, MEMBER(rounds), .initial = 500, .minimum = 1, .maximum = 1e6,
@@ -48,7 +48,7 @@ const struct field mf_cmaes_fields[] = {
 /// Usual population times this is the most that noise makes of it.
 enum { MOST_GROWTH = 16 };
 
-/// Constants of the reaction to noise. On a sphere of 10 genes with noise of 0.01, 10,000
+/// Constants of the reaction to noise. On a sphere of 10 variables with noise of 0.01, 10,000
 /// measurements lead to 0.0055 without a reaction, to 0.0007 with these, and to 0.009 with a longer
 /// step instead, as UH-CMA-ES has it when it cannot measure for longer.
 static const double noise_memory = 0.8, noise_grows = 0.5, noise_shrinks = 0.25, growth = 1.1;
@@ -58,13 +58,13 @@ struct state {
     struct optimiser_space space;
     struct cmaes_distribution distribution;
     struct cmaes_strategy strategy;
-    size_t most;      ///< candidates of a round, at most; there is room for them
-    double *steps;    ///< of the candidates, shape [most, genes]
-    double *genes;    ///< the candidates, shape [most, genes]
-    double *errors;   ///< shape [most]: scratch
-    double *record;   ///< genes of `record_error`, shape [genes]
-    double *history;  ///< least errors of the last rounds, a ring, shape [most_history]
-    uint64_t sampled; ///< the round whose candidates these are, counted from 1; 0: none yet
+    size_t most;       ///< candidates of a round, at most; there is room for them
+    double *steps;     ///< of the candidates, shape [most, variables]
+    double *variables; ///< the candidates, shape [most, variables]
+    double *errors;    ///< shape [most]: scratch
+    double *record;    ///< variables of `record_error`, shape [variables]
+    double *history;   ///< least errors of the last rounds, a ring, shape [most_history]
+    uint64_t sampled;  ///< the round whose candidates these are, counted from 1; 0: none yet
     struct progress {
         uint64_t rounds;        ///< told
         uint64_t descents;      ///< ended
@@ -73,26 +73,26 @@ struct state {
         double noise;           ///< smoothed share of noise among errors
         double record_error;    ///< of the best candidate, or, with noise, of the best descent
         double median;          ///< of the last round
-        double hopeless;
+        double discard_above;
         int64_t noisy, over, settled, known;
     } progress;
 };
 
-static size_t usual_population(const struct parameters *p, size_t genes) {
-    return p->population > 0 ? (size_t)p->population : 4 + (size_t)(3 * log((double)genes));
+static size_t usual_population(const struct parameters *p, size_t variables) {
+    return p->population > 0 ? (size_t)p->population : 4 + (size_t)(3 * log((double)variables));
 }
 
 /// Rounds within which errors must stand still: 10 + 30 n/λ (tutorial, B.3).
 static size_t history_rounds(const struct state *state, size_t population) {
-    return 10 + (size_t)ceil(30 * (double)state->space.genes / (double)population);
+    return 10 + (size_t)ceil(30 * (double)state->space.variables / (double)population);
 }
 
 static size_t most_history(const struct state *state) {
-    return history_rounds(state, usual_population(&state->parameters, state->space.genes));
+    return history_rounds(state, usual_population(&state->parameters, state->space.variables));
 }
 
-static uint32_t most_rounds(const void *parameters, size_t genes) {
-    (void)genes;
+static uint32_t most_rounds(const void *parameters, size_t variables) {
+    (void)variables;
     return (uint32_t)((const struct parameters *)parameters)->rounds;
 }
 
@@ -101,7 +101,7 @@ static void destroy(void *memory) {
     mf_cmaes_clear(&state->distribution);
     mf_memory_free(state->strategy.weights);
     mf_memory_free(state->steps);
-    mf_memory_free(state->genes);
+    mf_memory_free(state->variables);
     mf_memory_free(state->errors);
     mf_memory_free(state->record);
     mf_memory_free(state->history);
@@ -115,7 +115,7 @@ static size_t limit(const struct state *state, size_t candidates) {
 }
 
 static size_t descent_population(const struct state *state) {
-    return limit(state, usual_population(&state->parameters, state->space.genes)
+    return limit(state, usual_population(&state->parameters, state->space.variables)
                             << state->progress.descents);
 }
 
@@ -124,7 +124,7 @@ static void follow_population(struct state *state) {
     if (state->strategy.population == (size_t)state->progress.population)
         return;
     state->strategy.population = (size_t)state->progress.population;
-    mf_cmaes_strategy_set(&state->strategy, state->space.genes);
+    mf_cmaes_strategy_set(&state->strategy, state->space.variables);
 }
 
 /// Begin a descent; the mean is to be set.
@@ -139,7 +139,7 @@ static void begin_descent(struct state *state) {
 /// This round's candidates: a function of the distribution, the seed and the round, so no
 /// checkpoint keeps them.
 static void sample(struct state *state) {
-    const size_t n = state->space.genes;
+    const size_t n = state->space.variables;
     if (state->sampled == state->progress.rounds + 1)
         return;
     state->sampled = state->progress.rounds + 1;
@@ -151,7 +151,8 @@ static void sample(struct state *state) {
         for (size_t k = 0; k < n; k++) {
             const double x =
                 state->distribution.mean[k] + state->distribution.moments.sigma * step[k];
-            state->genes[row * n + k] = optimiser_gene(&state->space, mf_optimiser_reflect(x));
+            state->variables[row * n + k] =
+                optimiser_variable(&state->space, mf_optimiser_reflect(x));
         }
     }
 }
@@ -167,19 +168,19 @@ static enum status create(void *memory, const struct optimiser_space *space,
                              (int)state->parameters.population));
     state->space = *space;
     state->space.start = NULL;
-    const size_t usual = usual_population(&state->parameters, space->genes);
+    const size_t usual = usual_population(&state->parameters, space->variables);
     CHECK(mf_optimiser_check_round(space, usual));
     state->most = limit(state, MOST_GROWTH * (usual << state->parameters.restarts));
     NEW_ARRAY(state->strategy.weights, state->most);
-    NEW_ARRAY(state->steps, state->most * space->genes);
-    NEW_ARRAY(state->genes, state->most * space->genes);
+    NEW_ARRAY(state->steps, state->most * space->variables);
+    NEW_ARRAY(state->variables, state->most * space->variables);
     NEW_ARRAY(state->errors, state->most);
-    NEW_ARRAY(state->record, space->genes);
+    NEW_ARRAY(state->record, space->variables);
     NEW_ARRAY(state->history, most_history(state));
-    CHECK(mf_cmaes_init(&state->distribution, space->genes));
-    state->progress.record_error = state->progress.hopeless = HUGE_VAL;
+    CHECK(mf_cmaes_init(&state->distribution, space->variables));
+    state->progress.record_error = state->progress.discard_above = HUGE_VAL;
     begin_descent(state);
-    for (size_t k = 0; k < space->genes; k++)
+    for (size_t k = 0; k < space->variables; k++)
         state->distribution.mean[k] = mf_optimiser_start(space, k);
 done:
     return status;
@@ -189,7 +190,7 @@ static enum status ask(void *memory, struct optimiser_round *round) {
     struct state *state = memory;
     const bool over = state->progress.over != 0;
     sample(state);
-    *round = (struct optimiser_round){state->genes, over ? 0 : state->strategy.population};
+    *round = (struct optimiser_round){state->variables, over ? 0 : state->strategy.population};
     return STATUS_OK;
 }
 
@@ -229,27 +230,28 @@ static void react_to_noise(struct state *state) {
 
 /// Keep the best candidate.
 static void keep_best(struct state *state) {
-    const size_t n = state->space.genes;
+    const size_t n = state->space.variables;
     for (size_t k = 0; k < state->strategy.population; k++) {
         if (state->errors[k] >= fmin(state->progress.record_error, OPTIMISER_FAILED))
             continue;
         state->progress.record_error = state->errors[k];
-        memcpy(state->record, state->genes + k * n, n * sizeof(double));
+        memcpy(state->record, state->variables + k * n, n * sizeof(double));
     }
 }
 
-static void mean_genes(const struct state *state, double *genes) {
-    for (size_t k = 0; k < state->space.genes; k++)
-        genes[k] = optimiser_gene(&state->space, mf_optimiser_reflect(state->distribution.mean[k]));
+static void mean_variables(const struct state *state, double *variables) {
+    for (size_t k = 0; k < state->space.variables; k++)
+        variables[k] =
+            optimiser_variable(&state->space, mf_optimiser_reflect(state->distribution.mean[k]));
 }
 
-/// Least, median and hopeless error of the round; sorts the errors.
+/// Least, median and discard_above error of the round; sorts the errors.
 static void survey(struct state *state) {
     struct progress *p = &state->progress;
     const struct cmaes_strategy *s = &state->strategy;
     qsort(state->errors, s->population, sizeof(double), compare_numbers);
     p->median = state->errors[s->population / 2];
-    p->hopeless = state->errors[s->parents - 1];
+    p->discard_above = state->errors[s->parents - 1];
     state->history[p->history_count++ % most_history(state)] = state->errors[0];
 }
 
@@ -268,15 +270,15 @@ static bool stands_still(const struct state *state) {
     return most - least <= state->parameters.tolerance;
 }
 
-/// Largest standard deviation of a gene.
+/// Largest standard deviation of a variable.
 static double widest(const struct state *state) {
     double most = 0;
-    for (size_t k = 0; k < state->space.genes; k++)
+    for (size_t k = 0; k < state->space.variables; k++)
         most = fmax(most, mf_cmaes_deviation(&state->distribution, k));
     return most;
 }
 
-/// No gene spreads beyond its whole range: mirrors would only hide it.
+/// No variable spreads beyond its whole range: mirrors would only hide it.
 static void limit_step(struct state *state) {
     const double most = widest(state);
     if (most > 1)
@@ -294,7 +296,7 @@ static void keep_descent(struct state *state) {
     if (!p->noisy || (p->descents > 0 && p->median >= p->record_error))
         return;
     p->record_error = p->median;
-    mean_genes(state, state->record);
+    mean_variables(state, state->record);
 }
 
 /// A new descent from anywhere.
@@ -302,7 +304,7 @@ static void restart(struct state *state) {
     struct rng_sequence random = mf_rng_sequence_begin(state->space.seed, RNG_INITIAL,
                                                        (uint32_t)++state->progress.descents, 0);
     begin_descent(state);
-    for (size_t k = 0; k < state->space.genes; k++)
+    for (size_t k = 0; k < state->space.variables; k++)
         state->distribution.mean[k] = mf_rng_sequence_uniform(&random);
 }
 
@@ -346,29 +348,29 @@ static enum status tell(void *memory, const double *errors, const double *varian
 
 // What it knows -----------------------------------------------------------------------------------
 
-static bool favourite(const void *memory, double *genes) {
+static bool incumbent(const void *memory, double *variables) {
     const struct state *state = memory;
     const struct progress *p = &state->progress;
     if (!p->known)
         return false;
     const bool former = p->descents > 0 && p->record_error <= p->median;
     if (p->noisy && !former)
-        mean_genes(state, genes);
+        mean_variables(state, variables);
     else
-        memcpy(genes, state->record, state->space.genes * sizeof *genes);
+        memcpy(variables, state->record, state->space.variables * sizeof *variables);
     return true;
 }
 
 static double spread(const void *memory) {
     const struct state *state = memory;
     double sum = 0;
-    for (size_t k = 0; k < state->space.genes; k++)
+    for (size_t k = 0; k < state->space.variables; k++)
         sum += mf_cmaes_deviation(&state->distribution, k);
-    return sum / (double)state->space.genes;
+    return sum / (double)state->space.variables;
 }
 
-static double hopeless(const void *memory) {
-    return ((const struct state *)memory)->progress.hopeless;
+static double discard_above(const void *memory) {
+    return ((const struct state *)memory)->progress.discard_above;
 }
 
 static bool settled(const void *memory) {
@@ -378,7 +380,7 @@ static bool settled(const void *memory) {
 static size_t spans(void *memory, struct memory_span *span) {
     struct state *state = memory;
     struct cmaes_distribution *d = &state->distribution;
-    const size_t n = d->genes, row = n * sizeof(double);
+    const size_t n = d->variables, row = n * sizeof(double);
     size_t count = 0;
     state->sampled = 0; // another round may be read into the spans
     span[count++] = (struct memory_span){&state->progress, sizeof state->progress};
@@ -407,9 +409,9 @@ const struct optimiser mf_cmaes_optimiser = {
     .destroy = destroy,
     .ask = ask,
     .tell = tell,
-    .favourite = favourite,
+    .incumbent = incumbent,
     .spread = spread,
-    .hopeless = hopeless,
+    .discard_above = discard_above,
     .settled = settled,
     .spans = spans,
 };

@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/// Numbers that follow from genes and population (tutorial, table 1).
+/// Numbers that follow from variables and population (tutorial, table 1).
 struct cmaes_strategy {
     size_t population;  ///< λ, at least 4
     size_t parents;     ///< µ = λ/2
@@ -27,27 +27,27 @@ struct cmaes_strategy {
 };
 
 /// Fill all but `population`; `weights` has room for it.
-void mf_cmaes_strategy_set(struct cmaes_strategy *strategy, size_t genes);
+void mf_cmaes_strategy_set(struct cmaes_strategy *strategy, size_t variables);
 
 /// N(mean, sigma² covariance).
 struct cmaes_distribution {
-    size_t genes;
+    size_t variables;
     struct cmaes_moments {
         double sigma;
         uint64_t updates;    ///< since the beginning of the descent
         uint64_t decomposed; ///< of them when axes and lengths were made
     } moments;
-    double *mean;                    ///< shape [genes]
-    double *path_sigma;              ///< p_σ, shape [genes]
-    double *path;                    ///< p_c, shape [genes]
-    double *covariance;              ///< shape [genes, genes]
-    double *axes;                    ///< eigenvectors as columns, shape [genes, genes]
-    double *lengths;                 ///< roots of the eigenvalues, shape [genes]
+    double *mean;                    ///< shape [variables]
+    double *path_sigma;              ///< p_σ, shape [variables]
+    double *path;                    ///< p_c, shape [variables]
+    double *covariance;              ///< shape [variables, variables]
+    double *axes;                    ///< eigenvectors as columns, shape [variables, variables]
+    double *lengths;                 ///< roots of the eigenvalues, shape [variables]
     struct cmaes_workspace *scratch; ///< of the decomposition
 };
 
 /// Memory of a distribution. Fails: NO_MEMORY; mf_cmaes_clear is then still to be called.
-enum status mf_cmaes_init(struct cmaes_distribution *distribution, size_t genes) MUST_USE;
+enum status mf_cmaes_init(struct cmaes_distribution *distribution, size_t variables) MUST_USE;
 void mf_cmaes_clear(struct cmaes_distribution *distribution);
 
 /// Begin a descent: covariance 1, paths 0. The mean is the caller's to set.
@@ -55,22 +55,22 @@ void mf_cmaes_begin(struct cmaes_distribution *distribution, double sigma);
 
 /// A step y = B D z of individual (round, row), so that its candidate is mean + σ y.
 /// @param[in]  seed, round, row  of its random numbers
-/// @param[out] step              shape [genes]
+/// @param[out] step              shape [variables]
 void mf_cmaes_sample(const struct cmaes_distribution *distribution, uint64_t seed, uint32_t round,
                      uint32_t row, double *step);
 
 /// Move and reshape the distribution by the steps of a round (eq. 38–47): both evolution paths,
 /// rank-one and rank-µ update with negative weights ("active"), cumulative step-size control.
 /// Equal errors share the weights of their ranks, so that a plateau pulls nowhere.
-/// @param[in] steps   shape [population, genes]
+/// @param[in] steps   shape [population, variables]
 /// @param[in] errors  shape [population]
 /// Fails: NO_MEMORY.
 enum status mf_cmaes_update(struct cmaes_distribution *distribution,
                             const struct cmaes_strategy *strategy, const double *steps,
                             const double *errors) MUST_USE;
 
-/// Standard deviation of a gene.
-double mf_cmaes_deviation(const struct cmaes_distribution *distribution, size_t gene);
+/// Standard deviation of a variable.
+double mf_cmaes_deviation(const struct cmaes_distribution *distribution, size_t variable);
 
 /// Ratio of the longest to the shortest axis.
 double mf_cmaes_axis_ratio(const struct cmaes_distribution *distribution);

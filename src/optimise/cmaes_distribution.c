@@ -14,35 +14,35 @@ struct cmaes_workspace {
     gsl_eigen_symmv_workspace *eigen;
     gsl_matrix *matrix, *vectors;
     gsl_vector *values;
-    double *mean_step; ///< Σ w y, shape [genes]
-    double *white;     ///< C^−½ of some step, shape [genes]
+    double *mean_step; ///< Σ w y, shape [variables]
+    double *white;     ///< C^−½ of some step, shape [variables]
 };
 
-static enum status workspace_init(struct cmaes_workspace *w, size_t genes) {
+static enum status workspace_init(struct cmaes_workspace *w, size_t variables) {
     enum status status = STATUS_OK;
-    w->eigen = gsl_eigen_symmv_alloc(genes);
-    w->matrix = gsl_matrix_alloc(genes, genes);
-    w->vectors = gsl_matrix_alloc(genes, genes);
-    w->values = gsl_vector_alloc(genes);
-    NEW_ARRAY(w->mean_step, genes);
-    NEW_ARRAY(w->white, genes);
+    w->eigen = gsl_eigen_symmv_alloc(variables);
+    w->matrix = gsl_matrix_alloc(variables, variables);
+    w->vectors = gsl_matrix_alloc(variables, variables);
+    w->values = gsl_vector_alloc(variables);
+    NEW_ARRAY(w->mean_step, variables);
+    NEW_ARRAY(w->white, variables);
     if (w->eigen == NULL || w->matrix == NULL || w->vectors == NULL || w->values == NULL)
-        status = mf_status_fail(STATUS_NO_MEMORY, "out of memory for %zu genes", genes);
+        status = mf_status_fail(STATUS_NO_MEMORY, "out of memory for %zu variables", variables);
 done:
     return status;
 }
 
-enum status mf_cmaes_init(struct cmaes_distribution *d, size_t genes) {
+enum status mf_cmaes_init(struct cmaes_distribution *d, size_t variables) {
     enum status status = STATUS_OK;
-    *d = (struct cmaes_distribution){.genes = genes};
-    NEW_ARRAY(d->mean, genes);
-    NEW_ARRAY(d->path_sigma, genes);
-    NEW_ARRAY(d->path, genes);
-    NEW_ARRAY(d->covariance, genes * genes);
-    NEW_ARRAY(d->axes, genes * genes);
-    NEW_ARRAY(d->lengths, genes);
+    *d = (struct cmaes_distribution){.variables = variables};
+    NEW_ARRAY(d->mean, variables);
+    NEW_ARRAY(d->path_sigma, variables);
+    NEW_ARRAY(d->path, variables);
+    NEW_ARRAY(d->covariance, variables * variables);
+    NEW_ARRAY(d->axes, variables * variables);
+    NEW_ARRAY(d->lengths, variables);
     NEW_ARRAY(d->scratch, 1);
-    CHECK(workspace_init(d->scratch, genes));
+    CHECK(workspace_init(d->scratch, variables));
 done:
     return status;
 }
@@ -68,7 +68,7 @@ void mf_cmaes_clear(struct cmaes_distribution *d) {
 }
 
 void mf_cmaes_begin(struct cmaes_distribution *d, double sigma) {
-    const size_t n = d->genes;
+    const size_t n = d->variables;
     d->moments = (struct cmaes_moments){.sigma = sigma};
     memset(d->path_sigma, 0, n * sizeof(double));
     memset(d->path, 0, n * sizeof(double));
@@ -80,7 +80,7 @@ void mf_cmaes_begin(struct cmaes_distribution *d, double sigma) {
 
 void mf_cmaes_sample(const struct cmaes_distribution *d, uint64_t seed, uint32_t round,
                      uint32_t row, double *step) {
-    const size_t n = d->genes;
+    const size_t n = d->variables;
     double normal[4];
     memset(step, 0, n * sizeof *step);
     for (size_t axis = 0; axis < n; axis++) {
@@ -136,7 +136,7 @@ static void rank(struct ranked *ranked, const struct cmaes_strategy *s, const do
 
 /// C^−½ y = B D^−1 Bᵀ y into `white`; its squared length.
 static double whiten(const struct cmaes_distribution *d, const double *step, double *white) {
-    const size_t n = d->genes;
+    const size_t n = d->variables;
     double squares = 0;
     memset(white, 0, n * sizeof *white);
     for (size_t axis = 0; axis < n; axis++) {
@@ -155,38 +155,39 @@ static double whiten(const struct cmaes_distribution *d, const double *step, dou
 static void move_mean(struct cmaes_distribution *d, const struct cmaes_strategy *s,
                       const struct ranked *ranked, const double *steps) {
     double *mean_step = d->scratch->mean_step;
-    memset(mean_step, 0, d->genes * sizeof *mean_step);
+    memset(mean_step, 0, d->variables * sizeof *mean_step);
     for (size_t k = 0; k < s->population; k++)
-        for (size_t gene = 0; gene < d->genes; gene++)
-            mean_step[gene] += ranked[k].positive * steps[ranked[k].row * d->genes + gene];
-    for (size_t gene = 0; gene < d->genes; gene++)
-        d->mean[gene] += d->moments.sigma * mean_step[gene];
+        for (size_t variable = 0; variable < d->variables; variable++)
+            mean_step[variable] +=
+                ranked[k].positive * steps[ranked[k].row * d->variables + variable];
+    for (size_t variable = 0; variable < d->variables; variable++)
+        d->mean[variable] += d->moments.sigma * mean_step[variable];
 }
 
 /// Both evolution paths (eq. 43, 45). Returns p_σ's length, and whether p_c went along (h_σ).
 static double follow_paths(struct cmaes_distribution *d, const struct cmaes_strategy *s,
                            bool *goes_on) {
-    const double n = (double)d->genes;
+    const double n = (double)d->variables;
     const double take = sqrt(s->path_sigma * (2 - s->path_sigma) * s->effective);
     double squares = 0;
     whiten(d, d->scratch->mean_step, d->scratch->white);
-    for (size_t k = 0; k < d->genes; k++) {
+    for (size_t k = 0; k < d->variables; k++) {
         d->path_sigma[k] = (1 - s->path_sigma) * d->path_sigma[k] + take * d->scratch->white[k];
         squares += d->path_sigma[k] * d->path_sigma[k];
     }
     const double memory = 1 - pow(1 - s->path_sigma, 2.0 * (double)(d->moments.updates + 1));
     *goes_on = sqrt(squares / memory) < (1.4 + 2 / (n + 1)) * s->length;
     const double along = *goes_on ? sqrt(s->path * (2 - s->path) * s->effective) : 0;
-    for (size_t k = 0; k < d->genes; k++)
+    for (size_t k = 0; k < d->variables; k++)
         d->path[k] = (1 - s->path) * d->path[k] + along * d->scratch->mean_step[k];
     return sqrt(squares);
 }
 
 /// C += factor v vᵀ, the lower triangle alone.
 static void add_square(struct cmaes_distribution *d, double factor, const double *vector) {
-    for (size_t i = 0; i < d->genes; i++)
+    for (size_t i = 0; i < d->variables; i++)
         for (size_t j = 0; j <= i; j++)
-            d->covariance[i * d->genes + j] += factor * vector[i] * vector[j];
+            d->covariance[i * d->variables + j] += factor * vector[i] * vector[j];
 }
 
 /// Eq. 46, 47.
@@ -194,27 +195,28 @@ static void reshape(struct cmaes_distribution *d, const struct cmaes_strategy *s
                     const struct ranked *ranked, const double *steps, bool goes_on) {
     const double lost = goes_on ? 0 : s->path * (2 - s->path);
     const double keep = 1 + s->rank_one * lost - s->rank_one - s->rank_mu * s->weights_sum;
-    for (size_t k = 0; k < d->genes * d->genes; k++)
+    for (size_t k = 0; k < d->variables * d->variables; k++)
         d->covariance[k] *= keep;
     add_square(d, s->rank_one, d->path);
     for (size_t k = 0; k < s->population; k++) {
-        const double *step = steps + ranked[k].row * d->genes;
+        const double *step = steps + ranked[k].row * d->variables;
         double weight = ranked[k].positive;
         if (ranked[k].negative < 0)
-            weight += ranked[k].negative * (double)d->genes / whiten(d, step, d->scratch->white);
+            weight +=
+                ranked[k].negative * (double)d->variables / whiten(d, step, d->scratch->white);
         add_square(d, s->rank_mu * weight, step);
     }
-    for (size_t i = 0; i < d->genes; i++)
-        for (size_t j = i + 1; j < d->genes; j++)
-            d->covariance[i * d->genes + j] = d->covariance[j * d->genes + i];
+    for (size_t i = 0; i < d->variables; i++)
+        for (size_t j = i + 1; j < d->variables; j++)
+            d->covariance[i * d->variables + j] = d->covariance[j * d->variables + i];
 }
 
 /// Axes and lengths of C, every few rounds: between them it changes by less than a tenth.
 static void decompose(struct cmaes_distribution *d, const struct cmaes_strategy *s) {
-    const double every = 0.1 / ((double)d->genes * (s->rank_one + s->rank_mu));
+    const double every = 0.1 / ((double)d->variables * (s->rank_one + s->rank_mu));
     if ((double)(d->moments.updates - d->moments.decomposed) <= every)
         return;
-    const size_t n = d->genes;
+    const size_t n = d->variables;
     struct cmaes_workspace *w = d->scratch;
     d->moments.decomposed = d->moments.updates;
     memcpy(w->matrix->data, d->covariance, n * n * sizeof(double));
@@ -242,13 +244,13 @@ enum status mf_cmaes_update(struct cmaes_distribution *d, const struct cmaes_str
     return STATUS_OK;
 }
 
-double mf_cmaes_deviation(const struct cmaes_distribution *d, size_t gene) {
-    return d->moments.sigma * sqrt(d->covariance[gene * d->genes + gene]);
+double mf_cmaes_deviation(const struct cmaes_distribution *d, size_t variable) {
+    return d->moments.sigma * sqrt(d->covariance[variable * d->variables + variable]);
 }
 
 double mf_cmaes_axis_ratio(const struct cmaes_distribution *d) {
     double least = d->lengths[0], most = d->lengths[0];
-    for (size_t k = 1; k < d->genes; k++) {
+    for (size_t k = 1; k < d->variables; k++) {
         least = fmin(least, d->lengths[k]);
         most = fmax(most, d->lengths[k]);
     }

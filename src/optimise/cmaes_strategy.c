@@ -44,8 +44,8 @@ static void scale_weights(struct cmaes_strategy *s, double n, double effective_n
     }
 }
 
-void mf_cmaes_strategy_set(struct cmaes_strategy *s, size_t genes) {
-    const double n = (double)genes;
+void mf_cmaes_strategy_set(struct cmaes_strategy *s, size_t variables) {
+    const double n = (double)variables;
     s->parents = s->population / 2;
     for (size_t k = 0; k < s->population; k++)
         s->weights[k] = log(((double)s->population + 1) / 2) - log((double)k + 1); // eq. 49

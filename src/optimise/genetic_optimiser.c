@@ -13,7 +13,7 @@
 
 struct state {
     struct genetic genetic;
-    double hopeless;
+    double discard_above;
     double *errors;     ///< shape [population + remeasurements]: scratch
     double *challenger; ///< shape [genes]: scratch
 };
@@ -38,15 +38,15 @@ static enum status create(void *memory, const struct optimiser_space *space,
     struct genetic_parameters p = *(const struct genetic_parameters *)parameters;
     CHECK(mf_optimiser_check_space(space));
     CHECK(mf_optimiser_check_round(space, (size_t)(p.population + p.remeasurements)));
-    p.genes = (int64_t)space->genes;
+    p.genes = (int64_t)space->variables;
     p.gene_minimum = space->minimum;
     p.gene_maximum = space->maximum;
-    state->hopeless = HUGE_VAL;
+    state->discard_above = HUGE_VAL;
     NEW_ARRAY(state->errors, (size_t)(p.population + p.remeasurements));
-    NEW_ARRAY(state->challenger, space->genes);
+    NEW_ARRAY(state->challenger, space->variables);
     CHECK(mf_genetic_init(&state->genetic, &p, space->seed));
-    for (size_t k = 0; space->start && k < space->genes; k++)
-        state->genetic.population[k] = optimiser_gene(space, mf_optimiser_start(space, k));
+    for (size_t k = 0; space->start && k < space->variables; k++)
+        state->genetic.population[k] = optimiser_variable(space, mf_optimiser_start(space, k));
 done:
     return status;
 }
@@ -142,7 +142,7 @@ static void tell_generation(struct state *state) {
     mf_genetic_next_generation(genetic, state->errors);
     if (challenger >= 0)
         add_challenger(state);
-    state->hopeless = median(state->errors, population);
+    state->discard_above = median(state->errors, population);
 }
 
 static enum status tell(void *memory, const double *errors, const double *variances) {
@@ -161,7 +161,7 @@ static enum status tell(void *memory, const double *errors, const double *varian
     return STATUS_OK;
 }
 
-static bool favourite(const void *memory, double *genes) {
+static bool incumbent(const void *memory, double *genes) {
     const struct genetic *genetic = &((const struct state *)memory)->genetic;
     const bool has_elite = genetic->elite_measured > 0;
     if (!has_elite && !has_challenger(genetic))
@@ -175,8 +175,8 @@ static double spread(const void *memory) {
     return mf_genetic_diversity(&((const struct state *)memory)->genetic);
 }
 
-static double hopeless(const void *memory) {
-    return ((const struct state *)memory)->hopeless;
+static double discard_above(const void *memory) {
+    return ((const struct state *)memory)->discard_above;
 }
 
 static size_t spans(void *memory, struct memory_span *span) {
@@ -185,7 +185,7 @@ static size_t spans(void *memory, struct memory_span *span) {
     const struct genetic_parameters *p = &genetic->parameters;
     const size_t row = (size_t)p->genes * sizeof(double);
     size_t n = 0;
-    span[n++] = (struct memory_span){&state->hopeless, sizeof state->hopeless};
+    span[n++] = (struct memory_span){&state->discard_above, sizeof state->discard_above};
     span[n++] = (struct memory_span){&genetic->generation, sizeof genetic->generation};
     span[n++] = (struct memory_span){&genetic->rows, sizeof genetic->rows};
     span[n++] = (struct memory_span){genetic->population,
@@ -208,8 +208,8 @@ const struct optimiser mf_genetic_optimiser = {
     .destroy = destroy,
     .ask = ask,
     .tell = tell,
-    .favourite = favourite,
+    .incumbent = incumbent,
     .spread = spread,
-    .hopeless = hopeless,
+    .discard_above = discard_above,
     .spans = spans,
 };

@@ -3,8 +3,8 @@
 // Algorithms of NLopt (S. G. Johnson, The NLopt nonlinear-optimization package) by ask and tell.
 // NLopt owns its loop, so it runs in a coroutine, and its own random numbers are of that thread. A
 // checkpoint keeps the errors that were told: a new state runs the algorithm again on them, in
-// milliseconds, and arrives at the same candidate. Rounds are of one candidate. Inside, genes are
-// fractions of their range.
+// milliseconds, and arrives at the same candidate. Rounds are of one candidate. Inside, variables
+// are fractions of their range.
 #include "base/rng.h"
 #include "optimise/coroutine.h"
 #include "optimise/optimiser.h"
@@ -47,7 +47,8 @@ const struct field mf_nlopt_fields[] = {
     {"step", FIELD_NUMBER, MEMBER(step), .initial = 0.2, .minimum = FIELD_ABOVE_ZERO,
      .maximum = 0.5, .unit = "", .help = "first step of LN_, as a fraction of the range"},
     {"tolerance", FIELD_NUMBER, MEMBER(tolerance), .initial = 1e-6, .minimum = 0, .maximum = 1,
-     .unit = "", .help = "change of all genes below which LN_ ends, as a fraction of the range"},
+     .unit = "",
+     .help = "change of all variables below which LN_ ends, as a fraction of the range"},
     FIELD_END,
 };
 
@@ -57,11 +58,11 @@ enum { RECENT = 16 };
 struct state {
     struct parameters parameters;
     struct optimiser_space space;
-    double *start;  ///< shape [genes], fractions
-    double *told;   ///< errors, shape [evaluations]
-    double *genes;  ///< the candidate, shape [genes]
-    double *best;   ///< shape [genes]
-    double *recent; ///< the last candidates, a ring, shape [RECENT, genes]
+    double *start;     ///< shape [variables], fractions
+    double *told;      ///< errors, shape [evaluations]
+    double *variables; ///< the candidate, shape [variables]
+    double *best;      ///< shape [variables]
+    double *recent;    ///< the last candidates, a ring, shape [RECENT, variables]
     struct progress {
         uint64_t told;
         double best_error; ///< OPTIMISER_FAILED: none
@@ -94,10 +95,10 @@ static double seen_error(struct call *call, double error) {
     return call->models && measured ? 2 * call->most - call->least : OPTIMISER_FAILED;
 }
 
-static double measure(unsigned genes, const double *x, double *gradient, void *context) {
+static double measure(unsigned variables, const double *x, double *gradient, void *context) {
     struct call *call = context;
     double error = OPTIMISER_FAILED;
-    (void)genes;
+    (void)variables;
     (void)gradient;
     if (!mf_coroutine_measure(call->self, x, &error))
         nlopt_force_stop(call->optimiser);
@@ -107,7 +108,7 @@ static double measure(unsigned genes, const double *x, double *gradient, void *c
 /// An algorithm as the parameters want it; NULL if there is no memory.
 static nlopt_opt prepare(const struct state *state, struct call *call) {
     const struct algorithm *algorithm = &algorithms[state->parameters.algorithm];
-    nlopt_opt o = nlopt_create(algorithm->number, (unsigned)state->space.genes);
+    nlopt_opt o = nlopt_create(algorithm->number, (unsigned)state->space.variables);
     if (o == NULL)
         return NULL;
     call->optimiser = o;
@@ -130,9 +131,9 @@ static void body(struct coroutine *self, void *context) {
     struct call call = {.self = self, .least = HUGE_VAL, .most = -HUGE_VAL};
     nlopt_opt optimiser = prepare(state, &call);
     const struct rng_block seed = mf_rng_philox(state->space.seed, RNG_INITIAL, 0, 0, 0);
-    double *x = mf_memory_zeroed(state->space.genes, sizeof *x), least;
+    double *x = mf_memory_zeroed(state->space.variables, sizeof *x), least;
     if (optimiser && x) {
-        memcpy(x, state->start, state->space.genes * sizeof *x);
+        memcpy(x, state->start, state->space.variables * sizeof *x);
         nlopt_srand(seed.word[0]); // it takes 32 bits: all 64 are mixed into them
         state->result = nlopt_optimize(optimiser, x, &least);
     }
@@ -142,8 +143,8 @@ static void body(struct coroutine *self, void *context) {
 
 // Outside -----------------------------------------------------------------------------------------
 
-static uint32_t most_rounds(const void *parameters, size_t genes) {
-    (void)genes;
+static uint32_t most_rounds(const void *parameters, size_t variables) {
+    (void)variables;
     return (uint32_t)((const struct parameters *)parameters)->evaluations;
 }
 
@@ -152,7 +153,7 @@ static void destroy(void *memory) {
     mf_coroutine_end(state->loop);
     mf_memory_free(state->start);
     mf_memory_free(state->told);
-    mf_memory_free(state->genes);
+    mf_memory_free(state->variables);
     mf_memory_free(state->best);
     mf_memory_free(state->recent);
     *state = (struct state){0};
@@ -167,12 +168,12 @@ static enum status create(void *memory, const struct optimiser_space *space,
     state->space = *space;
     state->space.start = NULL;
     state->progress.best_error = OPTIMISER_FAILED;
-    NEW_ARRAY(state->start, space->genes);
+    NEW_ARRAY(state->start, space->variables);
     NEW_ARRAY(state->told, (size_t)state->parameters.evaluations);
-    NEW_ARRAY(state->genes, space->genes);
-    NEW_ARRAY(state->best, space->genes);
-    NEW_ARRAY(state->recent, RECENT * space->genes);
-    for (size_t k = 0; k < space->genes; k++)
+    NEW_ARRAY(state->variables, space->variables);
+    NEW_ARRAY(state->best, space->variables);
+    NEW_ARRAY(state->recent, RECENT * space->variables);
+    for (size_t k = 0; k < space->variables; k++)
         state->start[k] = mf_optimiser_start(space, k);
 done:
     return status;
@@ -192,20 +193,20 @@ static enum status catch_up(struct state *state, const double **question) {
         mf_coroutine_answer(state->loop, state->told[state->played++]);
     }
     if (*question == NULL && state->played == 0)
-        return mf_status_fail(STATUS_BAD_INPUT, "nlopt: %s cannot begin with %zu genes",
-                              names[state->parameters.algorithm], state->space.genes);
+        return mf_status_fail(STATUS_BAD_INPUT, "nlopt: %s cannot begin with %zu variables",
+                              names[state->parameters.algorithm], state->space.variables);
     return STATUS_OK;
 }
 
 static enum status ask(void *memory, struct optimiser_round *round) {
     struct state *state = memory;
     const double *question = NULL;
-    *round = (struct optimiser_round){state->genes, 0};
+    *round = (struct optimiser_round){state->variables, 0};
     if (state->progress.told >= (uint64_t)state->parameters.evaluations)
         return STATUS_OK;
     TRY(catch_up(state, &question));
-    for (size_t k = 0; question && k < state->space.genes; k++)
-        state->genes[k] = optimiser_gene(&state->space, question[k]);
+    for (size_t k = 0; question && k < state->space.variables; k++)
+        state->variables[k] = optimiser_variable(&state->space, question[k]);
     round->count = question != NULL;
     state->is_over = question == NULL;
     return STATUS_OK;
@@ -214,7 +215,7 @@ static enum status ask(void *memory, struct optimiser_round *round) {
 static enum status tell(void *memory, const double *errors, const double *variances) {
     struct state *state = memory;
     struct optimiser_round round;
-    const size_t row = state->space.genes * sizeof(double);
+    const size_t row = state->space.variables * sizeof(double);
     (void)variances; // NLopt's algorithms know no noise
     TRY(ask(state, &round));
     if (round.count == 0)
@@ -222,33 +223,34 @@ static enum status tell(void *memory, const double *errors, const double *varian
     const double error = optimiser_error(errors[0]);
     if (error < state->progress.best_error) {
         state->progress.best_error = error;
-        memcpy(state->best, state->genes, row);
+        memcpy(state->best, state->variables, row);
     }
-    memcpy(state->recent + (state->progress.told % RECENT) * state->space.genes, state->genes, row);
+    memcpy(state->recent + (state->progress.told % RECENT) * state->space.variables,
+           state->variables, row);
     state->told[state->progress.told++] = error;
     return STATUS_OK;
 }
 
-static bool favourite(const void *memory, double *genes) {
+static bool incumbent(const void *memory, double *variables) {
     const struct state *state = memory;
     if (state->progress.best_error >= OPTIMISER_FAILED)
         return false;
-    memcpy(genes, state->best, state->space.genes * sizeof *genes);
+    memcpy(variables, state->best, state->space.variables * sizeof *variables);
     return true;
 }
 
-/// Standard deviation of a gene over the last candidates, a mean over genes.
+/// Standard deviation of a variable over the last candidates, a mean over variables.
 static double spread(const void *memory) {
     const struct state *state = memory;
-    const size_t n = state->space.genes;
+    const size_t n = state->space.variables;
     const size_t known = state->progress.told < RECENT ? state->progress.told : RECENT;
     double sum = 0;
-    for (size_t gene = 0; gene < n && known > 0; gene++) {
+    for (size_t variable = 0; variable < n && known > 0; variable++) {
         double mean = 0, squares = 0;
         for (size_t k = 0; k < known; k++)
-            mean += state->recent[k * n + gene] / (double)known;
+            mean += state->recent[k * n + variable] / (double)known;
         for (size_t k = 0; k < known; k++) {
-            const double away = state->recent[k * n + gene] - mean;
+            const double away = state->recent[k * n + variable] - mean;
             squares += away * away;
         }
         sum += sqrt(squares / (double)known);
@@ -257,7 +259,7 @@ static double spread(const void *memory) {
 }
 
 /// Each error decides where these algorithms go next.
-static double hopeless(const void *memory) {
+static double discard_above(const void *memory) {
     (void)memory;
     return HUGE_VAL;
 }
@@ -278,7 +280,7 @@ static bool gave_up(const void *memory) {
 
 static size_t spans(void *memory, struct memory_span *span) {
     struct state *state = memory;
-    const size_t row = state->space.genes * sizeof(double);
+    const size_t row = state->space.variables * sizeof(double);
     size_t n = 0;
     span[n++] = (struct memory_span){&state->progress, sizeof state->progress};
     span[n++] =
@@ -300,9 +302,9 @@ const struct optimiser mf_nlopt_optimiser = {
     .destroy = destroy,
     .ask = ask,
     .tell = tell,
-    .favourite = favourite,
+    .incumbent = incumbent,
     .spread = spread,
-    .hopeless = hopeless,
+    .discard_above = discard_above,
     .settled = settled,
     .gave_up = gave_up,
     .spans = spans,

@@ -15,14 +15,14 @@ const struct optimiser *mf_optimiser_find(const char *name) {
 
 enum status mf_optimiser_check_space(const struct optimiser_space *space) {
     const double range = space->maximum - space->minimum;
-    if (space->genes < 1)
-        return mf_status_fail(STATUS_BAD_INPUT, "an optimiser needs at least one gene");
+    if (space->variables < 1)
+        return mf_status_fail(STATUS_BAD_INPUT, "an optimiser needs at least one variable");
     if (!(range > 0 && range < HUGE_VAL))
-        return mf_status_fail(STATUS_BAD_INPUT, "genes from %g to %g have no range to search",
+        return mf_status_fail(STATUS_BAD_INPUT, "variables from %g to %g have no range to search",
                               space->minimum, space->maximum);
-    for (size_t k = 0; space->start && k < space->genes; k++)
+    for (size_t k = 0; space->start && k < space->variables; k++)
         if (!isfinite(space->start[k]))
-            return mf_status_fail(STATUS_BAD_INPUT, "gene %zu of the start is %g", k,
+            return mf_status_fail(STATUS_BAD_INPUT, "variable %zu of the start is %g", k,
                                   space->start[k]);
     return STATUS_OK;
 }
@@ -42,9 +42,9 @@ double mf_optimiser_reflect(double x) {
     return within <= 1 ? within : 2 - within;
 }
 
-double mf_optimiser_start(const struct optimiser_space *space, size_t gene) {
+double mf_optimiser_start(const struct optimiser_space *space, size_t variable) {
     if (space->start == NULL)
         return 0.5;
-    const double x = (space->start[gene] - space->minimum) / (space->maximum - space->minimum);
+    const double x = (space->start[variable] - space->minimum) / (space->maximum - space->minimum);
     return fmin(fmax(x, 0), 1);
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file One interface of all optimisers: ask for candidates, measure them, tell their errors.
 ///
-/// An optimiser minimises an error over genes in a box and knows nothing of what they mean. Who
+/// An optimiser minimises an error over variables in a box and knows nothing of what they mean. Who
 /// drives it owns the loop, so candidates of a round are measured in any order and by any number of
-/// threads. Errors may be noisy: the same genes may stand in several rows of a round, and each row
-/// wants a measurement of its own.
+/// threads. Errors may be noisy: the same variables may stand in several rows of a round, and each
+/// row wants a measurement of its own.
 #pragma once
 
 #include "base/fields.h"
@@ -19,17 +19,17 @@
 
 /// Where to look.
 struct optimiser_space {
-    size_t genes;            ///< at least 1
-    double minimum, maximum; ///< of every gene: no candidate is ever beyond
-    const double *start;     ///< shape [genes]: where to begin, or NULL for the optimiser's choice
+    size_t variables;        ///< at least 1
+    double minimum, maximum; ///< of every variable: no candidate is ever beyond
+    const double *start; ///< shape [variables]: where to begin, or NULL for the optimiser's choice
     uint64_t seed;
     size_t most; ///< candidates that a round may have; 0: any number
 };
 
 /// Candidates to be measured.
 struct optimiser_round {
-    const double *genes; ///< shape [count, genes]; the optimiser's own, valid until tell
-    size_t count;        ///< 0: finished
+    const double *variables; ///< shape [count, variables]; the optimiser's own, valid until tell
+    size_t count;            ///< 0: finished
 };
 
 enum { OPTIMISER_MAX_SPANS = 32 };
@@ -42,7 +42,7 @@ struct optimiser {
     size_t state_size;
     const char *budget; ///< the parameter that ends it if nothing else does
     /// Upper bound of rounds.
-    uint32_t (*most_rounds)(const void *parameters, size_t genes);
+    uint32_t (*most_rounds)(const void *parameters, size_t variables);
     /// Begin in zeroed memory of `state_size`; nothing of `space` or `parameters` is kept.
     /// Fails: BAD_INPUT for an empty box, or a population beyond space.most; NO_MEMORY; `destroy`
     /// must follow all the same.
@@ -53,14 +53,14 @@ struct optimiser {
     /// @param[in] errors     shape [count]: measured error of each candidate
     /// @param[in] variances  shape [count]: of that error as a mean; 0 if it is exact
     enum status (*tell)(void *state, const double *errors, const double *variances);
-    /// The genes that it believes best now, shape [genes]; false, and nothing written, before
-    /// anything has been measured.
-    bool (*favourite)(const void *state, double *genes);
+    /// The variables that it believes best now, shape [variables]; false, and nothing written,
+    /// before anything has been measured.
+    bool (*incumbent)(const void *state, double *variables);
     /// Diversity of the candidates: a standard deviation as a fraction of the range.
     double (*spread)(const void *state);
     /// Error beyond which a candidate hardly changes what happens next, by the round told last;
     /// HUGE_VAL if that is not known. The same before and after `ask`.
-    double (*hopeless)(const void *state);
+    double (*discard_above)(const void *state);
     /// Whether it ended since it could do no better, before its budget was used up. NULL: it never
     /// does.
     bool (*settled)(const void *state);
@@ -82,8 +82,8 @@ const struct optimiser *mf_optimiser_find(const char *name);
 
 extern const struct optimiser mf_genetic_optimiser, mf_cmaes_optimiser, mf_nlopt_optimiser;
 
-/// Fails with BAD_INPUT unless there are genes and a box of finite, positive size, and the start,
-/// if there is one, is finite.
+/// Fails with BAD_INPUT unless there are variables and a box of finite, positive size, and the
+/// start, if there is one, is finite.
 enum status mf_optimiser_check_space(const struct optimiser_space *space) MUST_USE;
 
 /// Fails with BAD_INPUT if a round of `count` candidates is more than there may be.
@@ -98,14 +98,14 @@ static inline double optimiser_error(double told) {
 /// Fails: never; what is not finite becomes 0.
 double mf_optimiser_reflect(double x);
 
-/// Gene at a fraction of the range, never beyond its ends by rounding.
-static inline double optimiser_gene(const struct optimiser_space *space, double fraction) {
-    const double gene = space->minimum + fraction * (space->maximum - space->minimum);
-    return fmin(fmax(gene, space->minimum), space->maximum);
+/// Variable at a fraction of the range, never beyond its ends by rounding.
+static inline double optimiser_variable(const struct optimiser_space *space, double fraction) {
+    const double variable = space->minimum + fraction * (space->maximum - space->minimum);
+    return fmin(fmax(variable, space->minimum), space->maximum);
 }
 
 /// Where `space->start` is as a fraction of the range, the middle if there is none.
-double mf_optimiser_start(const struct optimiser_space *space, size_t gene);
+double mf_optimiser_start(const struct optimiser_space *space, size_t variable);
 
 /// @name Parameters, for those who drive one by its name
 extern const struct field mf_genetic_fields[], mf_cmaes_fields[], mf_nlopt_fields[];

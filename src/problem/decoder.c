@@ -32,16 +32,16 @@ void mf_decoder_curve_name(const struct decoder *decoder, enum unknown_kind kind
 }
 
 static size_t genes_of_curve(const struct decoder *decoder, enum unknown_kind kind) {
-    return (size_t)unknown_of(decoder, kind)->parameters.genes;
+    return (size_t)unknown_of(decoder, kind)->parameters.coefficients;
 }
 
-size_t mf_decoder_genes(const struct decoder *decoder, enum unknown_kind kind) {
+size_t mf_decoder_variables(const struct decoder *decoder, enum unknown_kind kind) {
     return unknown_of(decoder, kind)->wanted
                ? mf_decoder_curve_count(decoder, kind) * genes_of_curve(decoder, kind)
                : 0;
 }
 
-/// Points of a curve below this one do not follow its genes: the core of a potential.
+/// Points of a curve below this one do not follow its variables: the core of a potential.
 static size_t first_point(const struct decoder *decoder, enum unknown_kind kind, size_t curve) {
     return kind == UNKNOWN_POTENTIAL ? decoder->potential.core[curve] : 0;
 }
@@ -49,7 +49,7 @@ static size_t first_point(const struct decoder *decoder, enum unknown_kind kind,
 size_t mf_decoder_points(const struct decoder *decoder, enum unknown_kind kind) {
     if (!unknown_of(decoder, kind)->wanted)
         return 0;
-    return kind == UNKNOWN_POTENTIAL ? decoder->potential.points : WEIGHT_POINTS;
+    return kind == UNKNOWN_POTENTIAL ? decoder->potential.points : OMEGA_POINTS;
 }
 
 static size_t points_of_curve(const struct decoder *decoder, enum unknown_kind kind) {
@@ -57,10 +57,11 @@ static size_t points_of_curve(const struct decoder *decoder, enum unknown_kind k
 }
 
 const double *mf_decoder_r(const struct decoder *decoder, enum unknown_kind kind) {
-    return kind == UNKNOWN_POTENTIAL ? decoder->potential.r : decoder->weight.r;
+    return kind == UNKNOWN_POTENTIAL ? decoder->potential.r : decoder->omega.r;
 }
 
-/// Where the points of a curve lie between the first that follows its genes (0) and the cutoff (1).
+/// Where the points of a curve lie between the first that follows its variables (0) and the cutoff
+/// (1).
 static void find_places(const struct decoder *decoder, enum unknown_kind kind, size_t curve,
                         double *place) {
     const size_t points = points_of_curve(decoder, kind);
@@ -77,7 +78,8 @@ static bool is_formula(const struct decoder *decoder, enum unknown_kind kind) {
 /// Basis of one curve: its block of the whole.
 static enum status fill_block(struct decoder *decoder, enum unknown_kind kind, size_t curve) {
     enum status status = STATUS_OK;
-    const size_t genes = mf_decoder_genes(decoder, kind), own = genes_of_curve(decoder, kind);
+    const size_t variables = mf_decoder_variables(decoder, kind),
+                 own = genes_of_curve(decoder, kind);
     const size_t points = points_of_curve(decoder, kind);
     const size_t first = first_point(decoder, kind, curve), moving = points - first;
     double *place = NULL, *block = NULL;
@@ -87,7 +89,7 @@ static enum status fill_block(struct decoder *decoder, enum unknown_kind kind, s
     CHECK(mf_shape_basis(mf_shapes[unknown_of(decoder, kind)->parameters.shape], own, place, moving,
                          block));
     for (size_t k = 0; k < moving; k++)
-        memcpy(decoder->basis[kind] + (curve * points + first + k) * genes + curve * own,
+        memcpy(decoder->basis[kind] + (curve * points + first + k) * variables + curve * own,
                block + k * own, own * sizeof *block);
 done:
     mf_memory_free(place);
@@ -100,7 +102,7 @@ static enum status make_basis(struct decoder *decoder, enum unknown_kind kind) {
     if (is_formula(decoder, kind))
         return STATUS_OK;
     NEW_ARRAY(decoder->basis[kind],
-              mf_decoder_points(decoder, kind) * mf_decoder_genes(decoder, kind));
+              mf_decoder_points(decoder, kind) * mf_decoder_variables(decoder, kind));
     for (size_t curve = 0; curve < mf_decoder_curve_count(decoder, kind); curve++)
         CHECK(fill_block(decoder, kind, curve));
 done:
@@ -111,11 +113,11 @@ enum status mf_decoder_init(struct decoder *decoder, const struct inverse_proble
     *decoder = (struct decoder){.problem = problem};
     if (problem->unknown[UNKNOWN_POTENTIAL].wanted)
         TRY(mf_potential_grid_init(&decoder->potential, problem));
-    const struct unknown_parameters *weight = &problem->unknown[UNKNOWN_WEIGHT].parameters;
-    mf_weight_grid_init(&decoder->weight, weight->inner_cutoff, weight->cutoff);
+    const struct unknown_parameters *omega = &problem->unknown[UNKNOWN_OMEGA].parameters;
+    mf_omega_grid_init(&decoder->omega, omega->inner_cutoff, omega->cutoff);
     for (int kind = 0; kind < UNKNOWNS; kind++) {
-        decoder->first[kind] = decoder->genes;
-        decoder->genes += mf_decoder_genes(decoder, kind);
+        decoder->first[kind] = decoder->variables;
+        decoder->variables += mf_decoder_variables(decoder, kind);
         if (problem->unknown[kind].wanted)
             TRY(make_basis(decoder, kind));
     }
@@ -129,24 +131,24 @@ void mf_decoder_clear(struct decoder *decoder) {
     *decoder = (struct decoder){0};
 }
 
-/// Σ of basis and genes, in the unknown's unit.
+/// Σ of basis and variables, in the unknown's unit.
 static void linear_curve(const struct decoder *decoder, enum unknown_kind kind, const double *x,
                          double *curve) {
     const struct unknown_parameters *p = &unknown_of(decoder, kind)->parameters;
-    const size_t count = mf_decoder_genes(decoder, kind);
+    const size_t count = mf_decoder_variables(decoder, kind);
     for (size_t k = 0; k < mf_decoder_points(decoder, kind); k++) {
         const double *row = decoder->basis[kind] + k * count;
         double sum = 0;
         for (size_t n = 0; n < count; n++)
             sum += row[n] * (p->minimum + x[n] * (p->maximum - p->minimum));
-        curve[k] = kind == UNKNOWN_WEIGHT ? fmax(0, sum) : sum;
+        curve[k] = kind == UNKNOWN_OMEGA ? fmax(0, sum) : sum;
     }
 }
 
 /// Largest exponent of the formula, and how much of the way to the cutoff r_0 may go.
 static const double largest_exponent = 4, inner_part = 0.5;
 
-/// What a parameter of the formula is where its gene is 0, and how much more where it is 1.
+/// What a parameter of the formula is where its variable is 0, and how much more where it is 1.
 struct span {
     double least, range;
 };
@@ -169,13 +171,13 @@ const char *mf_decoder_parameter_bound(const struct unknown_parameters *p, int p
     return part < near ? "minimum" : part > 1 - near ? "maximum" : NULL;
 }
 
-void mf_decoder_parameters(const struct decoder *decoder, const double *genes,
+void mf_decoder_parameters(const struct decoder *decoder, const double *variables,
                            const double *covariance,
                            struct inverse_parameter parameter[INVERSE_PARAMETERS]) {
-    const struct unknown_parameters *p = &unknown_of(decoder, UNKNOWN_WEIGHT)->parameters;
+    const struct unknown_parameters *p = &unknown_of(decoder, UNKNOWN_OMEGA)->parameters;
     const bool formula =
-        unknown_of(decoder, UNKNOWN_WEIGHT)->wanted && is_formula(decoder, UNKNOWN_WEIGHT);
-    size_t gene = decoder->first[UNKNOWN_WEIGHT];
+        unknown_of(decoder, UNKNOWN_OMEGA)->wanted && is_formula(decoder, UNKNOWN_OMEGA);
+    size_t variable = decoder->first[UNKNOWN_OMEGA];
     for (int k = 0; k < INVERSE_PARAMETERS; k++) {
         const struct span span = parameter_span(p, k);
         parameter[k] = (struct inverse_parameter){NAN, NAN};
@@ -185,32 +187,32 @@ void mf_decoder_parameters(const struct decoder *decoder, const double *genes,
             parameter[k] = (struct inverse_parameter){p->fixed[k], 0};
             continue;
         }
-        parameter[k].value = span.least + span.range * genes[gene];
+        parameter[k].value = span.least + span.range * variables[variable];
         if (covariance)
-            parameter[k].error = span.range * sqrt(covariance[gene * (decoder->genes + 1)]);
-        gene++;
+            parameter[k].error = span.range * sqrt(covariance[variable * (decoder->variables + 1)]);
+        variable++;
     }
 }
 
-static void power_curve(const struct decoder *decoder, const double *genes, double *curve) {
+static void power_curve(const struct decoder *decoder, const double *variables, double *curve) {
     struct inverse_parameter found[INVERSE_PARAMETERS];
-    mf_decoder_parameters(decoder, genes, NULL, found);
-    struct formula_power_weight_parameters formula = {
+    mf_decoder_parameters(decoder, variables, NULL, found);
+    struct formula_power_omega_parameters formula = {
         .sigma = found[INVERSE_SIGMA].value,
         .exponent = found[INVERSE_EXPONENT].value,
         .inner_cutoff = found[INVERSE_INNER_CUTOFF].value,
-        .cutoff = unknown_of(decoder, UNKNOWN_WEIGHT)->parameters.cutoff};
-    const struct curve power = {&mf_formula_power_weight, &formula};
-    for (size_t k = 0; k < WEIGHT_POINTS; k++)
-        curve[k] = fmax(0, mf_curve_value(&power, decoder->weight.r[k]));
+        .cutoff = unknown_of(decoder, UNKNOWN_OMEGA)->parameters.cutoff};
+    const struct curve power = {&mf_formula_power_omega, &formula};
+    for (size_t k = 0; k < OMEGA_POINTS; k++)
+        curve[k] = fmax(0, mf_curve_value(&power, decoder->omega.r[k]));
 }
 
-void mf_decoder_curve(const struct decoder *decoder, enum unknown_kind kind, const double *genes,
-                      double *curve) {
+void mf_decoder_curve(const struct decoder *decoder, enum unknown_kind kind,
+                      const double *variables, double *curve) {
     if (is_formula(decoder, kind))
-        power_curve(decoder, genes, curve);
+        power_curve(decoder, variables, curve);
     else
-        linear_curve(decoder, kind, genes + decoder->first[kind], curve);
+        linear_curve(decoder, kind, variables + decoder->first[kind], curve);
     if (kind == UNKNOWN_POTENTIAL)
         mf_potential_grid_complete(&decoder->potential, curve);
 }
@@ -218,21 +220,21 @@ void mf_decoder_curve(const struct decoder *decoder, enum unknown_kind kind, con
 enum status mf_decoder_table(const struct decoder *decoder, enum unknown_kind kind,
                              const double *curve, struct table *table) {
     return kind == UNKNOWN_POTENTIAL ? mf_potential_grid_table(&decoder->potential, curve, table)
-                                     : mf_weight_grid_table(&decoder->weight, curve, table);
+                                     : mf_omega_grid_table(&decoder->omega, curve, table);
 }
 
-enum status mf_decoder_laws(const struct decoder *decoder, const double *genes,
+enum status mf_decoder_laws(const struct decoder *decoder, const double *variables,
                             struct decoder_laws *laws) {
     enum status status = STATUS_OK;
     const struct simulation_setup *scene = &decoder->problem->scene;
     double *curve = NULL;
-    *laws = (struct decoder_laws){.table = {scene->potential, scene->weight}};
+    *laws = (struct decoder_laws){.table = {scene->potential, scene->omega}};
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         if (!unknown_of(decoder, kind)->wanted)
             continue;
         mf_memory_free(curve);
         NEW_ARRAY(curve, mf_decoder_points(decoder, kind));
-        mf_decoder_curve(decoder, kind, genes, curve);
+        mf_decoder_curve(decoder, kind, variables, curve);
         CHECK(mf_decoder_table(decoder, kind, curve, &laws->own[kind]));
         laws->table[kind] = &laws->own[kind];
     }
@@ -253,23 +255,23 @@ static void start_curve(const struct decoder *decoder, enum unknown_kind kind, d
         mf_potential_grid_start(&decoder->potential, decoder->problem, curve);
         return;
     }
-    const struct weight_grid *grid = &decoder->weight;
+    const struct omega_grid *grid = &decoder->omega;
     const double middle = 0.5 * (unknown->parameters.minimum + unknown->parameters.maximum);
-    for (int k = 0; k < WEIGHT_POINTS; k++)
+    for (int k = 0; k < OMEGA_POINTS; k++)
         curve[k] = unknown->start[0] ? mf_curve_value(unknown->start[0], grid->r[k])
                                      : middle * (1 - grid->r[k] / grid->cutoff);
 }
 
-/// Genes of a formula with sigma in the middle of its range, or those of the start if it is the
+/// Variables of a formula with sigma in the middle of its range, or those of the start if it is the
 /// same formula.
-static void start_power(const struct decoder *decoder, double *genes) {
-    const struct unknown *unknown = unknown_of(decoder, UNKNOWN_WEIGHT);
+static void start_power(const struct decoder *decoder, double *variables) {
+    const struct unknown *unknown = unknown_of(decoder, UNKNOWN_OMEGA);
     const struct unknown_parameters *p = &unknown->parameters;
     double value[INVERSE_PARAMETERS] = {[INVERSE_SIGMA] = 0.5 * (p->minimum + p->maximum),
                                         [INVERSE_EXPONENT] = 1,
                                         [INVERSE_INNER_CUTOFF] = p->inner_cutoff};
-    if (unknown->start[0] && unknown->start[0]->family == &mf_formula_power_weight) {
-        const struct formula_power_weight_parameters *start = unknown->start[0]->parameters;
+    if (unknown->start[0] && unknown->start[0]->family == &mf_formula_power_omega) {
+        const struct formula_power_omega_parameters *start = unknown->start[0]->parameters;
         value[INVERSE_SIGMA] = start->sigma;
         value[INVERSE_EXPONENT] = start->exponent;
         value[INVERSE_INNER_CUTOFF] = start->inner_cutoff;
@@ -277,56 +279,57 @@ static void start_power(const struct decoder *decoder, double *genes) {
     for (int k = 0; k < INVERSE_PARAMETERS; k++) {
         const struct span span = parameter_span(p, k);
         if (isnan(p->fixed[k]))
-            *genes++ = fmin(1, fmax(0, (value[k] - span.least) / span.range));
+            *variables++ = fmin(1, fmax(0, (value[k] - span.least) / span.range));
     }
 }
 
-/// Genes of one curve nearest to `curve`, shape [points of it], which is changed.
+/// Variables of one curve nearest to `curve`, shape [points of it], which is changed.
 static enum status start_of_curve(const struct decoder *decoder, enum unknown_kind kind,
-                                  size_t number, double *curve, double *genes) {
+                                  size_t number, double *curve, double *variables) {
     enum status status = STATUS_OK;
     const struct unknown_parameters *p = &unknown_of(decoder, kind)->parameters;
-    const size_t count = genes_of_curve(decoder, kind), all = mf_decoder_genes(decoder, kind);
+    const size_t count = genes_of_curve(decoder, kind), all = mf_decoder_variables(decoder, kind);
     const size_t first = first_point(decoder, kind, number),
                  points = points_of_curve(decoder, kind);
     const double *block = decoder->basis[kind] + number * (points * all + count);
     double *place = NULL;
     NEW_ARRAY(place, points);
     find_places(decoder, kind, number, place);
-    // Genes that the curve leaves open stay in the middle of their range.
+    // Variables that the curve leaves open stay in the middle of their range.
     const double middle = 0.5 * (p->minimum + p->maximum), range = p->maximum - p->minimum;
     for (size_t k = first; k < points; k++)
         for (size_t n = 0; n < count; n++)
             curve[k] -= middle * block[k * all + n];
-    CHECK(mf_shape_fit(mf_shapes[p->shape], place, curve + first, NULL, points - first, genes,
+    CHECK(mf_shape_fit(mf_shapes[p->shape], place, curve + first, NULL, points - first, variables,
                        count));
     for (size_t k = 0; k < count; k++)
-        genes[k] = fmin(1, fmax(0, 0.5 + genes[k] / range));
+        variables[k] = fmin(1, fmax(0, 0.5 + variables[k] / range));
 done:
     mf_memory_free(place);
     return status;
 }
 
-static enum status start_of(const struct decoder *decoder, enum unknown_kind kind, double *genes) {
+static enum status start_of(const struct decoder *decoder, enum unknown_kind kind,
+                            double *variables) {
     enum status status = STATUS_OK;
     double *curve = NULL;
     if (is_formula(decoder, kind)) {
-        start_power(decoder, genes);
+        start_power(decoder, variables);
         return STATUS_OK;
     }
     NEW_ARRAY(curve, mf_decoder_points(decoder, kind));
     start_curve(decoder, kind, curve);
     for (size_t n = 0; n < mf_decoder_curve_count(decoder, kind); n++)
         CHECK(start_of_curve(decoder, kind, n, curve + n * points_of_curve(decoder, kind),
-                             genes + n * genes_of_curve(decoder, kind)));
+                             variables + n * genes_of_curve(decoder, kind)));
 done:
     mf_memory_free(curve);
     return status;
 }
 
-enum status mf_decoder_start(const struct decoder *decoder, double *genes) {
+enum status mf_decoder_start(const struct decoder *decoder, double *variables) {
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (unknown_of(decoder, kind)->wanted)
-            TRY(start_of(decoder, kind, genes + decoder->first[kind]));
+            TRY(start_of(decoder, kind, variables + decoder->first[kind]));
     return STATUS_OK;
 }

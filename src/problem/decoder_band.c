@@ -4,24 +4,25 @@
 #include <math.h>
 #include <string.h>
 
-/// How the curve changes with each gene, shape [points, genes of it].
+/// How the curve changes with each variable, shape [points, variables of it].
 static enum status find_slopes(const struct decoder *decoder, enum unknown_kind kind,
-                               const double *genes, double *slopes) {
+                               const double *variables, double *slopes) {
     enum status status = STATUS_OK;
     const struct unknown_parameters *p = &decoder->problem->unknown[kind].parameters;
-    const size_t count = mf_decoder_genes(decoder, kind), points = mf_decoder_points(decoder, kind);
+    const size_t count = mf_decoder_variables(decoder, kind),
+                 points = mf_decoder_points(decoder, kind);
     double *moved = NULL, *curve = NULL;
     if (decoder->basis[kind]) {
         for (size_t k = 0; k < points * count; k++)
             slopes[k] = decoder->basis[kind][k] * (p->maximum - p->minimum);
         return STATUS_OK;
     }
-    NEW_ARRAY(moved, decoder->genes);
+    NEW_ARRAY(moved, decoder->variables);
     NEW_ARRAY(curve, 2 * points);
     for (size_t n = 0; n < count; n++) {
         static const double step = 1e-3;
         for (int side = 0; side < 2; side++) {
-            memcpy(moved, genes, decoder->genes * sizeof *genes);
+            memcpy(moved, variables, decoder->variables * sizeof *variables);
             moved[decoder->first[kind] + n] += side ? step : -step;
             mf_decoder_curve(decoder, kind, moved, curve + (size_t)side * points);
         }
@@ -58,7 +59,7 @@ static void remove_component(const double *axis, size_t count, double *vector) {
         vector[k] -= product / square * axis[k];
 }
 
-/// to = Σ of slopes and a vector of genes or, transposed, of points.
+/// to = Σ of slopes and a vector of variables or, transposed, of points.
 static void multiply(const double *slopes, size_t points, size_t count, const double *from,
                      double *to, bool transposed) {
     memset(to, 0, (transposed ? count : points) * sizeof *to);
@@ -76,8 +77,8 @@ static enum status find_flat(const double *slopes, const double *covariance, siz
                              size_t count, const double *before, size_t before_count,
                              double *flat) {
     enum status status = STATUS_OK;
-    double *gene = NULL, *moved = NULL, length = 0;
-    NEW_ARRAY(gene, count);
+    double *variable = NULL, *moved = NULL, length = 0;
+    NEW_ARRAY(variable, count);
     NEW_ARRAY(moved, count);
     for (size_t k = 0; k < points; k++)
         flat[k] = 1 + 0.1 * sin((double)(k * (before_count + 1)));
@@ -85,8 +86,8 @@ static enum status find_flat(const double *slopes, const double *covariance, siz
         for (size_t n = 0; n < before_count; n++)
             remove_component(before + n * points, points, flat);
         length = normalise(points, flat);
-        multiply(slopes, points, count, flat, gene, true);
-        multiply(covariance, count, count, gene, moved, false);
+        multiply(slopes, points, count, flat, variable, true);
+        multiply(covariance, count, count, variable, moved, false);
         multiply(slopes, points, count, moved, flat, false);
     }
     for (size_t n = 0; n < before_count; n++)
@@ -95,12 +96,13 @@ static enum status find_flat(const double *slopes, const double *covariance, siz
     for (size_t k = 0; k < points; k++)
         flat[k] *= sqrt(length);
 done:
-    mf_memory_free(gene);
+    mf_memory_free(variable);
     mf_memory_free(moved);
     return status;
 }
 
-/// Errors of the points that follow the genes, from the slopes and the covariance of these genes.
+/// Errors of the points that follow the variables, from the slopes and the covariance of these
+/// variables.
 static void find_errors(const double *slopes, const double *covariance, size_t points, size_t count,
                         double *error) {
     for (size_t k = 0; k < points; k++) {
@@ -121,10 +123,10 @@ static void forget_core(const struct decoder *decoder, enum unknown_kind kind, d
 }
 
 enum status mf_decoder_band(const struct decoder *decoder, enum unknown_kind kind,
-                            const double *genes, const double *covariance, double *error,
+                            const double *variables, const double *covariance, double *error,
                             double *flat) {
     enum status status = STATUS_OK;
-    const size_t count = mf_decoder_genes(decoder, kind), at = decoder->first[kind];
+    const size_t count = mf_decoder_variables(decoder, kind), at = decoder->first[kind];
     const size_t points = mf_decoder_points(decoder, kind);
     double *slopes = NULL, *own = NULL;
     for (size_t k = 0; k < points; k++)
@@ -137,8 +139,8 @@ enum status mf_decoder_band(const struct decoder *decoder, enum unknown_kind kin
     NEW_ARRAY(own, count * count);
     for (size_t a = 0; a < count; a++)
         for (size_t b = 0; b < count; b++)
-            own[a * count + b] = covariance[(at + a) * decoder->genes + at + b];
-    CHECK(find_slopes(decoder, kind, genes, slopes));
+            own[a * count + b] = covariance[(at + a) * decoder->variables + at + b];
+    CHECK(find_slopes(decoder, kind, variables, slopes));
     find_errors(slopes, own, points, count, error);
     for (size_t n = 0; n < INVERSE_FLAT; n++)
         CHECK(find_flat(slopes, own, points, count, flat, n, flat + n * points));

@@ -31,28 +31,28 @@ void mf_decoder_curves_clear(struct decoder_curves *curves) {
     *curves = (struct decoder_curves){0};
 }
 
-void mf_decoder_curves_show(const struct decoder *decoder, const double *genes,
+void mf_decoder_curves_show(const struct decoder *decoder, const double *variables,
                             struct decoder_curves *curves, struct inverse_step *step) {
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         if (curves->value[kind] == NULL)
             continue;
-        mf_decoder_curve(decoder, kind, genes, curves->value[kind]);
+        mf_decoder_curve(decoder, kind, variables, curves->value[kind]);
         step->curve[kind] = curves->value[kind];
         step->curve_error[kind] = curves->error[kind];
         step->curve_flat[kind] = curves->flat[kind];
     }
-    mf_decoder_parameters(decoder, genes, NULL, step->parameter);
+    mf_decoder_parameters(decoder, variables, NULL, step->parameter);
     for (int k = 0; k < INVERSE_PARAMETERS; k++)
         step->parameter[k].error = curves->parameter[k].error;
 }
 
-enum status mf_decoder_curves_bands(const struct decoder *decoder, const double *genes,
+enum status mf_decoder_curves_bands(const struct decoder *decoder, const double *variables,
                                     const double *covariance, struct decoder_curves *curves) {
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (curves->error[kind])
-            TRY(mf_decoder_band(decoder, kind, genes, covariance, curves->error[kind],
+            TRY(mf_decoder_band(decoder, kind, variables, covariance, curves->error[kind],
                                 curves->flat[kind]));
-    mf_decoder_parameters(decoder, genes, covariance, curves->parameter);
+    mf_decoder_parameters(decoder, variables, covariance, curves->parameter);
     return STATUS_OK;
 }
 

@@ -32,11 +32,11 @@ static enum status equilibrate(struct simulation *simulation, const struct measu
     return STATUS_OK;
 }
 
-static enum status score(const struct observation *observation, struct observed *observed,
+static enum status score(const struct measurement *measurement, struct observed *observed,
                          struct evaluate_result *result) {
-    const struct targets *targets = observation->targets;
-    TRY(mf_observation_result(observation, 1, observed));
-    mf_observation_distance(observed, targets, result->distance);
+    const struct targets *targets = measurement->targets;
+    TRY(mf_measurement_result(measurement, 1, observed));
+    mf_measurement_distance(observed, targets, result->distance);
     result->error = mf_targets_error(targets, result->distance);
     result->noise = mf_targets_noise(targets, result->distance);
     result->variance = mf_targets_variance(targets, result->distance);
@@ -45,17 +45,18 @@ static enum status score(const struct observation *observation, struct observed 
 
 /// Whether a running result says enough: that the candidate cannot win (racing: O. Maron and A. W.
 /// Moore, Artif. Intell. Rev. 11, 193 (1997)), or its error as well as is wanted.
-static bool says_enough(const struct evaluate_result *result, double hopeless,
+static bool says_enough(const struct evaluate_result *result, double discard_above,
                         const struct evaluate_parameters *parameters) {
     const double chance = sqrt(result->variance);
     if (!isfinite(result->error) || !(result->noise > 0))
         return false;
-    return (parameters->patience > 0 && result->error - parameters->patience * chance > hopeless) ||
+    return (parameters->patience > 0 &&
+            result->error - parameters->patience * chance > discard_above) ||
            chance < parameters->precision * result->error;
 }
 
 /// Take the samples part by part, until they are all there or say enough.
-static enum status sample(struct observation *observation, double hopeless,
+static enum status sample(struct measurement *measurement, double discard_above,
                           const struct evaluate_parameters *parameters, struct observed *observed,
                           struct evaluate_result *result) {
     const struct measure_plan *plan = &parameters->plan;
@@ -65,14 +66,14 @@ static enum status sample(struct observation *observation, double hopeless,
         so_far.samples = plan->samples * part / PARTS;
         if (so_far.samples < LEAST_SAMPLES)
             continue;
-        TRY(mf_measure_sample(&observation->simulation, &so_far, observation->observables, NULL));
-        TRY(score(observation, observed, result));
-        result->stopped = says_enough(result, hopeless, parameters);
+        TRY(mf_measure_sample(&measurement->simulation, &so_far, measurement->observables, NULL));
+        TRY(score(measurement, observed, result));
+        result->stopped = says_enough(result, discard_above, parameters);
         if (result->stopped)
             return STATUS_OK;
     }
-    TRY(mf_measure_sample(&observation->simulation, plan, observation->observables, NULL));
-    return score(observation, observed, result);
+    TRY(mf_measure_sample(&measurement->simulation, plan, measurement->observables, NULL));
+    return score(measurement, observed, result);
 }
 
 /// Positions by particle number, wrapped into the box.
@@ -92,30 +93,30 @@ enum status mf_evaluate(const struct inverse_problem *problem,
                         const struct evaluate_parameters *parameters, double *features,
                         double *const *position, struct evaluate_result *result) {
     enum status status = STATUS_OK;
-    struct observation observation = {0};
+    struct measurement measurement = {0};
     struct observed observed = {0};
     struct measure_plan plan = parameters->plan;
     *result = (struct evaluate_result){0};
-    const struct observation_setup setup = {.targets = &problem->targets,
+    const struct measurement_setup setup = {.targets = &problem->targets,
                                             .potential = candidate->potential,
-                                            .weight = candidate->weight,
+                                            .omega = candidate->omega,
                                             .position = candidate->position,
                                             .plan = plan,
                                             .force_estimator =
                                                 parameters->estimator == RDF_FORCE_USED,
                                             .threads = candidate->threads,
                                             .seed = candidate->seed};
-    CHECK(mf_observation_values_init(&observed, &problem->targets));
-    CHECK(mf_observation_init(&observation, problem, &setup));
-    CHECK(equilibrate(&observation.simulation, &plan, parameters->temperature_tolerance));
-    CHECK(sample(&observation, candidate->hopeless, parameters, &observed, result));
+    CHECK(mf_measurement_values_init(&observed, &problem->targets));
+    CHECK(mf_measurement_init(&measurement, problem, &setup));
+    CHECK(equilibrate(&measurement.simulation, &plan, parameters->temperature_tolerance));
+    CHECK(sample(&measurement, candidate->discard_above, parameters, &observed, result));
     if (features)
         mf_targets_take_features(&problem->targets, observed.value, features, NULL);
     if (position)
-        copy_positions(&observation.simulation.particles, position);
+        copy_positions(&measurement.simulation.particles, position);
 done:
-    result->engine_steps = observation.simulation.step;
-    mf_observation_clear(&observation);
-    mf_observation_values_clear(&observed);
+    result->engine_steps = measurement.simulation.step;
+    mf_measurement_clear(&measurement);
+    mf_measurement_values_clear(&observed);
     return status;
 }

@@ -2,7 +2,7 @@
 /// @file Measure curves by simulation: for fitness, and for verification.
 #pragma once
 
-#include "problem/observation.h"
+#include "problem/measurement.h"
 
 /// How a candidate is measured for its fitness.
 struct evaluate_parameters {
@@ -10,16 +10,16 @@ struct evaluate_parameters {
     double temperature_tolerance; ///< largest |T/T_set − 1| at the end of the equilibration
     int estimator; ///< of g(r), enum rdf_force_estimator; without a barrier (mf_rdf_force_applies)
                    ///< the histogram
-    double patience;  ///< standard errors by which a running error must be beyond `hopeless` before
-                      ///< a simulation is stopped; 0: never
+    double patience;  ///< standard errors by which a running error must be beyond `discard_above`
+                      ///< before a simulation is stopped; 0: never
     double precision; ///< relative standard error of the error that is enough to stop; 0: never
 };
 
 /// One candidate.
 struct evaluate_candidate {
-    const struct table *potential, *weight;
-    const double *const *position; ///< as in observation_setup
-    double hopeless;               ///< error with which the candidate cannot win
+    const struct table *potential, *omega;
+    const double *const *position; ///< as in measurement_setup
+    double discard_above;          ///< error with which the candidate cannot win
     int threads;                   ///< of its simulation
     uint64_t seed;
 };
@@ -39,7 +39,7 @@ struct evaluate_result {
 /// @param[out] position  where the particles were at the end, shape [dimensions][count] by particle
 ///                       number, or NULL
 /// Fails: UNSTABLE if it blows up, leaves its temperature or collapses into a drop (which would
-/// also be slow); INTERRUPTED; NO_MEMORY; BAD_INPUT as mf_observation_init.
+/// also be slow); INTERRUPTED; NO_MEMORY; BAD_INPUT as mf_measurement_init.
 enum status mf_evaluate(const struct inverse_problem *problem,
                         const struct evaluate_candidate *candidate,
                         const struct evaluate_parameters *parameters, double *features,

@@ -11,10 +11,10 @@
 /// within 1.7.
 const double mf_inverse_noise_margin = 1.7;
 
-const char *const mf_inverse_unknown_names[UNKNOWNS] = {"potential", "weight"};
+const char *const mf_inverse_unknown_names[UNKNOWNS] = {"potential", "omega"};
 
 static const char *const potential_curves[] = {"bezier", "bspline", NULL};
-static const char *const weight_curves[] = {"bezier", "bspline", "power", NULL};
+static const char *const omega_curves[] = {"bezier", "bspline", "power", NULL};
 
 #define MEMBER(name) .offset = offsetof(struct unknown_parameters, name)
 #define CURVE(its_names, its_maximum, its_unit)                                                    \
@@ -24,10 +24,11 @@ static const char *const weight_curves[] = {"bezier", "bspline", "power", NULL};
      .choices = its_names,                                                                         \
      .initial = 0,                                                                                 \
      .unit = "",                                                                                   \
-     .help = "that genes make: Bezier-smoothed random walk, cubic B-splines, or a formula"},       \
-        {"genes",                                                                                  \
+     .help =                                                                                       \
+         "that coefficients make: Bezier-smoothed random walk, cubic B-splines, or a formula"},    \
+        {"coefficients",                                                                           \
          FIELD_INTEGER,                                                                            \
-         MEMBER(genes),                                                                            \
+         MEMBER(coefficients),                                                                     \
          .initial = 0,                                                                             \
          .minimum = 0,                                                                             \
          .maximum = 1000,                                                                          \
@@ -35,19 +36,19 @@ static const char *const weight_curves[] = {"bezier", "bspline", "power", NULL};
          .help = "of the curve; 0: 100 of bezier, 12 of bspline, of power 3 less those that are "  \
                  "fixed"},                                                                         \
         {"minimum",           FIELD_NUMBER,       MEMBER(minimum),  .initial = 0,                  \
-         .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = its_unit, .help = "least gene"},         \
+         .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = its_unit, .help = "least coefficient"},  \
         {"maximum",           FIELD_NUMBER,       MEMBER(maximum),  .initial = its_maximum,        \
-         .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = its_unit, .help = "largest gene"},
+         .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = its_unit, .help = "largest coefficient"},
 
 const struct field mf_inverse_potential_fields[] = {
     CURVE(potential_curves, 6.5, "k_B T_0") // ends at the target's range
     FIELD_END,
 };
 
-const struct field mf_inverse_weight_fields[] = {
-    CURVE(weight_curves, 6.5, "sqrt(mu/tau)"){"inner_cutoff", FIELD_NUMBER, MEMBER(inner_cutoff),
-                                              .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-                                              .unit = "lambda", .help = "below which omega is 0"},
+const struct field mf_inverse_omega_fields[] = {
+    CURVE(omega_curves, 6.5, "sqrt(mu/tau)"){"inner_cutoff", FIELD_NUMBER, MEMBER(inner_cutoff),
+                                             .initial = 0, .minimum = 0, .maximum = DBL_MAX,
+                                             .unit = "lambda", .help = "below which omega is 0"},
     {"cutoff", FIELD_NUMBER, MEMBER(cutoff), .initial = 1, .minimum = FIELD_ABOVE_ZERO,
      .maximum = DBL_MAX, .unit = "lambda", .help = "where omega ends"},
     FIELD_END,

@@ -11,30 +11,30 @@
 #include "dynamics/simulation.h"
 #include "problem/targets.h"
 
-enum unknown_kind { UNKNOWN_POTENTIAL, UNKNOWN_WEIGHT, UNKNOWNS };
+enum unknown_kind { UNKNOWN_POTENTIAL, UNKNOWN_OMEGA, UNKNOWNS };
 
 /// Names in run files, shape [UNKNOWNS].
 extern const char *const mf_inverse_unknown_names[UNKNOWNS];
 
-/// What genes make: the shapes of curves/shape.h in their order, or the formula of a weight,
-/// ω = σ(1 − r/r_c)^s beyond r_0, of which the genes are σ in [minimum, maximum], s in [0, 4] and
-/// r_0 from the inner cutoff to half-way to the cutoff.
+/// What variables make: the shapes of curves/shape.h in their order, or the formula of a friction
+/// weight, ω = σ(1 − r/r_c)^s beyond r_0, of which the variables are σ in [minimum, maximum], s in
+/// [0, 4] and r_0 from the inner cutoff to half-way to the cutoff.
 enum { INVERSE_CURVE_BEZIER, INVERSE_CURVE_BSPLINE, INVERSE_CURVE_POWER };
 
 /// Parameters of the formula, in this order everywhere: σ [sqrt(mass/time)], s, r_0 [λ]. Each is a
-/// gene unless it is held fixed.
+/// variable unless it is held fixed.
 enum { INVERSE_SIGMA, INVERSE_EXPONENT, INVERSE_INNER_CUTOFF, INVERSE_PARAMETERS };
 
-/// How an optimiser writes an unknown as a curve of some genes.
+/// How an optimiser writes an unknown as a curve of some variables.
 struct unknown_parameters {
     int shape;                        ///< INVERSE_CURVE_…
-    int64_t genes;                    ///< of the curve
-    double minimum, maximum;          ///< of a gene [k_B T_0] or [sqrt(mass/time)]
-    double inner_cutoff, cutoff;      ///< of a weight [λ]
+    int64_t coefficients;             ///< of the curve
+    double minimum, maximum;          ///< of a variable [k_B T_0] or [sqrt(mass/time)]
+    double inner_cutoff, cutoff;      ///< of a friction weight [λ]
     double fixed[INVERSE_PARAMETERS]; ///< of the formula; NaN: to be found
 };
 
-extern const struct field mf_inverse_potential_fields[], mf_inverse_weight_fields[];
+extern const struct field mf_inverse_potential_fields[], mf_inverse_omega_fields[];
 
 /// The parameters of the formula, of an array shape [INVERSE_PARAMETERS]; the default is NaN.
 extern const struct field mf_inverse_fixed_fields[];
@@ -52,7 +52,7 @@ struct inverse_parameter {
 struct unknown {
     bool wanted;
     struct unknown_parameters parameters;
-    /// To begin with, or NULL: of a potential for each kind of pairs, of a weight for all.
+    /// To begin with, or NULL: of a potential for each pair type, of a friction weight for all.
     const struct curve *start[COMPOSITION_MOST_PAIRS];
 };
 
@@ -104,7 +104,8 @@ struct inverse_step {
     /// none.
     const double *without_ramp;
     struct inverse_ramp ramp;
-    struct inverse_parameter parameter[INVERSE_PARAMETERS]; ///< of a weight that is a formula
+    struct inverse_parameter
+        parameter[INVERSE_PARAMETERS]; ///< of a friction weight that is a formula
     bool finished;
     bool converged; ///< it has settled: by its own measure it can do no better
     bool used_up;   ///< it finished since all was used that it was to use, as populations do, or at

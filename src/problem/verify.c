@@ -25,30 +25,30 @@ const struct field mf_verify_fields[] = {
 };
 
 static enum status run_replica(const struct inverse_problem *problem, const struct table *potential,
-                               const struct table *weight,
+                               const struct table *omega,
                                const struct verify_parameters *parameters, uint32_t number,
-                               struct observation *replica) {
+                               struct measurement *replica) {
     double temperature;
-    const struct observation_setup setup = {
+    const struct measurement_setup setup = {
         .targets = &problem->compared,
         .potential = potential,
-        .weight = weight,
+        .omega = omega,
         .time_step = parameters->time_step,
         .plan = parameters->plan,
         .thermodynamics = true,
         .threads = 1,
         .seed = mf_rng_child_seed(problem->seed, RNG_VERIFICATION, number, 0)};
-    TRY(mf_observation_init(replica, problem, &setup));
+    TRY(mf_measurement_init(replica, problem, &setup));
     TRY(mf_measure_equilibrate(&replica->simulation, &parameters->plan, &temperature, NULL));
     return mf_measure_sample(&replica->simulation, &parameters->plan, replica->observables, NULL);
 }
 
 /// All replicas in parallel.
 static enum status run_replicas(const struct inverse_problem *problem,
-                                const struct table *potential, const struct table *weight,
+                                const struct table *potential, const struct table *omega,
                                 const struct verify_parameters *parameters,
                                 const struct inverse_listener *listener,
-                                struct observation *replicas) {
+                                struct measurement *replicas) {
     enum status status = STATUS_OK;
     const size_t count = (size_t)parameters->replicas;
     uint64_t done = 0;
@@ -56,7 +56,7 @@ static enum status run_replicas(const struct inverse_problem *problem,
 #pragma omp parallel for schedule(dynamic) num_threads(problem->threads)
     for (size_t k = 0; k < count; k++) {
         const enum status here =
-            run_replica(problem, potential, weight, parameters, (uint32_t)k, &replicas[k]);
+            run_replica(problem, potential, omega, parameters, (uint32_t)k, &replicas[k]);
 #pragma omp critical
         {
             if (here != STATUS_OK) {
@@ -73,27 +73,27 @@ static enum status run_replicas(const struct inverse_problem *problem,
 }
 
 /// Exchange the last replica and that at `k`.
-static void exchange_with_last(struct observation *replicas, size_t count, size_t k) {
-    const struct observation last = replicas[count - 1];
+static void exchange_with_last(struct measurement *replicas, size_t count, size_t k) {
+    const struct measurement last = replicas[count - 1];
     replicas[count - 1] = replicas[k];
     replicas[k] = last;
 }
 
 /// Standard error of the distances by leaving out one replica in turn (jackknife); NaN with one.
-static enum status find_errors(struct observation *replicas, size_t count,
+static enum status find_errors(struct measurement *replicas, size_t count,
                                struct verification *verification) {
     enum status status = STATUS_OK;
     const struct targets *targets = replicas->targets;
     struct observed without = {0};
     double squares[TARGETS] = {0};
-    CHECK(mf_observation_values_init(&without, targets));
+    CHECK(mf_measurement_values_init(&without, targets));
     for (size_t k = 0; k < count && count > 1; k++) {
         struct target_distance distance[TARGETS];
         exchange_with_last(replicas, count, k);
-        status = mf_observation_result(replicas, count - 1, &without);
+        status = mf_measurement_result(replicas, count - 1, &without);
         exchange_with_last(replicas, count, k);
         CHECK(status);
-        mf_observation_distance(&without, targets, distance);
+        mf_measurement_distance(&without, targets, distance);
         for (int kind = 0; kind < TARGETS; kind++) {
             const double difference = distance[kind].rms - verification->distance[kind].rms;
             squares[kind] += difference * difference;
@@ -103,12 +103,12 @@ static enum status find_errors(struct observation *replicas, size_t count,
         verification->distance_error[kind] =
             count > 1 ? sqrt(squares[kind] * (double)(count - 1) / (double)count) : NAN;
 done:
-    mf_observation_values_clear(&without);
+    mf_measurement_values_clear(&without);
     return status;
 }
 
 /// The error of g(r)'s distance by leaving out blocks, of which there are more than replicas.
-static enum status find_rdf_error(const struct observation *replicas, size_t count,
+static enum status find_rdf_error(const struct measurement *replicas, size_t count,
                                   struct verification *verification) {
     enum status status = STATUS_OK;
     struct rdf *rdf = NULL;
@@ -127,7 +127,7 @@ done:
 }
 
 /// Results of all replicas together, in their order.
-static enum status summarise(struct observation *replicas, size_t count,
+static enum status summarise(struct measurement *replicas, size_t count,
                              struct verification *verification) {
     enum status status = STATUS_OK;
     const struct targets *targets = replicas->targets;
@@ -141,14 +141,14 @@ static enum status summarise(struct observation *replicas, size_t count,
     if (mf_thermodynamics_judge_fit(&verification->thermodynamics, &replicas->simulation.setup) !=
         STATUS_OK)
         snprintf(verification->warning, sizeof verification->warning, "%s", mf_status_message());
-    if (mf_observation_moves(targets)) {
+    if (mf_measurement_moves(targets)) {
         const struct motion_summary motion = mf_motion_result(&replicas->motion, NULL);
         verification->diffusion_begin = motion.fit_begin;
         verification->diffusion_end = motion.fit_end;
     }
-    CHECK(mf_observation_values_init(&verification->observed, targets));
-    CHECK(mf_observation_result(replicas, count, &verification->observed));
-    mf_observation_distance(&verification->observed, targets, verification->distance);
+    CHECK(mf_measurement_values_init(&verification->observed, targets));
+    CHECK(mf_measurement_result(replicas, count, &verification->observed));
+    mf_measurement_distance(&verification->observed, targets, verification->distance);
     CHECK(find_errors(replicas, count, verification));
     CHECK(find_rdf_error(replicas, count, verification));
 done:
@@ -157,23 +157,23 @@ done:
 }
 
 enum status mf_verify(const struct inverse_problem *problem, const struct table *potential,
-                      const struct table *weight, const struct verify_parameters *parameters,
+                      const struct table *omega, const struct verify_parameters *parameters,
                       const struct inverse_listener *listener, struct verification *verification) {
     enum status status = STATUS_OK;
     const size_t count = (size_t)parameters->replicas;
-    struct observation *replicas = NULL;
+    struct measurement *replicas = NULL;
     *verification = (struct verification){0};
     NEW_ARRAY(replicas, count);
-    CHECK(run_replicas(problem, potential, weight, parameters, listener, replicas));
+    CHECK(run_replicas(problem, potential, omega, parameters, listener, replicas));
     CHECK(summarise(replicas, count, verification));
 done:
     for (size_t k = 0; replicas && k < count; k++)
-        mf_observation_clear(&replicas[k]);
+        mf_measurement_clear(&replicas[k]);
     mf_memory_free(replicas);
     return status;
 }
 
 void mf_verify_clear(struct verification *verification) {
-    mf_observation_values_clear(&verification->observed);
+    mf_measurement_values_clear(&verification->observed);
     *verification = (struct verification){0};
 }

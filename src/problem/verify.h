@@ -2,7 +2,7 @@
 /// @file Verification of a result by independent replicas of a longer simulation.
 #pragma once
 
-#include "problem/observation.h"
+#include "problem/measurement.h"
 
 struct verify_parameters {
     int64_t replicas;
@@ -26,7 +26,7 @@ struct verification {
 /// Simulate the problem's scene with new seeds; replicas in parallel.
 /// Fails: as mf_simulation_run.
 enum status mf_verify(const struct inverse_problem *problem, const struct table *potential,
-                      const struct table *weight, const struct verify_parameters *parameters,
+                      const struct table *omega, const struct verify_parameters *parameters,
                       const struct inverse_listener *listener,
                       struct verification *verification) MUST_USE;
 void mf_verify_clear(struct verification *verification);

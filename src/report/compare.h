@@ -17,11 +17,11 @@
 ///   figures/compare.svg and .png
 /// The tables but the first hold one block a fit, two empty lines apart (gnuplot's `index`), with
 /// one row of nan for a fit that has no such table; one that no fit has is not written.
-/// Potentials and weights are those that were fitted. A simulation has a g(r) without a target.
-/// A fit is called after the last part of its path that is not "out", with as many parts before
-/// it as are needed to tell the fits apart; the same folder again gets a number.
-/// `out` may be the folder of a run: nothing there is replaced but an earlier comparison.
-/// Fails: BAD_INPUT, also if two units of length differ, or IO with one line that names the file. A
-/// figure that fails is a warning on stderr. Tested: test_compare.
+/// Potentials and friction weights are those that were fitted. A simulation has a g(r) without a
+/// target. A fit is called after the last part of its path that is not "out", with as many parts
+/// before it as are needed to tell the fits apart; the same folder again gets a number. `out` may
+/// be the folder of a run: nothing there is replaced but an earlier comparison. Fails: BAD_INPUT,
+/// also if two units of length differ, or IO with one line that names the file. A figure that fails
+/// is a warning on stderr. Tested: test_compare.
 enum status mf_compare_folders(const char *const *folders, size_t count, const char *out,
                                bool quiet) MUST_USE;

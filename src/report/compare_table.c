@@ -73,7 +73,7 @@ static const struct column columns[] = {
     {"rmse(MSD)", false, AT(msd_rmse), NULL, AT(msd_rmse_error)},
     {"D", false, AT(diffusion), NULL, AT(diffusion_error)},
     {"truth(phi)", false, AT(truth_rms), "%.3g", 0},
-    {"truth(omega)", false, AT(truth_error), "%.3g", 0},
+    {"truth(omega)", false, AT(omega_truth_rms), "%.3g", 0},
     {"T", false, AT(temperature), "%.3f", 0},
     {"T_conf", false, AT(temperature_configurational), "%.3f", 0},
     {"p", false, AT(pressure), "%.4g", 0},

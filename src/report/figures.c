@@ -28,7 +28,7 @@ struct figure {
     const char *name;      ///< of the script and of the figure
     const char *tables[4]; ///< that the script cannot do without; NULL-terminated
     const char *column;    ///< that the first table must have, or NULL
-    bool by_pairs;         ///< in a mixture one for each kind of pairs, by the first table
+    bool by_pairs;         ///< in a mixture one for each pair type, by the first table
 };
 
 static const struct figure figures[] = {
@@ -154,7 +154,7 @@ static enum status draw_to(const char *folder, const char *plots, const char *na
     return mf_status_prefix(status, "no figure %s/%s", path, drawn);
 }
 
-/// Draw a figure, of the kind of pairs `pair`, as "_A-B", or of all.
+/// Draw a figure, of the pair type `pair`, as "_A-B", or of all.
 static enum status draw(const char *folder, const char *plots, const char *name, const char *pair) {
     char drawn[128];
     if (setenv("MESOFIT_PAIR", pair, 1) != 0)
@@ -181,11 +181,11 @@ static bool take_pair(const char *name, const char *table, char pair[PAIR_SIZE])
     return mf_composition_is_name(first) && mf_composition_is_name(second);
 }
 
-/// Draw a figure from a table of one kind of pairs, like rdf_A-B.tsv, if `name` is one.
+/// Draw a figure from a table of one pair type, like rdf_A-B.tsv, if `name` is one.
 static enum status draw_pair(const char *folder, const char *plots, const struct figure *figure,
                              const char *name, size_t *count) {
     char path[PATH_SIZE], pair[PAIR_SIZE];
-    // What follows the name of a kind of pairs, as "_history", makes another table.
+    // What follows the name of a pair type, as "_history", makes another table.
     if (!take_pair(name, figure->tables[0], pair) || strstr(name, "_history.tsv") ||
         strstr(name, "_flat.tsv"))
         return STATUS_OK;
@@ -196,7 +196,7 @@ static enum status draw_pair(const char *folder, const char *plots, const struct
     return draw(folder, plots, figure->name, pair);
 }
 
-/// Draw a figure for each kind of pairs, and count them; the first failure.
+/// Draw a figure for each pair type, and count them; the first failure.
 static enum status draw_pairs(const char *folder, const char *plots, const struct figure *figure,
                               size_t *count) {
     struct dirent **entries;

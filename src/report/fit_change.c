@@ -6,7 +6,7 @@
 /// Whether the target has enough pairs at a point to tell of the curve there.
 static bool is_determined(const struct decoder *decoder, enum unknown_kind kind, size_t point) {
     const struct potential_grid *grid = &decoder->potential;
-    if (kind == UNKNOWN_WEIGHT)
+    if (kind == UNKNOWN_OMEGA)
         return mf_decoder_fits(decoder, kind, point);
     for (size_t n = 0; n < grid->known; n++)
         if (grid->known_point[n] == point)

@@ -27,7 +27,7 @@ static void curve_file(const struct decoder *decoder, enum unknown_kind kind, si
     mf_run_folder_file(folder, file, path);
 }
 
-/// Of one kind of pairs, from the table of all.
+/// Of one pair type, from the table of all.
 static enum status write_potential(const struct fit_file *fit, const struct decoder *decoder,
                                    const struct fit_result *result, const struct table *table,
                                    size_t pair, const struct run_folder *folder) {
@@ -94,16 +94,16 @@ done:
 
 static enum status write_omega(const struct fit_file *fit, const struct decoder *decoder,
                                const struct fit_result *result, const struct run_folder *folder) {
-    const bool truth_known = fit->unknown[UNKNOWN_WEIGHT].truth.curves > 0;
+    const bool truth_known = fit->unknown[UNKNOWN_OMEGA].truth.curves > 0;
     const struct units *units = &fit->scene.units;
     enum status status = STATUS_NO_MEMORY;
-    double *truth = truth_at(fit, UNKNOWN_WEIGHT, 0, decoder->weight.r, WEIGHT_POINTS);
-    double *nanometres = mf_units_column(decoder->weight.r, WEIGHT_POINTS, units->length);
+    double *truth = truth_at(fit, UNKNOWN_OMEGA, 0, decoder->omega.r, OMEGA_POINTS);
+    double *nanometres = mf_units_column(decoder->omega.r, OMEGA_POINTS, units->length);
     char path[OUTPUT_PATH_SIZE];
     struct data_column columns[5] = {
-        {"r[lambda]", decoder->weight.r, "%.17g"},
-        {"omega[sqrt(mu/tau)]", result->curve[UNKNOWN_WEIGHT], "%.17g"},
-        {"omega_error[sqrt(mu/tau)]", result->curve_error[UNKNOWN_WEIGHT], "%.3g"}};
+        {"r[lambda]", decoder->omega.r, "%.17g"},
+        {"omega[sqrt(mu/tau)]", result->curve[UNKNOWN_OMEGA], "%.17g"},
+        {"omega_error[sqrt(mu/tau)]", result->curve_error[UNKNOWN_OMEGA], "%.3g"}};
     size_t count = 3;
     if (truth_known)
         columns[count++] = (struct data_column){"truth[sqrt(mu/tau)]", truth, "%.8g"};
@@ -111,7 +111,7 @@ static enum status write_omega(const struct fit_file *fit, const struct decoder 
         columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
     mf_run_folder_file(folder, "omega.tsv", path);
     if (truth && nanometres)
-        status = mf_data_table_write(path, NULL, columns, count, WEIGHT_POINTS);
+        status = mf_data_table_write(path, NULL, columns, count, OMEGA_POINTS);
     mf_memory_free(truth);
     mf_memory_free(nanometres);
     return status;
@@ -148,10 +148,10 @@ enum status mf_fit_output_curves(const struct fit_file *fit, const struct decode
             TRY(write_flat(kind, n, decoder, result, folder));
     if (result->curve[UNKNOWN_POTENTIAL])
         TRY(write_potentials(fit, decoder, result, folder));
-    return result->curve[UNKNOWN_WEIGHT] ? write_omega(fit, decoder, result, folder) : STATUS_OK;
+    return result->curve[UNKNOWN_OMEGA] ? write_omega(fit, decoder, result, folder) : STATUS_OK;
 }
 
-/// g(r) of a kind of pairs: rdf.tsv, or rdf_A-B.tsv in a mixture.
+/// g(r) of a pair type: rdf.tsv, or rdf_A-B.tsv in a mixture.
 static enum status write_rdf(const struct fit_file *fit, const struct observed *observed,
                              size_t pair, const struct run_folder *folder) {
     enum status status = STATUS_OK;

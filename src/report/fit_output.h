@@ -38,7 +38,7 @@ enum status mf_fit_output_summary(const struct fit_file *fit, const struct decod
                                   const struct fit_result *result,
                                   const struct run_folder *folder) MUST_USE;
 
-/// How far the fitted potential of a kind of pairs is from the known true one, over the bins with a
+/// How far the fitted potential of a pair type is from the known true one, over the bins with a
 /// target above 0.1.
 struct fit_truth {
     double rms;              ///< of Φ − Φ_true [k_B T_0]

@@ -6,13 +6,13 @@
 
 #include <math.h>
 
-/// "weight: sigma = 6.00(4) (at its maximum), exponent = 1 (fixed), inner_cutoff = 0.02(1)".
+/// "omega: sigma = 6.00(4) (at its maximum), exponent = 1 (fixed), inner_cutoff = 0.02(1)".
 static void say_parameters(struct progress *to, const struct fit_file *fit,
                            const struct inverse_parameter *parameter) {
-    const struct unknown_parameters *p = &fit->unknown[UNKNOWN_WEIGHT].parameters;
+    const struct unknown_parameters *p = &fit->unknown[UNKNOWN_OMEGA].parameters;
     char line[256];
-    int length = snprintf(line, sizeof line, "%s:", mf_inverse_unknown_names[UNKNOWN_WEIGHT]);
-    if (!fit->unknown[UNKNOWN_WEIGHT].wanted || p->shape != INVERSE_CURVE_POWER)
+    int length = snprintf(line, sizeof line, "%s:", mf_inverse_unknown_names[UNKNOWN_OMEGA]);
+    if (!fit->unknown[UNKNOWN_OMEGA].wanted || p->shape != INVERSE_CURVE_POWER)
         return;
     for (int k = 0; k < INVERSE_PARAMETERS; k++) {
         char text[NUMBER_TEXT_SIZE];

@@ -34,14 +34,14 @@ struct fit_truth mf_fit_output_truth(const struct fit_file *fit, const struct de
 }
 
 /// rms of ω − ω_true over the points that the data can see, relative to the largest ω_true.
-static double weight_truth(const struct fit_file *fit, const struct decoder *decoder,
-                           const double *omega) {
+static double omega_truth(const struct fit_file *fit, const struct decoder *decoder,
+                          const double *omega) {
     double squares = 0, largest = 0, count = 0;
-    // Between the cutoffs, at which a weight may end in a step.
-    for (size_t k = 1; k + 1 < WEIGHT_POINTS; k++) {
-        const double r = decoder->weight.r[k];
+    // Between the cutoffs, at which a friction weight may end in a step.
+    for (size_t k = 1; k + 1 < OMEGA_POINTS; k++) {
+        const double r = decoder->omega.r[k];
         const double truth =
-            mf_curve_value(mf_scene_law_curve(&fit->unknown[UNKNOWN_WEIGHT].truth, 0), r);
+            mf_curve_value(mf_scene_law_curve(&fit->unknown[UNKNOWN_OMEGA].truth, 0), r);
         largest = fmax(largest, truth);
         // Closer pairs than the target follows do not exist.
         if (fit->files.given[TARGET_ETD] && r < fit->files.etd.grid.r_minimum)
@@ -130,15 +130,15 @@ static void put_ramp(struct json_writer *writer, const struct inverse_ramp *ramp
     put_known(writer, "directions_of", ramp->bins);
 }
 
-/// "parameters": {"weight": {"sigma": {"value": 3.0, "error": 0.1}, …}} of a weight that is a
-/// formula.
+/// "parameters": {"omega": {"sigma": {"value": 3.0, "error": 0.1}, …}} of a friction weight that
+/// is a formula.
 static void put_parameters(struct json_writer *writer, const struct fit_file *fit,
                            const struct inverse_parameter *parameter) {
-    const struct unknown_parameters *p = &fit->unknown[UNKNOWN_WEIGHT].parameters;
-    if (!fit->unknown[UNKNOWN_WEIGHT].wanted || p->shape != INVERSE_CURVE_POWER)
+    const struct unknown_parameters *p = &fit->unknown[UNKNOWN_OMEGA].parameters;
+    if (!fit->unknown[UNKNOWN_OMEGA].wanted || p->shape != INVERSE_CURVE_POWER)
         return;
     mf_json_begin(writer, "parameters");
-    mf_json_begin(writer, mf_inverse_unknown_names[UNKNOWN_WEIGHT]);
+    mf_json_begin(writer, mf_inverse_unknown_names[UNKNOWN_OMEGA]);
     for (int k = 0; k < INVERSE_PARAMETERS; k++) {
         const char *bound = mf_decoder_parameter_bound(p, k, parameter[k].value);
         mf_json_begin(writer, mf_inverse_fixed_fields[k].name);
@@ -196,12 +196,12 @@ static void put_potential_truth(struct json_writer *writer, const struct fit_fil
 
 static void put_truth(struct json_writer *writer, const struct fit_file *fit,
                       const struct decoder *decoder, const struct fit_result *result) {
-    const double *phi = result->curve[UNKNOWN_POTENTIAL], *omega = result->curve[UNKNOWN_WEIGHT];
+    const double *phi = result->curve[UNKNOWN_POTENTIAL], *omega = result->curve[UNKNOWN_OMEGA];
     for (size_t pair = 0; phi && pair < decoder->potential.pairs; pair++)
         if (mf_scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair))
             put_potential_truth(writer, fit, decoder, phi, pair);
-    if (omega && fit->unknown[UNKNOWN_WEIGHT].truth.curves > 0)
-        put_known(writer, "truth_error", weight_truth(fit, decoder, omega));
+    if (omega && fit->unknown[UNKNOWN_OMEGA].truth.curves > 0)
+        put_known(writer, "omega_truth_rms", omega_truth(fit, decoder, omega));
 }
 
 /// What the targets g(r) were divided by. In a mixture those that the file states are left out.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file The iterations of a fit: history.tsv, timing.tsv, and potential_history.tsv or
-/// weight_history.tsv.
+/// omega_history.tsv.
 ///
 /// The seconds stand in a file of their own, since everything in history.tsv is the same bits for
 /// any number of threads and any restart.

@@ -52,7 +52,7 @@ const struct field mf_result_summary_fields[] = {
     NUMBER(truth_rms, "k_BT_0"),
     NUMBER(truth_ramp, "k_BT_0"),
     NUMBER(truth_rms_without_ramp, "k_BT_0"),
-    NUMBER(truth_error, "1"),
+    NUMBER(omega_truth_rms, "1"),
     MEAN(temperature, "T_0"),
     MEAN(temperature_configurational, "T_0"),
     MEAN(potential_energy, "k_BT_0"),
@@ -118,6 +118,21 @@ static void read_simulated_diffusion(struct json_object *root, struct result_sum
     mf_json_fields(&motion, fields, summary);
 }
 
+/// Version 0.1.0 called it otherwise.
+static void read_old_truth(struct json_object *root, struct result_summary *summary) {
+    static const struct field fields[] = {
+        {.name = "truth_error",
+         .type = FIELD_NUMBER,
+         .offset = offsetof(struct result_summary, omega_truth_rms),
+         .initial = NAN,
+         .minimum = -DBL_MAX,
+         .maximum = DBL_MAX,
+         .unit = ""},
+        FIELD_END};
+    if (mf_json_has(root, fields[0].name))
+        mf_json_fields(root, fields, summary);
+}
+
 /// λ stands in an object of its own, if it is known.
 static void read_length_unit(struct json_object *root, struct result_summary *summary) {
     static const struct field fields[] = {NUMBER(length_unit_nm, "nm"), FIELD_END};
@@ -132,6 +147,7 @@ static enum status read_summary(struct result_summary *summary, const char *file
     struct json_object root = mf_json_root(document);
     mf_json_fields(&root, mf_result_summary_fields, summary);
     read_length_unit(&root, summary);
+    read_old_truth(&root, summary);
     if (is_simulation(summary))
         read_simulated_diffusion(&root, summary);
     else if (root.item && !has_distance(&root))
@@ -247,7 +263,7 @@ static enum status read_potential(struct result_table *table, const char *folder
                                              : STATUS_OK;
 }
 
-/// A weight without a column of errors was not fitted.
+/// A friction weight without a column of errors was not fitted.
 static enum status read_omega(struct result_table *table, const char *folder) {
     struct wish wishes[] = {{NULL, 1}, {NULL, 2}, {"omega_error", 0}, {"truth", 0}};
     if (!is_there(folder, "omega.tsv"))

@@ -19,7 +19,7 @@ struct result_summary {
     double pressure_rmse, pressure_rmse_error, pressure_noise;
     double diffusion, diffusion_error, diffusion_cm2_per_s, diffusion_error_cm2_per_s;
     double truth_rms, truth_ramp, truth_rms_without_ramp; ///< of a potential
-    double truth_error;                                   ///< of a weight
+    double omega_truth_rms;                               ///< of a friction weight
     double temperature, temperature_error;
     double temperature_configurational, temperature_configurational_error;
     double potential_energy, potential_energy_error;

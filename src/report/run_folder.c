@@ -16,7 +16,7 @@
 /// Room for the name of any file behind the path of the folder.
 enum { NAME_ROOM = 320, LONGEST_FOLDER = OUTPUT_PATH_SIZE - NAME_ROOM };
 
-/// What a run writes beside used.json; with * the tables about the kinds of pairs of a mixture.
+/// What a run writes beside used.json; with * the tables about the pair types of a mixture.
 static const char *const results[] = {
     "summary.json",
     "history.tsv",
@@ -27,8 +27,8 @@ static const char *const results[] = {
     "potential_flat.tsv",
     "potential.pot",
     "potential_*-*.pot",
-    "weight_flat.tsv",
-    "weight_history.tsv",
+    "omega_flat.tsv",
+    "omega_history.tsv",
     "omega.tsv",
     "rdf.tsv",
     "rdf_*-*.tsv",
@@ -42,7 +42,7 @@ static const char *const results[] = {
     "msd.tsv",
     "pareto.tsv",
     "pareto_history.tsv",
-    "pareto_weight.tsv",
+    "pareto_omega.tsv",
     "pareto_potential.tsv",
     "force_covariance.tsv",
     "pareto_potential_*-*.tsv",

@@ -2,7 +2,7 @@
 /// @file Types of beads in a mixture, and the kinds of their pairs.
 ///
 /// Ids 0 … n_A − 1 are beads of the first type, the next n_B of the second, and so on: the type
-/// follows from the id, is never saved, and survives every sort. The T (T + 1)/2 kinds of pairs are
+/// follows from the id, is never saved, and survives every sort. The T (T + 1)/2 pair types are
 /// numbered A-A, A-B, …, B-B, B-C, …
 #pragma once
 
@@ -45,10 +45,10 @@ static inline bool composition_is_mixed(const struct composition *composition) {
     return composition->types > 1;
 }
 
-/// Number of kinds of pairs: T (T + 1)/2, at least 1.
+/// Number of pair types: T (T + 1)/2, at least 1.
 int mf_composition_pairs(const struct composition *composition);
 
-/// Number of the kind of pairs of types a and b, in either order.
+/// Number of the pair type of types a and b, in either order.
 int mf_composition_pair(const struct composition *composition, int a, int b);
 
 /// The same of two beads.
@@ -57,17 +57,17 @@ int mf_composition_pair_of_ids(const struct composition *composition, uint32_t i
 /// Type of a bead.
 int mf_composition_type(const struct composition *composition, uint32_t id);
 
-/// The types of a kind of pairs, type[0] ≤ type[1].
+/// The types of a pair type, type[0] ≤ type[1].
 void mf_composition_pair_types(const struct composition *composition, int pair, int type[2]);
 
 /// How many pairs of a kind there are: N_a (N_a − 1)/2 alike, N_a N_b unlike.
 double mf_composition_possible_pairs(const struct composition *composition, int pair);
 
-/// Print the name of a kind of pairs, "A-B", or nothing for beads without names.
+/// Print the name of a pair type, "A-B", or nothing for beads without names.
 void mf_composition_pair_name(const struct composition *composition, int pair,
                               char text[COMPOSITION_PAIR_NAME_SIZE]);
 
-/// The kind of pairs called "A-B" or "B-A", or −1.
+/// The pair type called "A-B" or "B-A", or −1.
 int mf_composition_find_pair(const struct composition *composition, const char *name);
 
 /// Whether a type can be called so: letters, digits and _, not too many.

@@ -4,7 +4,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/simd.h"
-#include "close.h"
+#include "pair_search.h"
 #include "neighbours_rows.h"
 
 #include <stdlib.h>
@@ -104,10 +104,10 @@ static bool owns_pairs(const struct neighbours *neighbours, int plane, int other
     return other != plane && (other - plane + n) % n <= reach;
 }
 
-static void add_row(struct close_rows *rows, const struct neighbours *neighbours,
+static void add_row(struct pair_search_rows *rows, const struct neighbours *neighbours,
                     const struct box *box, struct nearby x, struct nearby y, int depth) {
     const size_t number = (size_t)x.cell * (size_t)neighbours->cells[1] + (size_t)y.cell;
-    rows->row[rows->count++] = (struct close_row){
+    rows->row[rows->count++] = (struct pair_search_row){
         .start = neighbours->rows.start + number * (neighbours->rows.cells + 1) +
                  neighbours->rows.margin,
         .depth = depth,
@@ -117,7 +117,7 @@ static void add_row(struct close_rows *rows, const struct neighbours *neighbours
 
 /// The rows that are searched for the neighbours of row a, b.
 static void find_rows(const struct neighbours *neighbours, const struct box *box, int a, int b,
-                      struct close_rows *rows) {
+                      struct pair_search_rows *rows) {
     const int *n = neighbours->cells;
     const bool half = neighbours->kind == NEIGHBOURS_HALF;
     struct nearby x[WIDEST], y[WIDEST];
@@ -148,23 +148,23 @@ static void find_rows(const struct neighbours *neighbours, const struct box *box
 /// Append the neighbours of a row of cells.
 /// @return the new length of the list, or SIZE_MAX if it is too short
 static size_t search_row(struct neighbours *neighbours, const struct particles *particles,
-                         const struct close_rows *rows, size_t used, size_t limit) {
+                         const struct pair_search_rows *rows, size_t used, size_t limit) {
     switch (mf_simd_used()) {
 #if SIMD_X86
     case SIMD_AVX512:
-        return mf_close_avx512(neighbours, particles, rows, used, limit);
+        return mf_pair_search_avx512(neighbours, particles, rows, used, limit);
     case SIMD_AVX2:
-        return mf_close_avx2(neighbours, particles, rows, used, limit);
+        return mf_pair_search_avx2(neighbours, particles, rows, used, limit);
 #endif
     default:
-        return mf_close_portable(neighbours, particles, rows, used, limit);
+        return mf_pair_search_portable(neighbours, particles, rows, used, limit);
     }
 }
 
 /// Build the list of one part; its end becomes SIZE_MAX if the list is too short.
 static void build_part(struct neighbours *neighbours, const struct particles *particles,
                        struct neighbours_part *part, size_t limit) {
-    struct close_rows rows;
+    struct pair_search_rows rows;
     size_t used = part->begin;
     for (int a = part->first_plane; a < part->last_plane && used != SIZE_MAX; a++)
         for (int b = 0; b < neighbours->cells[1] && used != SIZE_MAX; b++) {

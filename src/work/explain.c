@@ -90,18 +90,19 @@ static void add_forces(struct plan *plan, const struct simulation_setup *setup,
             "a potential with cutoff %.3g", cutoff);
     else
         add(plan, "conservative force", false, 0, "no potential");
-    const bool dissipative = setup->weight != NULL;
-    const double reach = dissipative ? setup->weight->cutoff : 0;
+    const bool dissipative = setup->omega != NULL;
+    const double reach = dissipative ? setup->omega->cutoff : 0;
     const double near_pairs = pairs_within(setup, fmin(reach, cutoff));
     if (dissipative && setup->integrator->friction)
         add(plan, "friction and noise", true, cost.kept * near_pairs,
-            "a weight with cutoff %.3g; its pairs are kept for %s", reach, setup->integrator->name);
+            "a friction weight with cutoff %.3g; its pairs are kept for %s", reach,
+            setup->integrator->name);
     else if (dissipative)
         add(plan, "friction and noise", true, cost.dissipative * near_pairs,
-            "a weight with cutoff %.3g; farther pairs skip it", reach);
+            "a friction weight with cutoff %.3g; farther pairs skip it", reach);
     else
         add(plan, "friction and noise", false, 0,
-            "no weight: no velocities are read, no random numbers drawn");
+            "no friction: no velocities are read, no random numbers drawn");
 }
 
 static void add_samples(struct plan *plan, const struct simulation_setup *setup,

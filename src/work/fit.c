@@ -351,7 +351,7 @@ static void doubt(struct run *run, const struct verification *verification) {
 /// The independent verification of the result, and everything that rests on it.
 static enum status verify_and_write(struct run *run) {
     struct decoder_laws laws = {
-        .table = {run->fit.problem.scene.potential, run->fit.problem.scene.weight}};
+        .table = {run->fit.problem.scene.potential, run->fit.problem.scene.omega}};
     struct verification verification = {0};
     struct progress progress = mf_progress_begin(run->progress.quiet);
     const struct inverse_listener listener = {tell_verification, &progress};
@@ -362,7 +362,7 @@ static enum status verify_and_write(struct run *run) {
         CHECK(mf_decoder_table(&run->decoder, kind, run->curve[kind], &laws.own[kind]));
         laws.table[kind] = &laws.own[kind];
     }
-    status = mf_verify(&run->fit.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_WEIGHT],
+    status = mf_verify(&run->fit.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_OMEGA],
                        &run->fit.verification, &listener, &verification);
     if (status == STATUS_UNSTABLE)
         status = write_unstable(run);

@@ -15,9 +15,9 @@ struct measured {
 
 static struct measured measured_of(const struct targets *targets,
                                    const struct simulation_setup *setup, int64_t every) {
-    const struct pair_law law = {.potential = setup->potential, .weight = setup->weight};
+    const struct pair_law law = {.potential = setup->potential, .omega = setup->omega};
     struct measured measured;
-    mf_observation_plans(targets, setup->time_step, &measured.etd, &measured.motion);
+    mf_measurement_plans(targets, setup->time_step, &measured.etd, &measured.motion);
     measured.explain = (struct explain_measured){
         .has_potential = setup->potential != NULL,
         .cutoff = mf_pair_cutoff(&law),
@@ -32,7 +32,7 @@ static void print_simulation(const struct measured *measured, const struct targe
     struct explain_measured explain = measured->explain;
     explain.etd_plan = &measured->etd;
     explain.etd_grid = targets_ask(targets, TARGET_ETD) ? &targets->etd : NULL;
-    explain.motion = mf_observation_moves(targets) ? &measured->motion : NULL;
+    explain.motion = mf_measurement_moves(targets) ? &measured->motion : NULL;
     mf_explain_scene(stdout, setup, &explain);
 }
 
@@ -42,7 +42,7 @@ static void print_simulations(const struct fit_file *fit, const struct decoder_l
     const struct inverse_sampling sampling = fit->method->sampling(fit->method_parameters);
     struct simulation_setup setup = problem->scene;
     setup.potential = laws->table[UNKNOWN_POTENTIAL];
-    setup.weight = laws->table[UNKNOWN_WEIGHT];
+    setup.omega = laws->table[UNKNOWN_OMEGA];
     if (sampling.every > 0) {
         struct measured measured = measured_of(&problem->targets, &setup, sampling.every);
         measured.explain.rdf_force = measured.explain.rdf_force_alone =
@@ -86,23 +86,23 @@ enum status mf_fit_explain(const char *file, const struct run_options *options) 
     struct fit_file fit;
     struct decoder decoder = {0};
     struct decoder_laws laws = {0};
-    double *genes = NULL;
+    double *variables = NULL;
     CHECK(mf_fit_file_read(&fit, file, options));
     CHECK(mf_target_files_normalise(&fit.files, &fit.scene.setup.box));
     status = mf_decoder_init(&decoder, &fit.problem);
     if (status == STATUS_OK)
         status = try_method(&fit);
     CHECK(status != STATUS_OK ? mf_status_prefix(status, "%s", file) : STATUS_OK);
-    NEW_ARRAY(genes, decoder.genes);
-    CHECK(mf_decoder_start(&decoder, genes));
-    CHECK(mf_decoder_laws(&decoder, genes, &laws));
+    NEW_ARRAY(variables, decoder.variables);
+    CHECK(mf_decoder_start(&decoder, variables));
+    CHECK(mf_decoder_laws(&decoder, variables, &laws));
     CHECK(mf_target_sanity_tell(&fit.files, &fit.scene,
                                 &(struct target_sanity_listener){print_line, stdout}));
     print_simulations(&fit, &laws);
 done:
     mf_decoder_laws_clear(&laws);
     mf_decoder_clear(&decoder);
-    mf_memory_free(genes);
+    mf_memory_free(variables);
     mf_fit_file_clear(&fit);
     return status;
 }

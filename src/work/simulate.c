@@ -68,7 +68,7 @@ static int find_threads(const struct simulation_setup *setup, int wanted) {
 /// g(r) ends with the forces, unless the file says where.
 static enum status check_range(const struct run *run, const char *file) {
     const struct simulation_setup *setup = &run->scene.setup;
-    const struct pair_law law = {.potential = setup->potential, .weight = setup->weight};
+    const struct pair_law law = {.potential = setup->potential, .omega = setup->omega};
     if (mf_pair_cutoff(&law) > 0 || run->rdf_parameters.range > 0)
         return STATUS_OK;
     return mf_status_fail(

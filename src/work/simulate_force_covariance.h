@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file "force_covariance" of a scene file: the dissipative weight as the forces show it.
+/// @file "force_covariance" of a scene file: the friction weight as the forces show it.
 #pragma once
 
 #include "io/json.h"

@@ -145,7 +145,7 @@ static const struct fault run_faults[] = {
     TARGET("no rows", "# r g error\n", "target.tsv", "without a row"),
     FAULT("small box for the target", "[3, 3, 3]", "[3, 3, 1.99]", "input.json", "scene.box",
           "1.99", "range of the target"),
-    FAULT("small box for the weight", DISSIPATIVE, "{\"law\": \"power\", \"cutoff\": 1.6}",
+    FAULT("small box for the friction weight", DISSIPATIVE, "{\"law\": \"power\", \"cutoff\": 1.6}",
           "input.json", "box", "1.6"),
     FAULT("unknown method", "\"imc\"", "\"imcc\"", "method.name", "did you mean \"imc\"?"),
     FAULT("a key of another method", "\"samples\": 8", "\"generations\": 8",

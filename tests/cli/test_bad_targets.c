@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Fits of a weight that cannot be right: exit code 2, one line with the file and the key, found
-// when the run file is read. And what is unusual but right.
+// Fits of a friction weight that cannot be right: exit code 2, one line with the file and the key,
+// found when the run file is read. And what is unusual but right.
 #include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
@@ -17,7 +17,7 @@ static const char escape_with_holes[] = "# t E E E\n0 1 1 1\n0.04 nan 0.9 0.7\n0
                                         "0.12 0.9 0.75 nan\n0.16 0.88 0.7 0.45\n";
 
 #define ETD "\"etd\": {\"file\": \"etd.tsv\", \"r_minimum\": 0.4, \"r_maximum\": 0.9}"
-#define WEIGHT "\"weight\": {\"genes\": 4, \"maximum\": 6}"
+#define OMEGA "\"omega\": {\"coefficients\": 4, \"maximum\": 6}"
 #define POTENTIAL "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25}"
 #define STEP "\"time_step\": 0.02"
 #define GENETIC "\"name\": \"genetic\", \"population\": 4, \"generations\": 1"
@@ -25,7 +25,7 @@ static const char escape_with_holes[] = "# t E E E\n0 1 1 1\n0.04 nan 0.9 0.7\n0
 #define CHECK_PLAN "\"samples\": 3, \"every\": 5"
 
 static const char good[] =
-    "{\"seed\": 3, \"target\": {" ETD "}, \"unknowns\": {" WEIGHT "},\n"
+    "{\"seed\": 3, \"target\": {" ETD "}, \"unknowns\": {" OMEGA "},\n"
     "\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, " STEP ", " POTENTIAL "},\n"
     "\"method\": {" GENETIC ", \"equilibration\": 10, " FIT_PLAN
     ", \"temperature_tolerance\": 0.9},\n"
@@ -56,26 +56,32 @@ static const struct fault faults[] = {
           CHECK_PLAN ", \"time_step\": 0.01", "verification.samples: 3", "looks at 16; 4 would do"),
     FAULT("a window of motion", ETD, "\"diffusion\": {\"value\": 0.2}", "method.samples",
           "\"diffusion\" looks at"),
-    FAULT("a cutoff longer than half the cell", "\"genes\": 4", "\"genes\": 4, \"cutoff\": 1.6",
-          "scene", "box", "1.6"),
-    FAULT("a cutoff below the inner one", "\"genes\": 4",
-          "\"genes\": 4, \"cutoff\": 0.5, \"inner_cutoff\": 0.6", "unknowns.weight.cutoff", "0.6"),
-    FAULT("genes without a range", "\"maximum\": 6", "\"maximum\": 0", "unknowns.weight.maximum"),
-    FAULT("no unknown", WEIGHT, "", "unknowns", "needs \"potential\", \"weight\" or both"),
-    FAULT("another unknown", WEIGHT, WEIGHT ", \"mass\": {}", "unknowns.mass", "unknown key"),
-    FAULT("a potential that is known and unknown", WEIGHT, WEIGHT ", \"potential\": {}",
+    FAULT("a cutoff longer than half the cell", "\"coefficients\": 4",
+          "\"coefficients\": 4, \"cutoff\": 1.6", "scene", "box", "1.6"),
+    FAULT("a cutoff below the inner one", "\"coefficients\": 4",
+          "\"coefficients\": 4, \"cutoff\": 0.5, \"inner_cutoff\": 0.6", "unknowns.omega.cutoff",
+          "0.6"),
+    FAULT("variables without a range", "\"maximum\": 6", "\"maximum\": 0",
+          "unknowns.omega.maximum"),
+    FAULT("a key of 0.1", "\"coefficients\": 4", "\"genes\": 4", "unknowns.omega.genes",
+          "is called \"coefficients\" now"),
+    FAULT("an unknown of 0.1", OMEGA, OMEGA ", \"weight\": {}", "unknowns.weight",
+          "is called \"omega\" now"),
+    FAULT("no unknown", OMEGA, "", "unknowns", "needs \"potential\", \"omega\" or both"),
+    FAULT("another unknown", OMEGA, OMEGA ", \"mass\": {}", "unknowns.mass", "unknown key"),
+    FAULT("a potential that is known and unknown", OMEGA, OMEGA ", \"potential\": {}",
           "scene.conservative", "unknown key"),
     FAULT("no potential", ", " POTENTIAL, "", "scene.conservative", "missing"),
-    FAULT("a weight that is known and unknown", POTENTIAL,
+    FAULT("a friction weight that is known and unknown", POTENTIAL,
           POTENTIAL ", \"dissipative\": {\"law\": \"power\"}", "scene.dissipative", "unknown key"),
     FAULT("a potential without its g(r)",
-          WEIGHT "},\n\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, " STEP
-                 ", " POTENTIAL,
+          OMEGA "},\n\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, " STEP
+                ", " POTENTIAL,
           "\"potential\": {}},\n\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, "
           "" STEP,
           "target.rdf is required"),
     FAULT("a potential whose g(r) is not fitted",
-          ETD "}, \"unknowns\": {" WEIGHT "},\n\"scene\": {\"box\": [3, 3, 3], \"particles\": "
+          ETD "}, \"unknowns\": {" OMEGA "},\n\"scene\": {\"box\": [3, 3, 3], \"particles\": "
               "{\"count\": 81}, " STEP ", " POTENTIAL,
           ETD ", \"rdf\": {\"file\": \"target.tsv\", \"fitted\": \"no\"}}, \"unknowns\": "
               "{\"potential\": {}},\n\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": "
@@ -84,9 +90,9 @@ static const struct fault faults[] = {
     FAULT("nothing to be fitted", "\"etd\": {", "\"etd\": {\"fitted\": \"no\", ",
           "target: nothing is to be fitted"),
     FAULT("no target", ETD, "", "target: nothing is to be fitted"),
-    FAULT("IMC of a weight",
+    FAULT("IMC of a friction weight",
           GENETIC ", \"equilibration\": 10, " FIT_PLAN ", \"temperature_tolerance\": 0.9",
-          "\"name\": \"imc\"", "method.name", "\"imc\" does not find a weight"),
+          "\"name\": \"imc\"", "method.name", "\"imc\" does not find omega"),
     FAULT("an algorithm that NLopt does not know", GENETIC,
           "\"name\": \"nlopt\", \"algorithm\": \"LN_FOO\"", "method.algorithm", "LN_SBPLX",
           "GN_ESCH"),
@@ -151,13 +157,13 @@ static void test_fit_of_a_weight_refuses_more_genes_than_a_round_can_hold(void *
     small_inputs_write(*state, "etd.tsv", escape, NULL, NULL);
     small_inputs_write(*state, "run.json", good, GENETIC, "\"name\": \"gauss-newton\"");
     text = temporary_folder_read("run.json");
-    small_inputs_write(*state, "run.json", text, "\"genes\": 4", "\"genes\": 340");
+    small_inputs_write(*state, "run.json", text, "\"coefficients\": 4", "\"coefficients\": 340");
     free(text);
     RUN_PROGRAM(&result, "fit", "run.json");
     const char *const words[] = {"run.json: method.name", "1030", "1024", NULL};
-    run_program_assert_refused(&result, ".", "too many genes", 1, words);
+    run_program_assert_refused(&result, ".", "too many variables", 1, words);
     RUN_PROGRAM(&result, "fit", "run.json", "--explain");
-    run_program_assert_refused(&result, ".", "too many genes, explained", 1, words);
+    run_program_assert_refused(&result, ".", "too many variables, explained", 1, words);
 }
 
 /// The fit is told once, and the number is in the summary.
@@ -182,8 +188,8 @@ static void test_fit_of_a_weight_tells_how_many_cells_are_left_out(void **state)
     check_left_out(*state, escape_with_holes, 3);
 }
 
-/// One replica has no error, a table of no use no distance, and a weight that ends before the first
-/// bin no truth: the rest of the summary is written.
+/// One replica has no error, a table of no use no distance, and a friction weight that ends before
+/// the first bin no truth: the rest of the summary is written.
 static void test_fit_of_a_weight_leaves_out_what_it_does_not_know(void **state) {
     static struct run_program_result result;
     char *text;
@@ -198,7 +204,7 @@ static void test_fit_of_a_weight_leaves_out_what_it_does_not_know(void **state) 
     results_number("out/summary.json", "etd_rmse");
     text = temporary_folder_read("out/summary.json");
     assert_null(strstr(text, "etd_rmse_error"));
-    assert_null(strstr(text, "truth_error"));
+    assert_null(strstr(text, "omega_truth_rms"));
     free(text);
 }
 
@@ -225,8 +231,9 @@ static void test_fit_refuses_to_resume_when_the_curve_to_begin_with_is_another(v
     static struct run_program_result result;
     small_inputs_write(*state, "etd.tsv", escape, NULL, NULL);
     small_inputs_write(*state, "start.tsv", "0 3\n0.5 2\n1 0\n", NULL, NULL);
-    small_inputs_write(*state, "run.json", good, "\"genes\": 4",
-                       "\"genes\": 4, \"start\": {\"law\": \"table\", \"file\": \"start.tsv\"}");
+    small_inputs_write(
+        *state, "run.json", good, "\"coefficients\": 4",
+        "\"coefficients\": 4, \"start\": {\"law\": \"table\", \"file\": \"start.tsv\"}");
     RUN_PROGRAM(&result, "fit", "run.json", "--quiet");
     run_program_assert_code(&result, 0);
     RUN_PROGRAM(&result, "fit", "run.json", "--resume", "--quiet");

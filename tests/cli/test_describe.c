@@ -17,9 +17,9 @@ static const struct {
     {"fit", "{\"x\": 1}", "run"},
     {"fit", "{\"target\": {\"x\": 1}}", "target"},
     {"fit", "{\"unknowns\": {\"x\": 1}}", "unknowns"},
-    {"fit", "{\"unknowns\": {\"weight\": {\"x\": 1}}}", "weight"},
+    {"fit", "{\"unknowns\": {\"omega\": {\"x\": 1}}}", "omega"},
     {"fit", "{\"unknowns\": {\"potential\": {\"x\": 1}}}", "potential"},
-    {"fit", "{\"unknowns\": {\"weight\": {\"fixed\": {\"x\": 1}}}}", "fixed"},
+    {"fit", "{\"unknowns\": {\"omega\": {\"fixed\": {\"x\": 1}}}}", "fixed"},
     {"fit", "{\"core\": {\"x\": 1}}", "core"},
     {"fit", "{\"verification\": {\"x\": 1}}", "verification"},
     {"simulate", "{\"x\": 1}", "scene"},
@@ -56,7 +56,7 @@ static void test_describe_tells_of_every_key_that_a_reader_knows(void **state) {
 
 /// What an object is said to be described by is described.
 static void test_describe_knows_every_topic_that_it_names(void **state) {
-    static const char *const topics[] = {"run", "scene", "target", "unknowns", "weight"};
+    static const char *const topics[] = {"run", "scene", "target", "unknowns", "omega"};
     static const char words[] = "see `mesofit describe ";
     (void)state;
     for (size_t k = 0; k < sizeof topics / sizeof *topics; k++) {

@@ -21,7 +21,7 @@ static const char soft_fluid[] =
 #define METHOD "METHOD"
 static const char fit[] =
     "{\"seed\": 3, \"target\": {\"rdf\": {\"file\": \"target/rdf.tsv\"}},\n"
-    "\"unknowns\": {\"potential\": {\"genes\": 5, \"maximum\": 30}},\n"
+    "\"unknowns\": {\"potential\": {\"coefficients\": 5, \"maximum\": 30}},\n"
     "\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, \"time_step\": 0.02,\n"
     "\"dissipative\": {\"law\": \"power\", \"sigma\": 3}},\n"
     "\"method\": {" METHOD "}, \"core\": {\"threshold\": 0.05, \"stiffness\": 50},\n"
@@ -309,7 +309,7 @@ static void test_summary_has_what_other_programs_read(void **state) {
 static void test_true_potential_stands_beside_the_result(void **state) {
     write_fit(*state, IMC);
     char *text = temporary_folder_read("run.json");
-    small_inputs_write(*state, "run.json", text, "\"genes\": 5",
+    small_inputs_write(*state, "run.json", text, "\"coefficients\": 5",
                        "\"truth\": {\"law\": \"soft-repulsion\", \"a\": 25}");
     free(text);
     run_fit("out", "2", UNCONVERGED);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// `mesofit fit` of a mixture from outside: a potential for each kind of pairs, its files, the same
+// `mesofit fit` of a mixture from outside: a potential for each pair type, its files, the same
 // bits for any threads and after any interruption, and faults in one line each.
 #include "shared/results.h"
 #include "shared/run_program.h"
@@ -27,7 +27,7 @@ static const char mixture[] =
 static const char fit[] =
     "{\"seed\": 3, \"target\": {\"rdf\": {\"A-A\": {\"file\": \"target/rdf_A-A.tsv\"},\n"
     "\"B-A\": {\"file\": \"target/rdf_A-B.tsv\"}, " TARGET_BB "}},\n"
-    "\"unknowns\": {\"potential\": {\"genes\": 5, \"maximum\": 30, \"truth\": {\n"
+    "\"unknowns\": {\"potential\": {\"coefficients\": 5, \"maximum\": 30, \"truth\": {\n"
     "\"A-A\": {\"law\": \"soft-repulsion\", \"a\": 25}" TRUTH_AB ",\n"
     "\"B-B\": {\"law\": \"soft-repulsion\", \"a\": 35}}}},\n"
     "\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"types\": {\"A\": 40, \"B\": 41}},\n"

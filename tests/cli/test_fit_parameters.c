@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// `mesofit fit` of a weight that is a formula: its parameters with errors, some of them held fixed.
+// `mesofit fit` of a friction weight that is a formula: its parameters with errors, some of them
+// held fixed.
 #include "shared/is_close.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
@@ -26,7 +27,7 @@ static const char soft_fluid[] =
 
 static const char fit[] =
     "{\"seed\": 3, \"target\": {" MSD "},\n"
-    "\"unknowns\": {\"weight\": {\"curve\": \"power\", \"maximum\": 6, " FIXED "}},\n"
+    "\"unknowns\": {\"omega\": {\"curve\": \"power\", \"maximum\": 6, " FIXED "}},\n"
     "\"scene\": {\"box\": [4, 4, 4], \"particles\": {\"count\": 192}, \"time_step\": 0.02,\n"
     "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25}},\n"
     "\"method\": {" GAUSS_NEWTON ", \"equilibration\": 200, \"samples\": 60,\n"
@@ -63,8 +64,8 @@ static void test_fit_finds_a_known_sigma_within_its_error(void **state) {
     run_program_assert_code(&result, 0);
     assert_null(strstr(result.err, "(at its"));
     assert_contains(result.err, "error of the fit: ");
-    assert_contains(result.err, "weight: changed by ");
-    assert_contains(result.err, "weight: sigma = ");
+    assert_contains(result.err, "omega: changed by ");
+    assert_contains(result.err, "omega: sigma = ");
     assert_true(results_number("out/summary.json", "start.error") > 0);
     assert_true(results_number("out/summary.json", "error") > 0);
     assert_contains(result.err, "exponent = 1 (fixed)");
@@ -83,7 +84,7 @@ static void test_fit_says_that_a_parameter_is_at_its_bound(void **state) {
     small_inputs_write(*state, "run.json", fit, "\"maximum\": 6", "\"minimum\": 4, \"maximum\": 6");
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out");
     assert_in_range(result.code, 0, 1);
-    assert_contains(result.err, "weight: sigma = 4");
+    assert_contains(result.err, "omega: sigma = 4");
     assert_contains(result.err, " (at its minimum), exponent = 1 (fixed)");
     char *text = temporary_folder_read("out/summary.json");
     char *bound = strstr(text, "\"bound\":\t\"minimum\"");
@@ -174,9 +175,9 @@ static void test_fit_refuses_what_cannot_be_fixed(void **state) {
         {FIXED, "\"fixed\": {\"inner_cutoff\": 1}", {"fixed.inner_cutoff: 1 is not between"}},
         {FIXED,
          "\"fixed\": {\"sigma\": 3, \"exponent\": 1, \"inner_cutoff\": 0}",
-         {"weight.fixed: with all of its parameters fixed"}},
-        {"\"power\"", "\"bspline\"", {"weight.fixed: only \"curve\": \"power\""}},
-        {FIXED, FIXED ", \"genes\": 3", {"weight.genes: the curve \"power\" has 1"}},
+         {"omega.fixed: with all of its parameters fixed"}},
+        {"\"power\"", "\"bspline\"", {"omega.fixed: only \"curve\": \"power\""}},
+        {FIXED, FIXED ", \"coefficients\": 3", {"omega.coefficients: the curve \"power\" has 1"}},
     };
     write_target(*state);
     assert_int_equal(mkdir("out", 0777), 0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// `mesofit fit` of potential and weight by the method "pareto": the same bits for any threads and
-// after any interruption, and the front that it leaves.
+// `mesofit fit` of potential and friction weight by the method "pareto": the same bits for any
+// threads and after any interruption, and the front that it leaves.
 #include "io/data_table.h"
 #include "optimise/nsga2.h"
 #include "shared/results.h"
@@ -25,8 +25,8 @@ static const char soft_fluid[] =
 
 static const char fit[] =
     "{\"seed\": 3, \"target\": {" ETD "\"rdf\": {\"file\": \"target/rdf.tsv\"}},\n"
-    "\"unknowns\": {\"weight\": {\"genes\": 4, \"maximum\": 6},\n"
-    "\"potential\": {\"genes\": 5, \"maximum\": 30}},\n"
+    "\"unknowns\": {\"omega\": {\"coefficients\": 4, \"maximum\": 6},\n"
+    "\"potential\": {\"coefficients\": 5, \"maximum\": 30}},\n"
     "\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, \"time_step\": 0.02},\n"
     "\"method\": {\"name\": \"pareto\", \"population\": 9, \"generations\": 4, \"warm_start\": "
     "\"yes\",\n"
@@ -37,7 +37,7 @@ static const char fit[] =
 static const char *const tables[] = {"history.tsv",        "omega.tsv",
                                      "potential.tsv",      "pareto.tsv",
                                      "pareto_history.tsv", "pareto_potential.tsv",
-                                     "pareto_weight.tsv",  NULL};
+                                     "pareto_omega.tsv",   NULL};
 
 static void write_fit(struct temporary_folder *folder, const char *from, const char *to) {
     static struct run_program_result result;
@@ -92,7 +92,7 @@ static void test_pareto_leaves_a_front_that_nobody_dominates(void **state) {
     assert_int_equal(chosen, 1);
     assert_true(members >= 1);
     results_assert_table("out/pareto_potential.tsv", members + 1, 21);
-    results_assert_table("out/pareto_weight.tsv", members + 1, 201);
+    results_assert_table("out/pareto_omega.tsv", members + 1, 201);
     results_assert_table("out/pareto_history.tsv", 5, 0);
     mf_data_table_clear(&table);
 }

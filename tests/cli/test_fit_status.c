@@ -21,7 +21,8 @@ static const char soft_fluid[] =
 
 static const char fit[] =
     "{\"seed\": 3, \"target\": {\"rdf\": {\"file\": \"target/rdf.tsv\"}},\n"
-    "\"unknowns\": {\"potential\": {\"curve\": \"bspline\", \"genes\": 6, \"maximum\": 30}},\n"
+    "\"unknowns\": {\"potential\": {\"curve\": \"bspline\", \"coefficients\": 6, \"maximum\": "
+    "30}},\n"
     "\"scene\": {\"box\": [4, 4, 4], \"particles\": {\"count\": 192}, \"time_step\": 0.02,\n"
     "\"dissipative\": {\"law\": \"power\", \"sigma\": 3}},\n"
     "\"method\": {METHOD, \"temperature_tolerance\": 0.5},\n"
@@ -83,14 +84,14 @@ static void test_gauss_newton_has_not_converged_at_a_standstill_above_its_noise(
     run_fit(*state, PLAN, GAUSS_NEWTON(", \"iterations\": 100"), &result);
     char *text = temporary_folder_read("run.json");
     small_inputs_write(*state, "run.json", text,
-                       "\"curve\": \"bspline\", \"genes\": 6, \"maximum\": 30",
-                       "\"curve\": \"bezier\", \"genes\": 3, \"maximum\": 5");
+                       "\"curve\": \"bspline\", \"coefficients\": 6, \"maximum\": 30",
+                       "\"curve\": \"bezier\", \"coefficients\": 3, \"maximum\": 5");
     free(text);
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
     run_program_assert_code(&result, 1);
     assert_contains(result.err, "not converged after ");
     assert_contains(result.err, ", but g(r) is still off by 0.1");
-    assert_summary("unconverged", "more \\\"genes\\\"");
+    assert_summary("unconverged", "more \\\"variables\\\"");
     assert_true(results_number("out/summary.json", "iterations") < 100);
     assert_true(results_number("out/summary.json", "rdf_rmse") >
                 5 * results_number("out/summary.json", "rdf_noise"));
@@ -101,7 +102,7 @@ static void test_gauss_newton_says_when_too_few_succeeded_for_a_model(void **sta
     run_fit(*state, PLAN, GAUSS_NEWTON(", \"iterations\": 1, \"reach\": 0.4"), &result);
     run_program_assert_code(&result, 1);
     assert_contains(result.err, "of 30 simulations succeeded, too few for a linear model of 6 "
-                                "genes, which needs 28");
+                                "variables, which needs 28");
     assert_null(strstr(result.err, "not one simulation"));
     assert_summary("unconverged", "too few for a linear model");
 }

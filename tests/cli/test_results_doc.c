@@ -24,7 +24,7 @@ static const char scene[] =
 #define FIT(target, unknowns, method)                                                              \
     "{\"target\": {\"rdf\": {\"file\": \"scene/rdf.tsv\"}" target                                  \
     "}, \"unknowns\": {\"potential\":"                                                             \
-    " {\"maximum\": 30, \"genes\": 5, \"truth\": {\"law\": \"soft-repulsion\", \"a\": "            \
+    " {\"maximum\": 30, \"coefficients\": 5, \"truth\": {\"law\": \"soft-repulsion\", \"a\": "     \
     "25}}" unknowns                                                                                \
     "}, \"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, \"time_step\": 0.02,\n"    \
     "\"units\": {\"length\": 0.7, \"temperature\": 300, \"mass\": 9e-26}},\n"                      \
@@ -41,7 +41,7 @@ static const struct {
          "\"value_column\": 4, \"error_column\": 5}, \"pressure\": {\"value\": 20, \"fitted\": "
          "\"no\"}, \"etd\": {\"file\": \"scene/etd.tsv\", \"error_file\": \"scene/etd_error.tsv\","
          "\"r_minimum\": 0.4, \"r_maximum\": 0.9}",
-         ", \"weight\": {\"curve\": \"power\", \"truth\": {\"law\": \"power\", \"sigma\": 3}}",
+         ", \"omega\": {\"curve\": \"power\", \"truth\": {\"law\": \"power\", \"sigma\": 3}}",
          "\"name\": \"pareto\", \"population\": 8, \"generations\": 2, \"equilibration\": 20, "
          "\"samples\": 12, \"every\": 5, \"temperature_tolerance\": 0.5")},
 };

@@ -244,7 +244,7 @@ static void test_explain_tells_what_is_on_and_off(void **state) {
     write_scene(*state, conservative, NULL, NULL);
     RUN_PROGRAM(&result, "simulate", "scene.json", "--explain");
     run_program_assert_code(&result, 0);
-    assert_contains(result.out, "friction and noise                 off         no weight");
+    assert_contains(result.out, "friction and noise                 off         no friction");
     assert_contains(result.out, "to 3.5, beyond the forces: a list of its own");
     assert_null(strstr(result.out, "g(r) from forces"));
     assert_false(temporary_folder_exists("out"));

@@ -153,7 +153,7 @@ static void test_fit_looks_at_densities_of_fluids_without_layers(void **state) {
                     "0.081 lambda^-3, and the beads are 0.4 lambda wide");
 }
 
-/// In a mixture the kind of pairs is named: ten times the beads of one type leave no room for them.
+/// In a mixture the pair type is named: ten times the beads of one type leave no room for them.
 static void test_fit_names_the_pairs_of_a_mixture_that_cannot_be(void **state) {
     static struct run_program_result result;
     static const char mixture[] =

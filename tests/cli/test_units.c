@@ -22,7 +22,7 @@ static const char scene[] =
 static const char fit[] =
     "{\"seed\": 3, \"target\": {\"msd\": {\"file\": \"out/motion.tsv\"},\n"
     "\"vacf\": {\"file\": \"out/motion.tsv\", \"value_column\": 4, \"error_column\": 5}},\n"
-    "\"unknowns\": {\"weight\": {\"curve\": \"power\", \"maximum\": 6}},\n"
+    "\"unknowns\": {\"omega\": {\"curve\": \"power\", \"maximum\": 6}},\n"
     "\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, \"time_step\": 0.02,\n"
     "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25},\n"
     "\"units\": {\"length\": 0.7, \"temperature\": 300, \"mass\": 9e-26}},\n"

@@ -11,11 +11,11 @@
 
 /// The ideal gas of dissipative particles: density 3, γ w_D = 6.75 (1 − r)², k_B T = 1.
 static void make_gas(struct fluid *fluid, int64_t count, double edge, double time_step) {
-    struct formula_power_weight_parameters parameters = {sqrt(6.75), 1, 0, 1};
-    const struct curve curve = {&mf_formula_power_weight, &parameters};
+    struct formula_power_omega_parameters parameters = {sqrt(6.75), 1, 0, 1};
+    const struct curve curve = {&mf_formula_power_omega, &parameters};
     fluid_ideal_gas(fluid, 3, count, time_step);
-    mf_table_clear(&fluid->weight);
-    assert_ok(mf_table_init_weight(&fluid->weight, &curve));
+    mf_table_clear(&fluid->omega);
+    assert_ok(mf_table_init_omega(&fluid->omega, &curve));
     for (int d = 0; d < 3; d++)
         fluid->setup.box.length[d] = edge;
 }

@@ -15,7 +15,7 @@ enum { FEW = 100, MANY = 800, BINS = 32, PAIRS = 3, RUNS = 4 };
 
 static const struct rdf_bins bins = {0, 0.05, BINS};
 
-/// Mean of g over the volume within 1.6, over runs of other seeds: one number a kind of pairs. The
+/// Mean of g over the volume within 1.6, over runs of other seeds: one number a pair type. The
 /// last bins are those that a closed system shifts; the sum of all shifts as they do.
 struct means {
     double value[PAIRS], error[PAIRS];
@@ -39,7 +39,7 @@ static void sample(struct fluid *fluid, int64_t samples, struct rdf *rdf) {
     mf_simulation_clear(&simulation);
 }
 
-/// The mean of one kind of pairs, taken to MANY.
+/// The mean of one pair type, taken to MANY.
 static double convert(const struct rdf *rdf, const double *g, const double *error, int pair) {
     const struct composition *composition = &rdf->composition;
     double sum = 0, volume = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The dissipative weight of the standard DPD fluid, 2 k_B T ω² = [3 (1 − r)]², comes back from the
+// The friction weight of the standard DPD fluid, 2 k_B T ω² = [3 (1 − r)]², comes back from the
 // covariance of the forces at two time steps.
 #include "observe/measure.h"
 #include "shared/fluids.h"

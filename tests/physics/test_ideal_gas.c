@@ -37,7 +37,7 @@ static void sample_dynamics(const struct simulation_setup *setup, uint64_t every
     struct simulation simulation;
     struct rdf rdf;
     assert_ok(mf_simulation_init(&simulation, setup, NULL));
-    assert_ok(mf_rdf_init(&rdf, &bins, &setup->box, PARTICLES, setup->weight ? 1 : 0, SAMPLES));
+    assert_ok(mf_rdf_init(&rdf, &bins, &setup->box, PARTICLES, setup->omega ? 1 : 0, SAMPLES));
     for (int sample = 0; sample < SAMPLES; sample++) {
         assert_ok(mf_simulation_run(&simulation, every));
         assert_ok(mf_rdf_sample(&rdf, &simulation.particles, &simulation.neighbours));
@@ -68,7 +68,7 @@ static void test_ideal_gas_has_no_structure_when_particles_fly_freely(void **sta
     for (int dimensions = 2; dimensions <= 3; dimensions++) {
         struct fluid fluid;
         fluid_ideal_gas(&fluid, dimensions, PARTICLES, 0.05);
-        fluid.setup.weight = NULL;
+        fluid.setup.omega = NULL;
         fluid.setup.integrator = &mf_velocity_verlet;
         assert_dynamics_gives_unity(&fluid, 20, 100, what[dimensions - 2]);
     }

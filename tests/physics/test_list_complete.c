@@ -277,7 +277,7 @@ static void make_gas(struct fluid *fluid, struct table *nothing, double time_ste
     fluid_ideal_gas(fluid, 3, 400, time_step);
     set_box(fluid, 6.3, 5.2, 5.8);
     fluid_no_potential(nothing);
-    fluid->setup.weight = NULL;
+    fluid->setup.omega = NULL;
     fluid->setup.potential = nothing;
     fluid->setup.integrator = &mf_velocity_verlet;
 }

@@ -17,7 +17,7 @@ static const double deviations = 4;
 static const struct rdf_bins bins = {0.2, 0.09, BINS};
 static const struct composition halves = {.types = 2, .count = {1000, 2000}};
 
-/// What is measured of a fluid, g by kinds of pairs.
+/// What is measured of a fluid, g by pair types.
 struct measured {
     struct thermodynamics_summary summary;
     double g[PAIRS * BINS], error[PAIRS * BINS];
@@ -60,18 +60,18 @@ static void test_mixture_of_equals_is_the_fluid_of_one_type(void **state) {
     (void)state;
     struct fluid fluid;
     static struct measured alone, mixed;
-    struct table parts[PAIRS], potential, weight;
+    struct table parts[PAIRS], potential, omega;
     fluid_groot_warren(&fluid, PARTICLES, 0.01);
     measure(&fluid.setup, 400, &alone);
     for (int pair = 0; pair < PAIRS; pair++)
         parts[pair] = fluid.potential;
     assert_ok(mf_table_stack(&potential, parts, PAIRS));
     for (int pair = 0; pair < PAIRS; pair++)
-        parts[pair] = fluid.weight;
-    assert_ok(mf_table_stack(&weight, parts, PAIRS));
+        parts[pair] = fluid.omega;
+    assert_ok(mf_table_stack(&omega, parts, PAIRS));
     fluid.setup.composition = halves;
     fluid.setup.potential = &potential;
-    fluid.setup.weight = &weight;
+    fluid.setup.omega = &omega;
     fluid.setup.seed = 2;
     measure(&fluid.setup, 400, &mixed);
     for (int pair = 0; pair < PAIRS; pair++)
@@ -85,13 +85,13 @@ static void test_mixture_of_equals_is_the_fluid_of_one_type(void **state) {
     assert_same_mean(a->temperature_configurational, a->temperature_configurational_error,
                      b->temperature_configurational, b->temperature_configurational_error);
     mf_table_clear(&potential);
-    mf_table_clear(&weight);
+    mf_table_clear(&omega);
     fluid_clear(&fluid);
 }
 
 /// a_AB = 60, a_AA = a_BB = 25 (R. D. Groot and P. B. Warren, J. Chem. Phys. 107, 4423 (1997),
 /// section V: they part from Δa of some 5 on). The potential of A-B ends at 0.9 with a force, so
-/// that the configurational temperature needs the edge of that kind of pairs alone: without it, it
+/// that the configurational temperature needs the edge of that pair type alone: without it, it
 /// is several per cent off.
 static void test_mixture_that_parts_keeps_its_temperature(void **state) {
     (void)state;
@@ -112,7 +112,7 @@ static void test_mixture_that_parts_keeps_its_temperature(void **state) {
     assert_ok(mf_table_init_potential(&parts[1], &curve));
     assert_ok(mf_table_stack(&potential, parts, PAIRS));
     fluid.setup.composition = halves;
-    fluid.setup.potential = &potential;     // one weight is for all pairs
+    fluid.setup.potential = &potential;     // one friction weight is for all pairs
     measure(&fluid.setup, 6000, &measured); // parting makes heat
     print_message("g at the cutoff: A-A %.2f, A-B %.2f, B-B %.2f\n", measured.g[BINS - 1],
                   measured.g[2 * BINS - 1], measured.g[3 * BINS - 1]);

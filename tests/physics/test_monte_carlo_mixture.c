@@ -11,7 +11,7 @@
 
 #include <math.h>
 
-/// Six kinds of pairs, of which each has three bins, and the virial.
+/// Six pair types, of which each has three bins, and the virial.
 enum { COUNT = 300, PAIRS = 6, BINS = 3, SIZE = PAIRS * BINS + 1, BLOCKS = 40, SAMPLES = 20 };
 
 static const struct rdf_bins bins = {0.3, 0.2, BINS};

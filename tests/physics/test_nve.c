@@ -49,7 +49,7 @@ static void follow(const struct fluid *fluid, const struct simulation *from, dou
                    double duration, double interval, struct energies *energies) {
     struct simulation_setup setup = fluid->setup;
     struct simulation simulation;
-    setup.weight = NULL;
+    setup.omega = NULL;
     setup.integrator = &mf_velocity_verlet;
     setup.time_step = time_step;
     fluid_continue(&simulation, &setup, from);
@@ -187,7 +187,7 @@ static void test_momentum_stays_zero_when_forces_are_conservative(void **state) 
     (void)state;
     struct fluid fluid;
     fluid_lennard_jones(&fluid, 512, 0.004);
-    fluid.setup.weight = NULL;
+    fluid.setup.omega = NULL;
     fluid.setup.integrator = &mf_velocity_verlet;
     assert_momentum_stays_zero(&fluid.setup);
     fluid_clear(&fluid);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The noise inside the pair kernels. Particles at rest with a weight alone feel nothing else, so
-// that each ζ_ij comes back from a force:
+// The noise inside the pair kernels. Particles at rest with a friction weight alone feel nothing
+// else, so that each ζ_ij comes back from a force:
 //   F_i · r̂ = sqrt(2 k_B T / Δt) ω(r) ζ_ij
 // The scenes are pairs, and right-angled triangles in which every side acts, each far from all
 // others: along one axis, one corner of a triangle feels one side only.
@@ -49,7 +49,7 @@ struct probe {
 struct scene {
     struct particles particles;
     struct neighbours neighbours;
-    struct table weight;
+    struct table omega;
     struct pair_law law;
     size_t pairs;
     struct probe *probe;  ///< shape [pairs]
@@ -69,10 +69,10 @@ struct plan {
 static const double site_spacing = 2.4;
 static const double triangle_leg = 0.6;
 
-static void make_weight(struct table *weight) {
-    struct formula_power_weight_parameters parameters = {1.3, 1, 0, 1};
-    const struct curve curve = {&mf_formula_power_weight, &parameters};
-    assert_ok(mf_table_init_weight(weight, &curve));
+static void make_weight(struct table *omega) {
+    struct formula_power_omega_parameters parameters = {1.3, 1, 0, 1};
+    const struct curve curve = {&mf_formula_power_omega, &parameters};
+    assert_ok(mf_table_init_omega(omega, &curve));
 }
 
 /// Ids in the order in which they are given to particles.
@@ -105,7 +105,7 @@ static struct probe make_probe(const struct scene *scene, uint32_t a, uint32_t b
         if (d == axis)
             along = dx;
     }
-    mf_table_evaluate(law->weight, sqrt(square), &omega, NULL, NULL);
+    mf_table_evaluate(law->omega, sqrt(square), &omega, NULL, NULL);
     assert_true(omega > 0 && fabs(along) > 0.1);
     const double amplitude = sqrt(2 * law->temperature / law->time_step) * omega;
     return (struct probe){a, axis, sqrt(square) / (amplitude * along)};
@@ -194,8 +194,8 @@ static void make_scene(struct scene *scene, const struct plan *plan) {
     const struct box box = {plan->dimensions, {edge, edge, plan->dimensions == 3 ? edge : 1}};
     const size_t motifs = (size_t)lround(pow(plan->sites, plan->dimensions));
     *scene = (struct scene){.law = {.temperature = 0.8, .time_step = 0.03, .seed = 0x57EED}};
-    make_weight(&scene->weight);
-    scene->law.weight = &scene->weight;
+    make_weight(&scene->omega);
+    scene->law.omega = &scene->omega;
     scene->pairs = motifs * (plan->motif == DIMERS ? 1 : SIDES);
     scene->probe = mf_memory_zeroed(scene->pairs, sizeof *scene->probe);
     scene->mirror = mf_memory_zeroed(scene->pairs, sizeof *scene->mirror);
@@ -216,7 +216,7 @@ static void make_scene(struct scene *scene, const struct plan *plan) {
 static void clear_scene(struct scene *scene) {
     mf_particles_clear(&scene->particles);
     mf_neighbours_clear(&scene->neighbours);
-    mf_table_clear(&scene->weight);
+    mf_table_clear(&scene->omega);
     mf_memory_free(scene->probe);
     mf_memory_free(scene->mirror);
 }

@@ -98,7 +98,7 @@ static void test_forces_are_as_exact_as_their_precision_when_the_fluid_is_dpd(vo
     assert_ok(mf_simulation_init(&start, &fluid.setup, NULL));
     assert_ok(mf_simulation_run(&start, 300));
     check_forces("DPD", &fluid.setup, &start);
-    fluid.setup.weight = NULL;
+    fluid.setup.omega = NULL;
     check_forces("DPD, conservative", &fluid.setup, &start);
     mf_simulation_clear(&start);
     fluid_clear(&fluid);
@@ -109,7 +109,7 @@ static void melt(struct fluid *fluid, struct simulation *simulation, int64_t cou
     fluid_lennard_jones(fluid, count, 0.004);
     assert_ok(mf_simulation_init(simulation, &fluid->setup, NULL));
     assert_ok(mf_simulation_run(simulation, 2500));
-    fluid->setup.weight = NULL;
+    fluid->setup.omega = NULL;
     fluid->setup.integrator = &mf_velocity_verlet;
 }
 

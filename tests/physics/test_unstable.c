@@ -49,7 +49,7 @@ static void test_simulation_is_unstable_when_the_time_step_is_huge(void **state)
         struct fluid fluid;
         fluid_groot_warren(&fluid, PARTICLES, time_steps[k]);
         assert_unstable(&fluid.setup, NULL);
-        fluid.setup.weight = NULL;
+        fluid.setup.omega = NULL;
         fluid.setup.integrator = &mf_velocity_verlet;
         assert_unstable(&fluid.setup, NULL);
         fluid_clear(&fluid);
@@ -71,7 +71,7 @@ static void test_simulation_is_unstable_soon_when_many_particles_are_flung_far(v
     fluid_clear(&fluid);
     // The temperature of free flight is right however far it goes.
     fluid_ideal_gas(&fluid, 3, 40000, 1e200);
-    fluid.setup.weight = NULL;
+    fluid.setup.omega = NULL;
     fluid.setup.integrator = &mf_velocity_verlet;
     assert_unstable(&fluid.setup, NULL);
     fluid_clear(&fluid);
@@ -159,7 +159,7 @@ static void test_simulation_is_unstable_when_the_table_is_wild(void **state) {
         make_wild_table(wild[k], &table);
         fluid.setup.potential = &table;
         assert_unstable(&fluid.setup, NULL);
-        fluid.setup.weight = NULL;
+        fluid.setup.omega = NULL;
         fluid.setup.integrator = &mf_velocity_verlet;
         assert_unstable(&fluid.setup, NULL);
         mf_table_clear(&table);
@@ -197,8 +197,8 @@ static enum status measure(const struct inverse_problem *problem, const struct t
                            const struct evaluate_parameters *parameters,
                            struct evaluate_result *result) {
     const struct evaluate_candidate candidate = {.potential = potential,
-                                                 .weight = problem->scene.weight,
-                                                 .hopeless = HUGE_VAL,
+                                                 .omega = problem->scene.omega,
+                                                 .discard_above = HUGE_VAL,
                                                  .threads = 1,
                                                  .seed = 8};
     return mf_evaluate(problem, &candidate, parameters, NULL, NULL, result);

@@ -153,7 +153,7 @@ static void test_etd_equals_that_of_a_stored_trajectory_whatever_moves_the_parti
     fluid.setup.integrator = &mf_aboba;
     assert_etd(&fluid.setup, &grid, &plan);
     fluid.setup.integrator = &mf_velocity_verlet;
-    fluid.setup.weight = NULL;
+    fluid.setup.omega = NULL;
     assert_etd(&fluid.setup, &grid, &plan);
     fluid_clear(&fluid);
 }

@@ -26,11 +26,11 @@ static const double deviations = 4;
 
 static struct variant variants[VARIANTS_MOST];
 static int variant_count;
-static struct table soft, weight, short_weight, long_weight;
+static struct table soft, omega_table, short_omega_table, long_omega_table;
 
-static void make_weight(struct table *table, struct formula_power_weight_parameters parameters) {
-    const struct curve curve = {&mf_formula_power_weight, &parameters};
-    assert_ok(mf_table_init_weight(table, &curve));
+static void make_omega(struct table *table, struct formula_power_omega_parameters parameters) {
+    const struct curve curve = {&mf_formula_power_omega, &parameters};
+    assert_ok(mf_table_init_omega(table, &curve));
 }
 
 static int make_tables(void **state) {
@@ -39,18 +39,18 @@ static int make_tables(void **state) {
     struct formula_soft_repulsion_parameters parameters = {25, 1};
     const struct curve curve = {&mf_formula_soft_repulsion, &parameters};
     assert_ok(mf_table_init_potential(&soft, &curve));
-    make_weight(&weight, (struct formula_power_weight_parameters){sqrt(4.5), 1, 0, 1});
-    make_weight(&short_weight, (struct formula_power_weight_parameters){3, 1, 0, 0.6});
-    make_weight(&long_weight, (struct formula_power_weight_parameters){2.589, 1, 0, 1.72});
+    make_omega(&omega_table, (struct formula_power_omega_parameters){sqrt(4.5), 1, 0, 1});
+    make_omega(&short_omega_table, (struct formula_power_omega_parameters){3, 1, 0, 0.6});
+    make_omega(&long_omega_table, (struct formula_power_omega_parameters){2.589, 1, 0, 1.72});
     return 0;
 }
 
 static int clear_tables(void **state) {
     (void)state;
     mf_table_clear(&soft);
-    mf_table_clear(&weight);
-    mf_table_clear(&short_weight);
-    mf_table_clear(&long_weight);
+    mf_table_clear(&omega_table);
+    mf_table_clear(&short_omega_table);
+    mf_table_clear(&long_omega_table);
     return 0;
 }
 
@@ -100,7 +100,7 @@ static void check_sums(const struct box *box, size_t count, const struct table *
 static void test_kept_pairs_add_up_to_friction_and_noise_when_types_differ(void **state) {
     (void)state;
     const struct box three = {3, {5.1, 4.6, 6.3}}, two = {2, {9.1, 7.7, 1}};
-    const struct table parts[] = {weight, short_weight, long_weight};
+    const struct table parts[] = {omega_table, short_omega_table, long_omega_table};
     struct table omega;
     assert_ok(mf_table_stack(&omega, parts, 3));
     for (int p = 0; p < 2; p++) {
@@ -116,14 +116,14 @@ static void test_kept_pairs_add_up_to_friction_and_noise_when_they_are_forces(vo
     (void)state;
     const struct box three = {3, {5.1, 4.6, 6.3}}, two = {2, {9.1, 7.7, 1}};
     const struct table *potentials[] = {NULL, &soft},
-                       *omegas[] = {&weight, &short_weight, &long_weight};
+                       *omegas[] = {&omega_table, &short_omega_table, &long_omega_table};
     for (int p = 0; p < 2; p++)
         for (int w = 0; w < 3; w++) {
             check_sums(&three, 443, potentials[p], omegas[w]);
             check_sums(&two, 301, potentials[p], omegas[w]);
         }
     for (size_t count = 2; count < 40; count++)
-        check_sums(&(struct box){3, {2.1, 2.2, 2.3}}, count, &soft, &weight);
+        check_sums(&(struct box){3, {2.1, 2.2, 2.3}}, count, &soft, &omega_table);
 }
 
 /// A pair at (r, 0, 0), apart for the number that its noise has at a step.
@@ -167,7 +167,7 @@ static struct law_of_u shardlow_law(double omega, double time_step, double tempe
 
 static void check_pair(const struct integrator *integrator,
                        struct law_of_u law_of(double, double, double), double r, double time_step) {
-    struct kept_pairs kept = {.law = kept_pairs_law(NULL, &weight, time_step)};
+    struct kept_pairs kept = {.law = kept_pairs_law(NULL, &omega_table, time_step)};
     double before[3], size;
     make_pair(&kept, r);
     kept_pairs_use(&kept, integrator);
@@ -205,7 +205,7 @@ static void test_sweep_follows_the_formula_when_there_are_two_particles(void **s
 static void test_exact_friction_leaves_a_normal_number_when_drawn_often(void **state) {
     (void)state;
     enum { DRAWS = 20000 };
-    struct kept_pairs kept = {.law = kept_pairs_law(NULL, &weight, 0.1)};
+    struct kept_pairs kept = {.law = kept_pairs_law(NULL, &omega_table, 0.1)};
     make_pair(&kept, 0.4);
     kept_pairs_use(&kept, &mf_aboba);
     struct particles *particles = &kept.particles;
@@ -298,8 +298,8 @@ static void test_kick_balances_the_damping_when_friction_jumps(void **state) {
     static const struct integrator *const with[] = {&mf_aboba, &mf_shardlow, &mf_aboba_implicit,
                                                     &mf_dpd_vv};
     struct table shell, steep;
-    make_weight(&shell, (struct formula_power_weight_parameters){10, 1e-6, 0.97, 1});
-    make_weight(&steep, (struct formula_power_weight_parameters){8, 2, 0, 1});
+    make_omega(&shell, (struct formula_power_omega_parameters){10, 1e-6, 0.97, 1});
+    make_omega(&steep, (struct formula_power_omega_parameters){8, 2, 0, 1});
     for (int n = 0; n < 300; n++)
         for (int k = 0; k < 4; k++) {
             const double interval = 1.0 / TABLE_INTERVALS, part = (n + 0.5) / 300;
@@ -314,7 +314,7 @@ static void test_kick_balances_the_damping_when_friction_jumps(void **state) {
 
 static void test_sweep_conserves_momentum_when_particles_are_many(void **state) {
     (void)state;
-    struct kept_pairs kept = {.law = kept_pairs_law(&soft, &weight, 0.1)};
+    struct kept_pairs kept = {.law = kept_pairs_law(&soft, &omega_table, 0.1)};
     double before[3], size;
     kept_pairs_init(&kept, &(struct box){3, {5.1, 4.6, 6.3}}, 443, 0);
     kept_pairs_use(&kept, &mf_aboba);

@@ -11,23 +11,23 @@
 
 #include <math.h>
 
-static struct table soft, weight;
+static struct table soft, omega;
 
 static int make_tables(void **state) {
     (void)state;
     struct formula_soft_repulsion_parameters repulsion = {25, 1};
-    struct formula_power_weight_parameters friction = {sqrt(4.5), 1, 0, 1};
+    struct formula_power_omega_parameters friction = {sqrt(4.5), 1, 0, 1};
     const struct curve potential = {&mf_formula_soft_repulsion, &repulsion},
-                       omega = {&mf_formula_power_weight, &friction};
+                       curve = {&mf_formula_power_omega, &friction};
     assert_ok(mf_table_init_potential(&soft, &potential));
-    assert_ok(mf_table_init_weight(&weight, &omega));
+    assert_ok(mf_table_init_omega(&omega, &curve));
     return 0;
 }
 
 static int clear_tables(void **state) {
     (void)state;
     mf_table_clear(&soft);
-    mf_table_clear(&weight);
+    mf_table_clear(&omega);
     return 0;
 }
 
@@ -62,7 +62,7 @@ static double find_residual(const struct kept_pairs *kept, double (*before)[4]) 
 }
 
 static void check_solution(double time_step, double tolerance, double more) {
-    struct kept_pairs kept = {.law = kept_pairs_law(&soft, &weight, time_step)};
+    struct kept_pairs kept = {.law = kept_pairs_law(&soft, &omega, time_step)};
     double momentum[3], size, before[443][4] = {{0}};
     kept_pairs_init(&kept, &(struct box){3, {5.1, 4.6, 6.3}}, 443, 0);
     kept_pairs_use(&kept, &mf_aboba_implicit);
@@ -89,7 +89,7 @@ static void test_solution_is_within_its_tolerance_when_friction_is_implicit(void
 
 static void test_solution_is_refused_when_iterations_are_too_few_for_its_tolerance(void **state) {
     (void)state;
-    struct kept_pairs kept = {.law = kept_pairs_law(&soft, &weight, 1e9)};
+    struct kept_pairs kept = {.law = kept_pairs_law(&soft, &omega, 1e9)};
     kept_pairs_init(&kept, &(struct box){3, {5.1, 4.6, 6.3}}, 443, 0);
     kept_pairs_use(&kept, &mf_aboba_implicit);
     kept_pairs_keep(&kept, 3);

@@ -76,12 +76,12 @@ static size_t check_complete(const struct neighbours *neighbours, const uint8_t 
 /// A dense hot DPD fluid in which everything moves through everything.
 static void check_hot_simulation(const struct box *box, int64_t count, double skin) {
     struct curve curve;
-    struct table potential, weight;
+    struct table potential, omega;
     assert_ok(mf_curve_create(&curve, &mf_formula_soft_repulsion));
     assert_ok(mf_table_init_potential(&potential, &curve));
     mf_curve_clear(&curve);
-    assert_ok(mf_curve_create(&curve, &mf_formula_power_weight));
-    assert_ok(mf_table_init_weight(&weight, &curve));
+    assert_ok(mf_curve_create(&curve, &mf_formula_power_omega));
+    assert_ok(mf_table_init_omega(&omega, &curve));
     mf_curve_clear(&curve);
     const struct simulation_setup setup = {.box = *box,
                                            .placement = {.count = count, .jitter = 0.2},
@@ -92,7 +92,7 @@ static void check_hot_simulation(const struct box *box, int64_t count, double sk
                                            .integrator = &mf_dpd_verlet,
                                            .integrator_parameters = {0.5},
                                            .potential = &potential,
-                                           .weight = &weight,
+                                           .omega = &omega,
                                            .seed = 3};
     struct simulation simulation;
     assert_ok(mf_simulation_init(&simulation, &setup, NULL));
@@ -112,7 +112,7 @@ static void check_hot_simulation(const struct box *box, int64_t count, double sk
     mf_memory_free(entries);
     mf_simulation_clear(&simulation);
     mf_table_clear(&potential);
-    mf_table_clear(&weight);
+    mf_table_clear(&omega);
 }
 
 static void test_neighbours_are_complete_when_a_simulation_is_hot(void **state) {

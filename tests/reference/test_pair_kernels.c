@@ -36,9 +36,7 @@ static struct variant variants[VARIANTS_MOST];
 static int variant_count;
 
 /// Interactions used by all tests.
-static struct {
-    struct table soft, lennard_jones, gaussian, sampled, weight, thesis_weight;
-} tables;
+static struct { struct table soft, lennard_jones, gaussian, sampled, omega, thesis_weight; } tables;
 
 static void make_sampled(struct curve *curve) {
     enum { POINTS = 60 };
@@ -67,12 +65,12 @@ static int make_tables(void **state) {
     make_sampled(&curve);
     assert_ok(mf_table_init_potential(&tables.sampled, &curve));
     mf_curve_clear(&curve);
-    assert_ok(mf_curve_create(&curve, &mf_formula_power_weight));
-    assert_ok(mf_table_init_weight(&tables.weight, &curve));
-    struct formula_power_weight_parameters *weight = curve.parameters;
-    *weight = (struct formula_power_weight_parameters){
+    assert_ok(mf_curve_create(&curve, &mf_formula_power_omega));
+    assert_ok(mf_table_init_omega(&tables.omega, &curve));
+    struct formula_power_omega_parameters *omega = curve.parameters;
+    *omega = (struct formula_power_omega_parameters){
         .sigma = 2.589, .exponent = 1, .inner_cutoff = 0.596, .cutoff = 1.72};
-    assert_ok(mf_table_init_weight(&tables.thesis_weight, &curve));
+    assert_ok(mf_table_init_omega(&tables.thesis_weight, &curve));
     mf_curve_clear(&curve);
     return 0;
 }
@@ -83,7 +81,7 @@ static int clear_tables(void **state) {
     mf_table_clear(&tables.lennard_jones);
     mf_table_clear(&tables.gaussian);
     mf_table_clear(&tables.sampled);
-    mf_table_clear(&tables.weight);
+    mf_table_clear(&tables.omega);
     mf_table_clear(&tables.thesis_weight);
     return 0;
 }
@@ -98,9 +96,9 @@ struct system {
     double skin;
 };
 
-static struct pair_law make_law(const struct table *potential, const struct table *weight) {
+static struct pair_law make_law(const struct table *potential, const struct table *omega) {
     return (struct pair_law){.potential = potential,
-                             .weight = weight,
+                             .omega = omega,
                              .temperature = 1.3,
                              .time_step = 0.02,
                              .seed = 0x123456789ABCDEF};
@@ -195,7 +193,7 @@ static void check_law(const struct system *system, const struct pair_law *of_any
         law.precision = variants[v].precision;
         char label[100];
         snprintf(label, sizeof label, "%s, %dD, N = %zu, potential %d, weight %d", variants[v].name,
-                 system->box.dimensions, system->count, law.potential != NULL, law.weight != NULL);
+                 system->box.dimensions, system->count, law.potential != NULL, law.omega != NULL);
         mf_pair_forces(&law, &particles, &neighbours, step, PAIR_FORCES, NULL);
         check_forces(&particles, reference, scales.force, allowed.force, label);
         check_momentum(&particles, label);
@@ -211,9 +209,10 @@ static void check_law(const struct system *system, const struct pair_law *of_any
     mf_neighbours_clear(&neighbours);
 }
 
-/// Potential alone, weight alone, and both; the weight's range equal to, below and above Φ's.
+/// Potential alone, weight alone, and both; the friction weight's range equal to, below and above
+/// Φ's.
 static void check_all_laws(const struct system *system, const struct table *potential) {
-    const struct table *weights[] = {&tables.weight, &tables.thesis_weight};
+    const struct table *weights[] = {&tables.omega, &tables.thesis_weight};
     struct pair_law law = make_law(potential, NULL);
     check_law(system, &law);
     for (int w = 0; w < 2; w++) {
@@ -259,7 +258,7 @@ static void test_pair_kernels_agree_with_all_pairs_when_box_is_two_cutoffs(void 
     check_all_laws(&three, &tables.soft);
     check_all_laws(&two, &tables.soft);
     const struct system lattice = {{3, {5.0001, 5.0001, 5.0001}}, 125, LATTICE, 0.4};
-    const struct pair_law law = make_law(&tables.lennard_jones, &tables.weight);
+    const struct pair_law law = make_law(&tables.lennard_jones, &tables.omega);
     check_law(&lattice, &law);
 }
 
@@ -274,15 +273,15 @@ static void test_pair_kernels_agree_with_all_pairs_when_particles_are_few(void *
     }
 }
 
-/// Every kind of pairs with a potential and a weight of its own, of different ranges; some have
+/// Every pair type with a potential and a weight of its own, of different ranges; some have
 /// none.
 static void check_mixture(const struct system *system, const struct composition *composition) {
     const struct table *const potentials[] = {
         &tables.soft, &tables.sampled, NULL, &tables.gaussian, &tables.lennard_jones, &tables.soft};
-    const struct table *const weights[] = {&tables.thesis_weight, &tables.weight,
-                                           &tables.weight,        NULL,
-                                           &tables.thesis_weight, &tables.weight};
-    struct table parts[2][6] = {{{0}}}, potential, weight;
+    const struct table *const weights[] = {&tables.thesis_weight, &tables.omega,
+                                           &tables.omega,         NULL,
+                                           &tables.thesis_weight, &tables.omega};
+    struct table parts[2][6] = {{{0}}}, potential, omega;
     const int pairs = mf_composition_pairs(composition);
     for (int p = 0; p < pairs; p++) {
         if (potentials[p])
@@ -291,16 +290,16 @@ static void check_mixture(const struct system *system, const struct composition 
             parts[1][p] = *weights[p];
     }
     assert_ok(mf_table_stack(&potential, parts[0], pairs));
-    assert_ok(mf_table_stack(&weight, parts[1], pairs));
-    struct pair_law laws[] = {make_law(&potential, NULL), make_law(NULL, &weight),
-                              make_law(&potential, &weight), make_law(&tables.soft, &weight),
-                              make_law(&potential, &tables.weight)};
+    assert_ok(mf_table_stack(&omega, parts[1], pairs));
+    struct pair_law laws[] = {make_law(&potential, NULL), make_law(NULL, &omega),
+                              make_law(&potential, &omega), make_law(&tables.soft, &omega),
+                              make_law(&potential, &tables.omega)};
     for (size_t n = 0; n < sizeof laws / sizeof *laws; n++) {
         laws[n].composition = *composition;
         check_law(system, &laws[n]);
     }
     mf_table_clear(&potential);
-    mf_table_clear(&weight);
+    mf_table_clear(&omega);
 }
 
 static void test_pair_kernels_agree_with_all_pairs_when_types_differ(void **state) {
@@ -327,7 +326,7 @@ static void test_pair_kernels_agree_with_all_pairs_when_types_differ_and_are_few
 static void test_pair_kernels_give_no_force_when_pairs_are_out_of_range(void **state) {
     (void)state;
     const struct system system = {{3, {12, 12, 12}}, 27, LATTICE, 0.3};
-    const struct pair_law law = make_law(&tables.soft, &tables.weight);
+    const struct pair_law law = make_law(&tables.soft, &tables.omega);
     check_law(&system, &law);
 }
 
@@ -354,7 +353,7 @@ static void test_pair_kernels_give_no_force_when_there_is_no_law(void **state) {
 static void test_pair_kernels_give_no_force_when_particles_coincide(void **state) {
     (void)state;
     const struct system system = {{3, {5, 5, 5}}, 2, CLUSTERED, 0.3};
-    struct pair_law law = make_law(&tables.soft, &tables.weight);
+    struct pair_law law = make_law(&tables.soft, &tables.omega);
     for (int v = 0; v < variant_count; v++) {
         variants_select(&variants[v]);
         law.precision = variants[v].precision;
@@ -376,7 +375,7 @@ static void test_pair_kernels_give_no_force_when_particles_coincide(void **state
 static void test_pair_kernels_show_nan_when_a_velocity_is_nan(void **state) {
     (void)state;
     const struct system system = {{3, {5, 5, 5}}, 300, RANDOM, 0.3};
-    struct pair_law law = make_law(&tables.soft, &tables.weight);
+    struct pair_law law = make_law(&tables.soft, &tables.omega);
     struct particles particles;
     struct neighbours neighbours;
     make_system(&particles, &neighbours, &system, &law);
@@ -452,7 +451,7 @@ static void test_pair_forces_do_not_depend_on_order_or_skin_when_ids_are_the_sam
 static void test_pair_noise_changes_when_seed_or_step_changes(void **state) {
     (void)state;
     const struct system system = {{3, {4, 4, 4}}, 50, RANDOM, 0.25};
-    struct pair_law law = make_law(NULL, &tables.weight);
+    struct pair_law law = make_law(NULL, &tables.omega);
     struct particles particles;
     struct neighbours neighbours;
     make_system(&particles, &neighbours, &system, &law);

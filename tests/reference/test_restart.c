@@ -92,12 +92,12 @@ static void check_integrators(struct fluid *fluid) {
     fluid->setup.integrator_parameters.tolerance = 0.01;
     for (size_t k = 0; mf_integrator_list[k]; k++) {
         fluid->setup.integrator = mf_integrator_list[k];
-        fluid->setup.weight = mf_integrator_list[k]->dissipative ? &fluid->weight : NULL;
+        fluid->setup.omega = mf_integrator_list[k]->dissipative ? &fluid->omega : NULL;
         for (int precision = PAIR_MIXED; precision <= PAIR_DOUBLE; precision++) {
             fluid->setup.precision = precision;
             check(&fluid->setup);
         }
-        fluid->setup.weight = NULL;
+        fluid->setup.omega = NULL;
         check(&fluid->setup);
     }
     fluid_clear(fluid);

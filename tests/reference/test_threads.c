@@ -80,7 +80,7 @@ static void test_threads_give_the_same_bits_when_energy_is_conserved(void **stat
     (void)state;
     struct fluid fluid;
     fluid_lennard_jones(&fluid, 2048, 0.005);
-    fluid.setup.weight = NULL;
+    fluid.setup.omega = NULL;
     fluid.setup.integrator = &mf_velocity_verlet;
     fluid.setup.temperature = 4;
     check(&fluid);

@@ -5,10 +5,10 @@
 #include "shared/testing.h"
 
 static void make_weight(struct fluid *fluid, double sigma, double cutoff) {
-    struct formula_power_weight_parameters parameters = {sigma, 1, 0, cutoff};
-    const struct curve curve = {&mf_formula_power_weight, &parameters};
-    assert_ok(mf_table_init_weight(&fluid->weight, &curve));
-    fluid->setup.weight = &fluid->weight;
+    struct formula_power_omega_parameters parameters = {sigma, 1, 0, cutoff};
+    const struct curve curve = {&mf_formula_power_omega, &parameters};
+    assert_ok(mf_table_init_omega(&fluid->omega, &curve));
+    fluid->setup.omega = &fluid->omega;
 }
 
 static void make_soft_table(struct table *table, double a) {
@@ -58,26 +58,26 @@ void fluid_groot_warren(struct fluid *fluid, int64_t count, double time_step) {
 
 void fluid_mixture(struct fluid *fluid, int64_t count, double time_step) {
     enum { PAIRS = 6 };
-    struct table potential[PAIRS], weight[PAIRS];
+    struct table potential[PAIRS], omega[PAIRS];
     begin(fluid, 3, count, 3, time_step);
     fluid->setup.composition = (struct composition){
         .types = 3, .count = {count / 4, count / 3, 0}, .name = {"A", "B", "C"}};
     fluid->setup.composition.count[2] = count - count / 4 - count / 3;
     for (int pair = 0; pair < PAIRS; pair++) {
         struct formula_soft_repulsion_parameters soft = {25 + 3 * pair, 1 - 0.04 * pair};
-        struct formula_power_weight_parameters power = {1.5 + 0.3 * pair, 1, 0, 0.8 + 0.04 * pair};
+        struct formula_power_omega_parameters power = {1.5 + 0.3 * pair, 1, 0, 0.8 + 0.04 * pair};
         const struct curve phi = {&mf_formula_soft_repulsion, &soft},
-                           omega = {&mf_formula_power_weight, &power};
+                           friction = {&mf_formula_power_omega, &power};
         assert_ok(mf_table_init_potential(&potential[pair], &phi));
-        assert_ok(mf_table_init_weight(&weight[pair], &omega));
+        assert_ok(mf_table_init_omega(&omega[pair], &friction));
     }
     assert_ok(mf_table_stack(&fluid->potential, potential, PAIRS));
-    assert_ok(mf_table_stack(&fluid->weight, weight, PAIRS));
+    assert_ok(mf_table_stack(&fluid->omega, omega, PAIRS));
     fluid->setup.potential = &fluid->potential;
-    fluid->setup.weight = &fluid->weight;
+    fluid->setup.omega = &fluid->omega;
     for (int pair = 0; pair < PAIRS; pair++) {
         mf_table_clear(&potential[pair]);
-        mf_table_clear(&weight[pair]);
+        mf_table_clear(&omega[pair]);
     }
 }
 
@@ -102,7 +102,7 @@ void fluid_no_potential(struct table *table) {
 
 void fluid_clear(struct fluid *fluid) {
     mf_table_clear(&fluid->potential);
-    mf_table_clear(&fluid->weight);
+    mf_table_clear(&fluid->omega);
 }
 
 void fluid_continue(struct simulation *simulation, const struct simulation_setup *setup,

@@ -6,19 +6,19 @@
 
 /// A fluid owns its tables; `setup` points to them, so a fluid must stay where it is.
 struct fluid {
-    struct table potential, weight;
+    struct table potential, omega;
     struct simulation_setup setup;
 };
 
 /// Lennard-Jones near its triple point: density 0.8442, temperature 0.7, cutoff 2.5, thermostat
-/// ω = 1.5 (1 − r/2.5): dpd-verlet. With setup.weight = NULL and mf_velocity_verlet it is NVE.
+/// ω = 1.5 (1 − r/2.5): dpd-verlet. With setup.omega = NULL and mf_velocity_verlet it is NVE.
 void fluid_lennard_jones(struct fluid *fluid, int64_t count, double time_step);
 
 /// The standard fluid of dissipative particle dynamics: density 3, a = 25, γ = 4.5, T = 1, r_c = 1.
 /// R. D. Groot and P. B. Warren, J. Chem. Phys. 107, 4423 (1997).
 void fluid_groot_warren(struct fluid *fluid, int64_t count, double time_step);
 
-/// The same of three types, with a potential and a friction of its own for each kind of pairs: a =
+/// The same of three types, with a potential and a friction of its own for each pair type: a =
 /// 25 to 40, cutoffs of 0.8 to 1.
 void fluid_mixture(struct fluid *fluid, int64_t count, double time_step);
 
@@ -26,7 +26,7 @@ void fluid_mixture(struct fluid *fluid, int64_t count, double time_step);
 void fluid_soft_discs(struct fluid *fluid, int64_t count, double time_step);
 
 /// Particles without a potential, uniform at random in a box of edge 5: density follows the count.
-/// With ω as in the standard fluid; setup.weight = NULL lets them fly freely.
+/// With ω as in the standard fluid; setup.omega = NULL lets them fly freely.
 void fluid_ideal_gas(struct fluid *fluid, int dimensions, int64_t count, double time_step);
 
 /// A potential that is 0 everywhere, with a cutoff of 1.

@@ -26,14 +26,14 @@ void kept_pairs_init(struct kept_pairs *kept, const struct box *box, size_t coun
 struct pair_law kept_pairs_law(const struct table *potential, const struct table *omega,
                                double time_step) {
     return (struct pair_law){.potential = potential,
-                             .weight = omega,
+                             .omega = omega,
                              .temperature = 1.3,
                              .time_step = time_step,
                              .seed = 0x123456789ABCDEF};
 }
 
 void kept_pairs_use(struct kept_pairs *kept, const struct integrator *integrator) {
-    assert_ok(mf_friction_init(&kept->friction, kept->law.weight, kept->law.time_step,
+    assert_ok(mf_friction_init(&kept->friction, kept->law.omega, kept->law.time_step,
                                kept->law.temperature, integrator->friction));
 }
 

@@ -10,31 +10,31 @@ static double square(double x) {
     return x * x;
 }
 
-static double sphere(const double *genes, size_t count) {
+static double sphere(const double *variables, size_t count) {
     double sum = 0;
     for (size_t k = 0; k < count; k++)
-        sum += square(genes[k] - 0.3);
+        sum += square(variables[k] - 0.3);
     return sum;
 }
 
-static double rosenbrock(const double *genes, size_t count) {
+static double rosenbrock(const double *variables, size_t count) {
     double sum = 0;
     for (size_t k = 0; k + 1 < count; k++)
-        sum += 100 * square(genes[k + 1] - square(genes[k])) + square(1 - genes[k]);
+        sum += 100 * square(variables[k + 1] - square(variables[k])) + square(1 - variables[k]);
     return sum;
 }
 
-static double rastrigin(const double *genes, size_t count) {
+static double rastrigin(const double *variables, size_t count) {
     double sum = 0;
     for (size_t k = 0; k < count; k++)
-        sum += 10 + square(genes[k] - 1) - 10 * cos(2 * M_PI * (genes[k] - 1));
+        sum += 10 + square(variables[k] - 1) - 10 * cos(2 * M_PI * (variables[k] - 1));
     return sum;
 }
 
-static double edge(const double *genes, size_t count) {
+static double edge(const double *variables, size_t count) {
     double sum = 0;
     for (size_t k = 0; k < count; k++)
-        sum += genes[k];
+        sum += variables[k];
     return sum;
 }
 
@@ -67,7 +67,7 @@ void landscape_set(const struct optimiser *optimiser, void *parameters, const ch
 
 struct landscape_run landscape_begin(const struct optimiser *optimiser, void *parameters,
                                      const struct landscape_drive *drive) {
-    const struct optimiser_space space = {drive->genes,
+    const struct optimiser_space space = {drive->variables,
                                           drive->landscape->minimum,
                                           drive->landscape->maximum,
                                           drive->start,
@@ -98,40 +98,40 @@ static double measure(const struct landscape_drive *drive, double exact, uint64_
 }
 
 static void check_round(const struct landscape_drive *drive, const struct optimiser_round *round) {
-    for (size_t k = 0; k < round->count * drive->genes; k++)
-        assert_true(round->genes[k] >= drive->landscape->minimum &&
-                    round->genes[k] <= drive->landscape->maximum);
+    for (size_t k = 0; k < round->count * drive->variables; k++)
+        assert_true(round->variables[k] >= drive->landscape->minimum &&
+                    round->variables[k] <= drive->landscape->maximum);
 }
 
 /// Ask twice: the same candidates. Frees nothing; the copy is compared here.
-static struct optimiser_round ask_twice(struct landscape_run *run, size_t genes) {
+static struct optimiser_round ask_twice(struct landscape_run *run, size_t variables) {
     struct optimiser_round first, second;
     assert_ok(run->optimiser->ask(run->state, &first));
-    const size_t bytes = first.count * genes * sizeof(double);
+    const size_t bytes = first.count * variables * sizeof(double);
     double *copy = mf_memory_zeroed(bytes + 1, 1);
     assert_non_null(copy);
-    memcpy(copy, first.genes, bytes);
+    memcpy(copy, first.variables, bytes);
     assert_ok(run->optimiser->ask(run->state, &second));
     assert_int_equal(first.count, second.count);
-    assert_memory_equal(copy, second.genes, bytes);
+    assert_memory_equal(copy, second.variables, bytes);
     mf_memory_free(copy);
     return second;
 }
 
-static void look_at_favourite(const struct landscape_run *run, const struct landscape_drive *drive,
+static void look_at_incumbent(const struct landscape_run *run, const struct landscape_drive *drive,
                               struct landscape_result *result) {
-    double *genes = mf_memory_zeroed(drive->genes, sizeof *genes);
-    assert_non_null(genes);
-    if (run->optimiser->favourite(run->state, genes)) {
-        check_round(drive, &(struct optimiser_round){genes, 1});
-        result->favourite = drive->landscape->error(genes, drive->genes);
+    double *variables = mf_memory_zeroed(drive->variables, sizeof *variables);
+    assert_non_null(variables);
+    if (run->optimiser->incumbent(run->state, variables)) {
+        check_round(drive, &(struct optimiser_round){variables, 1});
+        result->incumbent = drive->landscape->error(variables, drive->variables);
     }
-    mf_memory_free(genes);
+    mf_memory_free(variables);
 }
 
 bool landscape_step(struct landscape_run *run, const struct landscape_drive *drive,
                     struct landscape_result *result) {
-    const struct optimiser_round round = ask_twice(run, drive->genes);
+    const struct optimiser_round round = ask_twice(run, drive->variables);
     result->finished = round.count == 0;
     if (result->finished)
         return false;
@@ -139,7 +139,8 @@ bool landscape_step(struct landscape_run *run, const struct landscape_drive *dri
     double *errors = mf_memory_zeroed(2 * round.count, sizeof *errors);
     assert_non_null(errors);
     for (size_t k = 0; k < round.count; k++) {
-        const double exact = drive->landscape->error(round.genes + k * drive->genes, drive->genes);
+        const double exact =
+            drive->landscape->error(round.variables + k * drive->variables, drive->variables);
         result->least = fmin(result->least, exact); // fmin leaves NaN out
         errors[k] = measure(drive, exact, result->evaluations++);
         errors[round.count + k] = drive->noise * drive->noise;
@@ -147,18 +148,18 @@ bool landscape_step(struct landscape_run *run, const struct landscape_drive *dri
     assert_ok(run->optimiser->tell(run->state, errors, errors + round.count));
     mf_memory_free(errors);
     result->rounds++;
-    look_at_favourite(run, drive, result);
+    look_at_incumbent(run, drive, result);
     return true;
 }
 
 struct landscape_result landscape_minimise(const struct optimiser *optimiser, void *parameters,
                                            const struct landscape_drive *drive) {
-    struct landscape_result result = {.least = HUGE_VAL, .favourite = HUGE_VAL};
+    struct landscape_result result = {.least = HUGE_VAL, .incumbent = HUGE_VAL};
     struct landscape_run run = landscape_begin(optimiser, parameters, drive);
     while ((drive->evaluations == 0 || result.evaluations < drive->evaluations) &&
            result.least > drive->target && landscape_step(&run, drive, &result))
         continue;
-    assert_true(result.rounds <= optimiser->most_rounds(parameters, drive->genes));
+    assert_true(result.rounds <= optimiser->most_rounds(parameters, drive->variables));
     landscape_end(&run);
     return result;
 }

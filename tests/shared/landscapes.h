@@ -4,10 +4,10 @@
 
 #include "optimise/optimiser.h"
 
-/// A function to be minimised in a box; its least value is 0, where all genes are `optimum`.
+/// A function to be minimised in a box; its least value is 0, where all variables are `optimum`.
 struct landscape {
     const char *name;
-    double (*error)(const double *genes, size_t count);
+    double (*error)(const double *variables, size_t count);
     double minimum, maximum, optimum;
 };
 
@@ -19,7 +19,7 @@ extern const struct landscape landscape_edge;      ///< Σ x in [0, 1]: the opti
 /// How to drive.
 struct landscape_drive {
     const struct landscape *landscape;
-    size_t genes;
+    size_t variables;
     uint64_t seed;
     const double *start;  ///< or NULL
     double noise;         ///< standard deviation of normal noise on each error
@@ -33,7 +33,7 @@ struct landscape_drive {
 struct landscape_result {
     uint64_t rounds, evaluations;
     double least;     ///< error of the best candidate, without noise
-    double favourite; ///< error of the favourite, without noise; HUGE_VAL if there was none
+    double incumbent; ///< error of the incumbent, without noise; HUGE_VAL if there was none
     bool finished;    ///< by itself
 };
 

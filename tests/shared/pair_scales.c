@@ -27,7 +27,7 @@ static double dissipative_scale(const struct pair_law *law, int pair, double r) 
     double omega = 0, slope = 0;
     for (int side = -1; side <= 1; side++) {
         double value, steepness;
-        mf_table_evaluate_pair(law->weight, pair, fmin(r * (1 + 1e-6 * side), law->weight->cutoff),
+        mf_table_evaluate_pair(law->omega, pair, fmin(r * (1 + 1e-6 * side), law->omega->cutoff),
                                &value, &steepness, NULL);
         omega = fmax(omega, fabs(value));
         slope = fmax(slope, fabs(steepness));
@@ -52,7 +52,7 @@ struct pair_scales pair_scales_find(const struct pair_law *law, const struct par
                 scales.virial += fabs(r * slope);
                 force += conservative_scale(law->potential, pair, r);
             }
-            if (law->weight && r < law->weight->cutoff) {
+            if (law->omega && r < law->omega->cutoff) {
                 force += dissipative_scale(law, pair, r);
                 scales.near++;
             }

@@ -48,12 +48,12 @@ enum stability stability_run(const struct simulation_setup *setup,
 
 enum stability stability_of(const struct stability_case *what, int64_t count) {
     struct fluid fluid;
-    struct table weight;
-    struct formula_power_weight_parameters parameters = {sqrt(what->friction), 1, 0, 1};
-    const struct curve curve = {&mf_formula_power_weight, &parameters};
+    struct table omega;
+    struct formula_power_omega_parameters parameters = {sqrt(what->friction), 1, 0, 1};
+    const struct curve curve = {&mf_formula_power_omega, &parameters};
     fluid_groot_warren(&fluid, count, what->time_step);
-    assert_ok(mf_table_init_weight(&weight, &curve));
-    fluid.setup.weight = &weight;
+    assert_ok(mf_table_init_omega(&omega, &curve));
+    fluid.setup.omega = &omega;
     fluid.setup.integrator = what->integrator;
     fluid.setup.integrator_parameters.lambda = what->lambda;
     fluid.setup.integrator_parameters.tolerance = 0.01;
@@ -62,7 +62,7 @@ enum stability stability_of(const struct stability_case *what, int64_t count) {
     const enum stability stability =
         stability_run(&fluid.setup, NULL, (int64_t)fmax(300, 10 / what->time_step),
                       (int64_t)fmax(4, 0.05 / what->time_step));
-    mf_table_clear(&weight);
+    mf_table_clear(&omega);
     fluid_clear(&fluid);
     return stability;
 }

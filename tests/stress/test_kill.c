@@ -18,7 +18,7 @@ static struct run_program_result result;
 
 #define FIT(method)                                                                                \
     "{\"seed\": 3, \"target\": {\"rdf\": {\"file\": \"target.tsv\"}},\n"                           \
-    "\"unknowns\": {\"potential\": {\"genes\": 5, \"maximum\": 30}},\n"                            \
+    "\"unknowns\": {\"potential\": {\"coefficients\": 5, \"maximum\": 30}},\n"                     \
     "\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, \"time_step\": 0.02,\n"       \
     "\"dissipative\": {\"law\": \"power\", \"sigma\": 3}},\n"                                      \
     "\"method\": {\"name\": " method "}, \"verification\": {\"replicas\": 2, "                     \

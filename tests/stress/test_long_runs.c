@@ -36,7 +36,7 @@ static void test_nve_keeps_its_energy_for_a_million_steps(void **state) {
         struct fluid fluid;
         struct simulation simulation;
         fluid_lennard_jones(&fluid, 112, 0.002);
-        fluid.setup.weight = NULL;
+        fluid.setup.omega = NULL;
         fluid.setup.integrator = &mf_velocity_verlet;
         fluid.setup.precision = precision;
         assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));

@@ -56,17 +56,17 @@ test_restart_goes_on_with_the_same_bits_when_friction_and_time_step_are_large(vo
     (void)state;
     int ended = 0, unstable = 0;
     for (size_t f = 0; f < sizeof frictions / sizeof *frictions; f++) {
-        struct formula_power_weight_parameters parameters = {sqrt(frictions[f]), 1, 0, 1};
-        const struct curve curve = {&mf_formula_power_weight, &parameters};
-        struct table weight;
-        assert_ok(mf_table_init_weight(&weight, &curve));
+        struct formula_power_omega_parameters parameters = {sqrt(frictions[f]), 1, 0, 1};
+        const struct curve curve = {&mf_formula_power_omega, &parameters};
+        struct table omega;
+        assert_ok(mf_table_init_omega(&omega, &curve));
         for (size_t k = 0; mf_integrator_list[k]; k++)
             for (size_t t = 0; t < sizeof time_steps / sizeof *time_steps; t++) {
                 if (!mf_integrator_list[k]->dissipative)
                     continue;
                 struct fluid fluid;
                 fluid_groot_warren(&fluid, PARTICLES, time_steps[t]);
-                fluid.setup.weight = &weight;
+                fluid.setup.omega = &omega;
                 fluid.setup.integrator = mf_integrator_list[k];
                 fluid.setup.integrator_parameters.tolerance = 0.01;
                 fluid.setup.temperature_limit = 20;
@@ -75,7 +75,7 @@ test_restart_goes_on_with_the_same_bits_when_friction_and_time_step_are_large(vo
                 *(check(&fluid.setup) == STATUS_OK ? &ended : &unstable) += 1;
                 fluid_clear(&fluid);
             }
-        mf_table_clear(&weight);
+        mf_table_clear(&omega);
     }
     assert_true(ended >= 40);
     assert_true(unstable >= 10);

@@ -51,7 +51,7 @@ static void test_cheapest_reach_is_recommended_with_its_gain(void **state) {
                                     .reach = reach,
                                     .method = names,
                                     .methods = 3,
-                                    .has_weight = true};
+                                    .has_omega = true};
     assert_int_equal(mf_bench_cheapest(&diagram), 2);
     char *text = print(&diagram);
     assert_contains(text, "for |dg| <= 0.005 take aboba with a time step of 0.06 tau: 3 ms/tau, "

@@ -67,7 +67,7 @@ static void test_bench_case_counts_pairs_and_keeps_the_temperature(void **state)
     struct bench_result result;
     const struct bench_how how = {"portable", "mixed", 1, 0.01};
     fluid_lennard_jones(&fluid, 400, 0.002);
-    fluid.setup.weight = NULL;
+    fluid.setup.omega = NULL;
     fluid.setup.integrator = &mf_velocity_verlet;
     const struct bench_scene scene = {.name = "scene", .scene = {.setup = fluid.setup}};
     assert_ok(mf_bench_case_begin(&bench, &scene, &how));
@@ -115,7 +115,7 @@ static void check_skips(bool dissipative, size_t lines) {
     size_t count = 0;
     fluid_groot_warren(&fluid, 100, 0.04);
     if (!dissipative) {
-        fluid.setup.weight = NULL;
+        fluid.setup.omega = NULL;
         fluid.setup.integrator = &mf_velocity_verlet;
     }
     scene.scene.setup = fluid.setup;

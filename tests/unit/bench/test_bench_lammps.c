@@ -27,7 +27,7 @@ static void make_liquid(struct liquid *liquid, bool from_table) {
     scene->setup = fluid.setup;
     fluid_clear(&fluid);
     scene->setup.integrator = &mf_velocity_verlet;
-    scene->setup.weight = NULL;
+    scene->setup.omega = NULL;
     assert_ok(mf_curve_create(&scene->potential.curve[0], &mf_formula_lennard_jones));
     if (from_table) {
         for (int k = 0; k < POINTS; k++) {
@@ -110,7 +110,7 @@ static void test_bench_lammps_objection_says_what_debians_lammps_lacks(void **st
     assert_contains(mf_bench_lammps_objection(&scene), "three dimensions");
     scene.setup.integrator = &mf_dpd_verlet;
     assert_contains(mf_bench_lammps_objection(&scene), "velocity-verlet");
-    scene.weight.curves = 1;
+    scene.omega.curves = 1;
     assert_contains(mf_bench_lammps_objection(&scene), "friction");
     scene.setup.composition.types = 2;
     assert_contains(mf_bench_lammps_objection(&scene), "mixture");

@@ -25,8 +25,8 @@ static void test_curve_find_knows_every_family_when_named(void **state) {
                      &mf_formula_soft_repulsion);
     assert_ptr_equal(mf_curve_find(mf_curve_potentials, "gaussian"), &mf_formula_gaussian);
     assert_ptr_equal(mf_curve_find(mf_curve_potentials, "table"), &mf_sampled_family);
-    assert_ptr_equal(mf_curve_find(mf_curve_weights, "power"), &mf_formula_power_weight);
-    assert_null(mf_curve_find(mf_curve_weights, "lennard-jones"));
+    assert_ptr_equal(mf_curve_find(mf_curve_omegas, "power"), &mf_formula_power_omega);
+    assert_null(mf_curve_find(mf_curve_omegas, "lennard-jones"));
     assert_null(mf_curve_find(mf_curve_potentials, ""));
 }
 
@@ -87,19 +87,19 @@ static void test_gaussian_has_its_values_when_shifted(void **state) {
 
 static void test_power_weight_is_zero_outside_its_shell_when_it_has_an_inner_cutoff(void **state) {
     (void)state;
-    struct curve curve = make(&mf_formula_power_weight);
+    struct curve curve = make(&mf_formula_power_omega);
     // The default is γ = 4.5, σ = 3 of Groot and Warren.
     assert_close(pow(mf_curve_value(&curve, 0), 2), 4.5, 1e-14);
     assert_close(pow(mf_curve_value(&curve, 0.5), 2), 4.5 / 4, 1e-14);
-    *(struct formula_power_weight_parameters *)curve.parameters =
-        (struct formula_power_weight_parameters){
+    *(struct formula_power_omega_parameters *)curve.parameters =
+        (struct formula_power_omega_parameters){
             .sigma = 2.589, .exponent = 1, .inner_cutoff = 0.596, .cutoff = 1.72};
     assert_identical(mf_curve_value(&curve, 0), 0);
     assert_identical(mf_curve_value(&curve, 0.596), 0);
     assert_close(mf_curve_value(&curve, 0.6), 2.589 * (1 - 0.6 / 1.72), 1e-14);
     assert_close(mf_curve_value(&curve, 1.29), 2.589 / 4, 1e-14);
     assert_identical(mf_curve_value(&curve, 1.72), 0);
-    ((struct formula_power_weight_parameters *)curve.parameters)->exponent = 0.25;
+    ((struct formula_power_omega_parameters *)curve.parameters)->exponent = 0.25;
     assert_close(mf_curve_value(&curve, 1.29), 2.589 * sqrt(0.5), 1e-14);
     mf_curve_clear(&curve);
 }
@@ -222,11 +222,11 @@ static void test_table_is_twice_continuous_when_a_potential(void **state) {
 
 static void test_table_of_a_weight_jumps_within_one_interval_when_the_weight_does(void **state) {
     (void)state;
-    struct curve curve = make(&mf_formula_power_weight);
-    struct formula_power_weight_parameters *p = curve.parameters;
+    struct curve curve = make(&mf_formula_power_omega);
+    struct formula_power_omega_parameters *p = curve.parameters;
     p->inner_cutoff = 0.4;
     struct table table;
-    assert_ok(mf_table_init_weight(&table, &curve));
+    assert_ok(mf_table_init_omega(&table, &curve));
     const double spacing = 1.0 / TABLE_INTERVALS;
     for (double r = 0.0003; r < 1; r += 0.0017) {
         double value;
@@ -289,11 +289,11 @@ static double binomial(int n, int k) {
 }
 
 /// Σ C(n, k) t^k (1 − t)^(n−k) x_k − x_n with n = count − 1, for small n.
-static double bernstein(const double *genes, int count, double t) {
+static double bernstein(const double *coefficients, int count, double t) {
     double sum = 0;
     for (int k = 0; k < count; k++)
-        sum += binomial(count - 1, k) * pow(t, k) * pow(1 - t, count - 1 - k) * genes[k];
-    return sum - genes[count - 1];
+        sum += binomial(count - 1, k) * pow(t, k) * pow(1 - t, count - 1 - k) * coefficients[k];
+    return sum - coefficients[count - 1];
 }
 
 enum { BEZIER_POINTS = 501 };
@@ -309,13 +309,13 @@ static const double *equal_places(void) {
 static void test_bezier_values_are_bernstein_sums_when_genes_are_few(void **state) {
     (void)state;
     const double *t = equal_places();
-    const double genes[] = {3, -1, 4, 1, -5, 9, 2, -6, 5, 3};
+    const double coefficients[] = {3, -1, 4, 1, -5, 9, 2, -6, 5, 3};
     double values[BEZIER_POINTS];
     for (int count = 1; count <= 10; count++) {
-        assert_ok(mf_bezier_values(genes, (size_t)count, t, values, BEZIER_POINTS));
+        assert_ok(mf_bezier_values(coefficients, (size_t)count, t, values, BEZIER_POINTS));
         for (int p = 0; p < BEZIER_POINTS; p++)
-            assert_close(values[p], bernstein(genes, count, t[p]), 1e-13);
-        assert_identical(values[0], genes[0] - genes[count - 1]);
+            assert_close(values[p], bernstein(coefficients, count, t[p]), 1e-13);
+        assert_identical(values[0], coefficients[0] - coefficients[count - 1]);
         assert_identical(values[BEZIER_POINTS - 1], 0);
     }
 }
@@ -323,42 +323,42 @@ static void test_bezier_values_are_bernstein_sums_when_genes_are_few(void **stat
 /// A Bézier curve stays in the hull of its control points, and equal ones make a constant.
 static void test_bezier_values_stay_in_the_hull_when_genes_are_a_hundred(void **state) {
     (void)state;
-    enum { GENES = 100 };
-    double genes[GENES], values[BEZIER_POINTS], largest = 0;
-    for (int k = 0; k < GENES; k++)
-        genes[k] = (k * 7919 % 101) / 100.0 * 6.5;
-    const double last = genes[GENES - 1];
-    assert_ok(mf_bezier_values(genes, GENES, equal_places(), values, BEZIER_POINTS));
+    enum { COEFFICIENTS = 100 };
+    double coefficients[COEFFICIENTS], values[BEZIER_POINTS], largest = 0;
+    for (int k = 0; k < COEFFICIENTS; k++)
+        coefficients[k] = (k * 7919 % 101) / 100.0 * 6.5;
+    const double last = coefficients[COEFFICIENTS - 1];
+    assert_ok(mf_bezier_values(coefficients, COEFFICIENTS, equal_places(), values, BEZIER_POINTS));
     for (int p = 0; p < BEZIER_POINTS; p++) {
         assert_true(values[p] + last >= 0 && values[p] + last <= 6.5);
         if (p > 0)
             largest = fmax(largest, fabs(values[p] - values[p - 1]));
     }
     // The steepest slope is n · 6.5 over 1, at an end.
-    assert_true(largest <= 6.5 * (GENES - 1) / (BEZIER_POINTS - 1.0));
-    for (int k = 0; k < GENES; k++)
-        genes[k] = 2;
-    assert_ok(mf_bezier_values(genes, GENES, equal_places(), values, BEZIER_POINTS));
+    assert_true(largest <= 6.5 * (COEFFICIENTS - 1) / (BEZIER_POINTS - 1.0));
+    for (int k = 0; k < COEFFICIENTS; k++)
+        coefficients[k] = 2;
+    assert_ok(mf_bezier_values(coefficients, COEFFICIENTS, equal_places(), values, BEZIER_POINTS));
     for (int p = 0; p < BEZIER_POINTS; p++)
         assert_close(values[p], 0, 1e-13);
 }
 
-/// Genes on a line give the line; equal ones before a last 0 give 1 − t^n: every Bernstein weight
-/// of degree 99 has its say.
+/// Coefficients on a line give the line; equal ones before a last 0 give 1 − t^n: every Bernstein
+/// weight of degree 99 has its say.
 static void test_bezier_values_are_known_when_a_hundred_genes_are_simple(void **state) {
     (void)state;
-    enum { GENES = 100 };
+    enum { COEFFICIENTS = 100 };
     const double *t = equal_places();
-    double genes[GENES], values[BEZIER_POINTS];
-    for (int k = 0; k < GENES; k++)
-        genes[k] = 5 - 0.25 * k;
-    assert_ok(mf_bezier_values(genes, GENES, t, values, BEZIER_POINTS));
+    double coefficients[COEFFICIENTS], values[BEZIER_POINTS];
+    for (int k = 0; k < COEFFICIENTS; k++)
+        coefficients[k] = 5 - 0.25 * k;
+    assert_ok(mf_bezier_values(coefficients, COEFFICIENTS, t, values, BEZIER_POINTS));
     for (int p = 0; p < BEZIER_POINTS; p++)
         assert_close(values[p], 0.25 * 99 * (1 - t[p]), 1e-12);
-    for (int k = 0; k < GENES - 1; k++)
-        genes[k] = 2;
-    genes[GENES - 1] = 0;
-    assert_ok(mf_bezier_values(genes, GENES, t, values, BEZIER_POINTS));
+    for (int k = 0; k < COEFFICIENTS - 1; k++)
+        coefficients[k] = 2;
+    coefficients[COEFFICIENTS - 1] = 0;
+    assert_ok(mf_bezier_values(coefficients, COEFFICIENTS, t, values, BEZIER_POINTS));
     for (int p = 0; p < BEZIER_POINTS; p++)
         assert_close(values[p], 2 * (1 - pow(t[p], 99)), 1e-13);
 }

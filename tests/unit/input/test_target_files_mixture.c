@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// "rdf" of a mixture in a run file: a partial g(r) for each kind of pairs.
+// "rdf" of a mixture in a run file: a partial g(r) for each pair type.
 #include "input/target_files.h"
 
 #include "shared/is_close.h"
@@ -122,7 +122,7 @@ static void test_targets_write_gives_a_mixture_back(void **state) {
     mf_target_files_clear(&again);
 }
 
-/// Isotopes have the g of the whole for every kind of pairs, whatever their shares are. In two
+/// Isotopes have the g of the whole for every pair type, whatever their shares are. In two
 /// dimensions the whole counts as incompressible.
 static void test_targets_read_converts_every_pair_by_all_particles(void **state) {
 #define FROM(file) "{\"file\": \"" file "\", \"particles\": 50}"

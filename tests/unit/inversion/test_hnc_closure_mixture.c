@@ -95,7 +95,7 @@ static void test_hnc_closure_is_the_inverse_by_hand_when_h_are_gaussians(void **
     assert_true(largest < discretisation && size > 0.01);
 }
 
-/// Change of h of one kind of pairs alone at a time.
+/// Change of h of one pair type alone at a time.
 static void check_slope(size_t pair) {
     static const double small = 1e-4;
     double g[PAIRS * BINS], above[PAIRS * BINS], below[PAIRS * BINS], more[PAIRS * BINS],

@@ -31,14 +31,14 @@ static void make_covariance(double covariance[SIZE][SIZE]) {
 }
 
 /// Excess of weight `weight[k]` along each direction, all with the variance 1.
-static struct imc_system make_system(double covariance[SIZE][SIZE], const double *weight,
+static struct imc_system make_system(double covariance[SIZE][SIZE], const double *omega,
                                      double *excess, double *variance) {
     make_covariance(covariance);
     for (int a = 0; a < SIZE; a++) {
         variance[a] = 1;
         excess[a] = 0;
         for (int k = 0; k < SIZE; k++)
-            excess[a] += weight[k] * direction(k, a);
+            excess[a] += omega[k] * direction(k, a);
     }
     return (struct imc_system){.size = SIZE,
                                .covariance = &covariance[0][0],
@@ -57,45 +57,45 @@ static double component(const double *x, int k) {
 
 static void test_imc_truncated_keeps_the_directions_above_the_strength(void **state) {
     (void)state;
-    double covariance[SIZE][SIZE], weight[SIZE], excess[SIZE], variance[SIZE], x[SIZE];
+    double covariance[SIZE][SIZE], omega[SIZE], excess[SIZE], variance[SIZE], x[SIZE];
     struct imc_solution solution;
     for (int k = 0; k < SIZE; k++)
-        weight[k] = 1 + k;
-    const struct imc_system system = make_system(covariance, weight, excess, variance);
+        omega[k] = 1 + k;
+    const struct imc_system system = make_system(covariance, omega, excess, variance);
     // 0.4^3 = 0.064, 0.4^4 = 0.0256.
     assert_ok(mf_imc_truncated(&system, 0.05, x, &solution));
     assert_close(solution.directions, 4, 0);
     for (int k = 0; k < SIZE; k++)
-        assert_close(component(x, k), k < 4 ? temperature * weight[k] / eigenvalue(k) : 0, 1e-9);
+        assert_close(component(x, k), k < 4 ? temperature * omega[k] / eigenvalue(k) : 0, 1e-9);
     double left = 0;
     for (int k = 4; k < SIZE; k++)
-        left += weight[k] * weight[k];
+        left += omega[k] * omega[k];
     assert_close_relative(solution.misfit, left / SIZE, 1e-9);
 }
 
 static void test_imc_truncated_keeps_no_more_than_the_noise_asks(void **state) {
     (void)state;
     // Excess in three directions, and noise of one standard error in all but one: χ² 11/12.
-    double covariance[SIZE][SIZE], weight[SIZE] = {20, -9, 6}, excess[SIZE], variance[SIZE];
+    double covariance[SIZE][SIZE], omega[SIZE] = {20, -9, 6}, excess[SIZE], variance[SIZE];
     double x[SIZE];
     struct imc_solution solution;
     for (int k = 3; k < SIZE; k++)
-        weight[k] = k % 2 ? 1 : -1;
-    const struct imc_system system = make_system(covariance, weight, excess, variance);
+        omega[k] = k % 2 ? 1 : -1;
+    const struct imc_system system = make_system(covariance, omega, excess, variance);
     assert_ok(mf_imc_truncated(&system, 0, x, &solution));
     assert_close(solution.directions, 3, 0);
     assert_true(solution.misfit <= 1);
     for (int k = 0; k < SIZE; k++)
-        assert_close(component(x, k), k < 3 ? temperature * weight[k] / eigenvalue(k) : 0, 1e-9);
+        assert_close(component(x, k), k < 3 ? temperature * omega[k] / eigenvalue(k) : 0, 1e-9);
 }
 
 static void test_imc_truncated_changes_nothing_when_the_excess_is_noise(void **state) {
     (void)state;
-    double covariance[SIZE][SIZE], weight[SIZE], excess[SIZE], variance[SIZE], x[SIZE];
+    double covariance[SIZE][SIZE], omega[SIZE], excess[SIZE], variance[SIZE], x[SIZE];
     struct imc_solution solution;
     for (int k = 0; k < SIZE; k++)
-        weight[k] = 0.9;
-    const struct imc_system system = make_system(covariance, weight, excess, variance);
+        omega[k] = 0.9;
+    const struct imc_system system = make_system(covariance, omega, excess, variance);
     assert_ok(mf_imc_truncated(&system, 0, x, &solution));
     assert_close(solution.directions, 0, 0);
     for (int k = 0; k < SIZE; k++)
@@ -104,13 +104,13 @@ static void test_imc_truncated_changes_nothing_when_the_excess_is_noise(void **s
 
 static void test_imc_truncated_meets_a_constraint_by_the_directions_it_keeps(void **state) {
     (void)state;
-    double covariance[SIZE][SIZE], weight[SIZE], excess[SIZE], variance[SIZE], x[SIZE], p[SIZE];
+    double covariance[SIZE][SIZE], omega[SIZE], excess[SIZE], variance[SIZE], x[SIZE], p[SIZE];
     struct imc_solution solution;
     for (int k = 0; k < SIZE; k++) {
-        weight[k] = 1 + k;
+        omega[k] = 1 + k;
         p[k] = 1 - (k + 0.5) / SIZE;
     }
-    struct imc_system system = make_system(covariance, weight, excess, variance);
+    struct imc_system system = make_system(covariance, omega, excess, variance);
     system.constraint = p;
     system.wanted = 2.5;
     assert_ok(mf_imc_truncated(&system, 0.05, x, &solution));
@@ -121,7 +121,7 @@ static void test_imc_truncated_meets_a_constraint_by_the_directions_it_keeps(voi
     // At the least cost, Σ (s_k Δ_k)²: Δ_k ∝ p_k/s_k².
     for (int k = 0; k < SIZE; k++) {
         const double s = eigenvalue(k) / temperature;
-        const double change = component(x, k) - (k < 4 ? weight[k] / s : 0);
+        const double change = component(x, k) - (k < 4 ? omega[k] / s : 0);
         if (k == 0)
             response = change * s * s / component(p, k);
         assert_close(change, k < 4 ? response * component(p, k) / (s * s) : 0, 1e-9);

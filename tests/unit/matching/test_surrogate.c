@@ -11,9 +11,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { GENES = 5, FEATURES = 30, CAPACITY = 60, REPETITIONS = 200 };
+enum { VARIABLES = 5, FEATURES = 30, CAPACITY = 60, REPETITIONS = 200 };
 
-/// A made-up experiment. The last gene has no effect if `open`.
+/// A made-up experiment. The last variable has no effect if `open`.
 struct experiment {
     bool open;
     double spread;      ///< of the rows about the centre
@@ -24,7 +24,7 @@ struct experiment {
 };
 
 struct data {
-    double slope[FEATURES][GENES], truth[GENES], centre[GENES];
+    double slope[FEATURES][VARIABLES], truth[VARIABLES], centre[VARIABLES];
     double target[FEATURES], error[FEATURES];
     struct surrogate surrogate;
 };
@@ -43,14 +43,14 @@ static void make_noise(const struct experiment *e, struct rng_sequence *random, 
 
 static double answer(const struct data *data, int j, const double *x) {
     double sum = 0.3;
-    for (int n = 0; n < GENES; n++)
+    for (int n = 0; n < VARIABLES; n++)
         sum += data->slope[j][n] * x[n];
     return sum;
 }
 
 static void add_row(struct data *data, const struct experiment *e, struct rng_sequence *random) {
-    double x[GENES], y[FEATURES], noise[FEATURES];
-    for (int n = 0; n < GENES; n++)
+    double x[VARIABLES], y[FEATURES], noise[FEATURES];
+    for (int n = 0; n < VARIABLES; n++)
         x[n] = data->centre[n] + e->spread * normal(random);
     make_noise(e, random, noise);
     for (int j = 0; j < FEATURES; j++)
@@ -58,32 +58,34 @@ static void add_row(struct data *data, const struct experiment *e, struct rng_se
     mf_surrogate_add(&data->surrogate, x, y);
 }
 
-/// The truth lies `offset` from the centre in every gene.
+/// The truth lies `offset` from the centre in every variable.
 static void begin(struct data *data, const struct experiment *e, double offset, uint32_t number) {
     struct rng_sequence random = mf_rng_sequence_begin(7, RNG_INITIAL, number, 0);
     double noise[FEATURES];
     *data = (struct data){0};
-    for (int n = 0; n < GENES; n++) {
+    for (int n = 0; n < VARIABLES; n++) {
         data->centre[n] = 0.5;
         data->truth[n] = 0.5 + (n % 2 ? offset : -offset);
     }
     for (int j = 0; j < FEATURES; j++)
-        for (int n = 0; n < GENES; n++)
-            data->slope[j][n] = e->open && n == GENES - 1 ? 0 : normal(&random);
+        for (int n = 0; n < VARIABLES; n++)
+            data->slope[j][n] = e->open && n == VARIABLES - 1 ? 0 : normal(&random);
     make_noise(e, &random, noise);
     for (int j = 0; j < FEATURES; j++) {
         data->error[j] = e->target_error;
         data->target[j] = answer(data, j, data->truth) + e->target_error * noise[j];
     }
-    assert_ok(
-        mf_surrogate_init(&data->surrogate, GENES, FEATURES, CAPACITY, data->target, data->error));
+    assert_ok(mf_surrogate_init(&data->surrogate, VARIABLES, FEATURES, CAPACITY, data->target,
+                                data->error));
     for (size_t k = 0; k < e->rows; k++)
         add_row(data, e, &random);
 }
 
 /// Distance of the model's best from the truth in standard errors.
-static double deviation(const struct data *data, const struct surrogate_model *model, int gene) {
-    return (model->best[gene] - data->truth[gene]) / sqrt(model->covariance[gene * (GENES + 1)]);
+static double deviation(const struct data *data, const struct surrogate_model *model,
+                        int variable) {
+    return (model->best[variable] - data->truth[variable]) /
+           sqrt(model->covariance[variable * (VARIABLES + 1)]);
 }
 
 static void fit(const struct data *data, double reach, struct surrogate_model *model) {
@@ -100,7 +102,7 @@ static void test_surrogate_finds_the_truth_when_there_is_next_to_no_noise(void *
     struct surrogate_model model;
     begin(&data, &e, 0.2, 0);
     fit(&data, 0.3, &model);
-    for (int n = 0; n < GENES; n++)
+    for (int n = 0; n < VARIABLES; n++)
         assert_close(model.best[n], data.truth[n], 2e-3);
     mf_surrogate_model_clear(&model);
     mf_surrogate_clear(&data.surrogate);
@@ -125,23 +127,23 @@ static void test_surrogate_meets_one_feature_exactly_when_it_is_a_constraint(voi
     // Where it cannot be met, the step stays within the reach.
     data.target[2] += 100;
     fit(&data, 0.3, &model);
-    for (int n = 0; n < GENES; n++)
-        assert_true(fabs(model.best[n] - 0.5) < 0.3 * sqrt(GENES));
+    for (int n = 0; n < VARIABLES; n++)
+        assert_true(fabs(model.best[n] - 0.5) < 0.3 * sqrt(VARIABLES));
     mf_surrogate_model_clear(&model);
     mf_surrogate_clear(&data.surrogate);
 }
 
-/// The part of the genes of many experiments that lie within two standard errors: 0.954 if these
-/// are right. They are estimates from some twenty rows, and may be off by a quarter.
+/// The part of the variables of many experiments that lie within two standard errors: 0.954 if
+/// these are right. They are estimates from some twenty rows, and may be off by a quarter.
 static double coverage(const struct experiment *e, double offset) {
     size_t within = 0, all = 0;
-    const int genes = e->open ? GENES - 1 : GENES;
+    const int variables = e->open ? VARIABLES - 1 : VARIABLES;
     for (uint32_t number = 0; number < REPETITIONS; number++) {
         struct data data;
         struct surrogate_model model;
         begin(&data, e, offset, number);
         fit(&data, 0.3, &model);
-        for (int n = 0; n < genes; n++, all++)
+        for (int n = 0; n < variables; n++, all++)
             within += fabs(deviation(&data, &model, n)) <= 2;
         mf_surrogate_model_clear(&model);
         mf_surrogate_clear(&data.surrogate);
@@ -172,7 +174,7 @@ static void test_surrogate_error_of_an_open_gene_is_about_that_of_no_knowledge(v
             begin(&data, &e, 0.1, number);
             fit(&data, 0.3, &model);
             known[number] = sqrt(model.covariance[0]);
-            open[number] = sqrt(model.covariance[GENES * GENES - 1]);
+            open[number] = sqrt(model.covariance[VARIABLES * VARIABLES - 1]);
             mf_surrogate_model_clear(&model);
             mf_surrogate_clear(&data.surrogate);
         }
@@ -191,7 +193,7 @@ static void test_surrogate_is_not_known_when_there_are_too_few_rows(void **state
     struct rng_sequence random = mf_rng_sequence_begin(9, RNG_INITIAL, 0, 0);
     bool known = true;
     begin(&data, &e, 0.1, 0);
-    for (size_t k = 0; k + 1 < mf_surrogate_least_rows(GENES); k++)
+    for (size_t k = 0; k + 1 < mf_surrogate_least_rows(VARIABLES); k++)
         add_row(&data, &e, &random);
     assert_ok(mf_surrogate_fit(&data.surrogate, data.centre, 0.3, &model, &known));
     assert_false(known);
@@ -224,7 +226,7 @@ static void test_surrogate_forgets_the_oldest_rows_when_it_is_full(void **state)
     assert_int_equal(data.surrogate.rows.added, CAPACITY + 7);
     fit(&data, 0.3, &model);
     fit(&fresh, 0.3, &expected);
-    for (int n = 0; n < GENES; n++)
+    for (int n = 0; n < VARIABLES; n++)
         assert_close(model.best[n], expected.best[n], 1e-9);
     mf_surrogate_model_clear(&model);
     mf_surrogate_model_clear(&expected);
@@ -240,7 +242,7 @@ static void test_surrogate_stays_within_the_genes_when_the_target_is_beyond(void
     struct surrogate_model model;
     begin(&data, &e, 0.9, 0);
     fit(&data, 3, &model);
-    for (int n = 0; n < GENES; n++)
+    for (int n = 0; n < VARIABLES; n++)
         assert_close(model.best[n], n % 2 ? 1 : 0, 0);
     mf_surrogate_model_clear(&model);
     mf_surrogate_clear(&data.surrogate);
@@ -265,7 +267,7 @@ static void test_surrogate_is_the_same_from_its_spans(void **state) {
     }
     fit(&data, 0.3, &model);
     fit(&copy, 0.3, &again);
-    for (int n = 0; n < GENES * GENES; n++)
+    for (int n = 0; n < VARIABLES * VARIABLES; n++)
         assert_identical(model.covariance[n], again.covariance[n]);
     mf_surrogate_model_clear(&model);
     mf_surrogate_model_clear(&again);
@@ -305,8 +307,8 @@ static void test_surrogate_knows_nothing_when_all_rows_are_at_one_place(void **s
         struct surrogate_model model;
         begin(&data, &e, 0.1, 0);
         fit(&data, 0.3, &model);
-        for (int n = 0; n < GENES; n++) {
-            const double error = sqrt(model.covariance[n * (GENES + 1)]);
+        for (int n = 0; n < VARIABLES; n++) {
+            const double error = sqrt(model.covariance[n * (VARIABLES + 1)]);
             assert_true(model.best[n] >= 0 && model.best[n] <= 1);
             assert_true(error > 0.15 && error <= 0.3);
         }

@@ -16,7 +16,7 @@ static const struct etd_plan plan = {.every = 2, .origin_every = 3};
 /// Particles that fly through each other.
 static void fly(struct fluid *fluid, struct simulation *simulation, uint64_t seed) {
     fluid_ideal_gas(fluid, 3, PARTICLES, 0.02);
-    fluid->setup.weight = NULL;
+    fluid->setup.omega = NULL;
     fluid->setup.integrator = &mf_velocity_verlet;
     fluid->setup.seed = seed;
     assert_ok(mf_simulation_init(simulation, &fluid->setup, NULL));
@@ -194,7 +194,7 @@ static void test_etd_result_is_not_known_without_pairs(void **state) {
     double survival[4], error[4];
     uint64_t pairs[2];
     fluid_ideal_gas(&fluid, 3, 64, 0.02);
-    fluid.setup.weight = NULL;
+    fluid.setup.omega = NULL;
     fluid.setup.integrator = &mf_velocity_verlet;
     fluid.setup.placement.kind = PLACEMENT_LATTICE;
     fluid.setup.placement.jitter = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Sums over pairs, the extrapolation, and where the covariance of forces would mean nothing. That
-// it gives the dissipative weight is in tests/physics.
+// it gives the friction weight is in tests/physics.
 #include "observe/force_covariance.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
@@ -87,10 +87,10 @@ static void test_force_covariance_init_refuses_where_it_would_mean_nothing(void 
         mf_simulation_clear(&simulation);
     }
     fluid.setup.integrator = &mf_velocity_verlet;
-    fluid.setup.weight = NULL;
+    fluid.setup.omega = NULL;
     assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
     assert_fails(mf_force_covariance_init(&covariance, &plan, &simulation, 1), STATUS_BAD_INPUT,
-                 "no dissipative weight");
+                 "no friction weight");
     mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
 }

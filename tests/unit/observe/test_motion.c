@@ -24,7 +24,7 @@ struct curves {
 /// Free particles, in motion as a whole: by the end of the run most have left their box many times.
 static void fly(struct fluid *fluid, struct simulation *simulation, int dimensions, double drift) {
     fluid_ideal_gas(fluid, dimensions, PARTICLES, 0.02);
-    fluid->setup.weight = NULL;
+    fluid->setup.omega = NULL;
     fluid->setup.integrator = &mf_velocity_verlet;
     fluid->setup.temperature_limit = 1e4;
     assert_ok(mf_simulation_init(simulation, &fluid->setup, NULL));

@@ -27,7 +27,7 @@ static void make_pair(struct fluid *fluid, struct simulation *simulation, double
     for (int d = 0; d < 3; d++)
         fluid->setup.box.length[d] = 3;
     fluid->setup.placement.kind = PLACEMENT_FILE;
-    fluid->setup.weight = NULL;
+    fluid->setup.omega = NULL;
     fluid->setup.integrator = &mf_velocity_verlet;
     fluid->setup.temperature_limit = 1e6;
     assert_ok(mf_simulation_init(simulation, &fluid->setup, &start));
@@ -63,7 +63,7 @@ test_thermodynamics_pressure_takes_the_set_temperature_when_there_is_friction(vo
     struct fluid fluid;
     struct simulation simulation;
     make_pair(&fluid, &simulation, 2, -1);
-    simulation.law.weight = &fluid.weight;
+    simulation.law.omega = &fluid.omega;
     assert_close(mf_simulation_pressure(&simulation), 2 / 27.0 * 1 + 6.25 / (3 * 27),
                  10 * single_rounding);
     mf_simulation_clear(&simulation);
@@ -192,7 +192,7 @@ static void test_judge_tells_when_a_temperature_is_off(void **state) {
     s.temperature = NAN;
     assert_fails(mf_thermodynamics_judge(&s, &fluid.setup), STATUS_UNSTABLE, "time_step");
     // Without friction the two are held to each other.
-    fluid.setup.weight = NULL;
+    fluid.setup.omega = NULL;
     s.temperature = 1.4;
     s.temperature_configurational = 1.45;
     s.temperature_configurational_error = 0.01;

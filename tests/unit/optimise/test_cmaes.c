@@ -11,7 +11,7 @@
 
 #include <math.h>
 
-enum { GENES = 10, SEEDS = 20 };
+enum { VARIABLES = 10, SEEDS = 20 };
 
 /// Mean number of evaluations to 1e-10 over seeds; at most `lost` of them may stay above.
 static double evaluations(const struct landscape *landscape, double step, int lost) {
@@ -22,7 +22,7 @@ static double evaluations(const struct landscape *landscape, double step, int lo
     landscape_set(&mf_cmaes_optimiser, parameters, "rounds", 2000);
     for (uint64_t seed = 1; seed <= SEEDS; seed++) {
         const struct landscape_drive drive = {
-            .landscape = landscape, .genes = GENES, .seed = seed, .target = 1e-10};
+            .landscape = landscape, .variables = VARIABLES, .seed = seed, .target = 1e-10};
         const struct landscape_result result =
             landscape_minimise(&mf_cmaes_optimiser, parameters, &drive);
         if (result.least > 1e-10)
@@ -57,7 +57,7 @@ static void test_cmaes_finds_the_deepest_minimum_by_restarts(void **state) {
     landscape_set(&mf_cmaes_optimiser, parameters, "rounds", 5000);
     for (uint64_t seed = 1; seed <= 3; seed++) {
         const struct landscape_drive drive = {
-            .landscape = &landscape_rastrigin, .genes = 5, .seed = seed, .target = 1e-8};
+            .landscape = &landscape_rastrigin, .variables = 5, .seed = seed, .target = 1e-8};
         landscape_set(&mf_cmaes_optimiser, parameters, "restarts", 0);
         alone += landscape_minimise(&mf_cmaes_optimiser, parameters, &drive).least < 1e-8;
         landscape_set(&mf_cmaes_optimiser, parameters, "restarts", 6);
@@ -68,19 +68,19 @@ static void test_cmaes_finds_the_deepest_minimum_by_restarts(void **state) {
     assert_true(found >= 2);
 }
 
-/// Geometric mean of the favourite's error on a noisy sphere.
+/// Geometric mean of the incumbent's error on a noisy sphere.
 static double noisy_sphere(double noise, uint64_t evaluations) {
     double sum = 0;
     void *parameters = landscape_parameters(&mf_cmaes_optimiser);
     landscape_set(&mf_cmaes_optimiser, parameters, "rounds", 5000);
     for (uint64_t seed = 1; seed <= SEEDS; seed++) {
         const struct landscape_drive drive = {.landscape = &landscape_sphere,
-                                              .genes = GENES,
+                                              .variables = VARIABLES,
                                               .seed = seed,
                                               .noise = noise,
                                               .target = -HUGE_VAL,
                                               .evaluations = evaluations};
-        sum += log(landscape_minimise(&mf_cmaes_optimiser, parameters, &drive).favourite) / SEEDS;
+        sum += log(landscape_minimise(&mf_cmaes_optimiser, parameters, &drive).incumbent) / SEEDS;
     }
     mf_memory_free(parameters);
     return exp(sum);
@@ -94,8 +94,8 @@ static void test_cmaes_sees_below_the_noise_of_a_measurement(void **state) {
 }
 
 /// A sphere whose half beyond a cliff near the minimum cannot be measured.
-static double cliff(const double *genes, size_t count) {
-    return genes[0] + genes[1] > 0.62 ? NAN : landscape_sphere.error(genes, count);
+static double cliff(const double *variables, size_t count) {
+    return variables[0] + variables[1] > 0.62 ? NAN : landscape_sphere.error(variables, count);
 }
 
 static void test_cmaes_finds_a_minimum_beside_a_cliff(void **state) {
@@ -106,7 +106,7 @@ static void test_cmaes_finds_a_minimum_beside_a_cliff(void **state) {
 
 static size_t population_after(int rounds, double noise) {
     const struct landscape_drive drive = {
-        .landscape = &landscape_sphere, .genes = GENES, .seed = 2, .noise = noise};
+        .landscape = &landscape_sphere, .variables = VARIABLES, .seed = 2, .noise = noise};
     void *parameters = landscape_parameters(&mf_cmaes_optimiser);
     struct landscape_result result = {.least = HUGE_VAL};
     struct landscape_run run = landscape_begin(&mf_cmaes_optimiser, parameters, &drive);
@@ -131,7 +131,7 @@ static void test_cmaes_population_grows_only_when_there_is_noise(void **state) {
 static void test_cmaes_population_stays_within_the_largest_round(void **state) {
     (void)state;
     const struct landscape_drive drive = {
-        .landscape = &landscape_sphere, .genes = GENES, .seed = 2, .noise = 1, .most = 100};
+        .landscape = &landscape_sphere, .variables = VARIABLES, .seed = 2, .noise = 1, .most = 100};
     void *parameters = landscape_parameters(&mf_cmaes_optimiser);
     landscape_set(&mf_cmaes_optimiser, parameters, "population", 70);
     landscape_set(&mf_cmaes_optimiser, parameters, "restarts", 6);
@@ -157,7 +157,7 @@ static void test_cmaes_refuses_a_population_below_4(void **state) {
     assert_non_null(memory);
     landscape_set(&mf_cmaes_optimiser, parameters, "population", 3);
     assert_fails(mf_cmaes_optimiser.create(
-                     memory, &(struct optimiser_space){.genes = 2, .maximum = 1}, parameters),
+                     memory, &(struct optimiser_space){.variables = 2, .maximum = 1}, parameters),
                  STATUS_BAD_INPUT, "below 4");
     mf_cmaes_optimiser.destroy(memory);
     mf_memory_free(memory);
@@ -169,7 +169,7 @@ static void test_cmaes_strategy_has_the_numbers_of_the_tutorial(void **state) {
     double weights[10], positive = 0, negative = 0;
     struct cmaes_strategy s = {.population = 10, .weights = weights};
     (void)state;
-    mf_cmaes_strategy_set(&s, GENES);
+    mf_cmaes_strategy_set(&s, VARIABLES);
     assert_int_equal(s.parents, 5);
     assert_close(s.effective, 3.167299, 1e-6);
     assert_close(s.path_sigma, 0.284429, 1e-6);
@@ -185,7 +185,7 @@ static void test_cmaes_strategy_has_the_numbers_of_the_tutorial(void **state) {
     assert_close(positive, 1, 1e-12);
     assert_close(s.weights_sum, positive + negative, 1e-12);
     // The covariance stays positive: what a round takes away is less than what it keeps.
-    assert_true(s.rank_mu * -negative * GENES <= 1 - s.rank_one - s.rank_mu + 1e-12);
+    assert_true(s.rank_mu * -negative * VARIABLES <= 1 - s.rank_one - s.rank_mu + 1e-12);
 }
 
 /// 40,000 steps of a covariance with correlation: five standard errors.

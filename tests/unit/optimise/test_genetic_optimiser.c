@@ -28,7 +28,7 @@ static void tell(struct run *run, const double *errors) {
 
 static struct run begin(int64_t generations) {
     struct run run = {.state = mf_memory_zeroed(1, mf_genetic_optimiser.state_size)};
-    const struct optimiser_space space = {.genes = GENES, .maximum = 1, .seed = 3};
+    const struct optimiser_space space = {.variables = GENES, .maximum = 1, .seed = 3};
     assert_non_null(run.state);
     mf_fields_set_defaults(mf_genetic_fields, &run.parameters);
     run.parameters.population = POPULATION;
@@ -50,7 +50,7 @@ static void assert_genes(const double *a, const double *b) {
 }
 
 static const double *row(const struct run *run, size_t number) {
-    return run->round.genes + number * GENES;
+    return run->round.variables + number * GENES;
 }
 
 static void copy_row(const struct run *run, size_t number, double genes[GENES]) {
@@ -58,18 +58,18 @@ static void copy_row(const struct run *run, size_t number, double genes[GENES]) 
 }
 
 static void test_challenger_becomes_elite_by_fresh_measurements_alone(void **state) {
-    double challenger[GENES], better[GENES], favourite[GENES];
+    double challenger[GENES], better[GENES], incumbent[GENES];
     struct run run = begin(10);
     (void)state;
     assert_int_equal(run.round.count, POPULATION);
-    assert_false(mf_genetic_optimiser.favourite(run.state, favourite));
+    assert_false(mf_genetic_optimiser.incumbent(run.state, incumbent));
     copy_row(&run, 4, challenger);
     tell(&run, (double[]){5, 4, 3, 2, 1, 6});
     assert_int_equal(run.round.count, ROWS);
     assert_genes(row(&run, POPULATION), challenger);
     assert_genes(row(&run, POPULATION + 1), challenger);
-    assert_true(mf_genetic_optimiser.favourite(run.state, favourite));
-    assert_genes(favourite, challenger);
+    assert_true(mf_genetic_optimiser.incumbent(run.state, incumbent));
+    assert_genes(incumbent, challenger);
 
     // Measured again, it is 2 on average. Nobody of this generation is below.
     tell(&run, (double[]){5, 4, 3, 2, 2.5, 6, 1.5, 2.5});
@@ -88,8 +88,8 @@ static void test_challenger_becomes_elite_by_fresh_measurements_alone(void **sta
     tell(&run, (double[]){2, 9, 0.1, 9, 9, 9});
     tell(&run, (double[]){2, 9, 9, 9, 9, 9, 1.5, 1});
     assert_genes(row(&run, 0), better);
-    assert_true(mf_genetic_optimiser.favourite(run.state, favourite));
-    assert_genes(favourite, better);
+    assert_true(mf_genetic_optimiser.incumbent(run.state, incumbent));
+    assert_genes(incumbent, better);
     end(&run);
 }
 
@@ -107,7 +107,7 @@ static void test_elite_falls_when_it_turns_out_to_be_bad(void **state) {
 }
 
 static void test_last_round_measures_the_last_challenger_alone(void **state) {
-    double challenger[GENES], favourite[GENES];
+    double challenger[GENES], incumbent[GENES];
     struct run run = begin(2);
     (void)state;
     tell(&run, (double[]){5, 4, 3, 2, 1, 6});
@@ -117,8 +117,8 @@ static void test_last_round_measures_the_last_challenger_alone(void **state) {
     assert_genes(row(&run, 0), challenger);
     tell(&run, (double[]){0.5, 0.7});
     assert_int_equal(run.round.count, 0);
-    assert_true(mf_genetic_optimiser.favourite(run.state, favourite));
-    assert_genes(favourite, challenger);
+    assert_true(mf_genetic_optimiser.incumbent(run.state, incumbent));
+    assert_genes(incumbent, challenger);
     assert_int_equal(mf_genetic_optimiser.most_rounds(&run.parameters, GENES), 3);
     end(&run);
 }
@@ -128,7 +128,7 @@ static void test_twins_of_the_elite_are_no_challengers(void **state) {
     (void)state;
     tell(&run, (double[]){5, 4, 3, 2, 1, 6});
     tell(&run, (double[]){9, 9, 9, 9, 9, 9, 1, 1});
-    double *twin = (double *)run.round.genes + 3 * GENES;
+    double *twin = (double *)run.round.variables + 3 * GENES;
     memcpy(twin, row(&run, 0), GENES * sizeof(double));
     tell(&run, (double[]){1, 9, 9, 0.1, 9, 9});
     assert_int_equal(run.round.count, POPULATION);
@@ -139,7 +139,7 @@ static void test_hopeless_is_the_median_of_the_last_generation(void **state) {
     struct run run = begin(10);
     (void)state;
     tell(&run, (double[]){5, 4, 3, 2, 1, NAN});
-    assert_close(mf_genetic_optimiser.hopeless(run.state), 4, 0);
+    assert_close(mf_genetic_optimiser.discard_above(run.state), 4, 0);
     end(&run);
 }
 

@@ -65,11 +65,11 @@ static struct nsga2 begin(const struct problem *problem, size_t population, size
 static bool step(struct nsga2 *nsga2, const struct problem *problem) {
     static double value[MOST_ROWS * 2];
     const struct optimiser_round round = mf_nsga2_ask(nsga2), again = mf_nsga2_ask(nsga2);
-    assert_ptr_equal(round.genes, again.genes);
+    assert_ptr_equal(round.variables, again.variables);
     assert_int_equal(round.count, again.count);
     assert_true(round.count <= MOST_ROWS);
     for (size_t k = 0; k < round.count; k++) {
-        const double *x = round.genes + k * problem->genes;
+        const double *x = round.variables + k * problem->genes;
         double normal[4];
         for (size_t n = 0; n < problem->genes; n++)
             assert_true(x[n] >= 0 && x[n] <= 1);
@@ -240,9 +240,9 @@ static void test_nsga2_begins_about_the_start(void **state) {
     assert_ok(mf_nsga2_init(&nsga2, &parameters, &space));
     const struct optimiser_round round = mf_nsga2_ask(&nsga2);
     assert_int_equal(mf_nsga2_parents(&nsga2), 0);
-    assert_memory_equal(round.genes, start, sizeof start);
+    assert_memory_equal(round.variables, start, sizeof start);
     for (size_t k = 0; k < round.count; k++)
-        squares += pow(round.genes[3 * k + 1] - 0.5, 2) / (double)round.count;
+        squares += pow(round.variables[3 * k + 1] - 0.5, 2) / (double)round.count;
     // Widths from 0.01 to 0.1, uniform in their logarithm: a mean square of 0.099/(2 ln 10) 0.1.
     assert_true(sqrt(squares) > 0.03 && sqrt(squares) < 0.07);
     mf_nsga2_clear(&nsga2);
@@ -256,7 +256,7 @@ static void test_nsga2_plants_children_once(void **state) {
     for (int k = 0; k < 4; k++)
         mf_nsga2_plant(&nsga2, planted);
     for (int k = 0; k < 3; k++) {
-        const double *x = mf_nsga2_ask(&nsga2).genes;
+        const double *x = mf_nsga2_ask(&nsga2).variables;
         for (int child = 0; child < 6; child++)
             assert_true((x[2 * child] == planted[0] && x[2 * child + 1] == 1) ==
                         (k == 1 && child >= 3));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What every optimiser promises, for all of them alike. landscape_step asks twice and compares, and
-// checks that no candidate and no favourite is beyond the bounds, in every round of every test
+// checks that no candidate and no incumbent is beyond the bounds, in every round of every test
 // here.
 #include "optimise/genetic.h"
 #include "optimise/optimiser.h"
@@ -12,9 +12,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { GENES = 4, EVALUATIONS = 3000, SEEDS = 3 };
+enum { VARIABLES = 4, EVALUATIONS = 3000, SEEDS = 3 };
 
-/// An optimiser with its settings, and the largest error of its favourite that is right: twice what
+/// An optimiser with its settings, and the largest error of its incumbent that is right: twice what
 /// was the worst of ten seeds, or 1e-9. Those of the GN_ and of Rosenbrock's and Rastrigin's
 /// functions are of local minima, or of a search that was not over.
 static const struct variant {
@@ -65,20 +65,20 @@ static void *parameters_of(const struct variant *variant) {
     return parameters;
 }
 
-/// The favourite's error is at most `bound` for each of some seeds.
+/// The incumbent's error is at most `bound` for each of some seeds.
 static void check_minimum(const struct variant *variant, struct landscape_drive drive,
                           double bound) {
     void *parameters = parameters_of(variant);
-    drive.genes = GENES;
+    drive.variables = VARIABLES;
     drive.evaluations = EVALUATIONS;
     drive.target = -HUGE_VAL;
     for (drive.seed = 1; drive.seed <= SEEDS; drive.seed++) {
         const struct landscape_result result =
             landscape_minimise(variant->optimiser, parameters, &drive);
-        if (!(result.favourite <= bound))
+        if (!(result.incumbent <= bound))
             fail_msg("%s, variant %d, %s, seed %d: %g is above %g", variant->optimiser->name,
                      (int)(variant - variants), drive.landscape->name, (int)drive.seed,
-                     result.favourite, bound);
+                     result.incumbent, bound);
     }
     mf_memory_free(parameters);
 }
@@ -116,7 +116,7 @@ static void test_every_optimiser_goes_on_when_candidates_fail(void **state) {
 
 static void test_every_optimiser_has_no_favourite_when_all_have_failed(void **state) {
     const struct landscape_drive drive = {.landscape = &landscape_sphere,
-                                          .genes = GENES,
+                                          .variables = VARIABLES,
                                           .seed = 5,
                                           .failing = 1,
                                           .target = -HUGE_VAL,
@@ -126,7 +126,7 @@ static void test_every_optimiser_has_no_favourite_when_all_have_failed(void **st
         void *parameters = parameters_of(v);
         const struct landscape_result result = landscape_minimise(v->optimiser, parameters, &drive);
         assert_true(result.rounds > 0);
-        assert_true(result.favourite == HUGE_VAL);
+        assert_true(result.incumbent == HUGE_VAL);
         mf_memory_free(parameters);
     }
 }
@@ -165,22 +165,23 @@ static void compare_candidates(struct landscape_run *a, struct landscape_run *b)
     assert_ok(a->optimiser->ask(a->state, &first));
     assert_ok(b->optimiser->ask(b->state, &second));
     assert_int_equal(first.count, second.count);
-    assert_memory_equal(first.genes, second.genes, first.count * GENES * sizeof(double));
+    assert_memory_equal(first.variables, second.variables,
+                        first.count * VARIABLES * sizeof(double));
 }
 
 static void compare_beliefs(struct landscape_run *a, struct landscape_run *b) {
-    double first[GENES] = {0}, second[GENES] = {0};
-    assert_int_equal(a->optimiser->favourite(a->state, first),
-                     b->optimiser->favourite(b->state, second));
+    double first[VARIABLES] = {0}, second[VARIABLES] = {0};
+    assert_int_equal(a->optimiser->incumbent(a->state, first),
+                     b->optimiser->incumbent(b->state, second));
     assert_memory_equal(first, second, sizeof first);
     assert_identical(a->optimiser->spread(a->state), b->optimiser->spread(b->state));
-    assert_identical(a->optimiser->hopeless(a->state), b->optimiser->hopeless(b->state));
+    assert_identical(a->optimiser->discard_above(a->state), b->optimiser->discard_above(b->state));
 }
 
 /// Save after `before` rounds, go on in a new state, and compare with going on in the old one.
 static void check_restart(const struct variant *variant, double noise, int before, bool asked) {
     const struct landscape_drive drive = {.landscape = &landscape_rastrigin,
-                                          .genes = GENES,
+                                          .variables = VARIABLES,
                                           .seed = 7,
                                           .noise = noise,
                                           .failing = noise > 0 ? 0.1 : 0};
@@ -230,7 +231,7 @@ static void test_cmaes_goes_on_with_the_same_bits_when_it_began_again(void **sta
 /// Two at once in turns, which NLopt's random numbers must not mix up.
 static void test_every_optimiser_is_a_function_of_its_seed(void **state) {
     const struct landscape_drive drive = {
-        .landscape = &landscape_rosenbrock, .genes = GENES, .seed = 3};
+        .landscape = &landscape_rosenbrock, .variables = VARIABLES, .seed = 3};
     struct landscape_drive other = drive;
     (void)state;
     other.seed = 4;
@@ -257,7 +258,8 @@ static void test_every_optimiser_is_a_function_of_its_seed(void **state) {
 
 /// An optimiser that has used its budget up has not settled, whatever it believes.
 static void test_only_what_ended_by_itself_has_settled(void **state) {
-    struct landscape_drive drive = {.landscape = &landscape_sphere, .genes = GENES, .seed = 7};
+    struct landscape_drive drive = {
+        .landscape = &landscape_sphere, .variables = VARIABLES, .seed = 7};
     (void)state;
     for (const struct variant *v = variants; v < variants + VARIANTS; v++) {
         const bool local = v->optimiser == &mf_nlopt_optimiser && v->settings[0].value >= 4;
@@ -281,9 +283,9 @@ static void test_only_what_ended_by_itself_has_settled(void **state) {
 // Space -------------------------------------------------------------------------------------------
 
 static void test_every_optimiser_begins_near_its_start(void **state) {
-    const double start[GENES] = {0.7, 0.25, 0.6, 0.3};
+    const double start[VARIABLES] = {0.7, 0.25, 0.6, 0.3};
     const struct landscape_drive drive = {
-        .landscape = &landscape_sphere, .genes = GENES, .seed = 3, .start = start};
+        .landscape = &landscape_sphere, .variables = VARIABLES, .seed = 3, .start = start};
     (void)state;
     for (const struct variant *v = variants; v < variants + VARIANTS; v++) {
         void *parameters = parameters_of(v);
@@ -295,9 +297,9 @@ static void test_every_optimiser_begins_near_its_start(void **state) {
         assert_ok(v->optimiser->ask(run.state, &round));
         for (size_t k = 0; k < round.count; k++) {
             double distance = 0;
-            for (int gene = 0; gene < GENES; gene++)
-                distance =
-                    fmax(distance, fabs(round.genes[k * GENES + (size_t)gene] - start[gene]));
+            for (int variable = 0; variable < VARIABLES; variable++)
+                distance = fmax(distance, fabs(round.variables[k * VARIABLES + (size_t)variable] -
+                                               start[variable]));
             nearest = fmin(nearest, distance);
         }
         const bool global = v->optimiser == &mf_nlopt_optimiser && v->settings[0].value < 4;
@@ -311,11 +313,11 @@ static void test_every_optimiser_begins_near_its_start(void **state) {
 static void test_every_optimiser_refuses_a_space_without_room(void **state) {
     const double start[1] = {NAN};
     const struct optimiser_space bad[] = {
-        {.genes = 0, .maximum = 1},
-        {.genes = 1, .minimum = 1, .maximum = 1},
-        {.genes = 1, .minimum = 0, .maximum = NAN},
-        {.genes = 1, .minimum = -1e308, .maximum = 1e308},
-        {.genes = 1, .maximum = 1, .start = start},
+        {.variables = 0, .maximum = 1},
+        {.variables = 1, .minimum = 1, .maximum = 1},
+        {.variables = 1, .minimum = 0, .maximum = NAN},
+        {.variables = 1, .minimum = -1e308, .maximum = 1e308},
+        {.variables = 1, .maximum = 1, .start = start},
     };
     (void)state;
     for (const struct variant *v = variants; v < variants + VARIANTS; v++)
@@ -341,7 +343,7 @@ static void test_populations_larger_than_a_round_are_refused(void **state) {
         for (size_t less = 0; less < 2; less++) {
             const struct optimiser *optimiser = populations[k].optimiser;
             const struct optimiser_space space = {
-                .genes = GENES, .maximum = 1, .most = populations[k].most - less};
+                .variables = VARIABLES, .maximum = 1, .most = populations[k].most - less};
             void *parameters = landscape_parameters(optimiser),
                  *memory = mf_memory_zeroed(1, optimiser->state_size);
             assert_non_null(memory);
@@ -359,17 +361,17 @@ static void test_populations_larger_than_a_round_are_refused(void **state) {
 
 static void test_hopeless_is_unknown_before_a_round_is_told(void **state) {
     const struct landscape_drive drive = {
-        .landscape = &landscape_sphere, .genes = GENES, .seed = 3};
+        .landscape = &landscape_sphere, .variables = VARIABLES, .seed = 3};
     (void)state;
     for (const struct variant *v = variants; v < variants + VARIANTS; v++) {
         void *parameters = parameters_of(v);
         struct landscape_result result = {.least = HUGE_VAL};
         struct landscape_run run = landscape_begin(v->optimiser, parameters, &drive);
-        assert_true(v->optimiser->hopeless(run.state) == HUGE_VAL);
+        assert_true(v->optimiser->discard_above(run.state) == HUGE_VAL);
         landscape_step(&run, &drive, &result);
         if (v->optimiser != &mf_nlopt_optimiser) {
-            assert_true(v->optimiser->hopeless(run.state) > result.least);
-            assert_true(v->optimiser->hopeless(run.state) < GENES);
+            assert_true(v->optimiser->discard_above(run.state) > result.least);
+            assert_true(v->optimiser->discard_above(run.state) < VARIABLES);
         }
         landscape_end(&run);
         mf_memory_free(parameters);

@@ -15,11 +15,11 @@ enum { BINS = 40, CORE = 8, POTENTIAL_GENES = 12, WEIGHT_GENES = 10, MOST_POINTS
 struct both {
     double g[BINS];
     struct formula_soft_repulsion_parameters soft;
-    struct formula_power_weight_parameters power;
-    struct curve potential, weight;
+    struct formula_power_omega_parameters power;
+    struct curve potential, omega;
     struct inverse_problem problem;
     struct decoder decoder;
-    double genes[POTENTIAL_GENES + WEIGHT_GENES];
+    double variables[POTENTIAL_GENES + WEIGHT_GENES];
 };
 
 static int index_of(const struct shape *shape) {
@@ -29,30 +29,30 @@ static int index_of(const struct shape *shape) {
     return -1;
 }
 
-static void begin(struct both *both, bool potential, bool weight) {
+static void begin(struct both *both, bool potential, bool omega) {
     *both = (struct both){.soft = {25, 4}, .power = {3, 1, 0, 1.5}};
     for (int k = CORE; k < BINS; k++)
         both->g[k] = 1;
     both->potential = (struct curve){&mf_formula_soft_repulsion, &both->soft};
-    both->weight = (struct curve){&mf_formula_power_weight, &both->power};
+    both->omega = (struct curve){&mf_formula_power_omega, &both->power};
     const int bspline = index_of(mf_shape_find("bspline"));
     both->problem = (struct inverse_problem){
         .targets = {.bins = {0, 0.1, BINS},
                     .target[TARGET_RDF] = {.count = BINS, .value = both->g}},
         .unknown = {{potential, {bspline, POTENTIAL_GENES, -20, 80, 0, 0}, {&both->potential}},
-                    {weight, {bspline, WEIGHT_GENES, 0, 5, 0.1, 1.5}, {&both->weight}}},
+                    {omega, {bspline, WEIGHT_GENES, 0, 5, 0.1, 1.5}, {&both->omega}}},
         .scene = {.temperature = 1},
         .core_threshold = 1e-3,
         .core_stiffness = 2000};
     assert_ok(mf_decoder_init(&both->decoder, &both->problem));
-    assert_ok(mf_decoder_start(&both->decoder, both->genes));
+    assert_ok(mf_decoder_start(&both->decoder, both->variables));
 }
 
 static void check_curve(const struct both *both, enum unknown_kind kind, const struct curve *start,
                         size_t first, double tolerance) {
     double curve[MOST_POINTS];
     const double *r = mf_decoder_r(&both->decoder, kind);
-    mf_decoder_curve(&both->decoder, kind, both->genes, curve);
+    mf_decoder_curve(&both->decoder, kind, both->variables, curve);
     for (size_t k = first; k < mf_decoder_points(&both->decoder, kind); k++)
         assert_close(curve[k], mf_curve_value(start, r[k]), tolerance);
 }
@@ -61,14 +61,14 @@ static void test_decoder_start_gives_back_both_curves_side_by_side(void **state)
     (void)state;
     struct both both;
     begin(&both, true, true);
-    assert_int_equal(both.decoder.genes, POTENTIAL_GENES + WEIGHT_GENES);
-    assert_int_equal(both.decoder.first[UNKNOWN_WEIGHT], POTENTIAL_GENES);
+    assert_int_equal(both.decoder.variables, POTENTIAL_GENES + WEIGHT_GENES);
+    assert_int_equal(both.decoder.first[UNKNOWN_OMEGA], POTENTIAL_GENES);
     assert_int_equal(mf_decoder_points(&both.decoder, UNKNOWN_POTENTIAL), BINS + 1);
-    assert_int_equal(mf_decoder_points(&both.decoder, UNKNOWN_WEIGHT), WEIGHT_POINTS);
+    assert_int_equal(mf_decoder_points(&both.decoder, UNKNOWN_OMEGA), OMEGA_POINTS);
     check_curve(&both, UNKNOWN_POTENTIAL, &both.potential, CORE, 0.1);
-    check_curve(&both, UNKNOWN_WEIGHT, &both.weight, 0, 0.02);
-    for (size_t k = 0; k < both.decoder.genes; k++)
-        assert_true(both.genes[k] >= 0 && both.genes[k] <= 1);
+    check_curve(&both, UNKNOWN_OMEGA, &both.omega, 0, 0.02);
+    for (size_t k = 0; k < both.decoder.variables; k++)
+        assert_true(both.variables[k] >= 0 && both.variables[k] <= 1);
     mf_decoder_clear(&both.decoder);
 }
 
@@ -77,16 +77,16 @@ static void test_decoder_start_is_the_same_alone_and_beside_the_other(void **sta
     struct both both, alone;
     begin(&both, true, true);
     begin(&alone, false, true);
-    assert_int_equal(alone.decoder.genes, WEIGHT_GENES);
+    assert_int_equal(alone.decoder.variables, WEIGHT_GENES);
     assert_int_equal(mf_decoder_points(&alone.decoder, UNKNOWN_POTENTIAL), 0);
     for (int k = 0; k < WEIGHT_GENES; k++)
-        assert_identical(alone.genes[k], both.genes[POTENTIAL_GENES + k]);
+        assert_identical(alone.variables[k], both.variables[POTENTIAL_GENES + k]);
     mf_decoder_clear(&alone.decoder);
     begin(&alone, true, false);
-    assert_int_equal(alone.decoder.genes, POTENTIAL_GENES);
-    assert_int_equal(mf_decoder_points(&alone.decoder, UNKNOWN_WEIGHT), 0);
+    assert_int_equal(alone.decoder.variables, POTENTIAL_GENES);
+    assert_int_equal(mf_decoder_points(&alone.decoder, UNKNOWN_OMEGA), 0);
     for (int k = 0; k < POTENTIAL_GENES; k++)
-        assert_identical(alone.genes[k], both.genes[k]);
+        assert_identical(alone.variables[k], both.variables[k]);
     mf_decoder_clear(&alone.decoder);
     mf_decoder_clear(&both.decoder);
 }
@@ -94,14 +94,14 @@ static void test_decoder_start_is_the_same_alone_and_beside_the_other(void **sta
 static void test_decoder_start_is_clamped_when_it_leaves_the_range(void **state) {
     (void)state;
     struct both both;
-    double curve[WEIGHT_POINTS];
+    double curve[OMEGA_POINTS];
     begin(&both, false, true);
     both.power.sigma = 500;
-    assert_ok(mf_decoder_start(&both.decoder, both.genes));
+    assert_ok(mf_decoder_start(&both.decoder, both.variables));
     for (int k = 0; k < WEIGHT_GENES; k++)
-        assert_true(both.genes[k] >= 0 && both.genes[k] <= 1);
-    assert_close(both.genes[0], 1, 0);
-    mf_decoder_curve(&both.decoder, UNKNOWN_WEIGHT, both.genes, curve);
+        assert_true(both.variables[k] >= 0 && both.variables[k] <= 1);
+    assert_close(both.variables[0], 1, 0);
+    mf_decoder_curve(&both.decoder, UNKNOWN_OMEGA, both.variables, curve);
     assert_close(curve[0], 5, 1e-9);
     mf_decoder_clear(&both.decoder);
 }
@@ -109,45 +109,46 @@ static void test_decoder_start_is_clamped_when_it_leaves_the_range(void **state)
 static void test_decoder_start_falls_from_the_middle_when_no_weight_is_given(void **state) {
     (void)state;
     struct both both;
-    double curve[WEIGHT_POINTS];
+    double curve[OMEGA_POINTS];
     begin(&both, false, true);
-    both.problem.unknown[UNKNOWN_WEIGHT].start[0] = NULL;
-    assert_ok(mf_decoder_start(&both.decoder, both.genes));
-    mf_decoder_curve(&both.decoder, UNKNOWN_WEIGHT, both.genes, curve);
-    for (int k = 0; k < WEIGHT_POINTS; k++)
-        assert_close(curve[k], 2.5 * (1 - both.decoder.weight.r[k] / 1.5), 0.02);
+    both.problem.unknown[UNKNOWN_OMEGA].start[0] = NULL;
+    assert_ok(mf_decoder_start(&both.decoder, both.variables));
+    mf_decoder_curve(&both.decoder, UNKNOWN_OMEGA, both.variables, curve);
+    for (int k = 0; k < OMEGA_POINTS; k++)
+        assert_close(curve[k], 2.5 * (1 - both.decoder.omega.r[k] / 1.5), 0.02);
     mf_decoder_clear(&both.decoder);
 }
 
 static void test_decoder_curve_of_a_weight_is_never_negative(void **state) {
     (void)state;
     struct both both;
-    double curve[WEIGHT_POINTS];
+    double curve[OMEGA_POINTS];
     size_t zeros = 0;
     begin(&both, false, true);
-    both.problem.unknown[UNKNOWN_WEIGHT].parameters.minimum = -5;
+    both.problem.unknown[UNKNOWN_OMEGA].parameters.minimum = -5;
     for (int k = 0; k < WEIGHT_GENES; k++)
-        both.genes[k] = k % 2;
-    mf_decoder_curve(&both.decoder, UNKNOWN_WEIGHT, both.genes, curve);
-    for (int k = 0; k < WEIGHT_POINTS; k++) {
+        both.variables[k] = k % 2;
+    mf_decoder_curve(&both.decoder, UNKNOWN_OMEGA, both.variables, curve);
+    for (int k = 0; k < OMEGA_POINTS; k++) {
         assert_true(curve[k] >= 0);
         zeros += curve[k] <= 0;
     }
-    assert_in_range(zeros, 20, WEIGHT_POINTS - 20);
+    assert_in_range(zeros, 20, OMEGA_POINTS - 20);
     mf_decoder_clear(&both.decoder);
 }
 
 /// Σ of some matrix M Mᵀ of random numbers.
-static void make_covariance(double *covariance, size_t genes) {
+static void make_covariance(double *covariance, size_t variables) {
     double factor[32 * 32] = {0};
     struct rng_sequence random = mf_rng_sequence_begin(4, RNG_INITIAL, 0, 0);
-    for (size_t k = 0; k < genes * genes; k++)
+    for (size_t k = 0; k < variables * variables; k++)
         factor[k] = mf_rng_sequence_uniform(&random) - 0.5;
-    for (size_t a = 0; a < genes; a++)
-        for (size_t b = 0; b < genes; b++) {
-            covariance[a * genes + b] = 0;
-            for (size_t c = 0; c < genes; c++)
-                covariance[a * genes + b] += factor[a * genes + c] * factor[b * genes + c];
+    for (size_t a = 0; a < variables; a++)
+        for (size_t b = 0; b < variables; b++) {
+            covariance[a * variables + b] = 0;
+            for (size_t c = 0; c < variables; c++)
+                covariance[a * variables + b] +=
+                    factor[a * variables + c] * factor[b * variables + c];
         }
 }
 
@@ -155,17 +156,17 @@ static void make_covariance(double *covariance, size_t genes) {
 static void check_band(const struct both *both, enum unknown_kind kind, size_t first) {
     enum { ALL = POTENTIAL_GENES + WEIGHT_GENES };
     static double slope[ALL][MOST_POINTS];
-    double covariance[ALL * ALL], zero[MOST_POINTS], error[MOST_POINTS], genes[ALL] = {0};
+    double covariance[ALL * ALL], zero[MOST_POINTS], error[MOST_POINTS], variables[ALL] = {0};
     double flat[INVERSE_FLAT * MOST_POINTS];
     const size_t points = mf_decoder_points(&both->decoder, kind);
     make_covariance(covariance, ALL);
-    mf_decoder_curve(&both->decoder, kind, genes, zero);
+    mf_decoder_curve(&both->decoder, kind, variables, zero);
     for (int n = 0; n < ALL; n++) {
-        genes[n] = 1;
-        mf_decoder_curve(&both->decoder, kind, genes, slope[n]);
-        genes[n] = 0;
+        variables[n] = 1;
+        mf_decoder_curve(&both->decoder, kind, variables, slope[n]);
+        variables[n] = 0;
     }
-    assert_ok(mf_decoder_band(&both->decoder, kind, genes, covariance, error, flat));
+    assert_ok(mf_decoder_band(&both->decoder, kind, variables, covariance, error, flat));
     for (size_t k = first; k < points; k++) {
         double sum = 0;
         for (int a = 0; a < ALL; a++)
@@ -175,7 +176,7 @@ static void check_band(const struct both *both, enum unknown_kind kind, size_t f
     }
     for (size_t k = 0; k < first; k++)
         assert_true(isnan(error[k]));
-    assert_ok(mf_decoder_band(&both->decoder, kind, genes, NULL, error, flat));
+    assert_ok(mf_decoder_band(&both->decoder, kind, variables, NULL, error, flat));
     for (size_t k = 0; k < points; k++)
         assert_true(isnan(error[k]));
 }
@@ -185,7 +186,7 @@ static void test_decoder_band_is_the_error_that_the_covariance_gives_the_curve(v
     struct both both;
     begin(&both, true, true);
     check_band(&both, UNKNOWN_POTENTIAL, CORE);
-    check_band(&both, UNKNOWN_WEIGHT, 0);
+    check_band(&both, UNKNOWN_OMEGA, 0);
     mf_decoder_clear(&both.decoder);
 }
 
@@ -197,26 +198,26 @@ static void test_decoder_laws_are_those_of_the_scene_when_they_are_known(void **
     double value;
     begin(&both, false, true);
     both.problem.scene.potential = &known;
-    assert_ok(mf_decoder_laws(&both.decoder, both.genes, &laws));
+    assert_ok(mf_decoder_laws(&both.decoder, both.variables, &laws));
     assert_ptr_equal(laws.table[UNKNOWN_POTENTIAL], &known);
-    assert_ptr_equal(laws.table[UNKNOWN_WEIGHT], &laws.own[UNKNOWN_WEIGHT]);
-    mf_table_evaluate(laws.table[UNKNOWN_WEIGHT], 0.75, &value, NULL, NULL);
+    assert_ptr_equal(laws.table[UNKNOWN_OMEGA], &laws.own[UNKNOWN_OMEGA]);
+    mf_table_evaluate(laws.table[UNKNOWN_OMEGA], 0.75, &value, NULL, NULL);
     assert_close(value, 1.5, 0.02);
     mf_decoder_laws_clear(&laws);
     mf_decoder_clear(&both.decoder);
 }
 
-/// A formula beside nothing else: of three genes, or of those that are not fixed.
-static void begin_power_with(struct both *both, int64_t genes, double sigma, double exponent,
+/// A formula beside nothing else: of three variables, or of those that are not fixed.
+static void begin_power_with(struct both *both, int64_t variables, double sigma, double exponent,
                              double inner_cutoff) {
     *both = (struct both){.power = {2.5, 1.5, 0.4, 1.6}};
-    both->weight = (struct curve){&mf_formula_power_weight, &both->power};
-    both->problem.unknown[UNKNOWN_WEIGHT] = (struct unknown){
+    both->omega = (struct curve){&mf_formula_power_omega, &both->power};
+    both->problem.unknown[UNKNOWN_OMEGA] = (struct unknown){
         true,
-        {INVERSE_CURVE_POWER, genes, 0, 5, 0.1, 1.6, {sigma, exponent, inner_cutoff}},
-        {&both->weight}};
+        {INVERSE_CURVE_POWER, variables, 0, 5, 0.1, 1.6, {sigma, exponent, inner_cutoff}},
+        {&both->omega}};
     assert_ok(mf_decoder_init(&both->decoder, &both->problem));
-    assert_ok(mf_decoder_start(&both->decoder, both->genes));
+    assert_ok(mf_decoder_start(&both->decoder, both->variables));
 }
 
 static void begin_power(struct both *both) {
@@ -227,28 +228,28 @@ static void test_decoder_power_is_the_formula_and_starts_at_it(void **state) {
     (void)state;
     struct both both;
     begin_power(&both);
-    assert_int_equal(both.decoder.genes, INVERSE_PARAMETERS);
-    check_curve(&both, UNKNOWN_WEIGHT, &both.weight, 0, 1e-12);
+    assert_int_equal(both.decoder.variables, INVERSE_PARAMETERS);
+    check_curve(&both, UNKNOWN_OMEGA, &both.omega, 0, 1e-12);
     mf_decoder_clear(&both.decoder);
 }
 
-/// The curve is the formula with what is fixed, whatever the genes of the rest are.
+/// The curve is the formula with what is fixed, whatever the variables of the rest are.
 static void test_decoder_power_holds_what_is_fixed(void **state) {
     (void)state;
     struct both both;
-    double curve[WEIGHT_POINTS];
+    double curve[OMEGA_POINTS];
     begin_power_with(&both, 1, NAN, 1.5, 0.4);
-    assert_int_equal(both.decoder.genes, 1);
-    check_curve(&both, UNKNOWN_WEIGHT, &both.weight, 0, 1e-12);
-    both.genes[0] = 0.8; // σ = 4
-    mf_decoder_curve(&both.decoder, UNKNOWN_WEIGHT, both.genes, curve);
-    for (size_t k = 0; k < WEIGHT_POINTS; k++)
-        assert_close(curve[k], 4 / 2.5 * mf_curve_value(&both.weight, both.decoder.weight.r[k]),
+    assert_int_equal(both.decoder.variables, 1);
+    check_curve(&both, UNKNOWN_OMEGA, &both.omega, 0, 1e-12);
+    both.variables[0] = 0.8; // σ = 4
+    mf_decoder_curve(&both.decoder, UNKNOWN_OMEGA, both.variables, curve);
+    for (size_t k = 0; k < OMEGA_POINTS; k++)
+        assert_close(curve[k], 4 / 2.5 * mf_curve_value(&both.omega, both.decoder.omega.r[k]),
                      1e-9);
     mf_decoder_clear(&both.decoder);
     begin_power_with(&both, 2, 2.5, NAN, NAN);
-    assert_int_equal(both.decoder.genes, 2);
-    check_curve(&both, UNKNOWN_WEIGHT, &both.weight, 0, 1e-12);
+    assert_int_equal(both.decoder.variables, 2);
+    check_curve(&both, UNKNOWN_OMEGA, &both.omega, 0, 1e-12);
     mf_decoder_clear(&both.decoder);
 }
 
@@ -258,20 +259,20 @@ static void test_decoder_parameters_have_the_errors_of_their_genes(void **state)
     struct inverse_parameter found[INVERSE_PARAMETERS];
     const double covariance[4] = {0.01 * 0.01, 0, 0, 0.02 * 0.02};
     begin_power_with(&both, 2, NAN, 1.5, NAN);
-    mf_decoder_parameters(&both.decoder, both.genes, covariance, found);
+    mf_decoder_parameters(&both.decoder, both.variables, covariance, found);
     assert_close(found[INVERSE_SIGMA].value, 2.5, 1e-12);
     assert_close(found[INVERSE_SIGMA].error, 5 * 0.01, 1e-12);
     assert_close(found[INVERSE_EXPONENT].value, 1.5, 0);
     assert_close(found[INVERSE_EXPONENT].error, 0, 0);
-    // Half of the way from 0.1 to 1.6 is one gene's range.
+    // Half of the way from 0.1 to 1.6 is one variable's range.
     assert_close(found[INVERSE_INNER_CUTOFF].value, 0.4, 1e-12);
     assert_close(found[INVERSE_INNER_CUTOFF].error, 0.75 * 0.02, 1e-12);
-    const struct unknown_parameters *p = &both.problem.unknown[UNKNOWN_WEIGHT].parameters;
+    const struct unknown_parameters *p = &both.problem.unknown[UNKNOWN_OMEGA].parameters;
     assert_null(mf_decoder_parameter_bound(p, INVERSE_SIGMA, 0.5 * (p->minimum + p->maximum)));
     assert_string_equal(mf_decoder_parameter_bound(p, INVERSE_SIGMA, p->minimum), "minimum");
     assert_string_equal(mf_decoder_parameter_bound(p, INVERSE_SIGMA, p->maximum), "maximum");
     assert_null(mf_decoder_parameter_bound(p, INVERSE_SIGMA, NAN));
-    mf_decoder_parameters(&both.decoder, both.genes, NULL, found);
+    mf_decoder_parameters(&both.decoder, both.variables, NULL, found);
     assert_true(isnan(found[INVERSE_SIGMA].error));
     mf_decoder_clear(&both.decoder);
 }
@@ -279,30 +280,32 @@ static void test_decoder_parameters_have_the_errors_of_their_genes(void **state)
 static void test_decoder_band_of_the_formula_follows_its_genes(void **state) {
     (void)state;
     struct both both;
-    double error[WEIGHT_POINTS], flat[INVERSE_FLAT * WEIGHT_POINTS], covariance[9] = {0};
+    double error[OMEGA_POINTS], flat[INVERSE_FLAT * OMEGA_POINTS], covariance[9] = {0};
     begin_power(&both);
     // Only σ is uncertain: the band is the curve itself, scaled.
     covariance[0] = 0.01 * 0.01;
-    assert_ok(mf_decoder_band(&both.decoder, UNKNOWN_WEIGHT, both.genes, covariance, error, flat));
-    for (size_t k = 0; k < WEIGHT_POINTS; k++)
+    assert_ok(
+        mf_decoder_band(&both.decoder, UNKNOWN_OMEGA, both.variables, covariance, error, flat));
+    for (size_t k = 0; k < OMEGA_POINTS; k++)
         assert_close(error[k],
-                     mf_curve_value(&both.weight, both.decoder.weight.r[k]) / 2.5 * 5 * 0.01, 1e-9);
+                     mf_curve_value(&both.omega, both.decoder.omega.r[k]) / 2.5 * 5 * 0.01, 1e-9);
     mf_decoder_clear(&both.decoder);
 }
 
-/// Two uncertain genes are two directions: orthogonal, the wider first, and together all of the
+/// Two uncertain variables are two directions: orthogonal, the wider first, and together all of the
 /// errors.
 static void test_decoder_flat_directions_are_principal_components(void **state) {
     (void)state;
     struct both both;
-    double error[WEIGHT_POINTS], flat[INVERSE_FLAT * WEIGHT_POINTS], covariance[9] = {0};
+    double error[OMEGA_POINTS], flat[INVERSE_FLAT * OMEGA_POINTS], covariance[9] = {0};
     double all = 0, squares[2] = {0}, product = 0;
     begin_power(&both);
     covariance[0] = 0.01 * 0.01;
     covariance[4] = 0.02 * 0.02;
-    assert_ok(mf_decoder_band(&both.decoder, UNKNOWN_WEIGHT, both.genes, covariance, error, flat));
-    for (size_t k = 0; k < WEIGHT_POINTS; k++) {
-        const double second = flat[WEIGHT_POINTS + k];
+    assert_ok(
+        mf_decoder_band(&both.decoder, UNKNOWN_OMEGA, both.variables, covariance, error, flat));
+    for (size_t k = 0; k < OMEGA_POINTS; k++) {
+        const double second = flat[OMEGA_POINTS + k];
         all += error[k] * error[k];
         squares[0] += flat[k] * flat[k];
         squares[1] += second * second;

@@ -3,14 +3,14 @@
 // Single simulations of a small soft fluid, and rounds of them.
 #include "problem/evaluate.h"
 
-#include "matching/candidates.h"
+#include "matching/population.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
 
 #include <math.h>
 
-enum { COUNT = 81, BINS = 20, GENES = 4, CANDIDATES = 6 };
+enum { COUNT = 81, BINS = 20, VARIABLES = 4, CANDIDATES = 6 };
 
 /// A fluid whose g(r) is to be 1 everywhere, which it is not.
 struct made {
@@ -30,19 +30,19 @@ static void begin(struct made *made) {
     }
     made->problem = (struct inverse_problem){
         .targets = {.bins = {0, 0.05, BINS}, .target[TARGET_RDF] = {BINS, made->g, made->error, 0}},
-        .unknown[UNKNOWN_WEIGHT] = {true, {0, GENES, 0, 6, 0, 1}, {NULL}},
+        .unknown[UNKNOWN_OMEGA] = {true, {0, VARIABLES, 0, 6, 0, 1}, {NULL}},
         .scene = made->fluid.setup,
         .seed = 3,
         .threads = 1};
 }
 
-static void measure(const struct made *made, double hopeless, double patience,
+static void measure(const struct made *made, double discard_above, double patience,
                     struct evaluate_result *result) {
     struct evaluate_parameters parameters = made->parameters;
     parameters.patience = patience;
     const struct evaluate_candidate candidate = {.potential = made->problem.scene.potential,
-                                                 .weight = made->problem.scene.weight,
-                                                 .hopeless = hopeless,
+                                                 .omega = made->problem.scene.omega,
+                                                 .discard_above = discard_above,
                                                  .threads = 1,
                                                  .seed = 11};
     assert_ok(mf_evaluate(&made->problem, &candidate, &parameters, NULL, NULL, result));
@@ -112,9 +112,9 @@ static void test_evaluate_begins_where_it_is_told(void **state) {
             from[d][k] = (d == 0 ? k % 5 : d == 1 ? k / 5 % 5 : k / 25) * 0.6 + 0.1;
     const struct evaluate_candidate candidate = {
         .potential = made.problem.scene.potential,
-        .weight = made.problem.scene.weight,
+        .omega = made.problem.scene.omega,
         .position = (const double *const[]){from[0], from[1], from[2]},
-        .hopeless = HUGE_VAL,
+        .discard_above = HUGE_VAL,
         .threads = 1,
         .seed = 11};
     assert_ok(mf_evaluate(&made.problem, &candidate, &made.parameters, NULL,
@@ -132,8 +132,8 @@ static void test_evaluate_fails_when_the_temperature_is_another(void **state) {
     begin(&made);
     made.parameters.temperature_tolerance = 1e-9;
     const struct evaluate_candidate candidate = {.potential = made.problem.scene.potential,
-                                                 .weight = made.problem.scene.weight,
-                                                 .hopeless = HUGE_VAL,
+                                                 .omega = made.problem.scene.omega,
+                                                 .discard_above = HUGE_VAL,
                                                  .threads = 1,
                                                  .seed = 11};
     assert_fails(mf_evaluate(&made.problem, &candidate, &made.parameters, NULL, NULL, &result),
@@ -156,27 +156,27 @@ struct rounds {
 static void measure_rounds(const struct made *made, int threads, struct rounds *rounds) {
     struct inverse_problem problem = made->problem;
     struct decoder decoder;
-    struct candidates candidates;
-    double genes[CANDIDATES * GENES];
+    struct population population;
+    double variables[CANDIDATES * VARIABLES];
     const struct inverse_listener listener = {ignore, NULL};
-    const struct optimiser_round round = {genes, CANDIDATES};
-    const struct candidates_parameters parameters = {made->parameters, 1, 0};
+    const struct optimiser_round round = {variables, CANDIDATES};
+    const struct population_parameters parameters = {made->parameters, 1, 0};
     problem.threads = threads;
-    for (int k = 0; k < CANDIDATES * GENES; k++)
-        genes[k] = 0.2 + 0.03 * k;
+    for (int k = 0; k < CANDIDATES * VARIABLES; k++)
+        variables[k] = 0.2 + 0.03 * k;
     assert_ok(mf_decoder_init(&decoder, &problem));
-    assert_ok(mf_candidates_init(&candidates, &decoder, &parameters));
+    assert_ok(mf_population_init(&population, &decoder, &parameters));
     for (int n = 0; n < 2; n++) {
-        const double hopeless = n == 0 ? HUGE_VAL : 0.5 * rounds->errors[0][0];
-        assert_int_equal(candidates.totals.warm, n > 0);
-        assert_ok(mf_candidates_measure(&candidates, &round, hopeless, &listener));
-        memcpy(rounds->errors[n], candidates.errors, sizeof rounds->errors[n]);
-        mf_candidates_next_round(&candidates);
+        const double discard_above = n == 0 ? HUGE_VAL : 0.5 * rounds->errors[0][0];
+        assert_int_equal(population.totals.warm, n > 0);
+        assert_ok(mf_population_measure(&population, &round, discard_above, &listener));
+        memcpy(rounds->errors[n], population.errors, sizeof rounds->errors[n]);
+        mf_population_next_round(&population);
     }
-    memcpy(rounds->positions, candidates.position, sizeof rounds->positions);
-    rounds->steps = candidates.totals.steps;
-    assert_int_equal(candidates.totals.evaluations, 2 * CANDIDATES);
-    mf_candidates_clear(&candidates);
+    memcpy(rounds->positions, population.position, sizeof rounds->positions);
+    rounds->steps = population.totals.steps;
+    assert_int_equal(population.totals.evaluations, 2 * CANDIDATES);
+    mf_population_clear(&population);
     mf_decoder_clear(&decoder);
 }
 

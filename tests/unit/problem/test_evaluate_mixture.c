@@ -47,7 +47,7 @@ static void begin(struct slabs *slabs) {
         .threads = 1};
 }
 
-/// g of each kind of pairs, by all pairs of ids.
+/// g of each pair type, by all pairs of ids.
 static void count_g(const struct slabs *slabs, double *g) {
     const struct composition *composition = &slabs->fluid.setup.composition;
     const struct box *box = &slabs->fluid.setup.box;
@@ -83,10 +83,10 @@ static void test_evaluate_keeps_types_and_places_when_it_begins_where_another_en
     // Twice: the second begins where the first has ended.
     for (uint64_t seed = 11; seed <= 12; seed++) {
         const struct evaluate_candidate candidate = {.potential = &slabs.fluid.potential,
-                                                     .weight = &slabs.fluid.weight,
+                                                     .omega = &slabs.fluid.omega,
                                                      .position =
                                                          (const double *const *)slabs.position,
-                                                     .hopeless = HUGE_VAL,
+                                                     .discard_above = HUGE_VAL,
                                                      .threads = 1,
                                                      .seed = seed};
         double *ended[3] = {memory[0], memory[1], memory[2]};

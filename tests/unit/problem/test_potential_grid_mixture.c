@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The points of several potentials, one block for each kind of pairs, each with a core of its own.
+// The points of several potentials, one block for each pair type, each with a core of its own.
 #include "problem/potential_grid.h"
 
 #include "curves/formula.h"
@@ -16,7 +16,7 @@ enum { KNOWN = 3 * BINS - 8 - 13 };
 
 static const double rounding = 1e-12, temperature = 1.3;
 
-/// Nothing in the cores, then a peak of another height for each kind of pairs.
+/// Nothing in the cores, then a peak of another height for each pair type.
 static void make_target(double *target) {
     for (size_t n = 0; n < PAIRS * BINS; n++) {
         const size_t pair = n / BINS, k = n % BINS;

@@ -33,7 +33,7 @@ static const char weight_summary[] =
     "{\"status\": \"converged\", \"method\": \"cma-es\", \"version\": \"0.1\","
     " \"etd_rmse\": 0.056, \"etd_rmse_error\": null, \"etd_noise\": 0.0027,"
     " \"diffusion\": 0.0263, \"diffusion_error\": 0.0002, \"diffusion_cm2_per_s\": 4.5e-5,"
-    " \"truth_error\": 0.42, \"diffusion_rmse\": null}";
+    " \"omega_truth_rms\": 0.42, \"diffusion_rmse\": null}";
 
 static void write_file(const char *folder, const char *name, const char *text) {
     char path[PATH];
@@ -184,7 +184,7 @@ static void test_fits_without_a_table_keep_their_block(void **state) {
     free(text);
     text = compare_text("compare.tsv");
     assert_contains(text, "\tetd_rmse[1]\tetd_noise[1]\tdiffusion[lambda^2/tau]\t");
-    assert_contains(text, "\ttruth_error[1]\ttemperature[T_0]\t");
+    assert_contains(text, "\tomega_truth_rms[1]\ttemperature[T_0]\t");
     free(text);
 }
 

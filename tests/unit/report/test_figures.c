@@ -106,7 +106,7 @@ static void test_draws_simulation_and_no_fit(void **state) {
     assert_false(figure_folders_drawn(folder, "rdf"));
 }
 
-/// Of a mixture: g(r) of every kind of pairs, and its name. In units that the tables know.
+/// Of a mixture: g(r) of every pair type, and its name. In units that the tables know.
 static void test_draws_simulation_of_a_mixture_in_its_units(void **state) {
     (void)state;
     figure_folders_skip_without_gnuplot();

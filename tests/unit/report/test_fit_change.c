@@ -49,13 +49,13 @@ static void test_change_of_a_weight_is_its_rms(void **state) {
     (void)state;
     struct decoder decoder;
     struct inverse_problem problem;
-    double g[BINS], first[WEIGHT_POINTS], last[WEIGHT_POINTS];
+    double g[BINS], first[OMEGA_POINTS], last[OMEGA_POINTS];
     begin(&decoder, &problem, g);
-    for (int k = 0; k < WEIGHT_POINTS; k++) {
+    for (int k = 0; k < OMEGA_POINTS; k++) {
         first[k] = 1;
         last[k] = 1.25;
     }
-    assert_close(mf_fit_change_find(&decoder, UNKNOWN_WEIGHT, 0, first, last).rms, 0.25, 1e-12);
+    assert_close(mf_fit_change_find(&decoder, UNKNOWN_OMEGA, 0, first, last).rms, 0.25, 1e-12);
     mf_decoder_clear(&decoder);
 }
 

@@ -7,12 +7,12 @@
 enum { CLOSE_MOST_ROWS = 25 };
 
 /// The cells of a row, and the rows that are searched for their neighbours, itself first.
-struct close_rows {
+struct pair_search_rows {
     size_t first; ///< particle of the first cell
     int cells;    ///< without the margins of struct neighbours_rows
     int margin;
     int count;
-    struct close_row {
+    struct pair_search_row {
         const uint32_t *start; ///< of the first cell in the box: neighbours_rows.start
         int depth;             ///< cells to search on both sides
         float shift[2];        ///< of this image along the first two axes [λ]
@@ -23,9 +23,9 @@ struct close_rows {
 /// `start`, `stop` and rows of entries.
 /// @param[in] limit  first place of the list that must not be written
 /// @return the new length of the list, or SIZE_MAX if there might not be room
-size_t mf_close_portable(struct neighbours *neighbours, const struct particles *particles,
-                         const struct close_rows *rows, size_t used, size_t limit);
-size_t mf_close_avx2(struct neighbours *neighbours, const struct particles *particles,
-                     const struct close_rows *rows, size_t used, size_t limit);
-size_t mf_close_avx512(struct neighbours *neighbours, const struct particles *particles,
-                       const struct close_rows *rows, size_t used, size_t limit);
+size_t mf_pair_search_portable(struct neighbours *neighbours, const struct particles *particles,
+                               const struct pair_search_rows *rows, size_t used, size_t limit);
+size_t mf_pair_search_avx2(struct neighbours *neighbours, const struct particles *particles,
+                           const struct pair_search_rows *rows, size_t used, size_t limit);
+size_t mf_pair_search_avx512(struct neighbours *neighbours, const struct particles *particles,
+                             const struct pair_search_rows *rows, size_t used, size_t limit);

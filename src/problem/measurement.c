@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "problem/observation.h"
+#include "problem/measurement.h"
 
 #include "base/memory.h"
 
 #include <math.h>
 
-bool mf_observation_moves(const struct targets *targets) {
+bool mf_measurement_moves(const struct targets *targets) {
     return targets_ask(targets, TARGET_VACF) || targets_ask(targets, TARGET_MSD) ||
            targets_ask(targets, TARGET_DIFFUSION);
 }
@@ -25,7 +25,7 @@ static int64_t lags_of(const struct targets *targets, double time_step) {
     return lags > 2 ? lags : 2;
 }
 
-void mf_observation_plans(const struct targets *targets, double time_step, struct etd_plan *etd,
+void mf_measurement_plans(const struct targets *targets, double time_step, struct etd_plan *etd,
                           struct motion_plan *motion) {
     *etd = (struct etd_plan){.every = steps_of(targets->etd_interval, time_step)};
     if (targets_ask(targets, TARGET_ETD))
@@ -36,7 +36,7 @@ void mf_observation_plans(const struct targets *targets, double time_step, struc
                                    .fit_from = 0.5};
 }
 
-int64_t mf_observation_window(const struct targets *targets, double time_step,
+int64_t mf_measurement_window(const struct targets *targets, double time_step,
                               enum target_kind *longest) {
     int64_t window = 0;
     *longest = TARGETS;
@@ -55,53 +55,53 @@ int64_t mf_observation_window(const struct targets *targets, double time_step,
     return window;
 }
 
-static enum status begin_rdf(struct observation *observation, const struct simulation_setup *scene,
-                             const struct observation_setup *setup) {
-    const struct targets *targets = observation->targets;
+static enum status begin_rdf(struct measurement *measurement, const struct simulation_setup *scene,
+                             const struct measurement_setup *setup) {
+    const struct targets *targets = measurement->targets;
     const size_t count = (size_t)scene->placement.count, samples = (size_t)setup->plan.samples;
     const double cutoff = scene->potential ? scene->potential->cutoff : 0;
     if (!targets_ask(targets, TARGET_RDF))
         return STATUS_OK;
     if (setup->force_estimator && scene->potential && !composition_is_mixed(&scene->composition) &&
         mf_rdf_force_applies(scene->potential, scene->temperature)) {
-        observation->observables.rdf_force = &observation->rdf_force;
-        return mf_rdf_force_init(&observation->rdf_force, &targets->bins, &scene->box, count,
+        measurement->observables.rdf_force = &measurement->rdf_force;
+        return mf_rdf_force_init(&measurement->rdf_force, &targets->bins, &scene->box, count,
                                  scene->potential, scene->temperature, cutoff, samples);
     }
-    observation->observables.rdf = &observation->rdf;
-    return mf_rdf_init_mixture(&observation->rdf, &targets->bins, &scene->box, &scene->composition,
+    measurement->observables.rdf = &measurement->rdf;
+    return mf_rdf_init_mixture(&measurement->rdf, &targets->bins, &scene->box, &scene->composition,
                                cutoff, samples);
 }
 
-static enum status begin_dynamics(struct observation *observation,
-                                  const struct observation_setup *setup) {
-    const struct targets *targets = observation->targets;
-    const struct simulation *simulation = &observation->simulation;
+static enum status begin_dynamics(struct measurement *measurement,
+                                  const struct measurement_setup *setup) {
+    const struct targets *targets = measurement->targets;
+    const struct simulation *simulation = &measurement->simulation;
     const double time_step = simulation->setup.time_step;
     const int64_t begin = setup->plan.equilibration;
     const int64_t steps = setup->plan.samples * setup->plan.every;
     struct etd_plan etd;
     struct motion_plan motion;
-    mf_observation_plans(targets, time_step, &etd, &motion);
+    mf_measurement_plans(targets, time_step, &etd, &motion);
     if (targets_ask(targets, TARGET_ETD)) {
-        TRY(mf_etd_init(&observation->etd, &targets->etd, &etd, simulation, begin, steps));
-        observation->observables.etd = &observation->etd;
+        TRY(mf_etd_init(&measurement->etd, &targets->etd, &etd, simulation, begin, steps));
+        measurement->observables.etd = &measurement->etd;
     }
-    if (mf_observation_moves(targets)) {
-        TRY(mf_motion_init(&observation->motion, &motion, simulation, begin, steps));
-        observation->observables.motion = &observation->motion;
+    if (mf_measurement_moves(targets)) {
+        TRY(mf_motion_init(&measurement->motion, &motion, simulation, begin, steps));
+        measurement->observables.motion = &measurement->motion;
     }
     return STATUS_OK;
 }
 
-enum status mf_observation_init(struct observation *observation,
+enum status mf_measurement_init(struct measurement *measurement,
                                 const struct inverse_problem *problem,
-                                const struct observation_setup *setup) {
-    *observation = (struct observation){.targets = setup->targets};
+                                const struct measurement_setup *setup) {
+    *measurement = (struct measurement){.targets = setup->targets};
     struct simulation_setup scene = problem->scene;
     struct simulation_start start = {0};
     scene.potential = setup->potential;
-    scene.weight = setup->weight;
+    scene.omega = setup->omega;
     scene.seed = setup->seed;
     scene.threads = setup->threads;
     if (setup->time_step > 0)
@@ -110,25 +110,25 @@ enum status mf_observation_init(struct observation *observation,
         start.position[d] = setup->position[d];
     if (setup->position)
         scene.placement.kind = PLACEMENT_FILE;
-    TRY(begin_rdf(observation, &scene, setup));
+    TRY(begin_rdf(measurement, &scene, setup));
     if (setup->thermodynamics || targets_ask(setup->targets, TARGET_PRESSURE)) {
-        TRY(mf_thermodynamics_init(&observation->thermodynamics, (size_t)setup->plan.samples));
-        observation->observables.thermodynamics = &observation->thermodynamics;
+        TRY(mf_thermodynamics_init(&measurement->thermodynamics, (size_t)setup->plan.samples));
+        measurement->observables.thermodynamics = &measurement->thermodynamics;
     }
-    TRY(mf_simulation_init(&observation->simulation, &scene, setup->position ? &start : NULL));
-    return begin_dynamics(observation, setup);
+    TRY(mf_simulation_init(&measurement->simulation, &scene, setup->position ? &start : NULL));
+    return begin_dynamics(measurement, setup);
 }
 
-void mf_observation_clear(struct observation *observation) {
-    mf_simulation_clear(&observation->simulation);
-    mf_rdf_clear(&observation->rdf);
-    mf_rdf_force_clear(&observation->rdf_force);
-    mf_etd_clear(&observation->etd);
-    mf_motion_clear(&observation->motion);
-    mf_thermodynamics_clear(&observation->thermodynamics);
+void mf_measurement_clear(struct measurement *measurement) {
+    mf_simulation_clear(&measurement->simulation);
+    mf_rdf_clear(&measurement->rdf);
+    mf_rdf_force_clear(&measurement->rdf_force);
+    mf_etd_clear(&measurement->etd);
+    mf_motion_clear(&measurement->motion);
+    mf_thermodynamics_clear(&measurement->thermodynamics);
 }
 
-enum status mf_observation_values_init(struct observed *observed, const struct targets *targets) {
+enum status mf_measurement_values_init(struct observed *observed, const struct targets *targets) {
     enum status status = STATUS_OK;
     *observed = (struct observed){0};
     for (int kind = 0; kind < TARGETS; kind++) {
@@ -141,7 +141,7 @@ done:
     return status;
 }
 
-void mf_observation_values_clear(struct observed *observed) {
+void mf_measurement_values_clear(struct observed *observed) {
     for (int kind = 0; kind < TARGETS; kind++) {
         mf_memory_free(observed->value[kind]);
         mf_memory_free(observed->error[kind]);
@@ -149,7 +149,7 @@ void mf_observation_values_clear(struct observed *observed) {
     *observed = (struct observed){0};
 }
 
-static enum status result_rdf(const struct observation *replicas, size_t count,
+static enum status result_rdf(const struct measurement *replicas, size_t count,
                               struct observed *observed) {
     enum status status = STATUS_OK;
     struct rdf *rdf = NULL;
@@ -171,7 +171,7 @@ done:
     return status;
 }
 
-static enum status result_etd(const struct observation *replicas, size_t count,
+static enum status result_etd(const struct measurement *replicas, size_t count,
                               struct observed *observed) {
     enum status status = STATUS_OK;
     const struct etd **etd = NULL;
@@ -238,7 +238,7 @@ static void combine(struct observed *observed, enum target_kind kind, size_t val
     join_scatter(observed, kind, values, replicas, count);
 }
 
-static enum status result_motion(const struct observation *replicas, size_t count,
+static enum status result_motion(const struct measurement *replicas, size_t count,
                                  struct observed *observed) {
     enum status status = STATUS_OK;
     const size_t values = (size_t)replicas->motion.plan.lags + 1;
@@ -271,7 +271,7 @@ done:
     return status;
 }
 
-enum status mf_observation_result(const struct observation *replicas, size_t count,
+enum status mf_measurement_result(const struct measurement *replicas, size_t count,
                                   struct observed *observed) {
     const struct targets *targets = replicas->targets;
     clear_values(observed, targets);
@@ -279,7 +279,7 @@ enum status mf_observation_result(const struct observation *replicas, size_t cou
         TRY(result_rdf(replicas, count, observed));
     if (targets_ask(targets, TARGET_ETD))
         TRY(result_etd(replicas, count, observed));
-    if (mf_observation_moves(targets))
+    if (mf_measurement_moves(targets))
         TRY(result_motion(replicas, count, observed));
     for (size_t k = 0; k < count && targets_ask(targets, TARGET_PRESSURE); k++) {
         const struct thermodynamics_summary t =
@@ -289,7 +289,7 @@ enum status mf_observation_result(const struct observation *replicas, size_t cou
     return STATUS_OK;
 }
 
-void mf_observation_distance(const struct observed *observed, const struct targets *targets,
+void mf_measurement_distance(const struct observed *observed, const struct targets *targets,
                              struct target_distance distance[TARGETS]) {
     for (int kind = 0; kind < TARGETS; kind++)
         distance[kind] = targets_ask(targets, kind)

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/lanes.h"
-#include "close.h"
+#include "pair_search.h"
 
 /// By how much distances may be too large in single precision, relative to the longest edge of the
 /// box: places up to twice as long are rounded four times to 24 bits. Without it a list with no
@@ -12,7 +12,7 @@ static const double wider = 2e-6;
 
 /// What stays the same from particle to particle. Passed by value, so that the stores to the list
 /// cannot change it as far as a compiler knows.
-struct close_search {
+struct pair_search {
     const float *place[3];
     const int32_t *particle;
     float length[3], inverse_length[3]; ///< the latter is 0 where images need not be looked for
@@ -29,9 +29,9 @@ enum { CLOSE_BEYOND = 2 * PARTICLES_PADDING + LANES * NEIGHBOURS_ROW };
 /// least, since runs are rarely empty.
 /// @param[in] self  place to be left out of a full list
 /// @return the end of what was written
-LANES_INLINE int32_t *close_select(const struct close_search search, const lanes_real from[3],
-                                   size_t begin, size_t end, size_t self, int32_t *list,
-                                   const int dim, const bool wrap, const bool half) {
+LANES_INLINE int32_t *search_select(const struct pair_search search, const lanes_real from[3],
+                                    size_t begin, size_t end, size_t self, int32_t *list,
+                                    const int dim, const bool wrap, const bool half) {
     do {
         lanes_real r2 = lanes_all(0);
         for (int d = 0; d < dim; d++) {
@@ -53,8 +53,8 @@ LANES_INLINE int32_t *close_select(const struct close_search search, const lanes
 
 /// Fill the last row of particle k with itself, and say whose its rows are.
 /// @return the end of its rows
-LANES_INLINE size_t close_fill_rows(struct neighbours *neighbours, size_t k, size_t begin,
-                                    size_t used) {
+LANES_INLINE size_t search_fill_rows(struct neighbours *neighbours, size_t k, size_t begin,
+                                     size_t used) {
     lanes_store_int(neighbours->list + used, lanes_all_int((int32_t)k));
     if (LANES < NEIGHBOURS_ROW)
         lanes_store_int(neighbours->list + used + LANES, lanes_all_int((int32_t)k));
@@ -67,17 +67,17 @@ LANES_INLINE size_t close_fill_rows(struct neighbours *neighbours, size_t k, siz
 
 /// Places around a cell, a run from each row. In a half list the first begins with the cell itself;
 /// the others are wanted whole.
-struct close_runs {
+struct pair_search_runs {
     uint32_t begin[CLOSE_MOST_ROWS], end[CLOSE_MOST_ROWS];
     size_t places; ///< in all of them
 };
 
-LANES_INLINE void close_find_runs(struct close_runs *runs, const struct close_rows *rows, int cell,
-                                  const bool half) {
+LANES_INLINE void search_find_runs(struct pair_search_runs *runs,
+                                   const struct pair_search_rows *rows, int cell, const bool half) {
     const int lowest = -rows->margin, highest = rows->cells + rows->margin;
     runs->places = 0;
     for (int r = 0; r < rows->count; r++) {
-        const struct close_row *row = &rows->row[r];
+        const struct pair_search_row *row = &rows->row[r];
         const int first = cell - row->depth, last = cell + row->depth + 1;
         runs->begin[r] = row->start[first > lowest ? first : lowest];
         runs->end[r] = row->start[last < highest ? last : highest];
@@ -89,28 +89,29 @@ LANES_INLINE void close_find_runs(struct close_runs *runs, const struct close_ro
 
 /// The neighbours of the particle at a place: in a half list those behind it in the first run, and
 /// in the others; in a full list all but itself.
-LANES_INLINE int32_t *close_around(const struct close_search search, const struct close_rows *rows,
-                                   const struct close_runs *runs, size_t self, int32_t *list,
-                                   const int dim, const bool wrap, const bool half) {
+LANES_INLINE int32_t *search_around(const struct pair_search search,
+                                    const struct pair_search_rows *rows,
+                                    const struct pair_search_runs *runs, size_t self, int32_t *list,
+                                    const int dim, const bool wrap, const bool half) {
     const lanes_real x = lanes_all(search.place[0][self]), y = lanes_all(search.place[1][self]);
     const lanes_real z = dim == 3 ? lanes_all(search.place[2][self]) : x;
     const lanes_real here[3] = {x, y, z};
-    list = close_select(search, here, half ? self + 1 : runs->begin[0], runs->end[0], self, list,
-                        dim, wrap, half);
+    list = search_select(search, here, half ? self + 1 : runs->begin[0], runs->end[0], self, list,
+                         dim, wrap, half);
     for (int r = 1; r < rows->count; r++) {
         const float *shift = rows->row[r].shift;
         const lanes_real from[3] = {x - shift[0], y - shift[1], z};
         list =
-            close_select(search, from, runs->begin[r], runs->end[r], self, list, dim, wrap, half);
+            search_select(search, from, runs->begin[r], runs->end[r], self, list, dim, wrap, half);
     }
     return list;
 }
 
-LANES_INLINE struct close_search close_prepare(const struct neighbours *neighbours,
+LANES_INLINE struct pair_search search_prepare(const struct neighbours *neighbours,
                                                const struct box *box) {
     const double range = neighbours->range + wider * mf_box_longest(box);
-    struct close_search search = {.particle = neighbours->rows.particle,
-                                  .range2 = (float)(range * range)};
+    struct pair_search search = {.particle = neighbours->rows.particle,
+                                 .range2 = (float)(range * range)};
     for (int d = 0; d < 3; d++) {
         search.place[d] = neighbours->rows.place[d];
         search.length[d] = (float)box->length[d];
@@ -119,25 +120,26 @@ LANES_INLINE struct close_search close_prepare(const struct neighbours *neighbou
     return search;
 }
 
-LANES_INLINE size_t close_loop(struct neighbours *neighbours, const struct particles *particles,
-                               const struct close_rows *rows, size_t used, size_t limit,
-                               const int dim, const bool wrap, const bool half) {
-    const struct close_search search = close_prepare(neighbours, &particles->box);
+LANES_INLINE size_t pair_search_loop(struct neighbours *neighbours,
+                                     const struct particles *particles,
+                                     const struct pair_search_rows *rows, size_t used, size_t limit,
+                                     const int dim, const bool wrap, const bool half) {
+    const struct pair_search search = search_prepare(neighbours, &particles->box);
     const uint32_t *const start = rows->row[0].start;
     int32_t *const list = neighbours->list;
-    struct close_runs runs;
+    struct pair_search_runs runs;
     size_t k = rows->first;
     for (int cell = 0; cell < rows->cells; cell++) {
-        close_find_runs(&runs, rows, cell, half);
+        search_find_runs(&runs, rows, cell, half);
         for (size_t self = start[cell]; self < start[cell + 1]; self++, k++) {
             if (used + runs.places + CLOSE_BEYOND > limit)
                 return SIZE_MAX;
             neighbours->start[k] = used;
             const int32_t *end =
-                close_around(search, rows, &runs, self, list + used, dim, wrap, half);
+                search_around(search, rows, &runs, self, list + used, dim, wrap, half);
             used = (size_t)(end - list);
             if (half)
-                used = close_fill_rows(neighbours, k, neighbours->start[k], used);
+                used = search_fill_rows(neighbours, k, neighbours->start[k], used);
             neighbours->stop[k] = used;
         }
     }
@@ -146,12 +148,12 @@ LANES_INLINE size_t close_loop(struct neighbours *neighbours, const struct parti
 
 #define CLOSE_INSTANCE(name)                                                                       \
     size_t name(struct neighbours *neighbours, const struct particles *particles,                  \
-                const struct close_rows *rows, size_t used, size_t limit) {                        \
+                const struct pair_search_rows *rows, size_t used, size_t limit) {                  \
         const bool half = neighbours->kind == NEIGHBOURS_HALF;                                     \
         if (particles->box.dimensions == 2)                                                        \
-            return close_loop(neighbours, particles, rows, used, limit, 2, true, half);            \
+            return pair_search_loop(neighbours, particles, rows, used, limit, 2, true, half);      \
         if (neighbours->rows.wrap)                                                                 \
-            return close_loop(neighbours, particles, rows, used, limit, 3, true, half);            \
-        return half ? close_loop(neighbours, particles, rows, used, limit, 3, false, true)         \
-                    : close_loop(neighbours, particles, rows, used, limit, 3, false, false);       \
+            return pair_search_loop(neighbours, particles, rows, used, limit, 3, true, half);      \
+        return half ? pair_search_loop(neighbours, particles, rows, used, limit, 3, false, true)   \
+                    : pair_search_loop(neighbours, particles, rows, used, limit, 3, false, false); \
     }

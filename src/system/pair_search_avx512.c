@@ -5,7 +5,7 @@
 // 512-bit vectors must be asked for: GCC prefers 256 bits on processors that clock down for them.
 #pragma GCC target(                                                                                \
     "avx512f,avx512dq,avx512bw,avx512vl,avx2,bmi2,fma,popcnt,prefer-vector-width=512")
-#include "close_loop.h"
+#include "pair_search_loop.h"
 
-CLOSE_INSTANCE(mf_close_avx512)
+CLOSE_INSTANCE(mf_pair_search_avx512)
 #endif

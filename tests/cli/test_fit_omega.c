@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// `mesofit fit` of a dissipative weight to escape times, alone and together with the potential: its
+// `mesofit fit` of a friction weight to escape times, alone and together with the potential: its
 // files, the same bits for any threads, from its used settings and after any interruption.
 #include "shared/results.h"
 #include "shared/run_program.h"
@@ -25,7 +25,8 @@ static const char soft_fluid[] =
     "\"r_minimum\": 0.4, \"r_maximum\": 0.9}"
 #define POTENTIAL "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25}"
 #define WEIGHT                                                                                     \
-    "\"weight\": {\"genes\": 4, \"maximum\": 6, \"truth\": {\"law\": \"power\", \"sigma\": 3}}"
+    "\"omega\": {\"coefficients\": 4, \"maximum\": 6, \"truth\": {\"law\": \"power\", "            \
+    "\"sigma\": 3}}"
 #define METHOD "METHOD"
 
 #define RUN(target, unknowns, scene)                                                               \
@@ -40,7 +41,7 @@ static const char soft_fluid[] =
 static const char weight_fit[] = RUN(ETD, WEIGHT, ", " POTENTIAL);
 static const char joint_fit[] =
     RUN(ETD ", \"rdf\": {\"file\": \"target/rdf.tsv\"}",
-        WEIGHT ", \"potential\": {\"genes\": 5, \"maximum\": 30, "
+        WEIGHT ", \"potential\": {\"coefficients\": 5, \"maximum\": 30, "
                "\"truth\": {\"law\": \"soft-repulsion\", \"a\": 25}}", );
 
 #define GENETIC "\"name\": \"genetic\", \"population\": 7, \"generations\": 3"
@@ -48,11 +49,11 @@ static const char joint_fit[] =
 #define NLOPT "\"name\": \"nlopt\", \"algorithm\": \"LN_SBPLX\", \"evaluations\": 25"
 #define GAUSS_NEWTON "\"name\": \"gauss-newton\", \"iterations\": 12, \"warm_start\": \"yes\""
 
-static const char *const weight_tables[] = {"history.tsv", "weight_history.tsv", "omega.tsv",
-                                            "etd_cells.tsv", NULL};
+static const char *const omega_tables[] = {"history.tsv", "omega_history.tsv", "omega.tsv",
+                                           "etd_cells.tsv", NULL};
 static const char *const joint_tables[] = {
-    "history.tsv",           "weight_history.tsv", "omega.tsv", "potential.tsv",
-    "potential_history.tsv", "etd_cells.tsv",      "rdf.tsv",   NULL};
+    "history.tsv",           "omega_history.tsv", "omega.tsv", "potential.tsv",
+    "potential_history.tsv", "etd_cells.tsv",     "rdf.tsv",   NULL};
 
 /// A fit that was not given the time to converge.
 enum { CONVERGED = 0, UNCONVERGED = 1 };
@@ -76,8 +77,8 @@ static void check_bits(struct temporary_folder *folder, const char *fit, const c
                        const char *const *tables, int code) {
     static const char *const words[] = {"fit", "run.json", "-o", "pieces", "--threads", "2", NULL};
     static const char *const used[] = {"used.json", NULL};
-    static const char *const numbers[] = {"iterations", "evaluations", "engine_steps",
-                                          "etd_rmse",   "truth_error", "diffusion"};
+    static const char *const numbers[] = {"iterations", "evaluations",     "engine_steps",
+                                          "etd_rmse",   "omega_truth_rms", "diffusion"};
     write_fit(folder, fit, method);
     run_fit("run.json", "1", "1", code);
     run_fit("run.json", "2", "2", code);
@@ -95,25 +96,25 @@ static void check_bits(struct temporary_folder *folder, const char *fit, const c
                               results_number("1/summary.json", numbers[k]));
 }
 
-static void test_genetic_gives_a_weight_of_the_same_bits(void **state) {
-    check_bits(*state, weight_fit, GENETIC, weight_tables, CONVERGED);
+static void test_genetic_gives_omega_of_the_same_bits(void **state) {
+    check_bits(*state, weight_fit, GENETIC, omega_tables, CONVERGED);
 }
 
-static void test_cmaes_gives_a_weight_of_the_same_bits(void **state) {
-    check_bits(*state, weight_fit, CMAES, weight_tables, CONVERGED);
+static void test_cmaes_gives_omega_of_the_same_bits(void **state) {
+    check_bits(*state, weight_fit, CMAES, omega_tables, CONVERGED);
 }
 
-static void test_nlopt_gives_a_weight_of_the_same_bits(void **state) {
-    check_bits(*state, weight_fit, NLOPT, weight_tables, CONVERGED);
+static void test_nlopt_gives_omega_of_the_same_bits(void **state) {
+    check_bits(*state, weight_fit, NLOPT, omega_tables, CONVERGED);
 }
 
-static void test_gauss_newton_gives_a_weight_of_the_same_bits(void **state) {
-    check_bits(*state, weight_fit, GAUSS_NEWTON, weight_tables, CONVERGED);
+static void test_gauss_newton_gives_omega_of_the_same_bits(void **state) {
+    check_bits(*state, weight_fit, GAUSS_NEWTON, omega_tables, CONVERGED);
 }
 
 static void test_gauss_newton_gives_both_unknowns_of_the_same_bits(void **state) {
     check_bits(*state, joint_fit, GAUSS_NEWTON, joint_tables, CONVERGED);
-    static const char *const numbers[] = {"truth_error",     "truth_rms", "rdf_rmse",  "etd_rmse",
+    static const char *const numbers[] = {"omega_truth_rms", "truth_rms", "rdf_rmse",  "etd_rmse",
                                           "diffusion_error", "rdf_noise", "etd_noise", NULL};
     results_assert_numbers("1/summary.json", numbers);
     results_assert_table("1/omega.tsv", 4, 201);
@@ -127,13 +128,13 @@ static void test_cmaes_gives_both_unknowns_of_the_same_bits(void **state) {
 
 static void test_explain_and_describe_know_the_weight_and_its_targets(void **state) {
     static const char *const names[] = {"etd-target",    "curve-target", "rdf-target",
-                                        "number-target", "weight",       "potential"};
+                                        "number-target", "omega",        "potential"};
     static struct run_program_result result;
     write_fit(*state, weight_fit, GENETIC);
     RUN_PROGRAM(&result, "fit", "run.json", "--explain");
     run_program_assert_code(&result, 0);
     assert_contains(result.out, "a potential with cutoff 1");
-    assert_contains(result.out, "a weight with cutoff 1; its pairs are kept");
+    assert_contains(result.out, "a friction weight with cutoff 1; its pairs are kept");
     assert_contains(result.out, "pairs a particle within 0.9, one step in 2; an origin in 20");
     const char *verification = strstr(result.out, "A replica of the verification");
     assert_non_null(verification);
@@ -146,7 +147,7 @@ static void test_explain_and_describe_know_the_weight_and_its_targets(void **sta
     const char *files = strstr(result.out, "files\n");
     assert_non_null(files);
     assert_null(strstr(files + 1, "\nfiles\n"));
-    RUN_PROGRAM(&result, "describe", "weight");
+    RUN_PROGRAM(&result, "describe", "omega");
     run_program_assert_code(&result, 0);
     assert_contains(result.out, "inner_cutoff");
 }
@@ -217,10 +218,10 @@ static void test_fit_of_a_weight_ends_and_says_so_when_no_candidate_survives(voi
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        TEST_WITHOUT_FIGURES(test_genetic_gives_a_weight_of_the_same_bits),
-        TEST_WITHOUT_FIGURES(test_cmaes_gives_a_weight_of_the_same_bits),
-        TEST_WITHOUT_FIGURES(test_nlopt_gives_a_weight_of_the_same_bits),
-        TEST_WITHOUT_FIGURES(test_gauss_newton_gives_a_weight_of_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_genetic_gives_omega_of_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_cmaes_gives_omega_of_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_nlopt_gives_omega_of_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_gauss_newton_gives_omega_of_the_same_bits),
         TEST_WITHOUT_FIGURES(test_gauss_newton_gives_both_unknowns_of_the_same_bits),
         TEST_WITHOUT_FIGURES(test_cmaes_gives_both_unknowns_of_the_same_bits),
         TEST_WITHOUT_FIGURES(test_explain_and_describe_know_the_weight_and_its_targets),

@@ -5,7 +5,7 @@
 #include "problem/inverse.h"
 #include "observe/measure.h"
 
-struct observation {
+struct measurement {
     const struct targets *targets; ///< borrowed
     struct simulation simulation;
     struct rdf rdf;
@@ -17,9 +17,9 @@ struct observation {
 };
 
 /// What a simulation is to have.
-struct observation_setup {
-    const struct targets *targets;          ///< to be observed; borrowed
-    const struct table *potential, *weight; ///< borrowed
+struct measurement_setup {
+    const struct targets *targets;         ///< to be observed; borrowed
+    const struct table *potential, *omega; ///< borrowed
     const double *const
         *position;    ///< shape [dimensions][count] to begin with, or NULL: as the scene
     double time_step; ///< 0: that of the scene [τ]
@@ -31,36 +31,36 @@ struct observation_setup {
 };
 
 /// When escape times and motion are sampled, if they are.
-void mf_observation_plans(const struct targets *targets, double time_step, struct etd_plan *etd,
+void mf_measurement_plans(const struct targets *targets, double time_step, struct etd_plan *etd,
                           struct motion_plan *motion);
 
 /// Whether VACF, MSD or D is asked for.
-bool mf_observation_moves(const struct targets *targets);
+bool mf_measurement_moves(const struct targets *targets);
 
 /// Steps of the longest window of what is asked for, and the target that it belongs to: a plan must
 /// have as many behind its equilibration. 0 if nothing has a window.
-int64_t mf_observation_window(const struct targets *targets, double time_step,
+int64_t mf_measurement_window(const struct targets *targets, double time_step,
                               enum target_kind *longest);
 
 /// Begin the simulation, at step 0. Must be cleared, also after a failure.
 /// Fails: as mf_simulation_init; BAD_INPUT if the plan is shorter than the window of a target.
-enum status mf_observation_init(struct observation *observation,
+enum status mf_measurement_init(struct measurement *measurement,
                                 const struct inverse_problem *problem,
-                                const struct observation_setup *setup) MUST_USE;
-void mf_observation_clear(struct observation *observation);
+                                const struct measurement_setup *setup) MUST_USE;
+void mf_measurement_clear(struct measurement *measurement);
 
 /// Values and errors of all targets, one behind the other: shape [targets_values].
 struct observed {
     double *value[TARGETS], *error[TARGETS]; ///< shape [target.count], NaN: not measured
 };
-enum status mf_observation_values_init(struct observed *observed,
+enum status mf_measurement_values_init(struct observed *observed,
                                        const struct targets *targets) MUST_USE;
-void mf_observation_values_clear(struct observed *observed);
+void mf_measurement_values_clear(struct observed *observed);
 
 /// Results of replicas together. Fails: NO_MEMORY.
-enum status mf_observation_result(const struct observation *replicas, size_t count,
+enum status mf_measurement_result(const struct measurement *replicas, size_t count,
                                   struct observed *observed) MUST_USE;
 
 /// Distances of what was observed from all targets.
-void mf_observation_distance(const struct observed *observed, const struct targets *targets,
+void mf_measurement_distance(const struct observed *observed, const struct targets *targets,
                              struct target_distance distance[TARGETS]);

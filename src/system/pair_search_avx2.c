@@ -3,7 +3,7 @@
 
 #if SIMD_X86
 #pragma GCC target("avx2,bmi2,fma,popcnt")
-#include "close_loop.h"
+#include "pair_search_loop.h"
 
-CLOSE_INSTANCE(mf_close_avx2)
+CLOSE_INSTANCE(mf_pair_search_avx2)
 #endif

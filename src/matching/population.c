@@ -1,0 +1,373 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "matching/population.h"
+
+#include "base/memory.h"
+#include "base/rng.h"
+
+#include <math.h>
+#include <string.h>
+
+/// An error that has not been measured yet.
+#define UNMEASURED (-1.0)
+
+const char *const mf_population_no_or_yes[] = {"no", "yes", NULL};
+
+#define MEMBER(name) .offset = offsetof(struct population_settings, name)
+const struct field mf_population_fields[] = {
+    {"equilibration", FIELD_INTEGER, MEMBER(population.evaluate.plan.equilibration), .initial = 350,
+     .minimum = 10, .maximum = 1e9, .unit = "steps", .help = "of a candidate's simulation"},
+    {"samples", FIELD_INTEGER, MEMBER(population.evaluate.plan.samples), .initial = 45,
+     .minimum = 1, .maximum = 1e8, .unit = "",
+     .help = "of its g(r) and pressure; times \"every\" it is as long as all else is measured"},
+    {"every", FIELD_INTEGER, MEMBER(population.evaluate.plan.every), .initial = 50, .minimum = 1,
+     .maximum = 1e9, .unit = "steps", .help = "between samples"},
+    {"temperature_tolerance", FIELD_NUMBER, MEMBER(population.evaluate.temperature_tolerance),
+     .initial = 0.1, .minimum = FIELD_ABOVE_ZERO, .maximum = 1, .unit = "",
+     .help = "relative deviation at the end of equilibration with which a candidate fails"},
+    {"estimator", FIELD_CHOICE, MEMBER(population.evaluate.estimator),
+     .choices = mf_rdf_force_estimators, .initial = RDF_FORCE_NOT_USED, .unit = "",
+     .help = "of g(r): force is worth twice the samples, but a large time step puts it off"},
+    {"racing", FIELD_NUMBER, MEMBER(population.evaluate.patience), .initial = 0, .minimum = 0,
+     .maximum = 100, .unit = "standard errors",
+     .help = "by which a running error must be hopeless for its simulation to stop; 0: never"},
+    {"precision", FIELD_NUMBER, MEMBER(population.evaluate.precision), .initial = 0, .minimum = 0,
+     .maximum = 1, .unit = "",
+     .help = "relative standard error of an error with which its simulation stops; 0: never"},
+    {"warm_start", FIELD_CHOICE, MEMBER(population.warm_start), .choices = mf_population_no_or_yes,
+     .initial = 0, .unit = "", .help = "begin where the best simulation of the last round ended"},
+    {"common_noise", FIELD_CHOICE, MEMBER(population.common_noise),
+     .choices = mf_population_no_or_yes, .initial = 0, .unit = "",
+     .help = "the same random numbers for all candidates of a round"},
+    FIELD_END,
+};
+
+struct inverse_sampling mf_population_sampling(const void *settings) {
+    const struct evaluate_parameters *evaluate =
+        &((const struct population_settings *)settings)->population.evaluate;
+    return (struct inverse_sampling){.every = evaluate->plan.every,
+                                     .rdf_force = evaluate->estimator == RDF_FORCE_USED,
+                                     .samples = evaluate->plan.samples};
+}
+
+static size_t coordinates(const struct population *population) {
+    const struct simulation_setup *scene = &population->decoder->problem->scene;
+    return (size_t)scene->box.dimensions * (size_t)scene->placement.count;
+}
+
+enum status mf_population_init(struct population *population, const struct decoder *decoder,
+                               const struct population_parameters *parameters) {
+    enum status status = STATUS_OK;
+    *population = (struct population){.decoder = decoder, .parameters = *parameters, .best = NAN};
+    NEW_ARRAY(population->errors, POPULATION_MOST);
+    NEW_ARRAY(population->variances, POPULATION_MOST);
+    NEW_ARRAY(population->distances, POPULATION_MOST * TARGETS);
+    NEW_ARRAY(population->first, decoder->variables);
+    const struct targets *targets = &decoder->problem->targets;
+    const size_t features = mf_targets_features(targets);
+    NEW_ARRAY(population->features, POPULATION_MOST * features);
+    NEW_ARRAY(population->target, features);
+    NEW_ARRAY(population->target_error, features);
+    mf_targets_take_features(targets, NULL, population->target, population->target_error);
+    CHECK(mf_surrogate_init(&population->surrogate, decoder->variables, features, POPULATION_MOST,
+                            population->target, population->target_error));
+    NEW_ARRAY(population->position, coordinates(population));
+    NEW_ARRAY(population->best_position, coordinates(population));
+    mf_population_next_round(population);
+    mf_population_forget_survey(population);
+    population->totals.rounds = 0;
+done:
+    return status;
+}
+
+void mf_population_clear(struct population *population) {
+    mf_memory_free(population->errors);
+    mf_memory_free(population->variances);
+    mf_memory_free(population->distances);
+    mf_memory_free(population->first);
+    mf_memory_free(population->features);
+    mf_memory_free(population->target);
+    mf_memory_free(population->target_error);
+    mf_surrogate_clear(&population->surrogate);
+    mf_memory_free(population->position);
+    mf_memory_free(population->best_position);
+    *population = (struct population){0};
+}
+
+void mf_population_next_round(struct population *population) {
+    struct population_totals *totals = &population->totals;
+    for (size_t k = 0; k < POPULATION_MOST; k++)
+        population->errors[k] = UNMEASURED;
+    if (population->parameters.warm_start && totals->best_error < OPTIMISER_FAILED) {
+        memcpy(population->position, population->best_position,
+               coordinates(population) * sizeof *population->position);
+        totals->warm = totals->evaluations > 0;
+    }
+    totals->best_error = OPTIMISER_FAILED;
+    totals->rounds++;
+}
+
+void mf_population_forget_survey(struct population *population) {
+    population->survey = (struct population_survey){.least = INFINITY};
+}
+
+void mf_population_tell_failure(const struct population *population, const char *why,
+                                char reason[INVERSE_REASON_SIZE]) {
+    if (population->surrogate.rows.added > 0)
+        snprintf(reason, INVERSE_REASON_SIZE, "%llu of %llu simulations succeeded, %s",
+                 (unsigned long long)population->surrogate.rows.added,
+                 (unsigned long long)population->totals.evaluations, why);
+}
+
+/// Columns of positions, one a dimension.
+static void split(const struct population *population, double *position, double *column[3]) {
+    const struct simulation_setup *scene = &population->decoder->problem->scene;
+    for (int d = 0; d < scene->box.dimensions; d++)
+        column[d] = position + (size_t)d * (size_t)scene->placement.count;
+}
+
+/// One simulation of some variables. A failed one has the worst error.
+static enum status measure(const struct population *population, const double *variables,
+                           uint64_t seed, double discard_above, int threads, double *features,
+                           double *end, struct evaluate_result *result) {
+    struct decoder_laws laws;
+    double *begin_column[3] = {NULL}, *end_column[3] = {NULL};
+    split(population, population->position, begin_column);
+    split(population, end, end_column);
+    enum status status = mf_decoder_laws(population->decoder, variables, &laws);
+    const struct evaluate_candidate candidate = {
+        .potential = laws.table[UNKNOWN_POTENTIAL],
+        .omega = laws.table[UNKNOWN_OMEGA],
+        .position = population->totals.warm ? (const double *const *)begin_column : NULL,
+        .discard_above = discard_above,
+        .threads = threads,
+        .seed = seed,
+    };
+    if (status == STATUS_OK)
+        status = mf_evaluate(population->decoder->problem, &candidate,
+                             &population->parameters.evaluate, features, end_column, result);
+    if (status == STATUS_UNSTABLE || (status == STATUS_OK && !isfinite(result->error))) {
+        result->error = OPTIMISER_FAILED;
+        result->variance = 0;
+        status = STATUS_OK;
+    }
+    mf_decoder_laws_clear(&laws);
+    return status;
+}
+
+/// Add one error to a survey.
+static void add(struct population_survey *survey, double error) {
+    survey->evaluations++;
+    if (error >= OPTIMISER_FAILED)
+        survey->failures++;
+    else
+        mf_statistics_add(&survey->alive, error);
+    if (error < OPTIMISER_FAILED)
+        survey->least = fmin(survey->least, error);
+}
+
+static void report(const struct population *population, size_t count,
+                   const struct inverse_listener *to) {
+    struct population_survey survey = population->survey;
+    for (size_t k = 0; k < count; k++)
+        if (population->errors[k] != UNMEASURED)
+            add(&survey, population->errors[k]);
+    const struct inverse_progress progress = {
+        .iteration = population->iteration,
+        .iterations = population->iterations,
+        .done = survey.evaluations - population->survey.evaluations,
+        .total = count,
+        .best = population->best,
+        .least = survey.least,
+        .mean = survey.alive.count > 0 ? survey.alive.mean : NAN,
+        .failures = survey.failures,
+    };
+    to->tell(to->context, &progress);
+}
+
+/// Take over a measurement. Called by one thread at a time, in any order.
+static void take(struct population *population, size_t index, const struct evaluate_result *result,
+                 const double *end) {
+    struct population_totals *totals = &population->totals;
+    population->errors[index] = result->error;
+    population->variances[index] = result->variance;
+    memcpy(population->distances + index * TARGETS, result->distance, sizeof result->distance);
+    totals->evaluations++;
+    totals->steps += result->engine_steps;
+    const bool better = result->error < totals->best_error ||
+                        (result->error == totals->best_error && index < totals->best_index);
+    if (!better || result->error >= OPTIMISER_FAILED)
+        return;
+    totals->best_error = result->error;
+    totals->best_index = index;
+    memcpy(population->best_position, end, coordinates(population) * sizeof *end);
+}
+
+/// Equal candidates of a round are measurements of their own, also with common noise.
+static uint32_t copies_before(const struct optimiser_round *round, size_t variables, size_t index) {
+    uint32_t copies = 0;
+    for (size_t k = 0; k < index; k++)
+        copies += memcmp(round->variables + k * variables, round->variables + index * variables,
+                         variables * sizeof *round->variables) == 0;
+    return copies;
+}
+
+static uint64_t seed_of(const struct population *population, const struct optimiser_round *round,
+                        size_t index) {
+    const uint32_t number = population->parameters.common_noise
+                                ? copies_before(round, population->decoder->variables, index)
+                                : (uint32_t)index;
+    return mf_rng_child_seed(population->decoder->problem->seed, RNG_EVALUATION,
+                             (uint32_t)population->totals.rounds, number);
+}
+
+/// Measure one candidate unless it was measured before an interruption.
+static enum status measure_one(struct population *population, const struct optimiser_round *round,
+                               size_t index, double discard_above, int threads,
+                               const struct inverse_listener *listener) {
+    enum status status = STATUS_OK;
+    struct evaluate_result result;
+    double *end = NULL;
+    if (population->errors[index] != UNMEASURED)
+        return STATUS_OK;
+    NEW_ARRAY(end, coordinates(population));
+    CHECK(measure(population, round->variables + index * population->decoder->variables,
+                  seed_of(population, round, index), discard_above, threads,
+                  population->features + index * population->surrogate.features, end, &result));
+#pragma omp critical
+    {
+        take(population, index, &result, end);
+        report(population, round->count, listener);
+    }
+done:
+    mf_memory_free(end);
+    return status;
+}
+
+/// Threads for the simulation of a candidate alone. Particles too few to share are done before the
+/// threads have met.
+static int threads_inside(const struct inverse_problem *problem) {
+    enum { PARTICLES_PER_THREAD = 1000 };
+    const int64_t most = problem->scene.placement.count / PARTICLES_PER_THREAD;
+    if (most < 1)
+        return 1;
+    return most < problem->threads ? (int)most : problem->threads;
+}
+
+/// What blew up has no features.
+static void remember(struct population *population, const double *variables, double error,
+                     const double *features) {
+    if (error < OPTIMISER_FAILED)
+        mf_surrogate_add(&population->surrogate, variables, features);
+}
+
+enum status mf_population_measure(struct population *population,
+                                  const struct optimiser_round *round, double discard_above,
+                                  const struct inverse_listener *listener) {
+    enum status status = STATUS_OK;
+    char reason[512] = "";
+    const int threads = population->decoder->problem->threads;
+    if (round->count > POPULATION_MOST)
+        return mf_status_fail(STATUS_BAD_INPUT, "a round of %zu candidates: at most %d",
+                              round->count, POPULATION_MOST);
+    const int inside = round->count == 1 ? threads_inside(population->decoder->problem) : 1;
+    memcpy(population->first, round->variables,
+           population->decoder->variables * sizeof *round->variables);
+#pragma omp parallel for schedule(dynamic) num_threads(threads) if (round->count > 1)
+    for (size_t k = 0; k < round->count; k++) {
+        const enum status here = measure_one(population, round, k, discard_above, inside, listener);
+        if (here != STATUS_OK)
+#pragma omp critical
+        {
+            status = here;
+            snprintf(reason, sizeof reason, "%s", mf_status_message());
+        }
+    }
+    if (status != STATUS_OK)
+        return mf_status_fail(status, "%s", reason);
+    for (size_t k = 0; k < round->count; k++) {
+        add(&population->survey, population->errors[k]);
+        remember(population, round->variables + k * population->decoder->variables,
+                 population->errors[k], population->features + k * population->surrogate.features);
+    }
+    return STATUS_OK;
+}
+
+static struct target_distance mean_distance(const struct evaluate_result *results, size_t count,
+                                            enum target_kind kind) {
+    struct target_distance mean = {.count = results[0].distance[kind].count};
+    for (size_t k = 0; k < count; k++) {
+        mean.rms += results[k].distance[kind].rms / (double)count;
+        mean.noise += results[k].distance[kind].noise / (double)count;
+    }
+    return mean;
+}
+
+enum status mf_population_remeasure(struct population *population, const double *variables,
+                                    size_t count, double *error, double *noise, double *variance,
+                                    struct target_distance *distance) {
+    enum status status = STATUS_OK;
+    struct evaluate_result *results = NULL;
+    double *end = NULL, *features = NULL;
+    const size_t size = coordinates(population), each = population->surrogate.features;
+    const struct inverse_problem *problem = population->decoder->problem;
+    char reason[512] = "";
+    NEW_ARRAY(results, count);
+    NEW_ARRAY(end, count * size);
+    NEW_ARRAY(features, count * each);
+#pragma omp parallel for schedule(dynamic) num_threads(problem->threads)
+    for (size_t k = 0; k < count; k++) {
+        const uint64_t seed = mf_rng_child_seed(
+            problem->seed, RNG_REMEASUREMENT, (uint32_t)population->totals.remeasured, (uint32_t)k);
+        const enum status here = measure(population, variables, seed, HUGE_VAL, 1,
+                                         features + k * each, end + k * size, &results[k]);
+        if (here != STATUS_OK)
+#pragma omp critical
+        {
+            status = here;
+            snprintf(reason, sizeof reason, "%s", mf_status_message());
+        }
+    }
+    if (status != STATUS_OK) {
+        mf_status_fail(status, "%s", reason);
+        goto done;
+    }
+    population->totals.remeasured++;
+    *error = *noise = *variance = 0;
+    for (int kind = 0; kind < TARGETS && distance; kind++)
+        distance[kind] = mean_distance(results, count, kind);
+    for (size_t k = 0; k < count; k++) {
+        *error += results[k].error / (double)count;
+        *noise += results[k].noise / (double)count;
+        *variance += results[k].variance / (double)(count * count);
+        remember(population, variables, results[k].error, features + k * each);
+        population->totals.evaluations++;
+        population->totals.steps += results[k].engine_steps;
+        if (results[k].error >= OPTIMISER_FAILED)
+            *error = OPTIMISER_FAILED * (double)count;
+    }
+done:
+    mf_memory_free(results);
+    mf_memory_free(end);
+    mf_memory_free(features);
+    return status;
+}
+
+size_t mf_population_spans(struct population *population, struct memory_span *span) {
+    const size_t positions = coordinates(population) * sizeof(double);
+    const size_t errors = POPULATION_MOST * sizeof(double);
+    size_t n = 0;
+    span[n++] = (struct memory_span){&population->survey, sizeof population->survey};
+    span[n++] = (struct memory_span){&population->totals, sizeof population->totals};
+    span[n++] = (struct memory_span){population->errors, errors};
+    span[n++] = (struct memory_span){population->variances, errors};
+    span[n++] = (struct memory_span){population->distances,
+                                     POPULATION_MOST * TARGETS * sizeof *population->distances};
+    span[n++] = (struct memory_span){population->position, positions};
+    span[n++] = (struct memory_span){population->best_position, positions};
+    span[n++] =
+        (struct memory_span){population->first, population->decoder->variables * sizeof(double)};
+    span[n++] = (struct memory_span){
+        population->features, POPULATION_MOST * population->surrogate.features * sizeof(double)};
+    n += mf_surrogate_spans(&population->surrogate, span + n);
+    return n;
+}
