@@ -206,7 +206,7 @@ static enum status check_range(const struct fit_file *fit, const char *file, con
 static enum status check_unknowns(const struct fit_file *fit, const char *file) {
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (fit->unknown[kind].wanted && !fit->method->fits[kind])
-            return mf_status_fail(STATUS_BAD_INPUT, "%s: method.name: \"%s\" does not find a %s",
+            return mf_status_fail(STATUS_BAD_INPUT, "%s: method.name: \"%s\" does not find %s",
                                   file, fit->method->name, mf_inverse_unknown_names[kind]);
     const struct inverse_sampling sampling = fit->method->sampling(fit->method_parameters);
     for (int kind = 0; kind < TARGETS && sampling.every == 0; kind++)
