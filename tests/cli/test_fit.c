@@ -174,6 +174,9 @@ static void write_pressure_fit(struct temporary_folder *folder, const char *meth
     small_inputs_write(folder, "run.json", text, "\"target/rdf.tsv\"}",
                        "\"target/rdf.tsv\"}, \"pressure\": {\"value\": 22, \"error\": 0.1}");
     free(text);
+    text = temporary_folder_read("run.json");
+    small_inputs_write(folder, "run.json", text, "\"iterations\": 4", "\"iterations\": 8");
+    free(text);
 }
 
 static void test_interrupted_fit_of_a_pressure_goes_on_with_the_same_bits(void **state) {
@@ -186,9 +189,10 @@ static void test_interrupted_fit_of_a_pressure_goes_on_with_the_same_bits(void *
     for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
         write_pressure_fit(*state, methods[k]);
         run_fit("out", "2", UNCONVERGED);
-        results_assert_number("out/summary.json", "iterations", 4);
-        // From 11; few samples of few particles leave 3.4 of it with "truncated".
-        assert_true(results_number("out/summary.json", "pressure_rmse") < 5);
+        results_assert_number("out/summary.json", "iterations", 8);
+        // From 11; after four iterations one seed in five is still there, after eight all of ten
+        // seeds and methods are within 0.4.
+        assert_true(results_number("out/summary.json", "pressure_rmse") < 1);
         assert_true(results_number("out/summary.json", "ramp_error") > 0);
         assert_true(results_number("out/summary.json", "ramp_pressure") > 0);
     }
@@ -293,7 +297,9 @@ static void test_summary_has_what_other_programs_read(void **state) {
     results_assert_text("out/summary.json", "version", "0.1.0");
     results_assert_numbers("out/summary.json", numbers);
     char *summary = temporary_folder_read("out/summary.json");
-    assert_contains(summary, "\"reason\":\t\"after 4 iterations");
+    // Which of the two it is depends on the noise.
+    assert_true(strstr(summary, "\"reason\":\t\"after 4 iterations") ||
+                strstr(summary, "\"precision\\\" asks for 0.0001"));
     free(summary);
     results_assert_number("out/summary.json", "iterations", 4);
     results_assert_number("out/summary.json", "evaluations", 16);

@@ -23,7 +23,7 @@ static const char soft_fluid[] =
 
 #define MSD "\"msd\": {\"file\": \"target/motion.tsv\"}"
 #define FIXED "\"fixed\": {\"exponent\": 1, \"inner_cutoff\": 0}"
-#define GAUSS_NEWTON "\"name\": \"gauss-newton\", \"iterations\": 4"
+#define GAUSS_NEWTON "\"name\": \"gauss-newton\", \"iterations\": 12"
 
 static const char fit[] =
     "{\"seed\": 3, \"target\": {" MSD "},\n"
