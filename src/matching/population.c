@@ -2,6 +2,7 @@
 #include "matching/population.h"
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "base/rng.h"
 
 #include <math.h>
@@ -220,27 +221,38 @@ static uint64_t seed_of(const struct population *population, const struct optimi
                              (uint32_t)population->totals.rounds, number);
 }
 
-/// Measure one candidate unless it was measured before an interruption.
-static enum status measure_one(struct population *population, const struct optimiser_round *round,
-                               size_t index, double discard_above, int threads,
-                               const struct inverse_listener *listener) {
-    enum status status = STATUS_OK;
+/// What a simulation of a candidate leaves.
+struct measured {
     struct evaluate_result result;
-    double *end = NULL;
-    if (population->errors[index] != UNMEASURED)
-        return STATUS_OK;
-    NEW_ARRAY(end, coordinates(population));
-    CHECK(measure(population, round->variables + index * population->decoder->variables,
-                  seed_of(population, round, index), discard_above, threads,
-                  population->features + index * population->surrogate.features, end, &result));
-#pragma omp critical
-    {
-        take(population, index, &result, end);
-        report(population, round->count, listener);
-    }
-done:
-    mf_memory_free(end);
-    return status;
+    double end[]; ///< as population.position
+};
+
+/// Candidates of a round that have not been measured yet, as before an interruption.
+struct work {
+    struct population *population;
+    const struct optimiser_round *round;
+    const struct inverse_listener *listener;
+    double discard_above;
+    int threads; ///< inside a simulation
+    size_t count, index[POPULATION_MOST];
+};
+
+static enum status measure_one(void *context, size_t task, void *memory) {
+    const struct work *work = context;
+    const struct population *population = work->population;
+    struct measured *measured = memory;
+    const size_t index = work->index[task];
+    return measure(population, work->round->variables + index * population->decoder->variables,
+                   seed_of(population, work->round, index), work->discard_above, work->threads,
+                   population->features + index * population->surrogate.features, measured->end,
+                   &measured->result);
+}
+
+static void take_one(void *context, size_t task, const void *memory) {
+    const struct work *work = context;
+    const struct measured *measured = memory;
+    take(work->population, work->index[task], &measured->result, measured->end);
+    report(work->population, work->round->count, work->listener);
 }
 
 /// Threads for the simulation of a candidate alone. Particles too few to share are done before the
@@ -263,27 +275,25 @@ static void remember(struct population *population, const double *variables, dou
 enum status mf_population_measure(struct population *population,
                                   const struct optimiser_round *round, double discard_above,
                                   const struct inverse_listener *listener) {
-    enum status status = STATUS_OK;
-    char reason[512] = "";
-    const int threads = population->decoder->problem->threads;
+    const struct inverse_problem *problem = population->decoder->problem;
+    struct work work = {population, round, listener, discard_above, 1, 0, {0}};
     if (round->count > POPULATION_MOST)
         return mf_status_fail(STATUS_BAD_INPUT, "a round of %zu candidates: at most %d",
                               round->count, POPULATION_MOST);
-    const int inside = round->count == 1 ? threads_inside(population->decoder->problem) : 1;
+    if (round->count == 1)
+        work.threads = threads_inside(problem);
     memcpy(population->first, round->variables,
            population->decoder->variables * sizeof *round->variables);
-#pragma omp parallel for schedule(dynamic) num_threads(threads) if (round->count > 1)
-    for (size_t k = 0; k < round->count; k++) {
-        const enum status here = measure_one(population, round, k, discard_above, inside, listener);
-        if (here != STATUS_OK)
-#pragma omp critical
-        {
-            status = here;
-            snprintf(reason, sizeof reason, "%s", mf_status_message());
-        }
-    }
-    if (status != STATUS_OK)
-        return mf_status_fail(status, "%s", reason);
+    for (size_t k = 0; k < round->count; k++)
+        if (population->errors[k] == UNMEASURED)
+            work.index[work.count++] = k;
+    TRY(mf_parallel_try(&(struct parallel_tasks){
+        .count = work.count,
+        .threads = problem->threads,
+        .run = measure_one,
+        .take = take_one,
+        .result_size = sizeof(struct measured) + coordinates(population) * sizeof(double),
+        .context = &work}));
     for (size_t k = 0; k < round->count; k++) {
         add(&population->survey, population->errors[k]);
         remember(population, round->variables + k * population->decoder->variables,
@@ -302,53 +312,55 @@ static struct target_distance mean_distance(const struct evaluate_result *result
     return mean;
 }
 
+/// Fresh measurements of one candidate.
+struct fresh {
+    const struct population *population;
+    const double *variables;
+    struct evaluate_result *results;
+    double *features; ///< shape [count, features]
+};
+
+static enum status measure_afresh(void *context, size_t k, void *end) {
+    const struct fresh *fresh = context;
+    const struct population *population = fresh->population;
+    const uint64_t seed = mf_rng_child_seed(population->decoder->problem->seed, RNG_REMEASUREMENT,
+                                            (uint32_t)population->totals.remeasured, (uint32_t)k);
+    return measure(population, fresh->variables, seed, HUGE_VAL, 1,
+                   fresh->features + k * population->surrogate.features, end, &fresh->results[k]);
+}
+
 enum status mf_population_remeasure(struct population *population, const double *variables,
                                     size_t count, double *error, double *noise, double *variance,
                                     struct target_distance *distance) {
     enum status status = STATUS_OK;
-    struct evaluate_result *results = NULL;
-    double *end = NULL, *features = NULL;
-    const size_t size = coordinates(population), each = population->surrogate.features;
-    const struct inverse_problem *problem = population->decoder->problem;
-    char reason[512] = "";
-    NEW_ARRAY(results, count);
-    NEW_ARRAY(end, count * size);
-    NEW_ARRAY(features, count * each);
-#pragma omp parallel for schedule(dynamic) num_threads(problem->threads)
-    for (size_t k = 0; k < count; k++) {
-        const uint64_t seed = mf_rng_child_seed(
-            problem->seed, RNG_REMEASUREMENT, (uint32_t)population->totals.remeasured, (uint32_t)k);
-        const enum status here = measure(population, variables, seed, HUGE_VAL, 1,
-                                         features + k * each, end + k * size, &results[k]);
-        if (here != STATUS_OK)
-#pragma omp critical
-        {
-            status = here;
-            snprintf(reason, sizeof reason, "%s", mf_status_message());
-        }
-    }
-    if (status != STATUS_OK) {
-        mf_status_fail(status, "%s", reason);
-        goto done;
-    }
+    const size_t each = population->surrogate.features;
+    struct fresh fresh = {population, variables, NULL, NULL};
+    NEW_ARRAY(fresh.results, count);
+    NEW_ARRAY(fresh.features, count * each);
+    CHECK(mf_parallel_try(
+        &(struct parallel_tasks){.count = count,
+                                 .threads = population->decoder->problem->threads,
+                                 .run = measure_afresh,
+                                 .result_size = coordinates(population) * sizeof(double),
+                                 .context = &fresh}));
     population->totals.remeasured++;
     *error = *noise = *variance = 0;
     for (int kind = 0; kind < TARGETS && distance; kind++)
-        distance[kind] = mean_distance(results, count, kind);
+        distance[kind] = mean_distance(fresh.results, count, kind);
     for (size_t k = 0; k < count; k++) {
-        *error += results[k].error / (double)count;
-        *noise += results[k].noise / (double)count;
-        *variance += results[k].variance / (double)(count * count);
-        remember(population, variables, results[k].error, features + k * each);
+        const struct evaluate_result *result = &fresh.results[k];
+        *error += result->error / (double)count;
+        *noise += result->noise / (double)count;
+        *variance += result->variance / (double)(count * count);
+        remember(population, variables, result->error, fresh.features + k * each);
         population->totals.evaluations++;
-        population->totals.steps += results[k].engine_steps;
-        if (results[k].error >= OPTIMISER_FAILED)
+        population->totals.steps += result->engine_steps;
+        if (result->error >= OPTIMISER_FAILED)
             *error = OPTIMISER_FAILED * (double)count;
     }
 done:
-    mf_memory_free(results);
-    mf_memory_free(end);
-    mf_memory_free(features);
+    mf_memory_free(fresh.results);
+    mf_memory_free(fresh.features);
     return status;
 }
 
