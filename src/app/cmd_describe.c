@@ -161,8 +161,8 @@ static size_t collect(struct topic topics[MAX_TOPICS]) {
     for (size_t k = 0; mf_inverse_methods[k]; k++) {
         const struct inverse_method *method = mf_inverse_methods[k];
         topics[n] = (struct topic){"method", method->name, method->summary, {NULL}};
-        for (size_t t = 0; t < 3 && method->tables[t]; t++)
-            topics[n].tables[t] = method->tables[t];
+        for (size_t t = 0; t < 3 && method->tables[t].fields; t++)
+            topics[n].tables[t] = method->tables[t].fields;
         n++;
     }
     return n;

@@ -35,8 +35,8 @@ static enum status read_method(struct fit_file *fit, struct json_object *root) {
     fit->method_parameters = mf_memory_zeroed(1, fit->method->parameters_size);
     if (fit->method_parameters == NULL)
         return STATUS_NO_MEMORY;
-    for (size_t k = 0; fit->method->tables[k]; k++)
-        mf_json_fields(&object, fit->method->tables[k], fit->method_parameters);
+    for (const struct inverse_table *table = fit->method->tables; table->fields; table++)
+        mf_json_fields(&object, table->fields, (char *)fit->method_parameters + table->offset);
     mf_json_finish(&object);
     return STATUS_OK;
 }
@@ -208,8 +208,7 @@ static enum status check_unknowns(const struct fit_file *fit, const char *file) 
         if (fit->unknown[kind].wanted && !fit->method->fits[kind])
             return mf_status_fail(STATUS_BAD_INPUT, "%s: method.name: \"%s\" does not find %s",
                                   file, fit->method->name, mf_inverse_unknown_names[kind]);
-    const struct inverse_sampling sampling = fit->method->sampling(fit->method_parameters);
-    for (int kind = 0; kind < TARGETS && sampling.every == 0; kind++)
+    for (int kind = 0; kind < TARGETS && fit->method->kind == INVERSE_INVERSION; kind++)
         if (kind != TARGET_RDF && kind != TARGET_PRESSURE &&
             targets_ask(&fit->problem.targets, kind))
             return mf_status_fail(
@@ -228,7 +227,7 @@ static enum status check_unknowns(const struct fit_file *fit, const char *file) 
 
 static enum status check_bins(const struct fit_file *fit, const char *file) {
     const size_t bins = fit->problem.targets.target[TARGET_RDF].count;
-    if (fit->method->update == NULL || bins <= INVERSION_MOST_BINS)
+    if (fit->method->kind != INVERSE_INVERSION || bins <= INVERSION_MOST_BINS)
         return STATUS_OK;
     return mf_status_fail(
         STATUS_BAD_INPUT,
@@ -263,12 +262,13 @@ static enum status check_window(const char *file, const char *key, const struct 
 }
 
 static enum status check_windows(const struct fit_file *fit, const char *file) {
-    const struct inverse_sampling sampling = fit->method->sampling(fit->method_parameters);
     const struct verify_parameters *verification = &fit->verification;
     const double time_step = fit->scene.setup.time_step;
-    if (sampling.every > 0)
+    if (fit->method->kind == INVERSE_MATCHING) {
+        const struct inverse_sampling sampling = fit->method->sampling(fit->method_parameters);
         TRY(check_window(file, "method", &fit->problem.targets, time_step, sampling.samples,
                          sampling.every));
+    }
     return check_window(file, "verification", &fit->problem.compared,
                         verification->time_step > 0 ? verification->time_step : time_step,
                         verification->plan.samples, verification->plan.every);
@@ -392,8 +392,9 @@ enum status mf_fit_file_write(const struct fit_file *fit, const char *path) {
     mf_json_end(writer);
     mf_json_begin(writer, "method");
     mf_json_put_text(writer, "name", fit->method->name);
-    for (size_t k = 0; fit->method->tables[k]; k++)
-        mf_json_put_fields(writer, fit->method->tables[k], fit->method_parameters);
+    for (const struct inverse_table *table = fit->method->tables; table->fields; table++)
+        mf_json_put_fields(writer, table->fields,
+                           (const char *)fit->method_parameters + table->offset);
     mf_json_end(writer);
     mf_json_begin(writer, "core");
     mf_json_put_fields(writer, mf_fit_core_fields, &fit->core);

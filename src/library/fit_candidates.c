@@ -22,18 +22,18 @@ static enum status evaluate(const struct mesofit_fit *fit, const double *coeffic
     const struct inverse_method *method = fit->file.method;
     struct decoder_laws laws = {0};
     struct evaluate_result result;
-    if (method->sampling(fit->file.method_parameters).every == 0)
+    if (method->kind != INVERSE_MATCHING)
         return mf_status_fail(STATUS_BAD_INPUT, "the method \"%s\" does not measure candidates",
                               method->name);
-    const struct population_settings *settings = fit->file.method_parameters;
+    const struct population_parameters *population = fit->file.method_parameters;
     CHECK(mf_decoder_laws(&fit->decoder, coefficients, &laws));
     const struct evaluate_candidate candidate = {.potential = laws.table[UNKNOWN_POTENTIAL],
                                                  .omega = laws.table[UNKNOWN_OMEGA],
                                                  .discard_above = HUGE_VAL,
                                                  .threads = 1,
                                                  .seed = seed};
-    status = mf_evaluate(&fit->file.problem, &candidate, &settings->population.evaluate, NULL, NULL,
-                         &result);
+    status =
+        mf_evaluate(&fit->file.problem, &candidate, &population->evaluate, NULL, NULL, &result);
     *error = status == STATUS_OK ? result.error : HUGE_VAL;
     if (variance)
         *variance = status == STATUS_OK ? result.variance : 0;

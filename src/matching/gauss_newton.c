@@ -29,7 +29,8 @@ enum { SETTLED_AT_NOISE = 2, SETTLED_IDLE = 10 };
 /// Candidates are spread by this part of the radius, so that the model is asked for little beyond.
 static const double spread_part = 0.7;
 
-struct own {
+struct parameters {
+    struct population_parameters population;
     int64_t iterations, spread, checks;
     double reach, tolerance;
     int pressure; ///< PRESSURE_…
@@ -39,7 +40,7 @@ enum { PRESSURE_WEIGHED, PRESSURE_CONSTRAINT };
 static const char *const pressures[] = {"weighed", "constraint", NULL};
 
 struct state {
-    struct own own;
+    struct parameters own;
     const struct inverse_problem *problem;
     struct decoder decoder;
     struct population population;
@@ -59,7 +60,7 @@ struct state {
     } progress;
 };
 
-#define OWN(name) .offset = offsetof(struct own, name)
+#define OWN(name) .offset = offsetof(struct parameters, name)
 static const struct field own_fields[] = {
     {"iterations", FIELD_INTEGER, OWN(iterations), .initial = 20, .minimum = 1, .maximum = 10000,
      .unit = "", .help = "at most; a fit that has not settled by then has not converged"},
@@ -77,14 +78,14 @@ static const struct field own_fields[] = {
     FIELD_END,
 };
 
-static_assert(sizeof(struct own) <= sizeof((struct population_settings){0}.method), "no room");
+static_assert(offsetof(struct parameters, population) == 0, "the first, says population.h");
 
 static const char *const columns[] = {"least[1]", "mean[1]", "reach[1]", "failures", NULL};
 
 static uint32_t most_iterations(const struct inverse_method *method,
                                 const struct inverse_problem *problem, const void *parameters) {
     (void)method, (void)problem;
-    return (uint32_t)((const struct own *)parameters)->iterations;
+    return (uint32_t)((const struct parameters *)parameters)->iterations;
 }
 
 /// Candidates of an iteration, an even number; the first must be enough for a model.
@@ -129,8 +130,7 @@ static enum status create(void *memory, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters) {
     enum status status = STATUS_OK;
     struct state *state = memory;
-    const struct population_settings *settings = parameters;
-    memcpy(&state->own, &settings->method, sizeof state->own);
+    state->own = *(const struct parameters *)parameters;
     state->problem = problem;
     state->progress = (struct progress){
         .reach = state->own.reach, .error = NAN, .noise = NAN, .reference = INFINITY};
@@ -149,7 +149,7 @@ static enum status create(void *memory, const struct inverse_method *method,
     NEW_ARRAY(state->best, state->decoder.variables);
     CHECK(mf_decoder_curves_init(&state->decoder, &state->curves));
     CHECK(mf_decoder_start(&state->decoder, state->best));
-    CHECK(mf_population_init(&state->population, &state->decoder, &settings->population));
+    CHECK(mf_population_init(&state->population, &state->decoder, &state->own.population));
     state->population.iterations = most_iterations(method, problem, parameters);
     if (state->own.pressure == PRESSURE_CONSTRAINT)
         CHECK(constrain_pressure(state));
@@ -351,8 +351,9 @@ const struct inverse_method mf_gauss_newton = {
     .name = "gauss-newton",
     .summary = "linear models of all observables in a trust region; J. Nocedal and S. J. Wright "
                "(2006)",
-    .tables = (const struct field *const[]){own_fields, mf_population_fields, NULL},
-    .parameters_size = sizeof(struct population_settings),
+    .kind = INVERSE_MATCHING,
+    .tables = (const struct inverse_table[]){{own_fields, 0}, {mf_population_fields, 0}, {NULL, 0}},
+    .parameters_size = sizeof(struct parameters),
     .state_size = sizeof(struct state),
     .fits = {true, true},
     .most_iterations = most_iterations,

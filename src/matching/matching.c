@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "matching/population.h"
 #include "problem/decoder.h"
+#include "optimise/genetic.h"
 #include "optimise/optimiser.h"
 
 #include <assert.h>
@@ -16,9 +17,29 @@
 #include <string.h>
 
 struct parameters {
-    struct population_settings settings; ///< with the parameters of the optimiser
+    struct population_parameters population;
     int64_t checks;
     int surrogate;
+};
+
+/// The same with the parameters of each optimiser behind it.
+struct genetic_settings {
+    struct parameters common;
+    struct genetic_parameters optimiser;
+};
+struct cmaes_settings {
+    struct parameters common;
+    struct cmaes_parameters optimiser;
+};
+struct nlopt_settings {
+    struct parameters common;
+    struct nlopt_parameters optimiser;
+};
+
+/// What a method has of its own: what it drives, and where the parameters of that are.
+struct driven {
+    const struct optimiser *optimiser;
+    size_t parameters;
 };
 
 struct state {
@@ -53,7 +74,7 @@ static const struct field own_fields[] = {
     FIELD_END,
 };
 
-static_assert(offsetof(struct parameters, settings) == 0, "candidates_fields need it first");
+static_assert(offsetof(struct parameters, population) == 0, "the first, says population.h");
 
 static const char *const columns[] = {"least[1]", "mean[1]", "diversity[1]", "failures", NULL};
 
@@ -70,7 +91,10 @@ static uint32_t most_iterations(const struct inverse_method *method,
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (problem->unknown[kind].wanted)
             variables += (size_t)problem->unknown[kind].parameters.coefficients;
-    return method->optimiser->most_rounds(parameters, variables) + 1;
+    const struct driven *driven = method->own;
+    return driven->optimiser->most_rounds((const char *)parameters + driven->parameters,
+                                          variables) +
+           1;
 }
 
 static void destroy(void *memory) {
@@ -85,7 +109,7 @@ static void destroy(void *memory) {
     mf_decoder_curves_clear(&state->curves);
 }
 
-static enum status create_optimiser(struct state *state) {
+static enum status create_optimiser(struct state *state, const void *parameters) {
     enum status status = STATUS_OK;
     double *start = NULL;
     NEW_ARRAY(start, state->decoder.variables);
@@ -98,7 +122,7 @@ static enum status create_optimiser(struct state *state) {
                                           .most = POPULATION_MOST};
     state->optimiser_state = mf_memory_zeroed(1, state->optimiser->state_size);
     CHECK(state->optimiser_state ? STATUS_OK : STATUS_NO_MEMORY);
-    CHECK(state->optimiser->create(state->optimiser_state, &space, &state->parameters));
+    CHECK(state->optimiser->create(state->optimiser_state, &space, parameters));
     state->created = true;
 done:
     mf_memory_free(start);
@@ -109,17 +133,17 @@ static enum status create(void *memory, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters) {
     enum status status = STATUS_OK;
     struct state *state = memory;
+    const struct driven *driven = method->own;
     state->parameters = *(const struct parameters *)parameters;
     state->problem = problem;
-    state->optimiser = method->optimiser;
+    state->optimiser = driven->optimiser;
     state->progress.error = NAN;
     CHECK(mf_decoder_init(&state->decoder, problem));
     NEW_ARRAY(state->incumbent, state->decoder.variables);
     NEW_ARRAY(state->best, state->decoder.variables);
     CHECK(mf_decoder_curves_init(&state->decoder, &state->curves));
-    CHECK(create_optimiser(state));
-    CHECK(mf_population_init(&state->population, &state->decoder,
-                             &state->parameters.settings.population));
+    CHECK(create_optimiser(state, (const char *)parameters + driven->parameters));
+    CHECK(mf_population_init(&state->population, &state->decoder, &state->parameters.population));
     state->population.iterations = most_iterations(method, problem, parameters);
 done:
     return status;
@@ -276,23 +300,27 @@ static size_t spans(void *memory, struct memory_span *span) {
     return n;
 }
 
-#define MATCHING(its_name, its_optimiser, its_fields, its_summary)                                 \
+#define MATCHING(its_name, its_optimiser, its_settings, its_fields, its_summary)                   \
     {                                                                                              \
-        .name = its_name, .summary = its_summary,                                                  \
+        .name = its_name, .summary = its_summary, .kind = INVERSE_MATCHING,                        \
+        .own = &(const struct driven){&(its_optimiser), offsetof(struct its_settings, optimiser)}, \
         .tables =                                                                                  \
-            (const struct field *const[]){its_fields, mf_population_fields, own_fields, NULL},     \
-        .parameters_size = sizeof(struct parameters), .state_size = sizeof(struct state),          \
-        .fits = {true, true}, .optimiser = &(its_optimiser), .most_iterations = most_iterations,   \
+            (const struct inverse_table[]){{its_fields, offsetof(struct its_settings, optimiser)}, \
+                                           {mf_population_fields, 0},                              \
+                                           {own_fields, 0},                                        \
+                                           {NULL, 0}},                                             \
+        .parameters_size = sizeof(struct its_settings), .state_size = sizeof(struct state),        \
+        .fits = {true, true}, .most_iterations = most_iterations,                                  \
         .sampling = mf_population_sampling, .keeps_parts = true, .columns = columns,               \
         .create = create, .destroy = destroy, .iterate = iterate, .spans = spans,                  \
     }
 
 const struct inverse_method mf_matching_genetic =
-    MATCHING("genetic", mf_genetic_optimiser, mf_genetic_fields,
+    MATCHING("genetic", mf_genetic_optimiser, genetic_settings, mf_genetic_fields,
              "genetic algorithm over smooth curves; A. G. Baydin (2008)");
 const struct inverse_method mf_matching_cmaes =
-    MATCHING("cma-es", mf_cmaes_optimiser, mf_cmaes_fields,
+    MATCHING("cma-es", mf_cmaes_optimiser, cmaes_settings, mf_cmaes_fields,
              "evolution strategy with covariance matrix adaptation; N. Hansen, arXiv:1604.00772");
 const struct inverse_method mf_matching_nlopt =
-    MATCHING("nlopt", mf_nlopt_optimiser, mf_nlopt_fields,
+    MATCHING("nlopt", mf_nlopt_optimiser, nlopt_settings, mf_nlopt_fields,
              "algorithms of NLopt by name; S. G. Johnson, github.com/stevengj/nlopt");

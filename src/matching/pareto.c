@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-#define OWN(name) .offset = offsetof(struct pareto_own, name)
+#define OWN(name) .offset = offsetof(struct pareto_parameters, name)
 static const struct field own_fields[] = {
     {"checks", FIELD_INTEGER, OWN(checks), .initial = 2, .minimum = 1, .maximum = POPULATION_MOST,
      .unit = "", .help = "fresh measurements of a member of the front before it is chosen"},
@@ -21,9 +21,7 @@ static const struct field own_fields[] = {
     FIELD_END,
 };
 
-static_assert(sizeof(struct pareto_own) <= sizeof((struct population_settings){0}.method),
-              "no room");
-static_assert(offsetof(struct pareto_own, nsga2) == 0, "nsga2_fields need it first");
+static_assert(offsetof(struct pareto_parameters, population) == 0, "the first, says population.h");
 
 static const char *const columns[] = {"least[1]", "mean[1]", "diversity[1]", "failures", NULL};
 
@@ -34,7 +32,7 @@ static const double reach = 0.3;
 static uint32_t most_iterations(const struct inverse_method *method,
                                 const struct inverse_problem *problem, const void *parameters) {
     (void)method, (void)problem;
-    return (uint32_t)((const struct pareto_own *)parameters)->nsga2.generations;
+    return (uint32_t)((const struct pareto_parameters *)parameters)->nsga2.generations;
 }
 
 static void destroy(void *memory) {
@@ -75,8 +73,7 @@ static enum status create(void *memory, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters) {
     enum status status = STATUS_OK;
     struct pareto_state *state = memory;
-    const struct population_settings *settings = parameters;
-    memcpy(&state->own, &settings->method, sizeof state->own);
+    state->own = *(const struct pareto_parameters *)parameters;
     state->problem = problem;
     for (int kind = 0; kind < TARGETS; kind++)
         if (targets_ask(&problem->targets, kind))
@@ -90,7 +87,7 @@ static enum status create(void *memory, const struct inverse_method *method,
     NEW_ARRAY(state->value, POPULATION_MOST * state->objectives);
     NEW_ARRAY(state->log, log_rows(state) * mf_pareto_log_width(state));
     CHECK(mf_decoder_curves_init(&state->decoder, &state->curves));
-    CHECK(mf_population_init(&state->population, &state->decoder, &settings->population));
+    CHECK(mf_population_init(&state->population, &state->decoder, &state->own.population));
     state->population.iterations = most_iterations(method, problem, parameters);
     state->progress.least = OPTIMISER_FAILED;
 done:
@@ -291,9 +288,13 @@ static size_t spans(void *memory, struct memory_span *span) {
 const struct inverse_method mf_pareto = {
     .name = "pareto",
     .summary = "the front of all targets by NSGA-II, without weights; K. Deb et al. (2002)",
+    .kind = INVERSE_MATCHING,
     .tables =
-        (const struct field *const[]){mf_nsga2_fields, own_fields, mf_population_fields, NULL},
-    .parameters_size = sizeof(struct population_settings),
+        (const struct inverse_table[]){{mf_nsga2_fields, offsetof(struct pareto_parameters, nsga2)},
+                                       {own_fields, 0},
+                                       {mf_population_fields, 0},
+                                       {NULL, 0}},
+    .parameters_size = sizeof(struct pareto_parameters),
     .state_size = sizeof(struct pareto_state),
     .fits = {true, true},
     .most_iterations = most_iterations,

@@ -6,7 +6,8 @@
 #include "problem/inverse.h"
 #include "optimise/nsga2.h"
 
-struct pareto_own {
+struct pareto_parameters {
+    struct population_parameters population;
     struct nsga2_parameters nsga2;
     int64_t checks, surrogate;
 };
@@ -18,7 +19,7 @@ enum pareto_log_kind { LOG_MEASURED, LOG_FRONT, LOG_CHOSEN };
 enum { LOG_ITERATION, LOG_KIND, LOG_ERROR, LOG_OBJECTIVES };
 
 struct pareto_state {
-    struct pareto_own own;
+    struct pareto_parameters own;
     const struct inverse_problem *problem;
     struct decoder decoder;
     struct population population;

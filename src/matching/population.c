@@ -13,38 +13,37 @@
 
 const char *const mf_population_no_or_yes[] = {"no", "yes", NULL};
 
-#define MEMBER(name) .offset = offsetof(struct population_settings, name)
+#define MEMBER(name) .offset = offsetof(struct population_parameters, name)
 const struct field mf_population_fields[] = {
-    {"equilibration", FIELD_INTEGER, MEMBER(population.evaluate.plan.equilibration), .initial = 350,
+    {"equilibration", FIELD_INTEGER, MEMBER(evaluate.plan.equilibration), .initial = 350,
      .minimum = 10, .maximum = 1e9, .unit = "steps", .help = "of a candidate's simulation"},
-    {"samples", FIELD_INTEGER, MEMBER(population.evaluate.plan.samples), .initial = 45,
-     .minimum = 1, .maximum = 1e8, .unit = "",
+    {"samples", FIELD_INTEGER, MEMBER(evaluate.plan.samples), .initial = 45, .minimum = 1,
+     .maximum = 1e8, .unit = "",
      .help = "of its g(r) and pressure; times \"every\" it is as long as all else is measured"},
-    {"every", FIELD_INTEGER, MEMBER(population.evaluate.plan.every), .initial = 50, .minimum = 1,
+    {"every", FIELD_INTEGER, MEMBER(evaluate.plan.every), .initial = 50, .minimum = 1,
      .maximum = 1e9, .unit = "steps", .help = "between samples"},
-    {"temperature_tolerance", FIELD_NUMBER, MEMBER(population.evaluate.temperature_tolerance),
-     .initial = 0.1, .minimum = FIELD_ABOVE_ZERO, .maximum = 1, .unit = "",
+    {"temperature_tolerance", FIELD_NUMBER, MEMBER(evaluate.temperature_tolerance), .initial = 0.1,
+     .minimum = FIELD_ABOVE_ZERO, .maximum = 1, .unit = "",
      .help = "relative deviation at the end of equilibration with which a candidate fails"},
-    {"estimator", FIELD_CHOICE, MEMBER(population.evaluate.estimator),
-     .choices = mf_rdf_force_estimators, .initial = RDF_FORCE_NOT_USED, .unit = "",
+    {"estimator", FIELD_CHOICE, MEMBER(evaluate.estimator), .choices = mf_rdf_force_estimators,
+     .initial = RDF_FORCE_NOT_USED, .unit = "",
      .help = "of g(r): force is worth twice the samples, but a large time step puts it off"},
-    {"racing", FIELD_NUMBER, MEMBER(population.evaluate.patience), .initial = 0, .minimum = 0,
-     .maximum = 100, .unit = "standard errors",
+    {"racing", FIELD_NUMBER, MEMBER(evaluate.patience), .initial = 0, .minimum = 0, .maximum = 100,
+     .unit = "standard errors",
      .help = "by which a running error must be hopeless for its simulation to stop; 0: never"},
-    {"precision", FIELD_NUMBER, MEMBER(population.evaluate.precision), .initial = 0, .minimum = 0,
+    {"precision", FIELD_NUMBER, MEMBER(evaluate.precision), .initial = 0, .minimum = 0,
      .maximum = 1, .unit = "",
      .help = "relative standard error of an error with which its simulation stops; 0: never"},
-    {"warm_start", FIELD_CHOICE, MEMBER(population.warm_start), .choices = mf_population_no_or_yes,
+    {"warm_start", FIELD_CHOICE, MEMBER(warm_start), .choices = mf_population_no_or_yes,
      .initial = 0, .unit = "", .help = "begin where the best simulation of the last round ended"},
-    {"common_noise", FIELD_CHOICE, MEMBER(population.common_noise),
-     .choices = mf_population_no_or_yes, .initial = 0, .unit = "",
-     .help = "the same random numbers for all candidates of a round"},
+    {"common_noise", FIELD_CHOICE, MEMBER(common_noise), .choices = mf_population_no_or_yes,
+     .initial = 0, .unit = "", .help = "the same random numbers for all candidates of a round"},
     FIELD_END,
 };
 
-struct inverse_sampling mf_population_sampling(const void *settings) {
+struct inverse_sampling mf_population_sampling(const void *parameters) {
     const struct evaluate_parameters *evaluate =
-        &((const struct population_settings *)settings)->population.evaluate;
+        &((const struct population_parameters *)parameters)->evaluate;
     return (struct inverse_sampling){.every = evaluate->plan.every,
                                      .rdf_force = evaluate->estimator == RDF_FORCE_USED,
                                      .samples = evaluate->plan.samples};

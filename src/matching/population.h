@@ -8,30 +8,20 @@
 #include "matching/surrogate.h"
 #include "optimise/optimiser.h"
 
-#include <stddef.h>
-
 enum { POPULATION_MOST = 1024 }; ///< in a round
 
+/// What the run file says of how candidates are measured: the first member of the parameters of
+/// every method of the kind INVERSE_MATCHING.
 struct population_parameters {
     struct evaluate_parameters evaluate;
     int warm_start, common_noise; ///< 0: no
 };
 
-/// What the run file says to a method that measures candidates. The method's own fields are offsets
-/// into a struct of its own, which therefore comes first.
-struct population_settings {
-    union {
-        max_align_t alignment;
-        unsigned char bytes[512];
-    } method;
-    struct population_parameters population;
-};
-
-extern const struct field mf_population_fields[]; ///< of struct population_settings
+extern const struct field mf_population_fields[]; ///< of struct population_parameters
 extern const char *const mf_population_no_or_yes[];
 
 /// For `struct inverse_method`.
-struct inverse_sampling mf_population_sampling(const void *settings);
+struct inverse_sampling mf_population_sampling(const void *parameters);
 
 /// What was measured since mf_population_forget_survey.
 struct population_survey {

@@ -145,32 +145,40 @@ struct inverse_folder {
 
 enum { INVERSE_MAX_SPANS = 1024 };
 
-struct optimiser;
-struct inversion;
+/// What kind of method it is.
+enum inverse_kind {
+    INVERSE_INVERSION, ///< turns g(r) into Φ by samples of a Monte Carlo of its own (inversion/)
+    INVERSE_MATCHING,  ///< moves variables, and simulates the scene with what they make (matching/)
+};
+
+/// A part of a method's parameters: its fields, and where in the struct they are counted from.
+struct inverse_table {
+    const struct field *fields;
+    size_t offset;
+};
 
 /// What a method measures of an evaluation.
 struct inverse_sampling {
-    int64_t every;  ///< steps between samples; 0: no dynamics are simulated
+    int64_t every;  ///< steps between samples
     bool rdf_force; ///< g(r) from forces, where the potential allows
     int64_t samples;
 };
 
 struct inverse_method {
     const char *name;
-    const char *summary;               ///< with citation, one line
-    const struct field *const *tables; ///< of the parameter struct, NULL-terminated
+    const char *summary; ///< with citation, one line
+    enum inverse_kind kind;
+    /// What its kind wants to know besides: struct inversion_rule, or a struct of matching/.
+    const void *own;
+    const struct inverse_table *tables; ///< of the parameter struct; ended by one without fields
     size_t parameters_size;
     size_t state_size;
     uint32_t (*most_iterations)(const struct inverse_method *method,
                                 const struct inverse_problem *problem, const void *parameters);
-    struct inverse_sampling (*sampling)(const void *parameters);
+    struct inverse_sampling (*sampling)(const void *parameters); ///< NULL of an inversion
     bool keeps_parts;
-    const char *const *columns;        ///< names of `extra`, NULL-terminated
-    bool fits[UNKNOWNS];               ///< what it can find
-    const struct optimiser *optimiser; ///< that matching drives, or NULL
-    /// The step of an inversion (inversion/inversion.h) from its samples: `step` of the known bins,
-    /// and up to INVERSION_OWN_COLUMNS columns of the method's own. NULL of other methods.
-    enum status (*update)(struct inversion *inversion, double *extra);
+    const char *const *columns; ///< names of `extra`, NULL-terminated
+    bool fits[UNKNOWNS];        ///< what it can find
     enum status (*create)(void *state, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters);
     void (*destroy)(void *state);

@@ -339,7 +339,7 @@ static void doubt(struct run *run, const struct verification *verification) {
     const struct targets *targets = &run->fit.problem.targets;
     if (!standing->converged && !standing->used_up)
         return;
-    if (run->fit.method->update
+    if (run->fit.method->kind == INVERSE_INVERSION
             ? mf_fit_verdict_contradicts(verification, targets_ask(targets, TARGET_PRESSURE),
                                          run->fit.problem.scene.temperature, noise_margin,
                                          standing->reason)

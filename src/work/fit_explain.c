@@ -39,11 +39,11 @@ static void print_simulation(const struct measured *measured, const struct targe
 /// Simulations with the curves that the fit begins with.
 static void print_simulations(const struct fit_file *fit, const struct decoder_laws *laws) {
     const struct inverse_problem *problem = &fit->problem;
-    const struct inverse_sampling sampling = fit->method->sampling(fit->method_parameters);
     struct simulation_setup setup = problem->scene;
     setup.potential = laws->table[UNKNOWN_POTENTIAL];
     setup.omega = laws->table[UNKNOWN_OMEGA];
-    if (sampling.every > 0) {
+    if (fit->method->kind == INVERSE_MATCHING) {
+        const struct inverse_sampling sampling = fit->method->sampling(fit->method_parameters);
         struct measured measured = measured_of(&problem->targets, &setup, sampling.every);
         measured.explain.rdf_force = measured.explain.rdf_force_alone =
             sampling.rdf_force && targets_ask(&problem->targets, TARGET_RDF) &&
