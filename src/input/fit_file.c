@@ -2,7 +2,7 @@
 #include "input/fit_file.h"
 
 #include "base/memory.h"
-#include "problem/decoder.h"
+#include "problem/unknowns.h"
 #include "inversion/inversion.h"
 #include "input/target_sanity.h"
 
@@ -173,22 +173,18 @@ static enum status read_root(struct fit_file *fit, struct json_object *root) {
 /// now and not by the verification after the fit.
 static enum status try_scene(const struct inverse_problem *problem) {
     enum status status = STATUS_OK;
-    struct decoder decoder = {0};
-    struct decoder_laws laws = {0};
+    struct unknowns unknowns = {0};
+    struct unknowns_laws laws = {0};
     struct simulation simulation = {0};
     struct simulation_setup setup = problem->scene;
-    double *variables = NULL;
-    CHECK(mf_decoder_init(&decoder, problem));
-    NEW_ARRAY(variables, decoder.variables);
-    CHECK(mf_decoder_start(&decoder, variables));
-    CHECK(mf_decoder_laws(&decoder, variables, &laws));
+    CHECK(mf_unknowns_init(&unknowns, problem));
+    CHECK(mf_unknowns_laws_start(&unknowns, &laws));
     setup.omega = laws.table[UNKNOWN_OMEGA];
     CHECK(mf_simulation_init(&simulation, &setup, NULL));
 done:
     mf_simulation_clear(&simulation);
-    mf_decoder_laws_clear(&laws);
-    mf_decoder_clear(&decoder);
-    mf_memory_free(variables);
+    mf_unknowns_laws_clear(&laws);
+    mf_unknowns_clear(&unknowns);
     return status;
 }
 

@@ -19,7 +19,7 @@ extern const struct field mf_fit_core_fields[];
 struct fit_unknown {
     bool wanted;
     struct unknown_parameters parameters;
-    struct scene_law start; ///< without a curve: as mf_decoder_start says
+    struct scene_law start; ///< without a curve: as mf_unknowns_start says
     struct scene_law truth; ///< the true curves where they are known
 };
 

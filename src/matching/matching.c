@@ -7,7 +7,7 @@
 
 #include "base/memory.h"
 #include "matching/population.h"
-#include "problem/decoder.h"
+#include "problem/parametrisation.h"
 #include "optimise/genetic.h"
 #include "optimise/optimiser.h"
 
@@ -48,11 +48,11 @@ struct state {
     const struct optimiser *optimiser;
     void *optimiser_state;
     bool created;
-    struct decoder decoder;
+    struct parametrisation parametrisation;
     struct population population;
-    double *incumbent;            ///< shape [variables]: what is thought best
-    double *best;                 ///< shape [variables]: the best by fresh measurements
-    struct decoder_curves curves; ///< of the best, with errors by the linear model
+    double *incumbent;                    ///< shape [variables]: what is thought best
+    double *best;                         ///< shape [variables]: the best by fresh measurements
+    struct parametrisation_curves curves; ///< of the best, with errors by the linear model
     struct progress {
         uint32_t iteration;
         int stage;            ///< of `check`
@@ -103,18 +103,18 @@ static void destroy(void *memory) {
         state->optimiser->destroy(state->optimiser_state);
     mf_memory_free(state->optimiser_state);
     mf_population_clear(&state->population);
-    mf_decoder_clear(&state->decoder);
+    mf_parametrisation_clear(&state->parametrisation);
     mf_memory_free(state->incumbent);
     mf_memory_free(state->best);
-    mf_decoder_curves_clear(&state->curves);
+    mf_parametrisation_curves_clear(&state->curves);
 }
 
 static enum status create_optimiser(struct state *state, const void *parameters) {
     enum status status = STATUS_OK;
     double *start = NULL;
-    NEW_ARRAY(start, state->decoder.variables);
-    CHECK(mf_decoder_start(&state->decoder, start));
-    const struct optimiser_space space = {.variables = state->decoder.variables,
+    NEW_ARRAY(start, state->parametrisation.variables);
+    CHECK(mf_parametrisation_start(&state->parametrisation, start));
+    const struct optimiser_space space = {.variables = state->parametrisation.variables,
                                           .minimum = 0,
                                           .maximum = 1,
                                           .start = start,
@@ -138,12 +138,13 @@ static enum status create(void *memory, const struct inverse_method *method,
     state->problem = problem;
     state->optimiser = driven->optimiser;
     state->progress.error = NAN;
-    CHECK(mf_decoder_init(&state->decoder, problem));
-    NEW_ARRAY(state->incumbent, state->decoder.variables);
-    NEW_ARRAY(state->best, state->decoder.variables);
-    CHECK(mf_decoder_curves_init(&state->decoder, &state->curves));
+    CHECK(mf_parametrisation_init(&state->parametrisation, problem));
+    NEW_ARRAY(state->incumbent, state->parametrisation.variables);
+    NEW_ARRAY(state->best, state->parametrisation.variables);
+    CHECK(mf_parametrisation_curves_init(&state->parametrisation, &state->curves));
     CHECK(create_optimiser(state, (const char *)parameters + driven->parameters));
-    CHECK(mf_population_init(&state->population, &state->decoder, &state->parameters.population));
+    CHECK(mf_population_init(&state->population, &state->parametrisation,
+                             &state->parameters.population));
     state->population.iterations = most_iterations(method, problem, parameters);
 done:
     return status;
@@ -168,7 +169,7 @@ static enum status take_round(struct state *state, const struct optimiser_round 
 /// Whether what is thought best is to be measured: something new, and not more than one evaluation
 /// in ten goes into such measurements but for the last.
 static bool wants_check(const struct state *state, bool last) {
-    const size_t bytes = state->decoder.variables * sizeof(double);
+    const size_t bytes = state->parametrisation.variables * sizeof(double);
     if (state->progress.known && memcmp(state->incumbent, state->best, bytes) == 0)
         return false;
     const uint64_t since = state->population.totals.evaluations - state->progress.checked;
@@ -184,7 +185,7 @@ static enum status check_incumbent(struct state *state, double slack) {
     if (error >= OPTIMISER_FAILED ||
         (state->progress.known && error > state->progress.error + slack * sqrt(variance)))
         return STATUS_OK;
-    memcpy(state->best, state->incumbent, state->decoder.variables * sizeof(double));
+    memcpy(state->best, state->incumbent, state->parametrisation.variables * sizeof(double));
     if (!state->progress.known || error < state->progress.error)
         state->progress.last_better = state->progress.iteration;
     state->progress.known = true;
@@ -202,11 +203,11 @@ static enum status try_surrogate(struct state *state) {
     bool known = false;
     if (state->progress.known)
         CHECK(mf_surrogate_fit(&state->population.surrogate, state->best, reach, &model, &known));
-    CHECK(mf_decoder_curves_bands(&state->decoder, state->best, known ? model.covariance : NULL,
-                                  &state->curves));
+    CHECK(mf_parametrisation_curves_bands(&state->parametrisation, state->best,
+                                          known ? model.covariance : NULL, &state->curves));
     if (!known || !state->parameters.surrogate)
         goto done;
-    memcpy(state->incumbent, model.best, state->decoder.variables * sizeof(double));
+    memcpy(state->incumbent, model.best, state->parametrisation.variables * sizeof(double));
     CHECK(check_incumbent(state, 1));
 done:
     mf_surrogate_model_clear(&model);
@@ -243,9 +244,9 @@ static void describe(struct state *state, struct inverse_step *step, bool finish
     };
     if (finished)
         conclude(state, step);
-    mf_decoder_curves_show(&state->decoder,
-                           state->progress.known ? state->best : state->population.first,
-                           &state->curves, step);
+    mf_parametrisation_curves_show(&state->parametrisation,
+                                   state->progress.known ? state->best : state->population.first,
+                                   &state->curves, step);
 }
 
 /// Measure what the optimiser, and then the linear model, thinks best. Each stage is done once,
@@ -290,11 +291,11 @@ static enum status iterate(void *memory, struct inverse_step *step,
 
 static size_t spans(void *memory, struct memory_span *span) {
     struct state *state = memory;
-    const size_t bytes = state->decoder.variables * sizeof(double);
+    const size_t bytes = state->parametrisation.variables * sizeof(double);
     size_t n = 0;
     span[n++] = (struct memory_span){&state->progress, sizeof state->progress};
     span[n++] = (struct memory_span){state->best, bytes};
-    n += mf_decoder_curves_spans(&state->decoder, &state->curves, span + n);
+    n += mf_parametrisation_curves_spans(&state->parametrisation, &state->curves, span + n);
     n += mf_population_spans(&state->population, span + n);
     n += state->optimiser->spans(state->optimiser_state, span + n);
     return n;

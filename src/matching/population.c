@@ -50,26 +50,28 @@ struct inverse_sampling mf_population_sampling(const void *parameters) {
 }
 
 static size_t coordinates(const struct population *population) {
-    const struct simulation_setup *scene = &population->decoder->problem->scene;
+    const struct simulation_setup *scene = &population->parametrisation->unknowns.problem->scene;
     return (size_t)scene->box.dimensions * (size_t)scene->placement.count;
 }
 
-enum status mf_population_init(struct population *population, const struct decoder *decoder,
+enum status mf_population_init(struct population *population,
+                               const struct parametrisation *parametrisation,
                                const struct population_parameters *parameters) {
     enum status status = STATUS_OK;
-    *population = (struct population){.decoder = decoder, .parameters = *parameters, .best = NAN};
+    *population = (struct population){
+        .parametrisation = parametrisation, .parameters = *parameters, .best = NAN};
     NEW_ARRAY(population->errors, POPULATION_MOST);
     NEW_ARRAY(population->variances, POPULATION_MOST);
     NEW_ARRAY(population->distances, POPULATION_MOST * TARGETS);
-    NEW_ARRAY(population->first, decoder->variables);
-    const struct targets *targets = &decoder->problem->targets;
+    NEW_ARRAY(population->first, parametrisation->variables);
+    const struct targets *targets = &parametrisation->unknowns.problem->targets;
     const size_t features = mf_targets_features(targets);
     NEW_ARRAY(population->features, POPULATION_MOST * features);
     NEW_ARRAY(population->target, features);
     NEW_ARRAY(population->target_error, features);
     mf_targets_take_features(targets, NULL, population->target, population->target_error);
-    CHECK(mf_surrogate_init(&population->surrogate, decoder->variables, features, POPULATION_MOST,
-                            population->target, population->target_error));
+    CHECK(mf_surrogate_init(&population->surrogate, parametrisation->variables, features,
+                            POPULATION_MOST, population->target, population->target_error));
     NEW_ARRAY(population->position, coordinates(population));
     NEW_ARRAY(population->best_position, coordinates(population));
     mf_population_next_round(population);
@@ -120,7 +122,7 @@ void mf_population_tell_failure(const struct population *population, const char 
 
 /// Columns of positions, one a dimension.
 static void split(const struct population *population, double *position, double *column[3]) {
-    const struct simulation_setup *scene = &population->decoder->problem->scene;
+    const struct simulation_setup *scene = &population->parametrisation->unknowns.problem->scene;
     for (int d = 0; d < scene->box.dimensions; d++)
         column[d] = position + (size_t)d * (size_t)scene->placement.count;
 }
@@ -129,11 +131,11 @@ static void split(const struct population *population, double *position, double 
 static enum status measure(const struct population *population, const double *variables,
                            uint64_t seed, double discard_above, int threads, double *features,
                            double *end, struct evaluate_result *result) {
-    struct decoder_laws laws;
+    struct unknowns_laws laws;
     double *begin_column[3] = {NULL}, *end_column[3] = {NULL};
     split(population, population->position, begin_column);
     split(population, end, end_column);
-    enum status status = mf_decoder_laws(population->decoder, variables, &laws);
+    enum status status = mf_parametrisation_laws(population->parametrisation, variables, &laws);
     const struct evaluate_candidate candidate = {
         .potential = laws.table[UNKNOWN_POTENTIAL],
         .omega = laws.table[UNKNOWN_OMEGA],
@@ -143,14 +145,14 @@ static enum status measure(const struct population *population, const double *va
         .seed = seed,
     };
     if (status == STATUS_OK)
-        status = mf_evaluate(population->decoder->problem, &candidate,
+        status = mf_evaluate(population->parametrisation->unknowns.problem, &candidate,
                              &population->parameters.evaluate, features, end_column, result);
     if (status == STATUS_UNSTABLE || (status == STATUS_OK && !isfinite(result->error))) {
         result->error = OPTIMISER_FAILED;
         result->variance = 0;
         status = STATUS_OK;
     }
-    mf_decoder_laws_clear(&laws);
+    mf_unknowns_laws_clear(&laws);
     return status;
 }
 
@@ -213,10 +215,11 @@ static uint32_t copies_before(const struct optimiser_round *round, size_t variab
 
 static uint64_t seed_of(const struct population *population, const struct optimiser_round *round,
                         size_t index) {
-    const uint32_t number = population->parameters.common_noise
-                                ? copies_before(round, population->decoder->variables, index)
-                                : (uint32_t)index;
-    return mf_rng_child_seed(population->decoder->problem->seed, RNG_EVALUATION,
+    const uint32_t number =
+        population->parameters.common_noise
+            ? copies_before(round, population->parametrisation->variables, index)
+            : (uint32_t)index;
+    return mf_rng_child_seed(population->parametrisation->unknowns.problem->seed, RNG_EVALUATION,
                              (uint32_t)population->totals.rounds, number);
 }
 
@@ -241,7 +244,8 @@ static enum status measure_one(void *context, size_t task, void *memory) {
     const struct population *population = work->population;
     struct measured *measured = memory;
     const size_t index = work->index[task];
-    return measure(population, work->round->variables + index * population->decoder->variables,
+    return measure(population,
+                   work->round->variables + index * population->parametrisation->variables,
                    seed_of(population, work->round, index), work->discard_above, work->threads,
                    population->features + index * population->surrogate.features, measured->end,
                    &measured->result);
@@ -274,7 +278,7 @@ static void remember(struct population *population, const double *variables, dou
 enum status mf_population_measure(struct population *population,
                                   const struct optimiser_round *round, double discard_above,
                                   const struct inverse_listener *listener) {
-    const struct inverse_problem *problem = population->decoder->problem;
+    const struct inverse_problem *problem = population->parametrisation->unknowns.problem;
     struct work work = {population, round, listener, discard_above, 1, 0, {0}};
     if (round->count > POPULATION_MOST)
         return mf_status_fail(STATUS_BAD_INPUT, "a round of %zu candidates: at most %d",
@@ -282,7 +286,7 @@ enum status mf_population_measure(struct population *population,
     if (round->count == 1)
         work.threads = threads_inside(problem);
     memcpy(population->first, round->variables,
-           population->decoder->variables * sizeof *round->variables);
+           population->parametrisation->variables * sizeof *round->variables);
     for (size_t k = 0; k < round->count; k++)
         if (population->errors[k] == UNMEASURED)
             work.index[work.count++] = k;
@@ -295,7 +299,7 @@ enum status mf_population_measure(struct population *population,
         .context = &work}));
     for (size_t k = 0; k < round->count; k++) {
         add(&population->survey, population->errors[k]);
-        remember(population, round->variables + k * population->decoder->variables,
+        remember(population, round->variables + k * population->parametrisation->variables,
                  population->errors[k], population->features + k * population->surrogate.features);
     }
     return STATUS_OK;
@@ -322,8 +326,9 @@ struct fresh {
 static enum status measure_afresh(void *context, size_t k, void *end) {
     const struct fresh *fresh = context;
     const struct population *population = fresh->population;
-    const uint64_t seed = mf_rng_child_seed(population->decoder->problem->seed, RNG_REMEASUREMENT,
-                                            (uint32_t)population->totals.remeasured, (uint32_t)k);
+    const uint64_t seed =
+        mf_rng_child_seed(population->parametrisation->unknowns.problem->seed, RNG_REMEASUREMENT,
+                          (uint32_t)population->totals.remeasured, (uint32_t)k);
     return measure(population, fresh->variables, seed, HUGE_VAL, 1,
                    fresh->features + k * population->surrogate.features, end, &fresh->results[k]);
 }
@@ -338,7 +343,7 @@ enum status mf_population_remeasure(struct population *population, const double 
     NEW_ARRAY(fresh.features, count * each);
     CHECK(mf_parallel_try(
         &(struct parallel_tasks){.count = count,
-                                 .threads = population->decoder->problem->threads,
+                                 .threads = population->parametrisation->unknowns.problem->threads,
                                  .run = measure_afresh,
                                  .result_size = coordinates(population) * sizeof(double),
                                  .context = &fresh}));
@@ -375,8 +380,8 @@ size_t mf_population_spans(struct population *population, struct memory_span *sp
                                      POPULATION_MOST * TARGETS * sizeof *population->distances};
     span[n++] = (struct memory_span){population->position, positions};
     span[n++] = (struct memory_span){population->best_position, positions};
-    span[n++] =
-        (struct memory_span){population->first, population->decoder->variables * sizeof(double)};
+    span[n++] = (struct memory_span){population->first,
+                                     population->parametrisation->variables * sizeof(double)};
     span[n++] = (struct memory_span){
         population->features, POPULATION_MOST * population->surrogate.features * sizeof(double)};
     n += mf_surrogate_spans(&population->surrogate, span + n);

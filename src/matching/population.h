@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/statistics.h"
-#include "problem/decoder.h"
+#include "problem/parametrisation.h"
 #include "problem/evaluate.h"
 #include "matching/surrogate.h"
 #include "optimise/optimiser.h"
@@ -32,7 +32,7 @@ struct population_survey {
 };
 
 struct population {
-    const struct decoder *decoder;
+    const struct parametrisation *parametrisation;
     struct population_parameters parameters;
     double *errors, *variances; ///< shape [POPULATION_MOST]; an error is negative if not measured
     struct target_distance *distances; ///< shape [POPULATION_MOST, TARGETS]; not set of what failed
@@ -55,7 +55,8 @@ struct population {
 };
 
 /// Fails: NO_MEMORY.
-enum status mf_population_init(struct population *population, const struct decoder *decoder,
+enum status mf_population_init(struct population *population,
+                               const struct parametrisation *parametrisation,
                                const struct population_parameters *parameters) MUST_USE;
 void mf_population_clear(struct population *population);
 

@@ -106,26 +106,26 @@ done:
 }
 
 /// A curve of an unknown: one column an iteration, named by its number.
-static enum status write_curve(const struct history *history, const struct decoder *decoder,
+static enum status write_curve(const struct history *history, const struct unknowns *unknowns,
                                enum unknown_kind kind, size_t curve,
                                const struct run_folder *folder) {
     enum { NAME_SIZE = 24 };
     enum status status = STATUS_OK;
-    const size_t points = history->points[kind] / mf_decoder_curve_count(decoder, kind);
+    const size_t points = history->points[kind] / mf_unknowns_curve_count(unknowns, kind);
     struct data_column *columns = NULL;
     char *names = NULL;
-    char path[OUTPUT_PATH_SIZE], name[DECODER_NAME_SIZE], file[DECODER_NAME_SIZE + 16];
+    char path[OUTPUT_PATH_SIZE], name[UNKNOWNS_NAME_SIZE], file[UNKNOWNS_NAME_SIZE + 16];
     NEW_ARRAY(columns, history->iterations + 1);
     NEW_ARRAY(names, history->iterations * NAME_SIZE);
     columns[0] =
-        (struct data_column){"r[lambda]", mf_decoder_r(decoder, kind) + curve * points, NULL};
+        (struct data_column){"r[lambda]", mf_unknowns_r(unknowns, kind) + curve * points, NULL};
     for (size_t k = 0; k < history->iterations; k++) {
         snprintf(names + k * NAME_SIZE, NAME_SIZE, "%zu", k);
         columns[k + 1] = (struct data_column){
             names + k * NAME_SIZE,
             history->curve[kind] + k * history->points[kind] + curve * points, "%.6g"};
     }
-    mf_decoder_curve_name(decoder, kind, curve, name);
+    mf_unknowns_curve_name(unknowns, kind, curve, name);
     snprintf(file, sizeof file, "%s_history.tsv", name);
     mf_run_folder_file(folder, file, path);
     CHECK(mf_data_table_write(path, NULL, columns, history->iterations + 1, points));
@@ -136,13 +136,13 @@ done:
 }
 
 enum status mf_history_write(const struct history *history, const struct inverse_method *method,
-                             const struct decoder *decoder, const struct run_folder *folder) {
+                             const struct unknowns *unknowns, const struct run_folder *folder) {
     TRY(write_history(history, method, folder));
     TRY(write_timing(history, folder));
     for (int kind = 0; kind < UNKNOWNS; kind++)
         for (size_t curve = 0;
-             history->points[kind] > 0 && curve < mf_decoder_curve_count(decoder, kind); curve++)
-            TRY(write_curve(history, decoder, kind, curve, folder));
+             history->points[kind] > 0 && curve < mf_unknowns_curve_count(unknowns, kind); curve++)
+            TRY(write_curve(history, unknowns, kind, curve, folder));
     return STATUS_OK;
 }
 

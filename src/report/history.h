@@ -6,7 +6,7 @@
 /// any number of threads and any restart.
 #pragma once
 
-#include "problem/decoder.h"
+#include "problem/unknowns.h"
 #include "report/run_folder.h"
 
 struct history {
@@ -31,7 +31,7 @@ void mf_history_add(struct history *history, const struct inverse_step *step, do
 
 /// Write the tables.
 enum status mf_history_write(const struct history *history, const struct inverse_method *method,
-                             const struct decoder *decoder,
+                             const struct unknowns *unknowns,
                              const struct run_folder *folder) MUST_USE;
 
 /// Pieces for a checkpoint.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/memory.h"
-#include "problem/decoder.h"
+#include "problem/unknowns.h"
 #include "work/explain.h"
 #include "input/target_sanity.h"
 #include "work/fit.h"
@@ -37,7 +37,7 @@ static void print_simulation(const struct measured *measured, const struct targe
 }
 
 /// Simulations with the curves that the fit begins with.
-static void print_simulations(const struct fit_file *fit, const struct decoder_laws *laws) {
+static void print_simulations(const struct fit_file *fit, const struct unknowns_laws *laws) {
     const struct inverse_problem *problem = &fit->problem;
     struct simulation_setup setup = problem->scene;
     setup.potential = laws->table[UNKNOWN_POTENTIAL];
@@ -84,25 +84,21 @@ static enum status try_method(const struct fit_file *fit) {
 enum status mf_fit_explain(const char *file, const struct run_options *options) {
     enum status status = STATUS_OK;
     struct fit_file fit;
-    struct decoder decoder = {0};
-    struct decoder_laws laws = {0};
-    double *variables = NULL;
+    struct unknowns unknowns = {0};
+    struct unknowns_laws laws = {0};
     CHECK(mf_fit_file_read(&fit, file, options));
     CHECK(mf_target_files_normalise(&fit.files, &fit.scene.setup.box));
-    status = mf_decoder_init(&decoder, &fit.problem);
+    status = mf_unknowns_init(&unknowns, &fit.problem);
     if (status == STATUS_OK)
         status = try_method(&fit);
     CHECK(status != STATUS_OK ? mf_status_prefix(status, "%s", file) : STATUS_OK);
-    NEW_ARRAY(variables, decoder.variables);
-    CHECK(mf_decoder_start(&decoder, variables));
-    CHECK(mf_decoder_laws(&decoder, variables, &laws));
+    CHECK(mf_unknowns_laws_start(&unknowns, &laws));
     CHECK(mf_target_sanity_tell(&fit.files, &fit.scene,
                                 &(struct target_sanity_listener){print_line, stdout}));
     print_simulations(&fit, &laws);
 done:
-    mf_decoder_laws_clear(&laws);
-    mf_decoder_clear(&decoder);
-    mf_memory_free(variables);
+    mf_unknowns_laws_clear(&laws);
+    mf_unknowns_clear(&unknowns);
     mf_fit_file_clear(&fit);
     return status;
 }
