@@ -40,6 +40,10 @@ static const struct inner target_objects[] = {
 static const struct inner unknowns_objects[] = {
     {"potential", "Phi(r)", "potential"},
     {"omega", "omega(r)", "omega"},
+    {"numbers",
+     "{\"dissipative.sigma\": {…}, …}: numbers of the scene by their paths, for methods that "
+     "search",
+     "numbers"},
     {NULL, NULL, NULL},
 };
 
@@ -134,6 +138,11 @@ static const struct topic fixed_topics[] = {
     {"unknowns", "unknowns", "\"unknowns\" of a run file", {NULL}},
     {"unknowns", "potential", "Phi(r), to be found", {mf_inverse_potential_fields}},
     {"unknowns", "omega", "omega(r), to be found", {mf_inverse_omega_fields}},
+    {"unknowns",
+     "numbers",
+     "a number of the scene, to be found, under the path of its key: \"conservative.a\", "
+     "\"conservative.A-B.a\", \"dissipative.sigma\", \"temperature\", \"dynamics.lambda\"",
+     {mf_numbers_fields}},
     {"unknowns",
      "fixed",
      "\"fixed\" of a friction weight: parameters of the curve \"power\" that are not to be found",

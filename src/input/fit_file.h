@@ -3,6 +3,7 @@
 #pragma once
 
 #include "problem/verify.h"
+#include "input/fit_numbers.h"
 #include "input/heading.h"
 #include "input/run_options.h"
 #include "input/scene.h"
@@ -29,6 +30,8 @@ struct fit_file {
     struct target_files files;
     struct scene scene;
     struct fit_unknown unknown[UNKNOWNS];
+    struct inverse_number number[INVERSE_MOST_NUMBERS]; ///< that are to be found
+    size_t numbers;
     struct fit_core core;
     const struct inverse_method *method;
     void *method_parameters;

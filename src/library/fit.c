@@ -164,10 +164,13 @@ static enum status verify(struct mesofit_fit *fit, struct mesofit_verification *
     const struct inverse_listener listener = {tell, fit};
     struct unknowns_laws laws = {0};
     struct verification v = {0};
+    double number[INVERSE_MOST_NUMBERS];
     if (!fit->iterated)
         return mf_status_fail(STATUS_BAD_INPUT, "there is nothing to verify before an iteration");
-    CHECK(mf_unknowns_laws_make(&fit->unknowns, fit->step.curve, &laws));
-    CHECK(mf_verify(&fit->file.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_OMEGA],
+    for (int n = 0; n < INVERSE_MOST_NUMBERS; n++)
+        number[n] = fit->step.number[n].value;
+    CHECK(mf_unknowns_laws_make(&fit->unknowns, fit->step.curve, number, &laws));
+    CHECK(mf_verify(&laws.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_OMEGA],
                     &fit->file.verification, &listener, &v));
     const struct target_distance *rdf = &v.distance[TARGET_RDF], *etd = &v.distance[TARGET_ETD];
     *out = (struct mesofit_verification){.rdf_rms = known(rdf, rdf->rms),

@@ -87,7 +87,7 @@ static const double reach = 0.3;
 /// Rounds, of which an iteration takes at least one, and a last iteration for the incumbent.
 static uint32_t most_iterations(const struct inverse_method *method,
                                 const struct inverse_problem *problem, const void *parameters) {
-    size_t variables = 0;
+    size_t variables = problem->numbers;
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (problem->unknown[kind].wanted)
             variables += (size_t)problem->unknown[kind].parameters.coefficients;

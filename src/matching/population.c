@@ -145,8 +145,8 @@ static enum status measure(const struct population *population, const double *va
         .seed = seed,
     };
     if (status == STATUS_OK)
-        status = mf_evaluate(population->parametrisation->unknowns.problem, &candidate,
-                             &population->parameters.evaluate, features, end_column, result);
+        status = mf_evaluate(&laws.problem, &candidate, &population->parameters.evaluate, features,
+                             end_column, result);
     if (status == STATUS_UNSTABLE || (status == STATUS_OK && !isfinite(result->error))) {
         result->error = OPTIMISER_FAILED;
         result->variance = 0;

@@ -94,6 +94,8 @@ enum status mf_parametrisation_init(struct parametrisation *parametrisation,
         if (problem->unknown[kind].wanted)
             TRY(make_basis(parametrisation, kind));
     }
+    parametrisation->first_number = parametrisation->variables;
+    parametrisation->variables += problem->numbers;
     return STATUS_OK;
 }
 
@@ -192,16 +194,35 @@ void mf_parametrisation_curve(const struct parametrisation *parametrisation, enu
         mf_potential_grid_complete(&parametrisation->unknowns.potential, curve);
 }
 
+void mf_parametrisation_numbers(const struct parametrisation *parametrisation,
+                                const double *variables, const double *covariance,
+                                struct inverse_parameter *number) {
+    const struct inverse_problem *problem = parametrisation->unknowns.problem;
+    for (size_t n = 0; n < problem->numbers; n++) {
+        const size_t variable = parametrisation->first_number + n;
+        const double least = problem->number[n].minimum, range = problem->number[n].maximum - least;
+        number[n] = (struct inverse_parameter){least + range * variables[variable], NAN};
+        if (covariance)
+            number[n].error = range * sqrt(covariance[variable * (parametrisation->variables + 1)]);
+    }
+}
+
 enum status mf_parametrisation_laws(const struct parametrisation *parametrisation,
                                     const double *variables, struct unknowns_laws *laws) {
     enum status status = STATUS_OK;
-    double *curve[UNKNOWNS] = {NULL};
+    double *curve[UNKNOWNS] = {NULL}, value[INVERSE_MOST_NUMBERS];
+    struct inverse_parameter number[INVERSE_MOST_NUMBERS];
+    *laws = (struct unknowns_laws){0};
+    mf_parametrisation_numbers(parametrisation, variables, NULL, number);
+    for (size_t n = 0; n < parametrisation->unknowns.problem->numbers; n++)
+        value[n] = number[n].value;
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (unknown_of(parametrisation, kind)->wanted) {
             NEW_ARRAY(curve[kind], mf_unknowns_points(&parametrisation->unknowns, kind));
             mf_parametrisation_curve(parametrisation, kind, variables, curve[kind]);
         }
-    CHECK(mf_unknowns_laws_make(&parametrisation->unknowns, (const double *const *)curve, laws));
+    CHECK(mf_unknowns_laws_make(&parametrisation->unknowns, (const double *const *)curve, value,
+                                laws));
 done:
     for (int kind = 0; kind < UNKNOWNS; kind++)
         mf_memory_free(curve[kind]);
@@ -278,8 +299,14 @@ done:
 
 enum status mf_parametrisation_start(const struct parametrisation *parametrisation,
                                      double *variables) {
+    const struct inverse_problem *problem = parametrisation->unknowns.problem;
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (unknown_of(parametrisation, kind)->wanted)
             TRY(start_of(parametrisation, kind, variables + parametrisation->first[kind]));
+    for (size_t n = 0; n < problem->numbers; n++) {
+        const struct inverse_number *number = &problem->number[n];
+        variables[parametrisation->first_number + n] =
+            (number->start - number->minimum) / (number->maximum - number->minimum);
+    }
     return STATUS_OK;
 }

@@ -10,6 +10,7 @@
 struct parametrisation {
     struct unknowns unknowns;
     size_t variables;       ///< of all unknowns
+    size_t first_number;    ///< variable of the first number, behind those of the curves
     size_t first[UNKNOWNS]; ///< variable of each
     double
         *basis[UNKNOWNS]; ///< shape [points, variables of it]: curve = basis · x; NULL: a formula
@@ -39,6 +40,12 @@ void mf_parametrisation_parameters(const struct parametrisation *parametrisation
 const char *mf_parametrisation_parameter_bound(const struct unknown_parameters *p, int parameter,
                                                double value);
 
+/// The numbers of the scene that are to be found, shape [problem->numbers]: each variable goes
+/// through its range. Errors as of the parameters. Tested: test_numbers.
+void mf_parametrisation_numbers(const struct parametrisation *parametrisation,
+                                const double *variables, const double *covariance,
+                                struct inverse_parameter *number);
+
 /// Standard errors of the curve of some variables, shape [points], from the covariance of the
 /// variables, shape [variables, variables] of all unknowns; NaN if that is NULL, and in the core,
 /// which is set.
@@ -62,6 +69,7 @@ struct parametrisation_curves {
     double *value[UNKNOWNS], *error[UNKNOWNS]; ///< shape [points]; NULL for what is known
     double *flat[UNKNOWNS];                    ///< as curve_flat of an inverse_step
     struct inverse_parameter parameter[INVERSE_PARAMETERS];
+    struct inverse_parameter number[INVERSE_MOST_NUMBERS];
 };
 enum status mf_parametrisation_curves_init(const struct parametrisation *parametrisation,
                                            struct parametrisation_curves *curves) MUST_USE;
@@ -72,7 +80,8 @@ void mf_parametrisation_curves_show(const struct parametrisation *parametrisatio
                                     const double *variables, struct parametrisation_curves *curves,
                                     struct inverse_step *step);
 
-/// Standard errors of all curves and parameters, as mf_parametrisation_band. Fails: NO_MEMORY.
+/// Standard errors of all curves, parameters and numbers, as mf_parametrisation_band. Fails:
+/// NO_MEMORY.
 enum status mf_parametrisation_curves_bands(const struct parametrisation *parametrisation,
                                             const double *variables, const double *covariance,
                                             struct parametrisation_curves *curves) MUST_USE;

@@ -11,6 +11,8 @@ enum status mf_parametrisation_curves_init(const struct parametrisation *paramet
     *curves = (struct parametrisation_curves){0};
     for (int k = 0; k < INVERSE_PARAMETERS; k++)
         curves->parameter[k].error = NAN;
+    for (int n = 0; n < INVERSE_MOST_NUMBERS; n++)
+        curves->number[n].error = NAN;
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         const size_t points = mf_unknowns_points(&parametrisation->unknowns, kind);
         if (points == 0)
@@ -46,6 +48,9 @@ void mf_parametrisation_curves_show(const struct parametrisation *parametrisatio
     mf_parametrisation_parameters(parametrisation, variables, NULL, step->parameter);
     for (int k = 0; k < INVERSE_PARAMETERS; k++)
         step->parameter[k].error = curves->parameter[k].error;
+    mf_parametrisation_numbers(parametrisation, variables, NULL, step->number);
+    for (int n = 0; n < INVERSE_MOST_NUMBERS; n++)
+        step->number[n].error = curves->number[n].error;
 }
 
 enum status mf_parametrisation_curves_bands(const struct parametrisation *parametrisation,
@@ -56,6 +61,7 @@ enum status mf_parametrisation_curves_bands(const struct parametrisation *parame
             TRY(mf_parametrisation_band(parametrisation, kind, variables, covariance,
                                         curves->error[kind], curves->flat[kind]));
     mf_parametrisation_parameters(parametrisation, variables, covariance, curves->parameter);
+    mf_parametrisation_numbers(parametrisation, variables, covariance, curves->number);
     return STATUS_OK;
 }
 
@@ -64,6 +70,7 @@ size_t mf_parametrisation_curves_spans(const struct parametrisation *parametrisa
                                        struct memory_span *spans) {
     size_t n = 0;
     spans[n++] = (struct memory_span){curves->parameter, sizeof curves->parameter};
+    spans[n++] = (struct memory_span){curves->number, sizeof curves->number};
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         const size_t bytes = mf_unknowns_points(&parametrisation->unknowns, kind) * sizeof(double);
         if (bytes == 0)

@@ -2,6 +2,7 @@
 #include "problem/unknowns.h"
 
 #include "base/memory.h"
+#include "problem/numbers.h"
 
 #include <stdio.h>
 
@@ -66,9 +67,12 @@ void mf_unknowns_start(const struct unknowns *unknowns, enum unknown_kind kind, 
 }
 
 enum status mf_unknowns_laws_make(const struct unknowns *unknowns,
-                                  const double *const curve[UNKNOWNS], struct unknowns_laws *laws) {
-    const struct simulation_setup *scene = &unknowns->problem->scene;
-    *laws = (struct unknowns_laws){.table = {scene->potential, scene->omega}};
+                                  const double *const curve[UNKNOWNS], const double *number,
+                                  struct unknowns_laws *laws) {
+    *laws = (struct unknowns_laws){0};
+    TRY(mf_numbers_apply(unknowns->problem, number, &laws->problem, laws->own));
+    laws->table[UNKNOWN_POTENTIAL] = laws->problem.scene.potential;
+    laws->table[UNKNOWN_OMEGA] = laws->problem.scene.omega;
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         struct table *own = &laws->own[kind];
         if (curve[kind] == NULL)
@@ -88,13 +92,15 @@ void mf_unknowns_laws_clear(struct unknowns_laws *laws) {
 
 enum status mf_unknowns_laws_start(const struct unknowns *unknowns, struct unknowns_laws *laws) {
     enum status status = STATUS_OK;
-    double *curve[UNKNOWNS] = {NULL};
+    double *curve[UNKNOWNS] = {NULL}, number[INVERSE_MOST_NUMBERS];
+    *laws = (struct unknowns_laws){0};
+    mf_numbers_start(unknowns->problem, number);
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (unknowns->problem->unknown[kind].wanted) {
             NEW_ARRAY(curve[kind], mf_unknowns_points(unknowns, kind));
             mf_unknowns_start(unknowns, kind, curve[kind]);
         }
-    CHECK(mf_unknowns_laws_make(unknowns, (const double *const *)curve, laws));
+    CHECK(mf_unknowns_laws_make(unknowns, (const double *const *)curve, number, laws));
 done:
     for (int kind = 0; kind < UNKNOWNS; kind++)
         mf_memory_free(curve[kind]);

@@ -39,19 +39,23 @@ void mf_unknowns_curve_name(const struct unknowns *unknowns, enum unknown_kind k
 /// force and a friction weight that falls linearly from the middle of its range.
 void mf_unknowns_start(const struct unknowns *unknowns, enum unknown_kind kind, double *curve);
 
-/// Tables for the kernels of the curves that are given, and those of the scene where `curve` is
-/// NULL. What was made must be cleared with mf_unknowns_laws_clear, even after a failure.
-/// @param[in] curve  shape [UNKNOWNS][points]
-/// Fails: NO_MEMORY.
+/// What a simulation of some curves and numbers is made of: the problem with these numbers in its
+/// scene; tables for the kernels of the curves that are given, and of the scene's laws where
+/// `curve` is NULL. What was made must be cleared with mf_unknowns_laws_clear, even after a
+/// failure; it points into itself and may not be copied.
+/// @param[in] curve   shape [UNKNOWNS][points]
+/// @param[in] number  shape [problem->numbers]
+/// Fails: NO_MEMORY; BAD_INPUT as mf_numbers_apply.
 struct unknowns_laws {
-    struct table own[UNKNOWNS]; ///< zero for what is known
+    struct inverse_problem problem;
+    struct table own[UNKNOWNS]; ///< zero for what is the scene's
     const struct table *table[UNKNOWNS];
 };
 enum status mf_unknowns_laws_make(const struct unknowns *unknowns,
-                                  const double *const curve[UNKNOWNS],
+                                  const double *const curve[UNKNOWNS], const double *number,
                                   struct unknowns_laws *laws) MUST_USE;
 void mf_unknowns_laws_clear(struct unknowns_laws *laws);
 
-/// Tables of the curves that a fit begins with. As mf_unknowns_laws_make.
+/// The same of the curves and numbers that a fit begins with. As mf_unknowns_laws_make.
 enum status mf_unknowns_laws_start(const struct unknowns *unknowns,
                                    struct unknowns_laws *laws) MUST_USE;

@@ -30,6 +30,19 @@ static void say_parameters(struct progress *to, const struct fit_file *fit,
     mf_progress_say(to, "%s", line);
 }
 
+/// "dissipative.sigma = 3.02(4)".
+static void say_numbers(struct progress *to, const struct fit_file *fit,
+                        const struct inverse_parameter *found) {
+    for (size_t n = 0; n < fit->numbers; n++) {
+        char text[NUMBER_TEXT_SIZE], mark[32] = "";
+        const char *bound = mf_numbers_bound(&fit->number[n], found[n].value);
+        if (bound)
+            snprintf(mark, sizeof mark, " (at its %s)", bound);
+        mf_number_text(found[n].value, found[n].error, text);
+        mf_progress_say(to, "%s = %s%s", fit->number[n].name, text, mark);
+    }
+}
+
 /// "potential: well -0.354 k_B T_0 at 0.99 lambda (-0.451 at 0.99 at first), changed by 0.05 rms".
 static void say_changes(struct progress *to, const struct unknowns *unknowns,
                         const struct fit_result *result) {
@@ -72,6 +85,7 @@ void mf_fit_report_say(struct progress *to, const struct fit_file *fit,
     const struct verification *v = result->verification;
     say_changes(to, unknowns, result);
     say_parameters(to, fit, result->parameter);
+    say_numbers(to, fit, result->number);
     say_distances(to, fit, v);
     if (targets_ask(&fit->problem.compared, TARGET_DIFFUSION)) {
         char diffusion[NUMBER_TEXT_SIZE];

@@ -131,28 +131,40 @@ static void put_ramp(struct json_writer *writer, const struct inverse_ramp *ramp
     put_known(writer, "directions_of", ramp->bins);
 }
 
-/// "parameters": {"omega": {"sigma": {"value": 3.0, "error": 0.1}, …}} of a friction weight that
-/// is a formula.
+static void put_parameter(struct json_writer *writer, const char *name,
+                          const struct inverse_parameter *parameter, bool fixed,
+                          const char *bound) {
+    mf_json_begin(writer, name);
+    put_known(writer, "value", parameter->value);
+    if (fixed)
+        mf_json_put_text(writer, "fixed", "yes");
+    else
+        put_known(writer, "error", parameter->error);
+    if (bound)
+        mf_json_put_text(writer, "bound", bound);
+    mf_json_end(writer);
+}
+
+/// "parameters": {"omega": {"sigma": {"value": 3.0, "error": 0.1}, …}, "conservative.a": {"value":
+/// 25.1, "error": 0.3}}: of a friction weight that is a formula, and numbers of the scene.
 static void put_parameters(struct json_writer *writer, const struct fit_file *fit,
-                           const struct inverse_parameter *parameter) {
+                           const struct fit_result *result) {
     const struct unknown_parameters *p = &fit->unknown[UNKNOWN_OMEGA].parameters;
-    if (!fit->unknown[UNKNOWN_OMEGA].wanted || p->shape != INVERSE_CURVE_POWER)
+    const bool formula = fit->unknown[UNKNOWN_OMEGA].wanted && p->shape == INVERSE_CURVE_POWER;
+    if (!formula && fit->numbers == 0)
         return;
     mf_json_begin(writer, "parameters");
-    mf_json_begin(writer, mf_inverse_unknown_names[UNKNOWN_OMEGA]);
-    for (int k = 0; k < INVERSE_PARAMETERS; k++) {
-        const char *bound = mf_parametrisation_parameter_bound(p, k, parameter[k].value);
-        mf_json_begin(writer, mf_inverse_fixed_fields[k].name);
-        put_known(writer, "value", parameter[k].value);
-        if (isnan(p->fixed[k]))
-            put_known(writer, "error", parameter[k].error);
-        else
-            mf_json_put_text(writer, "fixed", "yes");
-        if (bound)
-            mf_json_put_text(writer, "bound", bound);
+    if (formula)
+        mf_json_begin(writer, mf_inverse_unknown_names[UNKNOWN_OMEGA]);
+    for (int k = 0; formula && k < INVERSE_PARAMETERS; k++)
+        put_parameter(writer, mf_inverse_fixed_fields[k].name, &result->parameter[k],
+                      !isnan(p->fixed[k]),
+                      mf_parametrisation_parameter_bound(p, k, result->parameter[k].value));
+    if (formula)
         mf_json_end(writer);
-    }
-    mf_json_end(writer);
+    for (size_t n = 0; n < fit->numbers; n++)
+        put_parameter(writer, fit->number[n].name, &result->number[n], false,
+                      mf_numbers_bound(&fit->number[n], result->number[n].value));
     mf_json_end(writer);
 }
 
@@ -287,7 +299,7 @@ enum status mf_fit_output_summary(const struct fit_file *fit, const struct unkno
         if (result->curve[kind])
             put_flat(writer, kind, unknowns, result);
     put_ramp(writer, &result->ramp);
-    put_parameters(writer, fit, result->parameter);
+    put_parameters(writer, fit, result);
     put_start(writer, unknowns, result);
     if (fit->files.given[TARGET_ETD])
         mf_json_put_number(writer, "etd_cells_left_out", (double)fit->files.etd.left_out);

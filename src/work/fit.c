@@ -36,7 +36,7 @@ struct run {
         uint64_t iterations, evaluations, engine_steps;
         double error, variance, seconds;
         struct inverse_ramp ramp;
-        struct inverse_parameter parameter[INVERSE_PARAMETERS];
+        struct inverse_parameter parameter[INVERSE_PARAMETERS], number[INVERSE_MOST_NUMBERS];
         char reason[INVERSE_REASON_SIZE];
     } standing;
 };
@@ -128,7 +128,7 @@ static enum status create(struct run *run) {
     if (points[UNKNOWN_POTENTIAL] > 0)
         NEW_ARRAY(run->without_ramp, points[UNKNOWN_POTENTIAL]);
     CHECK(mf_history_init(
-        &run->history, fit->method, points,
+        &run->history, fit->method, points, &fit->problem,
         fit->method->most_iterations(fit->method, &fit->problem, fit->method_parameters)));
     CHECK((run->state = mf_memory_zeroed(1, fit->method->state_size)) ? STATUS_OK
                                                                       : STATUS_NO_MEMORY);
@@ -206,6 +206,7 @@ static struct fit_result result_so_far(const struct run *run, enum status status
                                 .ramp = s->ramp,
                                 .settled = s->converged,
                                 .parameter = s->parameter,
+                                .number = s->number,
                                 .error = s->error,
                                 .first_error = mf_history_first_error(&run->history),
                                 .reason = s->reason};
@@ -255,6 +256,7 @@ static enum status record(struct run *run, const struct inverse_step *step) {
                                       .seconds = seconds(run),
                                       .ramp = step->ramp};
     memcpy(run->standing.parameter, step->parameter, sizeof run->standing.parameter);
+    memcpy(run->standing.number, step->number, sizeof run->standing.number);
     memcpy(run->standing.reason, step->reason, sizeof run->standing.reason);
     mf_history_add(&run->history, step, run->standing.seconds);
     TRY(mf_history_write(&run->history, run->fit.method, &run->unknowns, &run->folder));
@@ -351,12 +353,15 @@ static void doubt(struct run *run, const struct verification *verification) {
 /// The independent verification of the result, and everything that rests on it.
 static enum status verify_and_write(struct run *run) {
     struct unknowns_laws laws = {0};
+    double number[INVERSE_MOST_NUMBERS];
     struct verification verification = {0};
     struct progress progress = mf_progress_begin(run->progress.quiet);
     const struct inverse_listener listener = {tell_verification, &progress};
     enum status status = STATUS_OK;
-    CHECK(mf_unknowns_laws_make(&run->unknowns, (const double *const *)run->curve, &laws));
-    status = mf_verify(&run->fit.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_OMEGA],
+    for (int n = 0; n < INVERSE_MOST_NUMBERS; n++)
+        number[n] = run->standing.number[n].value;
+    CHECK(mf_unknowns_laws_make(&run->unknowns, (const double *const *)run->curve, number, &laws));
+    status = mf_verify(&laws.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_OMEGA],
                        &run->fit.verification, &listener, &verification);
     if (status == STATUS_UNSTABLE)
         status = write_unstable(run);

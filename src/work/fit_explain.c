@@ -39,7 +39,7 @@ static void print_simulation(const struct measured *measured, const struct targe
 /// Simulations with the curves that the fit begins with.
 static void print_simulations(const struct fit_file *fit, const struct unknowns_laws *laws) {
     const struct inverse_problem *problem = &fit->problem;
-    struct simulation_setup setup = problem->scene;
+    struct simulation_setup setup = laws->problem.scene;
     setup.potential = laws->table[UNKNOWN_POTENTIAL];
     setup.omega = laws->table[UNKNOWN_OMEGA];
     if (fit->method->kind == INVERSE_MATCHING) {
@@ -62,6 +62,15 @@ static void print_simulations(const struct fit_file *fit, const struct unknowns_
     measured.explain.sums = true;
     printf("A replica of the verification, one a thread:\n");
     print_simulation(&measured, &problem->compared, &setup);
+}
+
+static void print_numbers(const struct fit_file *fit) {
+    for (size_t n = 0; n < fit->numbers; n++) {
+        const struct inverse_number *number = &fit->number[n];
+        printf("%s is to be found from %g to %g%s%s, beginning with %g.\n", number->name,
+               number->minimum, number->maximum, number->unit[0] ? " " : "", number->unit,
+               number->start);
+    }
 }
 
 static void print_line(void *stream, const char *line) {
@@ -95,6 +104,7 @@ enum status mf_fit_explain(const char *file, const struct run_options *options) 
     CHECK(mf_unknowns_laws_start(&unknowns, &laws));
     CHECK(mf_target_sanity_tell(&fit.files, &fit.scene,
                                 &(struct target_sanity_listener){print_line, stdout}));
+    print_numbers(&fit);
     print_simulations(&fit, &laws);
 done:
     mf_unknowns_laws_clear(&laws);
