@@ -40,6 +40,10 @@ static const struct inner target_objects[] = {
 static const struct inner unknowns_objects[] = {
     {"potential", "Phi(r)", "potential"},
     {"omega", "omega(r)", "omega"},
+    {"numbers",
+     "{\"dissipative.sigma\": {…}, …}: numbers of the scene by their paths, for methods that "
+     "search",
+     "numbers"},
     {NULL, NULL, NULL},
 };
 
@@ -135,6 +139,11 @@ static const struct topic fixed_topics[] = {
     {"unknowns", "potential", "Phi(r), to be found", {mf_inverse_potential_fields}},
     {"unknowns", "omega", "omega(r), to be found", {mf_inverse_omega_fields}},
     {"unknowns",
+     "numbers",
+     "a number of the scene, to be found, under the path of its key: \"conservative.a\", "
+     "\"conservative.A-B.a\", \"dissipative.sigma\", \"temperature\", \"dynamics.lambda\"",
+     {mf_numbers_fields}},
+    {"unknowns",
      "fixed",
      "\"fixed\" of a friction weight: parameters of the curve \"power\" that are not to be found",
      {mf_inverse_fixed_fields}},
@@ -161,8 +170,8 @@ static size_t collect(struct topic topics[MAX_TOPICS]) {
     for (size_t k = 0; mf_inverse_methods[k]; k++) {
         const struct inverse_method *method = mf_inverse_methods[k];
         topics[n] = (struct topic){"method", method->name, method->summary, {NULL}};
-        for (size_t t = 0; t < 3 && method->tables[t]; t++)
-            topics[n].tables[t] = method->tables[t];
+        for (size_t t = 0; t < 3 && method->tables[t].fields; t++)
+            topics[n].tables[t] = method->tables[t].fields;
         n++;
     }
     return n;

@@ -8,6 +8,8 @@
 /// main begins.
 #pragma once
 
+#include "base/status.h"
+
 #include <stddef.h>
 
 /// Call `body` for stretches begin … end − 1 that make up 0 … count − 1, one a thread.
@@ -22,3 +24,26 @@ void mf_parallel_for(size_t count, int threads,
 double mf_parallel_sum(size_t count, int threads,
                        double (*body)(const void *context, size_t begin, size_t end),
                        const void *context);
+
+/// Independent tasks 0 … count − 1 that may fail. What a task finds is either its own part of
+/// `context`, which no other task touches, or a result of some bytes that is taken over.
+struct parallel_tasks {
+    size_t count;
+    int threads;
+    /// Do one task; several run at once. `result` is zeroed, of result_size bytes; NULL for none.
+    enum status (*run)(void *context, size_t task, void *result);
+    /// After each task that succeeded, from one thread at a time and in any order; or NULL. It may
+    /// not begin tasks of its own.
+    void (*take)(void *context, size_t task, const void *result);
+    size_t result_size;
+    void *context;
+};
+
+/// Do all tasks, each once.
+///
+/// The failure of the lowest number is returned with its message, though it came from another
+/// thread, so that status and message are the same for any number of threads: tasks beyond one
+/// that failed do not begin, those before it are all done. INTERRUPTED comes before other failures:
+/// then no further task begins at all, and what succeeded has been taken.
+/// Fails: as the tasks; NO_MEMORY. Tested: test_parallel.
+enum status mf_parallel_try(const struct parallel_tasks *tasks) MUST_USE;

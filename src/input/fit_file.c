@@ -2,11 +2,12 @@
 #include "input/fit_file.h"
 
 #include "base/memory.h"
-#include "problem/decoder.h"
+#include "problem/unknowns.h"
 #include "inversion/inversion.h"
 #include "input/target_sanity.h"
 
 #include <math.h>
+#include <string.h>
 
 #define MEMBER(name) .offset = offsetof(struct fit_core, name)
 const struct field mf_fit_core_fields[] = {
@@ -35,8 +36,8 @@ static enum status read_method(struct fit_file *fit, struct json_object *root) {
     fit->method_parameters = mf_memory_zeroed(1, fit->method->parameters_size);
     if (fit->method_parameters == NULL)
         return STATUS_NO_MEMORY;
-    for (size_t k = 0; fit->method->tables[k]; k++)
-        mf_json_fields(&object, fit->method->tables[k], fit->method_parameters);
+    for (const struct inverse_table *table = fit->method->tables; table->fields; table++)
+        mf_json_fields(&object, table->fields, (char *)fit->method_parameters + table->offset);
     mf_json_finish(&object);
     return STATUS_OK;
 }
@@ -110,7 +111,8 @@ static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind k
     return STATUS_OK;
 }
 
-/// "unknowns": {"potential": {…}, "omega": {…}}; a file without it looks for the potential.
+/// "unknowns": {"potential": {…}, "omega": {…}, "numbers": {…}}; a file without it looks for the
+/// potential.
 static enum status read_unknowns(struct fit_file *fit, struct json_object *root) {
     struct json_object object = mf_json_child(root, "unknowns", false);
     // A potential for each pair type, one friction weight for all.
@@ -122,11 +124,13 @@ static enum status read_unknowns(struct fit_file *fit, struct json_object *root)
         fit->unknown[kind].wanted = child.item != NULL;
         TRY(read_unknown(&fit->unknown[kind], kind, &child, &composition[kind], &fit->scene.units));
     }
+    TRY(mf_fit_numbers_read(&object, &fit->scene, fit->number, &fit->numbers));
     if (object.item) {
         mf_json_renamed(&object, "weight", mf_inverse_unknown_names[UNKNOWN_OMEGA]);
         mf_json_finish(&object);
-        if (!fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->unknown[UNKNOWN_OMEGA].wanted)
-            mf_json_fault(root, "unknowns", "needs \"potential\", \"omega\" or both");
+        if (!fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->unknown[UNKNOWN_OMEGA].wanted &&
+            !mf_json_has(&object, "numbers"))
+            mf_json_fault(root, "unknowns", "needs \"potential\", \"omega\" or \"numbers\"");
     } else {
         fit->unknown[UNKNOWN_POTENTIAL].wanted = true;
     }
@@ -171,25 +175,36 @@ static enum status read_root(struct fit_file *fit, struct json_object *root) {
 
 /// Begin one simulation, so that a box too small for the forces or particles without room are found
 /// now and not by the verification after the fit.
-static enum status try_scene(const struct inverse_problem *problem) {
+static enum status begin_one(const struct inverse_problem *problem) {
     enum status status = STATUS_OK;
-    struct decoder decoder = {0};
-    struct decoder_laws laws = {0};
+    struct unknowns unknowns = {0};
+    struct unknowns_laws laws = {0};
     struct simulation simulation = {0};
-    struct simulation_setup setup = problem->scene;
-    double *variables = NULL;
-    CHECK(mf_decoder_init(&decoder, problem));
-    NEW_ARRAY(variables, decoder.variables);
-    CHECK(mf_decoder_start(&decoder, variables));
-    CHECK(mf_decoder_laws(&decoder, variables, &laws));
+    CHECK(mf_unknowns_init(&unknowns, problem));
+    CHECK(mf_unknowns_laws_start(&unknowns, &laws));
+    struct simulation_setup setup = laws.problem.scene;
     setup.omega = laws.table[UNKNOWN_OMEGA];
     CHECK(mf_simulation_init(&simulation, &setup, NULL));
 done:
     mf_simulation_clear(&simulation);
-    mf_decoder_laws_clear(&laws);
-    mf_decoder_clear(&decoder);
-    mf_memory_free(variables);
+    mf_unknowns_laws_clear(&laws);
+    mf_unknowns_clear(&unknowns);
     return status;
+}
+
+/// The same with each number at the ends of its range.
+static enum status try_scene(const struct inverse_problem *problem) {
+    TRY(begin_one(problem));
+    for (size_t n = 0; n < problem->numbers; n++)
+        for (int end = 0; end < 2; end++) {
+            struct inverse_problem other = *problem;
+            struct inverse_number *number = &other.number[n];
+            number->start = end ? number->maximum : number->minimum;
+            const enum status status = begin_one(&other);
+            if (status != STATUS_OK)
+                return mf_status_prefix(status, "with %s = %g", number->name, number->start);
+        }
+    return STATUS_OK;
 }
 
 static enum status check_range(const struct fit_file *fit, const char *file, const char *target,
@@ -208,8 +223,10 @@ static enum status check_unknowns(const struct fit_file *fit, const char *file) 
         if (fit->unknown[kind].wanted && !fit->method->fits[kind])
             return mf_status_fail(STATUS_BAD_INPUT, "%s: method.name: \"%s\" does not find %s",
                                   file, fit->method->name, mf_inverse_unknown_names[kind]);
-    const struct inverse_sampling sampling = fit->method->sampling(fit->method_parameters);
-    for (int kind = 0; kind < TARGETS && sampling.every == 0; kind++)
+    if (fit->numbers > 0 && fit->method->kind == INVERSE_INVERSION)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: method.name: \"%s\" does not find numbers",
+                              file, fit->method->name);
+    for (int kind = 0; kind < TARGETS && fit->method->kind == INVERSE_INVERSION; kind++)
         if (kind != TARGET_RDF && kind != TARGET_PRESSURE &&
             targets_ask(&fit->problem.targets, kind))
             return mf_status_fail(
@@ -228,7 +245,7 @@ static enum status check_unknowns(const struct fit_file *fit, const char *file) 
 
 static enum status check_bins(const struct fit_file *fit, const char *file) {
     const size_t bins = fit->problem.targets.target[TARGET_RDF].count;
-    if (fit->method->update == NULL || bins <= INVERSION_MOST_BINS)
+    if (fit->method->kind != INVERSE_INVERSION || bins <= INVERSION_MOST_BINS)
         return STATUS_OK;
     return mf_status_fail(
         STATUS_BAD_INPUT,
@@ -263,12 +280,13 @@ static enum status check_window(const char *file, const char *key, const struct 
 }
 
 static enum status check_windows(const struct fit_file *fit, const char *file) {
-    const struct inverse_sampling sampling = fit->method->sampling(fit->method_parameters);
     const struct verify_parameters *verification = &fit->verification;
     const double time_step = fit->scene.setup.time_step;
-    if (sampling.every > 0)
+    if (fit->method->kind == INVERSE_MATCHING) {
+        const struct inverse_sampling sampling = fit->method->sampling(fit->method_parameters);
         TRY(check_window(file, "method", &fit->problem.targets, time_step, sampling.samples,
                          sampling.every));
+    }
     return check_window(file, "verification", &fit->problem.compared,
                         verification->time_step > 0 ? verification->time_step : time_step,
                         verification->plan.samples, verification->plan.every);
@@ -308,7 +326,11 @@ static void state_problem(struct fit_file *fit, const struct run_options *option
         .seed = fit->heading.seed,
         .threads = options->threads,
     };
+    problem->numbers = fit->numbers;
+    memcpy(problem->number, fit->number, sizeof problem->number);
+    const struct scene_law *law[UNKNOWNS] = {&fit->scene.potential, &fit->scene.omega};
     for (int kind = 0; kind < UNKNOWNS; kind++) {
+        problem->law[kind] = (struct inverse_law){law[kind]->curves, law[kind]->curve};
         const struct fit_unknown *from = &fit->unknown[kind];
         struct unknown *unknown = &problem->unknown[kind];
         unknown->wanted = from->wanted;
@@ -316,8 +338,8 @@ static void state_problem(struct fit_file *fit, const struct run_options *option
         for (int pair = 0; pair < mf_composition_pairs(&problem->scene.composition); pair++)
             unknown->start[pair] = mf_scene_law_curve(&from->start, pair);
     }
-    mf_target_files_targets(&fit->files, fit->unknown[UNKNOWN_OMEGA].wanted, &problem->targets,
-                            &problem->compared);
+    mf_target_files_targets(&fit->files, fit->unknown[UNKNOWN_OMEGA].wanted || fit->numbers > 0,
+                            &problem->targets, &problem->compared);
 }
 
 enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
@@ -379,6 +401,7 @@ static void write_unknowns(const struct fit_file *fit, struct json_writer *write
         mf_scene_law_write(&unknown->truth, &fit->scene.setup.composition, writer, "truth");
         mf_json_end(writer);
     }
+    mf_fit_numbers_write(fit->number, fit->numbers, writer);
     mf_json_end(writer);
 }
 
@@ -392,8 +415,9 @@ enum status mf_fit_file_write(const struct fit_file *fit, const char *path) {
     mf_json_end(writer);
     mf_json_begin(writer, "method");
     mf_json_put_text(writer, "name", fit->method->name);
-    for (size_t k = 0; fit->method->tables[k]; k++)
-        mf_json_put_fields(writer, fit->method->tables[k], fit->method_parameters);
+    for (const struct inverse_table *table = fit->method->tables; table->fields; table++)
+        mf_json_put_fields(writer, table->fields,
+                           (const char *)fit->method_parameters + table->offset);
     mf_json_end(writer);
     mf_json_begin(writer, "core");
     mf_json_put_fields(writer, mf_fit_core_fields, &fit->core);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "problem/verify.h"
+#include "input/fit_numbers.h"
 #include "input/heading.h"
 #include "input/run_options.h"
 #include "input/scene.h"
@@ -19,7 +20,7 @@ extern const struct field mf_fit_core_fields[];
 struct fit_unknown {
     bool wanted;
     struct unknown_parameters parameters;
-    struct scene_law start; ///< without a curve: as mf_decoder_start says
+    struct scene_law start; ///< without a curve: as mf_unknowns_start says
     struct scene_law truth; ///< the true curves where they are known
 };
 
@@ -29,6 +30,8 @@ struct fit_file {
     struct target_files files;
     struct scene scene;
     struct fit_unknown unknown[UNKNOWNS];
+    struct inverse_number number[INVERSE_MOST_NUMBERS]; ///< that are to be found
+    size_t numbers;
     struct fit_core core;
     const struct inverse_method *method;
     void *method_parameters;

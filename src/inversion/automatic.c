@@ -41,7 +41,7 @@ static bool predicts(const struct inversion *inversion) {
 
 /// Whether the last step was Newton's, which keeps the other in reserve, and halved the error.
 static bool newton_helped(const struct inversion *inversion) {
-    return !isnan(inversion->best_other[inversion->grid.known_point[0]]) &&
+    return inversion->progress.best_other &&
            inversion->distance[TARGET_RDF].rms < 0.5 * inversion->progress.best[TARGET_RDF].rms;
 }
 
@@ -68,6 +68,7 @@ static enum status update(struct inversion *inversion, double *extra) {
     if (!in_basin(inversion))
         return careful_step(inversion, inversion->step);
     TRY(careful_step(inversion, inversion->other_step));
+    inversion->has_other = true;
     TRY(mf_imc_step(inversion, &noise, inversion->step, newton));
     extra[0] = 1;
     extra[1] = newton[1];
@@ -80,9 +81,9 @@ const struct inverse_method mf_automatic = {
     .summary = "hypernetted-chain steps (Delbary et al. 2020; in 2-D Boltzmann inversion, Reith et "
                "al. 2003) until their linear response holds, then inverse Monte Carlo (Lyubartsev "
                "and Laaksonen 1995)",
-    .tables = (const struct field *const[]){mf_inversion_fields, NULL},
+    .own = &(const struct inversion_rule){update},
+    .tables = (const struct inverse_table[]){INVERSION_TABLE, {NULL, 0}},
     .columns = columns,
-    .update = update,
     .create = mf_inversion_create,
     INVERSION_RECORD,
 };

@@ -10,18 +10,9 @@
 #include "inversion/hnc_closure.h"
 #include "inversion/inversion.h"
 
-#include <assert.h>
-
-struct own {
-    double ridge;
-};
-
-static_assert(sizeof(struct own) <= sizeof((struct inversion_settings){0}.own), "no room");
-
 static const struct field own_fields[] = {
-    {"ridge", FIELD_NUMBER,
-     .offset = offsetof(struct inversion_settings, own) + offsetof(struct own, ridge),
-     .initial = 0.35, .minimum = 0.01, .maximum = 10, .unit = "",
+    {"ridge", FIELD_NUMBER, .offset = offsetof(struct hnc_parameters, ridge), .initial = 0.35,
+     .minimum = 0.01, .maximum = 10, .unit = "",
      .help = "structure factors below this are not trusted"},
     FIELD_END,
 };
@@ -55,8 +46,7 @@ done:
 
 static enum status update(struct inversion *inversion, double *extra) {
     (void)extra;
-    const struct own *own = (const void *)inversion->settings.own;
-    return mf_hnc_step(inversion, own->ridge, inversion->step);
+    return mf_hnc_step(inversion, inversion->settings.hnc.ridge, inversion->step);
 }
 
 static enum status create(void *inversion, const struct inverse_method *method,
@@ -70,9 +60,11 @@ const struct inverse_method mf_hnc = {
     .name = "hnc",
     .summary = "Newton steps by the hypernetted chain; F. Delbary, M. Hanke and D. Ivanizki, J. "
                "Inverse Ill-Posed Probl. 28 (2020)",
-    .tables = (const struct field *const[]){mf_inversion_fields, own_fields, NULL},
+    .own = &(const struct inversion_rule){update},
+    .tables = (const struct inverse_table[]){INVERSION_TABLE,
+                                             {own_fields, offsetof(struct inversion_settings, hnc)},
+                                             {NULL, 0}},
     .columns = columns,
-    .update = update,
     .create = create,
     INVERSION_RECORD,
 };

@@ -36,9 +36,9 @@ const struct inverse_method mf_ibi = {
     .summary =
         "iterative Boltzmann inversion; D. Reith, M. Puetz and F. Mueller-Plathe, J. Comput. "
         "Chem. 24, 1624 (2003)",
-    .tables = (const struct field *const[]){mf_inversion_fields, NULL},
+    .own = &(const struct inversion_rule){update},
+    .tables = (const struct inverse_table[]){INVERSION_TABLE, {NULL, 0}},
     .columns = columns,
-    .update = update,
     .create = mf_inversion_create,
     INVERSION_RECORD,
 };

@@ -4,19 +4,13 @@
 #include "inversion/imc_solve.h"
 #include "inversion/inversion.h"
 
-#include <assert.h>
-
-static_assert(sizeof(struct imc_parameters) <= sizeof((struct inversion_settings){0}.own),
-              "no room");
-
 /// How the linear equations are solved, in the order of `regularisations`.
 static enum status (*const solvers[])(const struct imc_system *, double, double *,
                                       struct imc_solution *) = {mf_imc_solve, mf_imc_truncated,
                                                                 mf_imc_votca};
 static const char *const regularisations[] = {"noise", "truncated", "votca", NULL};
 
-#define MEMBER(name)                                                                               \
-    .offset = offsetof(struct inversion_settings, own) + offsetof(struct imc_parameters, name)
+#define MEMBER(name) .offset = offsetof(struct imc_parameters, name)
 static const struct field own_fields[] = {
     {"regularisation", FIELD_CHOICE, MEMBER(regularisation), .choices = regularisations,
      .initial = 0, .unit = "",
@@ -59,16 +53,18 @@ done:
 }
 
 static enum status update(struct inversion *inversion, double *extra) {
-    return mf_imc_step(inversion, (const void *)inversion->settings.own, inversion->step, extra);
+    return mf_imc_step(inversion, &inversion->settings.imc, inversion->step, extra);
 }
 
 const struct inverse_method mf_imc = {
     .name = "imc",
     .summary = "inverse Monte Carlo; A. P. Lyubartsev and A. Laaksonen, Phys. Rev. E 52, 3730 "
                "(1995)",
-    .tables = (const struct field *const[]){mf_inversion_fields, own_fields, NULL},
+    .own = &(const struct inversion_rule){update},
+    .tables = (const struct inverse_table[]){INVERSION_TABLE,
+                                             {own_fields, offsetof(struct inversion_settings, imc)},
+                                             {NULL, 0}},
     .columns = columns,
-    .update = update,
     .create = mf_inversion_create,
     INVERSION_RECORD,
 };

@@ -117,6 +117,7 @@ static enum status keep(struct inversion *inversion) {
     memcpy(inversion->best, inversion->phi, bytes);
     memcpy(inversion->best_step, inversion->step, bytes);
     memcpy(inversion->best_other, inversion->other_step, bytes);
+    progress->best_other = inversion->has_other;
     memcpy(inversion->best_counts, inversion->replicas.counts.mean,
            inversion->bins * sizeof(double));
     memcpy(progress->best, inversion->distance, sizeof progress->best);
@@ -185,12 +186,12 @@ static double count_noises(const struct inversion *inversion,
 static void go_back(struct inversion *inversion) {
     struct inversion_progress *progress = &inversion->progress;
     const size_t bytes = inversion->grid.points * sizeof(double);
-    if (isnan(inversion->best_other[inversion->grid.known_point[0]])) {
+    if (!progress->best_other) {
         progress->damping *= 0.5;
         return;
     }
     memcpy(inversion->best_step, inversion->best_other, bytes);
-    inversion->best_other[inversion->grid.known_point[0]] = NAN;
+    progress->best_other = false;
     progress->damping = inversion->settings.common.damping;
 }
 
@@ -305,8 +306,9 @@ enum status mf_inversion_iterate(void *memory, struct inverse_step *step,
     bool kept;
     TRY(sample(inversion, listener));
     TRY(assess_response(inversion));
-    inversion->other_step[inversion->grid.known_point[0]] = NAN;
-    TRY(inversion->method->update(inversion, own));
+    const struct inversion_rule *rule = inversion->method->own;
+    inversion->has_other = false;
+    TRY(rule->update(inversion, own));
     mf_inversion_drift_add(&progress->drift, find_ramp(inversion),
                            inversion->distance[TARGET_RDF].rms);
     TRY(judge(inversion, &kept));

@@ -2,7 +2,7 @@
 /// @file What the inversions of g(r) by sampling share: imc, ibi, hnc, auto.
 ///
 /// Each iteration samples the present potential and asks the method for a step towards the targets
-/// (inverse_method.update): g(r) and, if it is asked for, the pressure. The best potential so far
+/// (inversion_rule.update): g(r) and, if it is asked for, the pressure. The best potential so far
 /// is kept; a worse one than chance allows makes the next step half as long, from the best, or the
 /// method's other step if it has one. Several targets count in units of their noise. Samples double
 /// until their noise is small against the error, or as small as was asked for: then the fit has
@@ -37,15 +37,32 @@ struct inversion_parameters {
 
 enum { INVERSION_FROM_HNC, INVERSION_FROM_MEAN_FORCE };
 
-enum { INVERSION_OWN = 4 }; ///< room for a method's own parameters, in doubles
-
-/// The parameters of a method: a struct whose first part is common, then its own.
-struct inversion_settings {
-    struct inversion_parameters common;
-    double own[INVERSION_OWN];
+struct imc_parameters {
+    double strength;
+    int regularisation;
 };
 
-extern const struct field mf_inversion_fields[];
+struct hnc_parameters {
+    double ridge; ///< structure factors below this are not trusted
+};
+
+/// The parameters of an inversion: what is common, and those of single methods.
+struct inversion_settings {
+    struct inversion_parameters common;
+    struct imc_parameters imc;
+    struct hnc_parameters hnc;
+};
+
+extern const struct field mf_inversion_fields[]; ///< of struct inversion_parameters
+
+struct inversion;
+
+/// What an inversion has of its own (inverse_method.own): the step from its samples, for the known
+/// bins, into `step`; perhaps another into `other_step`, with `has_other` set, to be taken from
+/// here if that one makes it worse; and up to INVERSION_OWN_COLUMNS columns.
+struct inversion_rule {
+    enum status (*update)(struct inversion *inversion, double *extra);
+};
 
 struct inversion {
     struct inversion_settings settings;
@@ -66,14 +83,16 @@ struct inversion {
     double own_noise;                         ///< of g by the samples alone, rms
     struct inversion_pressure pressure;
     double *phi, *step; ///< present potential and the step from it, shape [points]
-    double *other_step; ///< what to do if the step makes it worse; NaN: half of it
+    double *other_step; ///< what to do if the step makes it worse
+    bool has_other;     ///< else: half of it
     double *best, *best_step, *best_other;
     double *best_counts;        ///< ⟨S⟩ of the best, shape [bins]
     struct inversion_band band; ///< of the best
     // What a checkpoint keeps besides phi, best, … and the samplers:
     struct inversion_progress {
         uint32_t iteration;
-        bool anew; ///< the replicas are placed anew
+        bool anew;       ///< the replicas are placed anew
+        bool best_other; ///< the best has another step
         uint64_t evaluations, sweeps;
         double damping;
         struct target_distance best[TARGETS];  ///< rms of g infinite: there is none yet
@@ -86,7 +105,6 @@ struct inversion {
 
 /// @name For the records of the methods: struct inverse_method has a word on each.
 
-struct inverse_sampling mf_inversion_sampling(const void *parameters);
 uint32_t mf_inversion_most_iterations(const struct inverse_method *method,
                                       const struct inverse_problem *problem,
                                       const void *parameters);
@@ -100,10 +118,14 @@ size_t mf_inversion_spans(void *inversion, struct memory_span *span);
 
 /// What the records of the inversions have in common.
 #define INVERSION_RECORD                                                                           \
-    .parameters_size = sizeof(struct inversion_settings), .state_size = sizeof(struct inversion),  \
-    .fits = {[UNKNOWN_POTENTIAL] = true}, .most_iterations = mf_inversion_most_iterations,         \
-    .sampling = mf_inversion_sampling, .destroy = mf_inversion_destroy,                            \
+    .kind = INVERSE_INVERSION, .parameters_size = sizeof(struct inversion_settings),               \
+    .state_size = sizeof(struct inversion), .fits = {[UNKNOWN_POTENTIAL] = true},                  \
+    .most_iterations = mf_inversion_most_iterations, .destroy = mf_inversion_destroy,              \
     .iterate = mf_inversion_iterate, .spans = mf_inversion_spans
+
+/// The parameters that all have, the first of their tables.
+#define INVERSION_TABLE                                                                            \
+    { mf_inversion_fields, offsetof(struct inversion_settings, common) }
 
 /// The first of a method's columns; the others may be its own.
 #define INVERSION_COLUMNS                                                                          \
@@ -156,9 +178,5 @@ void mf_ibi_step(const struct inversion *inversion, double *step);
 enum status mf_hnc_step(const struct inversion *inversion, double ridge, double *step) MUST_USE;
 
 /// The regularised Newton step; `extra` are strength, misfit and directions. Fails: NO_MEMORY.
-struct imc_parameters {
-    double strength;
-    int regularisation;
-};
 enum status mf_imc_step(const struct inversion *inversion, const struct imc_parameters *parameters,
                         double *step, double extra[3]) MUST_USE;

@@ -9,7 +9,7 @@
 
 static const char *const starts[] = {"auto", "mean-force", NULL};
 
-#define MEMBER(name) .offset = offsetof(struct inversion_settings, common.name)
+#define MEMBER(name) .offset = offsetof(struct inversion_parameters, name)
 const struct field mf_inversion_fields[] = {
     {"particles", FIELD_INTEGER, MEMBER(particles), .initial = 0, .minimum = 0, .maximum = 1e7,
      .unit = "", .help = "of the Monte Carlo system, at the scene's density; 0 means the scene's"},
@@ -41,11 +41,6 @@ const struct field mf_inversion_fields[] = {
              "where that leads nowhere or in two dimensions; mean-force: -k_B T ln g"},
     FIELD_END,
 };
-
-struct inverse_sampling mf_inversion_sampling(const void *parameters) {
-    (void)parameters;
-    return (struct inverse_sampling){0};
-}
 
 uint32_t mf_inversion_most_iterations(const struct inverse_method *method,
                                       const struct inverse_problem *problem,

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inversion/replicas.h"
 
+#include "base/parallel.h"
 #include "base/rng.h"
 #include "base/statistics.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 enum status mf_replicas_init(struct replicas *replicas, size_t count, enum sampler_kind kind,
@@ -77,32 +77,41 @@ static enum status double_one(struct replica *replica, size_t bins,
     return fill_blocks(replica, bins, HALF, REPLICAS_BLOCKS, plan);
 }
 
+/// Replicas at work.
+struct work {
+    struct replicas *replicas;
+    const struct replicas_plan *plan;
+    enum status (*one)(struct replica *, size_t, const struct replicas_plan *);
+    struct inverse_progress progress;
+    const struct inverse_listener *listener;
+};
+
+static enum status run_member(void *context, size_t k, void *result) {
+    const struct work *work = context;
+    (void)result;
+    return work->one(&work->replicas->member[k], work->replicas->bins, work->plan);
+}
+
+static void tell_one(void *context, size_t k, const void *result) {
+    struct work *work = context;
+    (void)k, (void)result;
+    work->progress.done++;
+    work->listener->tell(work->listener->context, &work->progress);
+}
+
 /// Run all, each by `one`.
 static enum status
 run_all(struct replicas *replicas, const struct replicas_plan *plan, int threads,
         const struct inverse_progress *progress, const struct inverse_listener *listener,
         enum status (*one)(struct replica *, size_t, const struct replicas_plan *)) {
-    enum status worst = STATUS_OK;
-    char message[256] = "";
-    uint64_t done = 0;
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
-    for (size_t k = 0; k < replicas->count; k++) {
-        const enum status status = one(&replicas->member[k], replicas->bins, plan);
-#pragma omp critical
-        {
-            // Messages belong to threads.
-            if (status != STATUS_OK && worst != STATUS_INTERRUPTED) {
-                worst = status;
-                snprintf(message, sizeof message, "%s", mf_status_message());
-            }
-            struct inverse_progress now = *progress;
-            now.done = ++done;
-            now.total = replicas->count;
-            listener->tell(listener->context, &now);
-        }
-    }
-    if (worst != STATUS_OK)
-        return mf_status_fail(worst, "%s", message);
+    struct work work = {replicas, plan, one, *progress, listener};
+    work.progress.done = 0;
+    work.progress.total = replicas->count;
+    TRY(mf_parallel_try(&(struct parallel_tasks){.count = replicas->count,
+                                                 .threads = threads,
+                                                 .run = run_member,
+                                                 .take = tell_one,
+                                                 .context = &work}));
     mf_comoments_reset(&replicas->counts);
     for (size_t k = 0; k < replicas->count; k++)
         mf_comoments_merge(&replicas->counts, &replicas->member[k].counts);

@@ -25,7 +25,9 @@ static enum status begin(struct mesofit_fit *fit) {
     const struct inverse_method *method = fit->file.method;
     TRY(mf_target_files_normalise(&fit->file.files, &fit->file.scene.setup.box));
     fit->file.problem.scene.cancel = &fit->cancel;
-    TRY(mf_decoder_init(&fit->decoder, &fit->file.problem));
+    TRY(mf_unknowns_init(&fit->unknowns, &fit->file.problem));
+    if (method->kind == INVERSE_MATCHING)
+        TRY(mf_parametrisation_init(&fit->parametrisation, &fit->file.problem));
     CHECK((fit->state = mf_memory_zeroed(1, method->state_size)) ? STATUS_OK : STATUS_NO_MEMORY);
     status = method->create(fit->state, method, &fit->file.problem, fit->file.method_parameters);
 done:
@@ -110,7 +112,8 @@ void mesofit_fit_free(struct mesofit_fit *fit) {
     if (fit->state)
         fit->file.method->destroy(fit->state);
     mf_memory_free(fit->state);
-    mf_decoder_clear(&fit->decoder);
+    mf_unknowns_clear(&fit->unknowns);
+    mf_parametrisation_clear(&fit->parametrisation);
     mf_fit_file_clear(&fit->file);
     mf_memory_free(fit);
 }
@@ -143,8 +146,8 @@ struct mesofit_curve mesofit_fit_curve(const struct mesofit_fit *fit, enum mesof
     const enum unknown_kind unknown = kind == MESOFIT_POTENTIAL ? UNKNOWN_POTENTIAL : UNKNOWN_OMEGA;
     if (!fit->iterated || fit->step.curve[unknown] == NULL)
         return (struct mesofit_curve){0};
-    return (struct mesofit_curve){.count = mf_decoder_points(&fit->decoder, unknown),
-                                  .r = mf_decoder_r(&fit->decoder, unknown),
+    return (struct mesofit_curve){.count = mf_unknowns_points(&fit->unknowns, unknown),
+                                  .r = mf_unknowns_r(&fit->unknowns, unknown),
                                   .value = fit->step.curve[unknown],
                                   .error = fit->step.curve_error[unknown]};
 }
@@ -159,19 +162,15 @@ static double known(const struct target_distance *distance, double value) {
 static enum status verify(struct mesofit_fit *fit, struct mesofit_verification *out) {
     enum status status = STATUS_OK;
     const struct inverse_listener listener = {tell, fit};
-    struct table own[UNKNOWNS] = {{0}};
-    const struct table *table[UNKNOWNS] = {fit->file.scene.setup.potential,
-                                           fit->file.scene.setup.omega};
+    struct unknowns_laws laws = {0};
     struct verification v = {0};
+    double number[INVERSE_MOST_NUMBERS];
     if (!fit->iterated)
         return mf_status_fail(STATUS_BAD_INPUT, "there is nothing to verify before an iteration");
-    for (int kind = 0; kind < UNKNOWNS; kind++) {
-        if (fit->step.curve[kind] == NULL)
-            continue;
-        CHECK(mf_decoder_table(&fit->decoder, kind, fit->step.curve[kind], &own[kind]));
-        table[kind] = &own[kind];
-    }
-    CHECK(mf_verify(&fit->file.problem, table[UNKNOWN_POTENTIAL], table[UNKNOWN_OMEGA],
+    for (int n = 0; n < INVERSE_MOST_NUMBERS; n++)
+        number[n] = fit->step.number[n].value;
+    CHECK(mf_unknowns_laws_make(&fit->unknowns, fit->step.curve, number, &laws));
+    CHECK(mf_verify(&laws.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_OMEGA],
                     &fit->file.verification, &listener, &v));
     const struct target_distance *rdf = &v.distance[TARGET_RDF], *etd = &v.distance[TARGET_ETD];
     *out = (struct mesofit_verification){.rdf_rms = known(rdf, rdf->rms),
@@ -184,8 +183,7 @@ static enum status verify(struct mesofit_fit *fit, struct mesofit_verification *
                                          .pressure_error = v.thermodynamics.pressure_error};
 done:
     mf_verify_clear(&v);
-    for (int kind = 0; kind < UNKNOWNS; kind++)
-        mf_table_clear(&own[kind]);
+    mf_unknowns_laws_clear(&laws);
     return status;
 }
 

@@ -4,14 +4,15 @@
 
 #include "input/fit_file.h"
 #include "mesofit/fit.h"
-#include "problem/decoder.h"
+#include "problem/parametrisation.h"
 
 #include <stdatomic.h>
 
 struct mesofit_fit {
     struct fit_file file;
-    struct decoder decoder;
-    void *state; ///< of file.method
+    struct unknowns unknowns;
+    struct parametrisation parametrisation; ///< of a method of the kind INVERSE_MATCHING
+    void *state;                            ///< of file.method
     struct inverse_step step;
     bool iterated;
     atomic_bool cancel;

@@ -29,7 +29,8 @@ enum { SETTLED_AT_NOISE = 2, SETTLED_IDLE = 10 };
 /// Candidates are spread by this part of the radius, so that the model is asked for little beyond.
 static const double spread_part = 0.7;
 
-struct own {
+struct parameters {
+    struct population_parameters population;
     int64_t iterations, spread, checks;
     double reach, tolerance;
     int pressure; ///< PRESSURE_…
@@ -39,15 +40,15 @@ enum { PRESSURE_WEIGHED, PRESSURE_CONSTRAINT };
 static const char *const pressures[] = {"weighed", "constraint", NULL};
 
 struct state {
-    struct own own;
+    struct parameters own;
     const struct inverse_problem *problem;
-    struct decoder decoder;
+    struct parametrisation parametrisation;
     struct population population;
-    double *round;                ///< shape [candidates, variables]: spread about the best
-    double *proposal;             ///< shape [variables]
-    double *best;                 ///< shape [variables]: the centre of the region
-    struct decoder_curves curves; ///< of the best
-    bool has_model;               ///< whether the last iteration had one
+    double *round;                        ///< shape [candidates, variables]: spread about the best
+    double *proposal;                     ///< shape [variables]
+    double *best;                         ///< shape [variables]: the centre of the region
+    struct parametrisation_curves curves; ///< of the best
+    bool has_model;                       ///< whether the last iteration had one
     struct progress {
         uint32_t iteration;
         bool known;                    ///< whether the best has been measured
@@ -59,7 +60,7 @@ struct state {
     } progress;
 };
 
-#define OWN(name) .offset = offsetof(struct own, name)
+#define OWN(name) .offset = offsetof(struct parameters, name)
 static const struct field own_fields[] = {
     {"iterations", FIELD_INTEGER, OWN(iterations), .initial = 20, .minimum = 1, .maximum = 10000,
      .unit = "", .help = "at most; a fit that has not settled by then has not converged"},
@@ -77,19 +78,19 @@ static const struct field own_fields[] = {
     FIELD_END,
 };
 
-static_assert(sizeof(struct own) <= sizeof((struct population_settings){0}.method), "no room");
+static_assert(offsetof(struct parameters, population) == 0, "the first, says population.h");
 
 static const char *const columns[] = {"least[1]", "mean[1]", "reach[1]", "failures", NULL};
 
 static uint32_t most_iterations(const struct inverse_method *method,
                                 const struct inverse_problem *problem, const void *parameters) {
     (void)method, (void)problem;
-    return (uint32_t)((const struct own *)parameters)->iterations;
+    return (uint32_t)((const struct parameters *)parameters)->iterations;
 }
 
 /// Candidates of an iteration, an even number; the first must be enough for a model.
 static size_t round_size(const struct state *state) {
-    const size_t variables = state->decoder.variables;
+    const size_t variables = state->parametrisation.variables;
     const size_t wanted =
         state->own.spread > 0 ? (size_t)state->own.spread : (3 * variables + 1) / 2;
     // Some may fail.
@@ -99,7 +100,7 @@ static size_t round_size(const struct state *state) {
 }
 
 static size_t most_candidates(const struct state *state) {
-    const size_t variables = state->decoder.variables,
+    const size_t variables = state->parametrisation.variables,
                  least = 11 * mf_surrogate_least_rows(variables) / 10;
     const size_t wanted = state->own.spread > 0 ? (size_t)state->own.spread : 2 * variables;
     return ((wanted > least ? wanted : least) + 1) / 2 * 2;
@@ -108,11 +109,11 @@ static size_t most_candidates(const struct state *state) {
 static void destroy(void *memory) {
     struct state *state = memory;
     mf_population_clear(&state->population);
-    mf_decoder_clear(&state->decoder);
+    mf_parametrisation_clear(&state->parametrisation);
     mf_memory_free(state->round);
     mf_memory_free(state->proposal);
     mf_memory_free(state->best);
-    mf_decoder_curves_clear(&state->curves);
+    mf_parametrisation_curves_clear(&state->curves);
 }
 
 /// The pressure, the last of the features, is met exactly.
@@ -129,27 +130,26 @@ static enum status create(void *memory, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters) {
     enum status status = STATUS_OK;
     struct state *state = memory;
-    const struct population_settings *settings = parameters;
-    memcpy(&state->own, &settings->method, sizeof state->own);
+    state->own = *(const struct parameters *)parameters;
     state->problem = problem;
     state->progress = (struct progress){
         .reach = state->own.reach, .error = NAN, .noise = NAN, .reference = INFINITY};
-    CHECK(mf_decoder_init(&state->decoder, problem));
+    CHECK(mf_parametrisation_init(&state->parametrisation, problem));
     if (most_candidates(state) > POPULATION_MOST) {
         status =
             mf_status_fail(STATUS_BAD_INPUT,
                            "method.name: \"gauss-newton\" needs %zu candidates in a round for %zu "
                            "variables, and %d are the most",
-                           mf_surrogate_least_rows(state->decoder.variables),
-                           state->decoder.variables, POPULATION_MOST);
+                           mf_surrogate_least_rows(state->parametrisation.variables),
+                           state->parametrisation.variables, POPULATION_MOST);
         goto done;
     }
-    NEW_ARRAY(state->round, most_candidates(state) * state->decoder.variables);
-    NEW_ARRAY(state->proposal, state->decoder.variables);
-    NEW_ARRAY(state->best, state->decoder.variables);
-    CHECK(mf_decoder_curves_init(&state->decoder, &state->curves));
-    CHECK(mf_decoder_start(&state->decoder, state->best));
-    CHECK(mf_population_init(&state->population, &state->decoder, &settings->population));
+    NEW_ARRAY(state->round, most_candidates(state) * state->parametrisation.variables);
+    NEW_ARRAY(state->proposal, state->parametrisation.variables);
+    NEW_ARRAY(state->best, state->parametrisation.variables);
+    CHECK(mf_parametrisation_curves_init(&state->parametrisation, &state->curves));
+    CHECK(mf_parametrisation_start(&state->parametrisation, state->best));
+    CHECK(mf_population_init(&state->population, &state->parametrisation, &state->own.population));
     state->population.iterations = most_iterations(method, problem, parameters);
     if (state->own.pressure == PRESSURE_CONSTRAINT)
         CHECK(constrain_pressure(state));
@@ -159,7 +159,7 @@ done:
 
 /// Pairs on opposite sides of the best, normally distributed.
 static void spread(struct state *state, size_t count) {
-    const size_t variables = state->decoder.variables;
+    const size_t variables = state->parametrisation.variables;
     for (size_t pair = 0; pair < count / 2; pair++)
         for (size_t n = 0; n < variables; n++) {
             double normal[4];
@@ -177,7 +177,7 @@ static void spread(struct state *state, size_t count) {
 static void move(struct state *state, const double *variables, double error, double noise,
                  double variance) {
     struct progress *progress = &state->progress;
-    memcpy(state->best, variables, state->decoder.variables * sizeof *variables);
+    memcpy(state->best, variables, state->parametrisation.variables * sizeof *variables);
     progress->known = true;
     progress->error = error;
     progress->noise = noise;
@@ -219,7 +219,7 @@ static enum status propose(struct state *state) {
     CHECK(mf_surrogate_fit(&state->population.surrogate, state->best, state->progress.reach, &model,
                            &known));
     if (known) {
-        memcpy(state->proposal, model.best, state->decoder.variables * sizeof *model.best);
+        memcpy(state->proposal, model.best, state->parametrisation.variables * sizeof *model.best);
         CHECK(mf_population_remeasure(&state->population, state->proposal,
                                       (size_t)state->own.checks, &error, &noise, &variance, NULL));
         judge(state, error, noise, variance);
@@ -227,8 +227,8 @@ static enum status propose(struct state *state) {
             watch(&state->progress);
     }
     state->has_model = known;
-    CHECK(mf_decoder_curves_bands(&state->decoder, state->best, known ? model.covariance : NULL,
-                                  &state->curves));
+    CHECK(mf_parametrisation_curves_bands(&state->parametrisation, state->best,
+                                          known ? model.covariance : NULL, &state->curves));
 done:
     mf_surrogate_model_clear(&model);
     return status;
@@ -253,7 +253,8 @@ static void tell_reason(const struct state *state, char reason[INVERSE_REASON_SI
             why, sizeof why,
             "too few for a linear model of %zu variables, which needs %zu: more \"iterations\" or "
             "\"spread\" would do",
-            state->decoder.variables, mf_surrogate_least_rows(state->decoder.variables));
+            state->parametrisation.variables,
+            mf_surrogate_least_rows(state->parametrisation.variables));
     mf_population_tell_failure(&state->population, why, reason);
 }
 
@@ -316,7 +317,7 @@ static void describe(struct state *state, struct inverse_step *step) {
         settle(state, step);
     else if (step->finished)
         tell_reason(state, step->reason);
-    mf_decoder_curves_show(&state->decoder, state->best, &state->curves, step);
+    mf_parametrisation_curves_show(&state->parametrisation, state->best, &state->curves, step);
 }
 
 static enum status iterate(void *memory, struct inverse_step *step,
@@ -342,8 +343,9 @@ static size_t spans(void *memory, struct memory_span *span) {
     struct state *state = memory;
     size_t n = 0;
     span[n++] = (struct memory_span){&state->progress, sizeof state->progress};
-    span[n++] = (struct memory_span){state->best, state->decoder.variables * sizeof(double)};
-    n += mf_decoder_curves_spans(&state->decoder, &state->curves, span + n);
+    span[n++] =
+        (struct memory_span){state->best, state->parametrisation.variables * sizeof(double)};
+    n += mf_parametrisation_curves_spans(&state->parametrisation, &state->curves, span + n);
     return n + mf_population_spans(&state->population, span + n);
 }
 
@@ -351,8 +353,9 @@ const struct inverse_method mf_gauss_newton = {
     .name = "gauss-newton",
     .summary = "linear models of all observables in a trust region; J. Nocedal and S. J. Wright "
                "(2006)",
-    .tables = (const struct field *const[]){own_fields, mf_population_fields, NULL},
-    .parameters_size = sizeof(struct population_settings),
+    .kind = INVERSE_MATCHING,
+    .tables = (const struct inverse_table[]){{own_fields, 0}, {mf_population_fields, 0}, {NULL, 0}},
+    .parameters_size = sizeof(struct parameters),
     .state_size = sizeof(struct state),
     .fits = {true, true},
     .most_iterations = most_iterations,

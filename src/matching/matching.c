@@ -7,7 +7,8 @@
 
 #include "base/memory.h"
 #include "matching/population.h"
-#include "problem/decoder.h"
+#include "problem/parametrisation.h"
+#include "optimise/genetic.h"
 #include "optimise/optimiser.h"
 
 #include <assert.h>
@@ -16,9 +17,29 @@
 #include <string.h>
 
 struct parameters {
-    struct population_settings settings; ///< with the parameters of the optimiser
+    struct population_parameters population;
     int64_t checks;
     int surrogate;
+};
+
+/// The same with the parameters of each optimiser behind it.
+struct genetic_settings {
+    struct parameters common;
+    struct genetic_parameters optimiser;
+};
+struct cmaes_settings {
+    struct parameters common;
+    struct cmaes_parameters optimiser;
+};
+struct nlopt_settings {
+    struct parameters common;
+    struct nlopt_parameters optimiser;
+};
+
+/// What a method has of its own: what it drives, and where the parameters of that are.
+struct driven {
+    const struct optimiser *optimiser;
+    size_t parameters;
 };
 
 struct state {
@@ -27,11 +48,11 @@ struct state {
     const struct optimiser *optimiser;
     void *optimiser_state;
     bool created;
-    struct decoder decoder;
+    struct parametrisation parametrisation;
     struct population population;
-    double *incumbent;            ///< shape [variables]: what is thought best
-    double *best;                 ///< shape [variables]: the best by fresh measurements
-    struct decoder_curves curves; ///< of the best, with errors by the linear model
+    double *incumbent;                    ///< shape [variables]: what is thought best
+    double *best;                         ///< shape [variables]: the best by fresh measurements
+    struct parametrisation_curves curves; ///< of the best, with errors by the linear model
     struct progress {
         uint32_t iteration;
         int stage;            ///< of `check`
@@ -53,7 +74,7 @@ static const struct field own_fields[] = {
     FIELD_END,
 };
 
-static_assert(offsetof(struct parameters, settings) == 0, "candidates_fields need it first");
+static_assert(offsetof(struct parameters, population) == 0, "the first, says population.h");
 
 static const char *const columns[] = {"least[1]", "mean[1]", "diversity[1]", "failures", NULL};
 
@@ -66,11 +87,14 @@ static const double reach = 0.3;
 /// Rounds, of which an iteration takes at least one, and a last iteration for the incumbent.
 static uint32_t most_iterations(const struct inverse_method *method,
                                 const struct inverse_problem *problem, const void *parameters) {
-    size_t variables = 0;
+    size_t variables = problem->numbers;
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (problem->unknown[kind].wanted)
             variables += (size_t)problem->unknown[kind].parameters.coefficients;
-    return method->optimiser->most_rounds(parameters, variables) + 1;
+    const struct driven *driven = method->own;
+    return driven->optimiser->most_rounds((const char *)parameters + driven->parameters,
+                                          variables) +
+           1;
 }
 
 static void destroy(void *memory) {
@@ -79,18 +103,18 @@ static void destroy(void *memory) {
         state->optimiser->destroy(state->optimiser_state);
     mf_memory_free(state->optimiser_state);
     mf_population_clear(&state->population);
-    mf_decoder_clear(&state->decoder);
+    mf_parametrisation_clear(&state->parametrisation);
     mf_memory_free(state->incumbent);
     mf_memory_free(state->best);
-    mf_decoder_curves_clear(&state->curves);
+    mf_parametrisation_curves_clear(&state->curves);
 }
 
-static enum status create_optimiser(struct state *state) {
+static enum status create_optimiser(struct state *state, const void *parameters) {
     enum status status = STATUS_OK;
     double *start = NULL;
-    NEW_ARRAY(start, state->decoder.variables);
-    CHECK(mf_decoder_start(&state->decoder, start));
-    const struct optimiser_space space = {.variables = state->decoder.variables,
+    NEW_ARRAY(start, state->parametrisation.variables);
+    CHECK(mf_parametrisation_start(&state->parametrisation, start));
+    const struct optimiser_space space = {.variables = state->parametrisation.variables,
                                           .minimum = 0,
                                           .maximum = 1,
                                           .start = start,
@@ -98,7 +122,7 @@ static enum status create_optimiser(struct state *state) {
                                           .most = POPULATION_MOST};
     state->optimiser_state = mf_memory_zeroed(1, state->optimiser->state_size);
     CHECK(state->optimiser_state ? STATUS_OK : STATUS_NO_MEMORY);
-    CHECK(state->optimiser->create(state->optimiser_state, &space, &state->parameters));
+    CHECK(state->optimiser->create(state->optimiser_state, &space, parameters));
     state->created = true;
 done:
     mf_memory_free(start);
@@ -109,17 +133,18 @@ static enum status create(void *memory, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters) {
     enum status status = STATUS_OK;
     struct state *state = memory;
+    const struct driven *driven = method->own;
     state->parameters = *(const struct parameters *)parameters;
     state->problem = problem;
-    state->optimiser = method->optimiser;
+    state->optimiser = driven->optimiser;
     state->progress.error = NAN;
-    CHECK(mf_decoder_init(&state->decoder, problem));
-    NEW_ARRAY(state->incumbent, state->decoder.variables);
-    NEW_ARRAY(state->best, state->decoder.variables);
-    CHECK(mf_decoder_curves_init(&state->decoder, &state->curves));
-    CHECK(create_optimiser(state));
-    CHECK(mf_population_init(&state->population, &state->decoder,
-                             &state->parameters.settings.population));
+    CHECK(mf_parametrisation_init(&state->parametrisation, problem));
+    NEW_ARRAY(state->incumbent, state->parametrisation.variables);
+    NEW_ARRAY(state->best, state->parametrisation.variables);
+    CHECK(mf_parametrisation_curves_init(&state->parametrisation, &state->curves));
+    CHECK(create_optimiser(state, (const char *)parameters + driven->parameters));
+    CHECK(mf_population_init(&state->population, &state->parametrisation,
+                             &state->parameters.population));
     state->population.iterations = most_iterations(method, problem, parameters);
 done:
     return status;
@@ -144,7 +169,7 @@ static enum status take_round(struct state *state, const struct optimiser_round 
 /// Whether what is thought best is to be measured: something new, and not more than one evaluation
 /// in ten goes into such measurements but for the last.
 static bool wants_check(const struct state *state, bool last) {
-    const size_t bytes = state->decoder.variables * sizeof(double);
+    const size_t bytes = state->parametrisation.variables * sizeof(double);
     if (state->progress.known && memcmp(state->incumbent, state->best, bytes) == 0)
         return false;
     const uint64_t since = state->population.totals.evaluations - state->progress.checked;
@@ -160,7 +185,7 @@ static enum status check_incumbent(struct state *state, double slack) {
     if (error >= OPTIMISER_FAILED ||
         (state->progress.known && error > state->progress.error + slack * sqrt(variance)))
         return STATUS_OK;
-    memcpy(state->best, state->incumbent, state->decoder.variables * sizeof(double));
+    memcpy(state->best, state->incumbent, state->parametrisation.variables * sizeof(double));
     if (!state->progress.known || error < state->progress.error)
         state->progress.last_better = state->progress.iteration;
     state->progress.known = true;
@@ -178,11 +203,11 @@ static enum status try_surrogate(struct state *state) {
     bool known = false;
     if (state->progress.known)
         CHECK(mf_surrogate_fit(&state->population.surrogate, state->best, reach, &model, &known));
-    CHECK(mf_decoder_curves_bands(&state->decoder, state->best, known ? model.covariance : NULL,
-                                  &state->curves));
+    CHECK(mf_parametrisation_curves_bands(&state->parametrisation, state->best,
+                                          known ? model.covariance : NULL, &state->curves));
     if (!known || !state->parameters.surrogate)
         goto done;
-    memcpy(state->incumbent, model.best, state->decoder.variables * sizeof(double));
+    memcpy(state->incumbent, model.best, state->parametrisation.variables * sizeof(double));
     CHECK(check_incumbent(state, 1));
 done:
     mf_surrogate_model_clear(&model);
@@ -219,9 +244,9 @@ static void describe(struct state *state, struct inverse_step *step, bool finish
     };
     if (finished)
         conclude(state, step);
-    mf_decoder_curves_show(&state->decoder,
-                           state->progress.known ? state->best : state->population.first,
-                           &state->curves, step);
+    mf_parametrisation_curves_show(&state->parametrisation,
+                                   state->progress.known ? state->best : state->population.first,
+                                   &state->curves, step);
 }
 
 /// Measure what the optimiser, and then the linear model, thinks best. Each stage is done once,
@@ -266,33 +291,37 @@ static enum status iterate(void *memory, struct inverse_step *step,
 
 static size_t spans(void *memory, struct memory_span *span) {
     struct state *state = memory;
-    const size_t bytes = state->decoder.variables * sizeof(double);
+    const size_t bytes = state->parametrisation.variables * sizeof(double);
     size_t n = 0;
     span[n++] = (struct memory_span){&state->progress, sizeof state->progress};
     span[n++] = (struct memory_span){state->best, bytes};
-    n += mf_decoder_curves_spans(&state->decoder, &state->curves, span + n);
+    n += mf_parametrisation_curves_spans(&state->parametrisation, &state->curves, span + n);
     n += mf_population_spans(&state->population, span + n);
     n += state->optimiser->spans(state->optimiser_state, span + n);
     return n;
 }
 
-#define MATCHING(its_name, its_optimiser, its_fields, its_summary)                                 \
+#define MATCHING(its_name, its_optimiser, its_settings, its_fields, its_summary)                   \
     {                                                                                              \
-        .name = its_name, .summary = its_summary,                                                  \
+        .name = its_name, .summary = its_summary, .kind = INVERSE_MATCHING,                        \
+        .own = &(const struct driven){&(its_optimiser), offsetof(struct its_settings, optimiser)}, \
         .tables =                                                                                  \
-            (const struct field *const[]){its_fields, mf_population_fields, own_fields, NULL},     \
-        .parameters_size = sizeof(struct parameters), .state_size = sizeof(struct state),          \
-        .fits = {true, true}, .optimiser = &(its_optimiser), .most_iterations = most_iterations,   \
+            (const struct inverse_table[]){{its_fields, offsetof(struct its_settings, optimiser)}, \
+                                           {mf_population_fields, 0},                              \
+                                           {own_fields, 0},                                        \
+                                           {NULL, 0}},                                             \
+        .parameters_size = sizeof(struct its_settings), .state_size = sizeof(struct state),        \
+        .fits = {true, true}, .most_iterations = most_iterations,                                  \
         .sampling = mf_population_sampling, .keeps_parts = true, .columns = columns,               \
         .create = create, .destroy = destroy, .iterate = iterate, .spans = spans,                  \
     }
 
 const struct inverse_method mf_matching_genetic =
-    MATCHING("genetic", mf_genetic_optimiser, mf_genetic_fields,
+    MATCHING("genetic", mf_genetic_optimiser, genetic_settings, mf_genetic_fields,
              "genetic algorithm over smooth curves; A. G. Baydin (2008)");
 const struct inverse_method mf_matching_cmaes =
-    MATCHING("cma-es", mf_cmaes_optimiser, mf_cmaes_fields,
+    MATCHING("cma-es", mf_cmaes_optimiser, cmaes_settings, mf_cmaes_fields,
              "evolution strategy with covariance matrix adaptation; N. Hansen, arXiv:1604.00772");
 const struct inverse_method mf_matching_nlopt =
-    MATCHING("nlopt", mf_nlopt_optimiser, mf_nlopt_fields,
+    MATCHING("nlopt", mf_nlopt_optimiser, nlopt_settings, mf_nlopt_fields,
              "algorithms of NLopt by name; S. G. Johnson, github.com/stevengj/nlopt");

@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-#define OWN(name) .offset = offsetof(struct pareto_own, name)
+#define OWN(name) .offset = offsetof(struct pareto_parameters, name)
 static const struct field own_fields[] = {
     {"checks", FIELD_INTEGER, OWN(checks), .initial = 2, .minimum = 1, .maximum = POPULATION_MOST,
      .unit = "", .help = "fresh measurements of a member of the front before it is chosen"},
@@ -21,9 +21,7 @@ static const struct field own_fields[] = {
     FIELD_END,
 };
 
-static_assert(sizeof(struct pareto_own) <= sizeof((struct population_settings){0}.method),
-              "no room");
-static_assert(offsetof(struct pareto_own, nsga2) == 0, "nsga2_fields need it first");
+static_assert(offsetof(struct pareto_parameters, population) == 0, "the first, says population.h");
 
 static const char *const columns[] = {"least[1]", "mean[1]", "diversity[1]", "failures", NULL};
 
@@ -34,17 +32,17 @@ static const double reach = 0.3;
 static uint32_t most_iterations(const struct inverse_method *method,
                                 const struct inverse_problem *problem, const void *parameters) {
     (void)method, (void)problem;
-    return (uint32_t)((const struct pareto_own *)parameters)->nsga2.generations;
+    return (uint32_t)((const struct pareto_parameters *)parameters)->nsga2.generations;
 }
 
 static void destroy(void *memory) {
     struct pareto_state *state = memory;
     mf_nsga2_clear(&state->nsga2);
     mf_population_clear(&state->population);
-    mf_decoder_clear(&state->decoder);
+    mf_parametrisation_clear(&state->parametrisation);
     mf_memory_free(state->value);
     mf_memory_free(state->log);
-    mf_decoder_curves_clear(&state->curves);
+    mf_parametrisation_curves_clear(&state->curves);
 }
 
 size_t mf_pareto_log_width(const struct pareto_state *state) {
@@ -59,9 +57,9 @@ static size_t log_rows(const struct pareto_state *state) {
 static enum status create_nsga2(struct pareto_state *state) {
     enum status status = STATUS_OK;
     double *start = NULL;
-    NEW_ARRAY(start, state->decoder.variables);
-    CHECK(mf_decoder_start(&state->decoder, start));
-    const struct nsga2_space space = {.genes = state->decoder.variables,
+    NEW_ARRAY(start, state->parametrisation.variables);
+    CHECK(mf_parametrisation_start(&state->parametrisation, start));
+    const struct nsga2_space space = {.genes = state->parametrisation.variables,
                                       .objectives = state->objectives,
                                       .start = start,
                                       .seed = state->problem->seed};
@@ -75,8 +73,7 @@ static enum status create(void *memory, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters) {
     enum status status = STATUS_OK;
     struct pareto_state *state = memory;
-    const struct population_settings *settings = parameters;
-    memcpy(&state->own, &settings->method, sizeof state->own);
+    state->own = *(const struct pareto_parameters *)parameters;
     state->problem = problem;
     for (int kind = 0; kind < TARGETS; kind++)
         if (targets_ask(&problem->targets, kind))
@@ -85,12 +82,12 @@ static enum status create(void *memory, const struct inverse_method *method,
         return mf_status_fail(STATUS_BAD_INPUT,
                               "method.name: \"%s\" needs two fitted targets at least",
                               method->name);
-    CHECK(mf_decoder_init(&state->decoder, problem));
+    CHECK(mf_parametrisation_init(&state->parametrisation, problem));
     CHECK(create_nsga2(state));
     NEW_ARRAY(state->value, POPULATION_MOST * state->objectives);
     NEW_ARRAY(state->log, log_rows(state) * mf_pareto_log_width(state));
-    CHECK(mf_decoder_curves_init(&state->decoder, &state->curves));
-    CHECK(mf_population_init(&state->population, &state->decoder, &settings->population));
+    CHECK(mf_parametrisation_curves_init(&state->parametrisation, &state->curves));
+    CHECK(mf_population_init(&state->population, &state->parametrisation, &state->own.population));
     state->population.iterations = most_iterations(method, problem, parameters);
     state->progress.least = OPTIMISER_FAILED;
 done:
@@ -204,14 +201,14 @@ static enum status ask_surrogate(struct pareto_state *state) {
     struct surrogate_model model = {0};
     bool known = state->progress.known;
     const double *chosen = mf_nsga2_parent(&state->nsga2, state->progress.chosen);
-    CHECK(mf_decoder_curves_bands(&state->decoder, chosen, NULL, &state->curves));
+    CHECK(mf_parametrisation_curves_bands(&state->parametrisation, chosen, NULL, &state->curves));
     for (int64_t k = 0; known && (k == 0 || k < state->own.surrogate); k++) {
         mf_surrogate_model_clear(&model);
         CHECK(mf_surrogate_fit(&state->population.surrogate, chosen, ldexp(reach, (int)-k), &model,
                                &known));
         if (known && k == 0)
-            CHECK(
-                mf_decoder_curves_bands(&state->decoder, chosen, model.covariance, &state->curves));
+            CHECK(mf_parametrisation_curves_bands(&state->parametrisation, chosen, model.covariance,
+                                                  &state->curves));
         if (known && k < state->own.surrogate)
             mf_nsga2_plant(&state->nsga2, model.best);
     }
@@ -241,10 +238,11 @@ static void describe(struct pareto_state *state, struct inverse_step *step) {
         mf_population_tell_failure(&state->population,
                                    "but what seemed best failed when it was measured again",
                                    step->reason);
-    mf_decoder_curves_show(&state->decoder,
-                           progress->known ? mf_nsga2_parent(&state->nsga2, progress->chosen)
-                                           : state->population.first,
-                           &state->curves, step);
+    mf_parametrisation_curves_show(&state->parametrisation,
+                                   progress->known
+                                       ? mf_nsga2_parent(&state->nsga2, progress->chosen)
+                                       : state->population.first,
+                                   &state->curves, step);
 }
 
 static void log_front(struct pareto_state *state) {
@@ -283,7 +281,7 @@ static size_t spans(void *memory, struct memory_span *span) {
     span[n++] = (struct memory_span){&state->progress, sizeof state->progress};
     span[n++] = (struct memory_span){state->log,
                                      log_rows(state) * mf_pareto_log_width(state) * sizeof(double)};
-    n += mf_decoder_curves_spans(&state->decoder, &state->curves, span + n);
+    n += mf_parametrisation_curves_spans(&state->parametrisation, &state->curves, span + n);
     n += mf_nsga2_spans(&state->nsga2, span + n);
     return n + mf_population_spans(&state->population, span + n);
 }
@@ -291,9 +289,13 @@ static size_t spans(void *memory, struct memory_span *span) {
 const struct inverse_method mf_pareto = {
     .name = "pareto",
     .summary = "the front of all targets by NSGA-II, without weights; K. Deb et al. (2002)",
+    .kind = INVERSE_MATCHING,
     .tables =
-        (const struct field *const[]){mf_nsga2_fields, own_fields, mf_population_fields, NULL},
-    .parameters_size = sizeof(struct population_settings),
+        (const struct inverse_table[]){{mf_nsga2_fields, offsetof(struct pareto_parameters, nsga2)},
+                                       {own_fields, 0},
+                                       {mf_population_fields, 0},
+                                       {NULL, 0}},
+    .parameters_size = sizeof(struct pareto_parameters),
     .state_size = sizeof(struct pareto_state),
     .fits = {true, true},
     .most_iterations = most_iterations,

@@ -6,7 +6,8 @@
 #include "problem/inverse.h"
 #include "optimise/nsga2.h"
 
-struct pareto_own {
+struct pareto_parameters {
+    struct population_parameters population;
     struct nsga2_parameters nsga2;
     int64_t checks, surrogate;
 };
@@ -18,16 +19,16 @@ enum pareto_log_kind { LOG_MEASURED, LOG_FRONT, LOG_CHOSEN };
 enum { LOG_ITERATION, LOG_KIND, LOG_ERROR, LOG_OBJECTIVES };
 
 struct pareto_state {
-    struct pareto_own own;
+    struct pareto_parameters own;
     const struct inverse_problem *problem;
-    struct decoder decoder;
+    struct parametrisation parametrisation;
     struct population population;
     struct nsga2 nsga2;
     size_t objectives;
-    enum target_kind target[TARGETS]; ///< of each objective
-    double *value;                    ///< shape [candidates, objectives]: scratch
-    double *log;                      ///< shape [rows, LOG_OBJECTIVES + objectives]
-    struct decoder_curves curves;     ///< of the chosen
+    enum target_kind target[TARGETS];     ///< of each objective
+    double *value;                        ///< shape [candidates, objectives]: scratch
+    double *log;                          ///< shape [rows, LOG_OBJECTIVES + objectives]
+    struct parametrisation_curves curves; ///< of the chosen
     struct progress {
         uint32_t iteration, stage;
         uint64_t rows;         ///< of the log

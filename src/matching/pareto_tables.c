@@ -123,25 +123,28 @@ static enum status write_curve(const struct pareto_state *state, enum unknown_ki
                                size_t curve, const struct inverse_folder *folder,
                                const struct line *lines, size_t members) {
     enum status status = STATUS_OK;
-    const struct decoder *decoder = &state->decoder;
-    const size_t points = mf_decoder_points(decoder, kind);
-    const size_t each = points / mf_decoder_curve_count(decoder, kind), first = curve * each;
+    const struct parametrisation *parametrisation = &state->parametrisation;
+    const size_t points = mf_unknowns_points(&parametrisation->unknowns, kind);
+    const size_t each = points / mf_unknowns_curve_count(&parametrisation->unknowns, kind),
+                 first = curve * each;
     struct data_column *column = NULL;
     double *curves = NULL;
-    char *names = NULL, name[DECODER_NAME_SIZE], file[DECODER_NAME_SIZE + 16];
+    char *names = NULL, name[UNKNOWNS_NAME_SIZE], file[UNKNOWNS_NAME_SIZE + 16];
     char path[OUTPUT_PATH_SIZE];
     NEW_ARRAY(column, members + 1);
     NEW_ARRAY(curves, (members + 1) * points);
     NEW_ARRAY(names, (members + 1) * NAME_SIZE);
-    column[0] = (struct data_column){"r[lambda]", mf_decoder_r(decoder, kind) + first, NULL};
+    column[0] = (struct data_column){"r[lambda]",
+                                     mf_unknowns_r(&parametrisation->unknowns, kind) + first, NULL};
     for (size_t k = 0; k < members; k++) {
         snprintf(names + k * NAME_SIZE, NAME_SIZE, "%zu", k + 1);
-        mf_decoder_curve(decoder, kind, mf_nsga2_parent(&state->nsga2, lines[k].parent),
-                         curves + k * points);
+        mf_parametrisation_curve(parametrisation, kind,
+                                 mf_nsga2_parent(&state->nsga2, lines[k].parent),
+                                 curves + k * points);
         column[k + 1] =
             (struct data_column){names + k * NAME_SIZE, curves + k * points + first, "%.8g"};
     }
-    mf_decoder_curve_name(decoder, kind, curve, name);
+    mf_unknowns_curve_name(&parametrisation->unknowns, kind, curve, name);
     snprintf(file, sizeof file, "pareto_%s.tsv", name);
     folder->file(folder->context, file, path);
     CHECK(mf_data_table_write(path, NULL, column, members + 1, each));
@@ -162,8 +165,9 @@ enum status mf_pareto_write_tables(const void *memory, const struct inverse_fold
     CHECK(write_front(state, folder, lines, rows));
     CHECK(write_log(state, folder));
     for (int kind = 0; kind < UNKNOWNS; kind++)
-        for (size_t curve = 0; state->problem->unknown[kind].wanted &&
-                               curve < mf_decoder_curve_count(&state->decoder, kind);
+        for (size_t curve = 0;
+             state->problem->unknown[kind].wanted &&
+             curve < mf_unknowns_curve_count(&state->parametrisation.unknowns, kind);
              curve++)
             CHECK(write_curve(state, kind, curve, folder, lines, members));
 done:

@@ -2,6 +2,7 @@
 #include "matching/population.h"
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "base/rng.h"
 
 #include <math.h>
@@ -12,64 +13,65 @@
 
 const char *const mf_population_no_or_yes[] = {"no", "yes", NULL};
 
-#define MEMBER(name) .offset = offsetof(struct population_settings, name)
+#define MEMBER(name) .offset = offsetof(struct population_parameters, name)
 const struct field mf_population_fields[] = {
-    {"equilibration", FIELD_INTEGER, MEMBER(population.evaluate.plan.equilibration), .initial = 350,
+    {"equilibration", FIELD_INTEGER, MEMBER(evaluate.plan.equilibration), .initial = 350,
      .minimum = 10, .maximum = 1e9, .unit = "steps", .help = "of a candidate's simulation"},
-    {"samples", FIELD_INTEGER, MEMBER(population.evaluate.plan.samples), .initial = 45,
-     .minimum = 1, .maximum = 1e8, .unit = "",
+    {"samples", FIELD_INTEGER, MEMBER(evaluate.plan.samples), .initial = 45, .minimum = 1,
+     .maximum = 1e8, .unit = "",
      .help = "of its g(r) and pressure; times \"every\" it is as long as all else is measured"},
-    {"every", FIELD_INTEGER, MEMBER(population.evaluate.plan.every), .initial = 50, .minimum = 1,
+    {"every", FIELD_INTEGER, MEMBER(evaluate.plan.every), .initial = 50, .minimum = 1,
      .maximum = 1e9, .unit = "steps", .help = "between samples"},
-    {"temperature_tolerance", FIELD_NUMBER, MEMBER(population.evaluate.temperature_tolerance),
-     .initial = 0.1, .minimum = FIELD_ABOVE_ZERO, .maximum = 1, .unit = "",
+    {"temperature_tolerance", FIELD_NUMBER, MEMBER(evaluate.temperature_tolerance), .initial = 0.1,
+     .minimum = FIELD_ABOVE_ZERO, .maximum = 1, .unit = "",
      .help = "relative deviation at the end of equilibration with which a candidate fails"},
-    {"estimator", FIELD_CHOICE, MEMBER(population.evaluate.estimator),
-     .choices = mf_rdf_force_estimators, .initial = RDF_FORCE_NOT_USED, .unit = "",
+    {"estimator", FIELD_CHOICE, MEMBER(evaluate.estimator), .choices = mf_rdf_force_estimators,
+     .initial = RDF_FORCE_NOT_USED, .unit = "",
      .help = "of g(r): force is worth twice the samples, but a large time step puts it off"},
-    {"racing", FIELD_NUMBER, MEMBER(population.evaluate.patience), .initial = 0, .minimum = 0,
-     .maximum = 100, .unit = "standard errors",
+    {"racing", FIELD_NUMBER, MEMBER(evaluate.patience), .initial = 0, .minimum = 0, .maximum = 100,
+     .unit = "standard errors",
      .help = "by which a running error must be hopeless for its simulation to stop; 0: never"},
-    {"precision", FIELD_NUMBER, MEMBER(population.evaluate.precision), .initial = 0, .minimum = 0,
+    {"precision", FIELD_NUMBER, MEMBER(evaluate.precision), .initial = 0, .minimum = 0,
      .maximum = 1, .unit = "",
      .help = "relative standard error of an error with which its simulation stops; 0: never"},
-    {"warm_start", FIELD_CHOICE, MEMBER(population.warm_start), .choices = mf_population_no_or_yes,
+    {"warm_start", FIELD_CHOICE, MEMBER(warm_start), .choices = mf_population_no_or_yes,
      .initial = 0, .unit = "", .help = "begin where the best simulation of the last round ended"},
-    {"common_noise", FIELD_CHOICE, MEMBER(population.common_noise),
-     .choices = mf_population_no_or_yes, .initial = 0, .unit = "",
-     .help = "the same random numbers for all candidates of a round"},
+    {"common_noise", FIELD_CHOICE, MEMBER(common_noise), .choices = mf_population_no_or_yes,
+     .initial = 0, .unit = "", .help = "the same random numbers for all candidates of a round"},
     FIELD_END,
 };
 
-struct inverse_sampling mf_population_sampling(const void *settings) {
+struct inverse_sampling mf_population_sampling(const void *parameters) {
     const struct evaluate_parameters *evaluate =
-        &((const struct population_settings *)settings)->population.evaluate;
+        &((const struct population_parameters *)parameters)->evaluate;
     return (struct inverse_sampling){.every = evaluate->plan.every,
                                      .rdf_force = evaluate->estimator == RDF_FORCE_USED,
                                      .samples = evaluate->plan.samples};
 }
 
 static size_t coordinates(const struct population *population) {
-    const struct simulation_setup *scene = &population->decoder->problem->scene;
+    const struct simulation_setup *scene = &population->parametrisation->unknowns.problem->scene;
     return (size_t)scene->box.dimensions * (size_t)scene->placement.count;
 }
 
-enum status mf_population_init(struct population *population, const struct decoder *decoder,
+enum status mf_population_init(struct population *population,
+                               const struct parametrisation *parametrisation,
                                const struct population_parameters *parameters) {
     enum status status = STATUS_OK;
-    *population = (struct population){.decoder = decoder, .parameters = *parameters, .best = NAN};
+    *population = (struct population){
+        .parametrisation = parametrisation, .parameters = *parameters, .best = NAN};
     NEW_ARRAY(population->errors, POPULATION_MOST);
     NEW_ARRAY(population->variances, POPULATION_MOST);
     NEW_ARRAY(population->distances, POPULATION_MOST * TARGETS);
-    NEW_ARRAY(population->first, decoder->variables);
-    const struct targets *targets = &decoder->problem->targets;
+    NEW_ARRAY(population->first, parametrisation->variables);
+    const struct targets *targets = &parametrisation->unknowns.problem->targets;
     const size_t features = mf_targets_features(targets);
     NEW_ARRAY(population->features, POPULATION_MOST * features);
     NEW_ARRAY(population->target, features);
     NEW_ARRAY(population->target_error, features);
     mf_targets_take_features(targets, NULL, population->target, population->target_error);
-    CHECK(mf_surrogate_init(&population->surrogate, decoder->variables, features, POPULATION_MOST,
-                            population->target, population->target_error));
+    CHECK(mf_surrogate_init(&population->surrogate, parametrisation->variables, features,
+                            POPULATION_MOST, population->target, population->target_error));
     NEW_ARRAY(population->position, coordinates(population));
     NEW_ARRAY(population->best_position, coordinates(population));
     mf_population_next_round(population);
@@ -120,7 +122,7 @@ void mf_population_tell_failure(const struct population *population, const char 
 
 /// Columns of positions, one a dimension.
 static void split(const struct population *population, double *position, double *column[3]) {
-    const struct simulation_setup *scene = &population->decoder->problem->scene;
+    const struct simulation_setup *scene = &population->parametrisation->unknowns.problem->scene;
     for (int d = 0; d < scene->box.dimensions; d++)
         column[d] = position + (size_t)d * (size_t)scene->placement.count;
 }
@@ -129,11 +131,11 @@ static void split(const struct population *population, double *position, double 
 static enum status measure(const struct population *population, const double *variables,
                            uint64_t seed, double discard_above, int threads, double *features,
                            double *end, struct evaluate_result *result) {
-    struct decoder_laws laws;
+    struct unknowns_laws laws;
     double *begin_column[3] = {NULL}, *end_column[3] = {NULL};
     split(population, population->position, begin_column);
     split(population, end, end_column);
-    enum status status = mf_decoder_laws(population->decoder, variables, &laws);
+    enum status status = mf_parametrisation_laws(population->parametrisation, variables, &laws);
     const struct evaluate_candidate candidate = {
         .potential = laws.table[UNKNOWN_POTENTIAL],
         .omega = laws.table[UNKNOWN_OMEGA],
@@ -143,14 +145,14 @@ static enum status measure(const struct population *population, const double *va
         .seed = seed,
     };
     if (status == STATUS_OK)
-        status = mf_evaluate(population->decoder->problem, &candidate,
-                             &population->parameters.evaluate, features, end_column, result);
+        status = mf_evaluate(&laws.problem, &candidate, &population->parameters.evaluate, features,
+                             end_column, result);
     if (status == STATUS_UNSTABLE || (status == STATUS_OK && !isfinite(result->error))) {
         result->error = OPTIMISER_FAILED;
         result->variance = 0;
         status = STATUS_OK;
     }
-    mf_decoder_laws_clear(&laws);
+    mf_unknowns_laws_clear(&laws);
     return status;
 }
 
@@ -213,34 +215,47 @@ static uint32_t copies_before(const struct optimiser_round *round, size_t variab
 
 static uint64_t seed_of(const struct population *population, const struct optimiser_round *round,
                         size_t index) {
-    const uint32_t number = population->parameters.common_noise
-                                ? copies_before(round, population->decoder->variables, index)
-                                : (uint32_t)index;
-    return mf_rng_child_seed(population->decoder->problem->seed, RNG_EVALUATION,
+    const uint32_t number =
+        population->parameters.common_noise
+            ? copies_before(round, population->parametrisation->variables, index)
+            : (uint32_t)index;
+    return mf_rng_child_seed(population->parametrisation->unknowns.problem->seed, RNG_EVALUATION,
                              (uint32_t)population->totals.rounds, number);
 }
 
-/// Measure one candidate unless it was measured before an interruption.
-static enum status measure_one(struct population *population, const struct optimiser_round *round,
-                               size_t index, double discard_above, int threads,
-                               const struct inverse_listener *listener) {
-    enum status status = STATUS_OK;
+/// What a simulation of a candidate leaves.
+struct measured {
     struct evaluate_result result;
-    double *end = NULL;
-    if (population->errors[index] != UNMEASURED)
-        return STATUS_OK;
-    NEW_ARRAY(end, coordinates(population));
-    CHECK(measure(population, round->variables + index * population->decoder->variables,
-                  seed_of(population, round, index), discard_above, threads,
-                  population->features + index * population->surrogate.features, end, &result));
-#pragma omp critical
-    {
-        take(population, index, &result, end);
-        report(population, round->count, listener);
-    }
-done:
-    mf_memory_free(end);
-    return status;
+    double end[]; ///< as population.position
+};
+
+/// Candidates of a round that have not been measured yet, as before an interruption.
+struct work {
+    struct population *population;
+    const struct optimiser_round *round;
+    const struct inverse_listener *listener;
+    double discard_above;
+    int threads; ///< inside a simulation
+    size_t count, index[POPULATION_MOST];
+};
+
+static enum status measure_one(void *context, size_t task, void *memory) {
+    const struct work *work = context;
+    const struct population *population = work->population;
+    struct measured *measured = memory;
+    const size_t index = work->index[task];
+    return measure(population,
+                   work->round->variables + index * population->parametrisation->variables,
+                   seed_of(population, work->round, index), work->discard_above, work->threads,
+                   population->features + index * population->surrogate.features, measured->end,
+                   &measured->result);
+}
+
+static void take_one(void *context, size_t task, const void *memory) {
+    const struct work *work = context;
+    const struct measured *measured = memory;
+    take(work->population, work->index[task], &measured->result, measured->end);
+    report(work->population, work->round->count, work->listener);
 }
 
 /// Threads for the simulation of a candidate alone. Particles too few to share are done before the
@@ -263,30 +278,28 @@ static void remember(struct population *population, const double *variables, dou
 enum status mf_population_measure(struct population *population,
                                   const struct optimiser_round *round, double discard_above,
                                   const struct inverse_listener *listener) {
-    enum status status = STATUS_OK;
-    char reason[512] = "";
-    const int threads = population->decoder->problem->threads;
+    const struct inverse_problem *problem = population->parametrisation->unknowns.problem;
+    struct work work = {population, round, listener, discard_above, 1, 0, {0}};
     if (round->count > POPULATION_MOST)
         return mf_status_fail(STATUS_BAD_INPUT, "a round of %zu candidates: at most %d",
                               round->count, POPULATION_MOST);
-    const int inside = round->count == 1 ? threads_inside(population->decoder->problem) : 1;
+    if (round->count == 1)
+        work.threads = threads_inside(problem);
     memcpy(population->first, round->variables,
-           population->decoder->variables * sizeof *round->variables);
-#pragma omp parallel for schedule(dynamic) num_threads(threads) if (round->count > 1)
-    for (size_t k = 0; k < round->count; k++) {
-        const enum status here = measure_one(population, round, k, discard_above, inside, listener);
-        if (here != STATUS_OK)
-#pragma omp critical
-        {
-            status = here;
-            snprintf(reason, sizeof reason, "%s", mf_status_message());
-        }
-    }
-    if (status != STATUS_OK)
-        return mf_status_fail(status, "%s", reason);
+           population->parametrisation->variables * sizeof *round->variables);
+    for (size_t k = 0; k < round->count; k++)
+        if (population->errors[k] == UNMEASURED)
+            work.index[work.count++] = k;
+    TRY(mf_parallel_try(&(struct parallel_tasks){
+        .count = work.count,
+        .threads = problem->threads,
+        .run = measure_one,
+        .take = take_one,
+        .result_size = sizeof(struct measured) + coordinates(population) * sizeof(double),
+        .context = &work}));
     for (size_t k = 0; k < round->count; k++) {
         add(&population->survey, population->errors[k]);
-        remember(population, round->variables + k * population->decoder->variables,
+        remember(population, round->variables + k * population->parametrisation->variables,
                  population->errors[k], population->features + k * population->surrogate.features);
     }
     return STATUS_OK;
@@ -302,53 +315,56 @@ static struct target_distance mean_distance(const struct evaluate_result *result
     return mean;
 }
 
+/// Fresh measurements of one candidate.
+struct fresh {
+    const struct population *population;
+    const double *variables;
+    struct evaluate_result *results;
+    double *features; ///< shape [count, features]
+};
+
+static enum status measure_afresh(void *context, size_t k, void *end) {
+    const struct fresh *fresh = context;
+    const struct population *population = fresh->population;
+    const uint64_t seed =
+        mf_rng_child_seed(population->parametrisation->unknowns.problem->seed, RNG_REMEASUREMENT,
+                          (uint32_t)population->totals.remeasured, (uint32_t)k);
+    return measure(population, fresh->variables, seed, HUGE_VAL, 1,
+                   fresh->features + k * population->surrogate.features, end, &fresh->results[k]);
+}
+
 enum status mf_population_remeasure(struct population *population, const double *variables,
                                     size_t count, double *error, double *noise, double *variance,
                                     struct target_distance *distance) {
     enum status status = STATUS_OK;
-    struct evaluate_result *results = NULL;
-    double *end = NULL, *features = NULL;
-    const size_t size = coordinates(population), each = population->surrogate.features;
-    const struct inverse_problem *problem = population->decoder->problem;
-    char reason[512] = "";
-    NEW_ARRAY(results, count);
-    NEW_ARRAY(end, count * size);
-    NEW_ARRAY(features, count * each);
-#pragma omp parallel for schedule(dynamic) num_threads(problem->threads)
-    for (size_t k = 0; k < count; k++) {
-        const uint64_t seed = mf_rng_child_seed(
-            problem->seed, RNG_REMEASUREMENT, (uint32_t)population->totals.remeasured, (uint32_t)k);
-        const enum status here = measure(population, variables, seed, HUGE_VAL, 1,
-                                         features + k * each, end + k * size, &results[k]);
-        if (here != STATUS_OK)
-#pragma omp critical
-        {
-            status = here;
-            snprintf(reason, sizeof reason, "%s", mf_status_message());
-        }
-    }
-    if (status != STATUS_OK) {
-        mf_status_fail(status, "%s", reason);
-        goto done;
-    }
+    const size_t each = population->surrogate.features;
+    struct fresh fresh = {population, variables, NULL, NULL};
+    NEW_ARRAY(fresh.results, count);
+    NEW_ARRAY(fresh.features, count * each);
+    CHECK(mf_parallel_try(
+        &(struct parallel_tasks){.count = count,
+                                 .threads = population->parametrisation->unknowns.problem->threads,
+                                 .run = measure_afresh,
+                                 .result_size = coordinates(population) * sizeof(double),
+                                 .context = &fresh}));
     population->totals.remeasured++;
     *error = *noise = *variance = 0;
     for (int kind = 0; kind < TARGETS && distance; kind++)
-        distance[kind] = mean_distance(results, count, kind);
+        distance[kind] = mean_distance(fresh.results, count, kind);
     for (size_t k = 0; k < count; k++) {
-        *error += results[k].error / (double)count;
-        *noise += results[k].noise / (double)count;
-        *variance += results[k].variance / (double)(count * count);
-        remember(population, variables, results[k].error, features + k * each);
+        const struct evaluate_result *result = &fresh.results[k];
+        *error += result->error / (double)count;
+        *noise += result->noise / (double)count;
+        *variance += result->variance / (double)(count * count);
+        remember(population, variables, result->error, fresh.features + k * each);
         population->totals.evaluations++;
-        population->totals.steps += results[k].engine_steps;
-        if (results[k].error >= OPTIMISER_FAILED)
+        population->totals.steps += result->engine_steps;
+        if (result->error >= OPTIMISER_FAILED)
             *error = OPTIMISER_FAILED * (double)count;
     }
 done:
-    mf_memory_free(results);
-    mf_memory_free(end);
-    mf_memory_free(features);
+    mf_memory_free(fresh.results);
+    mf_memory_free(fresh.features);
     return status;
 }
 
@@ -364,8 +380,8 @@ size_t mf_population_spans(struct population *population, struct memory_span *sp
                                      POPULATION_MOST * TARGETS * sizeof *population->distances};
     span[n++] = (struct memory_span){population->position, positions};
     span[n++] = (struct memory_span){population->best_position, positions};
-    span[n++] =
-        (struct memory_span){population->first, population->decoder->variables * sizeof(double)};
+    span[n++] = (struct memory_span){population->first,
+                                     population->parametrisation->variables * sizeof(double)};
     span[n++] = (struct memory_span){
         population->features, POPULATION_MOST * population->surrogate.features * sizeof(double)};
     n += mf_surrogate_spans(&population->surrogate, span + n);

@@ -3,35 +3,25 @@
 #pragma once
 
 #include "base/statistics.h"
-#include "problem/decoder.h"
+#include "problem/parametrisation.h"
 #include "problem/evaluate.h"
 #include "matching/surrogate.h"
 #include "optimise/optimiser.h"
 
-#include <stddef.h>
-
 enum { POPULATION_MOST = 1024 }; ///< in a round
 
+/// What the run file says of how candidates are measured: the first member of the parameters of
+/// every method of the kind INVERSE_MATCHING.
 struct population_parameters {
     struct evaluate_parameters evaluate;
     int warm_start, common_noise; ///< 0: no
 };
 
-/// What the run file says to a method that measures candidates. The method's own fields are offsets
-/// into a struct of its own, which therefore comes first.
-struct population_settings {
-    union {
-        max_align_t alignment;
-        unsigned char bytes[512];
-    } method;
-    struct population_parameters population;
-};
-
-extern const struct field mf_population_fields[]; ///< of struct population_settings
+extern const struct field mf_population_fields[]; ///< of struct population_parameters
 extern const char *const mf_population_no_or_yes[];
 
 /// For `struct inverse_method`.
-struct inverse_sampling mf_population_sampling(const void *settings);
+struct inverse_sampling mf_population_sampling(const void *parameters);
 
 /// What was measured since mf_population_forget_survey.
 struct population_survey {
@@ -42,7 +32,7 @@ struct population_survey {
 };
 
 struct population {
-    const struct decoder *decoder;
+    const struct parametrisation *parametrisation;
     struct population_parameters parameters;
     double *errors, *variances; ///< shape [POPULATION_MOST]; an error is negative if not measured
     struct target_distance *distances; ///< shape [POPULATION_MOST, TARGETS]; not set of what failed
@@ -65,7 +55,8 @@ struct population {
 };
 
 /// Fails: NO_MEMORY.
-enum status mf_population_init(struct population *population, const struct decoder *decoder,
+enum status mf_population_init(struct population *population,
+                               const struct parametrisation *parametrisation,
                                const struct population_parameters *parameters) MUST_USE;
 void mf_population_clear(struct population *population);
 

@@ -23,14 +23,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct parameters {
-    int64_t population;
-    double step;
-    int64_t rounds, restarts;
-    double tolerance;
-};
-
-#define MEMBER(name) .offset = offsetof(struct parameters, name)
+#define MEMBER(name) .offset = offsetof(struct cmaes_parameters, name)
 const struct field mf_cmaes_fields[] = {
     {"population", FIELD_INTEGER, MEMBER(population), .initial = 0, .minimum = 0, .maximum = 1e5,
      .unit = "", .help = "candidates of a round, at least 4; 0 for 4 + 3 ln(variables)"},
@@ -54,7 +47,7 @@ enum { MOST_GROWTH = 16 };
 static const double noise_memory = 0.8, noise_grows = 0.5, noise_shrinks = 0.25, growth = 1.1;
 
 struct state {
-    struct parameters parameters;
+    struct cmaes_parameters parameters;
     struct optimiser_space space;
     struct cmaes_distribution distribution;
     struct cmaes_strategy strategy;
@@ -78,7 +71,7 @@ struct state {
     } progress;
 };
 
-static size_t usual_population(const struct parameters *p, size_t variables) {
+static size_t usual_population(const struct cmaes_parameters *p, size_t variables) {
     return p->population > 0 ? (size_t)p->population : 4 + (size_t)(3 * log((double)variables));
 }
 
@@ -93,7 +86,7 @@ static size_t most_history(const struct state *state) {
 
 static uint32_t most_rounds(const void *parameters, size_t variables) {
     (void)variables;
-    return (uint32_t)((const struct parameters *)parameters)->rounds;
+    return (uint32_t)((const struct cmaes_parameters *)parameters)->rounds;
 }
 
 static void destroy(void *memory) {
@@ -161,7 +154,7 @@ static enum status create(void *memory, const struct optimiser_space *space,
                           const void *parameters) {
     enum status status = STATUS_OK;
     struct state *state = memory;
-    state->parameters = *(const struct parameters *)parameters;
+    state->parameters = *(const struct cmaes_parameters *)parameters;
     CHECK(mf_optimiser_check_space(space));
     if (state->parameters.population > 0 && state->parameters.population < 4)
         CHECK(mf_status_fail(STATUS_BAD_INPUT, "cma-es: a population of %d is below 4",
@@ -401,7 +394,7 @@ const struct optimiser mf_cmaes_optimiser = {
     .summary = "evolution strategy with covariance matrix adaptation; N. Hansen, "
                "arXiv:1604.00772 (2016)",
     .tables = (const struct field *const[]){mf_cmaes_fields, NULL},
-    .parameters_size = sizeof(struct parameters),
+    .parameters_size = sizeof(struct cmaes_parameters),
     .state_size = sizeof(struct state),
     .budget = "rounds",
     .most_rounds = most_rounds,

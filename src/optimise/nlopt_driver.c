@@ -32,13 +32,7 @@ static const char *const names[] = {"GN_ESCH",  "GN_CRS2_LM", "GN_ISRES",  "GN_D
 
 enum { SBPLX = 4 }; ///< index of the default
 
-struct parameters {
-    int algorithm;
-    int64_t evaluations;
-    double step, tolerance;
-};
-
-#define MEMBER(name) .offset = offsetof(struct parameters, name)
+#define MEMBER(name) .offset = offsetof(struct nlopt_parameters, name)
 const struct field mf_nlopt_fields[] = {
     {"algorithm", FIELD_CHOICE, MEMBER(algorithm), .choices = names, .initial = SBPLX, .unit = "",
      .help = "of NLopt: GN_ searches everywhere, LN_ around the start"},
@@ -56,7 +50,7 @@ const struct field mf_nlopt_fields[] = {
 enum { RECENT = 16 };
 
 struct state {
-    struct parameters parameters;
+    struct nlopt_parameters parameters;
     struct optimiser_space space;
     double *start;     ///< shape [variables], fractions
     double *told;      ///< errors, shape [evaluations]
@@ -145,7 +139,7 @@ static void body(struct coroutine *self, void *context) {
 
 static uint32_t most_rounds(const void *parameters, size_t variables) {
     (void)variables;
-    return (uint32_t)((const struct parameters *)parameters)->evaluations;
+    return (uint32_t)((const struct nlopt_parameters *)parameters)->evaluations;
 }
 
 static void destroy(void *memory) {
@@ -163,7 +157,7 @@ static enum status create(void *memory, const struct optimiser_space *space,
                           const void *parameters) {
     enum status status = STATUS_OK;
     struct state *state = memory;
-    state->parameters = *(const struct parameters *)parameters;
+    state->parameters = *(const struct nlopt_parameters *)parameters;
     CHECK(mf_optimiser_check_space(space));
     state->space = *space;
     state->space.start = NULL;
@@ -294,7 +288,7 @@ const struct optimiser mf_nlopt_optimiser = {
     .name = "nlopt",
     .summary = "an algorithm of NLopt; S. G. Johnson, github.com/stevengj/nlopt",
     .tables = (const struct field *const[]){mf_nlopt_fields, NULL},
-    .parameters_size = sizeof(struct parameters),
+    .parameters_size = sizeof(struct nlopt_parameters),
     .state_size = sizeof(struct state),
     .budget = "evaluations",
     .most_rounds = most_rounds,

@@ -107,5 +107,16 @@ static inline double optimiser_variable(const struct optimiser_space *space, dou
 /// Where `space->start` is as a fraction of the range, the middle if there is none.
 double mf_optimiser_start(const struct optimiser_space *space, size_t variable);
 
-/// @name Parameters, for those who drive one by its name
+/// @name Parameters, for those who drive one by its name; those of the genetic one are in genetic.h
+struct cmaes_parameters {
+    int64_t population;
+    double step;
+    int64_t rounds, restarts;
+    double tolerance;
+};
+struct nlopt_parameters {
+    int algorithm;
+    int64_t evaluations;
+    double step, tolerance;
+};
 extern const struct field mf_genetic_fields[], mf_cmaes_fields[], mf_nlopt_fields[];

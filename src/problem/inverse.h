@@ -56,14 +56,43 @@ struct unknown {
     const struct curve *start[COMPOSITION_MOST_PAIRS];
 };
 
+/// Where a number of a scene stands: in a curve of a law that is known, or in the setup.
+enum inverse_place {
+    INVERSE_OF_POTENTIAL = UNKNOWN_POTENTIAL,
+    INVERSE_OF_OMEGA = UNKNOWN_OMEGA,
+    INVERSE_OF_SETUP,
+};
+
+enum { INVERSE_MOST_NUMBERS = 16, INVERSE_NUMBER_NAME_SIZE = 96 };
+
+/// A scalar of the scene that is to be found.
+struct inverse_number {
+    char name[INVERSE_NUMBER_NAME_SIZE]; ///< its path in the scene, as "dissipative.sigma"
+    const char *unit;                    ///< as that of its field
+    double minimum, maximum;             ///< its range
+    double start;                        ///< to begin with
+    enum inverse_place place;
+    int pair;      ///< curve of the law
+    size_t offset; ///< in the parameters of the curve, or in struct simulation_setup
+};
+
+/// The curves of a law of the scene. Borrowed.
+struct inverse_law {
+    int curves;                ///< 0: none; 1: for all pairs; else one for each pair type
+    const struct curve *curve; ///< shape [curves]; family NULL: none
+};
+
 /// What is to be fitted. Borrowed by the methods.
 struct inverse_problem {
     struct targets targets;  ///< to be fitted
     struct targets compared; ///< by the verification: those and others
     struct unknown unknown[UNKNOWNS];
-    struct simulation_setup scene; ///< all but the unknowns; its composition is set
-    double core_threshold;         ///< bins below the first with g* above this are the hard core
-    double core_stiffness;         ///< of the core (mf_core_fill) [k_B T_0/λ²]
+    size_t numbers;
+    struct inverse_number number[INVERSE_MOST_NUMBERS];
+    struct inverse_law law[UNKNOWNS]; ///< those of the scene that are known
+    struct simulation_setup scene;    ///< all but the unknowns; its composition is set
+    double core_threshold;            ///< bins below the first with g* above this are the hard core
+    double core_stiffness;            ///< of the core (mf_core_fill) [k_B T_0/λ²]
     uint64_t seed;
     int threads;
 };
@@ -106,6 +135,7 @@ struct inverse_step {
     struct inverse_ramp ramp;
     struct inverse_parameter
         parameter[INVERSE_PARAMETERS]; ///< of a friction weight that is a formula
+    struct inverse_parameter number[INVERSE_MOST_NUMBERS]; ///< of the problem, the best so far
     bool finished;
     bool converged; ///< it has settled: by its own measure it can do no better
     bool used_up;   ///< it finished since all was used that it was to use, as populations do, or at
@@ -145,32 +175,40 @@ struct inverse_folder {
 
 enum { INVERSE_MAX_SPANS = 1024 };
 
-struct optimiser;
-struct inversion;
+/// What kind of method it is.
+enum inverse_kind {
+    INVERSE_INVERSION, ///< turns g(r) into Φ by samples of a Monte Carlo of its own (inversion/)
+    INVERSE_MATCHING,  ///< moves variables, and simulates the scene with what they make (matching/)
+};
+
+/// A part of a method's parameters: its fields, and where in the struct they are counted from.
+struct inverse_table {
+    const struct field *fields;
+    size_t offset;
+};
 
 /// What a method measures of an evaluation.
 struct inverse_sampling {
-    int64_t every;  ///< steps between samples; 0: no dynamics are simulated
+    int64_t every;  ///< steps between samples
     bool rdf_force; ///< g(r) from forces, where the potential allows
     int64_t samples;
 };
 
 struct inverse_method {
     const char *name;
-    const char *summary;               ///< with citation, one line
-    const struct field *const *tables; ///< of the parameter struct, NULL-terminated
+    const char *summary; ///< with citation, one line
+    enum inverse_kind kind;
+    /// What its kind wants to know besides: struct inversion_rule, or a struct of matching/.
+    const void *own;
+    const struct inverse_table *tables; ///< of the parameter struct; ended by one without fields
     size_t parameters_size;
     size_t state_size;
     uint32_t (*most_iterations)(const struct inverse_method *method,
                                 const struct inverse_problem *problem, const void *parameters);
-    struct inverse_sampling (*sampling)(const void *parameters);
+    struct inverse_sampling (*sampling)(const void *parameters); ///< NULL of an inversion
     bool keeps_parts;
-    const char *const *columns;        ///< names of `extra`, NULL-terminated
-    bool fits[UNKNOWNS];               ///< what it can find
-    const struct optimiser *optimiser; ///< that matching drives, or NULL
-    /// The step of an inversion (inversion/inversion.h) from its samples: `step` of the known bins,
-    /// and up to INVERSION_OWN_COLUMNS columns of the method's own. NULL of other methods.
-    enum status (*update)(struct inversion *inversion, double *extra);
+    const char *const *columns; ///< names of `extra`, NULL-terminated
+    bool fits[UNKNOWNS];        ///< what it can find
     enum status (*create)(void *state, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters);
     void (*destroy)(void *state);

@@ -2,6 +2,7 @@
 #include "problem/verify.h"
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "base/rng.h"
 
 #include <math.h>
@@ -24,52 +25,53 @@ const struct field mf_verify_fields[] = {
     FIELD_END,
 };
 
-static enum status run_replica(const struct inverse_problem *problem, const struct table *potential,
-                               const struct table *omega,
-                               const struct verify_parameters *parameters, uint32_t number,
-                               struct measurement *replica) {
+/// Replicas at work.
+struct work {
+    const struct inverse_problem *problem;
+    const struct table *potential, *omega;
+    const struct verify_parameters *parameters;
+    const struct inverse_listener *listener;
+    struct measurement *replicas;
+    struct inverse_progress progress;
+};
+
+static enum status run_replica(void *context, size_t number, void *result) {
+    const struct work *work = context;
+    const struct verify_parameters *parameters = work->parameters;
+    struct measurement *replica = &work->replicas[number];
     double temperature;
+    (void)result;
     const struct measurement_setup setup = {
-        .targets = &problem->compared,
-        .potential = potential,
-        .omega = omega,
+        .targets = &work->problem->compared,
+        .potential = work->potential,
+        .omega = work->omega,
         .time_step = parameters->time_step,
         .plan = parameters->plan,
         .thermodynamics = true,
         .threads = 1,
-        .seed = mf_rng_child_seed(problem->seed, RNG_VERIFICATION, number, 0)};
-    TRY(mf_measurement_init(replica, problem, &setup));
+        .seed = mf_rng_child_seed(work->problem->seed, RNG_VERIFICATION, (uint32_t)number, 0)};
+    TRY(mf_measurement_init(replica, work->problem, &setup));
     TRY(mf_measure_equilibrate(&replica->simulation, &parameters->plan, &temperature, NULL));
     return mf_measure_sample(&replica->simulation, &parameters->plan, replica->observables, NULL);
 }
 
+static void tell_one(void *context, size_t number, const void *result) {
+    struct work *work = context;
+    (void)number, (void)result;
+    work->progress.done++;
+    work->listener->tell(work->listener->context, &work->progress);
+}
+
 /// All replicas in parallel.
-static enum status run_replicas(const struct inverse_problem *problem,
-                                const struct table *potential, const struct table *omega,
-                                const struct verify_parameters *parameters,
-                                const struct inverse_listener *listener,
-                                struct measurement *replicas) {
-    enum status status = STATUS_OK;
-    const size_t count = (size_t)parameters->replicas;
-    uint64_t done = 0;
-    char reason[512] = "";
-#pragma omp parallel for schedule(dynamic) num_threads(problem->threads)
-    for (size_t k = 0; k < count; k++) {
-        const enum status here =
-            run_replica(problem, potential, omega, parameters, (uint32_t)k, &replicas[k]);
-#pragma omp critical
-        {
-            if (here != STATUS_OK) {
-                status = here;
-                snprintf(reason, sizeof reason, "%s", mf_status_message());
-            }
-            done++;
-            const struct inverse_progress progress = {
-                .done = done, .total = count, .best = NAN, .least = NAN, .mean = NAN};
-            listener->tell(listener->context, &progress);
-        }
-    }
-    return status == STATUS_OK ? STATUS_OK : mf_status_fail(status, "%s", reason);
+static enum status run_replicas(struct work *work) {
+    const size_t count = (size_t)work->parameters->replicas;
+    work->progress =
+        (struct inverse_progress){.total = count, .best = NAN, .least = NAN, .mean = NAN};
+    return mf_parallel_try(&(struct parallel_tasks){.count = count,
+                                                    .threads = work->problem->threads,
+                                                    .run = run_replica,
+                                                    .take = tell_one,
+                                                    .context = work});
 }
 
 /// Exchange the last replica and that at `k`.
@@ -164,7 +166,8 @@ enum status mf_verify(const struct inverse_problem *problem, const struct table 
     struct measurement *replicas = NULL;
     *verification = (struct verification){0};
     NEW_ARRAY(replicas, count);
-    CHECK(run_replicas(problem, potential, omega, parameters, listener, replicas));
+    CHECK(run_replicas(
+        &(struct work){problem, potential, omega, parameters, listener, replicas, {0}}));
     CHECK(summarise(replicas, count, verification));
 done:
     for (size_t k = 0; replicas && k < count; k++)

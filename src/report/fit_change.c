@@ -4,13 +4,13 @@
 #include <math.h>
 
 /// Whether the target has enough pairs at a point to tell of the curve there.
-static bool is_determined(const struct decoder *decoder, enum unknown_kind kind, size_t point) {
-    const struct potential_grid *grid = &decoder->potential;
+static bool is_determined(const struct unknowns *unknowns, enum unknown_kind kind, size_t point) {
+    const struct potential_grid *grid = &unknowns->potential;
     if (kind == UNKNOWN_OMEGA)
-        return mf_decoder_fits(decoder, kind, point);
+        return mf_unknowns_fits(unknowns, kind, point);
     for (size_t n = 0; n < grid->known; n++)
         if (grid->known_point[n] == point)
-            return mf_potential_grid_well_known(decoder->problem, grid->known_bin[n]);
+            return mf_potential_grid_well_known(unknowns->problem, grid->known_bin[n]);
     return false;
 }
 
@@ -21,14 +21,15 @@ static void find_lower(double value, double r, double *lowest, double *at) {
     *at = r;
 }
 
-struct fit_change mf_fit_change_find(const struct decoder *decoder, enum unknown_kind kind,
+struct fit_change mf_fit_change_find(const struct unknowns *unknowns, enum unknown_kind kind,
                                      size_t curve, const double *first, const double *last) {
     struct fit_change change = {.well = INFINITY, .first_well = INFINITY};
-    const size_t points = mf_decoder_points(decoder, kind) / mf_decoder_curve_count(decoder, kind);
-    const double *r = mf_decoder_r(decoder, kind);
+    const size_t points =
+        mf_unknowns_points(unknowns, kind) / mf_unknowns_curve_count(unknowns, kind);
+    const double *r = mf_unknowns_r(unknowns, kind);
     double squares = 0, count = 0;
     for (size_t k = curve * points; k < (curve + 1) * points; k++) {
-        if (!is_determined(decoder, kind, k))
+        if (!is_determined(unknowns, kind, k))
             continue;
         squares += (last[k] - first[k]) * (last[k] - first[k]);
         count += 1;

@@ -3,7 +3,7 @@
 /// now.
 #pragma once
 
-#include "problem/decoder.h"
+#include "problem/unknowns.h"
 
 /// Of one curve, over the points that the data determine.
 struct fit_change {
@@ -12,7 +12,7 @@ struct fit_change {
     double first_well, first_well_at;
 };
 
-/// @param[in] first, last  of all curves of the unknown, shape [mf_decoder_points]
+/// @param[in] first, last  of all curves of the unknown, shape [mf_unknowns_points]
 /// Tested: test_fit_change.
-struct fit_change mf_fit_change_find(const struct decoder *decoder, enum unknown_kind kind,
+struct fit_change mf_fit_change_find(const struct unknowns *unknowns, enum unknown_kind kind,
                                      size_t curve, const double *first, const double *last);

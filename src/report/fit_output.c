@@ -19,23 +19,23 @@ static double *truth_at(const struct fit_file *fit, enum unknown_kind kind, size
 }
 
 /// Path of a table about one curve of an unknown: its name and an ending.
-static void curve_file(const struct decoder *decoder, enum unknown_kind kind, size_t curve,
+static void curve_file(const struct unknowns *unknowns, enum unknown_kind kind, size_t curve,
                        const char *ending, const struct run_folder *folder, char *path) {
-    char name[DECODER_NAME_SIZE], file[DECODER_NAME_SIZE + 16];
-    mf_decoder_curve_name(decoder, kind, curve, name);
+    char name[UNKNOWNS_NAME_SIZE], file[UNKNOWNS_NAME_SIZE + 16];
+    mf_unknowns_curve_name(unknowns, kind, curve, name);
     snprintf(file, sizeof file, "%s%s", name, ending);
     mf_run_folder_file(folder, file, path);
 }
 
 /// Of one pair type, from the table of all.
-static enum status write_potential(const struct fit_file *fit, const struct decoder *decoder,
+static enum status write_potential(const struct fit_file *fit, const struct unknowns *unknowns,
                                    const struct fit_result *result, const struct table *table,
                                    size_t pair, const struct run_folder *folder) {
     enum status status = STATUS_OK;
     const struct units *units = &fit->scene.units;
-    const size_t points = decoder->potential.bins + 1;
-    const size_t first = mf_potential_grid_block(&decoder->potential, pair);
-    const double *r = decoder->potential.r + first;
+    const size_t points = unknowns->potential.bins + 1;
+    const size_t first = mf_potential_grid_block(&unknowns->potential, pair);
+    const double *r = unknowns->potential.r + first;
     const double *phi = result->curve[UNKNOWN_POTENTIAL] + first;
     double *force = NULL, *truth = NULL, *nanometres = NULL, *energy = NULL;
     size_t count = 0;
@@ -65,11 +65,11 @@ static enum status write_potential(const struct fit_file *fit, const struct deco
         columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
         columns[count++] = (struct data_column){"phi[kJ/mol]", energy, NULL};
     }
-    curve_file(decoder, UNKNOWN_POTENTIAL, pair, ".tsv", folder, path);
+    curve_file(unknowns, UNKNOWN_POTENTIAL, pair, ".tsv", folder, path);
     CHECK(mf_data_table_write(path, NULL, columns, count, points));
     if (mf_units_known(units)) {
-        curve_file(decoder, UNKNOWN_POTENTIAL, pair, ".pot", folder, path);
-        CHECK(mf_votca_write(path, nanometres, energy, points, decoder->potential.core[pair]));
+        curve_file(unknowns, UNKNOWN_POTENTIAL, pair, ".pot", folder, path);
+        CHECK(mf_votca_write(path, nanometres, energy, points, unknowns->potential.core[pair]));
     }
 done:
     mf_memory_free(force);
@@ -79,29 +79,29 @@ done:
     return status;
 }
 
-static enum status write_potentials(const struct fit_file *fit, const struct decoder *decoder,
+static enum status write_potentials(const struct fit_file *fit, const struct unknowns *unknowns,
                                     const struct fit_result *result,
                                     const struct run_folder *folder) {
     enum status status = STATUS_OK;
     struct table table = {0};
-    CHECK(mf_potential_grid_table(&decoder->potential, result->curve[UNKNOWN_POTENTIAL], &table));
-    for (size_t pair = 0; pair < decoder->potential.pairs; pair++)
-        CHECK(write_potential(fit, decoder, result, &table, pair, folder));
+    CHECK(mf_potential_grid_table(&unknowns->potential, result->curve[UNKNOWN_POTENTIAL], &table));
+    for (size_t pair = 0; pair < unknowns->potential.pairs; pair++)
+        CHECK(write_potential(fit, unknowns, result, &table, pair, folder));
 done:
     mf_table_clear(&table);
     return status;
 }
 
-static enum status write_omega(const struct fit_file *fit, const struct decoder *decoder,
+static enum status write_omega(const struct fit_file *fit, const struct unknowns *unknowns,
                                const struct fit_result *result, const struct run_folder *folder) {
     const bool truth_known = fit->unknown[UNKNOWN_OMEGA].truth.curves > 0;
     const struct units *units = &fit->scene.units;
     enum status status = STATUS_NO_MEMORY;
-    double *truth = truth_at(fit, UNKNOWN_OMEGA, 0, decoder->omega.r, OMEGA_POINTS);
-    double *nanometres = mf_units_column(decoder->omega.r, OMEGA_POINTS, units->length);
+    double *truth = truth_at(fit, UNKNOWN_OMEGA, 0, unknowns->omega.r, OMEGA_POINTS);
+    double *nanometres = mf_units_column(unknowns->omega.r, OMEGA_POINTS, units->length);
     char path[OUTPUT_PATH_SIZE];
     struct data_column columns[5] = {
-        {"r[lambda]", decoder->omega.r, "%.17g"},
+        {"r[lambda]", unknowns->omega.r, "%.17g"},
         {"omega[sqrt(mu/tau)]", result->curve[UNKNOWN_OMEGA], "%.17g"},
         {"omega_error[sqrt(mu/tau)]", result->curve_error[UNKNOWN_OMEGA], "%.3g"}};
     size_t count = 3;
@@ -118,10 +118,10 @@ static enum status write_omega(const struct fit_file *fit, const struct decoder 
 }
 
 /// Changes that the data say least of; no table where the method does not tell.
-static enum status write_flat(enum unknown_kind kind, size_t curve, const struct decoder *decoder,
+static enum status write_flat(enum unknown_kind kind, size_t curve, const struct unknowns *unknowns,
                               const struct fit_result *result, const struct run_folder *folder) {
-    const size_t all = mf_decoder_points(decoder, kind);
-    const size_t points = all / mf_decoder_curve_count(decoder, kind), first = curve * points;
+    const size_t all = mf_unknowns_points(unknowns, kind);
+    const size_t points = all / mf_unknowns_curve_count(unknowns, kind), first = curve * points;
     const double *flat = result->curve_flat[kind];
     char path[OUTPUT_PATH_SIZE];
     if (flat == NULL || isnan(flat[all - 1]))
@@ -129,26 +129,26 @@ static enum status write_flat(enum unknown_kind kind, size_t curve, const struct
     const char *unit = kind == UNKNOWN_POTENTIAL ? "k_B.T_0" : "sqrt(mu/tau)";
     char names[INVERSE_FLAT][64];
     struct data_column columns[1 + INVERSE_FLAT] = {
-        {"r[lambda]", mf_decoder_r(decoder, kind) + first, NULL}};
+        {"r[lambda]", mf_unknowns_r(unknowns, kind) + first, NULL}};
     for (size_t n = 0; n < INVERSE_FLAT; n++) {
         snprintf(names[n], sizeof names[n], "flat_%zu[%s]", n + 1, unit);
         columns[n + 1] = (struct data_column){names[n], flat + n * all + first, "%.5g"};
     }
-    curve_file(decoder, kind, curve, "_flat.tsv", folder, path);
+    curve_file(unknowns, kind, curve, "_flat.tsv", folder, path);
     return mf_data_table_write(path,
                                "changes of the curve that the data say least of, widest first; one "
                                "standard error each",
                                columns, 1 + INVERSE_FLAT, points);
 }
 
-enum status mf_fit_output_curves(const struct fit_file *fit, const struct decoder *decoder,
+enum status mf_fit_output_curves(const struct fit_file *fit, const struct unknowns *unknowns,
                                  const struct fit_result *result, const struct run_folder *folder) {
     for (int kind = 0; kind < UNKNOWNS; kind++)
-        for (size_t n = 0; result->curve[kind] && n < mf_decoder_curve_count(decoder, kind); n++)
-            TRY(write_flat(kind, n, decoder, result, folder));
+        for (size_t n = 0; result->curve[kind] && n < mf_unknowns_curve_count(unknowns, kind); n++)
+            TRY(write_flat(kind, n, unknowns, result, folder));
     if (result->curve[UNKNOWN_POTENTIAL])
-        TRY(write_potentials(fit, decoder, result, folder));
-    return result->curve[UNKNOWN_OMEGA] ? write_omega(fit, decoder, result, folder) : STATUS_OK;
+        TRY(write_potentials(fit, unknowns, result, folder));
+    return result->curve[UNKNOWN_OMEGA] ? write_omega(fit, unknowns, result, folder) : STATUS_OK;
 }
 
 /// g(r) of a pair type: rdf.tsv, or rdf_A-B.tsv in a mixture.

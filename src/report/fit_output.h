@@ -2,7 +2,7 @@
 /// @file What a fit writes besides its history.
 #pragma once
 
-#include "problem/decoder.h"
+#include "problem/unknowns.h"
 #include "input/fit_file.h"
 #include "report/run_folder.h"
 
@@ -20,12 +20,13 @@ struct fit_result {
     const double *without_ramp;                ///< inverse_step.without_ramp; may hold NaN
     struct inverse_ramp ramp;                  ///< error 0: not known
     const struct inverse_parameter *parameter; ///< shape [INVERSE_PARAMETERS], of a formula
+    const struct inverse_parameter *number;    ///< shape [problem.numbers]
     const char *reason;                        ///< why it has not converged, or settled, or ""
     const struct verification *verification;   ///< NULL if there was none
 };
 
 /// potential.tsv and omega.tsv, what of them was fitted.
-enum status mf_fit_output_curves(const struct fit_file *fit, const struct decoder *decoder,
+enum status mf_fit_output_curves(const struct fit_file *fit, const struct unknowns *unknowns,
                                  const struct fit_result *result,
                                  const struct run_folder *folder) MUST_USE;
 
@@ -34,7 +35,7 @@ enum status mf_fit_output_observables(const struct fit_file *fit, const struct f
                                       const struct run_folder *folder) MUST_USE;
 
 /// summary.json.
-enum status mf_fit_output_summary(const struct fit_file *fit, const struct decoder *decoder,
+enum status mf_fit_output_summary(const struct fit_file *fit, const struct unknowns *unknowns,
                                   const struct fit_result *result,
                                   const struct run_folder *folder) MUST_USE;
 
@@ -45,5 +46,5 @@ struct fit_truth {
     double ramp;             ///< A of the ramp A(1 − r/r_c) that explains most of it [k_B T_0]
     double rms_without_ramp; ///< of what is left
 };
-struct fit_truth mf_fit_output_truth(const struct fit_file *fit, const struct decoder *decoder,
+struct fit_truth mf_fit_output_truth(const struct fit_file *fit, const struct unknowns *unknowns,
                                      const double *phi, size_t pair);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/fit_report.h"
 
+#include "problem/parametrisation.h"
 #include "report/fit_change.h"
 #include "report/number_text.h"
 
@@ -16,7 +17,7 @@ static void say_parameters(struct progress *to, const struct fit_file *fit,
         return;
     for (int k = 0; k < INVERSE_PARAMETERS; k++) {
         char text[NUMBER_TEXT_SIZE];
-        const char *bound = mf_decoder_parameter_bound(p, k, parameter[k].value);
+        const char *bound = mf_parametrisation_parameter_bound(p, k, parameter[k].value);
         char mark[32] = "";
         if (!isnan(p->fixed[k]))
             snprintf(mark, sizeof mark, " (fixed)");
@@ -29,17 +30,31 @@ static void say_parameters(struct progress *to, const struct fit_file *fit,
     mf_progress_say(to, "%s", line);
 }
 
+/// "dissipative.sigma = 3.02(4)".
+static void say_numbers(struct progress *to, const struct fit_file *fit,
+                        const struct inverse_parameter *found) {
+    for (size_t n = 0; n < fit->numbers; n++) {
+        char text[NUMBER_TEXT_SIZE], mark[32] = "";
+        const char *bound = mf_numbers_bound(&fit->number[n], found[n].value);
+        if (bound)
+            snprintf(mark, sizeof mark, " (at its %s)", bound);
+        mf_number_text(found[n].value, found[n].error, text);
+        mf_progress_say(to, "%s = %s%s", fit->number[n].name, text, mark);
+    }
+}
+
 /// "potential: well -0.354 k_B T_0 at 0.99 lambda (-0.451 at 0.99 at first), changed by 0.05 rms".
-static void say_changes(struct progress *to, const struct decoder *decoder,
+static void say_changes(struct progress *to, const struct unknowns *unknowns,
                         const struct fit_result *result) {
     mf_progress_say(to, "error of the fit: %.4g at first, %.4g at the end", result->first_error,
                     result->error);
     for (int kind = 0; kind < UNKNOWNS; kind++)
-        for (size_t n = 0; result->first[kind] && n < mf_decoder_curve_count(decoder, kind); n++) {
-            char name[DECODER_NAME_SIZE], well[128] = "";
+        for (size_t n = 0; result->first[kind] && n < mf_unknowns_curve_count(unknowns, kind);
+             n++) {
+            char name[UNKNOWNS_NAME_SIZE], well[128] = "";
             const struct fit_change change =
-                mf_fit_change_find(decoder, kind, n, result->first[kind], result->curve[kind]);
-            mf_decoder_curve_name(decoder, kind, n, name);
+                mf_fit_change_find(unknowns, kind, n, result->first[kind], result->curve[kind]);
+            mf_unknowns_curve_name(unknowns, kind, n, name);
             if (kind == UNKNOWN_POTENTIAL && change.well < 0)
                 snprintf(well, sizeof well,
                          " well %.3f k_B T_0 at %.3g lambda (%.3f at %.3g at first),", change.well,
@@ -66,10 +81,11 @@ static void say_distances(struct progress *to, const struct fit_file *fit,
 }
 
 void mf_fit_report_say(struct progress *to, const struct fit_file *fit,
-                       const struct decoder *decoder, const struct fit_result *result) {
+                       const struct unknowns *unknowns, const struct fit_result *result) {
     const struct verification *v = result->verification;
-    say_changes(to, decoder, result);
+    say_changes(to, unknowns, result);
     say_parameters(to, fit, result->parameter);
+    say_numbers(to, fit, result->number);
     say_distances(to, fit, v);
     if (targets_ask(&fit->problem.compared, TARGET_DIFFUSION)) {
         char diffusion[NUMBER_TEXT_SIZE];

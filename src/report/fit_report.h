@@ -8,4 +8,4 @@
 /// How far the fit came from its first iteration, the parameters of a formula, and what the
 /// verification found.
 void mf_fit_report_say(struct progress *to, const struct fit_file *fit,
-                       const struct decoder *decoder, const struct fit_result *result);
+                       const struct unknowns *unknowns, const struct fit_result *result);

@@ -3,13 +3,14 @@
 
 #include "mesofit.h"
 #include "observe/kirkwood_buff.h"
+#include "problem/parametrisation.h"
 #include "report/fit_change.h"
 
 #include <math.h>
 
-struct fit_truth mf_fit_output_truth(const struct fit_file *fit, const struct decoder *decoder,
+struct fit_truth mf_fit_output_truth(const struct fit_file *fit, const struct unknowns *unknowns,
                                      const double *phi, size_t pair) {
-    const struct potential_grid *grid = &decoder->potential;
+    const struct potential_grid *grid = &unknowns->potential;
     const struct curve *curve =
         mf_scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair);
     double count = 0, squares = 0, with_ramp = 0, ramp_squares = 0;
@@ -34,12 +35,12 @@ struct fit_truth mf_fit_output_truth(const struct fit_file *fit, const struct de
 }
 
 /// rms of ω − ω_true over the points that the data can see, relative to the largest ω_true.
-static double omega_truth(const struct fit_file *fit, const struct decoder *decoder,
+static double omega_truth(const struct fit_file *fit, const struct unknowns *unknowns,
                           const double *omega) {
     double squares = 0, largest = 0, count = 0;
     // Between the cutoffs, at which a friction weight may end in a step.
     for (size_t k = 1; k + 1 < OMEGA_POINTS; k++) {
-        const double r = decoder->omega.r[k];
+        const double r = unknowns->omega.r[k];
         const double truth =
             mf_curve_value(mf_scene_law_curve(&fit->unknown[UNKNOWN_OMEGA].truth, 0), r);
         largest = fmax(largest, truth);
@@ -97,9 +98,9 @@ static void put_diffusion(struct json_writer *writer, const struct fit_file *fit
 /// What part of a curve's variance its widest direction is, and of a potential's how much of that
 /// is the ramp 1 − r/r_c, which moves the pressure and hardly g(r).
 static void put_flat(struct json_writer *writer, enum unknown_kind kind,
-                     const struct decoder *decoder, const struct fit_result *result) {
-    const size_t points = mf_decoder_points(decoder, kind);
-    const double *r = mf_decoder_r(decoder, kind), *flat = result->curve_flat[kind];
+                     const struct unknowns *unknowns, const struct fit_result *result) {
+    const size_t points = mf_unknowns_points(unknowns, kind);
+    const double *r = mf_unknowns_r(unknowns, kind), *flat = result->curve_flat[kind];
     double all = 0, widest = 0, ramps = 0, product = 0;
     char key[64];
     for (size_t k = 0; flat && k < points; k++) {
@@ -130,43 +131,56 @@ static void put_ramp(struct json_writer *writer, const struct inverse_ramp *ramp
     put_known(writer, "directions_of", ramp->bins);
 }
 
-/// "parameters": {"omega": {"sigma": {"value": 3.0, "error": 0.1}, …}} of a friction weight that
-/// is a formula.
+static void put_parameter(struct json_writer *writer, const char *name,
+                          const struct inverse_parameter *parameter, bool fixed,
+                          const char *bound) {
+    mf_json_begin(writer, name);
+    put_known(writer, "value", parameter->value);
+    if (fixed)
+        mf_json_put_text(writer, "fixed", "yes");
+    else
+        put_known(writer, "error", parameter->error);
+    if (bound)
+        mf_json_put_text(writer, "bound", bound);
+    mf_json_end(writer);
+}
+
+/// "parameters": {"omega": {"sigma": {"value": 3.0, "error": 0.1}, …}, "conservative.a": {"value":
+/// 25.1, "error": 0.3}}: of a friction weight that is a formula, and numbers of the scene.
 static void put_parameters(struct json_writer *writer, const struct fit_file *fit,
-                           const struct inverse_parameter *parameter) {
+                           const struct fit_result *result) {
     const struct unknown_parameters *p = &fit->unknown[UNKNOWN_OMEGA].parameters;
-    if (!fit->unknown[UNKNOWN_OMEGA].wanted || p->shape != INVERSE_CURVE_POWER)
+    const bool formula = fit->unknown[UNKNOWN_OMEGA].wanted && p->shape == INVERSE_CURVE_POWER;
+    if (!formula && fit->numbers == 0)
         return;
     mf_json_begin(writer, "parameters");
-    mf_json_begin(writer, mf_inverse_unknown_names[UNKNOWN_OMEGA]);
-    for (int k = 0; k < INVERSE_PARAMETERS; k++) {
-        const char *bound = mf_decoder_parameter_bound(p, k, parameter[k].value);
-        mf_json_begin(writer, mf_inverse_fixed_fields[k].name);
-        put_known(writer, "value", parameter[k].value);
-        if (isnan(p->fixed[k]))
-            put_known(writer, "error", parameter[k].error);
-        else
-            mf_json_put_text(writer, "fixed", "yes");
-        if (bound)
-            mf_json_put_text(writer, "bound", bound);
+    if (formula)
+        mf_json_begin(writer, mf_inverse_unknown_names[UNKNOWN_OMEGA]);
+    for (int k = 0; formula && k < INVERSE_PARAMETERS; k++)
+        put_parameter(writer, mf_inverse_fixed_fields[k].name, &result->parameter[k],
+                      !isnan(p->fixed[k]),
+                      mf_parametrisation_parameter_bound(p, k, result->parameter[k].value));
+    if (formula)
         mf_json_end(writer);
-    }
-    mf_json_end(writer);
+    for (size_t n = 0; n < fit->numbers; n++)
+        put_parameter(writer, fit->number[n].name, &result->number[n], false,
+                      mf_numbers_bound(&fit->number[n], result->number[n].value));
     mf_json_end(writer);
 }
 
 /// "start": {"error": 0.11, "potential": {"change": 0.05, "well": -0.45, "well_at": 0.99}, …}, the
 /// first iteration, and what the fit changed by since.
-static void put_start(struct json_writer *writer, const struct decoder *decoder,
+static void put_start(struct json_writer *writer, const struct unknowns *unknowns,
                       const struct fit_result *result) {
-    char name[DECODER_NAME_SIZE];
+    char name[UNKNOWNS_NAME_SIZE];
     mf_json_begin(writer, "start");
     put_known(writer, "error", result->first_error);
     for (int kind = 0; kind < UNKNOWNS; kind++)
-        for (size_t n = 0; result->first[kind] && n < mf_decoder_curve_count(decoder, kind); n++) {
+        for (size_t n = 0; result->first[kind] && n < mf_unknowns_curve_count(unknowns, kind);
+             n++) {
             const struct fit_change change =
-                mf_fit_change_find(decoder, kind, n, result->first[kind], result->curve[kind]);
-            mf_decoder_curve_name(decoder, kind, n, name);
+                mf_fit_change_find(unknowns, kind, n, result->first[kind], result->curve[kind]);
+            mf_unknowns_curve_name(unknowns, kind, n, name);
             mf_json_begin(writer, name);
             put_known(writer, "change", change.rms);
             if (kind == UNKNOWN_POTENTIAL) {
@@ -182,9 +196,9 @@ static void put_start(struct json_writer *writer, const struct decoder *decoder,
 
 /// "truth_rms" and so on, in a mixture "truth_rms_A-B".
 static void put_potential_truth(struct json_writer *writer, const struct fit_file *fit,
-                                const struct decoder *decoder, const double *phi, size_t pair) {
+                                const struct unknowns *unknowns, const double *phi, size_t pair) {
     static const char *const names[] = {"truth_rms", "truth_ramp", "truth_rms_without_ramp"};
-    const struct fit_truth truth = mf_fit_output_truth(fit, decoder, phi, pair);
+    const struct fit_truth truth = mf_fit_output_truth(fit, unknowns, phi, pair);
     const double values[] = {truth.rms, truth.ramp, truth.rms_without_ramp};
     char kind[COMPOSITION_PAIR_NAME_SIZE], key[COMPOSITION_PAIR_NAME_SIZE + 32];
     mf_composition_pair_name(&fit->scene.setup.composition, (int)pair, kind);
@@ -195,13 +209,13 @@ static void put_potential_truth(struct json_writer *writer, const struct fit_fil
 }
 
 static void put_truth(struct json_writer *writer, const struct fit_file *fit,
-                      const struct decoder *decoder, const struct fit_result *result) {
+                      const struct unknowns *unknowns, const struct fit_result *result) {
     const double *phi = result->curve[UNKNOWN_POTENTIAL], *omega = result->curve[UNKNOWN_OMEGA];
-    for (size_t pair = 0; phi && pair < decoder->potential.pairs; pair++)
+    for (size_t pair = 0; phi && pair < unknowns->potential.pairs; pair++)
         if (mf_scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair))
-            put_potential_truth(writer, fit, decoder, phi, pair);
+            put_potential_truth(writer, fit, unknowns, phi, pair);
     if (omega && fit->unknown[UNKNOWN_OMEGA].truth.curves > 0)
-        put_known(writer, "omega_truth_rms", omega_truth(fit, decoder, omega));
+        put_known(writer, "omega_truth_rms", omega_truth(fit, unknowns, omega));
 }
 
 /// What the targets g(r) were divided by. In a mixture those that the file states are left out.
@@ -258,7 +272,7 @@ static void put_verification(struct json_writer *writer, const struct fit_file *
     mf_units_put(&fit->scene.units, writer, t->potential_energy, t->pressure);
 }
 
-enum status mf_fit_output_summary(const struct fit_file *fit, const struct decoder *decoder,
+enum status mf_fit_output_summary(const struct fit_file *fit, const struct unknowns *unknowns,
                                   const struct fit_result *result,
                                   const struct run_folder *folder) {
     struct json_writer *writer = mf_json_writer_create();
@@ -280,13 +294,13 @@ enum status mf_fit_output_summary(const struct fit_file *fit, const struct decod
     if (result->verification)
         put_verification(writer, fit, result->verification);
     put_normalisation(writer, fit);
-    put_truth(writer, fit, decoder, result);
+    put_truth(writer, fit, unknowns, result);
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (result->curve[kind])
-            put_flat(writer, kind, decoder, result);
+            put_flat(writer, kind, unknowns, result);
     put_ramp(writer, &result->ramp);
-    put_parameters(writer, fit, result->parameter);
-    put_start(writer, decoder, result);
+    put_parameters(writer, fit, result);
+    put_start(writer, unknowns, result);
     if (fit->files.given[TARGET_ETD])
         mf_json_put_number(writer, "etd_cells_left_out", (double)fit->files.etd.left_out);
     mf_json_put_number(writer, "seed", (double)fit->heading.seed);

@@ -10,13 +10,16 @@
 enum { COMMON = 5, MOST_COLUMNS = COMMON + INVERSE_EXTRA };
 
 enum status mf_history_init(struct history *history, const struct inverse_method *method,
-                            const size_t points[UNKNOWNS], size_t capacity) {
+                            const size_t points[UNKNOWNS], const struct inverse_problem *problem,
+                            size_t capacity) {
     enum status status = STATUS_OK;
-    *history = (struct history){.capacity = capacity};
+    *history = (struct history){.capacity = capacity, .problem = problem};
     while (method->columns[history->extra])
         history->extra++;
     NEW_ARRAY(history->rows, capacity * (COMMON + history->extra));
     NEW_ARRAY(history->seconds, capacity);
+    if (problem->numbers > 0)
+        NEW_ARRAY(history->numbers, capacity * 2 * problem->numbers);
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         history->points[kind] = points[kind];
         if (points[kind] > 0)
@@ -33,6 +36,7 @@ double mf_history_first_error(const struct history *history) {
 void mf_history_clear(struct history *history) {
     mf_memory_free(history->rows);
     mf_memory_free(history->seconds);
+    mf_memory_free(history->numbers);
     for (int kind = 0; kind < UNKNOWNS; kind++)
         mf_memory_free(history->curve[kind]);
     *history = (struct history){0};
@@ -48,6 +52,11 @@ void mf_history_add(struct history *history, const struct inverse_step *step, do
     row[4] = step->noise;
     memcpy(row + COMMON, step->extra, history->extra * sizeof *row);
     history->seconds[k] = seconds;
+    for (size_t n = 0; n < history->problem->numbers; n++) {
+        double *number = history->numbers + 2 * (k * history->problem->numbers + n);
+        number[0] = step->number[n].value;
+        number[1] = step->number[n].error;
+    }
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (history->points[kind] > 0)
             memcpy(history->curve[kind] + k * history->points[kind], step->curve[kind],
@@ -105,27 +114,60 @@ done:
     return status;
 }
 
+/// A field's unit as in the heads of columns, which have no blanks.
+static void column_unit(const char *unit, char text[32]) {
+    snprintf(text, 32, "%s", unit[0] ? unit : "1");
+    for (char *blank; (blank = strchr(text, ' '));)
+        *blank = '.';
+}
+
+/// Numbers of the scene: value and standard error of each.
+static enum status write_numbers(const struct history *history, const struct run_folder *folder) {
+    enum { NAME_SIZE = INVERSE_NUMBER_NAME_SIZE + 40 };
+    const struct inverse_problem *problem = history->problem;
+    char names[2 * INVERSE_MOST_NUMBERS][NAME_SIZE], path[OUTPUT_PATH_SIZE];
+    const char *name[2 * INVERSE_MOST_NUMBERS];
+    enum status status = STATUS_OK;
+    double *iteration = NULL;
+    NEW_ARRAY(iteration, history->iterations);
+    for (size_t k = 0; k < history->iterations; k++)
+        iteration[k] = history->rows[k * (COMMON + history->extra)];
+    for (size_t n = 0; n < 2 * problem->numbers; n++) {
+        const struct inverse_number *number = &problem->number[n / 2];
+        char unit[32];
+        column_unit(number->unit, unit);
+        snprintf(names[n], NAME_SIZE, "%s%s[%s]", number->name, n % 2 ? "_error" : "", unit);
+        name[n] = names[n];
+    }
+    mf_run_folder_file(folder, "numbers_history.tsv", path);
+    CHECK(write_transposed(path, history->numbers, history->iterations, 2 * problem->numbers,
+                           &(struct data_column){"iteration", iteration, NULL}, 1, name));
+done:
+    mf_memory_free(iteration);
+    return status;
+}
+
 /// A curve of an unknown: one column an iteration, named by its number.
-static enum status write_curve(const struct history *history, const struct decoder *decoder,
+static enum status write_curve(const struct history *history, const struct unknowns *unknowns,
                                enum unknown_kind kind, size_t curve,
                                const struct run_folder *folder) {
     enum { NAME_SIZE = 24 };
     enum status status = STATUS_OK;
-    const size_t points = history->points[kind] / mf_decoder_curve_count(decoder, kind);
+    const size_t points = history->points[kind] / mf_unknowns_curve_count(unknowns, kind);
     struct data_column *columns = NULL;
     char *names = NULL;
-    char path[OUTPUT_PATH_SIZE], name[DECODER_NAME_SIZE], file[DECODER_NAME_SIZE + 16];
+    char path[OUTPUT_PATH_SIZE], name[UNKNOWNS_NAME_SIZE], file[UNKNOWNS_NAME_SIZE + 16];
     NEW_ARRAY(columns, history->iterations + 1);
     NEW_ARRAY(names, history->iterations * NAME_SIZE);
     columns[0] =
-        (struct data_column){"r[lambda]", mf_decoder_r(decoder, kind) + curve * points, NULL};
+        (struct data_column){"r[lambda]", mf_unknowns_r(unknowns, kind) + curve * points, NULL};
     for (size_t k = 0; k < history->iterations; k++) {
         snprintf(names + k * NAME_SIZE, NAME_SIZE, "%zu", k);
         columns[k + 1] = (struct data_column){
             names + k * NAME_SIZE,
             history->curve[kind] + k * history->points[kind] + curve * points, "%.6g"};
     }
-    mf_decoder_curve_name(decoder, kind, curve, name);
+    mf_unknowns_curve_name(unknowns, kind, curve, name);
     snprintf(file, sizeof file, "%s_history.tsv", name);
     mf_run_folder_file(folder, file, path);
     CHECK(mf_data_table_write(path, NULL, columns, history->iterations + 1, points));
@@ -136,13 +178,15 @@ done:
 }
 
 enum status mf_history_write(const struct history *history, const struct inverse_method *method,
-                             const struct decoder *decoder, const struct run_folder *folder) {
+                             const struct unknowns *unknowns, const struct run_folder *folder) {
     TRY(write_history(history, method, folder));
     TRY(write_timing(history, folder));
+    if (history->problem->numbers > 0)
+        TRY(write_numbers(history, folder));
     for (int kind = 0; kind < UNKNOWNS; kind++)
         for (size_t curve = 0;
-             history->points[kind] > 0 && curve < mf_decoder_curve_count(decoder, kind); curve++)
-            TRY(write_curve(history, decoder, kind, curve, folder));
+             history->points[kind] > 0 && curve < mf_unknowns_curve_count(unknowns, kind); curve++)
+            TRY(write_curve(history, unknowns, kind, curve, folder));
     return STATUS_OK;
 }
 
@@ -152,6 +196,9 @@ size_t mf_history_spans(struct history *history, struct memory_span *spans) {
     spans[count++] = (struct memory_span){&history->iterations, sizeof history->iterations};
     spans[count++] = (struct memory_span){history->rows, n * columns * sizeof(double)};
     spans[count++] = (struct memory_span){history->seconds, n * sizeof(double)};
+    if (history->numbers)
+        spans[count++] = (struct memory_span){history->numbers,
+                                              n * 2 * history->problem->numbers * sizeof(double)};
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (history->points[kind] > 0)
             spans[count++] = (struct memory_span){history->curve[kind],

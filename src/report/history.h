@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The iterations of a fit: history.tsv, timing.tsv, and potential_history.tsv or
-/// omega_history.tsv.
+/// @file The iterations of a fit: history.tsv, timing.tsv, and potential_history.tsv,
+/// omega_history.tsv or numbers_history.tsv.
 ///
 /// The seconds stand in a file of their own, since everything in history.tsv is the same bits for
 /// any number of threads and any restart.
 #pragma once
 
-#include "problem/decoder.h"
+#include "problem/unknowns.h"
 #include "report/run_folder.h"
 
 struct history {
@@ -15,12 +15,15 @@ struct history {
     size_t points[UNKNOWNS]; ///< of the curves; 0: not fitted
     double *rows;    ///< shape [capacity, 5 + extra]: iteration, evaluations, engine_steps, …
     double *seconds; ///< shape [capacity]
-    double *curve[UNKNOWNS]; ///< shape [capacity, points]
+    double *curve[UNKNOWNS];               ///< shape [capacity, points]
+    const struct inverse_problem *problem; ///< whose numbers are found; borrowed
+    double *numbers;                       ///< shape [capacity, 2 numbers]: value and error of each
 };
 
 /// Room for `capacity` iterations of a method. Fails: NO_MEMORY.
 enum status mf_history_init(struct history *history, const struct inverse_method *method,
-                            const size_t points[UNKNOWNS], size_t capacity) MUST_USE;
+                            const size_t points[UNKNOWNS], const struct inverse_problem *problem,
+                            size_t capacity) MUST_USE;
 /// Error of the first iteration; NaN before it.
 double mf_history_first_error(const struct history *history);
 
@@ -31,9 +34,9 @@ void mf_history_add(struct history *history, const struct inverse_step *step, do
 
 /// Write the tables.
 enum status mf_history_write(const struct history *history, const struct inverse_method *method,
-                             const struct decoder *decoder,
+                             const struct unknowns *unknowns,
                              const struct run_folder *folder) MUST_USE;
 
 /// Pieces for a checkpoint.
-enum { HISTORY_SPANS = 3 + UNKNOWNS };
+enum { HISTORY_SPANS = 4 + UNKNOWNS };
 size_t mf_history_spans(struct history *history, struct memory_span *spans);

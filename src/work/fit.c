@@ -21,22 +21,22 @@ struct run {
     struct run_folder folder;
     struct progress progress;
     struct fit_file fit;
-    struct decoder decoder;
+    struct unknowns unknowns;
     void *state;
     bool created;
     struct history history;
     uint64_t digest; ///< of used.json
     double last_checkpoint;
     double seconds_before;                           ///< of a run before a restart
-    double *curve[UNKNOWNS], *curve_error[UNKNOWNS]; ///< shape [mf_decoder_points]
-    double *curve_flat[UNKNOWNS];                    ///< shape [INVERSE_FLAT, mf_decoder_points]
-    double *without_ramp;                            ///< shape [mf_decoder_points of Φ]
+    double *curve[UNKNOWNS], *curve_error[UNKNOWNS]; ///< shape [mf_unknowns_points]
+    double *curve_flat[UNKNOWNS];                    ///< shape [INVERSE_FLAT, mf_unknowns_points]
+    double *without_ramp;                            ///< shape [mf_unknowns_points of Φ]
     struct standing {
         bool finished, converged, used_up; ///< as in struct inverse_step
         uint64_t iterations, evaluations, engine_steps;
         double error, variance, seconds;
         struct inverse_ramp ramp;
-        struct inverse_parameter parameter[INVERSE_PARAMETERS];
+        struct inverse_parameter parameter[INVERSE_PARAMETERS], number[INVERSE_MOST_NUMBERS];
         char reason[INVERSE_REASON_SIZE];
     } standing;
 };
@@ -52,14 +52,14 @@ static size_t run_spans(struct run *run, struct memory_span *spans) {
     n += mf_history_spans(&run->history, spans + n);
     spans[n++] = (struct memory_span){&run->standing, sizeof run->standing};
     for (int kind = 0; kind < UNKNOWNS; kind++) {
-        const size_t bytes = mf_decoder_points(&run->decoder, kind) * sizeof(double);
+        const size_t bytes = mf_unknowns_points(&run->unknowns, kind) * sizeof(double);
         if (bytes == 0)
             continue;
         spans[n++] = (struct memory_span){run->curve[kind], bytes};
         spans[n++] = (struct memory_span){run->curve_error[kind], bytes};
         spans[n++] = (struct memory_span){run->curve_flat[kind], INVERSE_FLAT * bytes};
     }
-    const size_t points = mf_decoder_points(&run->decoder, UNKNOWN_POTENTIAL);
+    const size_t points = mf_unknowns_points(&run->unknowns, UNKNOWN_POTENTIAL);
     if (points > 0)
         spans[n++] = (struct memory_span){run->without_ramp, points * sizeof(double)};
     return n;
@@ -116,9 +116,9 @@ static enum status create(struct run *run) {
     enum status status = STATUS_OK;
     const struct fit_file *fit = &run->fit;
     size_t points[UNKNOWNS];
-    CHECK(mf_decoder_init(&run->decoder, &fit->problem));
+    CHECK(mf_unknowns_init(&run->unknowns, &fit->problem));
     for (int kind = 0; kind < UNKNOWNS; kind++) {
-        points[kind] = mf_decoder_points(&run->decoder, kind);
+        points[kind] = mf_unknowns_points(&run->unknowns, kind);
         if (points[kind] == 0)
             continue;
         NEW_ARRAY(run->curve[kind], points[kind]);
@@ -128,7 +128,7 @@ static enum status create(struct run *run) {
     if (points[UNKNOWN_POTENTIAL] > 0)
         NEW_ARRAY(run->without_ramp, points[UNKNOWN_POTENTIAL]);
     CHECK(mf_history_init(
-        &run->history, fit->method, points,
+        &run->history, fit->method, points, &fit->problem,
         fit->method->most_iterations(fit->method, &fit->problem, fit->method_parameters)));
     CHECK((run->state = mf_memory_zeroed(1, fit->method->state_size)) ? STATUS_OK
                                                                       : STATUS_NO_MEMORY);
@@ -206,6 +206,7 @@ static struct fit_result result_so_far(const struct run *run, enum status status
                                 .ramp = s->ramp,
                                 .settled = s->converged,
                                 .parameter = s->parameter,
+                                .number = s->number,
                                 .error = s->error,
                                 .first_error = mf_history_first_error(&run->history),
                                 .reason = s->reason};
@@ -221,16 +222,16 @@ static struct fit_result result_so_far(const struct run *run, enum status status
 /// The curves of an iteration. What is set, not fitted, has no error: core and cutoff.
 static void keep_curves(struct run *run, const struct inverse_step *step) {
     for (int kind = 0; kind < UNKNOWNS; kind++) {
-        const size_t points = mf_decoder_points(&run->decoder, kind);
+        const size_t points = mf_unknowns_points(&run->unknowns, kind);
         for (size_t k = 0; k < points; k++) {
-            const bool known = step->curve_error[kind] && mf_decoder_fits(&run->decoder, kind, k);
+            const bool known = step->curve_error[kind] && mf_unknowns_fits(&run->unknowns, kind, k);
             run->curve[kind][k] = step->curve[kind][k];
             run->curve_error[kind][k] = known ? step->curve_error[kind][k] : NAN;
         }
         for (size_t k = 0; k < INVERSE_FLAT * points; k++)
             run->curve_flat[kind][k] = step->curve_flat[kind] ? step->curve_flat[kind][k] : NAN;
     }
-    for (size_t k = 0; k < mf_decoder_points(&run->decoder, UNKNOWN_POTENTIAL); k++)
+    for (size_t k = 0; k < mf_unknowns_points(&run->unknowns, UNKNOWN_POTENTIAL); k++)
         run->without_ramp[k] =
             step->without_ramp && isfinite(run->curve_error[UNKNOWN_POTENTIAL][k])
                 ? step->without_ramp[k]
@@ -255,11 +256,12 @@ static enum status record(struct run *run, const struct inverse_step *step) {
                                       .seconds = seconds(run),
                                       .ramp = step->ramp};
     memcpy(run->standing.parameter, step->parameter, sizeof run->standing.parameter);
+    memcpy(run->standing.number, step->number, sizeof run->standing.number);
     memcpy(run->standing.reason, step->reason, sizeof run->standing.reason);
     mf_history_add(&run->history, step, run->standing.seconds);
-    TRY(mf_history_write(&run->history, run->fit.method, &run->decoder, &run->folder));
+    TRY(mf_history_write(&run->history, run->fit.method, &run->unknowns, &run->folder));
     const struct fit_result result = result_so_far(run, STATUS_UNCONVERGED);
-    TRY(mf_fit_output_curves(&run->fit, &run->decoder, &result, &run->folder));
+    TRY(mf_fit_output_curves(&run->fit, &run->unknowns, &result, &run->folder));
     if (run->fit.method->write) {
         const struct inverse_folder own = {own_file, &run->folder};
         TRY(run->fit.method->write(run->state, &own));
@@ -311,7 +313,7 @@ static enum status write_unstable(struct run *run) {
                                                    : " (not one simulation of the fit succeeded)");
     char reason[512];
     snprintf(reason, sizeof reason, "%s", mf_status_message());
-    TRY(mf_fit_output_summary(&run->fit, &run->decoder, &result, &run->folder));
+    TRY(mf_fit_output_summary(&run->fit, &run->unknowns, &result, &run->folder));
     mf_run_folder_draw(&run->folder);
     return mf_status_fail(STATUS_UNSTABLE, "%s", reason);
 }
@@ -325,7 +327,7 @@ static void say_verified(struct run *run, const struct fit_result *result) {
                                         : "not converged",
                     (unsigned long long)standing->iterations, standing->seconds,
                     standing->used_up ? ": " : "", standing->used_up ? standing->reason : "");
-    mf_fit_report_say(to, &run->fit, &run->decoder, result);
+    mf_fit_report_say(to, &run->fit, &run->unknowns, result);
     mf_progress_say(to, "results in %s", run->folder.path);
 }
 
@@ -339,7 +341,7 @@ static void doubt(struct run *run, const struct verification *verification) {
     const struct targets *targets = &run->fit.problem.targets;
     if (!standing->converged && !standing->used_up)
         return;
-    if (run->fit.method->update
+    if (run->fit.method->kind == INVERSE_INVERSION
             ? mf_fit_verdict_contradicts(verification, targets_ask(targets, TARGET_PRESSURE),
                                          run->fit.problem.scene.temperature, noise_margin,
                                          standing->reason)
@@ -350,19 +352,16 @@ static void doubt(struct run *run, const struct verification *verification) {
 
 /// The independent verification of the result, and everything that rests on it.
 static enum status verify_and_write(struct run *run) {
-    struct decoder_laws laws = {
-        .table = {run->fit.problem.scene.potential, run->fit.problem.scene.omega}};
+    struct unknowns_laws laws = {0};
+    double number[INVERSE_MOST_NUMBERS];
     struct verification verification = {0};
     struct progress progress = mf_progress_begin(run->progress.quiet);
     const struct inverse_listener listener = {tell_verification, &progress};
     enum status status = STATUS_OK;
-    for (int kind = 0; kind < UNKNOWNS; kind++) {
-        if (run->curve[kind] == NULL)
-            continue;
-        CHECK(mf_decoder_table(&run->decoder, kind, run->curve[kind], &laws.own[kind]));
-        laws.table[kind] = &laws.own[kind];
-    }
-    status = mf_verify(&run->fit.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_OMEGA],
+    for (int n = 0; n < INVERSE_MOST_NUMBERS; n++)
+        number[n] = run->standing.number[n].value;
+    CHECK(mf_unknowns_laws_make(&run->unknowns, (const double *const *)run->curve, number, &laws));
+    status = mf_verify(&laws.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_OMEGA],
                        &run->fit.verification, &listener, &verification);
     if (status == STATUS_UNSTABLE)
         status = write_unstable(run);
@@ -372,7 +371,7 @@ static enum status verify_and_write(struct run *run) {
     struct fit_result result = result_so_far(run, accepted ? STATUS_OK : STATUS_UNCONVERGED);
     result.verification = &verification;
     CHECK(mf_fit_output_observables(&run->fit, &result, &run->folder));
-    CHECK(mf_fit_output_summary(&run->fit, &run->decoder, &result, &run->folder));
+    CHECK(mf_fit_output_summary(&run->fit, &run->unknowns, &result, &run->folder));
     mf_run_folder_draw(&run->folder);
     say_verified(run, &result);
     if (verification.warning[0])
@@ -381,7 +380,7 @@ static enum status verify_and_write(struct run *run) {
     if (status == STATUS_UNCONVERGED)
         tell_unconverged(run);
 done:
-    mf_decoder_laws_clear(&laws);
+    mf_unknowns_laws_clear(&laws);
     mf_verify_clear(&verification);
     return status;
 }
@@ -390,7 +389,7 @@ done:
 static enum status write_interrupted(struct run *run) {
     const struct fit_result result = result_so_far(run, STATUS_INTERRUPTED);
     if (run->standing.iterations > 0) {
-        TRY(mf_fit_output_summary(&run->fit, &run->decoder, &result, &run->folder));
+        TRY(mf_fit_output_summary(&run->fit, &run->unknowns, &result, &run->folder));
         mf_run_folder_draw(&run->folder);
     }
     return mf_status_fail(STATUS_INTERRUPTED,
@@ -417,7 +416,7 @@ done:
             run->fit.method->destroy(run->state);
         mf_memory_free(run->state);
         mf_history_clear(&run->history);
-        mf_decoder_clear(&run->decoder);
+        mf_unknowns_clear(&run->unknowns);
         for (int kind = 0; kind < UNKNOWNS; kind++) {
             mf_memory_free(run->curve[kind]);
             mf_memory_free(run->curve_error[kind]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/memory.h"
-#include "problem/decoder.h"
+#include "problem/unknowns.h"
 #include "work/explain.h"
 #include "input/target_sanity.h"
 #include "work/fit.h"
@@ -37,13 +37,13 @@ static void print_simulation(const struct measured *measured, const struct targe
 }
 
 /// Simulations with the curves that the fit begins with.
-static void print_simulations(const struct fit_file *fit, const struct decoder_laws *laws) {
+static void print_simulations(const struct fit_file *fit, const struct unknowns_laws *laws) {
     const struct inverse_problem *problem = &fit->problem;
-    const struct inverse_sampling sampling = fit->method->sampling(fit->method_parameters);
-    struct simulation_setup setup = problem->scene;
+    struct simulation_setup setup = laws->problem.scene;
     setup.potential = laws->table[UNKNOWN_POTENTIAL];
     setup.omega = laws->table[UNKNOWN_OMEGA];
-    if (sampling.every > 0) {
+    if (fit->method->kind == INVERSE_MATCHING) {
+        const struct inverse_sampling sampling = fit->method->sampling(fit->method_parameters);
         struct measured measured = measured_of(&problem->targets, &setup, sampling.every);
         measured.explain.rdf_force = measured.explain.rdf_force_alone =
             sampling.rdf_force && targets_ask(&problem->targets, TARGET_RDF) &&
@@ -62,6 +62,15 @@ static void print_simulations(const struct fit_file *fit, const struct decoder_l
     measured.explain.sums = true;
     printf("A replica of the verification, one a thread:\n");
     print_simulation(&measured, &problem->compared, &setup);
+}
+
+static void print_numbers(const struct fit_file *fit) {
+    for (size_t n = 0; n < fit->numbers; n++) {
+        const struct inverse_number *number = &fit->number[n];
+        printf("%s is to be found from %g to %g%s%s, beginning with %g.\n", number->name,
+               number->minimum, number->maximum, number->unit[0] ? " " : "", number->unit,
+               number->start);
+    }
 }
 
 static void print_line(void *stream, const char *line) {
@@ -84,25 +93,22 @@ static enum status try_method(const struct fit_file *fit) {
 enum status mf_fit_explain(const char *file, const struct run_options *options) {
     enum status status = STATUS_OK;
     struct fit_file fit;
-    struct decoder decoder = {0};
-    struct decoder_laws laws = {0};
-    double *variables = NULL;
+    struct unknowns unknowns = {0};
+    struct unknowns_laws laws = {0};
     CHECK(mf_fit_file_read(&fit, file, options));
     CHECK(mf_target_files_normalise(&fit.files, &fit.scene.setup.box));
-    status = mf_decoder_init(&decoder, &fit.problem);
+    status = mf_unknowns_init(&unknowns, &fit.problem);
     if (status == STATUS_OK)
         status = try_method(&fit);
     CHECK(status != STATUS_OK ? mf_status_prefix(status, "%s", file) : STATUS_OK);
-    NEW_ARRAY(variables, decoder.variables);
-    CHECK(mf_decoder_start(&decoder, variables));
-    CHECK(mf_decoder_laws(&decoder, variables, &laws));
+    CHECK(mf_unknowns_laws_start(&unknowns, &laws));
     CHECK(mf_target_sanity_tell(&fit.files, &fit.scene,
                                 &(struct target_sanity_listener){print_line, stdout}));
+    print_numbers(&fit);
     print_simulations(&fit, &laws);
 done:
-    mf_decoder_laws_clear(&laws);
-    mf_decoder_clear(&decoder);
-    mf_memory_free(variables);
+    mf_unknowns_laws_clear(&laws);
+    mf_unknowns_clear(&unknowns);
     mf_fit_file_clear(&fit);
     return status;
 }

@@ -18,8 +18,8 @@ void inversions_run(const struct inverse_method *method, const struct inverse_pr
     struct inversion_settings *settings = calloc(1, method->parameters_size);
     assert_non_null(state);
     assert_non_null(settings);
-    for (size_t k = 0; method->tables[k]; k++)
-        mf_fields_set_defaults(method->tables[k], settings);
+    for (const struct inverse_table *table = method->tables; table->fields; table++)
+        mf_fields_set_defaults(table->fields, (char *)settings + table->offset);
     settings->common.replicas = 4;
     settings->common.samples = 250;
     settings->common.equilibration = 100;

@@ -44,10 +44,114 @@ static void test_parallel_sum_has_the_same_bits_for_any_threads(void **state) {
     }
 }
 
+enum { TASKS = 40 };
+
+/// Tasks that fail with what `fails` says, and what was seen of them.
+struct trial {
+    enum status fails[TASKS];
+    int runs[TASKS], taken[TASKS];
+    int inside; ///< threads in `take` now
+    bool crowded;
+    double found[TASKS];
+};
+
+static enum status run_task(void *context, size_t task, void *result) {
+    struct trial *trial = context;
+    double value = sin((double)task);
+    for (int k = 0; k < 1000 * (int)(task % 7); k++) // of different lengths
+        value = cos(value + (double)k);
+    *(double *)result += value;
+    trial->runs[task]++;
+    return trial->fails[task] ? mf_status_fail(trial->fails[task], "task %zu failed", task)
+                              : STATUS_OK;
+}
+
+static void take_task(void *context, size_t task, const void *result) {
+    struct trial *trial = context;
+    int others;
+#pragma omp atomic capture
+    others = trial->inside++;
+    trial->crowded |= others > 0;
+    trial->taken[task]++;
+    trial->found[task] = *(const double *)result;
+#pragma omp atomic
+    trial->inside--;
+}
+
+static enum status try_tasks(struct trial *trial, int threads) {
+    return mf_parallel_try(&(struct parallel_tasks){.count = TASKS,
+                                                    .threads = threads,
+                                                    .run = run_task,
+                                                    .take = take_task,
+                                                    .result_size = sizeof(double),
+                                                    .context = trial});
+}
+
+static void test_parallel_try_takes_each_result_once_and_from_one_thread_at_a_time(void **state) {
+    (void)state;
+    struct trial one = {0};
+    assert_int_equal(try_tasks(&one, 1), STATUS_OK);
+    for (int threads = 2; threads <= 4; threads++) {
+        struct trial many = {0};
+        assert_int_equal(try_tasks(&many, threads), STATUS_OK);
+        assert_false(many.crowded);
+        for (int k = 0; k < TASKS; k++) {
+            assert_int_equal(many.runs[k], 1);
+            assert_int_equal(many.taken[k], 1);
+            assert_identical(many.found[k], one.found[k]);
+        }
+    }
+}
+
+static void
+test_parallel_try_returns_the_failure_of_the_lowest_task_with_its_message(void **state) {
+    (void)state;
+    for (int round = 0; round < 50; round++)
+        for (int threads = 1; threads <= 3; threads++) {
+            struct trial trial = {0};
+            // The long task 13 ends after the short one that also fails.
+            trial.fails[13] = STATUS_UNSTABLE;
+            trial.fails[14] = STATUS_NO_MEMORY;
+            trial.fails[30] = STATUS_BAD_INPUT;
+            assert_int_equal(try_tasks(&trial, threads), STATUS_UNSTABLE);
+            assert_string_equal(mf_status_message(), "task 13 failed");
+            for (int k = 0; k < 13; k++)
+                assert_int_equal(trial.taken[k], 1);
+            assert_int_equal(trial.taken[13], 0);
+            assert_int_equal(trial.runs[TASKS - 1], 0);
+        }
+}
+
+static void test_parallel_try_begins_nothing_more_when_a_task_was_interrupted(void **state) {
+    (void)state;
+    for (int threads = 1; threads <= 3; threads++) {
+        struct trial trial = {.fails = {[7] = STATUS_INTERRUPTED}};
+        assert_int_equal(try_tasks(&trial, threads), STATUS_INTERRUPTED);
+        assert_int_equal(trial.runs[TASKS - 1], 0);
+        for (int k = 0; k < TASKS; k++)
+            assert_int_equal(trial.taken[k], trial.runs[k] && k != 7);
+    }
+}
+
+static void test_parallel_try_puts_an_interruption_before_other_failures(void **state) {
+    (void)state;
+    for (int threads = 1; threads <= 3; threads++) {
+        // The short task 7 mostly ends before the long one.
+        struct trial trial = {.fails = {[6] = STATUS_UNSTABLE, [7] = STATUS_INTERRUPTED}};
+        const enum status status = try_tasks(&trial, threads);
+        assert_int_equal(status, trial.runs[7] ? STATUS_INTERRUPTED : STATUS_UNSTABLE);
+        assert_string_equal(mf_status_message(), trial.runs[7] ? "task 7 failed" : "task 6 failed");
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_parallel_for_visits_each_element_once_when_threads_are_many),
         cmocka_unit_test(test_parallel_sum_has_the_same_bits_for_any_threads),
+        cmocka_unit_test(test_parallel_try_takes_each_result_once_and_from_one_thread_at_a_time),
+        cmocka_unit_test(test_parallel_try_returns_the_failure_of_the_lowest_task_with_its_message),
+        cmocka_unit_test(test_parallel_try_begins_nothing_more_when_a_task_was_interrupted),
+        cmocka_unit_test(test_parallel_try_puts_an_interruption_before_other_failures),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -155,7 +155,7 @@ struct rounds {
 
 static void measure_rounds(const struct made *made, int threads, struct rounds *rounds) {
     struct inverse_problem problem = made->problem;
-    struct decoder decoder;
+    struct parametrisation parametrisation;
     struct population population;
     double variables[CANDIDATES * VARIABLES];
     const struct inverse_listener listener = {ignore, NULL};
@@ -164,8 +164,8 @@ static void measure_rounds(const struct made *made, int threads, struct rounds *
     problem.threads = threads;
     for (int k = 0; k < CANDIDATES * VARIABLES; k++)
         variables[k] = 0.2 + 0.03 * k;
-    assert_ok(mf_decoder_init(&decoder, &problem));
-    assert_ok(mf_population_init(&population, &decoder, &parameters));
+    assert_ok(mf_parametrisation_init(&parametrisation, &problem));
+    assert_ok(mf_population_init(&population, &parametrisation, &parameters));
     for (int n = 0; n < 2; n++) {
         const double discard_above = n == 0 ? HUGE_VAL : 0.5 * rounds->errors[0][0];
         assert_int_equal(population.totals.warm, n > 0);
@@ -177,7 +177,7 @@ static void measure_rounds(const struct made *made, int threads, struct rounds *
     rounds->steps = population.totals.steps;
     assert_int_equal(population.totals.evaluations, 2 * CANDIDATES);
     mf_population_clear(&population);
-    mf_decoder_clear(&decoder);
+    mf_parametrisation_clear(&parametrisation);
 }
 
 static void test_candidates_race_with_the_same_bits_for_any_threads(void **state) {

@@ -9,7 +9,7 @@ enum { BINS = 40, CORE = 8 };
 
 /// g(r) = 0 in the core, 0.05 in the next bin, of too few pairs to tell, and 1; a potential and a
 /// weight of B-splines.
-static void begin(struct decoder *decoder, struct inverse_problem *problem, double g[BINS]) {
+static void begin(struct unknowns *unknowns, struct inverse_problem *problem, double g[BINS]) {
     for (int k = 0; k < BINS; k++)
         g[k] = k < CORE ? 0 : k == CORE ? 0.05 : 1;
     *problem = (struct inverse_problem){
@@ -19,44 +19,44 @@ static void begin(struct decoder *decoder, struct inverse_problem *problem, doub
         .scene = {.temperature = 1},
         .core_threshold = 1e-3,
         .core_stiffness = 2000};
-    assert_ok(mf_decoder_init(decoder, problem));
+    assert_ok(mf_unknowns_init(unknowns, problem));
 }
 
 /// A well that goes from −1 at r = 2.05 to −0.5 at r = 2.55; what changes in the core is not told.
 static void test_change_of_a_potential_is_that_beyond_its_core(void **state) {
     (void)state;
-    struct decoder decoder;
+    struct unknowns unknowns;
     struct inverse_problem problem;
     double g[BINS], first[BINS + 1] = {0}, last[BINS + 1] = {0};
-    begin(&decoder, &problem, g);
-    assert_close(mf_decoder_r(&decoder, UNKNOWN_POTENTIAL)[20], 2.05, 1e-12);
+    begin(&unknowns, &problem, g);
+    assert_close(mf_unknowns_r(&unknowns, UNKNOWN_POTENTIAL)[20], 2.05, 1e-12);
     first[20] = -1;
     last[25] = -0.5;
     last[CORE] = -50;
     first[CORE - 3] = 1000;
     last[CORE - 3] = -1000;
     const struct fit_change change =
-        mf_fit_change_find(&decoder, UNKNOWN_POTENTIAL, 0, first, last);
+        mf_fit_change_find(&unknowns, UNKNOWN_POTENTIAL, 0, first, last);
     assert_close(change.first_well, -1, 0);
     assert_close(change.first_well_at, 2.05, 1e-12);
     assert_close(change.well, -0.5, 0);
     assert_close(change.well_at, 2.55, 1e-12);
     assert_close(change.rms, sqrt(1.25 / (BINS - CORE - 1)), 1e-12);
-    mf_decoder_clear(&decoder);
+    mf_unknowns_clear(&unknowns);
 }
 
 static void test_change_of_a_weight_is_its_rms(void **state) {
     (void)state;
-    struct decoder decoder;
+    struct unknowns unknowns;
     struct inverse_problem problem;
     double g[BINS], first[OMEGA_POINTS], last[OMEGA_POINTS];
-    begin(&decoder, &problem, g);
+    begin(&unknowns, &problem, g);
     for (int k = 0; k < OMEGA_POINTS; k++) {
         first[k] = 1;
         last[k] = 1.25;
     }
-    assert_close(mf_fit_change_find(&decoder, UNKNOWN_OMEGA, 0, first, last).rms, 0.25, 1e-12);
-    mf_decoder_clear(&decoder);
+    assert_close(mf_fit_change_find(&unknowns, UNKNOWN_OMEGA, 0, first, last).rms, 0.25, 1e-12);
+    mf_unknowns_clear(&unknowns);
 }
 
 int main(void) {

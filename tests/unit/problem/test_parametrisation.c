@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "problem/decoder.h"
+#include "problem/parametrisation.h"
 
 #include "base/rng.h"
 #include "curves/formula.h"
@@ -18,7 +18,7 @@ struct both {
     struct formula_power_omega_parameters power;
     struct curve potential, omega;
     struct inverse_problem problem;
-    struct decoder decoder;
+    struct parametrisation parametrisation;
     double variables[POTENTIAL_GENES + WEIGHT_GENES];
 };
 
@@ -44,82 +44,84 @@ static void begin(struct both *both, bool potential, bool omega) {
         .scene = {.temperature = 1},
         .core_threshold = 1e-3,
         .core_stiffness = 2000};
-    assert_ok(mf_decoder_init(&both->decoder, &both->problem));
-    assert_ok(mf_decoder_start(&both->decoder, both->variables));
+    assert_ok(mf_parametrisation_init(&both->parametrisation, &both->problem));
+    assert_ok(mf_parametrisation_start(&both->parametrisation, both->variables));
 }
 
 static void check_curve(const struct both *both, enum unknown_kind kind, const struct curve *start,
                         size_t first, double tolerance) {
     double curve[MOST_POINTS];
-    const double *r = mf_decoder_r(&both->decoder, kind);
-    mf_decoder_curve(&both->decoder, kind, both->variables, curve);
-    for (size_t k = first; k < mf_decoder_points(&both->decoder, kind); k++)
+    const double *r = mf_unknowns_r(&both->parametrisation.unknowns, kind);
+    mf_parametrisation_curve(&both->parametrisation, kind, both->variables, curve);
+    for (size_t k = first; k < mf_unknowns_points(&both->parametrisation.unknowns, kind); k++)
         assert_close(curve[k], mf_curve_value(start, r[k]), tolerance);
 }
 
-static void test_decoder_start_gives_back_both_curves_side_by_side(void **state) {
+static void test_parametrisation_start_gives_back_both_curves_side_by_side(void **state) {
     (void)state;
     struct both both;
     begin(&both, true, true);
-    assert_int_equal(both.decoder.variables, POTENTIAL_GENES + WEIGHT_GENES);
-    assert_int_equal(both.decoder.first[UNKNOWN_OMEGA], POTENTIAL_GENES);
-    assert_int_equal(mf_decoder_points(&both.decoder, UNKNOWN_POTENTIAL), BINS + 1);
-    assert_int_equal(mf_decoder_points(&both.decoder, UNKNOWN_OMEGA), OMEGA_POINTS);
+    assert_int_equal(both.parametrisation.variables, POTENTIAL_GENES + WEIGHT_GENES);
+    assert_int_equal(both.parametrisation.first[UNKNOWN_OMEGA], POTENTIAL_GENES);
+    assert_int_equal(mf_unknowns_points(&both.parametrisation.unknowns, UNKNOWN_POTENTIAL),
+                     BINS + 1);
+    assert_int_equal(mf_unknowns_points(&both.parametrisation.unknowns, UNKNOWN_OMEGA),
+                     OMEGA_POINTS);
     check_curve(&both, UNKNOWN_POTENTIAL, &both.potential, CORE, 0.1);
     check_curve(&both, UNKNOWN_OMEGA, &both.omega, 0, 0.02);
-    for (size_t k = 0; k < both.decoder.variables; k++)
+    for (size_t k = 0; k < both.parametrisation.variables; k++)
         assert_true(both.variables[k] >= 0 && both.variables[k] <= 1);
-    mf_decoder_clear(&both.decoder);
+    mf_parametrisation_clear(&both.parametrisation);
 }
 
-static void test_decoder_start_is_the_same_alone_and_beside_the_other(void **state) {
+static void test_parametrisation_start_is_the_same_alone_and_beside_the_other(void **state) {
     (void)state;
     struct both both, alone;
     begin(&both, true, true);
     begin(&alone, false, true);
-    assert_int_equal(alone.decoder.variables, WEIGHT_GENES);
-    assert_int_equal(mf_decoder_points(&alone.decoder, UNKNOWN_POTENTIAL), 0);
+    assert_int_equal(alone.parametrisation.variables, WEIGHT_GENES);
+    assert_int_equal(mf_unknowns_points(&alone.parametrisation.unknowns, UNKNOWN_POTENTIAL), 0);
     for (int k = 0; k < WEIGHT_GENES; k++)
         assert_identical(alone.variables[k], both.variables[POTENTIAL_GENES + k]);
-    mf_decoder_clear(&alone.decoder);
+    mf_parametrisation_clear(&alone.parametrisation);
     begin(&alone, true, false);
-    assert_int_equal(alone.decoder.variables, POTENTIAL_GENES);
-    assert_int_equal(mf_decoder_points(&alone.decoder, UNKNOWN_OMEGA), 0);
+    assert_int_equal(alone.parametrisation.variables, POTENTIAL_GENES);
+    assert_int_equal(mf_unknowns_points(&alone.parametrisation.unknowns, UNKNOWN_OMEGA), 0);
     for (int k = 0; k < POTENTIAL_GENES; k++)
         assert_identical(alone.variables[k], both.variables[k]);
-    mf_decoder_clear(&alone.decoder);
-    mf_decoder_clear(&both.decoder);
+    mf_parametrisation_clear(&alone.parametrisation);
+    mf_parametrisation_clear(&both.parametrisation);
 }
 
-static void test_decoder_start_is_clamped_when_it_leaves_the_range(void **state) {
+static void test_parametrisation_start_is_clamped_when_it_leaves_the_range(void **state) {
     (void)state;
     struct both both;
     double curve[OMEGA_POINTS];
     begin(&both, false, true);
     both.power.sigma = 500;
-    assert_ok(mf_decoder_start(&both.decoder, both.variables));
+    assert_ok(mf_parametrisation_start(&both.parametrisation, both.variables));
     for (int k = 0; k < WEIGHT_GENES; k++)
         assert_true(both.variables[k] >= 0 && both.variables[k] <= 1);
     assert_close(both.variables[0], 1, 0);
-    mf_decoder_curve(&both.decoder, UNKNOWN_OMEGA, both.variables, curve);
+    mf_parametrisation_curve(&both.parametrisation, UNKNOWN_OMEGA, both.variables, curve);
     assert_close(curve[0], 5, 1e-9);
-    mf_decoder_clear(&both.decoder);
+    mf_parametrisation_clear(&both.parametrisation);
 }
 
-static void test_decoder_start_falls_from_the_middle_when_no_weight_is_given(void **state) {
+static void test_parametrisation_start_falls_from_the_middle_when_no_weight_is_given(void **state) {
     (void)state;
     struct both both;
     double curve[OMEGA_POINTS];
     begin(&both, false, true);
     both.problem.unknown[UNKNOWN_OMEGA].start[0] = NULL;
-    assert_ok(mf_decoder_start(&both.decoder, both.variables));
-    mf_decoder_curve(&both.decoder, UNKNOWN_OMEGA, both.variables, curve);
+    assert_ok(mf_parametrisation_start(&both.parametrisation, both.variables));
+    mf_parametrisation_curve(&both.parametrisation, UNKNOWN_OMEGA, both.variables, curve);
     for (int k = 0; k < OMEGA_POINTS; k++)
-        assert_close(curve[k], 2.5 * (1 - both.decoder.omega.r[k] / 1.5), 0.02);
-    mf_decoder_clear(&both.decoder);
+        assert_close(curve[k], 2.5 * (1 - both.parametrisation.unknowns.omega.r[k] / 1.5), 0.02);
+    mf_parametrisation_clear(&both.parametrisation);
 }
 
-static void test_decoder_curve_of_a_weight_is_never_negative(void **state) {
+static void test_parametrisation_curve_of_a_weight_is_never_negative(void **state) {
     (void)state;
     struct both both;
     double curve[OMEGA_POINTS];
@@ -128,13 +130,13 @@ static void test_decoder_curve_of_a_weight_is_never_negative(void **state) {
     both.problem.unknown[UNKNOWN_OMEGA].parameters.minimum = -5;
     for (int k = 0; k < WEIGHT_GENES; k++)
         both.variables[k] = k % 2;
-    mf_decoder_curve(&both.decoder, UNKNOWN_OMEGA, both.variables, curve);
+    mf_parametrisation_curve(&both.parametrisation, UNKNOWN_OMEGA, both.variables, curve);
     for (int k = 0; k < OMEGA_POINTS; k++) {
         assert_true(curve[k] >= 0);
         zeros += curve[k] <= 0;
     }
     assert_in_range(zeros, 20, OMEGA_POINTS - 20);
-    mf_decoder_clear(&both.decoder);
+    mf_parametrisation_clear(&both.parametrisation);
 }
 
 /// Σ of some matrix M Mᵀ of random numbers.
@@ -158,15 +160,16 @@ static void check_band(const struct both *both, enum unknown_kind kind, size_t f
     static double slope[ALL][MOST_POINTS];
     double covariance[ALL * ALL], zero[MOST_POINTS], error[MOST_POINTS], variables[ALL] = {0};
     double flat[INVERSE_FLAT * MOST_POINTS];
-    const size_t points = mf_decoder_points(&both->decoder, kind);
+    const size_t points = mf_unknowns_points(&both->parametrisation.unknowns, kind);
     make_covariance(covariance, ALL);
-    mf_decoder_curve(&both->decoder, kind, variables, zero);
+    mf_parametrisation_curve(&both->parametrisation, kind, variables, zero);
     for (int n = 0; n < ALL; n++) {
         variables[n] = 1;
-        mf_decoder_curve(&both->decoder, kind, variables, slope[n]);
+        mf_parametrisation_curve(&both->parametrisation, kind, variables, slope[n]);
         variables[n] = 0;
     }
-    assert_ok(mf_decoder_band(&both->decoder, kind, variables, covariance, error, flat));
+    assert_ok(
+        mf_parametrisation_band(&both->parametrisation, kind, variables, covariance, error, flat));
     for (size_t k = first; k < points; k++) {
         double sum = 0;
         for (int a = 0; a < ALL; a++)
@@ -176,35 +179,36 @@ static void check_band(const struct both *both, enum unknown_kind kind, size_t f
     }
     for (size_t k = 0; k < first; k++)
         assert_true(isnan(error[k]));
-    assert_ok(mf_decoder_band(&both->decoder, kind, variables, NULL, error, flat));
+    assert_ok(mf_parametrisation_band(&both->parametrisation, kind, variables, NULL, error, flat));
     for (size_t k = 0; k < points; k++)
         assert_true(isnan(error[k]));
 }
 
-static void test_decoder_band_is_the_error_that_the_covariance_gives_the_curve(void **state) {
+static void
+test_parametrisation_band_is_the_error_that_the_covariance_gives_the_curve(void **state) {
     (void)state;
     struct both both;
     begin(&both, true, true);
     check_band(&both, UNKNOWN_POTENTIAL, CORE);
     check_band(&both, UNKNOWN_OMEGA, 0);
-    mf_decoder_clear(&both.decoder);
+    mf_parametrisation_clear(&both.parametrisation);
 }
 
-static void test_decoder_laws_are_those_of_the_scene_when_they_are_known(void **state) {
+static void test_parametrisation_laws_are_those_of_the_scene_when_they_are_known(void **state) {
     (void)state;
     struct both both;
-    struct decoder_laws laws;
+    struct unknowns_laws laws;
     struct table known = {.cutoff = 7};
     double value;
     begin(&both, false, true);
     both.problem.scene.potential = &known;
-    assert_ok(mf_decoder_laws(&both.decoder, both.variables, &laws));
+    assert_ok(mf_parametrisation_laws(&both.parametrisation, both.variables, &laws));
     assert_ptr_equal(laws.table[UNKNOWN_POTENTIAL], &known);
     assert_ptr_equal(laws.table[UNKNOWN_OMEGA], &laws.own[UNKNOWN_OMEGA]);
     mf_table_evaluate(laws.table[UNKNOWN_OMEGA], 0.75, &value, NULL, NULL);
     assert_close(value, 1.5, 0.02);
-    mf_decoder_laws_clear(&laws);
-    mf_decoder_clear(&both.decoder);
+    mf_unknowns_laws_clear(&laws);
+    mf_parametrisation_clear(&both.parametrisation);
 }
 
 /// A formula beside nothing else: of three variables, or of those that are not fixed.
@@ -216,50 +220,51 @@ static void begin_power_with(struct both *both, int64_t variables, double sigma,
         true,
         {INVERSE_CURVE_POWER, variables, 0, 5, 0.1, 1.6, {sigma, exponent, inner_cutoff}},
         {&both->omega}};
-    assert_ok(mf_decoder_init(&both->decoder, &both->problem));
-    assert_ok(mf_decoder_start(&both->decoder, both->variables));
+    assert_ok(mf_parametrisation_init(&both->parametrisation, &both->problem));
+    assert_ok(mf_parametrisation_start(&both->parametrisation, both->variables));
 }
 
 static void begin_power(struct both *both) {
     begin_power_with(both, INVERSE_PARAMETERS, NAN, NAN, NAN);
 }
 
-static void test_decoder_power_is_the_formula_and_starts_at_it(void **state) {
+static void test_parametrisation_power_is_the_formula_and_starts_at_it(void **state) {
     (void)state;
     struct both both;
     begin_power(&both);
-    assert_int_equal(both.decoder.variables, INVERSE_PARAMETERS);
+    assert_int_equal(both.parametrisation.variables, INVERSE_PARAMETERS);
     check_curve(&both, UNKNOWN_OMEGA, &both.omega, 0, 1e-12);
-    mf_decoder_clear(&both.decoder);
+    mf_parametrisation_clear(&both.parametrisation);
 }
 
 /// The curve is the formula with what is fixed, whatever the variables of the rest are.
-static void test_decoder_power_holds_what_is_fixed(void **state) {
+static void test_parametrisation_power_holds_what_is_fixed(void **state) {
     (void)state;
     struct both both;
     double curve[OMEGA_POINTS];
     begin_power_with(&both, 1, NAN, 1.5, 0.4);
-    assert_int_equal(both.decoder.variables, 1);
+    assert_int_equal(both.parametrisation.variables, 1);
     check_curve(&both, UNKNOWN_OMEGA, &both.omega, 0, 1e-12);
     both.variables[0] = 0.8; // σ = 4
-    mf_decoder_curve(&both.decoder, UNKNOWN_OMEGA, both.variables, curve);
+    mf_parametrisation_curve(&both.parametrisation, UNKNOWN_OMEGA, both.variables, curve);
     for (size_t k = 0; k < OMEGA_POINTS; k++)
-        assert_close(curve[k], 4 / 2.5 * mf_curve_value(&both.omega, both.decoder.omega.r[k]),
-                     1e-9);
-    mf_decoder_clear(&both.decoder);
+        assert_close(
+            curve[k],
+            4 / 2.5 * mf_curve_value(&both.omega, both.parametrisation.unknowns.omega.r[k]), 1e-9);
+    mf_parametrisation_clear(&both.parametrisation);
     begin_power_with(&both, 2, 2.5, NAN, NAN);
-    assert_int_equal(both.decoder.variables, 2);
+    assert_int_equal(both.parametrisation.variables, 2);
     check_curve(&both, UNKNOWN_OMEGA, &both.omega, 0, 1e-12);
-    mf_decoder_clear(&both.decoder);
+    mf_parametrisation_clear(&both.parametrisation);
 }
 
-static void test_decoder_parameters_have_the_errors_of_their_genes(void **state) {
+static void test_parametrisation_parameters_have_the_errors_of_their_genes(void **state) {
     (void)state;
     struct both both;
     struct inverse_parameter found[INVERSE_PARAMETERS];
     const double covariance[4] = {0.01 * 0.01, 0, 0, 0.02 * 0.02};
     begin_power_with(&both, 2, NAN, 1.5, NAN);
-    mf_decoder_parameters(&both.decoder, both.variables, covariance, found);
+    mf_parametrisation_parameters(&both.parametrisation, both.variables, covariance, found);
     assert_close(found[INVERSE_SIGMA].value, 2.5, 1e-12);
     assert_close(found[INVERSE_SIGMA].error, 5 * 0.01, 1e-12);
     assert_close(found[INVERSE_EXPONENT].value, 1.5, 0);
@@ -268,33 +273,38 @@ static void test_decoder_parameters_have_the_errors_of_their_genes(void **state)
     assert_close(found[INVERSE_INNER_CUTOFF].value, 0.4, 1e-12);
     assert_close(found[INVERSE_INNER_CUTOFF].error, 0.75 * 0.02, 1e-12);
     const struct unknown_parameters *p = &both.problem.unknown[UNKNOWN_OMEGA].parameters;
-    assert_null(mf_decoder_parameter_bound(p, INVERSE_SIGMA, 0.5 * (p->minimum + p->maximum)));
-    assert_string_equal(mf_decoder_parameter_bound(p, INVERSE_SIGMA, p->minimum), "minimum");
-    assert_string_equal(mf_decoder_parameter_bound(p, INVERSE_SIGMA, p->maximum), "maximum");
-    assert_null(mf_decoder_parameter_bound(p, INVERSE_SIGMA, NAN));
-    mf_decoder_parameters(&both.decoder, both.variables, NULL, found);
+    assert_null(
+        mf_parametrisation_parameter_bound(p, INVERSE_SIGMA, 0.5 * (p->minimum + p->maximum)));
+    assert_string_equal(mf_parametrisation_parameter_bound(p, INVERSE_SIGMA, p->minimum),
+                        "minimum");
+    assert_string_equal(mf_parametrisation_parameter_bound(p, INVERSE_SIGMA, p->maximum),
+                        "maximum");
+    assert_null(mf_parametrisation_parameter_bound(p, INVERSE_SIGMA, NAN));
+    mf_parametrisation_parameters(&both.parametrisation, both.variables, NULL, found);
     assert_true(isnan(found[INVERSE_SIGMA].error));
-    mf_decoder_clear(&both.decoder);
+    mf_parametrisation_clear(&both.parametrisation);
 }
 
-static void test_decoder_band_of_the_formula_follows_its_genes(void **state) {
+static void test_parametrisation_band_of_the_formula_follows_its_genes(void **state) {
     (void)state;
     struct both both;
     double error[OMEGA_POINTS], flat[INVERSE_FLAT * OMEGA_POINTS], covariance[9] = {0};
     begin_power(&both);
     // Only σ is uncertain: the band is the curve itself, scaled.
     covariance[0] = 0.01 * 0.01;
-    assert_ok(
-        mf_decoder_band(&both.decoder, UNKNOWN_OMEGA, both.variables, covariance, error, flat));
+    assert_ok(mf_parametrisation_band(&both.parametrisation, UNKNOWN_OMEGA, both.variables,
+                                      covariance, error, flat));
     for (size_t k = 0; k < OMEGA_POINTS; k++)
         assert_close(error[k],
-                     mf_curve_value(&both.omega, both.decoder.omega.r[k]) / 2.5 * 5 * 0.01, 1e-9);
-    mf_decoder_clear(&both.decoder);
+                     mf_curve_value(&both.omega, both.parametrisation.unknowns.omega.r[k]) / 2.5 *
+                         5 * 0.01,
+                     1e-9);
+    mf_parametrisation_clear(&both.parametrisation);
 }
 
 /// Two uncertain variables are two directions: orthogonal, the wider first, and together all of the
 /// errors.
-static void test_decoder_flat_directions_are_principal_components(void **state) {
+static void test_parametrisation_flat_directions_are_principal_components(void **state) {
     (void)state;
     struct both both;
     double error[OMEGA_POINTS], flat[INVERSE_FLAT * OMEGA_POINTS], covariance[9] = {0};
@@ -302,8 +312,8 @@ static void test_decoder_flat_directions_are_principal_components(void **state) 
     begin_power(&both);
     covariance[0] = 0.01 * 0.01;
     covariance[4] = 0.02 * 0.02;
-    assert_ok(
-        mf_decoder_band(&both.decoder, UNKNOWN_OMEGA, both.variables, covariance, error, flat));
+    assert_ok(mf_parametrisation_band(&both.parametrisation, UNKNOWN_OMEGA, both.variables,
+                                      covariance, error, flat));
     for (size_t k = 0; k < OMEGA_POINTS; k++) {
         const double second = flat[OMEGA_POINTS + k];
         all += error[k] * error[k];
@@ -314,23 +324,24 @@ static void test_decoder_flat_directions_are_principal_components(void **state) 
     assert_close((squares[0] + squares[1]) / all, 1, 1e-6);
     assert_true(squares[0] > squares[1] && squares[1] > 0.01 * all);
     assert_close(product / all, 0, 1e-6);
-    mf_decoder_clear(&both.decoder);
+    mf_parametrisation_clear(&both.parametrisation);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_decoder_start_gives_back_both_curves_side_by_side),
-        cmocka_unit_test(test_decoder_start_is_the_same_alone_and_beside_the_other),
-        cmocka_unit_test(test_decoder_start_is_clamped_when_it_leaves_the_range),
-        cmocka_unit_test(test_decoder_start_falls_from_the_middle_when_no_weight_is_given),
-        cmocka_unit_test(test_decoder_curve_of_a_weight_is_never_negative),
-        cmocka_unit_test(test_decoder_band_is_the_error_that_the_covariance_gives_the_curve),
-        cmocka_unit_test(test_decoder_power_is_the_formula_and_starts_at_it),
-        cmocka_unit_test(test_decoder_power_holds_what_is_fixed),
-        cmocka_unit_test(test_decoder_parameters_have_the_errors_of_their_genes),
-        cmocka_unit_test(test_decoder_band_of_the_formula_follows_its_genes),
-        cmocka_unit_test(test_decoder_flat_directions_are_principal_components),
-        cmocka_unit_test(test_decoder_laws_are_those_of_the_scene_when_they_are_known),
+        cmocka_unit_test(test_parametrisation_start_gives_back_both_curves_side_by_side),
+        cmocka_unit_test(test_parametrisation_start_is_the_same_alone_and_beside_the_other),
+        cmocka_unit_test(test_parametrisation_start_is_clamped_when_it_leaves_the_range),
+        cmocka_unit_test(test_parametrisation_start_falls_from_the_middle_when_no_weight_is_given),
+        cmocka_unit_test(test_parametrisation_curve_of_a_weight_is_never_negative),
+        cmocka_unit_test(
+            test_parametrisation_band_is_the_error_that_the_covariance_gives_the_curve),
+        cmocka_unit_test(test_parametrisation_power_is_the_formula_and_starts_at_it),
+        cmocka_unit_test(test_parametrisation_power_holds_what_is_fixed),
+        cmocka_unit_test(test_parametrisation_parameters_have_the_errors_of_their_genes),
+        cmocka_unit_test(test_parametrisation_band_of_the_formula_follows_its_genes),
+        cmocka_unit_test(test_parametrisation_flat_directions_are_principal_components),
+        cmocka_unit_test(test_parametrisation_laws_are_those_of_the_scene_when_they_are_known),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,30 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "problem/decoder.h"
+#include "problem/parametrisation.h"
 
 #include <math.h>
 #include <string.h>
 
 /// How the curve changes with each variable, shape [points, variables of it].
-static enum status find_slopes(const struct decoder *decoder, enum unknown_kind kind,
-                               const double *variables, double *slopes) {
+static enum status find_slopes(const struct parametrisation *parametrisation,
+                               enum unknown_kind kind, const double *variables, double *slopes) {
     enum status status = STATUS_OK;
-    const struct unknown_parameters *p = &decoder->problem->unknown[kind].parameters;
-    const size_t count = mf_decoder_variables(decoder, kind),
-                 points = mf_decoder_points(decoder, kind);
+    const struct unknown_parameters *p =
+        &parametrisation->unknowns.problem->unknown[kind].parameters;
+    const size_t count = mf_parametrisation_variables(parametrisation, kind),
+                 points = mf_unknowns_points(&parametrisation->unknowns, kind);
     double *moved = NULL, *curve = NULL;
-    if (decoder->basis[kind]) {
+    if (parametrisation->basis[kind]) {
         for (size_t k = 0; k < points * count; k++)
-            slopes[k] = decoder->basis[kind][k] * (p->maximum - p->minimum);
+            slopes[k] = parametrisation->basis[kind][k] * (p->maximum - p->minimum);
         return STATUS_OK;
     }
-    NEW_ARRAY(moved, decoder->variables);
+    NEW_ARRAY(moved, parametrisation->variables);
     NEW_ARRAY(curve, 2 * points);
     for (size_t n = 0; n < count; n++) {
         static const double step = 1e-3;
         for (int side = 0; side < 2; side++) {
-            memcpy(moved, variables, decoder->variables * sizeof *variables);
-            moved[decoder->first[kind] + n] += side ? step : -step;
-            mf_decoder_curve(decoder, kind, moved, curve + (size_t)side * points);
+            memcpy(moved, variables, parametrisation->variables * sizeof *variables);
+            moved[parametrisation->first[kind] + n] += side ? step : -step;
+            mf_parametrisation_curve(parametrisation, kind, moved, curve + (size_t)side * points);
         }
         for (size_t k = 0; k < points; k++)
             slopes[k * count + n] = (curve[points + k] - curve[k]) / (2 * step);
@@ -116,18 +117,21 @@ static void find_errors(const double *slopes, const double *covariance, size_t p
 }
 
 /// A core is set: it has no error.
-static void forget_core(const struct decoder *decoder, enum unknown_kind kind, double *values) {
-    for (size_t k = 0; k < mf_decoder_points(decoder, kind); k++)
-        if (kind == UNKNOWN_POTENTIAL && mf_potential_grid_in_core(&decoder->potential, k))
+static void forget_core(const struct parametrisation *parametrisation, enum unknown_kind kind,
+                        double *values) {
+    for (size_t k = 0; k < mf_unknowns_points(&parametrisation->unknowns, kind); k++)
+        if (kind == UNKNOWN_POTENTIAL &&
+            mf_potential_grid_in_core(&parametrisation->unknowns.potential, k))
             values[k] = NAN;
 }
 
-enum status mf_decoder_band(const struct decoder *decoder, enum unknown_kind kind,
-                            const double *variables, const double *covariance, double *error,
-                            double *flat) {
+enum status mf_parametrisation_band(const struct parametrisation *parametrisation,
+                                    enum unknown_kind kind, const double *variables,
+                                    const double *covariance, double *error, double *flat) {
     enum status status = STATUS_OK;
-    const size_t count = mf_decoder_variables(decoder, kind), at = decoder->first[kind];
-    const size_t points = mf_decoder_points(decoder, kind);
+    const size_t count = mf_parametrisation_variables(parametrisation, kind),
+                 at = parametrisation->first[kind];
+    const size_t points = mf_unknowns_points(&parametrisation->unknowns, kind);
     double *slopes = NULL, *own = NULL;
     for (size_t k = 0; k < points; k++)
         error[k] = NAN;
@@ -139,14 +143,14 @@ enum status mf_decoder_band(const struct decoder *decoder, enum unknown_kind kin
     NEW_ARRAY(own, count * count);
     for (size_t a = 0; a < count; a++)
         for (size_t b = 0; b < count; b++)
-            own[a * count + b] = covariance[(at + a) * decoder->variables + at + b];
-    CHECK(find_slopes(decoder, kind, variables, slopes));
+            own[a * count + b] = covariance[(at + a) * parametrisation->variables + at + b];
+    CHECK(find_slopes(parametrisation, kind, variables, slopes));
     find_errors(slopes, own, points, count, error);
     for (size_t n = 0; n < INVERSE_FLAT; n++)
         CHECK(find_flat(slopes, own, points, count, flat, n, flat + n * points));
-    forget_core(decoder, kind, error);
+    forget_core(parametrisation, kind, error);
     for (size_t n = 0; n < INVERSE_FLAT; n++)
-        forget_core(decoder, kind, flat + n * points);
+        forget_core(parametrisation, kind, flat + n * points);
 done:
     mf_memory_free(slopes);
     mf_memory_free(own);

@@ -2,7 +2,7 @@
 //
 // Variables of a mixture: those of a potential for each pair type, then those of one friction
 // weight.
-#include "problem/decoder.h"
+#include "problem/parametrisation.h"
 
 #include "curves/formula.h"
 #include "shared/is_close.h"
@@ -22,7 +22,7 @@ struct mixture {
     struct formula_power_omega_parameters power;
     struct curve potential[PAIRS], omega;
     struct inverse_problem problem;
-    struct decoder decoder;
+    struct parametrisation parametrisation;
     double variables[ALL];
 };
 
@@ -45,73 +45,78 @@ static void begin(struct mixture *mixture) {
     }
     mixture->omega = (struct curve){&mf_formula_power_omega, &mixture->power};
     mixture->problem.unknown[UNKNOWN_OMEGA].start[0] = &mixture->omega;
-    assert_ok(mf_decoder_init(&mixture->decoder, &mixture->problem));
-    assert_ok(mf_decoder_start(&mixture->decoder, mixture->variables));
+    assert_ok(mf_parametrisation_init(&mixture->parametrisation, &mixture->problem));
+    assert_ok(mf_parametrisation_start(&mixture->parametrisation, mixture->variables));
 }
 
-static void test_decoder_start_gives_back_each_potential_of_a_mixture(void **state) {
+static void test_parametrisation_start_gives_back_each_potential_of_a_mixture(void **state) {
     (void)state;
     struct mixture m;
     double curve[PAIRS * EACH], omega[OMEGA_POINTS];
     begin(&m);
-    assert_int_equal(m.decoder.variables, ALL);
-    assert_int_equal(m.decoder.first[UNKNOWN_OMEGA], PAIRS * VARIABLES);
-    assert_int_equal(mf_decoder_curve_count(&m.decoder, UNKNOWN_POTENTIAL), PAIRS);
-    assert_int_equal(mf_decoder_curve_count(&m.decoder, UNKNOWN_OMEGA), 1);
-    assert_int_equal(mf_decoder_points(&m.decoder, UNKNOWN_POTENTIAL), PAIRS * EACH);
-    mf_decoder_curve(&m.decoder, UNKNOWN_POTENTIAL, m.variables, curve);
+    assert_int_equal(m.parametrisation.variables, ALL);
+    assert_int_equal(m.parametrisation.first[UNKNOWN_OMEGA], PAIRS * VARIABLES);
+    assert_int_equal(mf_unknowns_curve_count(&m.parametrisation.unknowns, UNKNOWN_POTENTIAL),
+                     PAIRS);
+    assert_int_equal(mf_unknowns_curve_count(&m.parametrisation.unknowns, UNKNOWN_OMEGA), 1);
+    assert_int_equal(mf_unknowns_points(&m.parametrisation.unknowns, UNKNOWN_POTENTIAL),
+                     PAIRS * EACH);
+    mf_parametrisation_curve(&m.parametrisation, UNKNOWN_POTENTIAL, m.variables, curve);
     for (size_t n = 0; n < PAIRS * EACH; n++) {
         const size_t pair = n / EACH, k = n % EACH;
-        assert_int_equal(mf_decoder_fits(&m.decoder, UNKNOWN_POTENTIAL, n),
+        assert_int_equal(mf_unknowns_fits(&m.parametrisation.unknowns, UNKNOWN_POTENTIAL, n),
                          k >= cores[pair] && k < BINS);
         if (k >= cores[pair])
-            assert_close(curve[n], mf_curve_value(&m.potential[pair], m.decoder.potential.r[n]),
-                         0.1);
+            assert_close(
+                curve[n],
+                mf_curve_value(&m.potential[pair], m.parametrisation.unknowns.potential.r[n]), 0.1);
     }
-    mf_decoder_curve(&m.decoder, UNKNOWN_OMEGA, m.variables, omega);
+    mf_parametrisation_curve(&m.parametrisation, UNKNOWN_OMEGA, m.variables, omega);
     assert_close(omega[OMEGA_POINTS / 2],
-                 mf_curve_value(&m.omega, m.decoder.omega.r[OMEGA_POINTS / 2]), 0.02);
-    mf_decoder_clear(&m.decoder);
+                 mf_curve_value(&m.omega, m.parametrisation.unknowns.omega.r[OMEGA_POINTS / 2]),
+                 0.02);
+    mf_parametrisation_clear(&m.parametrisation);
 }
 
 /// The potentials that are not given start from the mean force, here 0.
-static void test_decoder_start_takes_the_mean_force_where_a_potential_is_not_given(void **state) {
+static void
+test_parametrisation_start_takes_the_mean_force_where_a_potential_is_not_given(void **state) {
     (void)state;
     struct mixture m;
     double curve[PAIRS * EACH];
     begin(&m);
     m.problem.unknown[UNKNOWN_POTENTIAL].start[1] = NULL;
-    assert_ok(mf_decoder_start(&m.decoder, m.variables));
-    mf_decoder_curve(&m.decoder, UNKNOWN_POTENTIAL, m.variables, curve);
+    assert_ok(mf_parametrisation_start(&m.parametrisation, m.variables));
+    mf_parametrisation_curve(&m.parametrisation, UNKNOWN_POTENTIAL, m.variables, curve);
     for (size_t k = cores[1]; k < BINS; k++)
         assert_close(curve[EACH + k], 0, 1e-6);
-    assert_close(curve[2 * EACH + 10], mf_curve_value(&m.potential[2], m.decoder.potential.r[10]),
-                 0.1);
-    mf_decoder_clear(&m.decoder);
+    assert_close(curve[2 * EACH + 10],
+                 mf_curve_value(&m.potential[2], m.parametrisation.unknowns.potential.r[10]), 0.1);
+    mf_parametrisation_clear(&m.parametrisation);
 }
 
-static void test_decoder_genes_of_a_kind_of_pairs_move_its_curve_alone(void **state) {
+static void test_parametrisation_genes_of_a_kind_of_pairs_move_its_curve_alone(void **state) {
     (void)state;
     struct mixture m;
     double before[PAIRS * EACH], after[PAIRS * EACH];
     begin(&m);
-    mf_decoder_curve(&m.decoder, UNKNOWN_POTENTIAL, m.variables, before);
+    mf_parametrisation_curve(&m.parametrisation, UNKNOWN_POTENTIAL, m.variables, before);
     for (size_t variable = 0; variable < ALL; variable++) {
         size_t moved[PAIRS] = {0};
         const double kept = m.variables[variable];
         m.variables[variable] += 0.1;
-        mf_decoder_curve(&m.decoder, UNKNOWN_POTENTIAL, m.variables, after);
+        mf_parametrisation_curve(&m.parametrisation, UNKNOWN_POTENTIAL, m.variables, after);
         m.variables[variable] = kept;
         for (size_t n = 0; n < PAIRS * EACH; n++)
             moved[n / EACH] += !is_identical(before[n], after[n]);
         for (size_t pair = 0; pair < PAIRS; pair++)
             assert_int_equal(moved[pair] > 0, pair == variable / VARIABLES);
     }
-    mf_decoder_clear(&m.decoder);
+    mf_parametrisation_clear(&m.parametrisation);
 }
 
 /// Only the variables of A-B are uncertain: so is its curve alone. Cores have no error.
-static void test_decoder_band_of_a_mixture_is_unknown_in_each_core(void **state) {
+static void test_parametrisation_band_of_a_mixture_is_unknown_in_each_core(void **state) {
     (void)state;
     static double covariance[ALL * ALL];
     struct mixture m;
@@ -119,7 +124,8 @@ static void test_decoder_band_of_a_mixture_is_unknown_in_each_core(void **state)
     begin(&m);
     for (size_t variable = VARIABLES; variable < 2 * VARIABLES; variable++)
         covariance[variable * ALL + variable] = 0.01 * 0.01;
-    assert_ok(mf_decoder_band(&m.decoder, UNKNOWN_POTENTIAL, m.variables, covariance, error, flat));
+    assert_ok(mf_parametrisation_band(&m.parametrisation, UNKNOWN_POTENTIAL, m.variables,
+                                      covariance, error, flat));
     for (size_t n = 0; n < PAIRS * EACH; n++) {
         const size_t pair = n / EACH, k = n % EACH;
         assert_int_equal(isnan(error[n]), k < cores[pair]);
@@ -128,15 +134,15 @@ static void test_decoder_band_of_a_mixture_is_unknown_in_each_core(void **state)
         if (k >= cores[pair] && k < BINS)
             assert_int_equal(error[n] > 0.1, pair == 1);
     }
-    mf_decoder_clear(&m.decoder);
+    mf_parametrisation_clear(&m.parametrisation);
 }
 
-static void test_decoder_laws_of_a_mixture_are_a_table_of_its_curves(void **state) {
+static void test_parametrisation_laws_of_a_mixture_are_a_table_of_its_curves(void **state) {
     (void)state;
     struct mixture m;
-    struct decoder_laws laws;
+    struct unknowns_laws laws;
     begin(&m);
-    assert_ok(mf_decoder_laws(&m.decoder, m.variables, &laws));
+    assert_ok(mf_parametrisation_laws(&m.parametrisation, m.variables, &laws));
     assert_int_equal(laws.table[UNKNOWN_POTENTIAL]->curves, PAIRS);
     assert_int_equal(laws.table[UNKNOWN_OMEGA]->curves, 1);
     for (int pair = 0; pair < PAIRS; pair++) {
@@ -144,36 +150,37 @@ static void test_decoder_laws_of_a_mixture_are_a_table_of_its_curves(void **stat
         mf_table_evaluate_pair(laws.table[UNKNOWN_POTENTIAL], pair, 1.5, &value, NULL, NULL);
         assert_close(value, mf_curve_value(&m.potential[pair], 1.5), 0.1);
     }
-    mf_decoder_laws_clear(&laws);
-    mf_decoder_clear(&m.decoder);
+    mf_unknowns_laws_clear(&laws);
+    mf_parametrisation_clear(&m.parametrisation);
 }
 
-static void test_decoder_curve_name_has_the_kind_of_pairs_in_a_mixture(void **state) {
+static void test_parametrisation_curve_name_has_the_kind_of_pairs_in_a_mixture(void **state) {
     (void)state;
     static const char *const names[] = {"potential_A-A", "potential_A-B", "potential_B-B"};
     struct mixture m;
-    char name[DECODER_NAME_SIZE];
+    char name[UNKNOWNS_NAME_SIZE];
     begin(&m);
     for (size_t pair = 0; pair < PAIRS; pair++) {
-        mf_decoder_curve_name(&m.decoder, UNKNOWN_POTENTIAL, pair, name);
+        mf_unknowns_curve_name(&m.parametrisation.unknowns, UNKNOWN_POTENTIAL, pair, name);
         assert_string_equal(name, names[pair]);
     }
-    mf_decoder_curve_name(&m.decoder, UNKNOWN_OMEGA, 0, name);
+    mf_unknowns_curve_name(&m.parametrisation.unknowns, UNKNOWN_OMEGA, 0, name);
     assert_string_equal(name, "omega");
     m.problem.scene.composition = mf_composition_of_one(50);
-    mf_decoder_curve_name(&m.decoder, UNKNOWN_POTENTIAL, 0, name);
+    mf_unknowns_curve_name(&m.parametrisation.unknowns, UNKNOWN_POTENTIAL, 0, name);
     assert_string_equal(name, "potential");
-    mf_decoder_clear(&m.decoder);
+    mf_parametrisation_clear(&m.parametrisation);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_decoder_start_gives_back_each_potential_of_a_mixture),
-        cmocka_unit_test(test_decoder_start_takes_the_mean_force_where_a_potential_is_not_given),
-        cmocka_unit_test(test_decoder_genes_of_a_kind_of_pairs_move_its_curve_alone),
-        cmocka_unit_test(test_decoder_band_of_a_mixture_is_unknown_in_each_core),
-        cmocka_unit_test(test_decoder_laws_of_a_mixture_are_a_table_of_its_curves),
-        cmocka_unit_test(test_decoder_curve_name_has_the_kind_of_pairs_in_a_mixture),
+        cmocka_unit_test(test_parametrisation_start_gives_back_each_potential_of_a_mixture),
+        cmocka_unit_test(
+            test_parametrisation_start_takes_the_mean_force_where_a_potential_is_not_given),
+        cmocka_unit_test(test_parametrisation_genes_of_a_kind_of_pairs_move_its_curve_alone),
+        cmocka_unit_test(test_parametrisation_band_of_a_mixture_is_unknown_in_each_core),
+        cmocka_unit_test(test_parametrisation_laws_of_a_mixture_are_a_table_of_its_curves),
+        cmocka_unit_test(test_parametrisation_curve_name_has_the_kind_of_pairs_in_a_mixture),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

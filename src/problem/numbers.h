@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Scalars of a scene that are to be found: the scene with other values of them.
+#pragma once
+
+#include "problem/inverse.h"
+
+/// What a run file says of one: struct inverse_number.
+extern const struct field mf_numbers_fields[];
+
+/// The problem whose scene has these values: settings are replaced, and the table of a law with a
+/// changed parameter is made anew. Laws that are unknown curves stay as they are.
+/// @param[in]  value    shape [problem->numbers]
+/// @param[out] changed  borrows what `problem` does, and `own`
+/// @param[out] own      tables that were made; to be cleared, also after a failure
+/// Fails: NO_MEMORY; BAD_INPUT if a law has no table with these values.
+/// Threads: any number at once. Tested: test_numbers.
+enum status mf_numbers_apply(const struct inverse_problem *problem, const double *value,
+                             struct inverse_problem *changed, struct table own[UNKNOWNS]) MUST_USE;
+
+/// The values that a fit begins with, shape [problem->numbers].
+void mf_numbers_start(const struct inverse_problem *problem, double *value);
+
+/// The end of its range, "minimum" or "maximum", that a value has come to within a thousandth of
+/// the range; NULL if none.
+const char *mf_numbers_bound(const struct inverse_number *number, double value);

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Variables → curves: the unknowns of a problem, side by side in one vector of variables.
+///
+/// Variables are fractions of the range that the run file gives to an unknown, so that one
+/// optimiser can move a potential and a friction weight together.
+#pragma once
+
+#include "problem/unknowns.h"
+
+struct parametrisation {
+    struct unknowns unknowns;
+    size_t variables;       ///< of all unknowns
+    size_t first_number;    ///< variable of the first number, behind those of the curves
+    size_t first[UNKNOWNS]; ///< variable of each
+    double
+        *basis[UNKNOWNS]; ///< shape [points, variables of it]: curve = basis · x; NULL: a formula
+};
+
+/// Fails: NO_MEMORY; BAD_INPUT as mf_potential_grid_init.
+enum status mf_parametrisation_init(struct parametrisation *parametrisation,
+                                    const struct inverse_problem *problem) MUST_USE;
+void mf_parametrisation_clear(struct parametrisation *parametrisation);
+
+/// Variables of an unknown; 0 if it is known.
+size_t mf_parametrisation_variables(const struct parametrisation *parametrisation,
+                                    enum unknown_kind kind);
+
+/// Curve of some variables, shape [points]. A friction weight that would be negative is 0.
+void mf_parametrisation_curve(const struct parametrisation *parametrisation, enum unknown_kind kind,
+                              const double *variables, double *curve);
+
+/// Parameters of a friction weight that is a formula, and their standard errors from the covariance
+/// of the variables as in mf_parametrisation_band; that may be NULL. Tested: test_parametrisation.
+void mf_parametrisation_parameters(const struct parametrisation *parametrisation,
+                                   const double *variables, const double *covariance,
+                                   struct inverse_parameter parameter[INVERSE_PARAMETERS]);
+
+/// The end of its range, "minimum" or "maximum", that a parameter of the formula has come to within
+/// a thousandth of the range; NULL if none, or if it is held fixed. Tested: test_parametrisation.
+const char *mf_parametrisation_parameter_bound(const struct unknown_parameters *p, int parameter,
+                                               double value);
+
+/// The numbers of the scene that are to be found, shape [problem->numbers]: each variable goes
+/// through its range. Errors as of the parameters. Tested: test_numbers.
+void mf_parametrisation_numbers(const struct parametrisation *parametrisation,
+                                const double *variables, const double *covariance,
+                                struct inverse_parameter *number);
+
+/// Standard errors of the curve of some variables, shape [points], from the covariance of the
+/// variables, shape [variables, variables] of all unknowns; NaN if that is NULL, and in the core,
+/// which is set.
+/// @param[out] flat  as curve_flat of an inverse_step: principal components of the curve's errors,
+///                   each upwards where it is largest; NaN as the errors
+/// Fails: NO_MEMORY.
+enum status mf_parametrisation_band(const struct parametrisation *parametrisation,
+                                    enum unknown_kind kind, const double *variables,
+                                    const double *covariance, double *error, double *flat) MUST_USE;
+
+/// Tables of all unknowns from variables, as mf_unknowns_laws_make. Fails: NO_MEMORY.
+enum status mf_parametrisation_laws(const struct parametrisation *parametrisation,
+                                    const double *variables, struct unknowns_laws *laws) MUST_USE;
+
+/// Variables nearest to the curves that the fit begins with (mf_unknowns_start). Fails: NO_MEMORY.
+enum status mf_parametrisation_start(const struct parametrisation *parametrisation,
+                                     double *variables) MUST_USE;
+
+/// The unknowns' curves with their standard errors, for a method to show.
+struct parametrisation_curves {
+    double *value[UNKNOWNS], *error[UNKNOWNS]; ///< shape [points]; NULL for what is known
+    double *flat[UNKNOWNS];                    ///< as curve_flat of an inverse_step
+    struct inverse_parameter parameter[INVERSE_PARAMETERS];
+    struct inverse_parameter number[INVERSE_MOST_NUMBERS];
+};
+enum status mf_parametrisation_curves_init(const struct parametrisation *parametrisation,
+                                           struct parametrisation_curves *curves) MUST_USE;
+void mf_parametrisation_curves_clear(struct parametrisation_curves *curves);
+
+/// Put the curves of some variables into a step.
+void mf_parametrisation_curves_show(const struct parametrisation *parametrisation,
+                                    const double *variables, struct parametrisation_curves *curves,
+                                    struct inverse_step *step);
+
+/// Standard errors of all curves, parameters and numbers, as mf_parametrisation_band. Fails:
+/// NO_MEMORY.
+enum status mf_parametrisation_curves_bands(const struct parametrisation *parametrisation,
+                                            const double *variables, const double *covariance,
+                                            struct parametrisation_curves *curves) MUST_USE;
+
+/// The errors, for a checkpoint.
+size_t mf_parametrisation_curves_spans(const struct parametrisation *parametrisation,
+                                       struct parametrisation_curves *curves,
+                                       struct memory_span *spans);

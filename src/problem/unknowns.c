@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "problem/unknowns.h"
+
+#include "base/memory.h"
+#include "problem/numbers.h"
+
+#include <stdio.h>
+
+enum status mf_unknowns_init(struct unknowns *unknowns, const struct inverse_problem *problem) {
+    const struct unknown_parameters *omega = &problem->unknown[UNKNOWN_OMEGA].parameters;
+    *unknowns = (struct unknowns){.problem = problem};
+    mf_omega_grid_init(&unknowns->omega, omega->inner_cutoff, omega->cutoff);
+    return problem->unknown[UNKNOWN_POTENTIAL].wanted
+               ? mf_potential_grid_init(&unknowns->potential, problem)
+               : STATUS_OK;
+}
+
+void mf_unknowns_clear(struct unknowns *unknowns) {
+    mf_potential_grid_clear(&unknowns->potential);
+    *unknowns = (struct unknowns){0};
+}
+
+size_t mf_unknowns_points(const struct unknowns *unknowns, enum unknown_kind kind) {
+    if (!unknowns->problem->unknown[kind].wanted)
+        return 0;
+    return kind == UNKNOWN_POTENTIAL ? unknowns->potential.points : OMEGA_POINTS;
+}
+
+const double *mf_unknowns_r(const struct unknowns *unknowns, enum unknown_kind kind) {
+    return kind == UNKNOWN_POTENTIAL ? unknowns->potential.r : unknowns->omega.r;
+}
+
+size_t mf_unknowns_curve_count(const struct unknowns *unknowns, enum unknown_kind kind) {
+    return kind == UNKNOWN_POTENTIAL ? unknowns->potential.pairs : 1;
+}
+
+size_t mf_unknowns_points_each(const struct unknowns *unknowns, enum unknown_kind kind) {
+    return mf_unknowns_points(unknowns, kind) / mf_unknowns_curve_count(unknowns, kind);
+}
+
+bool mf_unknowns_fits(const struct unknowns *unknowns, enum unknown_kind kind, size_t point) {
+    const size_t each = mf_unknowns_points_each(unknowns, kind);
+    return point % each + 1 < each &&
+           !(kind == UNKNOWN_POTENTIAL && mf_potential_grid_in_core(&unknowns->potential, point));
+}
+
+void mf_unknowns_curve_name(const struct unknowns *unknowns, enum unknown_kind kind, size_t curve,
+                            char name[UNKNOWNS_NAME_SIZE]) {
+    char pair[COMPOSITION_PAIR_NAME_SIZE] = "";
+    if (kind == UNKNOWN_POTENTIAL)
+        mf_composition_pair_name(&unknowns->problem->scene.composition, (int)curve, pair);
+    snprintf(name, UNKNOWNS_NAME_SIZE, "%s%s%s", mf_inverse_unknown_names[kind], pair[0] ? "_" : "",
+             pair);
+}
+
+void mf_unknowns_start(const struct unknowns *unknowns, enum unknown_kind kind, double *curve) {
+    const struct unknown *unknown = &unknowns->problem->unknown[kind];
+    if (kind == UNKNOWN_POTENTIAL) {
+        mf_potential_grid_start(&unknowns->potential, unknowns->problem, curve);
+        return;
+    }
+    const struct omega_grid *grid = &unknowns->omega;
+    const double middle = 0.5 * (unknown->parameters.minimum + unknown->parameters.maximum);
+    for (int k = 0; k < OMEGA_POINTS; k++)
+        curve[k] = unknown->start[0] ? mf_curve_value(unknown->start[0], grid->r[k])
+                                     : middle * (1 - grid->r[k] / grid->cutoff);
+}
+
+enum status mf_unknowns_laws_make(const struct unknowns *unknowns,
+                                  const double *const curve[UNKNOWNS], const double *number,
+                                  struct unknowns_laws *laws) {
+    *laws = (struct unknowns_laws){0};
+    TRY(mf_numbers_apply(unknowns->problem, number, &laws->problem, laws->own));
+    laws->table[UNKNOWN_POTENTIAL] = laws->problem.scene.potential;
+    laws->table[UNKNOWN_OMEGA] = laws->problem.scene.omega;
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        struct table *own = &laws->own[kind];
+        if (curve[kind] == NULL)
+            continue;
+        TRY(kind == UNKNOWN_POTENTIAL
+                ? mf_potential_grid_table(&unknowns->potential, curve[kind], own)
+                : mf_omega_grid_table(&unknowns->omega, curve[kind], own));
+        laws->table[kind] = own;
+    }
+    return STATUS_OK;
+}
+
+void mf_unknowns_laws_clear(struct unknowns_laws *laws) {
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        mf_table_clear(&laws->own[kind]);
+}
+
+enum status mf_unknowns_laws_start(const struct unknowns *unknowns, struct unknowns_laws *laws) {
+    enum status status = STATUS_OK;
+    double *curve[UNKNOWNS] = {NULL}, number[INVERSE_MOST_NUMBERS];
+    *laws = (struct unknowns_laws){0};
+    mf_numbers_start(unknowns->problem, number);
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        if (unknowns->problem->unknown[kind].wanted) {
+            NEW_ARRAY(curve[kind], mf_unknowns_points(unknowns, kind));
+            mf_unknowns_start(unknowns, kind, curve[kind]);
+        }
+    CHECK(mf_unknowns_laws_make(unknowns, (const double *const *)curve, number, laws));
+done:
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        mf_memory_free(curve[kind]);
+    return status;
+}

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The unknowns of a problem as curves: their points, names and tables.
+///
+/// All methods need these; those that move variables make the curves by problem/parametrisation.h.
+#pragma once
+
+#include "problem/inverse.h"
+#include "problem/omega_grid.h"
+#include "problem/potential_grid.h"
+
+struct unknowns {
+    const struct inverse_problem *problem;
+    struct potential_grid potential; ///< if it is unknown
+    struct omega_grid omega;         ///< if it is unknown
+};
+
+/// Fails: NO_MEMORY; BAD_INPUT as mf_potential_grid_init.
+enum status mf_unknowns_init(struct unknowns *unknowns,
+                             const struct inverse_problem *problem) MUST_USE;
+void mf_unknowns_clear(struct unknowns *unknowns);
+
+/// Points of an unknown's curve; 0 if it is known. And where they are [λ].
+size_t mf_unknowns_points(const struct unknowns *unknowns, enum unknown_kind kind);
+const double *mf_unknowns_r(const struct unknowns *unknowns, enum unknown_kind kind);
+
+/// The curves that an unknown is made of, one behind the other with as many points each: potentials
+/// are one for each pair type. And whether a point of them is fitted: not in a core, and not at
+/// the cutoff.
+size_t mf_unknowns_curve_count(const struct unknowns *unknowns, enum unknown_kind kind);
+size_t mf_unknowns_points_each(const struct unknowns *unknowns, enum unknown_kind kind);
+bool mf_unknowns_fits(const struct unknowns *unknowns, enum unknown_kind kind, size_t point);
+
+/// What files call one of them: "potential", or "potential_A-B" in a mixture.
+enum { UNKNOWNS_NAME_SIZE = COMPOSITION_PAIR_NAME_SIZE + 16 };
+void mf_unknowns_curve_name(const struct unknowns *unknowns, enum unknown_kind kind, size_t curve,
+                            char name[UNKNOWNS_NAME_SIZE]);
+
+/// The curve that a fit begins with, shape [points]: that of the run file, or the potential of mean
+/// force and a friction weight that falls linearly from the middle of its range.
+void mf_unknowns_start(const struct unknowns *unknowns, enum unknown_kind kind, double *curve);
+
+/// What a simulation of some curves and numbers is made of: the problem with these numbers in its
+/// scene; tables for the kernels of the curves that are given, and of the scene's laws where
+/// `curve` is NULL. What was made must be cleared with mf_unknowns_laws_clear, even after a
+/// failure; it points into itself and may not be copied.
+/// @param[in] curve   shape [UNKNOWNS][points]
+/// @param[in] number  shape [problem->numbers]
+/// Fails: NO_MEMORY; BAD_INPUT as mf_numbers_apply.
+struct unknowns_laws {
+    struct inverse_problem problem;
+    struct table own[UNKNOWNS]; ///< zero for what is the scene's
+    const struct table *table[UNKNOWNS];
+};
+enum status mf_unknowns_laws_make(const struct unknowns *unknowns,
+                                  const double *const curve[UNKNOWNS], const double *number,
+                                  struct unknowns_laws *laws) MUST_USE;
+void mf_unknowns_laws_clear(struct unknowns_laws *laws);
+
+/// The same of the curves and numbers that a fit begins with. As mf_unknowns_laws_make.
+enum status mf_unknowns_laws_start(const struct unknowns *unknowns,
+                                   struct unknowns_laws *laws) MUST_USE;
