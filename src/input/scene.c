@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "input/scene.h"
 
+#include "base/digest.h"
 #include "base/memory.h"
 #include "io/data_table.h"
-#include "io/checkpoint.h"
 
 #include <math.h>
 
@@ -320,7 +320,7 @@ void mf_scene_digest(const struct scene *scene, uint64_t *digest) {
     mf_scene_law_digest(&scene->omega, digest);
     const size_t count = (size_t)scene->setup.placement.count;
     for (int d = 0; d < scene->setup.box.dimensions; d++) {
-        mf_checkpoint_digest_add(digest, scene->start.position[d], count * sizeof(double));
-        mf_checkpoint_digest_add(digest, scene->start.velocity[d], count * sizeof(double));
+        mf_digest_add(digest, scene->start.position[d], count * sizeof(double));
+        mf_digest_add(digest, scene->start.velocity[d], count * sizeof(double));
     }
 }

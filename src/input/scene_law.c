@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "input/scene_law.h"
 
+#include "base/digest.h"
 #include "base/memory.h"
 #include "curves/sampled.h"
 #include "io/data_table.h"
 #include "io/votca.h"
-#include "io/checkpoint.h"
 
 #include <string.h>
 
@@ -220,6 +220,5 @@ void mf_scene_law_write(const struct scene_law *law, const struct composition *c
 void mf_scene_law_digest(const struct scene_law *law, uint64_t *digest) {
     const struct table *table = &law->table;
     const size_t rows = (size_t)table->curves * (TABLE_INTERVALS + 1);
-    mf_checkpoint_digest_add(digest, table->coefficient,
-                             rows * (size_t)table->terms * sizeof(double));
+    mf_digest_add(digest, table->coefficient, rows * (size_t)table->terms * sizeof(double));
 }
