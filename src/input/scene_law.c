@@ -3,6 +3,7 @@
 
 #include "base/digest.h"
 #include "base/memory.h"
+#include "base/names.h"
 #include "curves/sampled.h"
 #include "io/data_table.h"
 #include "io/votca.h"
@@ -83,14 +84,13 @@ static bool is_usable(const struct curve *curve) {
 
 enum status mf_scene_read_curve(struct curve *curve, struct json_object *parent, const char *key,
                                 const struct curve_family *const *list, const struct units *units) {
-    enum { MOST = 16 };
-    const char *names[MOST] = {"none"};
-    for (size_t k = 0; list[k] && k + 2 < MOST; k++)
-        names[k + 1] = list[k]->name;
+    const char **names;
     struct json_object object = mf_json_child(parent, key, false);
     if (object.item == NULL)
         return STATUS_OK;
+    TRY(mf_names_collect(list, "none", &names));
     const char *law = mf_json_choice(&object, "law", names, NULL);
+    mf_memory_free(names);
     const struct curve_family *family = law ? mf_curve_find(list, law) : NULL;
     if (family) {
         const size_t faults = mf_json_fault_count(object.document);
