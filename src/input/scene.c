@@ -44,7 +44,7 @@ const struct field mf_scene_fields[] = {
     FIELD_END,
 };
 
-static void check_weight(const struct scene *scene, struct json_object *object) {
+static void check_omega(const struct scene *scene, struct json_object *object) {
     const struct table *table = &scene->omega.table;
     for (int row = 0; row < table->curves * (TABLE_INTERVALS + 1); row++)
         if (table->coefficient[2 * row] < 0) {
@@ -258,7 +258,7 @@ enum status mf_scene_read(struct scene *scene, struct json_object *object, int u
         TRY(mf_scene_law_read(&scene->omega, object, "dissipative", mf_curve_omegas,
                               &scene->setup.composition, &scene->units));
         TRY(mf_scene_law_tabulate(&scene->omega, mf_table_init_omega));
-        check_weight(scene, object);
+        check_omega(scene, object);
     }
     TRY(read_dynamics(scene, object, unknown));
     scene->setup.potential = scene->potential.curves ? &scene->potential.table : NULL;
