@@ -114,8 +114,7 @@ void mf_scene_write_curve(const struct curve *curve, struct json_writer *writer,
     mf_json_end(writer);
 }
 
-// A curve for all pairs, or one for each kind
-// ---------------------------------------------------------
+// A curve for all pairs, or one for each pair type ------------------------------------------------
 
 static void fault_unknown_pair(struct json_object *object, const struct composition *composition,
                                const char *key) {
@@ -161,7 +160,7 @@ enum status mf_scene_law_read(struct scene_law *law, struct json_object *parent,
                               const struct composition *composition, const struct units *units) {
     if (composition->types == 0) {
         mf_json_has(parent,
-                    key); // a fault of the types is told, those of their pairs would mislead
+                    key); // the fault is one of the types: those of their pairs would mislead
         return STATUS_OK;
     }
     if (composition_is_mixed(composition)) {
