@@ -88,7 +88,7 @@ static const char mixture[] =
 static const char *const mixture_tables[] = {"rdf_A-A.tsv", "rdf_A-B.tsv", "rdf_B-B.tsv",
                                              "thermodynamics.tsv", NULL};
 
-static void test_simulate_leaves_a_table_for_each_kind_of_pairs_of_a_mixture(void **state) {
+static void test_simulate_leaves_a_table_for_each_pair_type_of_a_mixture(void **state) {
     static struct run_program_result result;
     write_scene(*state, mixture, NULL, NULL);
     simulate(&result, "out");
@@ -111,7 +111,7 @@ static void test_simulate_leaves_a_table_for_each_kind_of_pairs_of_a_mixture(voi
     assert_contains(result.out, "2 types: which curve a pair of the 3 kinds has");
 }
 
-static void test_simulate_takes_a_dissipative_law_for_each_kind_of_pairs(void **state) {
+static void test_simulate_takes_a_dissipative_law_for_each_pair_type(void **state) {
     static struct run_program_result result;
     write_scene(*state, mixture, NULL, NULL);
     simulate(&result, "one");
@@ -462,8 +462,8 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_simulate_leaves_all_files_of_a_run),
         TEST(test_simulate_draws_diffusion_when_gnuplot_is_there),
         TEST_WITHOUT_FIGURES(test_simulate_measures_diffusion_when_asked),
-        TEST_WITHOUT_FIGURES(test_simulate_leaves_a_table_for_each_kind_of_pairs_of_a_mixture),
-        TEST_WITHOUT_FIGURES(test_simulate_takes_a_dissipative_law_for_each_kind_of_pairs),
+        TEST_WITHOUT_FIGURES(test_simulate_leaves_a_table_for_each_pair_type_of_a_mixture),
+        TEST_WITHOUT_FIGURES(test_simulate_takes_a_dissipative_law_for_each_pair_type),
         TEST_WITHOUT_FIGURES(test_interrupted_mixture_goes_on_with_the_same_bits),
         TEST(test_simulate_draws_all_g_of_a_mixture_when_gnuplot_is_there),
         TEST_WITHOUT_FIGURES(test_used_settings_run_again_give_the_same_bits),

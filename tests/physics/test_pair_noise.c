@@ -69,7 +69,7 @@ struct plan {
 static const double site_spacing = 2.4;
 static const double triangle_leg = 0.6;
 
-static void make_weight(struct table *omega) {
+static void make_omega(struct table *omega) {
     struct formula_power_omega_parameters parameters = {1.3, 1, 0, 1};
     const struct curve curve = {&mf_formula_power_omega, &parameters};
     assert_ok(mf_table_init_omega(omega, &curve));
@@ -194,7 +194,7 @@ static void make_scene(struct scene *scene, const struct plan *plan) {
     const struct box box = {plan->dimensions, {edge, edge, plan->dimensions == 3 ? edge : 1}};
     const size_t motifs = (size_t)lround(pow(plan->sites, plan->dimensions));
     *scene = (struct scene){.law = {.temperature = 0.8, .time_step = 0.03, .seed = 0x57EED}};
-    make_weight(&scene->omega);
+    make_omega(&scene->omega);
     scene->law.omega = &scene->omega;
     scene->pairs = motifs * (plan->motif == DIMERS ? 1 : SIDES);
     scene->probe = mf_memory_zeroed(scene->pairs, sizeof *scene->probe);

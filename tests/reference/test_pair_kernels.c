@@ -36,7 +36,7 @@ static struct variant variants[VARIANTS_MOST];
 static int variant_count;
 
 /// Interactions used by all tests.
-static struct { struct table soft, lennard_jones, gaussian, sampled, omega, thesis_weight; } tables;
+static struct { struct table soft, lennard_jones, gaussian, sampled, omega, thesis_omega; } tables;
 
 static void make_sampled(struct curve *curve) {
     enum { POINTS = 60 };
@@ -70,7 +70,7 @@ static int make_tables(void **state) {
     struct formula_power_omega_parameters *omega = curve.parameters;
     *omega = (struct formula_power_omega_parameters){
         .sigma = 2.589, .exponent = 1, .inner_cutoff = 0.596, .cutoff = 1.72};
-    assert_ok(mf_table_init_omega(&tables.thesis_weight, &curve));
+    assert_ok(mf_table_init_omega(&tables.thesis_omega, &curve));
     mf_curve_clear(&curve);
     return 0;
 }
@@ -82,7 +82,7 @@ static int clear_tables(void **state) {
     mf_table_clear(&tables.gaussian);
     mf_table_clear(&tables.sampled);
     mf_table_clear(&tables.omega);
-    mf_table_clear(&tables.thesis_weight);
+    mf_table_clear(&tables.thesis_omega);
     return 0;
 }
 
@@ -192,7 +192,7 @@ static void check_law(const struct system *system, const struct pair_law *of_any
         assert_string_equal(mf_simd_name(), variants[v].instruction_set);
         law.precision = variants[v].precision;
         char label[100];
-        snprintf(label, sizeof label, "%s, %dD, N = %zu, potential %d, weight %d", variants[v].name,
+        snprintf(label, sizeof label, "%s, %dD, N = %zu, potential %d, omega %d", variants[v].name,
                  system->box.dimensions, system->count, law.potential != NULL, law.omega != NULL);
         mf_pair_forces(&law, &particles, &neighbours, step, PAIR_FORCES, NULL);
         check_forces(&particles, reference, scales.force, allowed.force, label);
@@ -209,16 +209,15 @@ static void check_law(const struct system *system, const struct pair_law *of_any
     mf_neighbours_clear(&neighbours);
 }
 
-/// Potential alone, weight alone, and both; the friction weight's range equal to, below and above
-/// Φ's.
+/// Φ alone, ω alone, and both; the cutoff of ω equal to that of Φ, below it, and above it.
 static void check_all_laws(const struct system *system, const struct table *potential) {
-    const struct table *weights[] = {&tables.omega, &tables.thesis_weight};
+    const struct table *omegas[] = {&tables.omega, &tables.thesis_omega};
     struct pair_law law = make_law(potential, NULL);
     check_law(system, &law);
     for (int w = 0; w < 2; w++) {
-        law = make_law(potential, weights[w]);
+        law = make_law(potential, omegas[w]);
         check_law(system, &law);
-        law = make_law(NULL, weights[w]);
+        law = make_law(NULL, omegas[w]);
         check_law(system, &law);
     }
 }
@@ -273,21 +272,19 @@ static void test_pair_kernels_agree_with_all_pairs_when_particles_are_few(void *
     }
 }
 
-/// Every pair type with a potential and a weight of its own, of different ranges; some have
-/// none.
+/// Every pair type with a potential and an ω of its own, of different cutoffs; some have none.
 static void check_mixture(const struct system *system, const struct composition *composition) {
     const struct table *const potentials[] = {
         &tables.soft, &tables.sampled, NULL, &tables.gaussian, &tables.lennard_jones, &tables.soft};
-    const struct table *const weights[] = {&tables.thesis_weight, &tables.omega,
-                                           &tables.omega,         NULL,
-                                           &tables.thesis_weight, &tables.omega};
+    const struct table *const omegas[] = {&tables.thesis_omega, &tables.omega, &tables.omega, NULL,
+                                          &tables.thesis_omega, &tables.omega};
     struct table parts[2][6] = {{{0}}}, potential, omega;
     const int pairs = mf_composition_pairs(composition);
     for (int p = 0; p < pairs; p++) {
         if (potentials[p])
             parts[0][p] = *potentials[p];
-        if (weights[p])
-            parts[1][p] = *weights[p];
+        if (omegas[p])
+            parts[1][p] = *omegas[p];
     }
     assert_ok(mf_table_stack(&potential, parts[0], pairs));
     assert_ok(mf_table_stack(&omega, parts[1], pairs));
@@ -432,7 +429,7 @@ static double *shuffled_forces(const struct system *system, const struct pair_la
 static void test_pair_forces_do_not_depend_on_order_or_skin_when_ids_are_the_same(void **state) {
     (void)state;
     const struct system system = {{3, {5.1, 4.6, 6.3}}, 443, RANDOM, 0.25};
-    struct pair_law law = make_law(&tables.soft, &tables.thesis_weight);
+    struct pair_law law = make_law(&tables.soft, &tables.thesis_omega);
     for (int v = 0; v < variant_count; v++) {
         variants_select(&variants[v]);
         law.precision = variants[v].precision;

@@ -48,7 +48,7 @@ static void measure(const struct made *made, double discard_above, double patien
     assert_ok(mf_evaluate(&made->problem, &candidate, &parameters, NULL, NULL, result));
 }
 
-static void test_evaluate_stops_early_when_a_candidate_is_hopeless(void **state) {
+static void test_evaluate_stops_early_when_a_candidate_cannot_win(void **state) {
     (void)state;
     struct made made;
     struct evaluate_result whole, stopped;
@@ -200,7 +200,7 @@ static void test_candidates_race_with_the_same_bits_for_any_threads(void **state
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_evaluate_stops_early_when_a_candidate_is_hopeless),
+        cmocka_unit_test(test_evaluate_stops_early_when_a_candidate_cannot_win),
         cmocka_unit_test(test_evaluate_has_the_same_bits_when_it_is_not_stopped),
         cmocka_unit_test(test_evaluate_races_with_fewer_samples_than_looks),
         cmocka_unit_test(test_evaluate_begins_where_it_is_told),

@@ -7,8 +7,8 @@
 
 enum { BINS = 40, CORE = 8 };
 
-/// g(r) = 0 in the core, 0.05 in the next bin, of too few pairs to tell, and 1; a potential and a
-/// weight of B-splines.
+/// g(r) = 0 in the core, 0.05 in the next bin, of too few pairs to tell, and 1; a potential and an
+/// ω of B-splines.
 static void begin(struct decoder *decoder, struct inverse_problem *problem, double g[BINS]) {
     for (int k = 0; k < BINS; k++)
         g[k] = k < CORE ? 0 : k == CORE ? 0.05 : 1;
@@ -45,7 +45,7 @@ static void test_change_of_a_potential_is_that_beyond_its_core(void **state) {
     mf_decoder_clear(&decoder);
 }
 
-static void test_change_of_a_weight_is_its_rms(void **state) {
+static void test_change_of_omega_is_its_rms(void **state) {
     (void)state;
     struct decoder decoder;
     struct inverse_problem problem;
@@ -62,7 +62,7 @@ static void test_change_of_a_weight_is_its_rms(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_change_of_a_potential_is_that_beyond_its_core),
-        cmocka_unit_test(test_change_of_a_weight_is_its_rms),
+        cmocka_unit_test(test_change_of_omega_is_its_rms),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
