@@ -203,6 +203,7 @@ static void test_table_stack_holds_each_curve_as_it_was_alone(void **state) {
     mf_curve_clear(&gaussian);
 }
 
+/// Value and slope are continuous at every node, and so is the curvature.
 static void test_table_is_twice_continuous_when_a_potential(void **state) {
     (void)state;
     struct curve curve = make(&mf_formula_lennard_jones);
