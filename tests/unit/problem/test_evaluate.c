@@ -36,10 +36,10 @@ static void begin(struct made *made) {
         .threads = 1};
 }
 
-static void measure(const struct made *made, double discard_above, double patience,
+static void measure(const struct made *made, double discard_above, double racing,
                     struct evaluate_result *result) {
     struct evaluate_parameters parameters = made->parameters;
-    parameters.patience = patience;
+    parameters.racing = racing;
     const struct evaluate_candidate candidate = {.potential = made->problem.scene.potential,
                                                  .omega = made->problem.scene.omega,
                                                  .discard_above = discard_above,
@@ -185,7 +185,7 @@ static void test_candidates_race_with_the_same_bits_for_any_threads(void **state
     struct made made;
     struct rounds one = {0}, many = {0};
     begin(&made);
-    made.parameters.patience = 1;
+    made.parameters.racing = 1;
     measure_rounds(&made, 1, &one);
     // Those of the second round are all stopped within their first quarter.
     assert_in_range(one.steps, CANDIDATES * (220 + 20 + 4 * 5), CANDIDATES * (220 + 70));
