@@ -81,7 +81,8 @@ MESOFIT_API int mesofit_simulation_dimensions(const struct mesofit_simulation *s
 /** @name The state, without a copy
  *  Arrays of shape [count] for axis 0, 1 and, in space, 2; the particle in place k has the number
  *  mesofit_simulation_ids()[k]. Steps sort the particles: ask again after each run.
- *  Positions may be outside of the box by what a particle has moved since the last sort. NULL: no such axis.
+ *  Positions may be outside of the box by what a particle has moved since the last sort.
+ *  NULL: no such axis.
  */
 MESOFIT_API const uint32_t *mesofit_simulation_ids(const struct mesofit_simulation *simulation);
 MESOFIT_API const double *mesofit_simulation_positions(const struct mesofit_simulation *simulation,
