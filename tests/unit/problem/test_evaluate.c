@@ -30,7 +30,7 @@ static void begin(struct made *made) {
     }
     made->problem = (struct inverse_problem){
         .targets = {.bins = {0, 0.05, BINS}, .target[TARGET_RDF] = {BINS, made->g, made->error, 0}},
-        .unknown[UNKNOWN_OMEGA] = {true, {0, VARIABLES, 0, 6, 0, 1}, {NULL}},
+        .unknown[UNKNOWN_OMEGA] = {true, {0, VARIABLES, 0, 6, 0, 1, {0}}, {NULL}},
         .scene = made->fluid.setup,
         .seed = 3,
         .threads = 1};

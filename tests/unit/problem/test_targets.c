@@ -46,7 +46,7 @@ static void test_targets_error_is_that_of_a_single_target_as_it_is(void **state)
     (void)state;
     const double value[] = {1}, error[] = {0.5};
     struct target_distance distance[TARGETS] = {
-        [TARGET_MSD] = {3, 0.25, 1}, [TARGET_VACF] = {99, 99, 1}};
+        [TARGET_MSD] = {3, 0.25, 1, 0}, [TARGET_VACF] = {99, 99, 1, 0}};
     const struct targets targets = {.target[TARGET_MSD] = {1, value, error, 8}};
     assert_int_equal(mf_targets_count(&targets), 1);
     assert_close(mf_targets_error(&targets, distance), 3, 0);
@@ -59,7 +59,7 @@ static void test_targets_error_is_1_at_the_errors_of_several_targets(void **stat
     const struct targets targets = {.target[TARGET_RDF] = {2, value, small, 0},
                                     .target[TARGET_DIFFUSION] = {1, value, large, 0}};
     struct target_distance distance[TARGETS] = {
-        [TARGET_RDF] = {0.01, 0.02, 2}, [TARGET_DIFFUSION] = {5, 10, 1}};
+        [TARGET_RDF] = {0.01, 0.02, 2, 0}, [TARGET_DIFFUSION] = {5, 10, 1, 0}};
     assert_int_equal(mf_targets_count(&targets), 2);
     assert_close(mf_targets_error(&targets, distance), 1, rounding);
     assert_close(mf_targets_noise(&targets, distance), 2, rounding);

@@ -14,8 +14,8 @@ static void begin(struct decoder *decoder, struct inverse_problem *problem, doub
         g[k] = k < CORE ? 0 : k == CORE ? 0.05 : 1;
     *problem = (struct inverse_problem){
         .targets = {.bins = {0, 0.1, BINS}, .target[TARGET_RDF] = {.count = BINS, .value = g}},
-        .unknown = {{true, {INVERSE_CURVE_BSPLINE, 12, -20, 80, 0, 0}, {NULL}},
-                    {true, {INVERSE_CURVE_BSPLINE, 10, 0, 5, 0.1, 1.5}, {NULL}}},
+        .unknown = {{true, {INVERSE_CURVE_BSPLINE, 12, -20, 80, 0, 0, {0}}, {NULL}},
+                    {true, {INVERSE_CURVE_BSPLINE, 10, 0, 5, 0.1, 1.5, {0}}, {NULL}}},
         .scene = {.temperature = 1},
         .core_threshold = 1e-3,
         .core_stiffness = 2000};
