@@ -9,7 +9,7 @@
 # make asan           the whole test suite under address and undefined-behaviour sanitizers
 # make fuzz           damaged files, SECONDS=600 of them: every reader (libFuzzer, needs clang), whole runs
 # make tsan           tests of threads and a threaded simulation under the thread sanitizer
-# make lint           formatting, static analysis, layers, names, licence lines
+# make lint           formatting, static analysis, layers, names, licence lines, lengths
 # make bench          speed of the engine on this machine, to tests/bench/results
 # make WERROR=1 …     warnings are errors
 # make VERBOSE=1 …    shows the whole commands

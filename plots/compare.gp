@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Several fits and simulations: their radial distribution functions, Potentials and friction weights with 95 % bands, as far
-# as any of them has one, and what the error cost each. A fit keeps its colour in every panel.
+# Several fits and simulations: g(r), Φ(r) and ω(r) with their 95 % bands, as far as any of them has
+# one, and what the error cost each. A fit keeps its colour in every panel.
 # Reads compare.tsv (numbers and names of the fits, in its comment lines) and, one block a fit and
 # a row of nan for a fit that has none,
 # rdf_compare.tsv: r, target, target_error, result, result_error;

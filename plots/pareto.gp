@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What a fit of several goals has to choose from, by its errors of the first two of them: every
+# What a fit of several targets has to choose from, by its errors of the first two of them: every
 # simulation, the front of the last iteration, and the member that was chosen; dashed, what the
 # statistical errors alone would give.
-# Reads pareto.tsv: member, rank, chosen, measured, error, an rmse of each goal, then a noise of each;
-# and pareto_history.tsv: iteration, front, error, an rmse of each goal.
+# Reads pareto.tsv: member, rank, chosen, measured, error, an rmse of each target, then a noise of each;
+# and pareto_history.tsv: iteration, front, error, an rmse of each target.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
-goals = int(system("head -n 1 pareto.tsv | grep -o _rmse | wc -l"))
-goal(n) = system(sprintf("awk -F '\t' '{ sub(/_.*/, \"\", $%d); print $%d; exit }' pareto.tsv", \
+targets = int(system("head -n 1 pareto.tsv | grep -o _rmse | wc -l"))
+target(n) = system(sprintf("awk -F '\t' '{ sub(/_.*/, \"\", $%d); print $%d; exit }' pareto.tsv", \
     5 + n, 5 + n))
-noise_x = 6 + goals
-noise_y = 7 + goals
+noise_x = 6 + targets
+noise_y = 7 + targets
 
 # Those far off would squeeze the front into a corner: the axes end where the farthest tenth begins.
 stats "pareto_history.tsv" using 4 name "X" nooutput
@@ -27,8 +27,8 @@ right = low(X_max, upper(A_max, X_up_quartile, X_median))
 top = low(Y_max, upper(B_max, Y_up_quartile, Y_median))
 
 light = "#b5d3e7"
-# The front of two goals is a line; that of more is a surface, seen from the side.
-front_style = goals > 2 ? "points" : "linespoints"
+# The front of two targets is a line; that of more is a surface, seen from the side.
+front_style = targets > 2 ? "points" : "linespoints"
 
 do for [kind in kinds] {
     eval open(kind, "pareto", 720, 560)
@@ -38,8 +38,8 @@ do for [kind in kinds] {
     set bmargin at screen 0.125
     eval log_range("x", left, right)
     eval log_range("y", bottom, top)
-    set xlabel rmse_of(goal(1))
-    eval name_axis(rmse_of(goal(2)), 0.024)
+    set xlabel rmse_of(target(1))
+    eval name_axis(rmse_of(target(2)), 0.024)
     set key at screen 0.97, screen 0.985 right top vertical maxrows 1
     if (P_max > 0) {
         set arrow 1 from first P_max, graph 0 to first P_max, graph 1 nohead back \

@@ -4,7 +4,7 @@
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
-# Of a mixture "_A-B", the kind of pairs.
+# Of a mixture "_A-B", the pair type.
 pair = system("printf %s \"$MESOFIT_PAIR\"")
 table = "rdf" . pair . ".tsv"
 

@@ -18,8 +18,8 @@ do for [file in rdfs] {
     stats file using ($2 + known(3)) name "G" nooutput
     g_top = high(g_top, G_max)
 }
-# The kind of pairs that a table is of: nothing, or A-B.
-kind_of(file) = strlen(file) > 7 ? file[5:strlen(file) - 4] : ""
+# The pair type that a table is of: nothing, or A-B.
+pair_of(file) = strlen(file) > 7 ? file[5:strlen(file) - 4] : ""
 stats "thermodynamics.tsv" using (ps * $2) name "T" nooutput
 stats "thermodynamics.tsv" using (valid(6) ? low($3, $6) : $3) name "L" nooutput
 stats "thermodynamics.tsv" using (valid(6) ? high($3, $6) : $3) name "H" nooutput
@@ -57,7 +57,7 @@ do for [kind in kinds] {
         set key on inside right top vertical maxrows 6 noautotitle
         plot for [i = 1:words(rdfs)] word(rdfs, i) using (nm * $1):($2 - $3):($2 + $3) \
                 with filledcurves @band linecolor rgb colour_of(i - 1), \
-            for [i = 1:words(rdfs)] word(rdfs, i) using (nm * $1):2 with lines title kind_of(word(rdfs, i)) \
+            for [i = 1:words(rdfs)] word(rdfs, i) using (nm * $1):2 with lines title pair_of(word(rdfs, i)) \
                 linewidth 2.2 linecolor rgb colour_of(i - 1)
     }
     set lmargin at screen left

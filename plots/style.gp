@@ -97,13 +97,13 @@ r_axis_of(file) = in_units(file, "r[nm]", "{/:Italic r} / nm", r_label)
 t_axis_of(file) = in_units(file, "time[ps]", "{/:Italic t} / ps", t_label)
 
 # What a target is called, and the unit of its error.
-goal_label(goal) = goal eq "rdf" ? "{/:Italic g}" : goal eq "etd" ? "{/:Italic E}" : \
-    goal eq "vacf" ? "VACF" : goal eq "msd" ? "MSD" : \
-    goal eq "diffusion" ? "{/:Italic D}" : "{/:Italic p}"
-goal_unit(goal) = goal eq "vacf" ? " / ({/:Italic λ}^2/{/:Italic τ}^2)" : \
-    goal eq "msd" ? " / {/:Italic λ}^2" : goal eq "diffusion" ? " / ({/:Italic λ}^2/{/:Italic τ})" : \
-    goal eq "pressure" ? " / ({/:Italic k}_B{/:Italic T}_0/{/:Italic λ}^3)" : ""
-rmse_of(goal) = "rmse of " . goal_label(goal) . goal_unit(goal)
+target_label(target) = target eq "rdf" ? "{/:Italic g}" : target eq "etd" ? "{/:Italic E}" : \
+    target eq "vacf" ? "VACF" : target eq "msd" ? "MSD" : \
+    target eq "diffusion" ? "{/:Italic D}" : "{/:Italic p}"
+target_unit(target) = target eq "vacf" ? " / ({/:Italic λ}^2/{/:Italic τ}^2)" : \
+    target eq "msd" ? " / {/:Italic λ}^2" : target eq "diffusion" ? " / ({/:Italic λ}^2/{/:Italic τ})" : \
+    target eq "pressure" ? " / ({/:Italic k}_B{/:Italic T}_0/{/:Italic λ}^3)" : ""
+rmse_of(target) = "rmse of " . target_label(target) . target_unit(target)
 
 # What the column "error" of a fit is, from the targets that used.json says are fitted.
 fitted = !has("used.json") ? "" : system("awk '/\"(rdf|etd|vacf|msd|diffusion|pressure)\":/ { \

@@ -77,7 +77,7 @@ MESOFIT_API struct mesofit_fit *mesofit_fit_open(const char *file, int threads,
 MESOFIT_API void mesofit_fit_free(struct mesofit_fit *fit);
 
 /** One iteration; call it until state->finished. `state` may be NULL. Fails: INTERRUPTED,
- * NO_MEMORY, BAD_INPUT; the fit is then only good to be freed. */
+ *  NO_MEMORY, BAD_INPUT; the fit is then only good to be freed. */
 MESOFIT_API enum mesofit_status mesofit_fit_iterate(struct mesofit_fit *fit,
                                                     struct mesofit_fit_state *state);
 

@@ -57,8 +57,8 @@ MESOFIT_API struct mesofit_simulation *mesofit_simulation_open(const char *file)
 MESOFIT_API void mesofit_simulation_free(struct mesofit_simulation *simulation);
 
 /** Forces of the caller's own, added to those of the pairs in each step: add to force[d][k].
- *  @param position, force  shape [dimensions][count], in the order of `id`   [lambda], [k_B
- * T_0/lambda]
+ *  @param position, force  shape [dimensions][count], in the order of `id`
+ *                          [lambda], [k_B T_0/lambda]
  *  @param id               of each particle, 0 to count - 1, shape [count]
  *  @return their potential energy [k_B T_0], or 0
  */
@@ -80,8 +80,9 @@ MESOFIT_API int mesofit_simulation_dimensions(const struct mesofit_simulation *s
 
 /** @name The state, without a copy
  *  Arrays of shape [count] for axis 0, 1 and, in space, 2; the particle in place k has the number
- *  mesofit_simulation_ids()[k]. Steps sort the particles: ask again after each run. Positions may
- * be outside of the box by what a particle has moved since the last sort. NULL: no such axis.
+ *  mesofit_simulation_ids()[k]. Steps sort the particles: ask again after each run.
+ *  Positions may be outside of the box by what a particle has moved since the last sort.
+ *  NULL: no such axis.
  */
 MESOFIT_API const uint32_t *mesofit_simulation_ids(const struct mesofit_simulation *simulation);
 MESOFIT_API const double *mesofit_simulation_positions(const struct mesofit_simulation *simulation,

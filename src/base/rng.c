@@ -3,8 +3,6 @@
 
 #include <Random123/philox.h>
 
-#include <math.h>
-
 struct rng_block mf_rng_philox(uint64_t seed, enum rng_stream stream, uint32_t a, uint32_t b,
                                uint32_t c) {
     const philox4x32_ctr_t counter = {{a, b, c, rng_stream_word(stream, 0)}};
@@ -26,10 +24,8 @@ double mf_rng_uniform(uint32_t high, uint32_t low) {
 void mf_rng_normal4(struct rng_block block, double normal[4]) {
     for (int pair = 0; pair < 2; pair++) {
         const double u = ((double)block.word[2 * pair] + 0.5) * 0x1p-32;
-        const double angle = 2 * M_PI * ((double)block.word[2 * pair + 1] * 0x1p-32);
-        const double radius = sqrt(-2 * log(u));
-        normal[2 * pair] = radius * cos(angle);
-        normal[2 * pair + 1] = radius * sin(angle);
+        const double v = (double)block.word[2 * pair + 1] * 0x1p-32;
+        rng_box_muller(u, v, normal + 2 * pair);
     }
 }
 

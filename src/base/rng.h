@@ -7,6 +7,7 @@
 /// the key and is never added to a counter, so seed 43 does not replay seed 42 a step later.
 #pragma once
 
+#include <math.h>
 #include <stdint.h>
 
 /// What a number is for. Two uses never share a stream.
@@ -36,7 +37,16 @@ struct rng_block mf_rng_philox(uint64_t seed, enum rng_stream stream, uint32_t a
 /// Seed of a simulation that is number (a, b) of `stream`, itself the child of `seed`.
 uint64_t mf_rng_child_seed(uint64_t seed, enum rng_stream stream, uint32_t a, uint32_t b);
 
-/// Four standard normal numbers (Box and Muller, Ann. Math. Stat. 29, 610 (1958)).
+/// Two standard normal numbers from uniform ones, u in (0, 1) and v in [0, 1).
+/// G. E. P. Box and M. E. Muller, Ann. Math. Stat. 29, 610 (1958).
+static inline void rng_box_muller(double u, double v, double normal[2]) {
+    const double angle = 2 * M_PI * v;
+    const double radius = sqrt(-2 * log(u));
+    normal[0] = radius * cos(angle);
+    normal[1] = radius * sin(angle);
+}
+
+/// Four standard normal numbers (rng_box_muller).
 void mf_rng_normal4(struct rng_block block, double normal[4]);
 
 /// Uniform number in (0, 1), 52 bits from two words; never 0 and never 1.

@@ -321,8 +321,7 @@ static enum status carry_out(struct run *run, const char *file) {
     TRY(mf_bench_scene_read(&run->scene, file, run->options->output, run->common));
     if (composition_is_mixed(&run->scene.scene.setup.composition))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: particles.types: bench accuracy wants beads that are alike",
-                              file);
+                              "%s: particles.types: bench accuracy wants one component", file);
     TRY(choose(run));
     if (run->options->output) { // two minutes are not to be lost
         TRY(mf_output_open(&probe, run->options->output));

@@ -4,7 +4,7 @@
 
 #include "bench/bench_point.h"
 
-/// Numbers of a row, in the order of bench_columns. Of a change (the point minus the reference) the
+/// Numbers of a row. Of a change (the point minus the reference) the
 /// error includes that of the reference.
 enum bench_column {
     BENCH_TIME_STEP,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Bézier-smoothed spline random walk: coefficients → function values.
+/// @file Bézier curve: coefficients → function values.
 #pragma once
 
 #include "base/status.h"
@@ -12,10 +12,10 @@
 /// The curve begins at x_0 − x_n and is smoother than the coefficients by about sqrt(t(1 − t)/n) of
 /// the range: neighbouring coefficients act together.
 ///
-/// A. G. Baydin (thesis on DPD coarse-graining by evolutionary optimisation, 2008), where the
-/// walk's last value is likewise 0 at the cutoff. Here that is done by a shift: setting the last
-/// coefficient to 0 leaves a cliff of half the coefficient range within the last coefficient, whose
-/// force heats four of five individuals of a first generation beyond their temperature.
+/// A. G. Baydin (thesis on DPD coarse-graining by evolutionary optimisation, 2008), whose control
+/// points are a random walk that is likewise 0 at the cutoff. Here a shift makes the end 0. To set
+/// the last coefficient to 0 instead leaves a cliff of half the range of coefficients at the end of
+/// the curve, whose force heats four of five individuals of a first generation too much.
 /// @param[in]  coefficients      shape [count], count ≥ 1
 /// @param[in]  t, values  shape [points]
 /// Fails: NO_MEMORY. Tested: test_curves.

@@ -2,10 +2,9 @@
 #include "curves/curve.h"
 
 #include "base/memory.h"
+#include "base/names.h"
 #include "curves/formula.h"
 #include "curves/sampled.h"
-
-#include <string.h>
 
 const struct curve_family *const mf_curve_potentials[] = {
     &mf_formula_lennard_jones,
@@ -21,11 +20,10 @@ const struct curve_family *const mf_curve_omegas[] = {
     NULL,
 };
 
+NAMED_RECORD(struct curve_family);
+
 const struct curve_family *mf_curve_find(const struct curve_family *const *list, const char *name) {
-    for (; *list; list++)
-        if (strcmp((*list)->name, name) == 0)
-            return *list;
-    return NULL;
+    return mf_names_find(list, name);
 }
 
 enum status mf_curve_create(struct curve *curve, const struct curve_family *family) {

@@ -28,7 +28,7 @@ struct curve {
 /// Potentials Φ(r) that a scene can name, NULL-terminated.
 extern const struct curve_family *const mf_curve_potentials[];
 
-/// Weights ω(r) that a scene can name, NULL-terminated.
+/// Friction weights ω(r) that a scene can name, NULL-terminated.
 extern const struct curve_family *const mf_curve_omegas[];
 
 /// Family called `name` in `list`, or NULL.

@@ -118,17 +118,17 @@ static double power_omega_cutoff(const void *parameters) {
     return ((const struct formula_power_omega_parameters *)parameters)->cutoff;
 }
 
-#define WEIGHT(member) .offset = offsetof(struct formula_power_omega_parameters, member)
+#define OMEGA(member) .offset = offsetof(struct formula_power_omega_parameters, member)
 static const struct field power_omega_fields[] = {
-    {"sigma", FIELD_NUMBER, WEIGHT(sigma), .initial = 2.1213203435596424, AT_LEAST_ZERO,
+    {"sigma", FIELD_NUMBER, OMEGA(sigma), .initial = 2.1213203435596424, AT_LEAST_ZERO,
      .unit = "sqrt(mass/time)",
      .help = "omega extrapolated to r = 0; sigma^2 is Groot and "
              "Warren's gamma"},
-    {"exponent", FIELD_NUMBER, WEIGHT(exponent), .initial = 1, POSITIVE, .unit = "",
+    {"exponent", FIELD_NUMBER, OMEGA(exponent), .initial = 1, POSITIVE, .unit = "",
      .help = "s in omega = sigma (1 - r/r_c)^s"},
-    {"inner_cutoff", FIELD_NUMBER, WEIGHT(inner_cutoff), .initial = 0, AT_LEAST_ZERO,
+    {"inner_cutoff", FIELD_NUMBER, OMEGA(inner_cutoff), .initial = 0, AT_LEAST_ZERO,
      .unit = "lambda", .help = "r_0: omega is 0 at and below it"},
-    {"cutoff", FIELD_NUMBER, WEIGHT(cutoff), .initial = 1, POSITIVE, .unit = "lambda",
+    {"cutoff", FIELD_NUMBER, OMEGA(cutoff), .initial = 1, POSITIVE, .unit = "lambda",
      .help = "r_c: omega is 0 beyond it"},
     FIELD_END,
 };

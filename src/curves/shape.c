@@ -2,13 +2,13 @@
 #include "curves/shape.h"
 
 #include "base/memory.h"
+#include "base/names.h"
 #include "curves/bezier.h"
 #include "curves/bspline.h"
 
 #include <gsl/gsl_multifit.h>
 
 #include <math.h>
-#include <string.h>
 
 static const struct shape bezier = {
     .name = "bezier",
@@ -25,11 +25,10 @@ static const struct shape bspline = {
 
 const struct shape *const mf_shapes[] = {&bezier, &bspline, NULL};
 
+NAMED_RECORD(struct shape);
+
 const struct shape *mf_shape_find(const char *name) {
-    for (const struct shape *const *known = mf_shapes; *known; known++)
-        if (strcmp((*known)->name, name) == 0)
-            return *known;
-    return NULL;
+    return mf_names_find(mf_shapes, name);
 }
 
 enum status mf_shape_basis(const struct shape *shape, size_t coefficients, const double *t,

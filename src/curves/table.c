@@ -11,7 +11,7 @@ static enum status allocate(struct table *table, double cutoff, int terms, int c
                             .inverse_spacing = TABLE_INTERVALS / cutoff,
                             .terms = terms,
                             .curves = curves,
-                            .reach = {cutoff}};
+                            .cutoffs = {cutoff}};
     const size_t rows = (size_t)(TABLE_INTERVALS + 1) * (size_t)curves;
     NEW_ARRAY(table->coefficient, rows * (size_t)terms);
     NEW_ARRAY(table->precise, rows);
@@ -128,7 +128,7 @@ enum status mf_table_stack(struct table *table, const struct table *parts, int c
     CHECK(allocate(table, cutoff, terms, curves));
     for (int p = 0; p < curves; p++) {
         const size_t rows = TABLE_INTERVALS + 1, first = (size_t)p * rows;
-        table->reach[p] = parts[p].cutoff;
+        table->cutoffs[p] = parts[p].cutoff;
         if (parts[p].curves == 0)
             continue;
         memcpy(table->coefficient + first * (size_t)terms, parts[p].coefficient,
@@ -150,8 +150,8 @@ void mf_table_clear(struct table *table) {
 }
 
 double mf_table_inverse_spacing(const struct table *table, int pair) {
-    const double reach = table_reach(table, pair);
-    return TABLE_INTERVALS / (reach > 0 ? reach : table->cutoff);
+    const double cutoff = table_cutoff(table, pair);
+    return TABLE_INTERVALS / (cutoff > 0 ? cutoff : table->cutoff);
 }
 
 void mf_table_evaluate(const struct table *table, double r, double *value, double *slope,

@@ -2,8 +2,8 @@
 /// @file What the pair kernels read: a curve on a uniform grid of polynomials.
 ///
 /// A potential becomes a twice continuously differentiable cubic spline; value and slope come from
-/// the same polynomial, so F = −dΦ/dr holds to rounding. A friction weight becomes straight pieces,
-/// since ω(r) may jump and a spline would ring there.
+/// the same polynomial, so F = −dΦ/dr holds to rounding. ω becomes straight pieces, since ω(r) may
+/// jump and a spline would ring there.
 ///
 /// A mixture has a curve for each pair type. They stand in one table, one after the other: row
 /// k of curve p is p (TABLE_INTERVALS + 1) + k. Each keeps the grid it would have alone, up to its
@@ -18,27 +18,27 @@
 /// of the formula, and the single-precision copy (16 KiB) still fits the first-level cache.
 enum { TABLE_INTERVALS = 1024 };
 
-/// Kinds of pairs of a mixture of eight types.
+/// Pair types of a mixture of eight types.
 enum { TABLE_MOST_CURVES = 36 };
 
 struct table {
-    double cutoff;                   ///< the largest of all curves [λ]
-    double inverse_spacing;          ///< of a table of one curve: intervals / cutoff [1/λ]
-    int terms;                       ///< coefficients an interval: 4 (potential) or 2 (weight)
-    int curves;                      ///< 1, for all pairs, or one for each pair type
-    double reach[TABLE_MOST_CURVES]; ///< cutoff of each curve; 0: it is 0 everywhere [λ]
+    double cutoff;                     ///< the largest of all curves [λ]
+    double inverse_spacing;            ///< of a table of one curve: intervals / cutoff [1/λ]
+    int terms;                         ///< coefficients an interval: 4 (Φ) or 2 (ω)
+    int curves;                        ///< 1, for all pairs, or one for each pair type
+    double cutoffs[TABLE_MOST_CURVES]; ///< of each curve; 0: it is 0 everywhere [λ]
     double *coefficient; ///< shape [curves, TABLE_INTERVALS + 1, terms]; the last row of each is 0
     /// What kernels want, shape [curves, TABLE_INTERVALS + 1, 4], a row for one load; f is the
-    /// fraction of the interval. Potential: value at f = 0, then the force F = c1 + f(c2 + f c3),
-    /// so that Φ = c0 − f(c1 + f(c2/2 + f c3/3)) / inverse_spacing. Weight: ω = c0 + f c1.
+    /// fraction of the interval. Φ: value at f = 0, then the force F = c1 + f(c2 + f c3),
+    /// so that Φ = c0 − f(c1 + f(c2/2 + f c3/3)) / inverse_spacing. ω = c0 + f c1.
     double (*precise)[4];
     float (*single)[4]; ///< the same rounded
 };
 
-/// Potential: cubic spline, shifted so that Φ(cutoff) = 0.
+/// Φ: cubic spline, shifted so that Φ(cutoff) = 0.
 enum status mf_table_init_potential(struct table *table, const struct curve *curve) MUST_USE;
 
-/// Weight: straight pieces.
+/// ω: straight pieces.
 enum status mf_table_init_omega(struct table *table, const struct curve *curve) MUST_USE;
 
 /// One table of the curves of several, of one curve each, for the pair types in their order. A
@@ -60,8 +60,8 @@ static inline int table_stride(const struct table *table) {
 }
 
 /// Cutoff of the curve of a pair type [λ].
-static inline double table_reach(const struct table *table, int pair) {
-    return table->reach[table_curve(table, pair)];
+static inline double table_cutoff(const struct table *table, int pair) {
+    return table->cutoffs[table_curve(table, pair)];
 }
 
 /// Intervals of that curve per length [1/λ]; for one that is 0 everywhere any would do.

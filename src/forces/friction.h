@@ -55,7 +55,7 @@ struct friction {
     double (*work[FRICTION_WORK])[4]; ///< of mf_friction_solve; shape [count, 4] each
 };
 
-/// Tabulate a method for a friction weight. Fails: NO_MEMORY.
+/// Tabulate a method for one ω(r). Fails: NO_MEMORY.
 enum status mf_friction_init(struct friction *friction, const struct table *omega, double time_step,
                              double temperature, const struct friction_method *method) MUST_USE;
 void mf_friction_clear(struct friction *friction);

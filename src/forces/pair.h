@@ -22,7 +22,7 @@ enum pair_precision {
 };
 
 _Static_assert((int)TABLE_MOST_CURVES >= (int)COMPOSITION_MOST_PAIRS,
-               "a table holds a curve a kind");
+               "a table holds a curve for each pair type");
 
 /// Distances counted in passing: bin k holds those from low + k width on.
 struct pair_histogram {
@@ -39,7 +39,7 @@ static inline size_t pair_histogram_size(const struct pair_histogram *histogram)
 
 /// What acts between pairs, and what is counted of them. The tables belong to the caller.
 struct pair_law {
-    struct composition composition; ///< the types of beads, if they are not alike
+    struct composition composition; ///< the types of beads of a mixture
     const struct table *potential;  ///< Φ(r), one or for each pair type, or NULL
     const struct table *omega;      ///< ω(r), the same, or NULL
     double temperature;             ///< of the noise [k_B T_0]
@@ -69,7 +69,8 @@ double mf_pair_cutoff(const struct pair_law *law);
 /// must be complete for mf_pair_cutoff.
 /// @param[in]  step  number of the time step: the counter of the noise
 /// @param[out] sums  NULL unless `wants` asks for them
-/// Fails: never; a NaN shows in the forces. Threads: serial. Tested: test_pair_kernels.
+/// Fails: never; a NaN shows in the forces. Threads: particles->threads share
+/// the parts of the list, with the same bits for any number. Tested: test_pair_kernels.
 void mf_pair_forces(const struct pair_law *law, struct particles *particles,
                     const struct neighbours *neighbours, uint64_t step, enum pair_wants wants,
                     struct pair_sums *sums);

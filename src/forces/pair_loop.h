@@ -132,7 +132,7 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
         pair_evaluate_rest(&far, &scene, dim, conservative, PAIR_NO_FRICTION, wants_sums, mixed);
 }
 
-/// An instance for beads that are alike and one for mixtures.
+/// An instance for one component and one for mixtures.
 #define PAIR_INSTANCE(name, dim, conservative, friction, wants_sums)                               \
     static void name(PAIR_KERNEL_ARGUMENTS) {                                                      \
         pair_loop(law, particles, neighbours, part, step, sums, dim, conservative, friction,       \

@@ -12,7 +12,7 @@ struct pair_mixture {
     /// For each pair type, in a record: intervals of Φ and of ω per length, length of one of Φ.
     REAL grid[COMPOSITION_MOST_PAIRS][4];
     int32_t potential_stride, omega_stride; ///< table_stride
-    int32_t bins_apart;                     ///< of the histogram, from kind to kind
+    int32_t bins_apart;                     ///< of the histogram, from pair type to pair type
 };
 
 /// What the pairs of a mixture need to find their curves and bins.
@@ -44,7 +44,7 @@ LANES_INLINE lanes_int pair_type(const struct pair_mixture *mixture, lanes_int i
     return type;
 }
 
-/// Kinds of the pairs of particles, as mf_composition_pair numbers them.
+/// Types of pairs of particles, numbered as by mf_composition_pair.
 LANES_INLINE lanes_int pair_kind(const struct pair_mixture *mixture, lanes_int id_i,
                                  lanes_int id_j) {
     const int32_t twice = 2 * mixture->types - 1;

@@ -22,7 +22,7 @@ struct pair_columns {
     REAL force[PAIR_BATCH][4];
 };
 
-/// Kinds of the pairs.
+/// Types of the pairs.
 INLINE void pair_kinds(struct pair_columns *columns, const struct pair_batch *batch, int count,
                        const struct pair_mixture *mixture) {
     for (int k = 0; k < count; k += LANES)

@@ -77,7 +77,7 @@ static const double shell = 0.01;
 /// have less room, and are rarer or more frequent by exp(−Φ/k_B T).
 static double density_at_cutoff(const struct table *potential, int pair, double r,
                                 double temperature, int dimensions) {
-    const double cutoff = table_reach(potential, pair);
+    const double cutoff = table_cutoff(potential, pair);
     double phi;
     mf_table_evaluate_pair(potential, pair, r, &phi, NULL, NULL);
     return pow(cutoff / r, dimensions - 1) * exp(phi / temperature) / (shell * cutoff);
@@ -87,8 +87,8 @@ static double density_at_cutoff(const struct table *potential, int pair, double 
 /// Φ'' seen by the pairs that are just there.
 static double edge_laplacian(const struct table *potential, int pair, double density) {
     double slope;
-    mf_table_evaluate_pair(potential, pair, table_reach(potential, pair) * (1 - 1e-9), NULL, &slope,
-                           NULL);
+    mf_table_evaluate_pair(potential, pair, table_cutoff(potential, pair) * (1 - 1e-9), NULL,
+                           &slope, NULL);
     return -2 * slope * density;
 }
 
@@ -112,7 +112,7 @@ enum status mf_reference_configurational(const struct table *potential,
             const double r = separation(particles, i, j, r_ij);
             const int pair =
                 mf_composition_pair_of_ids(composition, particles->id[i], particles->id[j]);
-            const double cutoff = table_reach(potential, pair);
+            const double cutoff = table_cutoff(potential, pair);
             if (r >= cutoff)
                 continue;
             mf_table_evaluate_pair(potential, pair, r, NULL, &slope, &curvature);

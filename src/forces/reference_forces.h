@@ -6,7 +6,7 @@
 #include "forces/pair.h"
 
 /// Forces from all pairs, nearest image by division, double precision, library random numbers.
-/// Reads `velocity` (not kernel_velocity) and writes `force` [k_B T_0 / λ].
+/// Reads `velocity` (not kernel_motion) and writes `force` [k_B T_0 / λ].
 /// @param[out] sums  energy and virial, or NULL
 void mf_reference_forces(const struct pair_law *law, struct particles *particles, uint64_t step,
                          struct pair_sums *sums);

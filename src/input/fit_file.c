@@ -2,6 +2,7 @@
 #include "input/fit_file.h"
 
 #include "base/memory.h"
+#include "base/names.h"
 #include "problem/unknowns.h"
 #include "inversion/inversion.h"
 #include "input/target_sanity.h"
@@ -19,20 +20,19 @@ const struct field mf_fit_core_fields[] = {
     FIELD_END,
 };
 
+NAMED_RECORD(struct inverse_method);
+
 static enum status read_method(struct fit_file *fit, struct json_object *root) {
-    enum { MOST = 16 };
-    const char *names[MOST] = {NULL};
-    for (size_t k = 0; mf_inverse_methods[k] && k + 1 < MOST; k++)
-        names[k] = mf_inverse_methods[k]->name;
+    const char **names;
     struct json_object object = mf_json_child(root, "method", true);
     if (object.item == NULL)
         return STATUS_OK;
+    TRY(mf_names_collect(mf_inverse_methods, NULL, &names));
     const char *name = mf_json_choice(&object, "name", names, NULL);
-    for (size_t k = 0; name && mf_inverse_methods[k]; k++)
-        if (strcmp(mf_inverse_methods[k]->name, name) == 0)
-            fit->method = mf_inverse_methods[k];
-    if (fit->method == NULL)
+    mf_memory_free(names);
+    if (name == NULL)
         return STATUS_OK;
+    fit->method = mf_names_find(mf_inverse_methods, name);
     fit->method_parameters = mf_memory_zeroed(1, fit->method->parameters_size);
     if (fit->method_parameters == NULL)
         return STATUS_NO_MEMORY;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "input/scene.h"
 
+#include "base/digest.h"
 #include "base/memory.h"
+#include "base/names.h"
 #include "io/data_table.h"
-#include "io/checkpoint.h"
 
 #include <math.h>
 
@@ -43,7 +44,7 @@ const struct field mf_scene_fields[] = {
     FIELD_END,
 };
 
-static void check_weight(const struct scene *scene, struct json_object *object) {
+static void check_omega(const struct scene *scene, struct json_object *object) {
     const struct table *table = &scene->omega.table;
     for (int row = 0; row < table->curves * (TABLE_INTERVALS + 1); row++)
         if (table->coefficient[2 * row] < 0) {
@@ -72,22 +73,20 @@ static void read_top(struct scene *scene, struct json_object *object) {
     setup->threads = 1;
 }
 
-static void read_dynamics(struct scene *scene, struct json_object *object, int unknown) {
-    enum { MOST = 16 };
-    const char *names[MOST] = {NULL};
-    for (size_t k = 0; mf_integrator_list[k] && k + 1 < MOST; k++)
-        names[k] = mf_integrator_list[k]->name;
+NAMED_RECORD(struct integrator);
+
+static enum status read_dynamics(struct scene *scene, struct json_object *object, int unknown) {
+    const char **names;
+    TRY(mf_names_collect(mf_integrator_list, NULL, &names));
     struct json_object dynamics = mf_json_child(object, "dynamics", false);
     const bool dissipative = scene->omega.curves > 0 || (unknown & SCENE_FITS_OMEGA);
     const char *name = dissipative ? mf_aboba.name : mf_velocity_verlet.name;
     if (dynamics.item)
         name = mf_json_choice(&dynamics, "integrator", names, name);
-    const struct integrator *integrator = NULL;
-    for (size_t k = 0; name && mf_integrator_list[k]; k++)
-        if (strcmp(mf_integrator_list[k]->name, name) == 0)
-            integrator = mf_integrator_list[k];
-    if (integrator == NULL)
-        return;
+    mf_memory_free(names);
+    if (name == NULL)
+        return STATUS_OK;
+    const struct integrator *integrator = mf_names_find(mf_integrator_list, name);
     scene->setup.integrator = integrator;
     mf_json_fields(&dynamics, integrator->fields, &scene->setup.integrator_parameters);
     if (dynamics.item)
@@ -95,6 +94,7 @@ static void read_dynamics(struct scene *scene, struct json_object *object, int u
     if (dissipative && !integrator->dissipative)
         mf_json_fault(object, "dynamics",
                       "%s knows no friction; use \"aboba\" with \"dissipative\"", integrator->name);
+    return STATUS_OK;
 }
 
 /// Coordinates may be unwrapped, but so far outside they are in other units, as nm and pm.
@@ -258,9 +258,9 @@ enum status mf_scene_read(struct scene *scene, struct json_object *object, int u
         TRY(mf_scene_law_read(&scene->omega, object, "dissipative", mf_curve_omegas,
                               &scene->setup.composition, &scene->units));
         TRY(mf_scene_law_tabulate(&scene->omega, mf_table_init_omega));
-        check_weight(scene, object);
+        check_omega(scene, object);
     }
-    read_dynamics(scene, object, unknown);
+    TRY(read_dynamics(scene, object, unknown));
     scene->setup.potential = scene->potential.curves ? &scene->potential.table : NULL;
     scene->setup.omega = scene->omega.curves ? &scene->omega.table : NULL;
     return STATUS_OK;
@@ -320,7 +320,7 @@ void mf_scene_digest(const struct scene *scene, uint64_t *digest) {
     mf_scene_law_digest(&scene->omega, digest);
     const size_t count = (size_t)scene->setup.placement.count;
     for (int d = 0; d < scene->setup.box.dimensions; d++) {
-        mf_checkpoint_digest_add(digest, scene->start.position[d], count * sizeof(double));
-        mf_checkpoint_digest_add(digest, scene->start.velocity[d], count * sizeof(double));
+        mf_digest_add(digest, scene->start.position[d], count * sizeof(double));
+        mf_digest_add(digest, scene->start.velocity[d], count * sizeof(double));
     }
 }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "input/scene_law.h"
 
+#include "base/digest.h"
 #include "base/memory.h"
+#include "base/names.h"
 #include "curves/sampled.h"
 #include "io/data_table.h"
 #include "io/votca.h"
-#include "io/checkpoint.h"
 
 #include <string.h>
 
@@ -83,14 +84,13 @@ static bool is_usable(const struct curve *curve) {
 
 enum status mf_scene_read_curve(struct curve *curve, struct json_object *parent, const char *key,
                                 const struct curve_family *const *list, const struct units *units) {
-    enum { MOST = 16 };
-    const char *names[MOST] = {"none"};
-    for (size_t k = 0; list[k] && k + 2 < MOST; k++)
-        names[k + 1] = list[k]->name;
+    const char **names;
     struct json_object object = mf_json_child(parent, key, false);
     if (object.item == NULL)
         return STATUS_OK;
+    TRY(mf_names_collect(list, "none", &names));
     const char *law = mf_json_choice(&object, "law", names, NULL);
+    mf_memory_free(names);
     const struct curve_family *family = law ? mf_curve_find(list, law) : NULL;
     if (family) {
         const size_t faults = mf_json_fault_count(object.document);
@@ -114,8 +114,7 @@ void mf_scene_write_curve(const struct curve *curve, struct json_writer *writer,
     mf_json_end(writer);
 }
 
-// A curve for all pairs, or one for each kind
-// ---------------------------------------------------------
+// A curve for all pairs, or one for each pair type ------------------------------------------------
 
 static void fault_unknown_pair(struct json_object *object, const struct composition *composition,
                                const char *key) {
@@ -161,7 +160,7 @@ enum status mf_scene_law_read(struct scene_law *law, struct json_object *parent,
                               const struct composition *composition, const struct units *units) {
     if (composition->types == 0) {
         mf_json_has(parent,
-                    key); // a fault of the types is told, those of their pairs would mislead
+                    key); // the fault is one of the types: those of their pairs would mislead
         return STATUS_OK;
     }
     if (composition_is_mixed(composition)) {
@@ -220,6 +219,5 @@ void mf_scene_law_write(const struct scene_law *law, const struct composition *c
 void mf_scene_law_digest(const struct scene_law *law, uint64_t *digest) {
     const struct table *table = &law->table;
     const size_t rows = (size_t)table->curves * (TABLE_INTERVALS + 1);
-    mf_checkpoint_digest_add(digest, table->coefficient,
-                             rows * (size_t)table->terms * sizeof(double));
+    mf_digest_add(digest, table->coefficient, rows * (size_t)table->terms * sizeof(double));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file Φ or ω of a scene: the curves that its file names, and their table.
 ///
-/// {"law": …} is one curve for all pairs; a mixture may have one for each kind of them,
+/// {"law": …} is one curve for all pairs; a mixture may have one for each pair type,
 /// {"A-A": {"law": …}, "A-B": {"law": …}, …}.
 #pragma once
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "input/target_files.h"
 
+#include "base/digest.h"
 #include "base/memory.h"
 #include "io/data_table.h"
-#include "io/checkpoint.h"
 
 #include <math.h>
 #include <string.h>
@@ -318,7 +318,7 @@ void mf_target_files_write(const struct target_files *files, struct json_writer 
 
 static void digest(const double *values, size_t count, uint64_t *digest) {
     if (values)
-        mf_checkpoint_digest_add(digest, values, count * sizeof *values);
+        mf_digest_add(digest, values, count * sizeof *values);
 }
 
 void mf_target_files_digest(const struct target_files *files, uint64_t *into) {

@@ -128,7 +128,7 @@ static enum status check_tail(const struct view *view, const char *file) {
 }
 
 /// Upper edge of the bins where g stays below `level` from the first on [λ].
-static double reach_below(const struct view *view, double level) {
+static double edge_below(const struct view *view, double level) {
     size_t k = 0;
     while (k < view->bins->count && view->g[k] <= level)
         k++;
@@ -138,7 +138,7 @@ static double reach_below(const struct view *view, double level) {
 static enum status check_packing(const struct view *view, const char *file) {
     const struct box *box = &view->scene->setup.box;
     const double closest = box->dimensions == 2 ? 2 / sqrt(3) : sqrt(2);
-    const double apart = view->g[0] <= empty ? reach_below(view, empty) : 0;
+    const double apart = view->g[0] <= empty ? edge_below(view, empty) : 0;
     const double filled =
         (double)view->like / mf_box_volume(box) * pow(apart, (double)box->dimensions);
     char density[80];
@@ -336,7 +336,7 @@ static enum status warn_of_normalisation(const struct view *view,
 static void warn_of_density(const struct view *view,
                             const struct target_sanity_listener *listener) {
     const double neighbours = neighbours_in_layers(view);
-    const double core = view->g[0] <= 0.5 ? reach_below(view, 0.5) : INFINITY;
+    const double core = view->g[0] <= 0.5 ? edge_below(view, 0.5) : INFINITY;
     const double filled = view->density * pow(core, view->scene->setup.box.dimensions);
     char density[80];
     print_density(view, density, sizeof density);

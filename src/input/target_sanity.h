@@ -24,7 +24,7 @@ struct target_sanity_listener {
 /// in a large volume (J. G. Kirkwood and F. P. Buff, J. Chem. Phys. 19, 774 (1951)): refused is
 /// what stays below zero by three standard errors up to any range from half of the target's on, and
 /// with 1.03 g, too. In a mixture a fault of the mean or of 1 + ρG asks for demixing if the
-/// integrals G of two types are above 0 for pairs alike and below 0 for the others. Fails:
+/// integrals G of two types are above 0 for pairs of one type and below 0 for pairs of two. Fails:
 /// BAD_INPUT with `file`, the key and the likely reason; NO_MEMORY. Tested: test_target_sanity.
 enum status mf_target_sanity_check(const struct target_files *files, const struct scene *scene,
                                    const char *file) MUST_USE;

@@ -15,8 +15,6 @@ static const double ranges = 8;
 /// made a potential so wrong (g off by 0.9) that no inversion came back from it.
 static const double least_structure = 0.1;
 
-static const double pi = 3.14159265358979323846;
-
 /// Transform at q of `values` − `zero` in the bins and of `core` below the first.
 static double transform(const struct rdf_bins *bins, const double *values, double zero, double core,
                         double q) {
@@ -136,7 +134,7 @@ static void add_wave(const struct wave *wave, const struct rdf_bins *bins, doubl
         for (size_t k = 0; k < bins->count; k++) {
             const double r = mf_rdf_bins_centre(bins, k);
             indirect[(size_t)pair * bins->count + k] +=
-                q * gamma * sin(q * r) / r * spacing / (2 * pi * pi);
+                q * gamma * sin(q * r) / r * spacing / (2 * M_PI * M_PI);
         }
     }
 }
@@ -150,8 +148,8 @@ static enum status solve(const struct rdf_bins *bins, const struct box *box,
     if (box->dimensions != 3)
         return mf_status_fail(STATUS_BAD_INPUT, "the hypernetted chain is for three dimensions");
     CHECK(wave_init(&wave, box, composition));
-    const double spacing = pi / (ranges * mf_rdf_bins_range(bins));
-    const size_t waves = (size_t)(pi / bins->width / spacing);
+    const double spacing = M_PI / (ranges * mf_rdf_bins_range(bins));
+    const size_t waves = (size_t)(M_PI / bins->width / spacing);
     for (size_t k = 0; k < (size_t)mf_composition_pairs(composition) * bins->count; k++)
         indirect[k] = 0;
     for (size_t n = 1; n <= waves; n++) {

@@ -8,7 +8,7 @@
 ///   ĥ_ab = ĉ_ab + Σ_t ĉ_at ρ_t ĥ_tb,
 /// with h = g − 1, −1 below the first bin and 0 beyond the last. With the matrix of the structure
 /// factors, S_ab = δ_ab + sqrt(ρ_a ρ_b) ĥ_ab, that of h − c times sqrt(ρ_a ρ_b) is (S − 1)² S⁻¹;
-/// for beads that are alike h − c is ρ ĥ²/(1 + ρ ĥ). The hypernetted-chain potential is then Φ =
+/// of one component h − c is ρ ĥ²/(1 + ρ ĥ). The hypernetted-chain potential is then Φ =
 /// k_B T (−ln g + h − c): J.-P. Hansen and I. R. McDonald, Theory of Simple Liquids (4th ed.,
 /// 2013), eq. 4.3.19. The sine transform of constant pieces is exact, whatever the bins.
 /// A target that ends before its oscillations may make an eigenvalue of S negative at small q, and

@@ -43,12 +43,11 @@ enum status mf_imc_solve(const struct imc_system *system, double strength, doubl
                          struct imc_solution *solution) MUST_USE;
 
 /// The step as VOTCA's csg_imc_solve takes it, for those who come from there:
-///   x = −k_B T (AᵀA + λ)⁻¹ Aᵀ · excess,   A = −C (VOTCA's .gmc), excess (its .imc), λ =
-///   `strength`,
-/// where eigenvalues of AᵀA + λ below 1e-12 are left out. The unit of λ is that of S⁴: what is
-/// right depends on the number of particles. Interactions of several kinds are blocks of one C. D.
-/// Rosenberger, M. Hanke and N. F. A. van der Vegt, Eur. Phys. J. Spec. Top. 225, 1323 (2016).
-/// Parameters and failures as mf_imc_solve; `spacing` is not read. Tested: test_imc_votca.
+///   x = −k_B T (AᵀA + λ)⁻¹ Aᵀ · excess,   A = −C (VOTCA's .gmc), excess (its .imc),
+/// where λ is `strength`, and where eigenvalues of AᵀA + λ below 1e-12 are left out. The unit of λ
+/// is that of S⁴: what is right depends on the number of particles. Several pair types are blocks
+/// of one C. D. Rosenberger, M. Hanke and N. F. A. van der Vegt, Eur. Phys. J. Spec. Top. 225, 1323
+/// (2016). Parameters and failures as mf_imc_solve; `spacing` is not read. Tested: test_imc_votca.
 enum status mf_imc_votca(const struct imc_system *system, double strength, double *x,
                          struct imc_solution *solution) MUST_USE;
 

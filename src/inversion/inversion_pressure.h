@@ -29,8 +29,7 @@ double mf_inversion_pressure_ramp_slope(const struct inversion *inversion);
 ///   A = (P* − P − Σ_b ∂P/∂Φ_b step_b)/(∂P/∂A).
 /// After H. Wang, C. Junghans and K. Kremer, Eur. Phys. J. E 28, 221 (2009), who leave out the sum
 /// and take for ∂P/∂A the direct response of the virial, 2π ρ² ∫ g r³ dr/(3 r_c), times a factor
-/// below
-/// 1. Differs because a step towards g has a pressure of its own: with theirs, tried at P* = 0 for
-/// water, hypernetted-chain steps stayed between 0.8 and 1.2. What is too much for the linear
-/// response is damped as the whole step is.
+/// below 1. This differs because a step towards g has a pressure of its own: with theirs, tried at
+/// P* = 0 for water, hypernetted-chain steps stayed between 0.8 and 1.2. What is too much for the
+/// linear response is damped as the whole step is.
 void mf_inversion_pressure_add_ramp(const struct inversion *inversion, double *step);

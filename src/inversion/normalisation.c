@@ -66,7 +66,7 @@ static void work_clear(struct work *work) {
     mf_memory_free(work->h);
 }
 
-/// Mean over the pairs of all beads of what is given for a bin of each kind.
+/// Mean over the pairs of all beads of what is given for a bin of each pair type.
 static double total(const struct rdf_bins *bins, const struct composition *composition,
                     const double *values, size_t bin) {
     double sum = 0, pairs = 0;

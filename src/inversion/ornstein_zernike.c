@@ -9,8 +9,6 @@
 #include <stdbool.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-
 /// The transform back is periodic in r with twice so many ranges.
 static const double ranges = 6;
 
@@ -22,14 +20,14 @@ enum { MOST_STEPS = 40, MOST_HALVINGS = 12 };
 double mf_ornstein_zernike_ball(double q, double edge) {
     const double x = q * edge;
     if (x < 1e-2) // the difference cancels; the series is exact to 1e-13 there
-        return 4 * pi / 3 * edge * edge * edge * (1 - x * x / 10 + x * x * x * x / 280);
-    return 4 * pi * (sin(x) - x * cos(x)) / (q * q * q);
+        return 4 * M_PI / 3 * edge * edge * edge * (1 - x * x / 10 + x * x * x * x / 280);
+    return 4 * M_PI * (sin(x) - x * cos(x)) / (q * q * q);
 }
 
 enum status mf_ornstein_zernike_init(struct ornstein_zernike *oz, const double *edge, size_t cells,
                                      double density) {
     enum status status = STATUS_OK;
-    const double range = edge[cells], spacing = pi / (ranges * range);
+    const double range = edge[cells], spacing = M_PI / (ranges * range);
     *oz = (struct ornstein_zernike){
         .cells = cells, .waves = (size_t)(ranges * (double)cells), .density = density};
     NEW_ARRAY(oz->edge, cells + 1);
@@ -39,10 +37,10 @@ enum status mf_ornstein_zernike_init(struct ornstein_zernike *oz, const double *
     NEW_ARRAY(oz->c, cells);
     memcpy(oz->edge, edge, (cells + 1) * sizeof *edge);
     for (size_t k = 0; k < cells; k++)
-        oz->volume[k] = 4 * pi / 3 * (pow(edge[k + 1], 3) - pow(edge[k], 3));
+        oz->volume[k] = 4 * M_PI / 3 * (pow(edge[k + 1], 3) - pow(edge[k], 3));
     for (size_t n = 0; n < oz->waves; n++) {
         const double q = (double)(n + 1) * spacing;
-        oz->weight[n] = q * q * spacing / (2 * pi * pi);
+        oz->weight[n] = q * q * spacing / (2 * M_PI * M_PI);
         for (size_t k = 0; k < cells; k++)
             oz->transform[n * cells + k] =
                 mf_ornstein_zernike_ball(q, edge[k + 1]) - mf_ornstein_zernike_ball(q, edge[k]);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/checkpoint.h"
 
+#include "base/digest.h"
 #include "io/input.h"
 #include "io/output.h"
 
@@ -9,9 +10,6 @@
 #include <string.h>
 
 static const char magic[16] = "mesofit state 2";
-
-/// FNV-1a begins with it.
-static const uint64_t offset_basis = 0xcbf29ce484222325u;
 
 /// Bytes of the file, and their checksum so far.
 struct writer {
@@ -22,14 +20,14 @@ struct writer {
 /// Write errors are remembered by the stream and found by mf_output_commit.
 static void put(struct writer *writer, const void *memory, size_t bytes) {
     fwrite(memory, 1, bytes, writer->stream);
-    mf_checkpoint_digest_add(&writer->checksum, memory, bytes);
+    mf_digest_add(&writer->checksum, memory, bytes);
 }
 
 enum status mf_checkpoint_save(const char *file, uint64_t digest, const struct memory_span *spans,
                                size_t count) {
     struct output output;
     TRY(mf_output_open(&output, file));
-    struct writer writer = {output.stream, offset_basis};
+    struct writer writer = {output.stream, DIGEST_OF_NOTHING};
     put(&writer, magic, sizeof magic);
     put(&writer, &digest, sizeof digest);
     for (size_t k = 0; k < count; k++) {
@@ -70,13 +68,13 @@ static enum status check_sum(FILE *stream, const char *file, uint64_t *bytes) {
     enum { PIECE = 1 << 16 };
     const uint64_t head = sizeof magic + sizeof(uint64_t);
     unsigned char piece[PIECE + sizeof(uint64_t)];
-    uint64_t checksum = offset_basis, found;
+    uint64_t checksum = DIGEST_OF_NOTHING, found;
     size_t kept = 0, more; // the last bytes so far may be the checksum: they wait for what comes
     *bytes = 0;
     rewind(stream);
     while ((more = fread(piece + kept, 1, PIECE, stream)) > 0) {
         const size_t held = kept + more, done = held > sizeof found ? held - sizeof found : 0;
-        mf_checkpoint_digest_add(&checksum, piece, done);
+        mf_digest_add(&checksum, piece, done);
         memmove(piece, piece + done, held - done);
         *bytes += done;
         kept = held - done;
@@ -171,20 +169,14 @@ enum status mf_checkpoint_load(const char *file, uint64_t digest, const struct m
     return fits ? STATUS_OK : fail_shape(file);
 }
 
-void mf_checkpoint_digest_add(uint64_t *digest, const void *memory, size_t bytes) {
-    const unsigned char *byte = memory;
-    for (size_t k = 0; memory && k < bytes; k++)
-        *digest = (*digest ^ byte[k]) * 0x100000001b3u;
-}
-
 enum status mf_checkpoint_digest(const char *file, uint64_t *digest) {
     FILE *stream;
     unsigned char piece[4096];
     size_t bytes;
     TRY(mf_input_open(&stream, file));
-    *digest = offset_basis;
+    *digest = DIGEST_OF_NOTHING;
     while ((bytes = fread(piece, 1, sizeof piece, stream)) > 0)
-        mf_checkpoint_digest_add(digest, piece, bytes);
+        mf_digest_add(digest, piece, bytes);
     fclose(stream);
     return STATUS_OK;
 }

@@ -2,7 +2,7 @@
 /// @file State on disk, from which a run goes on with the same bits.
 ///
 /// One file, `checkpoint.bin` in the run's folder: a header, the digest of used.json, then the
-/// spans in order, each with its length, and a checksum of it all (FNV-1a, 64 bits). Only the
+/// spans in order, each with its length, and a checksum of it all (base/digest.h). Only the
 /// program and processor kind that wrote it need to read it.
 #pragma once
 
@@ -24,8 +24,6 @@ enum status mf_checkpoint_load(const char *file, uint64_t digest, const struct m
 enum status mf_checkpoint_load_span(const char *file, uint64_t digest, size_t number,
                                     const struct memory_span *span) MUST_USE;
 
-/// Digest of a file's bytes (FNV-1a, 64 bits).
+/// Digest of a file's bytes (base/digest.h), with which that of the settings begins: what they only
+/// name, a target or a table, is added to it.
 enum status mf_checkpoint_digest(const char *file, uint64_t *digest) MUST_USE;
-
-/// Go on with a digest over what the settings only name: a target, a table.
-void mf_checkpoint_digest_add(uint64_t *digest, const void *memory, size_t bytes);

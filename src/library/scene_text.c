@@ -33,7 +33,7 @@ void mf_scene_text_write(const struct mesofit_scene *scene, FILE *stream) {
             scene->particles, scene->temperature, scene->time_step);
     write_law(&scene->conservative, "conservative", stream);
     write_law(&scene->dissipative, "dissipative", stream);
-    // A friction weight of the caller's own is not in the text, which so cannot choose by it.
+    // The text lacks a friction weight of the caller's own, by which its reader would choose.
     const char *integrator =
         scene->integrator || scene->dissipative.value == NULL ? scene->integrator : mf_aboba.name;
     if (integrator)

@@ -28,7 +28,7 @@ const struct field mf_population_fields[] = {
     {"estimator", FIELD_CHOICE, MEMBER(evaluate.estimator), .choices = mf_rdf_force_estimators,
      .initial = RDF_FORCE_NOT_USED, .unit = "",
      .help = "of g(r): force is worth twice the samples, but a large time step puts it off"},
-    {"racing", FIELD_NUMBER, MEMBER(evaluate.patience), .initial = 0, .minimum = 0, .maximum = 100,
+    {"racing", FIELD_NUMBER, MEMBER(evaluate.racing), .initial = 0, .minimum = 0, .maximum = 100,
      .unit = "standard errors",
      .help = "by which a running error must be hopeless for its simulation to stop; 0: never"},
     {"precision", FIELD_NUMBER, MEMBER(evaluate.precision), .initial = 0, .minimum = 0,

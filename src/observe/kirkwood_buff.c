@@ -3,12 +3,10 @@
 
 #include <math.h>
 
-static const double pi = 3.14159265358979323846;
-
 /// ∫_0^r 4π s² u(s/L) ds.
 static double weight_below(double r, double range) {
     const double x = r / range, x3 = x * x * x;
-    return 4 * pi * range * range * range * x3 *
+    return 4 * M_PI * range * range * range * x3 *
            (1.0 / 3 + x3 * (-23.0 / 48 + x * (3.0 / 28 + x * 9.0 / 64)));
 }
 
@@ -16,7 +14,7 @@ struct kirkwood_buff mf_kirkwood_buff_integrate(const struct rdf_bins *bins, con
                                                 const double *error, const struct box *box,
                                                 size_t count) {
     const double range = mf_rdf_bins_range(bins);
-    const double volume = box->length[0] * box->length[1] * box->length[2];
+    const double volume = mf_box_volume(box);
     const double density = (double)count / volume, all = weight_below(range, range);
     double below = weight_below(mf_rdf_bins_edge(bins, 0), range), sum = -below, squares = 0;
     for (size_t k = 0; k < bins->count; k++) {

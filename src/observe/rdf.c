@@ -90,18 +90,11 @@ enum status mf_rdf_init(struct rdf *rdf, const struct rdf_bins *bins, const stru
     return mf_rdf_init_mixture(rdf, bins, box, &composition, list_cutoff, planned);
 }
 
-static size_t count_all(const struct composition *composition) {
-    size_t count = 0;
-    for (int type = 0; type < composition->types; type++)
-        count += (size_t)composition->count[type];
-    return count;
-}
-
 enum status mf_rdf_init_mixture(struct rdf *rdf, const struct rdf_bins *bins, const struct box *box,
                                 const struct composition *composition, double list_cutoff,
                                 size_t planned) {
     enum status status = STATUS_OK;
-    const size_t particle_count = count_all(composition);
+    const size_t particle_count = (size_t)mf_composition_particles(composition);
     *rdf = (struct rdf){.bins = *bins,
                         .box = *box,
                         .particle_count = particle_count,

@@ -238,7 +238,8 @@ static void mean_variables(const struct state *state, double *variables) {
             optimiser_variable(&state->space, mf_optimiser_reflect(state->distribution.mean[k]));
 }
 
-/// Least, median and discard_above error of the round; sorts the errors.
+/// The least error of the round, the median, and the one above which a candidate changes nothing;
+/// sorts the errors.
 static void survey(struct state *state) {
     struct progress *p = &state->progress;
     const struct cmaes_strategy *s = &state->strategy;

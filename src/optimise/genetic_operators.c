@@ -74,9 +74,11 @@ void mf_genetic_recombine(double *a, double *b, const struct genetic_parameters 
     }
 }
 
-/// A normal number of two uniform ones in (0, 1) (Box and Muller).
+/// A normal number from two uniform ones.
 static double normal(double u, double v) {
-    return sqrt(-2 * log(u)) * cos(2 * M_PI * v);
+    double pair[2];
+    rng_box_muller(u, v, pair);
+    return pair[0];
 }
 
 /// Largest usual step of what is added, as a share of the range.

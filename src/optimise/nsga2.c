@@ -66,8 +66,9 @@ static void make_first(struct nsga2 *nsga2, const double *start) {
         double *x = row(nsga2, nsga2->population + k);
         for (size_t n = 0; n < nsga2->genes; n++) {
             const double u = mf_rng_sequence_uniform(&random), v = mf_rng_sequence_uniform(&random);
-            const double normal = sqrt(-2 * log(u)) * cos(2 * M_PI * v);
-            x[n] = start && spread > 0 ? mf_optimiser_reflect(start[n] + width * normal) : u;
+            double normal[2];
+            rng_box_muller(u, v, normal);
+            x[n] = start && spread > 0 ? mf_optimiser_reflect(start[n] + width * normal[0]) : u;
             if (start && k == 0)
                 x[n] = fmin(1, fmax(0, start[n]));
         }

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "optimise/optimiser.h"
 
-#include <string.h>
+#include "base/names.h"
 
 const struct optimiser *const mf_optimisers[] = {&mf_genetic_optimiser, &mf_cmaes_optimiser,
                                                  &mf_nlopt_optimiser, NULL};
 
+NAMED_RECORD(struct optimiser);
+
 const struct optimiser *mf_optimiser_find(const char *name) {
-    for (const struct optimiser *const *known = mf_optimisers; *known; known++)
-        if (strcmp((*known)->name, name) == 0)
-            return *known;
-    return NULL;
+    return mf_names_find(mf_optimisers, name);
 }
 
 enum status mf_optimiser_check_space(const struct optimiser_space *space) {

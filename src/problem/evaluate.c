@@ -50,8 +50,8 @@ static bool says_enough(const struct evaluate_result *result, double discard_abo
     const double chance = sqrt(result->variance);
     if (!isfinite(result->error) || !(result->noise > 0))
         return false;
-    return (parameters->patience > 0 &&
-            result->error - parameters->patience * chance > discard_above) ||
+    return (parameters->racing > 0 &&
+            result->error - parameters->racing * chance > discard_above) ||
            chance < parameters->precision * result->error;
 }
 
@@ -60,7 +60,7 @@ static enum status sample(struct measurement *measurement, double discard_above,
                           const struct evaluate_parameters *parameters, struct observed *observed,
                           struct evaluate_result *result) {
     const struct measure_plan *plan = &parameters->plan;
-    const bool may_stop = parameters->patience > 0 || parameters->precision > 0;
+    const bool may_stop = parameters->racing > 0 || parameters->precision > 0;
     for (int part = may_stop ? 1 : PARTS; part < PARTS; part++) {
         struct measure_plan so_far = *plan;
         so_far.samples = plan->samples * part / PARTS;

@@ -10,8 +10,8 @@ struct evaluate_parameters {
     double temperature_tolerance; ///< largest |T/T_set − 1| at the end of the equilibration
     int estimator; ///< of g(r), enum rdf_force_estimator; without a barrier (mf_rdf_force_applies)
                    ///< the histogram
-    double patience;  ///< standard errors by which a running error must be beyond `discard_above`
-                      ///< before a simulation is stopped; 0: never
+    double racing; ///< standard errors by which a running error must be beyond `discard_above`
+                   ///< before a simulation is stopped; 0: never
     double precision; ///< relative standard error of the error that is enough to stop; 0: never
 };
 

@@ -17,7 +17,7 @@
 ///   figures/compare.svg and .png
 /// The tables but the first hold one block a fit, two empty lines apart (gnuplot's `index`), with
 /// one row of nan for a fit that has no such table; one that no fit has is not written.
-/// Potentials and friction weights are those that were fitted. A simulation has a g(r) without a
+/// Of Φ and ω there is what was fitted. A simulation has a g(r) without a
 /// target. A fit is called after the last part of its path that is not "out", with as many parts
 /// before it as are needed to tell the fits apart; the same folder again gets a number. `out` may
 /// be the folder of a run: nothing there is replaced but an earlier comparison. Fails: BAD_INPUT,

@@ -118,7 +118,7 @@ static void read_simulated_diffusion(struct json_object *root, struct result_sum
     mf_json_fields(&motion, fields, summary);
 }
 
-/// Version 0.1.0 called it otherwise.
+/// Version 0.1.0 had another name for it.
 static void read_old_truth(struct json_object *root, struct result_summary *summary) {
     static const struct field fields[] = {
         {.name = "truth_error",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Types of beads in a mixture, and the kinds of their pairs.
+/// @file Types of beads in a mixture, and the types of their pairs.
 ///
 /// Ids 0 … n_A − 1 are beads of the first type, the next n_B of the second, and so on: the type
 /// follows from the id, is never saved, and survives every sort. The T (T + 1)/2 pair types are
@@ -16,9 +16,9 @@ enum {
     COMPOSITION_PAIR_NAME_SIZE = 2 * COMPOSITION_NAME_SIZE,
 };
 
-/// Plain data; all zero is a system whose beads are alike.
+/// Plain data; all zero is a one-component system.
 struct composition {
-    int types;                             ///< 0 or 1: all beads are alike
+    int types;                             ///< 0 or 1: a one-component system
     int64_t count[COMPOSITION_MOST_TYPES]; ///< beads of each type
     char name[COMPOSITION_MOST_TYPES][COMPOSITION_NAME_SIZE];
 };
@@ -60,7 +60,7 @@ int mf_composition_type(const struct composition *composition, uint32_t id);
 /// The types of a pair type, type[0] ≤ type[1].
 void mf_composition_pair_types(const struct composition *composition, int pair, int type[2]);
 
-/// How many pairs of a kind there are: N_a (N_a − 1)/2 alike, N_a N_b unlike.
+/// How many pairs of a pair type there are: N_a (N_a − 1)/2 of one type, N_a N_b of two.
 double mf_composition_possible_pairs(const struct composition *composition, int pair);
 
 /// Print the name of a pair type, "A-B", or nothing for beads without names.

@@ -43,7 +43,7 @@ struct neighbours_rows {
 /// Pairs handed over together.
 enum { NEIGHBOURS_BATCH = 512 };
 
-/// Enough for the processors of a desk.
+/// Parts enough for the processors of a desktop computer.
 enum { NEIGHBOURS_MOST_PARTS = 64 };
 
 struct neighbours {

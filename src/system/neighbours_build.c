@@ -10,7 +10,7 @@
 #include <stdlib.h>
 
 enum { WIDEST = 2 * NEIGHBOURS_MOST_REACH + 1 };
-_Static_assert(CLOSE_MOST_ROWS >= WIDEST * WIDEST, "rows in reach");
+_Static_assert(PAIR_SEARCH_MOST_ROWS >= WIDEST * WIDEST, "rows in reach");
 
 // Sorting -----------------------------------------------------------------------------------------
 

@@ -5,5 +5,5 @@
 #pragma GCC target("avx2,bmi2,fma,popcnt")
 #include "pair_search_loop.h"
 
-CLOSE_INSTANCE(mf_pair_search_avx2)
+PAIR_SEARCH_INSTANCE(mf_pair_search_avx2)
 #endif

@@ -7,5 +7,5 @@
     "avx512f,avx512dq,avx512bw,avx512vl,avx2,bmi2,fma,popcnt,prefer-vector-width=512")
 #include "pair_search_loop.h"
 
-CLOSE_INSTANCE(mf_pair_search_avx512)
+PAIR_SEARCH_INSTANCE(mf_pair_search_avx512)
 #endif

@@ -22,7 +22,7 @@ struct pair_search {
 /// Places of the list that the rows of a particle may reach beyond its neighbours: a vector of
 /// entries, the rest of a row, and a vector of owners, each of a whole row. All of them must be
 /// before the next part, which another thread may have filled already.
-enum { CLOSE_BEYOND = 2 * PARTICLES_PADDING + LANES * NEIGHBOURS_ROW };
+enum { PAIR_SEARCH_BEYOND = 2 * PARTICLES_PADDING + LANES * NEIGHBOURS_ROW };
 
 /// Write those of a run that are within range of a place to `list`. Whole vectors are read, also
 /// beyond the end, where nothing is in range (or belongs to the run as well), and written; one at
@@ -68,7 +68,7 @@ LANES_INLINE size_t search_fill_rows(struct neighbours *neighbours, size_t k, si
 /// Places around a cell, a run from each row. In a half list the first begins with the cell itself;
 /// the others are wanted whole.
 struct pair_search_runs {
-    uint32_t begin[CLOSE_MOST_ROWS], end[CLOSE_MOST_ROWS];
+    uint32_t begin[PAIR_SEARCH_MOST_ROWS], end[PAIR_SEARCH_MOST_ROWS];
     size_t places; ///< in all of them
 };
 
@@ -132,7 +132,7 @@ LANES_INLINE size_t pair_search_loop(struct neighbours *neighbours,
     for (int cell = 0; cell < rows->cells; cell++) {
         search_find_runs(&runs, rows, cell, half);
         for (size_t self = start[cell]; self < start[cell + 1]; self++, k++) {
-            if (used + runs.places + CLOSE_BEYOND > limit)
+            if (used + runs.places + PAIR_SEARCH_BEYOND > limit)
                 return SIZE_MAX;
             neighbours->start[k] = used;
             const int32_t *end =
@@ -146,7 +146,7 @@ LANES_INLINE size_t pair_search_loop(struct neighbours *neighbours,
     return used;
 }
 
-#define CLOSE_INSTANCE(name)                                                                       \
+#define PAIR_SEARCH_INSTANCE(name)                                                                 \
     size_t name(struct neighbours *neighbours, const struct particles *particles,                  \
                 const struct pair_search_rows *rows, size_t used, size_t limit) {                  \
         const bool half = neighbours->kind == NEIGHBOURS_HALF;                                     \

@@ -1,4 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pair_search_loop.h"
 
-CLOSE_INSTANCE(mf_pair_search_portable)
+PAIR_SEARCH_INSTANCE(mf_pair_search_portable)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "work/fit.h"
 
+#include "base/digest.h"
 #include "base/memory.h"
 #include "base/visible.h"
 #include "io/checkpoint.h"
@@ -91,7 +92,7 @@ static void digest_starts(struct run *run) {
         const struct curve *start = run->fit.problem.unknown[kind].start[pair];
         for (int k = 0; start && k < POINTS; k++) {
             const double value = mf_curve_value(start, mf_curve_cutoff(start) * k / POINTS);
-            mf_checkpoint_digest_add(&run->digest, &value, sizeof value);
+            mf_digest_add(&run->digest, &value, sizeof value);
         }
     }
 }

@@ -50,7 +50,7 @@ EOF
 }
 
 # $1 plan: omega(r) from escape times by CMA-ES.
-weight() {
+omega() {
     cat <<EOF
 {"title": "fewer steps", "seed": 1,
  "target": {"etd": {"file": "$water/spc298_etd_E.txt", "error_file": "$water/spc298_etd_se.txt",
@@ -61,7 +61,7 @@ weight() {
   "conservative": {"law": "table", "file": "$water/potential_imc.tsv",
                    "cutoff": 2.1505373737373734}},
  "method": {"name": "cma-es", "population": 10, "rounds": 12, "step": 0.15, "samples": 60,
-            "every": 20, "temperature_tolerance": 0.3, $(plan "$1" weight)},
+            "every": 20, "temperature_tolerance": 0.3, $(plan "$1" omega)},
  "verification": {"replicas": 2, "time_step": 0.0039873725, "equilibration": 500, "samples": 75,
                   "every": 40}}
 EOF
@@ -82,7 +82,7 @@ value() {
 }
 
 for seed in $seeds; do
-    for problem in potential weight; do
+    for problem in potential omega; do
         fit $problem all "$seed"
         fit $problem plain "$seed"
         [ "$seed" = 1 ] || continue

@@ -100,7 +100,7 @@ static const struct fault faults[] = {
           "scene.box", "etd", "1.6"),
 };
 
-static void test_fit_of_a_weight_refuses_with_a_line_for_each_fault(void **state) {
+static void test_fit_of_omega_refuses_with_a_line_for_each_fault(void **state) {
     static struct run_program_result result;
     small_inputs_write(*state, "etd.tsv", escape, NULL, NULL);
     small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
@@ -151,7 +151,7 @@ static void test_imc_refuses_more_bins_than_it_can_solve_for(void **state) {
     run_program_assert_refused(&result, ".", "too many bins, explained", 1, words);
 }
 
-static void test_fit_of_a_weight_refuses_more_genes_than_a_round_can_hold(void **state) {
+static void test_fit_of_omega_refuses_more_variables_than_a_round_can_hold(void **state) {
     static struct run_program_result result;
     char *text;
     small_inputs_write(*state, "etd.tsv", escape, NULL, NULL);
@@ -183,14 +183,14 @@ static void check_left_out(struct temporary_folder *folder, const char *table, d
         assert_null(strstr(result.err, "left out"));
 }
 
-static void test_fit_of_a_weight_tells_how_many_cells_are_left_out(void **state) {
+static void test_fit_of_omega_tells_how_many_cells_are_left_out(void **state) {
     check_left_out(*state, escape, 0);
     check_left_out(*state, escape_with_holes, 3);
 }
 
 /// One replica has no error, a table of no use no distance, and a friction weight that ends before
 /// the first bin no truth: the rest of the summary is written.
-static void test_fit_of_a_weight_leaves_out_what_it_does_not_know(void **state) {
+static void test_fit_of_omega_leaves_out_what_it_does_not_know(void **state) {
     static struct run_program_result result;
     char *text;
     small_inputs_write(*state, "etd.tsv", escape, NULL, NULL);
@@ -249,12 +249,12 @@ static void test_fit_refuses_to_resume_when_the_curve_to_begin_with_is_another(v
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        TEST(test_fit_of_a_weight_refuses_with_a_line_for_each_fault),
+        TEST(test_fit_of_omega_refuses_with_a_line_for_each_fault),
         TEST(test_imc_refuses_to_fit_more_than_rdf_and_pressure),
         TEST(test_imc_refuses_more_bins_than_it_can_solve_for),
-        TEST(test_fit_of_a_weight_refuses_more_genes_than_a_round_can_hold),
-        TEST(test_fit_of_a_weight_tells_how_many_cells_are_left_out),
-        TEST(test_fit_of_a_weight_leaves_out_what_it_does_not_know),
+        TEST(test_fit_of_omega_refuses_more_variables_than_a_round_can_hold),
+        TEST(test_fit_of_omega_tells_how_many_cells_are_left_out),
+        TEST(test_fit_of_omega_leaves_out_what_it_does_not_know),
         TEST(test_fit_to_a_diffusion_coefficient_has_a_window_for_any_time_step),
         TEST(test_fit_refuses_to_resume_when_the_curve_to_begin_with_is_another),
     };

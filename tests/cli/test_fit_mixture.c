@@ -112,7 +112,7 @@ static void check_tables(size_t potential, size_t iterations) {
     assert_false(temporary_folder_exists("out/rdf.tsv"));
 }
 
-/// The truth of each kind stands in its own table: a (1 − 0.025)²/2 at the first point.
+/// The truth of each pair type stands in its own table: a (1 − 0.025)²/2 at the first point.
 static void check_truth(void) {
     static const struct {
         const char *file, *truth;
@@ -127,7 +127,7 @@ static void check_truth(void) {
     }
 }
 
-static void test_imc_of_a_mixture_writes_a_potential_for_each_kind_of_pairs(void **state) {
+static void test_imc_of_a_mixture_writes_a_potential_for_each_pair_type(void **state) {
     write_fit(*state, INVERSION("imc"));
     run_fit("out", "2", UNCONVERGED);
     check_tables(6, 4);
@@ -136,7 +136,7 @@ static void test_imc_of_a_mixture_writes_a_potential_for_each_kind_of_pairs(void
     results_assert_table("out/history.tsv", 14, 4);
     assert_true(temporary_folder_exists("out/potential_A-B_flat.tsv"));
     assert_true(results_number("out/summary.json", "directions_of") > 40);
-    // The target stands in the table of its own kind, whichever name the run file calls it by.
+    // The target stands in the table of its own pair type, whichever name the run file calls it by.
     char *target = temporary_folder_read("target/rdf_A-B.tsv"), *table;
     char line[64];
     table = temporary_folder_read("out/rdf_A-B.tsv");
@@ -149,7 +149,7 @@ static void test_imc_of_a_mixture_writes_a_potential_for_each_kind_of_pairs(void
     free(table);
 }
 
-static void test_cma_es_of_a_mixture_writes_a_potential_for_each_kind_of_pairs(void **state) {
+static void test_cma_es_of_a_mixture_writes_a_potential_for_each_pair_type(void **state) {
     write_fit(*state, CMA_ES);
     run_fit("out", "2", CONVERGED);
     check_tables(5, 3);
@@ -276,8 +276,8 @@ static void test_imc_of_a_mixture_refuses_particles_that_change_its_shares(void 
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        TEST(test_imc_of_a_mixture_writes_a_potential_for_each_kind_of_pairs),
-        TEST(test_cma_es_of_a_mixture_writes_a_potential_for_each_kind_of_pairs),
+        TEST(test_imc_of_a_mixture_writes_a_potential_for_each_pair_type),
+        TEST(test_cma_es_of_a_mixture_writes_a_potential_for_each_pair_type),
         TEST(test_gauss_newton_of_a_mixture_tells_its_bands),
         TEST(test_imc_of_a_mixture_gives_the_same_bits_for_any_threads),
         TEST(test_auto_of_a_mixture_by_dynamics_gives_the_same_bits_for_any_threads),

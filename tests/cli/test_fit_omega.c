@@ -24,7 +24,7 @@ static const char soft_fluid[] =
     "\"etd\": {\"file\": \"target/etd.tsv\", \"error_file\": \"target/etd_error.tsv\", "           \
     "\"r_minimum\": 0.4, \"r_maximum\": 0.9}"
 #define POTENTIAL "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25}"
-#define WEIGHT                                                                                     \
+#define OMEGA                                                                                      \
     "\"omega\": {\"coefficients\": 4, \"maximum\": 6, \"truth\": {\"law\": \"power\", "            \
     "\"sigma\": 3}}"
 #define METHOD "METHOD"
@@ -38,11 +38,10 @@ static const char soft_fluid[] =
     "\"core\": {\"threshold\": 0.05, \"stiffness\": 50},\n"                                        \
     "\"verification\": {\"replicas\": 2, \"equilibration\": 20, \"samples\": 5, \"every\": 8}}\n"
 
-static const char weight_fit[] = RUN(ETD, WEIGHT, ", " POTENTIAL);
-static const char joint_fit[] =
-    RUN(ETD ", \"rdf\": {\"file\": \"target/rdf.tsv\"}",
-        WEIGHT ", \"potential\": {\"coefficients\": 5, \"maximum\": 30, "
-               "\"truth\": {\"law\": \"soft-repulsion\", \"a\": 25}}", );
+static const char omega_fit[] = RUN(ETD, OMEGA, ", " POTENTIAL);
+static const char joint_fit[] = RUN(ETD ", \"rdf\": {\"file\": \"target/rdf.tsv\"}",
+                                    OMEGA ", \"potential\": {\"coefficients\": 5, \"maximum\": 30, "
+                                          "\"truth\": {\"law\": \"soft-repulsion\", \"a\": 25}}", );
 
 #define GENETIC "\"name\": \"genetic\", \"population\": 7, \"generations\": 3"
 #define CMAES "\"name\": \"cma-es\", \"rounds\": 4, \"racing\": 1, \"warm_start\": \"yes\""
@@ -97,19 +96,19 @@ static void check_bits(struct temporary_folder *folder, const char *fit, const c
 }
 
 static void test_genetic_gives_omega_of_the_same_bits(void **state) {
-    check_bits(*state, weight_fit, GENETIC, omega_tables, CONVERGED);
+    check_bits(*state, omega_fit, GENETIC, omega_tables, CONVERGED);
 }
 
 static void test_cmaes_gives_omega_of_the_same_bits(void **state) {
-    check_bits(*state, weight_fit, CMAES, omega_tables, CONVERGED);
+    check_bits(*state, omega_fit, CMAES, omega_tables, CONVERGED);
 }
 
 static void test_nlopt_gives_omega_of_the_same_bits(void **state) {
-    check_bits(*state, weight_fit, NLOPT, omega_tables, CONVERGED);
+    check_bits(*state, omega_fit, NLOPT, omega_tables, CONVERGED);
 }
 
 static void test_gauss_newton_gives_omega_of_the_same_bits(void **state) {
-    check_bits(*state, weight_fit, GAUSS_NEWTON, omega_tables, CONVERGED);
+    check_bits(*state, omega_fit, GAUSS_NEWTON, omega_tables, CONVERGED);
 }
 
 static void test_gauss_newton_gives_both_unknowns_of_the_same_bits(void **state) {
@@ -126,11 +125,11 @@ static void test_cmaes_gives_both_unknowns_of_the_same_bits(void **state) {
     check_bits(*state, joint_fit, CMAES, joint_tables, CONVERGED);
 }
 
-static void test_explain_and_describe_know_the_weight_and_its_targets(void **state) {
+static void test_explain_and_describe_know_omega_and_its_targets(void **state) {
     static const char *const names[] = {"etd-target",    "curve-target", "rdf-target",
                                         "number-target", "omega",        "potential"};
     static struct run_program_result result;
-    write_fit(*state, weight_fit, GENETIC);
+    write_fit(*state, omega_fit, GENETIC);
     RUN_PROGRAM(&result, "fit", "run.json", "--explain");
     run_program_assert_code(&result, 0);
     assert_contains(result.out, "a potential with cutoff 1");
@@ -156,7 +155,7 @@ static void test_explain_and_describe_know_the_weight_and_its_targets(void **sta
 /// from its target, and has finished.
 static void test_gauss_newton_has_finished_at_a_standstill_above_its_noise(void **state) {
     static struct run_program_result result;
-    write_fit(*state, weight_fit, "\"name\": \"gauss-newton\", \"iterations\": 100");
+    write_fit(*state, omega_fit, "\"name\": \"gauss-newton\", \"iterations\": 100");
     small_inputs_write(*state, "scene.json", soft_fluid, "\"samples\": 60", "\"samples\": 1200");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "target", "--quiet");
     char *text = temporary_folder_read("run.json");
@@ -180,7 +179,7 @@ static void test_unstable_candidates_lose_and_never_stop_a_fit(void **state) {
     static const char *const methods[] = {GENETIC, CMAES, NLOPT, GAUSS_NEWTON};
     for (int k = 0; k < 4; k++) {
         static struct run_program_result result;
-        write_fit(*state, weight_fit, methods[k]);
+        write_fit(*state, omega_fit, methods[k]);
         char *text = temporary_folder_read("run.json");
         small_inputs_write(*state, "run.json", text, "\"maximum\": 6", "\"maximum\": 60");
         free(text);
@@ -193,11 +192,11 @@ static void test_unstable_candidates_lose_and_never_stop_a_fit(void **state) {
 }
 
 /// A tolerance that no simulation keeps to.
-static void test_fit_of_a_weight_ends_and_says_so_when_no_candidate_survives(void **state) {
+static void test_fit_of_omega_ends_and_says_so_when_no_candidate_survives(void **state) {
     static const char *const methods[] = {GENETIC, CMAES, NLOPT, GAUSS_NEWTON};
     for (int k = 0; k < 4; k++) {
         static struct run_program_result result;
-        write_fit(*state, weight_fit, methods[k]);
+        write_fit(*state, omega_fit, methods[k]);
         char *text = temporary_folder_read("run.json");
         small_inputs_write(*state, "run.json", text, "tolerance\": 0.5", "tolerance\": 1e-9");
         free(text);
@@ -224,8 +223,8 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_gauss_newton_gives_omega_of_the_same_bits),
         TEST_WITHOUT_FIGURES(test_gauss_newton_gives_both_unknowns_of_the_same_bits),
         TEST_WITHOUT_FIGURES(test_cmaes_gives_both_unknowns_of_the_same_bits),
-        TEST_WITHOUT_FIGURES(test_explain_and_describe_know_the_weight_and_its_targets),
-        TEST_WITHOUT_FIGURES(test_fit_of_a_weight_ends_and_says_so_when_no_candidate_survives),
+        TEST_WITHOUT_FIGURES(test_explain_and_describe_know_omega_and_its_targets),
+        TEST_WITHOUT_FIGURES(test_fit_of_omega_ends_and_says_so_when_no_candidate_survives),
         TEST_WITHOUT_FIGURES(test_gauss_newton_has_finished_at_a_standstill_above_its_noise),
         TEST_WITHOUT_FIGURES(test_unstable_candidates_lose_and_never_stop_a_fit),
     };

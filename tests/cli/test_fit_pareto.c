@@ -97,7 +97,7 @@ static void test_pareto_leaves_a_front_that_nobody_dominates(void **state) {
     mf_data_table_clear(&table);
 }
 
-static void test_pareto_wants_two_goals(void **state) {
+static void test_pareto_wants_two_targets(void **state) {
     static struct run_program_result result;
     write_fit(*state, ETD, "");
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--quiet");
@@ -112,7 +112,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST_WITHOUT_FIGURES(test_pareto_gives_the_same_bits_for_any_threads_and_in_pieces),
         TEST_WITHOUT_FIGURES(test_pareto_leaves_a_front_that_nobody_dominates),
-        TEST_WITHOUT_FIGURES(test_pareto_wants_two_goals),
+        TEST_WITHOUT_FIGURES(test_pareto_wants_two_targets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
 //
 // Every reader of a file, for libFuzzer: the first byte of an input says which one, the rest is the
 // file. `make fuzz` builds and runs it. What a reader may do is take the file or refuse it.
+#include "base/digest.h"
 #include "io/data_table.h"
 #include "io/votca.h"
 #include "io/checkpoint.h"
@@ -94,13 +95,13 @@ static void read_run(const char *file) {
 static void read_checkpoint(const char *file, const uint8_t *data, size_t size) {
     unsigned char state[3][64] = {{0}};
     const struct memory_span spans[] = {{state[0], 8}, {state[1], 0}, {state[2], 64}};
-    uint64_t digest = 0, checksum = 0xcbf29ce484222325u;
+    uint64_t digest = 0, checksum = DIGEST_OF_NOTHING;
     if (size >= 24)
         memcpy(&digest, data + 16, sizeof digest);
     for (int time = 0; time < 2; time++) {
         if (mf_checkpoint_load(file, digest, spans, 3) != STATUS_OK &&
             mf_checkpoint_load_span(file, digest, 1, &spans[1]) != STATUS_OK && time == 0)
-            mf_checkpoint_digest_add(&checksum, data, size);
+            mf_digest_add(&checksum, data, size);
         FILE *stream = fopen(file, "ab");
         if (stream == NULL || fwrite(&checksum, sizeof checksum, 1, stream) != 1 ||
             fclose(stream) != 0)

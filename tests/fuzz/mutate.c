@@ -41,8 +41,7 @@ static void must(const char *format, const char *a, const char *b) {
         die(line);
 }
 
-// A changed file
-// -----------------------------------------------------------------------------------
+// A changed file ----------------------------------------------------------------------------------
 
 struct text {
     unsigned char *bytes;
@@ -172,8 +171,7 @@ static void change_some_file(const char *work) {
         free(files[--file_count]);
 }
 
-// A run
-// --------------------------------------------------------------------------------------------
+// A run -------------------------------------------------------------------------------------------
 
 static void become(const char *work) {
     static char line[1024];

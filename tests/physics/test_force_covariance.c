@@ -60,7 +60,7 @@ static void assert_recovered(struct fluid *fluid, const double time_step[2], int
 }
 
 /// The time steps of Eriksson et al.; without a potential, since with one these are too long.
-static void test_force_covariance_gives_the_weight_of_particles_without_potential(void **state) {
+static void test_force_covariance_gives_omega_of_particles_without_potential(void **state) {
     (void)state;
     struct fluid fluid;
     fluid_ideal_gas(&fluid, 3, 375, 0.025);
@@ -68,7 +68,7 @@ static void test_force_covariance_gives_the_weight_of_particles_without_potentia
     fluid_clear(&fluid);
 }
 
-static void test_force_covariance_gives_the_weight_of_the_standard_fluid(void **state) {
+static void test_force_covariance_gives_omega_of_the_standard_fluid(void **state) {
     (void)state;
     struct fluid fluid;
     fluid_groot_warren(&fluid, 375, 0.005);
@@ -78,8 +78,8 @@ static void test_force_covariance_gives_the_weight_of_the_standard_fluid(void **
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_force_covariance_gives_the_weight_of_particles_without_potential),
-        cmocka_unit_test(test_force_covariance_gives_the_weight_of_the_standard_fluid),
+        cmocka_unit_test(test_force_covariance_gives_omega_of_particles_without_potential),
+        cmocka_unit_test(test_force_covariance_gives_omega_of_the_standard_fluid),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

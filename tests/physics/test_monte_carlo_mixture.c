@@ -20,7 +20,7 @@ static const struct rdf_bins bins = {0.3, 0.2, BINS};
 /// comparisons are made here: with a new seed the file would fail once in 500 times.
 static const double false_alarm_rate = 0.001;
 
-/// Means of blocks: pairs in the bins of each kind, and the virial.
+/// Means of blocks: pairs in the bins of each pair type, and the virial.
 static void measure_sampler(const struct fluid *fluid, enum sampler_kind kind, uint64_t every,
                             struct comoments *blocks) {
     const struct sampler_system system = {.box = &fluid->setup.box,

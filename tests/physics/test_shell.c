@@ -15,7 +15,7 @@ static const double temperature_tolerance = 0.01;
 /// Of Kolmogorov and Smirnov's test, for each of the integrators.
 static const double false_alarm_rate = 1e-4;
 
-static void make_weight(struct fluid *fluid, struct formula_power_omega_parameters parameters) {
+static void make_omega(struct fluid *fluid, struct formula_power_omega_parameters parameters) {
     const struct curve curve = {&mf_formula_power_omega, &parameters};
     mf_table_clear(&fluid->omega);
     assert_ok(mf_table_init_omega(&fluid->omega, &curve));
@@ -48,7 +48,7 @@ static void test_temperatures_are_set_when_friction_is_a_thin_shell(void **state
                                                     &mf_lowe_andersen};
     struct fluid fluid;
     fluid_groot_warren(&fluid, 375, 0.005);
-    make_weight(&fluid, (struct formula_power_omega_parameters){10, 1e-6, 0.97, 1});
+    make_omega(&fluid, (struct formula_power_omega_parameters){10, 1e-6, 0.97, 1});
     fluid.setup.integrator_parameters.tolerance = 0.01;
     for (int k = 0; k < 4; k++) {
         fluid.setup.integrator = with[k];
@@ -85,7 +85,7 @@ static void test_velocities_are_those_of_maxwell_when_friction_is_strong(void **
     static const struct integrator *const with[] = {&mf_aboba, &mf_lowe_andersen};
     struct fluid fluid;
     fluid_groot_warren(&fluid, 375, 0.01);
-    make_weight(&fluid, (struct formula_power_omega_parameters){30, 1, 0, 1});
+    make_omega(&fluid, (struct formula_power_omega_parameters){30, 1, 0, 1});
     for (int k = 0; k < 2; k++) {
         fluid.setup.integrator = with[k];
         check_velocities(&fluid.setup);

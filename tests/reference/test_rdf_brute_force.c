@@ -29,7 +29,7 @@ static void count_pair(const struct rdf_bins *bins, double r, struct counts *cou
     }
 }
 
-/// Pairs of one kind.
+/// Pairs of one pair type.
 static void count_kind(const struct rdf_bins *bins, const struct composition *composition, int pair,
                        const struct particles *particles, struct counts *counts) {
     *counts = (struct counts){0};

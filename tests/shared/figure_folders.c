@@ -2,12 +2,21 @@
 #include "shared/figure_folders.h"
 
 #include "io/output.h"
+#include "report/figures.h"
 #include "shared/testing.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+const char figure_folders_fit_rdf[] =
+    "# r[lambda]\ttarget[1]\ttarget_error[1]\tresult[1]\tresult_error[1]\n"
+    "0.5\t0\t0\t0\t0\n1\t1.5\tnan\t1.4\t0.1\n1.5\t1\t0.1\t1.1\t0.1\n";
+const char figure_folders_imc_history[] =
+    "# iteration[1]\tevaluations[1]\tengine_steps[1]\terror[1]\tnoise[1]\tdamping[1]\t"
+    "regularisation[1]\n0\t1\t100\t0.5\t0.01\t1\t0\n";
+const char figure_folders_timing[] = "# iteration[1]\tseconds[s]\n0\t0\n1\t2\n";
 
 static char root[] = "/tmp/mesofit_figures_XXXXXX";
 
@@ -39,6 +48,11 @@ void figure_folders_write(const char *folder, const char *name, const char *text
 void figure_folders_make(char path[FIGURE_PATH], const char *name) {
     snprintf(path, FIGURE_PATH, "%s/%s", root, name);
     assert_int_equal(mf_output_make_folder(path), STATUS_OK);
+}
+
+void figure_folders_draw(const char *folder) {
+    if (mf_figures_draw(folder) != STATUS_OK)
+        fail_msg("%s", mf_status_message());
 }
 
 bool figure_folders_say(const char *folder, const char *name, const char *word) {

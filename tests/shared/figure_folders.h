@@ -6,6 +6,10 @@
 
 enum { FIGURE_PATH = 512 };
 
+/// @name Tables as runs write them: rdf.tsv and history.tsv of a fit, and its timing.tsv.
+
+extern const char figure_folders_fit_rdf[], figure_folders_imc_history[], figure_folders_timing[];
+
 /// @name For cmocka_run_group_tests: make the root, and remove it with all that is in it.
 
 int figure_folders_begin(void **state);
@@ -18,6 +22,9 @@ const char *figure_folders_root(void);
 void figure_folders_make(char path[FIGURE_PATH], const char *name);
 
 void figure_folders_write(const char *folder, const char *name, const char *text);
+
+/// Draw all figures of a folder; none fails.
+void figure_folders_draw(const char *folder);
 
 /// True if the figure has that word: a legend, say.
 bool figure_folders_say(const char *folder, const char *name, const char *word);

@@ -4,7 +4,7 @@
 #include "curves/formula.h"
 #include "shared/testing.h"
 
-static void make_weight(struct fluid *fluid, double sigma, double cutoff) {
+static void make_omega(struct fluid *fluid, double sigma, double cutoff) {
     struct formula_power_omega_parameters parameters = {sigma, 1, 0, cutoff};
     const struct curve curve = {&mf_formula_power_omega, &parameters};
     assert_ok(mf_table_init_omega(&fluid->omega, &curve));
@@ -47,13 +47,13 @@ void fluid_lennard_jones(struct fluid *fluid, int64_t count, double time_step) {
     const struct curve curve = {&mf_formula_lennard_jones, &parameters};
     assert_ok(mf_table_init_potential(&fluid->potential, &curve));
     fluid->setup.potential = &fluid->potential;
-    make_weight(fluid, 1.5, 2.5);
+    make_omega(fluid, 1.5, 2.5);
 }
 
 void fluid_groot_warren(struct fluid *fluid, int64_t count, double time_step) {
     begin(fluid, 3, count, 3, time_step);
     make_soft_potential(fluid);
-    make_weight(fluid, sqrt(4.5), 1);
+    make_omega(fluid, sqrt(4.5), 1);
 }
 
 void fluid_mixture(struct fluid *fluid, int64_t count, double time_step) {
@@ -84,7 +84,7 @@ void fluid_mixture(struct fluid *fluid, int64_t count, double time_step) {
 void fluid_soft_discs(struct fluid *fluid, int64_t count, double time_step) {
     begin(fluid, 2, count, 2, time_step);
     make_soft_potential(fluid);
-    make_weight(fluid, sqrt(4.5), 1);
+    make_omega(fluid, sqrt(4.5), 1);
 }
 
 void fluid_ideal_gas(struct fluid *fluid, int dimensions, int64_t count, double time_step) {
@@ -93,7 +93,7 @@ void fluid_ideal_gas(struct fluid *fluid, int dimensions, int64_t count, double 
         fluid->setup.box.length[d] = 5; // a root is exact only by luck
     fluid->setup.placement.kind = PLACEMENT_RANDOM;
     fluid->setup.placement.separation = 0;
-    make_weight(fluid, sqrt(4.5), 1);
+    make_omega(fluid, sqrt(4.5), 1);
 }
 
 void fluid_no_potential(struct table *table) {

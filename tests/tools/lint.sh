@@ -60,10 +60,28 @@ check_licence_lines() {
     done
 }
 
+# A file that does not fit into one reading has two subjects; so has a function of two screens.
+check_lengths() {
+    project_files 'src/*.c' 'src/*.h' 'include/*.h' | xargs -d '\n' -r awk -v longest_file=450 -v longest_function=60 '
+        FNR == 1 {
+            begin = 0
+        }
+        FNR == longest_file + 1 {
+            print FILENAME ": more than " longest_file " lines"
+        }
+        /^[A-Za-z_]/ && !/^[a-z_]+:$/ {
+            begin = FNR
+        }
+        /^}$/ && FNR - begin + 1 > longest_function {
+            print FILENAME ":" begin ": a function of " FNR - begin + 1 " lines; " longest_function " are the most"
+        }'
+}
+
 failed=0
 report format "$(check_format)"
 report cppcheck "$(check_cppcheck)"
 tests/tools/check_layers.sh || failed=1
 tests/tools/check_names.sh "$library" || failed=1
 report licence "$(check_licence_lines)"
+report lengths "$(check_lengths)"
 exit $failed

@@ -9,12 +9,12 @@
 
 #include "base/memory.h"
 
-static const struct table some_weight;
+static const struct table some_omega;
 
 static void test_scene_with_friction_gets_all_that_know_it(void **state) {
     (void)state;
     struct bench_method methods[BENCH_MOST_METHODS];
-    const struct simulation_setup setup = {.omega = &some_weight, .integrator = &mf_dpd_verlet};
+    const struct simulation_setup setup = {.omega = &some_omega, .integrator = &mf_dpd_verlet};
     const size_t count = mf_bench_methods(&setup, methods);
     assert_int_equal(count, 7);
     assert_string_equal(methods[0].name, "dpd-verlet(0.5)");
@@ -36,7 +36,7 @@ static void test_scene_without_friction_gets_velocity_verlet(void **state) {
 static void test_parameters_of_the_scene_are_kept_and_others_are_the_usual(void **state) {
     (void)state;
     struct bench_method methods[BENCH_MOST_METHODS];
-    struct simulation_setup setup = {.omega = &some_weight, .integrator = &mf_aboba_implicit};
+    struct simulation_setup setup = {.omega = &some_omega, .integrator = &mf_aboba_implicit};
     setup.integrator_parameters.tolerance = 0.125;
     for (size_t k = mf_bench_methods(&setup, methods); k-- > 0;)
         if (methods[k].integrator == &mf_aboba_implicit)

@@ -85,7 +85,7 @@ static void test_gaussian_has_its_values_when_shifted(void **state) {
     mf_curve_clear(&curve);
 }
 
-static void test_power_weight_is_zero_outside_its_shell_when_it_has_an_inner_cutoff(void **state) {
+static void test_power_omega_is_zero_outside_its_shell_when_it_has_an_inner_cutoff(void **state) {
     (void)state;
     struct curve curve = make(&mf_formula_power_omega);
     // The default is γ = 4.5, σ = 3 of Groot and Warren.
@@ -173,7 +173,6 @@ static void test_table_is_zero_when_beyond_the_cutoff(void **state) {
     mf_curve_clear(&curve);
 }
 
-/// Value and slope are continuous at every node, and so is the curvature.
 /// Each curve keeps its own grid, shift and end; a part without one is 0.
 static void test_table_stack_holds_each_curve_as_it_was_alone(void **state) {
     (void)state;
@@ -204,6 +203,7 @@ static void test_table_stack_holds_each_curve_as_it_was_alone(void **state) {
     mf_curve_clear(&gaussian);
 }
 
+/// Value and slope are continuous at every node, and so is the curvature.
 static void test_table_is_twice_continuous_when_a_potential(void **state) {
     (void)state;
     struct curve curve = make(&mf_formula_lennard_jones);
@@ -220,7 +220,7 @@ static void test_table_is_twice_continuous_when_a_potential(void **state) {
     mf_curve_clear(&curve);
 }
 
-static void test_table_of_a_weight_jumps_within_one_interval_when_the_weight_does(void **state) {
+static void test_table_of_omega_jumps_within_one_interval_when_omega_does(void **state) {
     (void)state;
     struct curve curve = make(&mf_formula_power_omega);
     struct formula_power_omega_parameters *p = curve.parameters;
@@ -306,7 +306,7 @@ static const double *equal_places(void) {
     return places;
 }
 
-static void test_bezier_values_are_bernstein_sums_when_genes_are_few(void **state) {
+static void test_bezier_values_are_bernstein_sums_when_coefficients_are_few(void **state) {
     (void)state;
     const double *t = equal_places();
     const double coefficients[] = {3, -1, 4, 1, -5, 9, 2, -6, 5, 3};
@@ -321,7 +321,7 @@ static void test_bezier_values_are_bernstein_sums_when_genes_are_few(void **stat
 }
 
 /// A Bézier curve stays in the hull of its control points, and equal ones make a constant.
-static void test_bezier_values_stay_in_the_hull_when_genes_are_a_hundred(void **state) {
+static void test_bezier_values_stay_in_the_hull_when_coefficients_are_a_hundred(void **state) {
     (void)state;
     enum { COEFFICIENTS = 100 };
     double coefficients[COEFFICIENTS], values[BEZIER_POINTS], largest = 0;
@@ -345,7 +345,7 @@ static void test_bezier_values_stay_in_the_hull_when_genes_are_a_hundred(void **
 
 /// Coefficients on a line give the line; equal ones before a last 0 give 1 − t^n: every Bernstein
 /// weight of degree 99 has its say.
-static void test_bezier_values_are_known_when_a_hundred_genes_are_simple(void **state) {
+static void test_bezier_values_are_known_when_a_hundred_coefficients_are_simple(void **state) {
     (void)state;
     enum { COEFFICIENTS = 100 };
     const double *t = equal_places();
@@ -396,17 +396,17 @@ int main(void) {
         cmocka_unit_test(test_lennard_jones_is_straight_when_particles_overlap),
         cmocka_unit_test(test_soft_repulsion_has_the_force_of_groot_and_warren_when_differenced),
         cmocka_unit_test(test_gaussian_has_its_values_when_shifted),
-        cmocka_unit_test(test_power_weight_is_zero_outside_its_shell_when_it_has_an_inner_cutoff),
+        cmocka_unit_test(test_power_omega_is_zero_outside_its_shell_when_it_has_an_inner_cutoff),
         cmocka_unit_test(test_table_follows_its_potential_when_smooth),
         cmocka_unit_test(test_table_is_zero_when_beyond_the_cutoff),
         cmocka_unit_test(test_table_stack_holds_each_curve_as_it_was_alone),
         cmocka_unit_test(test_table_is_twice_continuous_when_a_potential),
-        cmocka_unit_test(test_table_of_a_weight_jumps_within_one_interval_when_the_weight_does),
+        cmocka_unit_test(test_table_of_omega_jumps_within_one_interval_when_omega_does),
         cmocka_unit_test(test_sampled_curve_goes_through_its_points_when_evaluated),
         cmocka_unit_test(test_sampled_create_refuses_when_points_are_bad),
-        cmocka_unit_test(test_bezier_values_are_bernstein_sums_when_genes_are_few),
-        cmocka_unit_test(test_bezier_values_stay_in_the_hull_when_genes_are_a_hundred),
-        cmocka_unit_test(test_bezier_values_are_known_when_a_hundred_genes_are_simple),
+        cmocka_unit_test(test_bezier_values_are_bernstein_sums_when_coefficients_are_few),
+        cmocka_unit_test(test_bezier_values_stay_in_the_hull_when_coefficients_are_a_hundred),
+        cmocka_unit_test(test_bezier_values_are_known_when_a_hundred_coefficients_are_simple),
         cmocka_unit_test(test_core_continues_value_and_slope_when_the_potential_repels),
         cmocka_unit_test(test_core_starts_flat_when_the_potential_attracts_inwards),
     };

@@ -16,7 +16,7 @@ static void grid(double *t, size_t points) {
 }
 
 /// Some coefficients without pattern, in (−3, 3).
-static void some_genes(double *coefficients, size_t count) {
+static void some_coefficients(double *coefficients, size_t count) {
     for (size_t k = 0; k < count; k++)
         coefficients[k] = 3 * sin(17 * (double)(k + 1) * (double)(k + 1));
 }
@@ -30,11 +30,11 @@ static void test_shape_find_knows_every_shape_when_named(void **state) {
     assert_null(mf_shape_find("spline"));
 }
 
-static void test_shape_values_begin_at_the_first_gene_and_end_at_0(void **state) {
+static void test_shape_values_begin_at_the_first_coefficient_and_end_at_0(void **state) {
     (void)state;
     for (size_t count = 1; count <= 40; count++) {
         double coefficients[40], values[2], shift[2];
-        some_genes(coefficients, count);
+        some_coefficients(coefficients, count);
         assert_ok(
             mf_shape_find("bspline")->values(coefficients, count, (double[]){0, 1}, values, 2));
         assert_close(values[0], coefficients[0], 1e-14);
@@ -76,7 +76,7 @@ static void test_bspline_has_its_textbook_values_in_the_last_interval(void **sta
     }
 }
 
-static void test_bspline_gene_acts_on_four_intervals_alone(void **state) {
+static void test_bspline_coefficient_acts_on_four_intervals_alone(void **state) {
     enum { COEFFICIENTS = 20, INTERVALS = COEFFICIENTS + 1 - 3 };
     double t[POINTS], basis[POINTS * COEFFICIENTS];
     (void)state;
@@ -92,7 +92,7 @@ static void test_bspline_gene_acts_on_four_intervals_alone(void **state) {
         }
 }
 
-static void test_bspline_is_a_polynomial_when_genes_are_few(void **state) {
+static void test_bspline_is_a_polynomial_when_coefficients_are_few(void **state) {
     double value;
     (void)state;
     assert_ok(mf_bspline_values((double[]){3}, 1, (double[]){0.25}, &value, 1));
@@ -101,12 +101,12 @@ static void test_bspline_is_a_polynomial_when_genes_are_few(void **state) {
     assert_close(value, 3 * 0.75 * 0.75 + 2 * 2 * 0.25 * 0.75, 1e-14);
 }
 
-static void test_shape_basis_times_genes_is_the_curve(void **state) {
+static void test_shape_basis_times_coefficients_is_the_curve(void **state) {
     enum { COEFFICIENTS = 9 };
     double t[POINTS], basis[POINTS * COEFFICIENTS], values[POINTS], coefficients[COEFFICIENTS];
     (void)state;
     grid(t, POINTS);
-    some_genes(coefficients, COEFFICIENTS);
+    some_coefficients(coefficients, COEFFICIENTS);
     for (size_t s = 0; mf_shapes[s]; s++) {
         assert_ok(mf_shape_basis(mf_shapes[s], COEFFICIENTS, t, POINTS, basis));
         assert_ok(mf_shapes[s]->values(coefficients, COEFFICIENTS, t, values, POINTS));
@@ -119,13 +119,13 @@ static void test_shape_basis_times_genes_is_the_curve(void **state) {
     }
 }
 
-static void test_shape_fit_recovers_the_genes_of_a_bspline(void **state) {
+static void test_shape_fit_recovers_the_coefficients_of_a_bspline(void **state) {
     enum { COEFFICIENTS = 30 };
     double t[POINTS], values[POINTS], weights[POINTS], coefficients[COEFFICIENTS],
         fitted[COEFFICIENTS];
     (void)state;
     grid(t, POINTS);
-    some_genes(coefficients, COEFFICIENTS);
+    some_coefficients(coefficients, COEFFICIENTS);
     assert_ok(mf_bspline_values(coefficients, COEFFICIENTS, t, values, POINTS));
     for (int p = 0; p < POINTS; p++)
         weights[p] = 1 + (p % 5);
@@ -161,7 +161,7 @@ static double soft_core(double t) {
 
 /// More coefficients than can be told apart, or than points: small coefficients whose curve is
 /// right.
-static void test_shape_fit_stays_small_when_genes_are_too_many(void **state) {
+static void test_shape_fit_stays_small_when_coefficients_are_too_many(void **state) {
     double distance, largest;
     (void)state;
     for (size_t s = 0; mf_shapes[s]; s++) {
@@ -198,14 +198,14 @@ static void test_shape_fit_fails_when_points_say_nothing(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_shape_find_knows_every_shape_when_named),
-        cmocka_unit_test(test_shape_values_begin_at_the_first_gene_and_end_at_0),
+        cmocka_unit_test(test_shape_values_begin_at_the_first_coefficient_and_end_at_0),
         cmocka_unit_test(test_bspline_basis_adds_up_to_1_before_the_last_interval),
         cmocka_unit_test(test_bspline_has_its_textbook_values_in_the_last_interval),
-        cmocka_unit_test(test_bspline_gene_acts_on_four_intervals_alone),
-        cmocka_unit_test(test_bspline_is_a_polynomial_when_genes_are_few),
-        cmocka_unit_test(test_shape_basis_times_genes_is_the_curve),
-        cmocka_unit_test(test_shape_fit_recovers_the_genes_of_a_bspline),
-        cmocka_unit_test(test_shape_fit_stays_small_when_genes_are_too_many),
+        cmocka_unit_test(test_bspline_coefficient_acts_on_four_intervals_alone),
+        cmocka_unit_test(test_bspline_is_a_polynomial_when_coefficients_are_few),
+        cmocka_unit_test(test_shape_basis_times_coefficients_is_the_curve),
+        cmocka_unit_test(test_shape_fit_recovers_the_coefficients_of_a_bspline),
+        cmocka_unit_test(test_shape_fit_stays_small_when_coefficients_are_too_many),
         cmocka_unit_test(test_shape_fit_follows_the_weights),
         cmocka_unit_test(test_shape_fit_fails_when_points_say_nothing),
     };

@@ -25,7 +25,7 @@ static double first_step(const struct composition *composition, const struct tab
     return step;
 }
 
-/// It follows the fastest pairs, whichever kind they are.
+/// It follows the fastest pairs, whatever their pair type is.
 static void test_hybrid_begins_with_the_step_of_the_stiffest_pairs(void **state) {
     (void)state;
     const struct composition one = mf_composition_of_one(COUNT);

@@ -88,7 +88,7 @@ static void check_sums(const struct metropolis *metropolis) {
     assert_true(differences <= 4);
 }
 
-/// Without a place for each kind, a mixture's pairs are counted together.
+/// Without bins for each pair type, a mixture's pairs are counted together.
 static void check_counts_together(const struct metropolis *metropolis) {
     const double width = metropolis->law.potential->cutoff / BINS;
     uint32_t apart[MOST_PAIRS * BINS + 1] = {0}, together[BINS + 1] = {0};

@@ -94,7 +94,7 @@ static void test_targets_read_takes_the_columns_of_a_curve(void **state) {
 }
 
 /// The window of motion is that of a curve, else that of the escape times, else its own.
-static void test_targets_goals_measure_motion_as_the_targets_do(void **state) {
+static void test_targets_sample_motion_as_the_curves_do(void **state) {
     struct target_files t;
     struct targets fitted, compared;
     write_tables(state);
@@ -225,7 +225,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_targets_read_takes_all_kinds),
         TEST(test_targets_read_takes_the_columns_of_a_curve),
-        TEST(test_targets_goals_measure_motion_as_the_targets_do),
+        TEST(test_targets_sample_motion_as_the_curves_do),
         TEST(test_targets_read_refuses_what_is_no_function_of_time),
         TEST(test_targets_read_takes_curves_without_errors),
         TEST(test_targets_read_tells_what_is_wrong_and_where),

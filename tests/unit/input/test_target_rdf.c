@@ -202,7 +202,7 @@ static void test_target_read_takes_votca_in_nanometres(void **state) {
     mf_target_rdf_clear(&target);
 }
 
-/// Normalised by N_a² for alike pairs, of the system that was measured.
+/// Normalised by N_a² for pairs of one type, of the system that was measured.
 static void test_target_convert_takes_votca_to_possible_pairs(void **state) {
     static const struct box square = {2, {10, 10, 1}};
     static const struct composition one = {.types = 1, .count = {11}},

@@ -13,7 +13,7 @@ enum { SIZE = 24 };
 
 static const double temperature = 1.5, spacing = 0.05;
 
-/// Covariance of a kind that counts have: positive, with neighbours correlated, bins of very
+/// A covariance such as counts have: positive, with neighbours correlated, bins of very
 /// different scatter.
 static void make_covariance(double covariance[SIZE][SIZE]) {
     for (int a = 0; a < SIZE; a++)

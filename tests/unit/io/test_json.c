@@ -1,39 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/clock.h"
 #include "io/json.h"
-#include "io/json_write.h"
 #include "shared/is_close.h"
+#include "shared/sample_fields.h"
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-
-struct sample {
-    double strength;
-    int64_t steps;
-    uint64_t seed;
-    double lengths[3];
-    char name[FIELD_TEXT_SIZE], file[FIELD_TEXT_SIZE];
-    int kind;
-};
-
-static const char *const kinds[] = {"soft", "hard", NULL};
-
-static const struct field fields[] = {
-    {"strength", FIELD_NUMBER, offsetof(struct sample, strength), false, 0.1, 0, 1, NULL, "k_B T",
-     "how strong"},
-    {"steps", FIELD_INTEGER, offsetof(struct sample, steps), false, 5, 1, FIELD_LARGEST_INTEGER,
-     NULL, "", "a count"},
-    {"seed", FIELD_SEED, offsetof(struct sample, seed), false, 42, 0, 0, NULL, "", "a seed"},
-    {"lengths", FIELD_LENGTHS, offsetof(struct sample, lengths), false, 0, FIELD_ABOVE_ZERO,
-     DBL_MAX, NULL, "", "box"},
-    {"name", FIELD_TEXT, offsetof(struct sample, name), false, 0, 0, 0, NULL, "", "a name"},
-    {"file", FIELD_FILE, offsetof(struct sample, file), false, 0, 0, 0, NULL, "", "a file"},
-    {"kind", FIELD_CHOICE, offsetof(struct sample, kind), false, 1, 0, 0, kinds, "", "a kind"},
-    FIELD_END,
-};
 
 static const struct field required_fields[] = {
     {"strength", FIELD_NUMBER, offsetof(struct sample, strength), true, 0, 0, 1, NULL, "",
@@ -55,7 +30,7 @@ static struct json_document *open_text(void **state, const char *text) {
 static enum status read_sample(void **state, const char *text, struct sample *sample) {
     struct json_document *document = open_text(state, text);
     struct json_object root = mf_json_root(document);
-    mf_json_fields(&root, fields, sample);
+    mf_json_fields(&root, sample_fields, sample);
     mf_json_finish(&root);
     return mf_json_close(document, STATUS_OK);
 }
@@ -266,13 +241,13 @@ static void test_json_choice_returns_known_texts_when_given_or_falls_back(void *
     struct json_document *document =
         open_text(state, "{\"law\": \"soft\", \"odd\": \"hrad\", \"number\": 1}");
     struct json_object root = mf_json_root(document);
-    assert_string_equal(mf_json_choice(&root, "law", kinds, NULL), "soft");
+    assert_string_equal(mf_json_choice(&root, "law", sample_kinds, NULL), "soft");
     assert_string_equal(mf_json_choice(&root, "law", NULL, NULL), "soft");
-    assert_string_equal(mf_json_choice(&root, "none", kinds, "hard"), "hard");
+    assert_string_equal(mf_json_choice(&root, "none", sample_kinds, "hard"), "hard");
     assert_int_equal(mf_json_fault_count(document), 0);
-    assert_null(mf_json_choice(&root, "odd", kinds, NULL));
-    assert_null(mf_json_choice(&root, "number", kinds, "hard"));
-    assert_null(mf_json_choice(&root, "missing", kinds, NULL));
+    assert_null(mf_json_choice(&root, "odd", sample_kinds, NULL));
+    assert_null(mf_json_choice(&root, "number", sample_kinds, "hard"));
+    assert_null(mf_json_choice(&root, "missing", sample_kinds, NULL));
     mf_json_finish(&root);
     assert_int_equal(mf_json_fault_count(document), 3);
     assert_fails(mf_json_close(document, STATUS_OK), STATUS_BAD_INPUT, "did you mean \"hard\"?");
@@ -298,136 +273,6 @@ static void test_json_close_drops_whole_lines_when_faults_are_long(void **state)
         mf_json_fault(&root, NULL, "%01500d end", k);
     assert_fails(mf_json_close(document, STATUS_OK), STATUS_BAD_INPUT,
                  "04 end\n… and 5 more faults");
-}
-
-// Writing -----------------------------------------------------------------------------------------
-
-static void assert_round_trip(void **state, const struct sample *sample) {
-    const char *file = temporary_folder_file(*state, "run.json");
-    struct json_writer *writer = mf_json_writer_create();
-    assert_non_null(writer);
-    mf_json_put_fields(writer, fields, sample);
-    assert_ok(mf_json_write(writer, file));
-    mf_json_writer_free(writer);
-
-    struct sample again;
-    struct json_document *document;
-    assert_ok(mf_json_open(&document, file));
-    struct json_object root = mf_json_root(document);
-    mf_json_fields(&root, fields, &again);
-    mf_json_finish(&root);
-    assert_ok(mf_json_close(document, STATUS_OK));
-    assert_identical(again.strength, sample->strength);
-    assert_int_equal(again.steps, sample->steps);
-    assert_int_equal(again.seed, sample->seed);
-    assert_memory_equal(again.lengths, sample->lengths, sizeof again.lengths);
-    assert_string_equal(again.name, sample->name);
-    assert_string_equal(again.file, sample->file);
-    assert_int_equal(again.kind, sample->kind);
-}
-
-static void test_json_put_fields_reads_back_the_same_bits_when_digits_are_many(void **state) {
-    struct sample sample = {.strength = 1.0 / 3,
-                            .steps = 9007199254740991,
-                            .seed = 9007199254740991,
-                            .lengths = {0.1 + 0.2, DBL_MIN, DBL_MAX},
-                            .name = "tab\t, \"quote\", é",
-                            .file = "/a/b",
-                            .kind = 1};
-    assert_round_trip(state, &sample);
-    sample = (struct sample){.strength = nextafter(0.1, 1), .steps = 1, .lengths = {1, 2, 0}};
-    assert_round_trip(state, &sample);
-    sample = (struct sample){.strength = 5e-324, .steps = 1};
-    assert_round_trip(state, &sample);
-    sample = (struct sample){.strength = -0.0, .steps = 1};
-    assert_round_trip(state, &sample);
-}
-
-static void test_json_put_fields_makes_a_file_absolute_when_it_is_relative(void **state) {
-    const struct sample sample = {.file = "a/b.dat"};
-    struct json_writer *writer = mf_json_writer_create();
-    mf_json_put_fields(writer, fields, &sample);
-    const char *file = temporary_folder_file(*state, "used.json");
-    assert_ok(mf_json_write(writer, file));
-    mf_json_writer_free(writer);
-    char *text = temporary_folder_read(file);
-    assert_contains(text, "\"file\":\t\"/");
-    assert_contains(text, "/a/b.dat\"");
-    assert_null(strstr(text, "\"name\""));
-    assert_null(strstr(text, "\"lengths\""));
-    free(text);
-}
-
-static void test_json_write_prints_the_tree_when_objects_are_nested(void **state) {
-    struct json_writer *writer = mf_json_writer_create();
-    assert_non_null(writer);
-    mf_json_put_text(writer, "name", "x");
-    mf_json_begin(writer, "scene");
-    mf_json_begin(writer, "box");
-    mf_json_put_numbers(writer, "sides", (double[]){1, 0.1, 1e300}, 3);
-    mf_json_end(writer);
-    mf_json_put_integer(writer, "steps", INT64_MIN);
-    mf_json_end(writer);
-    mf_json_put_number(writer, "score", 0.1);
-    mf_json_put_numbers(writer, "none", NULL, 0);
-    const char *file = temporary_folder_file(*state, "out.json");
-    assert_ok(mf_json_write(writer, file));
-    mf_json_writer_free(writer);
-    char *text = temporary_folder_read(file);
-    assert_string_equal(text, "{\n\t\"name\":\t\"x\",\n\t\"scene\":\t{\n\t\t\"box\":\t{\n"
-                              "\t\t\t\"sides\":\t[1, 0.1, 1e+300]\n\t\t},\n"
-                              "\t\t\"steps\":\t-9223372036854775808\n\t},\n"
-                              "\t\"score\":\t0.1,\n\t\"none\":\t[]\n}\n");
-    free(text);
-}
-
-static void write_twice(struct json_writer *writer) {
-    mf_json_put_integer(writer, "distance", 1);
-    mf_json_put_integer(writer, "distance", 1);
-}
-
-static void write_too_deep(struct json_writer *writer) {
-    for (int k = 0; k < 20; k++)
-        mf_json_begin(writer, "distance");
-}
-
-static void write_nameless(struct json_writer *writer) {
-    mf_json_begin(writer, NULL);
-}
-
-static void test_json_write_writes_nothing_when_the_tree_has_a_problem(void **state) {
-    static const struct {
-        void (*build)(struct json_writer *);
-        const char *part;
-    } cases[] = {{write_twice, "out.json: \"distance\" is given twice"},
-                 {write_too_deep, "out.json: \"distance\" is nested too deeply"},
-                 {write_nameless, "out.json: \"\" is an object without a key"}};
-    const char *file = temporary_folder_file(*state, "out.json");
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        struct json_writer *writer = mf_json_writer_create();
-        assert_non_null(writer);
-        cases[k].build(writer);
-        assert_fails(mf_json_write(writer, file), STATUS_IO, cases[k].part);
-        assert_false(temporary_folder_exists(file));
-        mf_json_writer_free(writer);
-    }
-}
-
-/// JSON has no word for them but null, and one of them must not cost the rest.
-static void test_json_write_writes_null_when_a_number_is_not_finite(void **state) {
-    const char *file = temporary_folder_file(*state, "out.json");
-    struct json_writer *writer = mf_json_writer_create();
-    assert_non_null(writer);
-    mf_json_put_number(writer, "a", NAN);
-    mf_json_put_number(writer, "b", -INFINITY);
-    mf_json_put_numbers(writer, "c", (double[]){1, INFINITY, 0.5}, 3);
-    mf_json_put_number(writer, "d", 2);
-    assert_ok(mf_json_write(writer, file));
-    mf_json_writer_free(writer);
-    char *text = temporary_folder_read(file);
-    assert_string_equal(text, "{\n\t\"a\":\tnull,\n\t\"b\":\tnull,\n\t\"c\":\t[1, null, 0.5],\n"
-                              "\t\"d\":\t2\n}\n");
-    free(text);
 }
 
 /// 160 000 keys took minutes; more than a thousand have no meaning in any file.
@@ -480,7 +325,7 @@ static void test_json_collect_files_finds_what_the_fields_name(void **state) {
     struct json_document *document = open_text(state, "{\"file\": \"./table.tsv\"}");
     assert_ok(mf_json_collect_files(document, &inputs));
     struct json_object root = mf_json_root(document);
-    mf_json_fields(&root, fields, &sample);
+    mf_json_fields(&root, sample_fields, &sample);
     assert_ok(mf_json_close(document, STATUS_OK));
     assert_int_equal(inputs.count, 2);
     assert_fails(mf_input_files_spare(&inputs, temporary_folder_file(*state, "table.tsv")),
@@ -489,48 +334,6 @@ static void test_json_collect_files_finds_what_the_fields_name(void **state) {
                  STATUS_BAD_INPUT, "run.json would be replaced");
     assert_ok(mf_input_files_spare(&inputs, temporary_folder_file(*state, "other.tsv")));
     mf_input_files_clear(&inputs);
-}
-
-static void test_json_write_stream_prints_a_list_when_the_root_is_one(void **state) {
-    char text[256];
-    const char *file = temporary_folder_file(*state, "stream");
-    FILE *stream = fopen(file, "w+");
-    assert_non_null(stream);
-    struct json_writer *writer = mf_json_writer_create_list();
-    assert_non_null(writer);
-    assert_ok(mf_json_write_stream(writer, stream, "stream"));
-    for (int k = 0; k < 2; k++) {
-        mf_json_begin(writer, NULL);
-        mf_json_put_integer(writer, "number", k);
-        mf_json_begin(writer, "inside");
-        mf_json_end(writer);
-        mf_json_end(writer);
-    }
-    assert_ok(mf_json_write_stream(writer, stream, "stream"));
-    rewind(stream);
-    const size_t length = fread(text, 1, sizeof text - 1, stream);
-    text[length] = '\0';
-    assert_string_equal(text, "[]\n[{\n\t\t\"number\":\t0,\n\t\t\"inside\":\t{\n\t\t}\n\t}, {\n"
-                              "\t\t\"number\":\t1,\n\t\t\"inside\":\t{\n\t\t}\n\t}]\n");
-    assert_int_equal(fclose(stream), 0);
-    mf_json_writer_free(writer);
-}
-
-static void test_json_write_stream_fails_when_the_tree_or_the_stream_is_bad(void **state) {
-    (void)state;
-    struct json_writer *writer = mf_json_writer_create_list();
-    assert_non_null(writer);
-    FILE *full = fopen("/dev/full", "w");
-    assert_non_null(full);
-    assert_fails(mf_json_write_stream(writer, full, "stdout"), STATUS_IO,
-                 "cannot write stdout: No space left");
-    fclose(full);
-    mf_json_begin(writer, NULL);
-    write_twice(writer);
-    mf_json_end(writer);
-    assert_fails(mf_json_write_stream(writer, stdout, "stdout"), STATUS_IO,
-                 "cannot write stdout: \"distance\" is given twice");
-    mf_json_writer_free(writer);
 }
 
 #define IN_FOLDER(test)                                                                            \
@@ -556,17 +359,10 @@ int main(void) {
         IN_FOLDER(test_json_choice_returns_known_texts_when_given_or_falls_back),
         IN_FOLDER(test_json_close_counts_the_rest_when_faults_are_many),
         IN_FOLDER(test_json_close_drops_whole_lines_when_faults_are_long),
-        IN_FOLDER(test_json_put_fields_reads_back_the_same_bits_when_digits_are_many),
-        IN_FOLDER(test_json_put_fields_makes_a_file_absolute_when_it_is_relative),
-        IN_FOLDER(test_json_write_prints_the_tree_when_objects_are_nested),
-        IN_FOLDER(test_json_write_writes_null_when_a_number_is_not_finite),
         IN_FOLDER(test_json_open_refuses_more_keys_than_can_be_looked_for),
         IN_FOLDER(test_json_close_tells_want_of_memory_first),
         IN_FOLDER(test_faults_show_control_characters),
         IN_FOLDER(test_json_collect_files_finds_what_the_fields_name),
-        IN_FOLDER(test_json_write_writes_nothing_when_the_tree_has_a_problem),
-        IN_FOLDER(test_json_write_stream_prints_a_list_when_the_root_is_one),
-        cmocka_unit_test(test_json_write_stream_fails_when_the_tree_or_the_stream_is_bad),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

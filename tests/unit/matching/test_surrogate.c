@@ -156,7 +156,7 @@ static int by_size(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-static void test_surrogate_error_of_an_open_gene_is_about_that_of_no_knowledge(void **state) {
+static void test_surrogate_error_of_an_open_variable_is_about_that_of_no_knowledge(void **state) {
     (void)state;
     enum { EXPERIMENTS = 41 };
     static const double noises[] = {0.01, 0.1}, correlations[] = {0, 0.7};
@@ -234,7 +234,7 @@ static void test_surrogate_forgets_the_oldest_rows_when_it_is_full(void **state)
     mf_surrogate_clear(&fresh.surrogate);
 }
 
-static void test_surrogate_stays_within_the_genes_when_the_target_is_beyond(void **state) {
+static void test_surrogate_stays_within_the_range_when_the_target_is_beyond(void **state) {
     (void)state;
     const struct experiment e = {
         .spread = 0.1, .noise = 0.001, .target_error = 0.001, .rows = CAPACITY};
@@ -322,10 +322,10 @@ int main(void) {
         cmocka_unit_test(test_surrogate_finds_the_truth_when_there_is_next_to_no_noise),
         cmocka_unit_test(test_surrogate_meets_one_feature_exactly_when_it_is_a_constraint),
         cmocka_unit_test(test_surrogate_errors_hold_the_truth_as_often_as_they_say),
-        cmocka_unit_test(test_surrogate_error_of_an_open_gene_is_about_that_of_no_knowledge),
+        cmocka_unit_test(test_surrogate_error_of_an_open_variable_is_about_that_of_no_knowledge),
         cmocka_unit_test(test_surrogate_is_not_known_when_there_are_too_few_rows),
         cmocka_unit_test(test_surrogate_forgets_the_oldest_rows_when_it_is_full),
-        cmocka_unit_test(test_surrogate_stays_within_the_genes_when_the_target_is_beyond),
+        cmocka_unit_test(test_surrogate_stays_within_the_range_when_the_target_is_beyond),
         cmocka_unit_test(test_surrogate_knows_nothing_when_all_rows_are_at_one_place),
         cmocka_unit_test(test_surrogate_is_the_same_from_its_spans),
     };

@@ -135,7 +135,7 @@ static void test_twins_of_the_elite_are_no_challengers(void **state) {
     end(&run);
 }
 
-static void test_hopeless_is_the_median_of_the_last_generation(void **state) {
+static void test_discard_above_is_the_median_of_the_last_generation(void **state) {
     struct run run = begin(10);
     (void)state;
     tell(&run, (double[]){5, 4, 3, 2, 1, NAN});
@@ -149,7 +149,7 @@ int main(void) {
         cmocka_unit_test(test_elite_falls_when_it_turns_out_to_be_bad),
         cmocka_unit_test(test_last_round_measures_the_last_challenger_alone),
         cmocka_unit_test(test_twins_of_the_elite_are_no_challengers),
-        cmocka_unit_test(test_hopeless_is_the_median_of_the_last_generation),
+        cmocka_unit_test(test_discard_above_is_the_median_of_the_last_generation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

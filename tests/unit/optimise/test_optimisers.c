@@ -114,7 +114,7 @@ static void test_every_optimiser_goes_on_when_candidates_fail(void **state) {
                       v->failing);
 }
 
-static void test_every_optimiser_has_no_favourite_when_all_have_failed(void **state) {
+static void test_every_optimiser_has_no_incumbent_when_all_have_failed(void **state) {
     const struct landscape_drive drive = {.landscape = &landscape_sphere,
                                           .variables = VARIABLES,
                                           .seed = 5,
@@ -359,7 +359,7 @@ static void test_populations_larger_than_a_round_are_refused(void **state) {
         }
 }
 
-static void test_hopeless_is_unknown_before_a_round_is_told(void **state) {
+static void test_discard_above_is_unknown_before_a_round_is_told(void **state) {
     const struct landscape_drive drive = {
         .landscape = &landscape_sphere, .variables = VARIABLES, .seed = 3};
     (void)state;
@@ -404,7 +404,7 @@ int main(void) {
         cmocka_unit_test(test_every_optimiser_finds_a_minimum_at_the_bounds),
         cmocka_unit_test(test_every_optimiser_comes_close_when_errors_are_noisy),
         cmocka_unit_test(test_every_optimiser_goes_on_when_candidates_fail),
-        cmocka_unit_test(test_every_optimiser_has_no_favourite_when_all_have_failed),
+        cmocka_unit_test(test_every_optimiser_has_no_incumbent_when_all_have_failed),
         cmocka_unit_test(test_every_optimiser_goes_on_with_the_same_bits_when_restarted),
         cmocka_unit_test(test_cmaes_goes_on_with_the_same_bits_when_it_began_again),
         cmocka_unit_test(test_every_optimiser_is_a_function_of_its_seed),
@@ -412,7 +412,7 @@ int main(void) {
         cmocka_unit_test(test_every_optimiser_begins_near_its_start),
         cmocka_unit_test(test_every_optimiser_refuses_a_space_without_room),
         cmocka_unit_test(test_populations_larger_than_a_round_are_refused),
-        cmocka_unit_test(test_hopeless_is_unknown_before_a_round_is_told),
+        cmocka_unit_test(test_discard_above_is_unknown_before_a_round_is_told),
         cmocka_unit_test(test_optimiser_find_knows_every_optimiser_when_named),
         cmocka_unit_test(test_optimiser_reflect_folds_at_both_ends),
     };

@@ -30,16 +30,16 @@ static void begin(struct made *made) {
     }
     made->problem = (struct inverse_problem){
         .targets = {.bins = {0, 0.05, BINS}, .target[TARGET_RDF] = {BINS, made->g, made->error, 0}},
-        .unknown[UNKNOWN_OMEGA] = {true, {0, VARIABLES, 0, 6, 0, 1}, {NULL}},
+        .unknown[UNKNOWN_OMEGA] = {true, {0, VARIABLES, 0, 6, 0, 1, {0}}, {NULL}},
         .scene = made->fluid.setup,
         .seed = 3,
         .threads = 1};
 }
 
-static void measure(const struct made *made, double discard_above, double patience,
+static void measure(const struct made *made, double discard_above, double racing,
                     struct evaluate_result *result) {
     struct evaluate_parameters parameters = made->parameters;
-    parameters.patience = patience;
+    parameters.racing = racing;
     const struct evaluate_candidate candidate = {.potential = made->problem.scene.potential,
                                                  .omega = made->problem.scene.omega,
                                                  .discard_above = discard_above,
@@ -48,7 +48,7 @@ static void measure(const struct made *made, double discard_above, double patien
     assert_ok(mf_evaluate(&made->problem, &candidate, &parameters, NULL, NULL, result));
 }
 
-static void test_evaluate_stops_early_when_a_candidate_is_hopeless(void **state) {
+static void test_evaluate_stops_early_when_a_candidate_cannot_win(void **state) {
     (void)state;
     struct made made;
     struct evaluate_result whole, stopped;
@@ -185,7 +185,7 @@ static void test_candidates_race_with_the_same_bits_for_any_threads(void **state
     struct made made;
     struct rounds one = {0}, many = {0};
     begin(&made);
-    made.parameters.patience = 1;
+    made.parameters.racing = 1;
     measure_rounds(&made, 1, &one);
     // Those of the second round are all stopped within their first quarter.
     assert_in_range(one.steps, CANDIDATES * (220 + 20 + 4 * 5), CANDIDATES * (220 + 70));
@@ -200,7 +200,7 @@ static void test_candidates_race_with_the_same_bits_for_any_threads(void **state
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_evaluate_stops_early_when_a_candidate_is_hopeless),
+        cmocka_unit_test(test_evaluate_stops_early_when_a_candidate_cannot_win),
         cmocka_unit_test(test_evaluate_has_the_same_bits_when_it_is_not_stopped),
         cmocka_unit_test(test_evaluate_races_with_fewer_samples_than_looks),
         cmocka_unit_test(test_evaluate_begins_where_it_is_told),

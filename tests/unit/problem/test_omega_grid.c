@@ -8,7 +8,7 @@
 
 static const double rounding = 1e-12;
 
-static void test_weight_grid_has_its_ends_at_both_cutoffs(void **state) {
+static void test_omega_grid_has_its_ends_at_both_cutoffs(void **state) {
     (void)state;
     struct omega_grid grid;
     mf_omega_grid_init(&grid, 0.3, 1.7);
@@ -18,7 +18,7 @@ static void test_weight_grid_has_its_ends_at_both_cutoffs(void **state) {
         assert_close(grid.r[k] - grid.r[k - 1], 1.4 / 200, rounding);
 }
 
-static void test_weight_grid_value_is_straight_between_the_points(void **state) {
+static void test_omega_grid_value_is_straight_between_the_points(void **state) {
     (void)state;
     double omega[OMEGA_POINTS];
     struct omega_grid grid;
@@ -40,7 +40,7 @@ static void test_weight_grid_value_is_straight_between_the_points(void **state) 
 
 /// A friction weight of steps, with a wall at the inner cutoff: what a smooth table would swing
 /// about.
-static void test_weight_grid_table_is_never_negative_when_the_weight_jumps(void **state) {
+static void test_omega_grid_table_is_never_negative_when_omega_jumps(void **state) {
     (void)state;
     double omega[OMEGA_POINTS], value;
     struct omega_grid grid;
@@ -59,7 +59,7 @@ static void test_weight_grid_table_is_never_negative_when_the_weight_jumps(void 
     mf_table_clear(&table);
 }
 
-static void test_weight_grid_table_has_the_values_of_the_curve(void **state) {
+static void test_omega_grid_table_has_the_values_of_the_curve(void **state) {
     (void)state;
     double omega[OMEGA_POINTS], value;
     struct omega_grid grid;
@@ -77,10 +77,10 @@ static void test_weight_grid_table_has_the_values_of_the_curve(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_weight_grid_has_its_ends_at_both_cutoffs),
-        cmocka_unit_test(test_weight_grid_value_is_straight_between_the_points),
-        cmocka_unit_test(test_weight_grid_table_is_never_negative_when_the_weight_jumps),
-        cmocka_unit_test(test_weight_grid_table_has_the_values_of_the_curve),
+        cmocka_unit_test(test_omega_grid_has_its_ends_at_both_cutoffs),
+        cmocka_unit_test(test_omega_grid_value_is_straight_between_the_points),
+        cmocka_unit_test(test_omega_grid_table_is_never_negative_when_omega_jumps),
+        cmocka_unit_test(test_omega_grid_table_has_the_values_of_the_curve),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

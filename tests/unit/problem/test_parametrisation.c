@@ -39,8 +39,8 @@ static void begin(struct both *both, bool potential, bool omega) {
     both->problem = (struct inverse_problem){
         .targets = {.bins = {0, 0.1, BINS},
                     .target[TARGET_RDF] = {.count = BINS, .value = both->g}},
-        .unknown = {{potential, {bspline, POTENTIAL_GENES, -20, 80, 0, 0}, {&both->potential}},
-                    {omega, {bspline, WEIGHT_GENES, 0, 5, 0.1, 1.5}, {&both->omega}}},
+        .unknown = {{potential, {bspline, POTENTIAL_GENES, -20, 80, 0, 0, {0}}, {&both->potential}},
+                    {omega, {bspline, WEIGHT_GENES, 0, 5, 0.1, 1.5, {0}}, {&both->omega}}},
         .scene = {.temperature = 1},
         .core_threshold = 1e-3,
         .core_stiffness = 2000};

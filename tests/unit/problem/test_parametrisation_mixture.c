@@ -31,8 +31,8 @@ static void begin(struct mixture *mixture) {
     mixture->problem = (struct inverse_problem){
         .targets = {.bins = {0, 0.1, BINS},
                     .target[TARGET_RDF] = {.count = PAIRS * BINS, .value = mixture->g}},
-        .unknown = {{true, {INVERSE_CURVE_BSPLINE, VARIABLES, -20, 80, 0, 0}, {NULL}},
-                    {true, {INVERSE_CURVE_BSPLINE, WEIGHT_GENES, 0, 5, 0.1, 1.5}, {NULL}}},
+        .unknown = {{true, {INVERSE_CURVE_BSPLINE, VARIABLES, -20, 80, 0, 0, {0}}, {NULL}},
+                    {true, {INVERSE_CURVE_BSPLINE, WEIGHT_GENES, 0, 5, 0.1, 1.5, {0}}, {NULL}}},
         .scene = {.temperature = 1,
                   .composition = {.types = 2, .count = {20, 30}, .name = {"A", "B"}}},
         .core_threshold = 1e-3,

@@ -42,7 +42,7 @@ static void begin(struct potential_grid *grid, struct inverse_problem *problem, 
     assert_ok(mf_potential_grid_init(grid, problem));
 }
 
-static void test_potential_grid_has_a_core_for_each_kind_of_pairs(void **state) {
+static void test_potential_grid_has_a_core_for_each_pair_type(void **state) {
     (void)state;
     double target[PAIRS * BINS];
     struct potential_grid grid;
@@ -72,7 +72,7 @@ static void test_potential_grid_has_a_core_for_each_kind_of_pairs(void **state) 
     mf_potential_grid_clear(&grid);
 }
 
-static void test_potential_grid_refuses_when_the_target_of_one_kind_is_empty(void **state) {
+static void test_potential_grid_refuses_when_the_target_of_one_pair_type_is_empty(void **state) {
     (void)state;
     double target[PAIRS * BINS];
     struct potential_grid grid;
@@ -108,7 +108,8 @@ static void test_potential_grid_completes_each_core_and_each_end(void **state) {
     mf_potential_grid_clear(&grid);
 }
 
-static void test_potential_grid_starts_each_kind_from_its_curve_or_the_mean_force(void **state) {
+static void
+test_potential_grid_starts_each_pair_type_from_its_curve_or_the_mean_force(void **state) {
     (void)state;
     struct formula_soft_repulsion_parameters soft[2] = {{40, 3}, {15, 3.5}};
     const struct curve first = {&mf_formula_soft_repulsion, &soft[0]},
@@ -130,7 +131,7 @@ static void test_potential_grid_starts_each_kind_from_its_curve_or_the_mean_forc
     mf_potential_grid_clear(&grid);
 }
 
-static void test_potential_grid_table_goes_through_the_points_of_each_kind(void **state) {
+static void test_potential_grid_table_goes_through_the_points_of_each_pair_type(void **state) {
     (void)state;
     double target[PAIRS * BINS], phi[POINTS], value;
     struct potential_grid grid;
@@ -141,7 +142,7 @@ static void test_potential_grid_table_goes_through_the_points_of_each_kind(void 
     assert_ok(mf_potential_grid_table(&grid, phi, &table));
     assert_int_equal(table.curves, PAIRS);
     for (int pair = 0; pair < PAIRS; pair++) {
-        assert_close(table_reach(&table, pair), 4, rounding);
+        assert_close(table_cutoff(&table, pair), 4, rounding);
         for (size_t k = cores[pair]; k <= BINS; k++) {
             const size_t n = mf_potential_grid_block(&grid, (size_t)pair) + k;
             mf_table_evaluate_pair(&table, pair, grid.r[n], &value, NULL, NULL);
@@ -152,7 +153,7 @@ static void test_potential_grid_table_goes_through_the_points_of_each_kind(void 
     mf_potential_grid_clear(&grid);
 }
 
-/// As the grid of that kind alone would have them, and nothing from one kind to another.
+/// As the grid of that pair type alone would have them, and nothing from one type to another.
 static void test_potential_grid_virials_of_a_block_act_on_its_own_bins(void **state) {
     (void)state;
     static double virial[PAIRS * BINS * KNOWN], alone[BINS * BINS];
@@ -188,11 +189,12 @@ static void test_potential_grid_virials_of_a_block_act_on_its_own_bins(void **st
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_potential_grid_has_a_core_for_each_kind_of_pairs),
-        cmocka_unit_test(test_potential_grid_refuses_when_the_target_of_one_kind_is_empty),
+        cmocka_unit_test(test_potential_grid_has_a_core_for_each_pair_type),
+        cmocka_unit_test(test_potential_grid_refuses_when_the_target_of_one_pair_type_is_empty),
         cmocka_unit_test(test_potential_grid_completes_each_core_and_each_end),
-        cmocka_unit_test(test_potential_grid_starts_each_kind_from_its_curve_or_the_mean_force),
-        cmocka_unit_test(test_potential_grid_table_goes_through_the_points_of_each_kind),
+        cmocka_unit_test(
+            test_potential_grid_starts_each_pair_type_from_its_curve_or_the_mean_force),
+        cmocka_unit_test(test_potential_grid_table_goes_through_the_points_of_each_pair_type),
         cmocka_unit_test(test_potential_grid_virials_of_a_block_act_on_its_own_bins),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -11,7 +11,7 @@ static const double rounding = 1e-14;
 
 enum { TIMES = 21, BINS = 30, CELLS = TIMES * BINS, BLOCKS = 100, BLOCK_CELLS = 6 };
 
-static void test_goals_distance_is_the_rms_of_what_both_know(void **state) {
+static void test_targets_distance_is_the_rms_of_what_both_know(void **state) {
     (void)state;
     const double wanted[] = {1, 2, NAN, 4, 5}, wanted_error[] = {0.3, NAN, 1, 0, 9};
     const double value[] = {2, 0, 7, 5, NAN}, error[] = {0.4, 2, 1, NAN, 9};
@@ -22,7 +22,7 @@ static void test_goals_distance_is_the_rms_of_what_both_know(void **state) {
     assert_close(distance.noise, sqrt((0.25 + 4 + 0) / 3.0), rounding);
 }
 
-static void test_goals_distance_is_infinite_when_nothing_is_common(void **state) {
+static void test_targets_distance_is_infinite_when_nothing_is_common(void **state) {
     (void)state;
     const double wanted[] = {1, NAN}, value[] = {NAN, 1}, error[] = {0, 0};
     const struct target target = {2, wanted, error, 0};
@@ -32,7 +32,7 @@ static void test_goals_distance_is_infinite_when_nothing_is_common(void **state)
     assert_close(distance.noise, 0, 0);
 }
 
-static void test_goals_weight_is_one_over_the_errors_when_none_is_given(void **state) {
+static void test_targets_weight_is_one_over_the_errors_when_none_is_given(void **state) {
     (void)state;
     const double value[] = {1, 2, 3, 4}, error[] = {0.3, 0, NAN, 0.4}, none[4] = {0};
     assert_close(mf_targets_weight(&(struct target){4, value, error, 0}), 1 / sqrt(0.125),
@@ -42,24 +42,24 @@ static void test_goals_weight_is_one_over_the_errors_when_none_is_given(void **s
     assert_close(mf_targets_weight(&(struct target){4, value, none, 0}), 100, 1e-10);
 }
 
-static void test_goals_error_is_that_of_a_single_goal_as_it_is(void **state) {
+static void test_targets_error_is_that_of_a_single_target_as_it_is(void **state) {
     (void)state;
     const double value[] = {1}, error[] = {0.5};
     struct target_distance distance[TARGETS] = {
-        [TARGET_MSD] = {3, 0.25, 1}, [TARGET_VACF] = {99, 99, 1}};
+        [TARGET_MSD] = {3, 0.25, 1, 0}, [TARGET_VACF] = {99, 99, 1, 0}};
     const struct targets targets = {.target[TARGET_MSD] = {1, value, error, 8}};
     assert_int_equal(mf_targets_count(&targets), 1);
     assert_close(mf_targets_error(&targets, distance), 3, 0);
     assert_close(mf_targets_noise(&targets, distance), 0.25, 0);
 }
 
-static void test_goals_error_is_1_at_the_errors_of_several_goals(void **state) {
+static void test_targets_error_is_1_at_the_errors_of_several_targets(void **state) {
     (void)state;
     const double value[] = {1, 1}, small[] = {0.01, 0.01}, large[] = {5, 5};
     const struct targets targets = {.target[TARGET_RDF] = {2, value, small, 0},
                                     .target[TARGET_DIFFUSION] = {1, value, large, 0}};
     struct target_distance distance[TARGETS] = {
-        [TARGET_RDF] = {0.01, 0.02, 2}, [TARGET_DIFFUSION] = {5, 10, 1}};
+        [TARGET_RDF] = {0.01, 0.02, 2, 0}, [TARGET_DIFFUSION] = {5, 10, 1, 0}};
     assert_int_equal(mf_targets_count(&targets), 2);
     assert_close(mf_targets_error(&targets, distance), 1, rounding);
     assert_close(mf_targets_noise(&targets, distance), 2, rounding);
@@ -81,16 +81,16 @@ static void make_cells(double *value, double *error) {
         }
 }
 
-static struct targets escape_goals(const double *value, const double *error) {
+static struct targets escape_targets(const double *value, const double *error) {
     return (struct targets){.etd = {0.5, 1, BINS, TIMES},
                             .target[TARGET_ETD] = {CELLS, value, error, 0}};
 }
 
-static void test_goals_features_are_means_over_ten_by_ten_blocks_of_escape_times(void **state) {
+static void test_targets_features_are_means_over_ten_by_ten_blocks_of_escape_times(void **state) {
     (void)state;
     double cell[CELLS], cell_error[CELLS], value[BLOCKS], error[BLOCKS];
     make_cells(cell, cell_error);
-    const struct targets targets = escape_goals(cell, cell_error);
+    const struct targets targets = escape_targets(cell, cell_error);
     assert_int_equal(mf_targets_features(&targets), BLOCKS);
     mf_targets_take_features(&targets, NULL, value, error);
     for (int row = 0; row < 10; row++)
@@ -103,7 +103,7 @@ static void test_goals_features_are_means_over_ten_by_ten_blocks_of_escape_times
         }
 }
 
-static void test_goals_features_use_every_cell_once_when_ten_does_not_divide_them(void **state) {
+static void test_targets_features_use_every_cell_once_when_ten_does_not_divide_them(void **state) {
     (void)state;
     enum { FEW_TIMES = 18, FEW_BINS = 7 };
     double cell[FEW_TIMES * FEW_BINS] = {0}, value[BLOCKS];
@@ -121,7 +121,7 @@ static void test_goals_features_use_every_cell_once_when_ten_does_not_divide_the
     }
 }
 
-static void test_goals_features_of_the_target_stand_in_for_what_was_not_measured(void **state) {
+static void test_targets_features_of_the_target_stand_in_for_what_was_not_measured(void **state) {
     (void)state;
     double cell[CELLS], cell_error[CELLS], seen[CELLS], wanted[BLOCKS], value[BLOCKS];
     make_cells(cell, cell_error);
@@ -132,7 +132,7 @@ static void test_goals_features_of_the_target_stand_in_for_what_was_not_measured
     seen[2 * BINS + 1] += 5; // a difference
     for (int b = 27; b < BINS; b++)
         seen[BINS + b] = seen[2 * BINS + b] = NAN; // a whole block
-    const struct targets targets = escape_goals(cell, cell_error);
+    const struct targets targets = escape_targets(cell, cell_error);
     double *observed[TARGETS] = {[TARGET_ETD] = seen};
     mf_targets_take_features(&targets, NULL, wanted, NULL);
     mf_targets_take_features(&targets, observed, value, NULL);
@@ -141,7 +141,7 @@ static void test_goals_features_of_the_target_stand_in_for_what_was_not_measured
         assert_close(value[n], wanted[n], 0);
 }
 
-static void test_goals_features_are_0_when_the_target_does_not_know(void **state) {
+static void test_targets_features_are_0_when_the_target_does_not_know(void **state) {
     (void)state;
     const double g[] = {1, NAN, 3}, g_error[] = {0.1, 0.2, NAN}, d[] = {NAN}, d_error[] = {NAN};
     double seen_g[] = {2, 5, NAN}, seen_d[] = {4}, value[4], error[4];
@@ -163,7 +163,7 @@ static void test_goals_features_are_0_when_the_target_does_not_know(void **state
 
 /// A number measured again and again: its distance from the target scatters as the variance says,
 /// whatever error the target has.
-static void test_goals_variance_is_that_of_repeated_measurements(void **state) {
+static void test_targets_variance_is_that_of_repeated_measurements(void **state) {
     (void)state;
     enum { MEASUREMENTS = 4000 };
     static const double wanted = 1, target_error = 7, truth = 1.5, error = 0.1;
@@ -189,16 +189,16 @@ static void test_goals_variance_is_that_of_repeated_measurements(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_goals_variance_is_that_of_repeated_measurements),
-        cmocka_unit_test(test_goals_distance_is_the_rms_of_what_both_know),
-        cmocka_unit_test(test_goals_distance_is_infinite_when_nothing_is_common),
-        cmocka_unit_test(test_goals_weight_is_one_over_the_errors_when_none_is_given),
-        cmocka_unit_test(test_goals_error_is_that_of_a_single_goal_as_it_is),
-        cmocka_unit_test(test_goals_error_is_1_at_the_errors_of_several_goals),
-        cmocka_unit_test(test_goals_features_are_means_over_ten_by_ten_blocks_of_escape_times),
-        cmocka_unit_test(test_goals_features_use_every_cell_once_when_ten_does_not_divide_them),
-        cmocka_unit_test(test_goals_features_of_the_target_stand_in_for_what_was_not_measured),
-        cmocka_unit_test(test_goals_features_are_0_when_the_target_does_not_know),
+        cmocka_unit_test(test_targets_variance_is_that_of_repeated_measurements),
+        cmocka_unit_test(test_targets_distance_is_the_rms_of_what_both_know),
+        cmocka_unit_test(test_targets_distance_is_infinite_when_nothing_is_common),
+        cmocka_unit_test(test_targets_weight_is_one_over_the_errors_when_none_is_given),
+        cmocka_unit_test(test_targets_error_is_that_of_a_single_target_as_it_is),
+        cmocka_unit_test(test_targets_error_is_1_at_the_errors_of_several_targets),
+        cmocka_unit_test(test_targets_features_are_means_over_ten_by_ten_blocks_of_escape_times),
+        cmocka_unit_test(test_targets_features_use_every_cell_once_when_ten_does_not_divide_them),
+        cmocka_unit_test(test_targets_features_of_the_target_stand_in_for_what_was_not_measured),
+        cmocka_unit_test(test_targets_features_are_0_when_the_target_does_not_know),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

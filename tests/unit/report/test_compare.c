@@ -29,7 +29,7 @@ static const char good_summary[] =
     " \"seed\": 7, \"a_later_key\": {\"x\": [1]}}";
 
 /// Of a fit of omega alone by its escape times; what is not known is null.
-static const char weight_summary[] =
+static const char omega_summary[] =
     "{\"status\": \"converged\", \"method\": \"cma-es\", \"version\": \"0.1\","
     " \"etd_rmse\": 0.056, \"etd_rmse_error\": null, \"etd_noise\": 0.0027,"
     " \"diffusion\": 0.0263, \"diffusion_error\": 0.0002, \"diffusion_cm2_per_s\": 4.5e-5,"
@@ -66,14 +66,14 @@ static void make_fit(const char *folder, const char *summary, double phi) {
 }
 
 /// A fit of omega, without g(r) and potential. `columns`: those of omega.tsv after omega.
-static void make_weight_fit(const char *folder, const char *names, const char *columns) {
+static void make_omega_fit(const char *folder, const char *names, const char *columns) {
     char path[PATH], omega[512];
     snprintf(path, sizeof path, "%s/%s", root, folder);
     assert_int_equal(mf_output_make_folder(path), STATUS_OK);
     snprintf(omega, sizeof omega, "# r[lambda]\tomega[sqrt(mu/tau)]%s\n0\t2%s\n0.5\t1%s\n1\t0%s\n",
              names, columns, columns, columns);
     write_file(folder, "omega.tsv", omega);
-    write_file(folder, "summary.json", weight_summary);
+    write_file(folder, "summary.json", omega_summary);
     write_file(
         folder, "history.tsv",
         "# iteration\tevaluations\tengine_steps\terror[1]\tnoise[1]\n0\t1\t100\t0.5\t0.003\n");
@@ -379,8 +379,8 @@ static int make_all(void **state) {
     make_fit("x/same/out", good_summary, -0.5);
     make_fit("y/same/out", good_summary, -0.5);
     make_fit("it's a \"run\"/out", good_summary, -0.5);
-    make_weight_fit("weight/out", "\tomega_error[sqrt(mu/tau)]\ttruth[sqrt(mu/tau)]", "\t0.1\t1.5");
-    make_weight_fit("set/out", "", "");
+    make_omega_fit("weight/out", "\tomega_error[sqrt(mu/tau)]\ttruth[sqrt(mu/tau)]", "\t0.1\t1.5");
+    make_omega_fit("set/out", "", "");
     make_fit("little", "{\"rdf_rmse\": 0.5}", -0.5);
     return 0;
 }

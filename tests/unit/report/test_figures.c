@@ -10,34 +10,22 @@
 #include <string.h>
 #include <unistd.h>
 
-static const char fit_rdf[] =
-    "# r[lambda]\ttarget[1]\ttarget_error[1]\tresult[1]\tresult_error[1]\n"
-    "0.5\t0\t0\t0\t0\n1\t1.5\tnan\t1.4\t0.1\n1.5\t1\t0.1\t1.1\t0.1\n";
 static const char ga_history[] =
     "# iteration[1]\tevaluations[1]\tengine_steps[1]\terror[1]\tnoise[1]\tbest[1]\tmean[1]\t"
     "diversity[1]\tfailures[1]\n0\t10\t100\t0.5\t0\t0.5\t1\t2\t0\n1\t20\t200\t0.4\tnan\t0."
     "4\t1\t1\t0\n";
-static const char imc_history[] =
-    "# iteration[1]\tevaluations[1]\tengine_steps[1]\terror[1]\tnoise[1]\tdamping[1]\t"
-    "regularisation[1]\n0\t1\t100\t0.5\t0.01\t1\t0\n";
-static const char timing[] = "# iteration[1]\tseconds[s]\n0\t0\n1\t2\n";
-
-static void assert_draws(const char *folder) {
-    if (mf_figures_draw(folder) != STATUS_OK)
-        fail_msg("%s", mf_status_message());
-}
 
 static void test_draws_what_the_tables_allow(void **state) {
     (void)state;
     figure_folders_skip_without_gnuplot();
     char folder[FIGURE_PATH];
     figure_folders_make(folder, "it's a \"fit\" $HOME\\");
-    figure_folders_write(folder, "rdf.tsv", fit_rdf);
+    figure_folders_write(folder, "rdf.tsv", figure_folders_fit_rdf);
     figure_folders_write(folder, "potential.tsv",
                          "# r[lambda]\tphi[k_BT_0]\tforce[k_BT_0/lambda]\tphi_error[k_BT_0]\n"
                          "0.5\t1000\t0\tnan\n1\t-0.5\t0\tnan\n1.5\t0\t0\tnan\n");
     figure_folders_write(folder, "history.tsv", ga_history);
-    figure_folders_write(folder, "timing.tsv", timing);
+    figure_folders_write(folder, "timing.tsv", figure_folders_timing);
     if (mf_figures_draw(folder) != STATUS_OK)
         fail_msg("%s", mf_status_message());
     assert_true(figure_folders_drawn(folder, "rdf"));
@@ -48,7 +36,7 @@ static void test_draws_what_the_tables_allow(void **state) {
 }
 
 /// Two targets, with one member on the front and errors that are not known, and three.
-static void test_draws_the_front_of_several_goals(void **state) {
+static void test_draws_the_front_of_several_targets(void **state) {
     (void)state;
     figure_folders_skip_without_gnuplot();
     char folder[FIGURE_PATH];
@@ -83,8 +71,8 @@ static void test_draws_no_generations_without_diversity(void **state) {
     figure_folders_skip_without_gnuplot();
     char folder[FIGURE_PATH];
     figure_folders_make(folder, "imc");
-    figure_folders_write(folder, "history.tsv", imc_history);
-    figure_folders_write(folder, "timing.tsv", timing);
+    figure_folders_write(folder, "history.tsv", figure_folders_imc_history);
+    figure_folders_write(folder, "timing.tsv", figure_folders_timing);
     assert_int_equal(mf_figures_draw(folder), STATUS_OK);
     assert_true(figure_folders_drawn(folder, "error"));
     assert_false(figure_folders_drawn(folder, "generations"));
@@ -121,7 +109,7 @@ static void test_draws_simulation_of_a_mixture_in_its_units(void **state) {
                          "pressure[k_B.T_0/lambda^d]\ttemperature_configurational[T_0]\ttime[ps]\t"
                          "potential_energy[kJ/mol]\tpressure[bar]\n"
                          "0\t0\t1\t1\t3\tnan\t0\t2.5\t900\n1\t0.1\t1\t2\t3\tnan\t70\t5\t900\n");
-    assert_draws(folder);
+    figure_folders_draw(folder);
     assert_true(figure_folders_drawn(folder, "simulation"));
     assert_true(figure_folders_say(folder, "simulation", "A-B"));
     assert_true(figure_folders_say(folder, "simulation", "nm") &&
@@ -143,7 +131,7 @@ static void test_potential_is_shown_up_to_its_barrier(void **state) {
                          "# r[lambda]\tphi[k_B.T_0]\tforce[k_B.T_0/lambda]\tphi_error[k_B.T_0]\n"
                          "0.2\t50\t0\tnan\n0.25\t0.2\t0\tnan\n0.3\t0.1\t0\tnan\n"
                          "0.375\t1.33\t0\tnan\n0.5\t-0.3\t0\tnan\n1\t0\t0\tnan\n");
-    assert_draws(folder);
+    figure_folders_draw(folder);
     assert_true(figure_folders_drawn(folder, "potential"));
     assert_true(figure_folders_say(folder, "potential", ">1.4<"));
     assert_false(figure_folders_say(folder, "potential", ">2<"));
@@ -165,7 +153,7 @@ static void test_soft_potential_is_shown_almost_whole(void **state) {
                            "%g\t%g\t0\t0.1\t%g\t%g\n", r, phi, 2 * r, 10 * phi);
     }
     figure_folders_write(folder, "potential.tsv", table);
-    assert_draws(folder);
+    figure_folders_draw(folder);
     assert_true(figure_folders_drawn(folder, "potential"));
     assert_true(figure_folders_say(folder, "potential", "nm") &&
                 figure_folders_say(folder, "potential", "kJ/mol"));
@@ -191,7 +179,7 @@ static void test_draws_dynamics_of_a_fit(void **state) {
     figure_folders_write(folder, "vacf.tsv",
                          "# time[tau]\ttarget\ttarget_error\tresult\tresult_error\n"
                          "0\t3\t0.01\t3.1\tnan\n0.1\t1\t0.01\t1.2\tnan\n0.2\t-0.1\t0.01\t0\tnan\n");
-    assert_draws(folder);
+    figure_folders_draw(folder);
     assert_true(figure_folders_drawn(folder, "etd_cells"));
     assert_true(figure_folders_say(folder, "etd_cells", "0.700"));
     assert_false(figure_folders_say(folder, "etd_cells", "0.800"));
@@ -202,7 +190,7 @@ static void test_draws_dynamics_of_a_fit(void **state) {
                          "# time[tau]\ttarget[lambda^2]\ttarget_error[lambda^2]\tresult[lambda^2]\t"
                          "result_error[lambda^2]\n"
                          "0\t0\t0\t0\t0\n0.1\t1\t0.01\t1.2\tnan\n0.2\t3\t0.01\t2.9\tnan\n");
-    assert_draws(folder);
+    figure_folders_draw(folder);
     assert_true(figure_folders_drawn(folder, "msd"));
 }
 
@@ -215,7 +203,7 @@ static void test_draws_etd_of_no_known_result(void **state) {
         folder, "etd_cells.tsv",
         "# time[tau]\tr0[lambda]\ttarget[1]\ttarget_error[1]\tresult[1]\tresult_error[1]\n"
         "0\t0.6\t1\t0\tnan\tnan\n0.1\t0.6\t1\t0\tnan\tnan\n");
-    assert_draws(folder);
+    figure_folders_draw(folder);
     assert_true(figure_folders_drawn(folder, "etd_cells"));
 }
 
@@ -225,12 +213,12 @@ static void test_draws_bands_and_truth_where_they_are_known(void **state) {
     char folder[FIGURE_PATH];
     figure_folders_make(folder, "weight");
     figure_folders_write(folder, "omega.tsv", "# r[lambda]\tomega[sqrt(mu/tau)]\n0\t2\n1\t0\n");
-    assert_draws(folder);
+    figure_folders_draw(folder);
     assert_false(figure_folders_drawn(folder, "omega"));
     figure_folders_write(
         folder, "omega.tsv",
         "# r[lambda]\tomega[sqrt(mu/tau)]\tomega_error[sqrt(mu/tau)]\n0\t2\tnan\n1\t0\tnan\n");
-    assert_draws(folder);
+    figure_folders_draw(folder);
     assert_true(figure_folders_drawn(folder, "omega"));
     assert_false(figure_folders_say(folder, "omega", "95 % band"));
     assert_false(figure_folders_say(folder, "omega", "truth"));
@@ -243,7 +231,7 @@ static void test_draws_bands_and_truth_where_they_are_known(void **state) {
                          "truth[k_B.T_0]\tr[nm]\n"
                          "0.5\t1000\t0\tnan\t900\t0.2\n1\t-0.5\t0\t0.1\t-0.4\t0.4\n"
                          "1.5\t0\t0\tnan\t0\t0.6\n");
-    assert_draws(folder);
+    figure_folders_draw(folder);
     assert_true(figure_folders_drawn(folder, "omega"));
     assert_true(figure_folders_say(folder, "omega", "95 % band") &&
                 figure_folders_say(folder, "omega", "truth"));
@@ -256,18 +244,18 @@ static void test_error_is_named_after_what_was_fitted(void **state) {
     figure_folders_skip_without_gnuplot();
     char folder[FIGURE_PATH];
     figure_folders_make(folder, "names");
-    figure_folders_write(folder, "history.tsv", imc_history);
-    figure_folders_write(folder, "timing.tsv", timing);
+    figure_folders_write(folder, "history.tsv", figure_folders_imc_history);
+    figure_folders_write(folder, "timing.tsv", figure_folders_timing);
     figure_folders_write(folder, "used.json",
                          "{\n\t\"target\":\t{\n\t\t\"rdf\":\t{\n\t\t\t\"fitted\":\t\"no\"\n\t\t},\n"
                          "\t\t\"etd\":\t{\n\t\t\t\"fitted\":\t\"yes\"\n\t\t},\n"
                          "\t\t\"vacf\":\t{\n\t\t\t\"fitted\":\t\"yes\"\n\t\t}\n\t}\n}\n");
-    assert_draws(folder);
+    figure_folders_draw(folder);
     assert_true(figure_folders_say(folder, "error", "weighted error"));
     figure_folders_write(folder, "used.json",
                          "{\n\t\"target\":\t{\n\t\t\"diffusion\":\t{\n\t\t\t\"fitted\":\t\"yes\"\n"
                          "\t\t}\n\t}\n}\n");
-    assert_draws(folder);
+    figure_folders_draw(folder);
     assert_true(figure_folders_say(folder, "error", "rmse of"));
     assert_true(figure_folders_say(folder, "error", "τ")); // its unit
 }
@@ -292,8 +280,8 @@ static void test_broken_tables_spoil_their_figures_only(void **state) {
     figure_folders_write(folder, "potential.tsv", "# r phi force phi_error\nnot a number\n");
     figure_folders_write(folder, "rdf.tsv",
                          "# r target target_error result result_error\nnot a number\n");
-    figure_folders_write(folder, "history.tsv", imc_history);
-    figure_folders_write(folder, "timing.tsv", timing);
+    figure_folders_write(folder, "history.tsv", figure_folders_imc_history);
+    figure_folders_write(folder, "timing.tsv", figure_folders_timing);
     assert_int_equal(mf_figures_draw(folder), STATUS_IO);
     assert_non_null(strstr(mf_status_message(), "/broken/figures/rdf: gnuplot failed: "));
     assert_non_null(strstr(mf_status_message(), "rdf.gp\" line "));
@@ -306,7 +294,7 @@ static void test_missing_gnuplot_is_one_clear_line(void **state) {
     (void)state;
     char folder[FIGURE_PATH], message[2 * FIGURE_PATH], *path = strdup(getenv("PATH"));
     figure_folders_make(folder, "no_gnuplot");
-    figure_folders_write(folder, "rdf.tsv", fit_rdf);
+    figure_folders_write(folder, "rdf.tsv", figure_folders_fit_rdf);
     assert_int_equal(setenv("PATH", figure_folders_root(), 1), 0);
     const enum status status = mf_figures_draw(folder);
     assert_int_equal(setenv("PATH", path, 1), 0);
@@ -325,7 +313,7 @@ static void test_comparison_needs_its_table(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_draws_what_the_tables_allow),
-        cmocka_unit_test(test_draws_the_front_of_several_goals),
+        cmocka_unit_test(test_draws_the_front_of_several_targets),
         cmocka_unit_test(test_draws_no_generations_without_diversity),
         cmocka_unit_test(test_draws_simulation_and_no_fit),
         cmocka_unit_test(test_draws_simulation_of_a_mixture_in_its_units),

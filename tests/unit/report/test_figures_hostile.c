@@ -13,19 +13,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const char fit_rdf[] =
-    "# r[lambda]\ttarget[1]\ttarget_error[1]\tresult[1]\tresult_error[1]\n"
-    "0.5\t0\t0\t0\t0\n1\t1.5\tnan\t1.4\t0.1\n1.5\t1\t0.1\t1.1\t0.1\n";
-static const char imc_history[] =
-    "# iteration[1]\tevaluations[1]\tengine_steps[1]\terror[1]\tnoise[1]\tdamping[1]\t"
-    "regularisation[1]\n0\t1\t100\t0.5\t0.01\t1\t0\n";
-static const char timing[] = "# iteration[1]\tseconds[s]\n0\t0\n1\t2\n";
-
-static void assert_draws(const char *folder) {
-    if (mf_figures_draw(folder) != STATUS_OK)
-        fail_msg("%s", mf_status_message());
-}
-
 /// True if a file of that name has come into the folder or beside it.
 static bool has_come(const char *folder, const char *name) {
     char path[FIGURE_PATH + 64];
@@ -62,7 +49,7 @@ static void test_names_of_tables_are_no_commands(void **state) {
         snprintf(name, sizeof name, "potential_%s_history.tsv", endings[k]);
         figure_folders_write(folder, name, "# r i0 i1\n0.5 1 0\n1 0 0\n");
         snprintf(name, sizeof name, "rdf_%s.tsv", endings[k]);
-        figure_folders_write(folder, name, fit_rdf);
+        figure_folders_write(folder, name, figure_folders_fit_rdf);
     }
     figure_folders_write(folder, "thermodynamics.tsv",
                          "# s t T U P Tc\n0 0 1 0 3 1\n1 0.1 1 0 3 1\n");
@@ -90,8 +77,8 @@ static void test_words_of_tables_are_no_commands(void **state) {
     figure_folders_write(folder, "used.json",
                          "{\"'; system('touch pwned'); '\": {\"rdf\":\n"
                          "\"fitted\": \"yes\"}}\n");
-    figure_folders_write(folder, "history.tsv", imc_history);
-    figure_folders_write(folder, "timing.tsv", timing);
+    figure_folders_write(folder, "history.tsv", figure_folders_imc_history);
+    figure_folders_write(folder, "timing.tsv", figure_folders_timing);
     if (mf_figures_draw(folder) != STATUS_OK)
         fail_msg("%s", mf_status_message());
     assert_false(has_come(folder, "pwned"));
@@ -152,7 +139,7 @@ static void test_unfinished_figures_are_none(void **state) {
     (void)state;
     char folder[FIGURE_PATH];
     figure_folders_make(folder, "unfinished");
-    figure_folders_write(folder, "rdf.tsv", fit_rdf);
+    figure_folders_write(folder, "rdf.tsv", figure_folders_fit_rdf);
     for (size_t k = 0; k < sizeof gnuplots / sizeof *gnuplots; k++) {
         assert_int_equal(draw_with(gnuplots[k], folder), STATUS_IO);
         assert_non_null(strstr(mf_status_message(), "figures/rdf: gnuplot left it unfinished"));
@@ -170,13 +157,13 @@ static void test_figures_do_not_follow_links(void **state) {
     figure_folders_skip_without_gnuplot();
     char folder[FIGURE_PATH], figures[FIGURE_PATH + 64], link[2 * FIGURE_PATH], text[16] = "";
     figure_folders_make(folder, "links");
-    figure_folders_write(folder, "rdf.tsv", fit_rdf);
+    figure_folders_write(folder, "rdf.tsv", figure_folders_fit_rdf);
     figure_folders_write(folder, "victim", "precious");
     snprintf(figures, sizeof figures, "%s/figures", folder);
     assert_int_equal(mf_output_make_folder(figures), STATUS_OK);
     snprintf(link, sizeof link, "%s/rdf.svg", figures);
     assert_int_equal(symlink("../victim", link), 0);
-    assert_draws(folder);
+    figure_folders_draw(folder);
     assert_true(figure_folders_drawn(folder, "rdf"));
     snprintf(link, sizeof link, "%s/victim", folder);
     FILE *stream = fopen(link, "r");

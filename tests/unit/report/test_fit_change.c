@@ -7,15 +7,15 @@
 
 enum { BINS = 40, CORE = 8 };
 
-/// g(r) = 0 in the core, 0.05 in the next bin, of too few pairs to tell, and 1; a potential and a
-/// weight of B-splines.
+/// g(r) = 0 in the core, 0.05 in the next bin, of too few pairs to tell, and 1; a potential and an
+/// ω of B-splines.
 static void begin(struct unknowns *unknowns, struct inverse_problem *problem, double g[BINS]) {
     for (int k = 0; k < BINS; k++)
         g[k] = k < CORE ? 0 : k == CORE ? 0.05 : 1;
     *problem = (struct inverse_problem){
         .targets = {.bins = {0, 0.1, BINS}, .target[TARGET_RDF] = {.count = BINS, .value = g}},
-        .unknown = {{true, {INVERSE_CURVE_BSPLINE, 12, -20, 80, 0, 0}, {NULL}},
-                    {true, {INVERSE_CURVE_BSPLINE, 10, 0, 5, 0.1, 1.5}, {NULL}}},
+        .unknown = {{true, {INVERSE_CURVE_BSPLINE, 12, -20, 80, 0, 0, {0}}, {NULL}},
+                    {true, {INVERSE_CURVE_BSPLINE, 10, 0, 5, 0.1, 1.5, {0}}, {NULL}}},
         .scene = {.temperature = 1},
         .core_threshold = 1e-3,
         .core_stiffness = 2000};
@@ -45,7 +45,7 @@ static void test_change_of_a_potential_is_that_beyond_its_core(void **state) {
     mf_unknowns_clear(&unknowns);
 }
 
-static void test_change_of_a_weight_is_its_rms(void **state) {
+static void test_change_of_omega_is_its_rms(void **state) {
     (void)state;
     struct unknowns unknowns;
     struct inverse_problem problem;
@@ -62,7 +62,7 @@ static void test_change_of_a_weight_is_its_rms(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_change_of_a_potential_is_that_beyond_its_core),
-        cmocka_unit_test(test_change_of_a_weight_is_its_rms),
+        cmocka_unit_test(test_change_of_omega_is_its_rms),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

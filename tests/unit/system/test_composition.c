@@ -31,7 +31,7 @@ static void test_composition_pairs_come_in_order_whatever_the_number_of_types(vo
     }
 }
 
-static void test_composition_counts_pairs_by_kind(void **state) {
+static void test_composition_counts_pairs_by_type(void **state) {
     (void)state;
     static const double possible[] = {6, 4, 12, 0, 3, 3};
     double all = 0;
@@ -57,7 +57,7 @@ static void test_composition_finds_pairs_by_name_in_either_order(void **state) {
     assert_int_equal(mf_composition_find_pair(&three, "a-A"), -1);
 }
 
-static void test_composition_has_one_kind_of_pairs_when_beads_are_alike(void **state) {
+static void test_composition_has_one_pair_type_when_it_is_one_component(void **state) {
     (void)state;
     const struct composition none = {0}, one = mf_composition_of_one(7);
     char name[COMPOSITION_PAIR_NAME_SIZE];
@@ -133,13 +133,13 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_composition_type_follows_from_the_id),
         cmocka_unit_test(test_composition_pairs_come_in_order_whatever_the_number_of_types),
-        cmocka_unit_test(test_composition_counts_pairs_by_kind),
+        cmocka_unit_test(test_composition_counts_pairs_by_type),
         cmocka_unit_test(test_composition_finds_pairs_by_name_in_either_order),
         cmocka_unit_test(test_composition_scaled_keeps_the_shares),
         cmocka_unit_test(test_composition_scaled_leaves_each_type_a_pair),
         cmocka_unit_test(test_composition_distortion_is_of_the_share_that_changes_most),
         cmocka_unit_test(test_composition_particles_are_those_of_all_types),
-        cmocka_unit_test(test_composition_has_one_kind_of_pairs_when_beads_are_alike),
+        cmocka_unit_test(test_composition_has_one_pair_type_when_it_is_one_component),
         cmocka_unit_test(test_composition_is_name_refuses_what_no_file_could_be_called),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/names.h"
+
+#include "base/memory.h"
+
+#include <string.h>
+
+/// Record number k of a list, copied as bytes: the type of the pointers in the list is not known.
+static const void *record(const void *list, size_t k) {
+    const void *found;
+    memcpy(&found, (const char *)list + k * sizeof found, sizeof found);
+    return found;
+}
+
+static const char *name_of(const void *record) {
+    return *(const char *const *)record;
+}
+
+const void *mf_names_find(const void *list, const char *name) {
+    size_t k = 0;
+    while (record(list, k) && strcmp(name_of(record(list, k)), name) != 0)
+        k++;
+    return record(list, k);
+}
+
+enum status mf_names_collect(const void *list, const char *before, const char ***names) {
+    enum status status = STATUS_OK;
+    size_t records = 0, count = 0;
+    while (record(list, records))
+        records++;
+    NEW_ARRAY(*names, records + 2);
+    if (before)
+        (*names)[count++] = before;
+    for (size_t k = 0; k < records; k++)
+        (*names)[count++] = name_of(record(list, k));
+done:
+    return status;
+}

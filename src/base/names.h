@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Lists of records that are found by their names.
+///
+/// What a file may choose from (integrators, methods, families of curves, shapes, optimisers)
+/// stands in a list: an array of pointers to records of one type, with NULL at its end. The first
+/// member of each record is its name. Tested: test_names.
+#pragma once
+
+#include "base/status.h"
+
+#include <stddef.h>
+
+/// Said once where records of a type are looked for.
+#define NAMED_RECORD(type)                                                                         \
+    _Static_assert(offsetof(type, name) == 0, "the name is the first member of a record in a "     \
+                                              "list")
+
+/// The record of that name, or NULL.
+/// @param[in] list  array of pointers to records
+const void *mf_names_find(const void *list, const char *name);
+
+/// All names of a list, with NULL at the end, in an array that the caller frees.
+/// @param[in] before  a name that stands before them, or NULL: none does
+/// Fails: NO_MEMORY.
+enum status mf_names_collect(const void *list, const char *before, const char ***names) MUST_USE;

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/memory.h"
+#include "base/names.h"
+#include "shared/testing.h"
+
+#include <stdio.h>
+
+enum { RECORDS = 40 };
+
+struct record {
+    const char *name;
+    int number;
+};
+
+/// Records "0" to "39".
+struct records {
+    struct record record[RECORDS];
+    char name[RECORDS][8];
+    const struct record *list[RECORDS + 1];
+};
+
+static void fill(struct records *records) {
+    *records = (struct records){0};
+    for (int k = 0; k < RECORDS; k++) {
+        snprintf(records->name[k], sizeof records->name[k], "%d", k);
+        records->record[k] = (struct record){records->name[k], k};
+        records->list[k] = &records->record[k];
+    }
+}
+
+static void test_names_find_gives_the_record_or_null(void **state) {
+    (void)state;
+    struct records records;
+    fill(&records);
+    for (int k = 0; k < RECORDS; k++)
+        assert_ptr_equal(mf_names_find(records.list, records.name[k]), &records.record[k]);
+    assert_null(mf_names_find(records.list, "40"));
+    assert_null(mf_names_find(records.list, ""));
+    assert_null(mf_names_find(&records.list[RECORDS], "0"));
+}
+
+static void test_names_collect_gives_all_when_there_are_many(void **state) {
+    (void)state;
+    struct records records;
+    const char **names = NULL;
+    fill(&records);
+    assert_ok(mf_names_collect(records.list, NULL, &names));
+    for (int k = 0; k < RECORDS; k++)
+        assert_string_equal(names[k], records.name[k]);
+    assert_null(names[RECORDS]);
+    mf_memory_free(names);
+    assert_ok(mf_names_collect(records.list, "none", &names));
+    assert_string_equal(names[0], "none");
+    for (int k = 0; k < RECORDS; k++)
+        assert_string_equal(names[k + 1], records.name[k]);
+    assert_null(names[RECORDS + 1]);
+    mf_memory_free(names);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_names_find_gives_the_record_or_null),
+        cmocka_unit_test(test_names_collect_gives_all_when_there_are_many),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
