@@ -37,17 +37,39 @@ static enum status place(struct simulation *simulation, const struct simulation_
 }
 
 struct skin_scene mf_simulation_skin_scene(const struct simulation_setup *setup, double cutoff) {
-    return (struct skin_scene){.box = &setup->box,
-                               .count = (size_t)setup->placement.count,
-                               .cutoff = cutoff,
-                               .temperature = setup->temperature,
-                               .time_step = setup->time_step};
+    return (struct skin_scene){
+        .box = &setup->box,
+        .count = (size_t)setup->placement.count,
+        .cutoff = cutoff,
+        .temperature = setup->temperature,
+        .time_step = setup->time_step,
+        .free_step = simulation_is_overdamped(setup) ? setup->integrator->free_step(setup) : 0};
 }
 
 static double find_skin(const struct simulation *simulation) {
     const struct skin_scene scene =
         mf_simulation_skin_scene(&simulation->setup, mf_pair_cutoff(&simulation->law));
     return simulation->setup.skin > 0 ? simulation->setup.skin : mf_skin_choose(&scene);
+}
+
+/// Copy the parameters of the integrator, or its defaults, and make room for its state.
+static enum status prepare_integrator(struct simulation *simulation) {
+    const struct integrator *integrator = simulation->setup.integrator;
+    const void *given = simulation->setup.integrator_parameters;
+    const size_t size = integrator->parameters_size;
+    if (size > 0) {
+        simulation->integrator_parameters = mf_memory_zeroed(1, size);
+        if (simulation->integrator_parameters == NULL)
+            return STATUS_NO_MEMORY;
+        mf_fields_set_defaults(integrator->fields, simulation->integrator_parameters);
+        if (given)
+            memcpy(simulation->integrator_parameters, given, size);
+    }
+    simulation->setup.integrator_parameters = simulation->integrator_parameters;
+    if (integrator->state_size > 0)
+        simulation->integrator_state = mf_memory_zeroed(1, integrator->state_size);
+    return integrator->state_size == 0 || simulation->integrator_state ? STATUS_OK
+                                                                       : STATUS_NO_MEMORY;
 }
 
 enum status mf_simulation_init(struct simulation *simulation, const struct simulation_setup *setup,
@@ -64,6 +86,7 @@ enum status mf_simulation_init(struct simulation *simulation, const struct simul
                 .precision = (enum pair_precision)setup->precision},
     };
     const size_t count = (size_t)setup->placement.count;
+    CHECK(prepare_integrator(simulation));
     CHECK(mf_particles_init(&simulation->particles, &setup->box, count));
     if (simulation->law.precision == PAIR_DOUBLE)
         CHECK(mf_particles_keep_precise(&simulation->particles));
@@ -79,6 +102,8 @@ enum status mf_simulation_init(struct simulation *simulation, const struct simul
     if (setup->placement.kind == PLACEMENT_RANDOM && setup->potential)
         CHECK(mf_relax_overlaps(simulation));
     CHECK(mf_simulation_compute_forces(simulation, 0));
+    if (setup->integrator->begin)
+        CHECK(setup->integrator->begin(simulation));
 done:
     if (status != STATUS_OK)
         mf_simulation_clear(simulation);
@@ -86,6 +111,11 @@ done:
 }
 
 void mf_simulation_clear(struct simulation *simulation) {
+    if (simulation->integrator_state && simulation->setup.integrator->clear)
+        simulation->setup.integrator->clear(simulation->integrator_state);
+    mf_memory_free(simulation->integrator_state);
+    mf_memory_free(simulation->integrator_parameters);
+    simulation->integrator_state = simulation->integrator_parameters = NULL;
     mf_particles_clear(&simulation->particles);
     mf_neighbours_clear(&simulation->neighbours);
     mf_friction_clear(&simulation->friction);
@@ -147,21 +177,32 @@ void mf_simulation_take_temperature(struct simulation *simulation) {
 }
 
 double mf_simulation_temperature(const struct simulation *simulation) {
+    if (simulation_is_overdamped(&simulation->setup))
+        return NAN;
     return isfinite(simulation->temperature) ? simulation->temperature
                                              : mf_particles_temperature(&simulation->particles);
 }
 
-static enum status fail_unstable(const struct simulation *simulation, double square_velocities) {
+/// The mean square of a velocity along an axis beyond which a simulation is unstable: so many times
+/// that of the temperature, or of a free particle's steps.
+static double largest_square(const struct simulation_setup *setup) {
+    const double thermal = simulation_is_overdamped(setup)
+                               ? pow(setup->integrator->free_step(setup) / setup->time_step, 2)
+                               : setup->temperature;
+    return setup->temperature_limit * thermal;
+}
+
+static enum status fail_unstable(const struct simulation *simulation, double square) {
     const struct simulation_setup *setup = &simulation->setup;
-    const struct particles *particles = &simulation->particles;
-    const double degrees = particles->box.dimensions * ((double)particles->count - 1);
-    return mf_status_fail(
-        STATUS_UNSTABLE,
-        "unstable at step %llu: kinetic temperature %.3g (limit %g), largest force "
-        "%.3g; lower \"time_step\" or soften the potential",
-        (unsigned long long)simulation->step, mf_visible_number(square_velocities / degrees),
-        setup->temperature_limit * setup->temperature,
-        mf_visible_number(mf_particles_largest_force(particles)));
+    const bool flies = !simulation_is_overdamped(setup);
+    const double unit = flies ? 1 : setup->time_step * setup->time_step;
+    return mf_status_fail(STATUS_UNSTABLE,
+                          "unstable at step %llu: %s %.3g (limit %g), largest force "
+                          "%.3g; lower \"time_step\" or soften the potential",
+                          (unsigned long long)simulation->step,
+                          flies ? "kinetic temperature" : "mean squared step along an axis",
+                          mf_visible_number(square * unit), largest_square(setup) * unit,
+                          mf_visible_number(mf_particles_largest_force(&simulation->particles)));
 }
 
 /// Before a list is built: particles flung beyond the reach of box_fraction would meet on a few
@@ -243,13 +284,11 @@ enum status mf_simulation_compute_potential(struct simulation *simulation) {
 
 /// Σ v² tells at once of NaN, overflow and a runaway temperature.
 static enum status watch(const struct simulation *simulation) {
-    const struct simulation_setup *setup = &simulation->setup;
     const struct particles *particles = &simulation->particles;
     const double degrees = particles->box.dimensions * ((double)particles->count - 1);
-    const double squares = mf_particles_square_velocities(particles);
-    if (squares / degrees <= setup->temperature_limit * setup->temperature)
-        return STATUS_OK;
-    return fail_unstable(simulation, squares);
+    const double square = mf_particles_square_velocities(particles) / degrees;
+    return square <= largest_square(&simulation->setup) ? STATUS_OK
+                                                        : fail_unstable(simulation, square);
 }
 
 enum status mf_simulation_run(struct simulation *simulation, uint64_t steps) {
@@ -274,26 +313,24 @@ enum status mf_simulation_run(struct simulation *simulation, uint64_t steps) {
 
 double mf_simulation_pressure(const struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
-    const double temperature = simulation->law.omega ? simulation->setup.temperature
-                                                     : mf_simulation_temperature(simulation);
+    const double temperature = simulation_holds_temperature(&simulation->setup)
+                                   ? simulation->setup.temperature
+                                   : mf_simulation_temperature(simulation);
     return mf_particles_density(particles) * temperature +
            simulation->sums.virial / (particles->box.dimensions * mf_box_volume(&particles->box));
 }
 
 size_t mf_simulation_spans(struct simulation *simulation, struct memory_span *spans) {
     struct particles *particles = &simulation->particles;
-    const size_t numbers = particles->count * sizeof(double), words = particles->count * 4;
-    size_t n = 0;
-    for (int d = 0; d < particles->box.dimensions; d++) {
-        spans[n++] = (struct memory_span){particles->position[d], numbers};
-        spans[n++] = (struct memory_span){particles->velocity[d], numbers};
-        spans[n++] = (struct memory_span){particles->force[d], numbers};
-        spans[n++] = (struct memory_span){particles->image[d], words};
+    const struct integrator *integrator = simulation->setup.integrator;
+    const size_t numbers = particles->count * sizeof(double);
+    size_t n = mf_particles_spans(particles, spans);
+    for (int d = 0; d < particles->box.dimensions; d++)
         spans[n++] = (struct memory_span){simulation->neighbours.built[d], numbers};
-    }
-    spans[n++] = (struct memory_span){particles->id, words};
     spans[n++] = (struct memory_span){&simulation->step, sizeof simulation->step};
     spans[n++] = (struct memory_span){&simulation->list_builds, sizeof simulation->list_builds};
+    if (integrator->spans)
+        n += integrator->spans(simulation->integrator_state, spans + n);
     return n;
 }
 

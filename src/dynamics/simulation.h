@@ -23,9 +23,9 @@ struct simulation_setup {
     double skin;                    ///< of the neighbour list; 0: the code chooses [λ]
     double temperature_limit;       ///< above limit × temperature: UNSTABLE
     const struct integrator *integrator;
-    struct integrator_parameters integrator_parameters;
-    const struct table *potential; ///< Φ(r), one or for each pair type, or NULL; borrowed
-    const struct table *omega;     ///< ω(r), the same, or NULL; borrowed
+    const void *integrator_parameters; ///< its struct, or NULL: the defaults; borrowed
+    const struct table *potential;     ///< Φ(r), one or for each pair type, or NULL; borrowed
+    const struct table *omega;         ///< ω(r), the same, or NULL; borrowed
     uint64_t seed;
     int precision; ///< enum pair_precision
     /// Set by another thread to stop the simulation, or NULL. Borrowed.
@@ -49,8 +49,10 @@ struct simulation {
     struct particles particles;
     struct neighbours neighbours;
     struct pair_law law;
-    struct crew crew;         ///< threads of a step
-    struct friction friction; ///< of an integrator that splits it off
+    struct crew crew;            ///< threads of a step
+    struct friction friction;    ///< of an integrator that splits it off
+    void *integrator_parameters; ///< a copy, which `setup` has for its own
+    void *integrator_state;
     struct interaction_use interaction[SIMULATION_MOST_INTERACTIONS]; ///< beside the pair law
     int interactions;
     uint64_t step;
@@ -80,7 +82,7 @@ void mf_simulation_clear(struct simulation *simulation);
 /// finite or the temperature passes its limit; INTERRUPTED if the user asked to stop.
 enum status mf_simulation_run(struct simulation *simulation, uint64_t steps) MUST_USE;
 
-/// @name For mf_integrator_list
+/// @name For integrators
 /// v += ½ Δt F, then x += Δt v.
 void mf_simulation_kick_and_drift(struct simulation *simulation);
 
@@ -102,20 +104,32 @@ enum status mf_simulation_compute_forces(struct simulation *simulation, double a
 enum status mf_simulation_compute_potential(struct simulation *simulation) MUST_USE;
 
 /// Kinetic temperature of the last step [k_B T_0], taken where in the step the integrator keeps it
-/// best, if the step was asked for its sums, and at the end of the step otherwise.
+/// best, if the step was asked for its sums, and at the end of the step otherwise; NaN without
+/// velocities.
 double mf_simulation_temperature(const struct simulation *simulation);
 
-/// What the choice of a skin depends on.
+/// Whether the dynamics move without velocities, and so without a kinetic temperature.
+static inline bool simulation_is_overdamped(const struct simulation_setup *setup) {
+    return setup->integrator->free_step != NULL;
+}
+
+/// Whether friction and noise hold the temperature of the setup.
+static inline bool simulation_holds_temperature(const struct simulation_setup *setup) {
+    return setup->omega || simulation_is_overdamped(setup);
+}
+
+/// What the choice of a skin depends on. The integrator's parameters must be given.
 struct skin_scene mf_simulation_skin_scene(const struct simulation_setup *setup, double cutoff);
 
 /// Pressure [k_B T_0 / λ^d] from the sums of the last step: ρ k_B T + conservative virial / (d V).
-/// T is the set temperature in a dissipative simulation and the kinetic one otherwise.
+/// T is the set temperature if the dynamics hold it (simulation_holds_temperature) and the kinetic
+/// one otherwise.
 double mf_simulation_pressure(const struct simulation *simulation);
 
 /// @name Restart
 /// The state that, loaded into a simulation made with the same setup and followed by
 /// mf_simulation_restore, goes on with the same bits.
-enum { SIMULATION_SPANS = 18 };
+enum { SIMULATION_SPANS = PARTICLES_SPANS + 5 + INTEGRATOR_SPANS };
 size_t mf_simulation_spans(struct simulation *simulation, struct memory_span *spans);
 
 /// Rebuild the list as it was when the state was saved. Fails: NO_MEMORY.

@@ -72,7 +72,7 @@ static void read_top(struct scene *scene, struct json_object *object) {
     setup->threads = 1;
 }
 
-static void read_dynamics(struct scene *scene, struct json_object *object, int unknown) {
+static enum status read_dynamics(struct scene *scene, struct json_object *object, int unknown) {
     enum { MOST = 16 };
     const char *names[MOST] = {NULL};
     for (size_t k = 0; mf_integrator_list[k] && k + 1 < MOST; k++)
@@ -87,14 +87,21 @@ static void read_dynamics(struct scene *scene, struct json_object *object, int u
         if (strcmp(mf_integrator_list[k]->name, name) == 0)
             integrator = mf_integrator_list[k];
     if (integrator == NULL)
-        return;
+        return STATUS_OK;
     scene->setup.integrator = integrator;
-    mf_json_fields(&dynamics, integrator->fields, &scene->setup.integrator_parameters);
+    if (integrator->parameters_size > 0) {
+        scene->integrator_parameters = mf_memory_zeroed(1, integrator->parameters_size);
+        if (scene->integrator_parameters == NULL)
+            return STATUS_NO_MEMORY;
+    }
+    mf_json_fields(&dynamics, integrator->fields, scene->integrator_parameters);
+    scene->setup.integrator_parameters = scene->integrator_parameters;
     if (dynamics.item)
         mf_json_finish(&dynamics);
     if (dissipative && !integrator->dissipative)
         mf_json_fault(object, "dynamics",
                       "%s knows no friction; use \"aboba\" with \"dissipative\"", integrator->name);
+    return STATUS_OK;
 }
 
 /// Coordinates may be unwrapped, but so far outside they are in other units, as nm and pm.
@@ -260,7 +267,7 @@ enum status mf_scene_read(struct scene *scene, struct json_object *object, int u
         TRY(mf_scene_law_tabulate(&scene->omega, mf_table_init_omega));
         check_weight(scene, object);
     }
-    read_dynamics(scene, object, unknown);
+    TRY(read_dynamics(scene, object, unknown));
     scene->setup.potential = scene->potential.curves ? &scene->potential.table : NULL;
     scene->setup.omega = scene->omega.curves ? &scene->omega.table : NULL;
     return STATUS_OK;
@@ -270,6 +277,7 @@ void mf_scene_clear(struct scene *scene) {
     mf_scene_law_clear(&scene->potential);
     mf_scene_law_clear(&scene->omega);
     mf_memory_free(scene->start_values);
+    mf_memory_free(scene->integrator_parameters);
     *scene = (struct scene){0};
 }
 
@@ -306,7 +314,7 @@ void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
         mf_scene_law_write(&scene->omega, &setup->composition, writer, "dissipative");
     mf_json_begin(writer, "dynamics");
     mf_json_put_text(writer, "integrator", setup->integrator->name);
-    mf_json_put_fields(writer, setup->integrator->fields, &setup->integrator_parameters);
+    mf_json_put_fields(writer, setup->integrator->fields, setup->integrator_parameters);
     mf_json_end(writer);
     if (mf_units_known(&scene->units)) {
         mf_json_begin(writer, "units");

@@ -20,6 +20,7 @@ struct scene {
     struct simulation_start start; ///< arrays of a placement file
     int unknown;                   ///< as it was read
     double *start_values;
+    void *integrator_parameters;
 };
 
 /// Fields of the scene itself, for `mesofit describe`.
