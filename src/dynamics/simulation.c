@@ -72,6 +72,41 @@ static enum status prepare_integrator(struct simulation *simulation) {
                                                                        : STATUS_NO_MEMORY;
 }
 
+enum status mf_simulation_add_interaction(struct simulation *simulation,
+                                          const struct interaction_choice *choice) {
+    const struct interaction *kind = choice->kind;
+    if (simulation->interactions == SIMULATION_MOST_INTERACTIONS)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: there are %d interactions already", kind->name,
+                              SIMULATION_MOST_INTERACTIONS);
+    struct interaction_use *use = &simulation->interaction[simulation->interactions++];
+    *use = (struct interaction_use){.choice = *choice};
+    if (kind->state_size > 0) {
+        use->state = mf_memory_zeroed(1, kind->state_size);
+        if (use->state == NULL)
+            return STATUS_NO_MEMORY;
+    }
+    return kind->begin ? kind->begin(choice->parameters, use->state, &simulation->particles)
+                       : STATUS_OK;
+}
+
+static enum status add_interactions(struct simulation *simulation) {
+    const struct simulation_setup *setup = &simulation->setup;
+    TRY(mf_simulation_add_interaction(simulation, &(struct interaction_choice){&mf_pairs, NULL}));
+    for (int k = 0; k < setup->interactions; k++)
+        TRY(mf_simulation_add_interaction(simulation, &setup->interaction[k]));
+    return STATUS_OK;
+}
+
+static void clear_interactions(struct simulation *simulation) {
+    for (int k = 0; k < simulation->interactions; k++) {
+        const struct interaction_use *use = &simulation->interaction[k];
+        if (use->state && use->choice.kind->clear)
+            use->choice.kind->clear(use->state);
+        mf_memory_free(use->state);
+    }
+    simulation->interactions = 0;
+}
+
 enum status mf_simulation_init(struct simulation *simulation, const struct simulation_setup *setup,
                                const struct simulation_start *start) {
     enum status status = STATUS_OK;
@@ -98,6 +133,7 @@ enum status mf_simulation_init(struct simulation *simulation, const struct simul
         CHECK(mf_friction_init(&simulation->friction, setup->omega, setup->time_step,
                                setup->temperature, setup->integrator->friction));
     CHECK(place(simulation, start));
+    CHECK(add_interactions(simulation));
     CHECK(mf_neighbours_sort_and_build(&simulation->neighbours, &simulation->particles));
     if (setup->placement.kind == PLACEMENT_RANDOM && setup->potential)
         CHECK(mf_relax_overlaps(simulation));
@@ -116,6 +152,7 @@ void mf_simulation_clear(struct simulation *simulation) {
     mf_memory_free(simulation->integrator_state);
     mf_memory_free(simulation->integrator_parameters);
     simulation->integrator_state = simulation->integrator_parameters = NULL;
+    clear_interactions(simulation);
     mf_particles_clear(&simulation->particles);
     mf_neighbours_clear(&simulation->neighbours);
     mf_friction_clear(&simulation->friction);
@@ -242,12 +279,12 @@ static enum status refresh_list(struct simulation *simulation) {
     return STATUS_OK;
 }
 
-/// Forces of all that acts beside the pairs.
-static enum status add_interactions(struct simulation *simulation, enum pair_wants wants) {
-    for (int k = 0; k < simulation->interactions; k++) {
+/// A pass over the interactions from number `first` on.
+static enum status pass_over(const struct simulation *simulation, int first,
+                             const struct interaction_pass *pass) {
+    for (int k = first; k < simulation->interactions; k++) {
         const struct interaction_use *use = &simulation->interaction[k];
-        TRY(use->kind->add(use->state, &simulation->particles, simulation->step, wants,
-                           &simulation->sums));
+        TRY(use->choice.kind->add(use->choice.parameters, use->state, pass));
     }
     return STATUS_OK;
 }
@@ -266,20 +303,41 @@ enum status mf_simulation_compute_forces(struct simulation *simulation, double a
     if (law.friction)
         TRY(mf_friction_reserve(law.friction, neighbours));
     begin = count_ticks(simulation, SIMULATION_LIST, begin);
-    mf_pair_forces(&law, particles, neighbours, simulation->step, simulation->wants,
-                   &simulation->sums);
-    const enum status status = add_interactions(simulation, simulation->wants);
+    const enum status status = pass_over(simulation, 0,
+                                         &(struct interaction_pass){.law = &law,
+                                                                    .particles = particles,
+                                                                    .neighbours = neighbours,
+                                                                    .step = simulation->step,
+                                                                    .wants = simulation->wants,
+                                                                    .sums = &simulation->sums});
     count_ticks(simulation, SIMULATION_FORCES, begin);
     return status;
 }
 
 enum status mf_simulation_compute_potential(struct simulation *simulation) {
-    struct pair_law law = simulation->law;
-    law.omega = NULL;
     TRY(refresh_list(simulation));
-    mf_pair_forces(&law, &simulation->particles, &simulation->neighbours, simulation->step,
-                   PAIR_FORCES_AND_SUMS, &simulation->sums);
-    return add_interactions(simulation, PAIR_FORCES_AND_SUMS);
+    return pass_over(simulation, 0,
+                     &(struct interaction_pass){.law = &simulation->law,
+                                                .particles = &simulation->particles,
+                                                .neighbours = &simulation->neighbours,
+                                                .step = simulation->step,
+                                                .conservative = true,
+                                                .wants = PAIR_FORCES_AND_SUMS,
+                                                .sums = &simulation->sums});
+}
+
+enum status mf_simulation_forces_beside(const struct simulation *simulation,
+                                        double *const force[3]) {
+    struct particles elsewhere = simulation->particles;
+    for (int d = 0; d < elsewhere.box.dimensions; d++)
+        elsewhere.force[d] = force[d];
+    return pass_over(simulation, 1,
+                     &(struct interaction_pass){.law = &simulation->law,
+                                                .particles = &elsewhere,
+                                                .neighbours = &simulation->neighbours,
+                                                .step = simulation->step,
+                                                .conservative = true,
+                                                .wants = PAIR_FORCES});
 }
 
 /// Σ v² tells at once of NaN, overflow and a runaway temperature.
@@ -313,9 +371,9 @@ enum status mf_simulation_run(struct simulation *simulation, uint64_t steps) {
 
 double mf_simulation_pressure(const struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
-    const double temperature = simulation_holds_temperature(&simulation->setup)
-                                   ? simulation->setup.temperature
-                                   : mf_simulation_temperature(simulation);
+    const bool held = simulation->law.omega || simulation_is_overdamped(&simulation->setup);
+    const double temperature =
+        held ? simulation->setup.temperature : mf_simulation_temperature(simulation);
     return mf_particles_density(particles) * temperature +
            simulation->sums.virial / (particles->box.dimensions * mf_box_volume(&particles->box));
 }
@@ -331,6 +389,11 @@ size_t mf_simulation_spans(struct simulation *simulation, struct memory_span *sp
     spans[n++] = (struct memory_span){&simulation->list_builds, sizeof simulation->list_builds};
     if (integrator->spans)
         n += integrator->spans(simulation->integrator_state, spans + n);
+    for (int k = 0; k < simulation->interactions; k++) {
+        const struct interaction_use *use = &simulation->interaction[k];
+        if (use->choice.kind->spans)
+            n += use->choice.kind->spans(use->state, spans + n);
+    }
     return n;
 }
 

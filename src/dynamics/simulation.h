@@ -24,8 +24,11 @@ struct simulation_setup {
     double temperature_limit;       ///< above limit × temperature: UNSTABLE
     const struct integrator *integrator;
     const void *integrator_parameters; ///< its struct, or NULL: the defaults; borrowed
-    const struct table *potential;     ///< Φ(r), one or for each pair type, or NULL; borrowed
-    const struct table *omega;         ///< ω(r), the same, or NULL; borrowed
+    /// What acts beside the pairs; its parameters are borrowed.
+    struct interaction_choice interaction[INTERACTION_MOST];
+    int interactions;
+    const struct table *potential; ///< Φ(r), one or for each pair type, or NULL; borrowed
+    const struct table *omega;     ///< ω(r), the same, or NULL; borrowed
     uint64_t seed;
     int precision; ///< enum pair_precision
     /// Set by another thread to stop the simulation, or NULL. Borrowed.
@@ -33,8 +36,8 @@ struct simulation_setup {
     int threads; ///< that a step may take, at least 1: the same bits for any number
 };
 
-/// Interactions beside the pair law.
-enum { SIMULATION_MOST_INTERACTIONS = 8 };
+/// The pairs, all that a scene can name, and one of the caller's own.
+enum { SIMULATION_MOST_INTERACTIONS = 1 + INTERACTION_MOST + 1 };
 
 /// What a simulation spends its time on.
 enum simulation_phase {
@@ -53,7 +56,10 @@ struct simulation {
     struct friction friction;    ///< of an integrator that splits it off
     void *integrator_parameters; ///< a copy, which `setup` has for its own
     void *integrator_state;
-    struct interaction_use interaction[SIMULATION_MOST_INTERACTIONS]; ///< beside the pair law
+    struct interaction_use {
+        struct interaction_choice choice;
+        void *state;
+    } interaction[SIMULATION_MOST_INTERACTIONS]; ///< the pairs first
     int interactions;
     uint64_t step;
     enum pair_wants wants; ///< set before a step whose sums will be read
@@ -76,6 +82,16 @@ struct simulation_start {
 enum status mf_simulation_init(struct simulation *simulation, const struct simulation_setup *setup,
                                const struct simulation_start *start) MUST_USE;
 void mf_simulation_clear(struct simulation *simulation);
+
+/// Let an interaction act, after those that are there, from the next pass on.
+/// Fails: BAD_INPUT if its parameters do not suit the scene; NO_MEMORY.
+enum status mf_simulation_add_interaction(struct simulation *simulation,
+                                          const struct interaction_choice *choice) MUST_USE;
+
+/// Forces of the potentials beside the pairs, added to `force`, shape [dimensions][count].
+/// Fails: as the interactions.
+enum status mf_simulation_forces_beside(const struct simulation *simulation,
+                                        double *const force[3]) MUST_USE;
 
 /// Advance by `steps` steps.
 /// Fails: UNSTABLE with the step and the largest force in the message as soon as a velocity is not
@@ -129,7 +145,10 @@ double mf_simulation_pressure(const struct simulation *simulation);
 /// @name Restart
 /// The state that, loaded into a simulation made with the same setup and followed by
 /// mf_simulation_restore, goes on with the same bits.
-enum { SIMULATION_SPANS = PARTICLES_SPANS + 5 + INTEGRATOR_SPANS };
+enum {
+    SIMULATION_SPANS =
+        PARTICLES_SPANS + 5 + INTEGRATOR_SPANS + SIMULATION_MOST_INTERACTIONS * INTERACTION_SPANS
+};
 size_t mf_simulation_spans(struct simulation *simulation, struct memory_span *spans);
 
 /// Rebuild the list as it was when the state was saved. Fails: NO_MEMORY.

@@ -267,6 +267,7 @@ enum status mf_scene_read(struct scene *scene, struct json_object *object, int u
         TRY(mf_scene_law_tabulate(&scene->omega, mf_table_init_omega));
         check_weight(scene, object);
     }
+    TRY(mf_scene_interactions_read(&scene->interactions, object, &scene->setup));
     TRY(read_dynamics(scene, object, unknown));
     scene->setup.potential = scene->potential.curves ? &scene->potential.table : NULL;
     scene->setup.omega = scene->omega.curves ? &scene->omega.table : NULL;
@@ -278,6 +279,7 @@ void mf_scene_clear(struct scene *scene) {
     mf_scene_law_clear(&scene->omega);
     mf_memory_free(scene->start_values);
     mf_memory_free(scene->integrator_parameters);
+    mf_scene_interactions_clear(&scene->interactions);
     *scene = (struct scene){0};
 }
 
@@ -312,6 +314,7 @@ void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
         mf_scene_law_write(&scene->potential, &setup->composition, writer, "conservative");
     if (scene->omega.curves)
         mf_scene_law_write(&scene->omega, &setup->composition, writer, "dissipative");
+    mf_scene_interactions_write(&scene->interactions, writer);
     mf_json_begin(writer, "dynamics");
     mf_json_put_text(writer, "integrator", setup->integrator->name);
     mf_json_put_fields(writer, setup->integrator->fields, setup->integrator_parameters);
