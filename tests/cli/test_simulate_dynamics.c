@@ -111,9 +111,9 @@ static void test_candidates_are_simulated_with_interactions_and_without_velociti
     static struct run_program_result result;
     static const char run[] =
         "{\"seed\": 1, \"target\": {\"rdf\": {\"file\": \"target.tsv\"}},\n"
-        "\"scene\": {\"box\": [4, 4, 4], \"particles\": {\"count\": 81}, \"time_step\": 0.002,\n"
+        "\"scene\": {\"box\": [8, 8, 8], \"particles\": {\"count\": 81}, \"time_step\": 0.002,\n"
         "\"temperature_limit\": 1000,\n"
-        "\"interactions\": {\"harmonic-trap\": {\"stiffness\": [2, 2, 2]}},\n"
+        "\"interactions\": {\"harmonic-trap\": {\"stiffness\": [4, 4, 4]}},\n"
         "\"dynamics\": {\"integrator\": \"brownian\"}},\n"
         "\"unknowns\": {\"potential\": {\"coefficients\": 5, \"minimum\": 0, \"maximum\": 10}},\n"
         "\"method\": {\"name\": \"genetic\", \"population\": 6, \"generations\": 2,\n"
