@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # One simulation: its radial distribution function, and how it came to equilibrium.
 # Reads thermodynamics.tsv: step, time, temperature, potential_energy, pressure,
-# temperature_configurational (nan on steps where it was not measured), perhaps the same in ps, kJ/mol, bar,
+# temperature_configurational (nan where they were not measured or do not exist), perhaps the same in ps, kJ/mol, bar,
 # and, if they are there, rdf.tsv or, in a mixture, rdf_A-A.tsv, rdf_A-B.tsv, …: r, g, g_error.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
@@ -21,12 +21,14 @@ do for [file in rdfs] {
 # The pair type that a table is of: nothing, or A-B.
 pair_of(file) = strlen(file) > 7 ? file[5:strlen(file) - 4] : ""
 stats "thermodynamics.tsv" using (ps * $2) name "T" nooutput
-stats "thermodynamics.tsv" using (valid(6) ? low($3, $6) : $3) name "L" nooutput
-stats "thermodynamics.tsv" using (valid(6) ? high($3, $6) : $3) name "H" nooutput
+stats "thermodynamics.tsv" using (valid(6) ? (valid(3) ? low($3, $6) : $6) : valid(3) ? $3 : 0) name "L" nooutput
+stats "thermodynamics.tsv" using (valid(6) ? (valid(3) ? high($3, $6) : $6) : valid(3) ? $3 : 0) name "H" nooutput
 stats "thermodynamics.tsv" using (kJ * $4) name "U" nooutput
 stats "thermodynamics.tsv" using (bar * $5) name "P" nooutput
-configurational = int(system("awk '!/^#/ && $6 ~ /[0-9]/ { found = 1 } END { print found + 0 }' \
-    thermodynamics.tsv"))
+has_numbers(column) = int(system(sprintf( \
+    "awk '!/^#/ && $%d ~ /[0-9]/ { found = 1 } END { print found + 0 }' thermodynamics.tsv", column)))
+kinetic = has_numbers(3)
+configurational = has_numbers(6)
 
 left = with_rdf ? 0.61 : 0.16
 label = with_rdf ? 0.512 : 0.03
@@ -69,9 +71,9 @@ do for [kind in kinds] {
     eval begin_panel(0) . value_range(L_min, H_max)
     eval name_axis("{/:Italic T} / {/:Italic T}_0", label)
     set key on at graph 1, graph 1.22 right top vertical maxrows 1 noautotitle
-    plot "thermodynamics.tsv" using (ps * $2):3 with lines title "kinetic" \
+    plot for [i = 1:kinetic] "thermodynamics.tsv" using (ps * $2):3 with lines title "kinetic" \
             linewidth 1.2 linecolor rgb blue, \
-        for [i = 1:configurational] "" using (ps * $2):6 with points title "configurational" \
+        for [i = 1:configurational] "thermodynamics.tsv" using (ps * $2):6 with points title "configurational" \
             pointtype 7 pointsize 0.5 linecolor rgb vermillion
 
     eval begin_panel(1) . value_range(U_min, U_max)

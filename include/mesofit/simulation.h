@@ -65,8 +65,8 @@ MESOFIT_API void mesofit_simulation_free(struct mesofit_simulation *simulation);
 typedef double mesofit_force(void *context, size_t count, const uint32_t *id,
                              const double *const *position, double *const *force);
 
-/** Add these forces from the next step on; NULL ends it. They count for the energy, not for the
- *  pressure. */
+/** Add these forces from the next step on, which calls them once or more often; NULL ends it. They
+ * count for the energy, not for the pressure. */
 MESOFIT_API void mesofit_simulation_set_force(struct mesofit_simulation *simulation,
                                               mesofit_force *force, void *context);
 
@@ -90,7 +90,8 @@ MESOFIT_API const double *mesofit_simulation_positions(const struct mesofit_simu
 MESOFIT_API const double *mesofit_simulation_velocities(const struct mesofit_simulation *simulation,
                                                         int axis); /**< [lambda/tau] */
 
-/** Kinetic temperature now [T_0]: m <v^2> relative to the centre of mass. */
+/** Kinetic temperature now [T_0]: m <v^2> relative to the centre of mass; NaN
+ *  for dynamics without velocities. */
 MESOFIT_API double mesofit_simulation_temperature(const struct mesofit_simulation *simulation);
 
 /** How to measure g(r). Begin with mesofit_rdf_plan_default. */
@@ -116,7 +117,7 @@ MESOFIT_API enum mesofit_status mesofit_simulation_rdf(struct mesofit_simulation
 
 /** Means of a run, with standard errors that see correlation. */
 struct mesofit_means {
-    double temperature, temperature_error; /**< kinetic [T_0] */
+    double temperature, temperature_error; /**< kinetic [T_0]; NaN without velocities */
     double energy, energy_error;           /**< potential energy of a particle [k_B T_0] */
     double pressure, pressure_error;       /**< [k_B T_0/lambda^d] */
 };

@@ -65,6 +65,7 @@ static const struct inner scene_objects[] = {
     {"conservative", "{\"law\": …}, the potential; in a mixture one for each pair type",
      "conservative"},
     {"dissipative", "{\"law\": …}, the friction weight; likewise", "dissipative"},
+    {"interactions", "what acts beside the pairs: {\"harmonic-trap\": {…}, …}", "interactions"},
     {"dynamics", "{\"integrator\": …} and its numbers", "dynamics"},
     {"units", "physical units for the results", "units"},
     {"measure", "when to sample; this and the rest in a scene file only", "measure"},
@@ -162,6 +163,11 @@ static size_t collect(struct topic topics[MAX_TOPICS]) {
     memcpy(topics, fixed_topics, sizeof fixed_topics);
     n = add_curves(topics, n, "conservative", mf_curve_potentials);
     n = add_curves(topics, n, "dissipative", mf_curve_omegas);
+    for (size_t k = 0; mf_interaction_list[k]; k++)
+        topics[n++] = (struct topic){"interactions",
+                                     mf_interaction_list[k]->name,
+                                     mf_interaction_list[k]->summary,
+                                     {mf_interaction_list[k]->fields}};
     for (size_t k = 0; mf_integrator_list[k]; k++)
         topics[n++] = (struct topic){"dynamics",
                                      mf_integrator_list[k]->name,

@@ -23,7 +23,8 @@ enum rng_stream {
     RNG_MEAN_VELOCITY, ///< of a test of velocities; counters: step
     RNG_REMEASUREMENT, ///< seeds of fresh measurements in a fit: candidate, number
     RNG_MIXING,        ///< which sites of a lattice get which type
-    RNG_COLLISIONS     ///< with a heat bath; counters: trajectory, particle id
+    RNG_COLLISIONS,    ///< with a heat bath; counters: trajectory, particle id
+    RNG_BROWNIAN       ///< kicks of an integrator without velocities; counters: step, particle id
 };
 
 struct rng_block {

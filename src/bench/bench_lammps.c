@@ -56,6 +56,8 @@ const char *mf_bench_lammps_objection(const struct scene *scene) {
         return "Debian's LAMMPS has no pair style with friction and noise";
     if (scene->setup.integrator != &mf_velocity_verlet)
         return "its integrator is not velocity-verlet";
+    if (scene->setup.interactions > 0)
+        return "it has interactions beside the pairs";
     if (family != &mf_sampled_family && family != &mf_formula_lennard_jones)
         return "its potential is neither a table nor Lennard-Jones";
     if (scene->setup.box.dimensions != 3)

@@ -2,6 +2,7 @@
 #include "bench/bench_point.h"
 
 #include "base/statistics.h"
+#include "dynamics/dpd_verlet.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -14,7 +15,8 @@ enum {
     SCALE_EVERY = 10,     ///< steps between scalings of the velocities
 };
 
-static const double lambdas[] = {0.5, 0.65}; // of dpd-verlet; Groot and Warren's optimum
+/// Groot and Warren's optimum is the second.
+static const struct dpd_verlet_parameters predictions[] = {{0.5}, {0.65}};
 static const double equilibration_share = 0.05;
 
 /// Window of the diffusion coefficient, in times in which a particle flies the mean distance: in
@@ -29,9 +31,7 @@ static void add_method(struct bench_method *methods, size_t *count,
                        const struct simulation_setup *setup, const struct integrator *integrator) {
     struct bench_method *method = &methods[(*count)++];
     method->integrator = integrator;
-    mf_fields_set_defaults(integrator->fields, &method->parameters);
-    if (setup->integrator == integrator)
-        method->parameters = setup->integrator_parameters;
+    method->parameters = setup->integrator == integrator ? setup->integrator_parameters : NULL;
     snprintf(method->name, sizeof method->name, "%s", integrator->name);
 }
 
@@ -39,16 +39,17 @@ size_t mf_bench_methods(const struct simulation_setup *setup, struct bench_metho
     size_t count = 0;
     for (size_t k = 0; mf_integrator_list[k] && count + 2 <= BENCH_MOST_METHODS; k++) {
         const struct integrator *integrator = mf_integrator_list[k];
-        if (integrator->dissipative != (setup->omega != NULL))
+        if (integrator->dissipative != (setup->omega != NULL) || integrator->free_step)
             continue;
         const bool predicts = integrator == &mf_dpd_verlet;
-        for (size_t l = 0; l < (predicts ? sizeof lambdas / sizeof *lambdas : 1); l++) {
+        for (size_t l = 0; l < (predicts ? sizeof predictions / sizeof *predictions : 1); l++) {
             add_method(methods, &count, setup, integrator);
             struct bench_method *method = &methods[count - 1];
             if (!predicts)
                 continue;
-            method->parameters.lambda = lambdas[l];
-            snprintf(method->name, sizeof method->name, "%s(%g)", integrator->name, lambdas[l]);
+            method->parameters = &predictions[l];
+            snprintf(method->name, sizeof method->name, "%s(%g)", integrator->name,
+                     predictions[l].lambda);
         }
     }
     return count;

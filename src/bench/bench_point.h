@@ -11,7 +11,7 @@ enum { BENCH_METHOD_SIZE = 32 };
 struct bench_method {
     char name[BENCH_METHOD_SIZE]; ///< such as "dpd-verlet(0.65)"
     const struct integrator *integrator;
-    struct integrator_parameters parameters;
+    const void *parameters; ///< NULL: the defaults; borrowed
 };
 
 enum { BENCH_MOST_METHODS = 16, BENCH_MOST_BINS = 4096 };

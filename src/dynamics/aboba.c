@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "dynamics/aboba.h"
+
 #include "dynamics/simulation.h"
 
 static double exact_damping(double omega, double time_step) {
@@ -36,8 +38,8 @@ static enum status sweep(struct simulation *simulation) {
 }
 
 static enum status solve(struct simulation *simulation) {
-    return mf_friction_solve(&simulation->friction, &simulation->particles,
-                             simulation->setup.integrator_parameters.tolerance);
+    const struct aboba_parameters *parameters = simulation->setup.integrator_parameters;
+    return mf_friction_solve(&simulation->friction, &simulation->particles, parameters->tolerance);
 }
 
 /// Drift, kick, friction, kick, drift: forces and friction from the positions in the middle. The
@@ -78,7 +80,7 @@ const struct integrator mf_aboba = {
 };
 
 static const struct field implicit_fields[] = {
-    {"tolerance", FIELD_NUMBER, offsetof(struct integrator_parameters, tolerance), .initial = 0.01,
+    {"tolerance", FIELD_NUMBER, offsetof(struct aboba_parameters, tolerance), .initial = 0.01,
      .minimum = 1e-12, .maximum = 0.5, .unit = "",
      .help = "of the implicit friction, relative to what it changes"},
     FIELD_END,
@@ -88,6 +90,7 @@ const struct integrator mf_aboba_implicit = {
     .name = "aboba-implicit",
     .summary = "the same with friction of all pairs at once by the implicit midpoint rule",
     .fields = implicit_fields,
+    .parameters_size = sizeof(struct aboba_parameters),
     .dissipative = true,
     .friction = &midpoint,
     .forces_midway = true,

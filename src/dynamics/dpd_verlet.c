@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "dynamics/dpd_verlet.h"
+
 #include "dynamics/simulation.h"
 
 /// The forces see velocities predicted to v(t) + λ Δt F(t); after the half kick that is
 /// v + (λ − ½) Δt F.
 static enum status step(struct simulation *simulation) {
-    const double lambda = simulation->setup.integrator_parameters.lambda;
+    const struct dpd_verlet_parameters *parameters = simulation->setup.integrator_parameters;
+    const double lambda = parameters->lambda;
     mf_simulation_kick_and_drift(simulation);
     TRY(mf_simulation_compute_forces(simulation, (lambda - 0.5) * simulation->setup.time_step));
     mf_simulation_kick(simulation);
@@ -12,7 +15,7 @@ static enum status step(struct simulation *simulation) {
 }
 
 static const struct field fields[] = {
-    {"lambda", FIELD_NUMBER, offsetof(struct integrator_parameters, lambda), .initial = 0.5,
+    {"lambda", FIELD_NUMBER, offsetof(struct dpd_verlet_parameters, lambda), .initial = 0.5,
      .minimum = 0, .maximum = 1, .unit = "",
      .help = "how far velocities are predicted for the friction, in time steps"},
     FIELD_END,
@@ -23,6 +26,7 @@ const struct integrator mf_dpd_verlet = {
     .summary = "DPD velocity Verlet; R. D. Groot and P. B. Warren, J. Chem. Phys. 107, 4423 "
                "(1997), eq. 21",
     .fields = fields,
+    .parameters_size = sizeof(struct dpd_verlet_parameters),
     .dissipative = true,
     .step = step,
 };

@@ -1,43 +1,63 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file How a simulation moves by one time step: the record of an integrator.
 ///
-/// To add one, write a file with its record and put it into the list in integrator.c.
+/// To add one, write a file with its record, its parameters and its state, and put its name into
+/// INTEGRATORS below.
 #pragma once
 
 #include "base/fields.h"
+#include "base/memory.h"
 #include "base/status.h"
 #include "forces/friction.h"
 
 struct simulation;
+struct simulation_setup;
 
 struct integrator {
     const char *name;
     const char *summary;        ///< method and citation, one line
-    const struct field *fields; ///< of struct integrator_parameters
-    bool dissipative;           ///< understands ω(r)
+    const struct field *fields; ///< of its parameters
+    size_t parameters_size;     ///< of the struct of its parameters; 0: none
+    /// Size of what it keeps from step to step, of which a simulation has one, zeroed at first;
+    /// numbers of each particle are better an attribute (system/particles.h). 0: nothing.
+    size_t state_size;
+    /// Begin with the first positions and forces; NULL: the zeros will do.
+    enum status (*begin)(struct simulation *simulation);
+    void (*clear)(void *state); ///< frees what the state owns; NULL: nothing
+    /// List what of the state a checkpoint must keep; returns the number of spans, at most
+    /// INTEGRATOR_SPANS. NULL: nothing.
+    size_t (*spans)(void *state, struct memory_span *spans);
+    bool dissipative; ///< understands ω(r)
     /// What it makes of ω, if it splits friction and noise off the forces; NULL: they are forces.
     const struct friction_method *friction;
     /// A step begins with the friction of the pairs that the last one kept.
     bool friction_first;
     /// Forces are computed in the middle of the step: those at its end take a pass of their own.
     bool forces_midway;
+    /// Dynamics without velocities say here how far a free particle moves in a step, sqrt(2 D Δt)
+    /// along an axis [λ]. They have no kinetic temperature; `velocity` is what a particle moved in
+    /// the last step, over Δt. NULL: there are velocities.
+    double (*free_step)(const struct simulation_setup *setup);
     /// Advance by one step, with one call of mf_simulation_compute_forces.
     enum status (*step)(struct simulation *simulation);
 };
 
-/// Parameters of all mf_integrator_list; a record's field table names those it reads.
-struct integrator_parameters {
-    double lambda;    ///< dpd-verlet
-    double tolerance; ///< aboba-implicit
-};
+enum { INTEGRATOR_SPANS = 8 };
 
-/// All mf_integrator_list, NULL-terminated.
+/// All integrators, in the order in which they are listed.
+#define INTEGRATORS(EACH)                                                                          \
+    EACH(mf_velocity_verlet)                                                                       \
+    EACH(mf_dpd_verlet)                                                                            \
+    EACH(mf_dpd_vv)                                                                                \
+    EACH(mf_shardlow)                                                                              \
+    EACH(mf_aboba)                                                                                 \
+    EACH(mf_aboba_implicit)                                                                        \
+    EACH(mf_lowe_andersen)                                                                         \
+    EACH(mf_brownian)
+
+#define INTEGRATOR_DECLARE(record) extern const struct integrator record;
+INTEGRATORS(INTEGRATOR_DECLARE)
+#undef INTEGRATOR_DECLARE
+
+/// The same, NULL-terminated.
 extern const struct integrator *const mf_integrator_list[];
-
-extern const struct integrator mf_velocity_verlet;
-extern const struct integrator mf_dpd_verlet;
-extern const struct integrator mf_dpd_vv;
-extern const struct integrator mf_shardlow;
-extern const struct integrator mf_aboba;
-extern const struct integrator mf_aboba_implicit;
-extern const struct integrator mf_lowe_andersen;

@@ -16,6 +16,6 @@ struct own_force {
     void *context;
 };
 
-/// State: struct own_force. Its energy counts, its virial does not: forces from outside are no
-/// part of the pressure.
+/// Parameters: struct own_force, which may change meanwhile; a function NULL does nothing. Its
+/// energy counts, its virial does not: forces from outside are no part of the pressure.
 extern const struct interaction mf_own_force;

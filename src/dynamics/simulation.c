@@ -37,17 +37,74 @@ static enum status place(struct simulation *simulation, const struct simulation_
 }
 
 struct skin_scene mf_simulation_skin_scene(const struct simulation_setup *setup, double cutoff) {
-    return (struct skin_scene){.box = &setup->box,
-                               .count = (size_t)setup->placement.count,
-                               .cutoff = cutoff,
-                               .temperature = setup->temperature,
-                               .time_step = setup->time_step};
+    return (struct skin_scene){
+        .box = &setup->box,
+        .count = (size_t)setup->placement.count,
+        .cutoff = cutoff,
+        .temperature = setup->temperature,
+        .time_step = setup->time_step,
+        .free_step = simulation_is_overdamped(setup) ? setup->integrator->free_step(setup) : 0};
 }
 
 static double find_skin(const struct simulation *simulation) {
     const struct skin_scene scene =
         mf_simulation_skin_scene(&simulation->setup, mf_pair_cutoff(&simulation->law));
     return simulation->setup.skin > 0 ? simulation->setup.skin : mf_skin_choose(&scene);
+}
+
+/// Copy the parameters of the integrator, or its defaults, and make room for its state.
+static enum status prepare_integrator(struct simulation *simulation) {
+    const struct integrator *integrator = simulation->setup.integrator;
+    const void *given = simulation->setup.integrator_parameters;
+    const size_t size = integrator->parameters_size;
+    if (size > 0) {
+        simulation->integrator_parameters = mf_memory_zeroed(1, size);
+        if (simulation->integrator_parameters == NULL)
+            return STATUS_NO_MEMORY;
+        mf_fields_set_defaults(integrator->fields, simulation->integrator_parameters);
+        if (given)
+            memcpy(simulation->integrator_parameters, given, size);
+    }
+    simulation->setup.integrator_parameters = simulation->integrator_parameters;
+    if (integrator->state_size > 0)
+        simulation->integrator_state = mf_memory_zeroed(1, integrator->state_size);
+    return integrator->state_size == 0 || simulation->integrator_state ? STATUS_OK
+                                                                       : STATUS_NO_MEMORY;
+}
+
+enum status mf_simulation_add_interaction(struct simulation *simulation,
+                                          const struct interaction_choice *choice) {
+    const struct interaction *kind = choice->kind;
+    if (simulation->interactions == SIMULATION_MOST_INTERACTIONS)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: there are %d interactions already", kind->name,
+                              SIMULATION_MOST_INTERACTIONS);
+    struct interaction_use *use = &simulation->interaction[simulation->interactions++];
+    *use = (struct interaction_use){.choice = *choice};
+    if (kind->state_size > 0) {
+        use->state = mf_memory_zeroed(1, kind->state_size);
+        if (use->state == NULL)
+            return STATUS_NO_MEMORY;
+    }
+    return kind->begin ? kind->begin(choice->parameters, use->state, &simulation->particles)
+                       : STATUS_OK;
+}
+
+static enum status add_interactions(struct simulation *simulation) {
+    const struct simulation_setup *setup = &simulation->setup;
+    TRY(mf_simulation_add_interaction(simulation, &(struct interaction_choice){&mf_pairs, NULL}));
+    for (int k = 0; k < setup->interactions; k++)
+        TRY(mf_simulation_add_interaction(simulation, &setup->interaction[k]));
+    return STATUS_OK;
+}
+
+static void clear_interactions(struct simulation *simulation) {
+    for (int k = 0; k < simulation->interactions; k++) {
+        const struct interaction_use *use = &simulation->interaction[k];
+        if (use->state && use->choice.kind->clear)
+            use->choice.kind->clear(use->state);
+        mf_memory_free(use->state);
+    }
+    simulation->interactions = 0;
 }
 
 enum status mf_simulation_init(struct simulation *simulation, const struct simulation_setup *setup,
@@ -64,6 +121,7 @@ enum status mf_simulation_init(struct simulation *simulation, const struct simul
                 .precision = (enum pair_precision)setup->precision},
     };
     const size_t count = (size_t)setup->placement.count;
+    CHECK(prepare_integrator(simulation));
     CHECK(mf_particles_init(&simulation->particles, &setup->box, count));
     if (simulation->law.precision == PAIR_DOUBLE)
         CHECK(mf_particles_keep_precise(&simulation->particles));
@@ -75,10 +133,13 @@ enum status mf_simulation_init(struct simulation *simulation, const struct simul
         CHECK(mf_friction_init(&simulation->friction, setup->omega, setup->time_step,
                                setup->temperature, setup->integrator->friction));
     CHECK(place(simulation, start));
+    CHECK(add_interactions(simulation));
     CHECK(mf_neighbours_sort_and_build(&simulation->neighbours, &simulation->particles));
     if (setup->placement.kind == PLACEMENT_RANDOM && setup->potential)
         CHECK(mf_relax_overlaps(simulation));
     CHECK(mf_simulation_compute_forces(simulation, 0));
+    if (setup->integrator->begin)
+        CHECK(setup->integrator->begin(simulation));
 done:
     if (status != STATUS_OK)
         mf_simulation_clear(simulation);
@@ -86,6 +147,12 @@ done:
 }
 
 void mf_simulation_clear(struct simulation *simulation) {
+    if (simulation->integrator_state && simulation->setup.integrator->clear)
+        simulation->setup.integrator->clear(simulation->integrator_state);
+    mf_memory_free(simulation->integrator_state);
+    mf_memory_free(simulation->integrator_parameters);
+    simulation->integrator_state = simulation->integrator_parameters = NULL;
+    clear_interactions(simulation);
     mf_particles_clear(&simulation->particles);
     mf_neighbours_clear(&simulation->neighbours);
     mf_friction_clear(&simulation->friction);
@@ -147,21 +214,32 @@ void mf_simulation_take_temperature(struct simulation *simulation) {
 }
 
 double mf_simulation_temperature(const struct simulation *simulation) {
+    if (simulation_is_overdamped(&simulation->setup))
+        return NAN;
     return isfinite(simulation->temperature) ? simulation->temperature
                                              : mf_particles_temperature(&simulation->particles);
 }
 
-static enum status fail_unstable(const struct simulation *simulation, double square_velocities) {
+/// The mean square of a velocity along an axis beyond which a simulation is unstable: so many times
+/// that of the temperature, or of a free particle's steps.
+static double largest_square(const struct simulation_setup *setup) {
+    const double thermal = simulation_is_overdamped(setup)
+                               ? pow(setup->integrator->free_step(setup) / setup->time_step, 2)
+                               : setup->temperature;
+    return setup->temperature_limit * thermal;
+}
+
+static enum status fail_unstable(const struct simulation *simulation, double square) {
     const struct simulation_setup *setup = &simulation->setup;
-    const struct particles *particles = &simulation->particles;
-    const double degrees = particles->box.dimensions * ((double)particles->count - 1);
-    return mf_status_fail(
-        STATUS_UNSTABLE,
-        "unstable at step %llu: kinetic temperature %.3g (limit %g), largest force "
-        "%.3g; lower \"time_step\" or soften the potential",
-        (unsigned long long)simulation->step, mf_visible_number(square_velocities / degrees),
-        setup->temperature_limit * setup->temperature,
-        mf_visible_number(mf_particles_largest_force(particles)));
+    const bool flies = !simulation_is_overdamped(setup);
+    const double unit = flies ? 1 : setup->time_step * setup->time_step;
+    return mf_status_fail(STATUS_UNSTABLE,
+                          "unstable at step %llu: %s %.3g (limit %g), largest force "
+                          "%.3g; lower \"time_step\" or soften the potential",
+                          (unsigned long long)simulation->step,
+                          flies ? "kinetic temperature" : "mean squared step along an axis",
+                          mf_visible_number(square * unit), largest_square(setup) * unit,
+                          mf_visible_number(mf_particles_largest_force(&simulation->particles)));
 }
 
 /// Before a list is built: particles flung beyond the reach of box_fraction would meet on a few
@@ -201,12 +279,12 @@ static enum status refresh_list(struct simulation *simulation) {
     return STATUS_OK;
 }
 
-/// Forces of all that acts beside the pairs.
-static enum status add_interactions(struct simulation *simulation, enum pair_wants wants) {
-    for (int k = 0; k < simulation->interactions; k++) {
+/// A pass over the interactions from number `first` on.
+static enum status pass_over(const struct simulation *simulation, int first,
+                             const struct interaction_pass *pass) {
+    for (int k = first; k < simulation->interactions; k++) {
         const struct interaction_use *use = &simulation->interaction[k];
-        TRY(use->kind->add(use->state, &simulation->particles, simulation->step, wants,
-                           &simulation->sums));
+        TRY(use->choice.kind->add(use->choice.parameters, use->state, pass));
     }
     return STATUS_OK;
 }
@@ -225,31 +303,50 @@ enum status mf_simulation_compute_forces(struct simulation *simulation, double a
     if (law.friction)
         TRY(mf_friction_reserve(law.friction, neighbours));
     begin = count_ticks(simulation, SIMULATION_LIST, begin);
-    mf_pair_forces(&law, particles, neighbours, simulation->step, simulation->wants,
-                   &simulation->sums);
-    const enum status status = add_interactions(simulation, simulation->wants);
+    const enum status status = pass_over(simulation, 0,
+                                         &(struct interaction_pass){.law = &law,
+                                                                    .particles = particles,
+                                                                    .neighbours = neighbours,
+                                                                    .step = simulation->step,
+                                                                    .wants = simulation->wants,
+                                                                    .sums = &simulation->sums});
     count_ticks(simulation, SIMULATION_FORCES, begin);
     return status;
 }
 
 enum status mf_simulation_compute_potential(struct simulation *simulation) {
-    struct pair_law law = simulation->law;
-    law.omega = NULL;
     TRY(refresh_list(simulation));
-    mf_pair_forces(&law, &simulation->particles, &simulation->neighbours, simulation->step,
-                   PAIR_FORCES_AND_SUMS, &simulation->sums);
-    return add_interactions(simulation, PAIR_FORCES_AND_SUMS);
+    return pass_over(simulation, 0,
+                     &(struct interaction_pass){.law = &simulation->law,
+                                                .particles = &simulation->particles,
+                                                .neighbours = &simulation->neighbours,
+                                                .step = simulation->step,
+                                                .conservative = true,
+                                                .wants = PAIR_FORCES_AND_SUMS,
+                                                .sums = &simulation->sums});
+}
+
+enum status mf_simulation_forces_beside(const struct simulation *simulation,
+                                        double *const force[3]) {
+    struct particles elsewhere = simulation->particles;
+    for (int d = 0; d < elsewhere.box.dimensions; d++)
+        elsewhere.force[d] = force[d];
+    return pass_over(simulation, 1,
+                     &(struct interaction_pass){.law = &simulation->law,
+                                                .particles = &elsewhere,
+                                                .neighbours = &simulation->neighbours,
+                                                .step = simulation->step,
+                                                .conservative = true,
+                                                .wants = PAIR_FORCES});
 }
 
 /// Σ v² tells at once of NaN, overflow and a runaway temperature.
 static enum status watch(const struct simulation *simulation) {
-    const struct simulation_setup *setup = &simulation->setup;
     const struct particles *particles = &simulation->particles;
     const double degrees = particles->box.dimensions * ((double)particles->count - 1);
-    const double squares = mf_particles_square_velocities(particles);
-    if (squares / degrees <= setup->temperature_limit * setup->temperature)
-        return STATUS_OK;
-    return fail_unstable(simulation, squares);
+    const double square = mf_particles_square_velocities(particles) / degrees;
+    return square <= largest_square(&simulation->setup) ? STATUS_OK
+                                                        : fail_unstable(simulation, square);
 }
 
 enum status mf_simulation_run(struct simulation *simulation, uint64_t steps) {
@@ -274,26 +371,29 @@ enum status mf_simulation_run(struct simulation *simulation, uint64_t steps) {
 
 double mf_simulation_pressure(const struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
-    const double temperature = simulation->law.omega ? simulation->setup.temperature
-                                                     : mf_simulation_temperature(simulation);
+    const bool held = simulation->law.omega || simulation_is_overdamped(&simulation->setup);
+    const double temperature =
+        held ? simulation->setup.temperature : mf_simulation_temperature(simulation);
     return mf_particles_density(particles) * temperature +
            simulation->sums.virial / (particles->box.dimensions * mf_box_volume(&particles->box));
 }
 
 size_t mf_simulation_spans(struct simulation *simulation, struct memory_span *spans) {
     struct particles *particles = &simulation->particles;
-    const size_t numbers = particles->count * sizeof(double), words = particles->count * 4;
-    size_t n = 0;
-    for (int d = 0; d < particles->box.dimensions; d++) {
-        spans[n++] = (struct memory_span){particles->position[d], numbers};
-        spans[n++] = (struct memory_span){particles->velocity[d], numbers};
-        spans[n++] = (struct memory_span){particles->force[d], numbers};
-        spans[n++] = (struct memory_span){particles->image[d], words};
+    const struct integrator *integrator = simulation->setup.integrator;
+    const size_t numbers = particles->count * sizeof(double);
+    size_t n = mf_particles_spans(particles, spans);
+    for (int d = 0; d < particles->box.dimensions; d++)
         spans[n++] = (struct memory_span){simulation->neighbours.built[d], numbers};
-    }
-    spans[n++] = (struct memory_span){particles->id, words};
     spans[n++] = (struct memory_span){&simulation->step, sizeof simulation->step};
     spans[n++] = (struct memory_span){&simulation->list_builds, sizeof simulation->list_builds};
+    if (integrator->spans)
+        n += integrator->spans(simulation->integrator_state, spans + n);
+    for (int k = 0; k < simulation->interactions; k++) {
+        const struct interaction_use *use = &simulation->interaction[k];
+        if (use->choice.kind->spans)
+            n += use->choice.kind->spans(use->state, spans + n);
+    }
     return n;
 }
 

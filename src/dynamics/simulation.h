@@ -23,7 +23,10 @@ struct simulation_setup {
     double skin;                    ///< of the neighbour list; 0: the code chooses [λ]
     double temperature_limit;       ///< above limit × temperature: UNSTABLE
     const struct integrator *integrator;
-    struct integrator_parameters integrator_parameters;
+    const void *integrator_parameters; ///< its struct, or NULL: the defaults; borrowed
+    /// What acts beside the pairs; its parameters are borrowed.
+    struct interaction_choice interaction[INTERACTION_MOST];
+    int interactions;
     const struct table *potential; ///< Φ(r), one or for each pair type, or NULL; borrowed
     const struct table *omega;     ///< ω(r), the same, or NULL; borrowed
     uint64_t seed;
@@ -33,8 +36,8 @@ struct simulation_setup {
     int threads; ///< that a step may take, at least 1: the same bits for any number
 };
 
-/// Interactions beside the pair law.
-enum { SIMULATION_MOST_INTERACTIONS = 8 };
+/// The pairs, all that a scene can name, and one of the caller's own.
+enum { SIMULATION_MOST_INTERACTIONS = 1 + INTERACTION_MOST + 1 };
 
 /// What a simulation spends its time on.
 enum simulation_phase {
@@ -49,9 +52,14 @@ struct simulation {
     struct particles particles;
     struct neighbours neighbours;
     struct pair_law law;
-    struct crew crew;         ///< threads of a step
-    struct friction friction; ///< of an integrator that splits it off
-    struct interaction_use interaction[SIMULATION_MOST_INTERACTIONS]; ///< beside the pair law
+    struct crew crew;            ///< threads of a step
+    struct friction friction;    ///< of an integrator that splits it off
+    void *integrator_parameters; ///< a copy, which `setup` has for its own
+    void *integrator_state;
+    struct interaction_use {
+        struct interaction_choice choice;
+        void *state;
+    } interaction[SIMULATION_MOST_INTERACTIONS]; ///< the pairs first
     int interactions;
     uint64_t step;
     enum pair_wants wants; ///< set before a step whose sums will be read
@@ -75,12 +83,22 @@ enum status mf_simulation_init(struct simulation *simulation, const struct simul
                                const struct simulation_start *start) MUST_USE;
 void mf_simulation_clear(struct simulation *simulation);
 
+/// Let an interaction act, after those that are there, from the next pass on.
+/// Fails: BAD_INPUT if its parameters do not suit the scene; NO_MEMORY.
+enum status mf_simulation_add_interaction(struct simulation *simulation,
+                                          const struct interaction_choice *choice) MUST_USE;
+
+/// Forces of the potentials beside the pairs, added to `force`, shape [dimensions][count].
+/// Fails: as the interactions.
+enum status mf_simulation_forces_beside(const struct simulation *simulation,
+                                        double *const force[3]) MUST_USE;
+
 /// Advance by `steps` steps.
 /// Fails: UNSTABLE with the step and the largest force in the message as soon as a velocity is not
 /// finite or the temperature passes its limit; INTERRUPTED if the user asked to stop.
 enum status mf_simulation_run(struct simulation *simulation, uint64_t steps) MUST_USE;
 
-/// @name For mf_integrator_list
+/// @name For integrators
 /// v += ½ Δt F, then x += Δt v.
 void mf_simulation_kick_and_drift(struct simulation *simulation);
 
@@ -102,20 +120,35 @@ enum status mf_simulation_compute_forces(struct simulation *simulation, double a
 enum status mf_simulation_compute_potential(struct simulation *simulation) MUST_USE;
 
 /// Kinetic temperature of the last step [k_B T_0], taken where in the step the integrator keeps it
-/// best, if the step was asked for its sums, and at the end of the step otherwise.
+/// best, if the step was asked for its sums, and at the end of the step otherwise; NaN without
+/// velocities.
 double mf_simulation_temperature(const struct simulation *simulation);
 
-/// What the choice of a skin depends on.
+/// Whether the dynamics move without velocities, and so without a kinetic temperature.
+static inline bool simulation_is_overdamped(const struct simulation_setup *setup) {
+    return setup->integrator->free_step != NULL;
+}
+
+/// Whether friction and noise hold the temperature of the setup.
+static inline bool simulation_holds_temperature(const struct simulation_setup *setup) {
+    return setup->omega || simulation_is_overdamped(setup);
+}
+
+/// What the choice of a skin depends on. The integrator's parameters must be given.
 struct skin_scene mf_simulation_skin_scene(const struct simulation_setup *setup, double cutoff);
 
 /// Pressure [k_B T_0 / λ^d] from the sums of the last step: ρ k_B T + conservative virial / (d V).
-/// T is the set temperature in a dissipative simulation and the kinetic one otherwise.
+/// T is the set temperature if the dynamics hold it (simulation_holds_temperature) and the kinetic
+/// one otherwise.
 double mf_simulation_pressure(const struct simulation *simulation);
 
 /// @name Restart
 /// The state that, loaded into a simulation made with the same setup and followed by
 /// mf_simulation_restore, goes on with the same bits.
-enum { SIMULATION_SPANS = 18 };
+enum {
+    SIMULATION_SPANS =
+        PARTICLES_SPANS + 5 + INTEGRATOR_SPANS + SIMULATION_MOST_INTERACTIONS * INTERACTION_SPANS
+};
 size_t mf_simulation_spans(struct simulation *simulation, struct memory_span *spans);
 
 /// Rebuild the list as it was when the state was saved. Fails: NO_MEMORY.

@@ -15,6 +15,9 @@ static double entries(const struct skin_scene *scene, double skin) {
 }
 
 double mf_skin_interval(const struct skin_scene *scene, double skin) {
+    const double fastest = 2 * log((double)scene->count + 1);
+    if (scene->free_step > 0)
+        return fmax(1, pow(skin / (2 * scene->free_step), 2) / fastest + 0.5);
     const double speed = sqrt(2 * scene->temperature * log((double)scene->count + 1));
     // Half a step on average from the moment when the list runs out to its replacement.
     return fmax(1, skin / (2 * speed * scene->time_step) + 0.5);

@@ -1,25 +1,71 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Forces beside the pair law: the record of an interaction.
+/// @file What acts on the particles: the record of an interaction.
 ///
-/// A simulation has a list of them, empty in most scenes. To add one, write a file with its record.
+/// A simulation has a list of them. The pairs with their friction (forces/pairs.c) come first; a
+/// scene may name others. To add one that scenes can name, write a file with its record and put its
+/// name into INTERACTIONS below.
 #pragma once
 
+#include "base/fields.h"
 #include "base/memory.h"
 #include "forces/pair.h"
 
+/// One pass over the list.
+struct interaction_pass {
+    const struct pair_law *law;          ///< of the pairs, with temperature, time step and seed
+    struct particles *particles;         ///< at their present positions
+    const struct neighbours *neighbours; ///< complete for the law
+    uint64_t step;                       ///< the counter of random numbers
+    bool conservative;                   ///< potentials alone: no friction, no noise
+    enum pair_wants wants;
+    struct pair_sums *sums; ///< to be added to, if `wants` asks for them
+};
+
 struct interaction {
     const char *name;
-    const char *summary; ///< the formula and its source, one line
-    /// Add its forces to particles->force at the present positions, and to `sums`, if `wants` asks
-    /// for them, its energy [k_B T_0] and its virial Σ r·F [k_B T_0].
-    enum status (*add)(void *state, struct particles *particles, uint64_t step,
-                       enum pair_wants wants, struct pair_sums *sums);
-    /// List what of its state a checkpoint must keep; returns the number of spans. NULL: nothing.
+    const char *summary;        ///< the formula and its source, one line
+    const struct field *fields; ///< of its parameters; NULL: no scene can name it
+    size_t parameters_size;     ///< of the struct of its parameters
+    size_t state_size;          ///< of what it keeps from step to step, zeroed at first; 0: nothing
+    double cost;                ///< nanoseconds a particle and step, for --explain
+    /// Check the parameters and begin with the first positions. NULL: nothing to do.
+    enum status (*begin)(const void *parameters, void *state, const struct particles *particles);
+    void (*clear)(void *state); ///< frees what the state owns; NULL: nothing
+    /// Add its forces to particles->force and, if they are wanted, its energy [k_B T_0] and virial
+    /// Σ r·F [k_B T_0] to the sums. What pushes from outside has no virial: it is no part of the
+    /// pressure. A step may take more than one pass, with the same number.
+    enum status (*add)(const void *parameters, void *state, const struct interaction_pass *pass);
+    /// List what of its state a checkpoint must keep; returns the number of spans, at most
+    /// INTERACTION_SPANS. NULL: nothing.
     size_t (*spans)(void *state, struct memory_span *spans);
 };
 
-/// An interaction at work. Borrowed.
-struct interaction_use {
+enum { INTERACTION_SPANS = 4 };
+
+/// The interactions that a scene can name, in the order in which they act.
+#define INTERACTIONS(EACH)                                                                         \
+    EACH(mf_uniform_force)                                                                         \
+    EACH(mf_counterflow)                                                                           \
+    EACH(mf_harmonic_trap)
+
+#define INTERACTION_DECLARE(record) extern const struct interaction record;
+INTERACTIONS(INTERACTION_DECLARE)
+#undef INTERACTION_DECLARE
+
+/// The same, NULL-terminated.
+extern const struct interaction *const mf_interaction_list[];
+
+/// Φ and ω of the pairs, in one pass, which replaces the forces of the last step: the first of
+/// every simulation's list. Its numbers are those of the pass.
+extern const struct interaction mf_pairs;
+
+/// How many of a list a scene can name.
+#define INTERACTION_COUNT(record) +1
+enum { INTERACTION_MOST = INTERACTIONS(INTERACTION_COUNT) };
+#undef INTERACTION_COUNT
+
+/// An interaction and its numbers.
+struct interaction_choice {
     const struct interaction *kind;
-    void *state;
+    const void *parameters; ///< borrowed
 };

@@ -95,8 +95,8 @@ static double edge_laplacian(const struct table *potential, int pair, double den
 enum status mf_reference_configurational(const struct table *potential,
                                          const struct composition *composition, double temperature,
                                          const struct particles *particles,
-                                         const struct neighbours *neighbours, double *squares,
-                                         double *laplacian) {
+                                         const struct neighbours *neighbours, double *const *beside,
+                                         double *squares, double *laplacian) {
     enum status status = STATUS_OK;
     const int dimensions = particles->box.dimensions;
     double *force = NULL;
@@ -128,6 +128,9 @@ enum status mf_reference_configurational(const struct table *potential,
         *laplacian += edge_laplacian(potential, pair, density[pair]);
     for (size_t k = 0; k < 3 * particles->count; k++)
         *squares += force[k] * force[k];
+    for (int d = 0; d < dimensions && beside; d++)
+        for (size_t k = 0; k < particles->count; k++)
+            *squares += force[3 * k + (size_t)d] * beside[d][k];
 done:
     mf_memory_free(force);
     return status;

@@ -254,6 +254,16 @@ static enum status check_bins(const struct fit_file *fit, const char *file) {
         file, INVERSION_MOST_BINS, bins);
 }
 
+/// An inversion samples the pair potential alone.
+static enum status check_interactions(const struct fit_file *fit, const char *file) {
+    if (fit->method->update == NULL || fit->scene.setup.interactions == 0)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: scene.interactions: \"%s\" samples pairs alone; the methods that "
+                          "simulate candidates, as \"gauss-newton\", carry them",
+                          file, fit->method->name);
+}
+
 static enum status check_steps(const struct fit_file *fit, const char *file) {
     enum status status = mf_target_files_check_steps(&fit->files, fit->scene.setup.time_step);
     if (status != STATUS_OK)
@@ -303,6 +313,7 @@ enum status mf_fit_file_check(const struct fit_file *fit, const char *file) {
     if (mf_targets_count(&fit->problem.targets) == 0)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: target: nothing is to be fitted", file);
     TRY(check_bins(fit, file));
+    TRY(check_interactions(fit, file));
     TRY(check_steps(fit, file));
     TRY(check_windows(fit, file));
     if (fit->scene.setup.placement.kind == PLACEMENT_FILE)

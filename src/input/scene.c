@@ -88,7 +88,13 @@ static enum status read_dynamics(struct scene *scene, struct json_object *object
         return STATUS_OK;
     const struct integrator *integrator = mf_names_find(mf_integrator_list, name);
     scene->setup.integrator = integrator;
-    mf_json_fields(&dynamics, integrator->fields, &scene->setup.integrator_parameters);
+    if (integrator->parameters_size > 0) {
+        scene->integrator_parameters = mf_memory_zeroed(1, integrator->parameters_size);
+        if (scene->integrator_parameters == NULL)
+            return STATUS_NO_MEMORY;
+    }
+    mf_json_fields(&dynamics, integrator->fields, scene->integrator_parameters);
+    scene->setup.integrator_parameters = scene->integrator_parameters;
     if (dynamics.item)
         mf_json_finish(&dynamics);
     if (dissipative && !integrator->dissipative)
@@ -260,6 +266,7 @@ enum status mf_scene_read(struct scene *scene, struct json_object *object, int u
         TRY(mf_scene_law_tabulate(&scene->omega, mf_table_init_omega));
         check_omega(scene, object);
     }
+    TRY(mf_scene_interactions_read(&scene->interactions, object, &scene->setup));
     TRY(read_dynamics(scene, object, unknown));
     scene->setup.potential = scene->potential.curves ? &scene->potential.table : NULL;
     scene->setup.omega = scene->omega.curves ? &scene->omega.table : NULL;
@@ -270,6 +277,8 @@ void mf_scene_clear(struct scene *scene) {
     mf_scene_law_clear(&scene->potential);
     mf_scene_law_clear(&scene->omega);
     mf_memory_free(scene->start_values);
+    mf_memory_free(scene->integrator_parameters);
+    mf_scene_interactions_clear(&scene->interactions);
     *scene = (struct scene){0};
 }
 
@@ -304,9 +313,10 @@ void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
         mf_scene_law_write(&scene->potential, &setup->composition, writer, "conservative");
     if (scene->omega.curves)
         mf_scene_law_write(&scene->omega, &setup->composition, writer, "dissipative");
+    mf_scene_interactions_write(&scene->interactions, writer);
     mf_json_begin(writer, "dynamics");
     mf_json_put_text(writer, "integrator", setup->integrator->name);
-    mf_json_put_fields(writer, setup->integrator->fields, &setup->integrator_parameters);
+    mf_json_put_fields(writer, setup->integrator->fields, setup->integrator_parameters);
     mf_json_end(writer);
     if (mf_units_known(&scene->units)) {
         mf_json_begin(writer, "units");

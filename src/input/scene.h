@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dynamics/simulation.h"
+#include "input/scene_interactions.h"
 #include "input/scene_law.h"
 
 /// What a fit looks for, and the scene therefore does not say.
@@ -16,10 +17,12 @@ enum scene_unknown {
 struct scene {
     struct simulation_setup setup;
     struct scene_law potential, omega;
+    struct scene_interactions interactions;
     struct units units;
     struct simulation_start start; ///< arrays of a placement file
     int unknown;                   ///< as it was read
     double *start_values;
+    void *integrator_parameters;
 };
 
 /// Fields of the scene itself, for `mesofit describe`.

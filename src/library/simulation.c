@@ -56,6 +56,9 @@ static enum status open_scene(struct mesofit_simulation **simulation, const char
         CHECK(mf_scene_text_add_own(own, &(*simulation)->scene));
     }
     CHECK(begin(*simulation));
+    CHECK(mf_simulation_add_interaction(
+        &(*simulation)->engine,
+        &(struct interaction_choice){&mf_own_force, &(*simulation)->force}));
 done:
     if (status != STATUS_OK) {
         mesofit_simulation_free(*simulation);
@@ -123,12 +126,7 @@ void mesofit_simulation_free(struct mesofit_simulation *simulation) {
 
 void mesofit_simulation_set_force(struct mesofit_simulation *simulation, mesofit_force *force,
                                   void *context) {
-    struct simulation *engine = &simulation->engine;
     simulation->force = (struct own_force){force, context};
-    engine->interactions = 0;
-    if (force)
-        engine->interaction[engine->interactions++] =
-            (struct interaction_use){&mf_own_force, &simulation->force};
 }
 
 enum mesofit_status mesofit_simulation_run(struct mesofit_simulation *simulation, uint64_t steps) {
@@ -165,7 +163,9 @@ const double *mesofit_simulation_velocities(const struct mesofit_simulation *sim
 }
 
 double mesofit_simulation_temperature(const struct mesofit_simulation *simulation) {
-    return mf_particles_temperature(&simulation->engine.particles);
+    return simulation_is_overdamped(&simulation->engine.setup)
+               ? NAN
+               : mf_particles_temperature(&simulation->engine.particles);
 }
 
 // Measurements ------------------------------------------------------------------------------------

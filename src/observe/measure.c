@@ -52,8 +52,10 @@ enum status mf_measure_equilibrate(struct simulation *simulation, const struct m
         TRY(run_until(simulation, end - 1, plan, listener));
         simulation->wants = piece > PIECES - LAST ? PAIR_FORCES_AND_SUMS : PAIR_FORCES;
         TRY(run_until(simulation, end, plan, listener));
+        double here = 0;
         if (piece > PIECES - LAST)
-            sum += mf_simulation_temperature(simulation);
+            TRY(mf_thermodynamics_temperature(simulation, &here));
+        sum += here;
         tell(listener, simulation, plan);
     }
     *temperature = sum / LAST;

@@ -45,8 +45,8 @@ enum status mf_measure_sample(struct simulation *simulation, const struct measur
                               struct measure_observables observables,
                               const struct measure_listener *listener) MUST_USE;
 
-/// Mean kinetic temperature over the last tenth of an equilibration of plan->equilibration steps,
-/// which it runs [k_B T_0].
+/// Mean temperature (mf_thermodynamics_temperature) over the last tenth of an equilibration of
+/// plan->equilibration steps, which it runs [k_B T_0].
 enum status mf_measure_equilibrate(struct simulation *simulation, const struct measure_plan *plan,
                                    double *temperature,
                                    const struct measure_listener *listener) MUST_USE;

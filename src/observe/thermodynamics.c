@@ -21,6 +21,37 @@ void mf_thermodynamics_clear(struct thermodynamics *thermodynamics) {
     *thermodynamics = (struct thermodynamics){0};
 }
 
+/// Numerator and denominator of the configurational temperature; the potentials beside the pairs
+/// count, too.
+static enum status configurational(const struct simulation *simulation, double *squares,
+                                   double *laplacian) {
+    enum status status = STATUS_OK;
+    const struct particles *particles = &simulation->particles;
+    double *beside[3] = {NULL};
+    const bool alone = simulation->interactions == 1;
+    for (int d = 0; d < particles->box.dimensions && !alone; d++)
+        NEW_ARRAY(beside[d], particles->count);
+    CHECK(mf_simulation_forces_beside(simulation, beside));
+    CHECK(mf_reference_configurational(
+        simulation->law.potential, &simulation->law.composition, simulation->setup.temperature,
+        particles, &simulation->neighbours, alone ? NULL : beside, squares, laplacian));
+done:
+    for (int d = 0; d < 3; d++)
+        mf_memory_free(beside[d]);
+    return status;
+}
+
+enum status mf_thermodynamics_temperature(const struct simulation *simulation,
+                                          double *temperature) {
+    double squares = NAN, laplacian = 1;
+    *temperature = mf_simulation_temperature(simulation);
+    if (!simulation_is_overdamped(&simulation->setup) || simulation->law.potential == NULL)
+        return STATUS_OK;
+    TRY(configurational(simulation, &squares, &laplacian));
+    *temperature = squares / laplacian;
+    return STATUS_OK;
+}
+
 enum status mf_thermodynamics_sample(struct thermodynamics *thermodynamics,
                                      const struct simulation *simulation) {
     double *here = thermodynamics->values + thermodynamics->samples;
@@ -30,11 +61,8 @@ enum status mf_thermodynamics_sample(struct thermodynamics *thermodynamics,
     here[THERMODYNAMICS_POTENTIAL_ENERGY * stride] = simulation->sums.energy / count;
     here[THERMODYNAMICS_PRESSURE * stride] = mf_simulation_pressure(simulation);
     if (simulation->law.potential)
-        TRY(mf_reference_configurational(simulation->law.potential, &simulation->law.composition,
-                                         simulation->setup.temperature, &simulation->particles,
-                                         &simulation->neighbours,
-                                         &here[THERMODYNAMICS_FORCE_SQUARES * stride],
-                                         &here[THERMODYNAMICS_LAPLACIAN * stride]));
+        TRY(configurational(simulation, &here[THERMODYNAMICS_FORCE_SQUARES * stride],
+                            &here[THERMODYNAMICS_LAPLACIAN * stride]));
     thermodynamics->samples++;
     return STATUS_OK;
 }
@@ -120,13 +148,19 @@ static bool agrees(double temperature, double error, double wanted) {
 enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary,
                                     const struct simulation_setup *setup) {
     const struct thermodynamics_summary *s = summary;
-    const double wanted = setup->omega ? setup->temperature : s->temperature;
+    const bool flies = !simulation_is_overdamped(setup);
+    const double wanted = simulation_holds_temperature(setup) ? setup->temperature : s->temperature;
     if (s->blocks < LEAST_BLOCKS)
         return STATUS_OK;
-    if (agrees(s->temperature, s->temperature_error, wanted) &&
+    if ((!flies || agrees(s->temperature, s->temperature_error, wanted)) &&
         (isnan(s->temperature_configurational) ||
          agrees(s->temperature_configurational, s->temperature_configurational_error, wanted)))
         return STATUS_OK;
+    if (!flies)
+        return mf_status_fail(STATUS_UNSTABLE,
+                              "the temperature is %.3g by the positions, not %.3g: lower "
+                              "\"time_step\", or equilibrate for longer",
+                              s->temperature_configurational, wanted);
     return mf_status_fail(
         STATUS_UNSTABLE,
         "the temperature is %.3g by the velocities and %.3g by the positions, not "
@@ -139,7 +173,7 @@ enum status mf_thermodynamics_judge_fit(const struct thermodynamics_summary *sum
     static const double least = 0.025, errors = 3;
     const struct thermodynamics_summary *s = summary;
     TRY(mf_thermodynamics_judge(summary, setup));
-    const double wanted = setup->omega ? setup->temperature : s->temperature;
+    const double wanted = simulation_holds_temperature(setup) ? setup->temperature : s->temperature;
     const double off = s->temperature_configurational - wanted;
     if (s->blocks < LEAST_BLOCKS ||
         !(fabs(off) > fmax(least * wanted, errors * s->temperature_configurational_error)))

@@ -26,6 +26,11 @@ void mf_thermodynamics_clear(struct thermodynamics *thermodynamics);
 enum status mf_thermodynamics_sample(struct thermodynamics *thermodynamics,
                                      const struct simulation *simulation) MUST_USE;
 
+/// The temperature of the simulation as it is now: kinetic, or without velocities configurational;
+/// NaN without either. Fails: NO_MEMORY.
+enum status mf_thermodynamics_temperature(const struct simulation *simulation,
+                                          double *temperature) MUST_USE;
+
 /// The series of one quantity, shape [samples].
 const double *mf_thermodynamics_series(const struct thermodynamics *thermodynamics,
                                        enum thermodynamics_quantity quantity);
@@ -33,8 +38,8 @@ const double *mf_thermodynamics_series(const struct thermodynamics *thermodynami
 /// Means over all replicas with standard errors that see the correlation of each series, by
 /// mf_statistics_correlated_error.
 struct thermodynamics_summary {
-    size_t blocks; ///< behind the errors, of all replicas
-    double temperature, temperature_error;
+    size_t blocks;                         ///< behind the errors, of all replicas
+    double temperature, temperature_error; ///< NaN without velocities
     double temperature_configurational, temperature_configurational_error; ///< NaN without Φ
     double potential_energy, potential_energy_error;
     double pressure, pressure_error;
@@ -44,7 +49,8 @@ struct thermodynamics_summary mf_thermodynamics_result(const struct thermodynami
 
 /// Whether the temperatures of a summary agree with the set one of a simulation: kinetic and
 /// configurational within 10 % and four standard errors, where there are five blocks to know them
-/// by. Without friction nothing is set, and the configurational one is held to the kinetic one.
+/// by. Without friction nothing is set, and the configurational one is held to the kinetic one;
+/// without velocities there is no kinetic one to judge.
 ///
 /// A time step that is too large, or friction that is, may leave the kinetic temperature right and
 /// the structure wrong: velocity Verlet (λ = ½) of the standard fluid with γ = 200 and Δt = 0.01

@@ -27,7 +27,8 @@ static enum status equilibrate(struct simulation *simulation, const struct measu
         return mf_status_fail(STATUS_UNSTABLE,
                               "the temperature is %.3g after equilibration, not %.3g", temperature,
                               wanted);
-    if (has_collapsed(simulation))
+    // Only what is uniform by itself must stay so.
+    if (simulation->setup.interactions == 0 && has_collapsed(simulation))
         return mf_status_fail(STATUS_UNSTABLE, "the particles have collapsed into a drop");
     return STATUS_OK;
 }

@@ -62,7 +62,8 @@ static enum status begin_rdf(struct measurement *measurement, const struct simul
     const double cutoff = scene->potential ? scene->potential->cutoff : 0;
     if (!targets_ask(targets, TARGET_RDF))
         return STATUS_OK;
-    if (setup->force_estimator && scene->potential && !composition_is_mixed(&scene->composition) &&
+    if (setup->force_estimator && scene->potential && scene->interactions == 0 &&
+        !composition_is_mixed(&scene->composition) &&
         mf_rdf_force_applies(scene->potential, scene->temperature)) {
         measurement->observables.rdf_force = &measurement->rdf_force;
         return mf_rdf_force_init(&measurement->rdf_force, &targets->bins, &scene->box, count,

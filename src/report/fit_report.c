@@ -94,7 +94,11 @@ void mf_fit_report_say(struct progress *to, const struct fit_file *fit,
         mf_progress_say(to, "D = %s, the slope of the MSD from %.4g to %.4g tau", diffusion,
                         v->diffusion_begin, v->diffusion_end);
     }
-    mf_progress_say(to, "T = %.4f, configurational %.4f, pressure %.3f",
-                    v->thermodynamics.temperature, v->thermodynamics.temperature_configurational,
-                    v->thermodynamics.pressure);
+    const struct thermodynamics_summary *t = &v->thermodynamics;
+    if (isnan(t->temperature)) // no velocities
+        mf_progress_say(to, "configurational T = %.4f, pressure %.3f",
+                        t->temperature_configurational, t->pressure);
+    else
+        mf_progress_say(to, "T = %.4f, configurational %.4f, pressure %.3f", t->temperature,
+                        t->temperature_configurational, t->pressure);
 }

@@ -41,8 +41,9 @@ bool mf_fit_verdict_contradicts(const struct verification *verification, bool pr
     snprintf(reason, INVERSE_REASON_SIZE,
              "the fit's samples agree with g(r), its verification is off by %.2g (%.2g by "
              "statistics) at T = %.3g, pressure %.3g: %s",
-             rdf->rms, rdf->noise, found->temperature, found->pressure,
-             find_cause(found, temperature));
+             rdf->rms, rdf->noise,
+             isnan(found->temperature) ? found->temperature_configurational : found->temperature,
+             found->pressure, find_cause(found, temperature));
     return true;
 }
 

@@ -1,67 +1,136 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "system/particles.h"
 
-#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "base/simd.h"
 
 #include <stdlib.h>
 
+/// What becomes of an array.
+enum {
+    SORTED = 1,  ///< permuted with the particles
+    SAVED = 2,   ///< kept by a checkpoint
+    PRECISE = 4, ///< of the kernels in double precision: there if they are asked for
+};
+
+/// An array of the struct: where its pointers are, how many for the axes, the size of an element.
+struct array {
+    size_t offset;
+    int axes;
+    size_t size;
+    int treatment;
+    size_t padding; ///< elements more
+};
+
+#define ARRAY(name) offsetof(struct particles, name), 1, sizeof *((struct particles *)NULL)->name
+#define AXES(name) offsetof(struct particles, name), 3, sizeof *((struct particles *)NULL)->name[0]
+static const struct array arrays[] = {
+    {AXES(position), SORTED | SAVED, 0},
+    {AXES(velocity), SORTED | SAVED, 0},
+    {AXES(force), SAVED, 0}, // about to be replaced when the particles are sorted
+    {AXES(image), SORTED | SAVED, 0},
+    {AXES(fraction), 0, PARTICLES_PADDING},
+    {ARRAY(id), SORTED | SAVED, 0},
+    {ARRAY(kernel_place), 0, 0},
+    {ARRAY(kernel_motion), SORTED, 0},
+    {ARRAY(kernel_force), 0, 0},
+    {ARRAY(precise_place), PRECISE, 0},
+    {ARRAY(precise_motion), PRECISE | SORTED, 0},
+    {ARRAY(spare), 0, 0},
+    {offsetof(struct particles, spare_words), 1, sizeof(uint32_t), 0, 0},
+    {ARRAY(spare_motion), 0, 0},
+    {ARRAY(spare_precise_motion), PRECISE, 0},
+};
+enum { ARRAYS = sizeof arrays / sizeof *arrays };
+
+/// The pointers are of many types: read and written as bytes.
+static void *array_of(const struct particles *particles, const struct array *array, int axis) {
+    void *pointer;
+    memcpy(&pointer, (const char *)particles + array->offset + (size_t)axis * sizeof pointer,
+           sizeof pointer);
+    return pointer;
+}
+
+static void set_array(struct particles *particles, const struct array *array, int axis,
+                      void *pointer) {
+    memcpy((char *)particles + array->offset + (size_t)axis * sizeof pointer, &pointer,
+           sizeof pointer);
+}
+
+static enum status allocate(struct particles *particles, int precise) {
+    for (int k = 0; k < ARRAYS; k++)
+        for (int axis = 0; axis < arrays[k].axes; axis++) {
+            if ((arrays[k].treatment & PRECISE) != precise)
+                continue;
+            void *memory = mf_memory_zeroed(particles->count + arrays[k].padding, arrays[k].size);
+            if (memory == NULL)
+                return STATUS_NO_MEMORY;
+            set_array(particles, &arrays[k], axis, memory);
+        }
+    return STATUS_OK;
+}
+
 enum status mf_particles_init(struct particles *particles, const struct box *box, size_t count) {
-    enum status status = STATUS_OK;
     *particles = (struct particles){.count = count, .box = *box, .threads = 1};
-    for (int d = 0; d < 3; d++) {
-        NEW_ARRAY(particles->position[d], count);
-        NEW_ARRAY(particles->velocity[d], count);
-        NEW_ARRAY(particles->force[d], count);
-        NEW_ARRAY(particles->image[d], count);
-        NEW_ARRAY(particles->fraction[d], count + PARTICLES_PADDING);
-    }
-    NEW_ARRAY(particles->kernel_place, count);
-    NEW_ARRAY(particles->kernel_motion, count);
-    NEW_ARRAY(particles->kernel_force, count);
-    NEW_ARRAY(particles->id, count);
-    NEW_ARRAY(particles->spare, count);
-    NEW_ARRAY(particles->spare_motion, count);
-    particles->spare_words = mf_memory_zeroed(count, sizeof(uint32_t));
-    CHECK(particles->spare_words ? STATUS_OK : STATUS_NO_MEMORY);
-    for (size_t k = 0; k < count; k++)
-        particles->id[k] = (uint32_t)k;
-done:
+    const enum status status = allocate(particles, 0);
     if (status != STATUS_OK)
         mf_particles_clear(particles);
+    else
+        for (size_t k = 0; k < count; k++)
+            particles->id[k] = (uint32_t)k;
     return status;
 }
 
 enum status mf_particles_keep_precise(struct particles *particles) {
-    enum status status = STATUS_OK;
-    NEW_ARRAY(particles->precise_place, particles->count);
-    NEW_ARRAY(particles->precise_motion, particles->count);
-    NEW_ARRAY(particles->spare_precise_motion, particles->count);
-done:
-    return status;
+    return allocate(particles, PRECISE);
 }
 
 void mf_particles_clear(struct particles *particles) {
-    for (int d = 0; d < 3; d++) {
-        mf_memory_free(particles->position[d]);
-        mf_memory_free(particles->velocity[d]);
-        mf_memory_free(particles->force[d]);
-        mf_memory_free(particles->image[d]);
-        mf_memory_free(particles->fraction[d]);
-    }
-    mf_memory_free(particles->kernel_place);
-    mf_memory_free(particles->kernel_motion);
-    mf_memory_free(particles->precise_place);
-    mf_memory_free(particles->precise_motion);
-    mf_memory_free(particles->spare_precise_motion);
-    mf_memory_free(particles->kernel_force);
-    mf_memory_free(particles->id);
-    mf_memory_free(particles->spare);
-    mf_memory_free(particles->spare_motion);
-    mf_memory_free(particles->spare_words);
+    for (int k = 0; k < ARRAYS; k++)
+        for (int axis = 0; axis < arrays[k].axes; axis++)
+            mf_memory_free(array_of(particles, &arrays[k], axis));
+    for (int k = 0; k < particles->attributes; k++)
+        for (int c = 0; c < particles->attribute[k].components; c++)
+            mf_memory_free(particles->attribute[k].value[c]);
     *particles = (struct particles){0};
+}
+
+static size_t size_of(const struct particles_attribute *attribute) {
+    return attribute->type == PARTICLES_DOUBLE ? sizeof(double) : sizeof(uint32_t);
+}
+
+enum status mf_particles_add_attribute(struct particles *particles,
+                                       const struct particles_attribute *attribute, int *number) {
+    if (particles->attributes == PARTICLES_MOST_ATTRIBUTES)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: particles have at most %d attributes",
+                              attribute->name, PARTICLES_MOST_ATTRIBUTES);
+    *number = particles->attributes++;
+    struct particles_attribute *own = &particles->attribute[*number];
+    *own = *attribute;
+    for (int c = 0; c < PARTICLES_MOST_COMPONENTS; c++)
+        own->value[c] = NULL;
+    for (int c = 0; c < own->components; c++) {
+        own->value[c] = mf_memory_zeroed(particles->count, size_of(own));
+        if (own->value[c] == NULL)
+            return STATUS_NO_MEMORY;
+    }
+    return STATUS_OK;
+}
+
+size_t mf_particles_spans(struct particles *particles, struct memory_span *spans) {
+    size_t n = 0;
+    for (int k = 0; k < ARRAYS; k++)
+        for (int axis = 0; axis < arrays[k].axes; axis++)
+            if ((arrays[k].treatment & SAVED) &&
+                (arrays[k].axes == 1 || axis < particles->box.dimensions))
+                spans[n++] = (struct memory_span){array_of(particles, &arrays[k], axis),
+                                                  particles->count * arrays[k].size};
+    for (int k = 0; k < particles->attributes; k++)
+        for (int c = 0; c < particles->attribute[k].components; c++)
+            spans[n++] = (struct memory_span){particles->attribute[k].value[c],
+                                              particles->count * size_of(&particles->attribute[k])};
+    return n;
 }
 
 double mf_particles_density(const struct particles *particles) {
@@ -205,27 +274,49 @@ static void permute_precise_motions(void *context, size_t begin, size_t end) {
         to[k] = from[p->order[k]];
 }
 
-/// Permute *array into *spare, and exchange them.
-#define PERMUTE(particles, array, spare, order, permute)                                           \
-    do {                                                                                           \
-        struct permutation permutation = {(order), (array), (spare)};                              \
-        void *old = (array);                                                                       \
-        mf_parallel_for((particles)->count, (particles)->threads, (permute), &permutation);        \
-        (array) = (spare);                                                                         \
-        (spare) = old;                                                                             \
-    } while (0)
+/// Permute an array into the spare one of its elements' size, and exchange them.
+static void *permute(struct particles *particles, void *array, size_t size, const uint32_t *order) {
+    struct permutation permutation = {order, array, NULL};
+    switch (size) {
+    case sizeof(uint32_t):
+        permutation.to = particles->spare_words;
+        particles->spare_words = array;
+        mf_parallel_for(particles->count, particles->threads, permute_words, &permutation);
+        break;
+    case sizeof(double):
+        permutation.to = particles->spare;
+        particles->spare = array;
+        mf_parallel_for(particles->count, particles->threads, permute_doubles, &permutation);
+        break;
+    case sizeof(struct particle_motion):
+        permutation.to = particles->spare_motion;
+        particles->spare_motion = array;
+        mf_parallel_for(particles->count, particles->threads, permute_motions, &permutation);
+        break;
+    case sizeof(struct particle_precise_motion):
+        permutation.to = particles->spare_precise_motion;
+        particles->spare_precise_motion = array;
+        mf_parallel_for(particles->count, particles->threads, permute_precise_motions,
+                        &permutation);
+        break;
+    }
+    return permutation.to;
+}
 
 void mf_particles_permute(struct particles *particles, const uint32_t *order) {
-    for (int d = 0; d < particles->box.dimensions; d++) {
-        PERMUTE(particles, particles->position[d], particles->spare, order, permute_doubles);
-        PERMUTE(particles, particles->velocity[d], particles->spare, order, permute_doubles);
-        PERMUTE(particles, particles->image[d], particles->spare_words, order, permute_words);
-    }
-    PERMUTE(particles, particles->id, particles->spare_words, order, permute_words);
-    PERMUTE(particles, particles->kernel_motion, particles->spare_motion, order, permute_motions);
-    if (particles->precise_motion)
-        PERMUTE(particles, particles->precise_motion, particles->spare_precise_motion, order,
-                permute_precise_motions);
+    for (int k = 0; k < ARRAYS; k++)
+        for (int axis = 0; axis < arrays[k].axes; axis++) {
+            void *array = array_of(particles, &arrays[k], axis);
+            if ((arrays[k].treatment & SORTED) && array &&
+                (arrays[k].axes == 1 || axis < particles->box.dimensions))
+                set_array(particles, &arrays[k], axis,
+                          permute(particles, array, arrays[k].size, order));
+        }
+    for (int k = 0; k < particles->attributes; k++)
+        for (int c = 0; c < particles->attribute[k].components; c++) {
+            void **value = &particles->attribute[k].value[c];
+            *value = permute(particles, *value, size_of(&particles->attribute[k]), order);
+        }
 }
 
 void mf_particles_draw_velocities(struct particles *particles, double temperature, uint64_t seed) {

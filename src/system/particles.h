@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file The state of all particles: separate arrays, sorted in space by the neighbour search.
 ///
-/// Masses are 1 [μ]. Particle number k of the arrays changes at every sort; `id` does not.
+/// Masses are 1 [μ]. Particle number k of the arrays changes at every sort; `id` does not. One
+/// table in particles.c says of every array how it is allocated, sorted and saved.
 #pragma once
 
-#include "base/status.h"
+#include "base/memory.h"
 #include "system/box.h"
 
 #include <stddef.h>
@@ -33,6 +34,19 @@ struct particle_precise_motion {
     double id;
 };
 
+/// What a particle may have besides: an orientation, a radius, a number that an integrator keeps.
+/// Nothing is allocated that nobody asks for.
+enum { PARTICLES_MOST_ATTRIBUTES = 8, PARTICLES_MOST_COMPONENTS = 4 };
+enum particles_type { PARTICLES_DOUBLE, PARTICLES_FLOAT, PARTICLES_WORD };
+struct particles_attribute {
+    const char *name; ///< unit in brackets, as a table's column
+    enum particles_type type;
+    int components;
+    /// Shape [components][count]: double, float or uint32_t. Sorting exchanges the arrays, so take
+    /// them anew from here in every step.
+    void *value[PARTICLES_MOST_COMPONENTS];
+};
+
 struct particles {
     size_t count;
     struct box box;
@@ -52,6 +66,8 @@ struct particles {
     void *spare_words;                              ///< shape [count]: the same for 32-bit words
     struct particle_motion *spare_motion;           ///< shape [count]
     struct particle_precise_motion *spare_precise_motion; ///< shape [count] or NULL
+    struct particles_attribute attribute[PARTICLES_MOST_ATTRIBUTES];
+    int attributes;
 };
 
 enum status mf_particles_init(struct particles *particles, const struct box *box,
@@ -60,6 +76,14 @@ void mf_particles_clear(struct particles *particles);
 
 /// Keep also what the kernels read in double precision, from the next updates on. Fails: NO_MEMORY.
 enum status mf_particles_keep_precise(struct particles *particles) MUST_USE;
+
+/// Give the particles one attribute more, all 0: from now on it is sorted and saved with the rest.
+/// @param[in]  attribute  name, type and components; the name lives as long as the particles
+/// @param[out] number     its place in `attribute`, which stays
+/// Fails: NO_MEMORY; BAD_INPUT if there are PARTICLES_MOST_ATTRIBUTES. Tested: test_attributes.
+enum status mf_particles_add_attribute(struct particles *particles,
+                                       const struct particles_attribute *attribute,
+                                       int *number) MUST_USE;
 
 /// Particles per volume [1/λ^d].
 double mf_particles_density(const struct particles *particles);
@@ -79,6 +103,11 @@ void mf_particles_update_motion(struct particles *particles, double ahead);
 
 /// Reorder all arrays but the forces, which are about to be replaced: new[k] = old[order[k]].
 void mf_particles_permute(struct particles *particles, const uint32_t *order);
+
+/// @name Restart
+/// What a checkpoint must keep: positions, velocities, forces, images, ids and all attributes.
+enum { PARTICLES_SPANS = 13 + PARTICLES_MOST_ATTRIBUTES * PARTICLES_MOST_COMPONENTS };
+size_t mf_particles_spans(struct particles *particles, struct memory_span *spans);
 
 /// Maxwell velocities at `temperature` [k_B T_0] with zero total momentum; the same for the same
 /// seed and ids, whatever the order.

@@ -7,13 +7,15 @@
 #include <stdarg.h>
 
 /// Nanoseconds, measured on Zen 5 with AVX-512 in mixed precision, one thread: of a particle and
-/// step, of an entry of the list, of a pair in range; of a particle and sample of the motion, and
-/// of each time origin of that; of a pair and sample of the escape times, and of one at an origin;
-/// of a pair and sample of the force covariance; `tell`: the types of a pair in range.
+/// step, also with noise for each (`walk`), of an entry of the list, of a pair in range; of a
+/// particle and sample of the motion, and of each time origin of that; of a pair and sample of the
+/// escape times, and of one at an origin; of a pair and sample of the force covariance; `tell`: the
+/// types of a pair in range.
 static const struct {
-    double move, sort, build, go_through, pair, conservative, dissipative, kept, count, flux, sum,
-        curvature, tell, gather, correlate, follow, begin, covary;
+    double move, walk, sort, build, go_through, pair, conservative, dissipative, kept, count, flux,
+        sum, curvature, tell, gather, correlate, follow, begin, covary;
 } cost = {.move = 8,
+          .walk = 30,
           .sort = 28,
           .build = 0.9,
           .go_through = 0.7,
@@ -32,7 +34,7 @@ static const struct {
           .begin = 30,
           .covary = 3};
 
-enum { MOST_STAGES = 15 };
+enum { MOST_STAGES = 15 + INTERACTION_MOST };
 
 struct stage {
     const char *name;
@@ -102,7 +104,14 @@ static void add_forces(struct plan *plan, const struct simulation_setup *setup,
             "a friction weight with cutoff %.3g; farther pairs skip it", reach);
     else
         add(plan, "friction and noise", false, 0,
-            "no friction: no velocities are read, no random numbers drawn");
+            "no friction of pairs: no velocities are read, no random numbers drawn for them");
+}
+
+static void add_interactions(struct plan *plan, const struct simulation_setup *setup) {
+    for (int k = 0; k < setup->interactions; k++) {
+        const struct interaction *kind = setup->interaction[k].kind;
+        add(plan, kind->name, true, kind->cost, "%s", kind->summary);
+    }
 }
 
 static void add_samples(struct plan *plan, const struct simulation_setup *setup,
@@ -167,10 +176,12 @@ static void add_etd(struct plan *plan, const struct simulation_setup *setup,
 void mf_explain_scene(FILE *out, const struct simulation_setup *setup,
                       const struct explain_measured *measured) {
     struct plan plan = {0};
-    add(&plan, "motion", true, cost.move, "%s, and a watch over the velocities",
-        setup->integrator->name);
+    const bool flies = !simulation_is_overdamped(setup);
+    add(&plan, "motion", true, flies ? cost.move : cost.walk, "%s, and a watch over the %s",
+        setup->integrator->name, flies ? "velocities" : "steps");
     add_list(&plan, setup, measured->cutoff);
     add_forces(&plan, setup, measured);
+    add_interactions(&plan, setup);
     add_samples(&plan, setup, measured);
     add_motion(&plan, measured->motion);
     add_etd(&plan, setup, measured);

@@ -191,8 +191,10 @@ static void tell(void *context, const struct simulation *simulation, uint64_t do
                  uint64_t total) {
     struct run *run = context;
     char text[96];
-    snprintf(text, sizeof text, "step %llu  T %.3f", (unsigned long long)done,
-             mf_particles_temperature(&simulation->particles));
+    snprintf(text, sizeof text, "step %llu", (unsigned long long)done);
+    if (!simulation_is_overdamped(&simulation->setup))
+        snprintf(text, sizeof text, "step %llu  T %.3f", (unsigned long long)done,
+                 mf_particles_temperature(&simulation->particles));
     mf_progress_tell(&run->progress, done, total, "steps", text);
     if (mf_progress_seconds(&run->progress) - run->last_checkpoint > checkpoint_interval &&
         save(run) != STATUS_OK)
@@ -328,6 +330,9 @@ static enum status prepare_force(struct run *run, const struct rdf_bins *bins) {
         return mf_status_fail(STATUS_BAD_INPUT,
                               "rdf: \"estimator\": \"force\" is not for mixtures; "
                               "\"histogram\" counts their partial g(r)");
+    if (setup->interactions > 0)
+        return mf_status_fail(STATUS_BAD_INPUT, "rdf: \"estimator\": \"force\" knows the forces of "
+                                                "pairs alone, not \"interactions\"");
     if (!mf_rdf_force_applies(setup->potential, setup->temperature))
         return mf_status_fail(
             STATUS_BAD_INPUT,

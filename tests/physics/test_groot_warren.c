@@ -3,6 +3,7 @@
 // The standard fluid of dissipative particle dynamics against published and independent values;
 // tests/reference_data/README.md says where they come from.
 #include "curves/formula.h"
+#include "dynamics/dpd_verlet.h"
 #include "io/data_table.h"
 #include "observe/measure.h"
 #include "shared/fluids.h"
@@ -41,12 +42,11 @@ static struct thermodynamics_summary simulate(const struct simulation_setup *set
     const struct measure_observables observables = {.rdf = rdf, .thermodynamics = &thermodynamics};
     assert_ok(mf_measure_sample(&simulation, &plan, observables, NULL));
     const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
-    print_message("time step %g, lambda %g: kinetic %.4f(%.4f), configurational %.4f(%.4f), U/N "
+    print_message("%s, time step %g: kinetic %.4f(%.4f), configurational %.4f(%.4f), U/N "
                   "%.4f(%.4f), pressure %.4f(%.4f)\n",
-                  setup->time_step, setup->integrator_parameters.lambda, s.temperature,
-                  s.temperature_error, s.temperature_configurational,
-                  s.temperature_configurational_error, s.potential_energy, s.potential_energy_error,
-                  s.pressure, s.pressure_error);
+                  setup->integrator->name, setup->time_step, s.temperature, s.temperature_error,
+                  s.temperature_configurational, s.temperature_configurational_error,
+                  s.potential_energy, s.potential_energy_error, s.pressure, s.pressure_error);
     mf_thermodynamics_clear(&thermodynamics);
     mf_simulation_clear(&simulation);
     return s;
@@ -117,7 +117,7 @@ static void test_standard_fluid_heats_as_known_when_the_time_step_is_large(void 
     assert_temperatures(&half, 1.0281, 1.0551);
     assert_close(half.potential_energy, 4.5758, energy_tolerance);
     assert_close(half.pressure, 23.649, pressure_tolerance);
-    fluid.setup.integrator_parameters.lambda = 0.65;
+    fluid.setup.integrator_parameters = &(struct dpd_verlet_parameters){.lambda = 0.65};
     const struct thermodynamics_summary more = simulate(&fluid.setup, 150, 300, NULL);
     assert_temperatures(&more, 1.0023, 1.0338);
     assert_close(more.potential_energy, 4.5633, energy_tolerance);
@@ -201,7 +201,9 @@ static void check_heating(const struct heating *heating) {
     double temperature;
     fluid_groot_warren(&fluid, PARTICLES, heating->time_step);
     fluid.setup.integrator = heating->integrator;
-    fluid.setup.integrator_parameters.lambda = heating->lambda;
+    const struct dpd_verlet_parameters prediction = {heating->lambda};
+    if (heating->integrator == &mf_dpd_verlet)
+        fluid.setup.integrator_parameters = &prediction;
     assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
     assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)plan.samples));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));

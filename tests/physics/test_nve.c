@@ -2,6 +2,7 @@
 //
 // Conservation laws: energy without friction, momentum with it.
 #include "base/comoments.h"
+#include "dynamics/dpd_verlet.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
@@ -197,7 +198,7 @@ static void test_momentum_stays_zero_when_there_are_friction_and_noise(void **st
     (void)state;
     struct fluid fluid;
     fluid_groot_warren(&fluid, 648, 0.04);
-    fluid.setup.integrator_parameters.lambda = 0.65;
+    fluid.setup.integrator_parameters = &(struct dpd_verlet_parameters){.lambda = 0.65};
     assert_momentum_stays_zero(&fluid.setup);
     fluid_clear(&fluid);
     fluid_soft_discs(&fluid, 450, 0.04);

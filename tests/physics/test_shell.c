@@ -49,7 +49,6 @@ static void test_temperatures_are_set_when_friction_is_a_thin_shell(void **state
     struct fluid fluid;
     fluid_groot_warren(&fluid, 375, 0.005);
     make_omega(&fluid, (struct formula_power_omega_parameters){10, 1e-6, 0.97, 1});
-    fluid.setup.integrator_parameters.tolerance = 0.01;
     for (int k = 0; k < 4; k++) {
         fluid.setup.integrator = with[k];
         check_temperatures(&fluid.setup);

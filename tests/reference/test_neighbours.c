@@ -90,7 +90,6 @@ static void check_hot_simulation(const struct box *box, int64_t count, double sk
                                            .skin = skin,
                                            .temperature_limit = 20,
                                            .integrator = &mf_dpd_verlet,
-                                           .integrator_parameters = {0.5},
                                            .potential = &potential,
                                            .omega = &omega,
                                            .seed = 3};

@@ -89,7 +89,6 @@ static void check(const struct simulation_setup *setup) {
 /// With a skin so short that lists are built every few steps, at a sample's positions, too.
 static void check_integrators(struct fluid *fluid) {
     fluid->setup.skin = 0.15;
-    fluid->setup.integrator_parameters.tolerance = 0.01;
     for (size_t k = 0; mf_integrator_list[k]; k++) {
         fluid->setup.integrator = mf_integrator_list[k];
         fluid->setup.omega = mf_integrator_list[k]->dissipative ? &fluid->omega : NULL;

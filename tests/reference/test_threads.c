@@ -97,7 +97,6 @@ static void test_threads_give_the_same_bits_when_friction_is_split_off(void **st
     (void)state;
     struct fluid fluid;
     fluid_groot_warren(&fluid, 1000, 0.04);
-    fluid.setup.integrator_parameters.tolerance = 0.01;
     for (size_t k = 0; mf_integrator_list[k]; k++)
         if (mf_integrator_list[k]->friction) {
             fluid.setup.integrator = mf_integrator_list[k];

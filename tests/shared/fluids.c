@@ -35,7 +35,6 @@ static void begin(struct fluid *fluid, int dimensions, int64_t count, double den
                   .skin = 0.3,
                   .temperature_limit = 10,
                   .integrator = &mf_dpd_verlet,
-                  .integrator_parameters = {.lambda = 0.5},
                   .seed = 1},
     };
 }

@@ -2,6 +2,7 @@
 #include "shared/stability.h"
 
 #include "curves/formula.h"
+#include "dynamics/dpd_verlet.h"
 #include "shared/fluids.h"
 #include "shared/testing.h"
 
@@ -55,8 +56,9 @@ enum stability stability_of(const struct stability_case *what, int64_t count) {
     assert_ok(mf_table_init_omega(&omega, &curve));
     fluid.setup.omega = &omega;
     fluid.setup.integrator = what->integrator;
-    fluid.setup.integrator_parameters.lambda = what->lambda;
-    fluid.setup.integrator_parameters.tolerance = 0.01;
+    const struct dpd_verlet_parameters prediction = {what->lambda};
+    if (what->integrator == &mf_dpd_verlet)
+        fluid.setup.integrator_parameters = &prediction;
     fluid.setup.temperature_limit = 20;
     print_message("gamma %g: ", what->friction);
     const enum stability stability =

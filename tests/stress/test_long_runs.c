@@ -80,7 +80,6 @@ static void test_dpd_keeps_temperature_and_momentum_for_a_million_steps(void **s
     (void)state;
     struct fluid fluid;
     fluid_groot_warren(&fluid, 100, 0.01);
-    fluid.setup.integrator_parameters.tolerance = 0.01;
     for (size_t k = 0; mf_integrator_list[k]; k++) {
         if (!mf_integrator_list[k]->dissipative)
             continue;

@@ -68,7 +68,6 @@ test_restart_goes_on_with_the_same_bits_when_friction_and_time_step_are_large(vo
                 fluid_groot_warren(&fluid, PARTICLES, time_steps[t]);
                 fluid.setup.omega = &omega;
                 fluid.setup.integrator = mf_integrator_list[k];
-                fluid.setup.integrator_parameters.tolerance = 0.01;
                 fluid.setup.temperature_limit = 20;
                 fluid.setup.threads = 1 + (int)(t % 2);
                 print_message("gamma %g: ", frictions[f]);

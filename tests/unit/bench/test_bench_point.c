@@ -2,6 +2,8 @@
 //
 // Which integrators suit a scene, the bins of its g(r), and a point run twice.
 #include "bench/bench_point.h"
+#include "dynamics/aboba.h"
+#include "dynamics/dpd_verlet.h"
 
 #include "shared/fluids.h"
 #include "shared/is_close.h"
@@ -19,7 +21,8 @@ static void test_scene_with_friction_gets_all_that_know_it(void **state) {
     assert_int_equal(count, 7);
     assert_string_equal(methods[0].name, "dpd-verlet(0.5)");
     assert_string_equal(methods[1].name, "dpd-verlet(0.65)");
-    assert_true(methods[1].parameters.lambda == 0.65);
+    const struct dpd_verlet_parameters *parameters = methods[1].parameters;
+    assert_true(parameters->lambda == 0.65);
     for (size_t k = 0; k < count; k++)
         assert_true(methods[k].integrator->dissipative);
     assert_ptr_equal(mf_bench_reference_method(methods, count)->integrator, &mf_aboba);
@@ -37,14 +40,15 @@ static void test_parameters_of_the_scene_are_kept_and_others_are_the_usual(void 
     (void)state;
     struct bench_method methods[BENCH_MOST_METHODS];
     struct simulation_setup setup = {.omega = &some_omega, .integrator = &mf_aboba_implicit};
-    setup.integrator_parameters.tolerance = 0.125;
+    const struct aboba_parameters parameters = {.tolerance = 0.125};
+    setup.integrator_parameters = &parameters;
     for (size_t k = mf_bench_methods(&setup, methods); k-- > 0;)
         if (methods[k].integrator == &mf_aboba_implicit)
-            assert_true(methods[k].parameters.tolerance == 0.125);
+            assert_ptr_equal(methods[k].parameters, &parameters);
     setup.integrator = &mf_aboba;
     for (size_t k = mf_bench_methods(&setup, methods); k-- > 0;)
         if (methods[k].integrator == &mf_aboba_implicit)
-            assert_true(methods[k].parameters.tolerance == 0.01);
+            assert_null(methods[k].parameters);
 }
 
 static void test_bins_reach_the_cutoff_and_join_the_core(void **state) {

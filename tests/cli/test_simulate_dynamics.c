@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Scenes without velocities and with forces beside the pairs, from outside.
+#include "shared/results.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static const char drop[] =
+    "{\"seed\": 2, \"box\": [6, 6, 6], \"particles\": {\"count\": 200}, \"time_step\": 0.002,\n"
+    "\"temperature_limit\": 100, \"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25},\n"
+    "\"interactions\": {\"harmonic-trap\": {\"stiffness\": [3, 3, 3], \"centre\": [1, 2, 3]}},\n"
+    "\"dynamics\": {\"integrator\": \"brownian\", \"friction\": 2},\n"
+    "\"measure\": {\"equilibration\": 1500, \"samples\": 300, \"every\": 20}}\n";
+
+static const char *const tables[] = {"rdf.tsv", "thermodynamics.tsv", "used.json", NULL};
+
+static void write(struct temporary_folder *folder, const char *from, const char *to) {
+    small_inputs_write(folder, "scene.json", drop, from, to);
+}
+
+static void test_simulate_takes_a_trap_and_dynamics_without_velocities(void **state) {
+    static struct run_program_result result;
+    write(*state, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    assert_null(strstr(result.err, "warning: the temp"));
+    char *summary = temporary_folder_read("out/summary.json");
+    assert_contains(summary, "\"temperature\":\tnull");
+    free(summary);
+    assert_true(results_number("out/summary.json", "temperature_configurational") > 0.9);
+    assert_true(results_number("out/summary.json", "temperature_configurational") < 1.1);
+    char *used = temporary_folder_read("out/used.json");
+    assert_contains(used, "\"centre\":\t[1, 2, 3]");
+    assert_contains(used, "\"friction\":\t2");
+    free(used);
+    RUN_PROGRAM(&result, "simulate", "out/used.json", "-o", "again");
+    run_program_assert_code(&result, 0);
+    results_assert_same("out", "again", tables);
+}
+
+static void test_simulate_goes_on_with_the_same_bits_without_velocities(void **state) {
+    static struct run_program_result result;
+    write(*state, "\"samples\": 300", "\"samples\": 900");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "whole");
+    run_program_assert_code(&result, 0);
+    const char *const words[] = {"simulate", "scene.json", "-o", "pieces", NULL};
+    run_program_in_pieces(0, words);
+    results_assert_same("whole", "pieces", tables);
+}
+
+static void test_explain_and_describe_tell_of_interactions(void **state) {
+    static struct run_program_result result;
+    write(*state, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "brownian, and a watch over the steps");
+    assert_contains(result.out, "harmonic-trap");
+    RUN_PROGRAM(&result, "describe", "interactions");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "uniform-force (interactions)");
+    RUN_PROGRAM(&result, "describe", "brownian");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "D = T/gamma");
+}
+
+/// What a scene is refused for, each in one line.
+static void test_scenes_are_refused_when_interactions_do_not_suit(void **state) {
+    static const struct {
+        const char *from, *to, *line;
+    } cases[] = {
+        {"\"harmonic-trap\"", "\"harmonic-tarp\"",
+         "interactions.harmonic-tarp: unknown key; did you mean \"harmonic-trap\"?"},
+        {"\"stiffness\": [3, 3, 3], ", "", "interactions.harmonic-trap.stiffness: missing"},
+        {"[3, 3, 3]", "[3, -3, 3]", "interactions.harmonic-trap.stiffness[1]: "},
+        {"{\"harmonic-trap\"",
+         "{\"counterflow\": {\"force\": 1, \"across\": \"x\"}, \"harmonic-trap\"",
+         "two axes of the box"},
+        {"\"friction\": 2", "\"friction\": 0", "dynamics.friction: "},
+        {"\"interactions\"", "\"dissipative\": {\"law\": \"power\"}, \"interactions\"",
+         "brownian knows no friction"},
+        {"\"measure\"", "\"rdf\": {\"estimator\": \"force\"}, \"measure\"",
+         "knows the forces of pairs alone"},
+    };
+    static struct run_program_result result;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        write(*state, cases[k].from, cases[k].to);
+        RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "refused");
+        run_program_assert_code(&result, 2);
+        assert_contains(result.err, cases[k].line);
+        assert_int_equal(run_program_lines(result.err), 1);
+    }
+}
+
+static void test_inversion_is_refused_when_the_scene_has_interactions(void **state) {
+    static struct run_program_result result;
+    temporary_folder_write(*state, "target.tsv", small_inputs_target, strlen(small_inputs_target));
+    small_inputs_write(*state, "run.json", small_inputs_run, "\"box\"",
+                       "\"interactions\": {\"uniform-force\": {\"force\": [1, 0, 0]}}, \"box\"");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "refused");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "run.json: scene.interactions: \"imc\" samples pairs alone");
+}
+
+/// The target is no drop's: what counts is that candidates are simulated in the trap, not refused
+/// as collapsed, with dynamics whose temperature is told by their positions.
+static void test_candidates_are_simulated_with_interactions_and_without_velocities(void **state) {
+    static struct run_program_result result;
+    static const char run[] =
+        "{\"seed\": 1, \"target\": {\"rdf\": {\"file\": \"target.tsv\"}},\n"
+        "\"scene\": {\"box\": [8, 8, 8], \"particles\": {\"count\": 81}, \"time_step\": 0.002,\n"
+        "\"temperature_limit\": 1000,\n"
+        "\"interactions\": {\"harmonic-trap\": {\"stiffness\": [4, 4, 4]}},\n"
+        "\"dynamics\": {\"integrator\": \"brownian\"}},\n"
+        "\"unknowns\": {\"potential\": {\"coefficients\": 5, \"minimum\": 0, \"maximum\": 10}},\n"
+        "\"method\": {\"name\": \"genetic\", \"population\": 6, \"generations\": 2,\n"
+        "\"equilibration\": 300, \"samples\": 8, \"every\": 20, \"temperature_tolerance\": 0.5},\n"
+        "\"verification\": {\"replicas\": 2, \"equilibration\": 300, \"samples\": 10, \"every\": "
+        "20}}\n";
+    temporary_folder_write(*state, "target.tsv", small_inputs_target, strlen(small_inputs_target));
+    temporary_folder_write(*state, "run.json", run, strlen(run));
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    char *summary = temporary_folder_read("out/summary.json");
+    assert_contains(summary, "\"temperature\":\tnull");
+    free(summary);
+    assert_true(results_number("out/summary.json", "temperature_configurational") > 0.5);
+}
+
+int main(void) {
+#define TEST(name)                                                                                 \
+    cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
+    const struct CMUnitTest tests[] = {
+        TEST(test_simulate_takes_a_trap_and_dynamics_without_velocities),
+        TEST(test_simulate_goes_on_with_the_same_bits_without_velocities),
+        TEST(test_explain_and_describe_tell_of_interactions),
+        TEST(test_scenes_are_refused_when_interactions_do_not_suit),
+        TEST(test_inversion_is_refused_when_the_scene_has_interactions),
+        TEST(test_candidates_are_simulated_with_interactions_and_without_velocities),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

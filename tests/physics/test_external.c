@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Forces from outside against equipartition and Navier and Stokes. Seeds are
+// fixed; each comparison allows 4.5 standard errors, a false alarm in 150,000.
+#include "base/statistics.h"
+#include "dynamics/brownian.h"
+#include "observe/measure.h"
+#include "shared/fluids.h"
+#include "shared/is_close.h"
+#include "shared/testing.h"
+
+#include <math.h>
+
+static const double deviations = 4.5;
+
+struct trap {
+    double stiffness[3], centre[3];
+};
+
+/// Measure a setup in a trap.
+static struct thermodynamics_summary measure(const struct simulation_setup *setup,
+                                             const struct trap *trap,
+                                             const struct measure_plan *plan) {
+    struct simulation_setup trapped = *setup;
+    struct simulation simulation;
+    struct thermodynamics thermodynamics;
+    double temperature;
+    trapped.interaction[0] = (struct interaction_choice){&mf_harmonic_trap, trap};
+    trapped.interactions = 1;
+    assert_ok(mf_simulation_init(&simulation, &trapped, NULL));
+    assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)plan->samples));
+    assert_ok(mf_measure_equilibrate(&simulation, plan, &temperature, NULL));
+    const struct measure_observables observables = {.thermodynamics = &thermodynamics};
+    assert_ok(mf_measure_sample(&simulation, plan, observables, NULL));
+    const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
+    mf_thermodynamics_clear(&thermodynamics);
+    mf_simulation_clear(&simulation);
+    return s;
+}
+
+/// An ideal gas with the friction of pairs, whose centre of mass swings on its own, as nothing acts
+/// on it but the trap. It begins within 0.1 of the centre, with no momentum, in d degrees of
+/// freedom of d N: equipartition gives the others ½ k_B T each.
+static void test_ideal_gas_in_a_trap_has_equipartition(void **state) {
+    (void)state;
+    enum { COUNT = 300 };
+    static const struct trap trap = {{8, 5, 12}, {2.5, 2.5, 2.5}};
+    const struct measure_plan plan = {.equilibration = 4000, .samples = 600, .every = 20};
+    struct fluid fluid;
+    fluid_ideal_gas(&fluid, 3, COUNT, 0.01);
+    fluid.setup.placement.kind = PLACEMENT_LATTICE;
+    fluid.setup.integrator = &mf_aboba;
+    fluid.setup.temperature_limit = 100; // they fall into it
+    const struct thermodynamics_summary s = measure(&fluid.setup, &trap, &plan);
+    const double expected = 1.5 * (1 - 1.0 / COUNT);
+    print_message("energy in the trap %.4f(%.4f), by equipartition %.4f\n", s.potential_energy,
+                  s.potential_energy_error, expected);
+    assert_true(s.potential_energy_error < 0.02);
+    assert_close(s.potential_energy, expected,
+                 deviations * s.potential_energy_error + 0.05 / COUNT);
+    fluid_clear(&fluid);
+}
+
+/// Soft particles pressed together in a trap: the temperature by the positions is that of the pairs
+/// in the field of the trap, and without its forces it would be too high by far.
+static void test_trapped_drop_has_the_temperature_by_its_positions(void **state) {
+    (void)state;
+    static const struct trap trap = {{3, 3, 3}, {0, 0, 0}};
+    const struct measure_plan plan = {.equilibration = 2000, .samples = 200, .every = 20};
+    struct fluid fluid;
+    fluid_groot_warren(&fluid, 300, 0.01);
+    for (int d = 0; d < 3; d++)
+        fluid.setup.box.length[d] = 10;
+    fluid.setup.integrator = &mf_aboba;
+    fluid.setup.temperature_limit = 1000;
+    const struct thermodynamics_summary s = measure(&fluid.setup, &trap, &plan);
+    print_message("a drop: kinetic %.4f(%.4f), configurational %.4f(%.4f)\n", s.temperature,
+                  s.temperature_error, s.temperature_configurational,
+                  s.temperature_configurational_error);
+    assert_close(s.temperature_configurational, 1,
+                 deviations * s.temperature_configurational_error + 0.01);
+    assert_ok(mf_thermodynamics_judge(&s, &fluid.setup));
+    fluid_clear(&fluid);
+}
+
+/// Pulled by a force F and held by a spring k, the Gaussian moves by F/k. The other axis does not
+/// notice.
+static void test_uniform_force_shifts_a_trap_by_force_over_stiffness(void **state) {
+    (void)state;
+    enum { COUNT = 500, SAMPLES = 200 };
+    static const struct trap trap = {{10, 10, 0}, {2.5, 2.5, 0}};
+    static const struct { double force[3]; } pull = {{0, -4, 0}};
+    static const struct brownian_parameters parameters = {.friction = 1};
+    struct fluid fluid;
+    struct simulation simulation;
+    struct running_mean mean[2] = {{0}};
+    fluid_ideal_gas(&fluid, 2, COUNT, 0.1);
+    fluid.setup.omega = NULL;
+    fluid.setup.integrator = &mf_brownian;
+    fluid.setup.integrator_parameters = &parameters;
+    fluid.setup.temperature_limit = 100;
+    fluid.setup.interaction[0] = (struct interaction_choice){&mf_uniform_force, &pull};
+    fluid.setup.interaction[1] = (struct interaction_choice){&mf_harmonic_trap, &trap};
+    fluid.setup.interactions = 2;
+    assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
+    assert_ok(mf_simulation_run(&simulation, 100));
+    for (int sample = 0; sample < SAMPLES; sample++) {
+        assert_ok(mf_simulation_run(&simulation, 10));
+        for (int d = 0; d < 2; d++)
+            for (size_t k = 0; k < COUNT; k++)
+                mf_statistics_add(&mean[d],
+                                  box_nearest(simulation.particles.position[d][k] - 2.5, 5));
+    }
+    const double error = sqrt(0.1 / (COUNT * SAMPLES));
+    print_message("shift %.4f and %.4f, by force over stiffness 0 and -0.4(%.4f)\n", mean[0].mean,
+                  mean[1].mean, error);
+    assert_close(mean[0].mean, 0, deviations * error);
+    assert_close(mean[1].mean, -0.4, deviations * error);
+    mf_simulation_clear(&simulation);
+    fluid_clear(&fluid);
+}
+
+enum { SLABS = 16 };
+
+/// Flow along x in slabs across y, both halves folded into one, and its scatter between blocks.
+static void find_profile(double force, double profile[SLABS], double error[SLABS]) {
+    enum { BLOCKS = 20, SAMPLES = 50 };
+    const struct {
+        double force;
+        int along, across;
+    } flow = {force, 0, 1};
+    struct fluid fluid;
+    struct simulation simulation;
+    struct running_mean blocks[SLABS] = {{0}};
+    fluid_groot_warren(&fluid, 1536, 0.02);
+    const double edges[] = {6.4, 16, 5};
+    for (int d = 0; d < 3; d++)
+        fluid.setup.box.length[d] = edges[d];
+    fluid.setup.integrator = &mf_aboba;
+    fluid.setup.interaction[0] = (struct interaction_choice){&mf_counterflow, &flow};
+    fluid.setup.interactions = 1;
+    assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
+    const struct particles *particles = &simulation.particles;
+    assert_ok(mf_simulation_run(&simulation, 4000)); // H² ρ/(π² η) is 20 tau
+    for (int block = 0; block < BLOCKS; block++) {
+        double sum[SLABS] = {0}, count[SLABS] = {0};
+        for (int sample = 0; sample < SAMPLES; sample++) {
+            assert_ok(mf_simulation_run(&simulation, 5));
+            for (size_t k = 0; k < particles->count; k++) {
+                const double y = particles->position[1][k] / 8;
+                const double along = y - floor(y);
+                const size_t slab = (size_t)(along * SLABS);
+                const bool lower = fmod(floor(y) + 2, 2) < 0.5;
+                sum[slab] += lower ? particles->velocity[0][k] : -particles->velocity[0][k];
+                count[slab]++;
+            }
+        }
+        for (size_t slab = 0; slab < SLABS; slab++)
+            mf_statistics_add(&blocks[slab], sum[slab] / count[slab]);
+    }
+    for (size_t slab = 0; slab < SLABS; slab++) {
+        profile[slab] = blocks[slab].mean;
+        error[slab] = mf_statistics_standard_error(&blocks[slab]);
+    }
+    mf_simulation_clear(&simulation);
+    fluid_clear(&fluid);
+}
+
+/// Poiseuille's parabola, v = F ρ y (H − y)/(2η). The literature has viscosities of the standard
+/// fluid (ρ = 3, a = 25, γ = 4.5) from 0.8 to 1.
+static void test_counterflow_is_poiseuilles_and_gives_the_viscosity(void **state) {
+    (void)state;
+    static const double force = 0.05, half = 8;
+    double profile[SLABS], error[SLABS], top = 0, bottom = 0, rest = 0;
+    find_profile(force, profile, error);
+    double shape[SLABS];
+    for (size_t slab = 0; slab < SLABS; slab++) {
+        const double low = half * (double)slab / SLABS, high = half * (double)(slab + 1) / SLABS;
+        // Mean of y (H − y) over the slab.
+        shape[slab] =
+            (half * (high * high - low * low) / 2 - (high * high * high - low * low * low) / 3) /
+            (high - low);
+        top += shape[slab] * profile[slab];
+        bottom += shape[slab] * shape[slab];
+    }
+    const double slope = top / bottom, viscosity = 3 * force / (2 * slope);
+    for (size_t slab = 0; slab < SLABS; slab++)
+        rest = fmax(rest, fabs(profile[slab] - slope * shape[slab]));
+    print_message("viscosity %.3f; largest velocity %.3f, farthest from the parabola %.3f\n",
+                  viscosity, profile[SLABS / 2], rest);
+    assert_in_range((int)(1000 * viscosity), 780, 1020);
+    assert_true(rest < 0.08 * profile[SLABS / 2]);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_ideal_gas_in_a_trap_has_equipartition),
+        cmocka_unit_test(test_trapped_drop_has_the_temperature_by_its_positions),
+        cmocka_unit_test(test_uniform_force_shifts_a_trap_by_force_over_stiffness),
+        cmocka_unit_test(test_counterflow_is_poiseuilles_and_gives_the_viscosity),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

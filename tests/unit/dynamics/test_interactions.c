@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What acts beside the pairs: forces against energies, its state through a restart, and the state
+// of an integrator.
+#include "shared/fluids.h"
+#include "shared/is_close.h"
+#include "shared/restart.h"
+#include "shared/testing.h"
+
+#include <math.h>
+
+enum { COUNT = 81 };
+
+/// Numbers of an interaction as its fields say: each has a default, or is set here.
+struct numbers {
+    double value[16];
+};
+
+/// The parameters of an interaction: lengths and numbers from 1.5 on, choices as they are.
+static void fill(const struct interaction *kind, struct numbers *numbers) {
+    assert_true(kind->parameters_size <= sizeof *numbers);
+    *numbers = (struct numbers){{0}};
+    mf_fields_set_defaults(kind->fields, numbers);
+    double next = 1.5;
+    for (const struct field *field = kind->fields; field->name; field++)
+        for (int d = 0; d < 3; d++, next += 0.25)
+            if (field->type == FIELD_LENGTHS || (field->type == FIELD_NUMBER && d == 0))
+                memcpy((char *)numbers + field->offset + (size_t)d * sizeof next, &next,
+                       sizeof next);
+}
+
+static void begin(struct fluid *fluid, struct simulation *simulation,
+                  const struct interaction *kind, const void *parameters) {
+    fluid_groot_warren(fluid, COUNT, 0.01);
+    fluid->setup.omega = NULL;
+    fluid->setup.integrator = &mf_velocity_verlet;
+    fluid->setup.precision = PAIR_DOUBLE;
+    fluid->setup.interaction[0] = (struct interaction_choice){kind, parameters};
+    fluid->setup.interactions = 1;
+    assert_ok(mf_simulation_init(simulation, &fluid->setup, NULL));
+}
+
+static double energy_at(struct simulation *simulation) {
+    assert_ok(mf_simulation_compute_potential(simulation));
+    return simulation->sums.energy;
+}
+
+static void test_interaction_forces_are_minus_the_slope_of_their_energy(void **state) {
+    (void)state;
+    static const double h = 1e-5, tolerance = 1e-5;
+    for (size_t n = 0; mf_interaction_list[n]; n++) {
+        struct fluid fluid;
+        struct simulation simulation;
+        struct numbers numbers;
+        fill(mf_interaction_list[n], &numbers);
+        begin(&fluid, &simulation, mf_interaction_list[n], &numbers);
+        for (int d = 0; d < 3; d++)
+            for (size_t k = 0; k < COUNT; k += 20) {
+                double *x = &simulation.particles.position[d][k];
+                const double here = *x;
+                *x = here + h;
+                const double above = energy_at(&simulation);
+                *x = here - h;
+                const double below = energy_at(&simulation);
+                *x = here;
+                energy_at(&simulation);
+                assert_close_relative(simulation.particles.force[d][k], (below - above) / (2 * h),
+                                      tolerance);
+            }
+        mf_simulation_clear(&simulation);
+        fluid_clear(&fluid);
+    }
+}
+
+static void test_uniform_force_accelerates_all_and_conserves_the_energy(void **state) {
+    (void)state;
+    enum { STEPS = 400 };
+    static const struct { double force[3]; } gravity = {{0.5, -0.25, 0}};
+    struct fluid fluid;
+    struct simulation simulation;
+    begin(&fluid, &simulation, &mf_uniform_force, &gravity);
+    double energy[2];
+    for (int n = 0; n < 2; n++) {
+        simulation.wants = PAIR_FORCES_AND_SUMS;
+        assert_ok(mf_simulation_run(&simulation, n == 0 ? 1 : STEPS - 1));
+        energy[n] =
+            simulation.sums.energy + 0.5 * mf_particles_square_velocities(&simulation.particles);
+    }
+    const double time = STEPS * fluid.setup.time_step;
+    for (int d = 0; d < 3; d++) {
+        double momentum = 0;
+        for (size_t k = 0; k < COUNT; k++)
+            momentum += simulation.particles.velocity[d][k];
+        assert_close(momentum, COUNT * gravity.force[d] * time, 1e-10 * COUNT);
+    }
+    // Each has got 2.5 k_B T_0 of work, most of them on a way through the boundary; the fluid alone
+    // keeps its energy to 0.01 of it at this time step.
+    assert_close(energy[1] / COUNT, energy[0] / COUNT, 0.01);
+    mf_simulation_clear(&simulation);
+    fluid_clear(&fluid);
+}
+
+static void test_counterflow_drives_halves_apart_and_has_no_potential(void **state) {
+    (void)state;
+    static const struct {
+        double force;
+        int along, across;
+    } flow = {3, 2, 0}, crossed = {3, 1, 1};
+    struct fluid fluid;
+    struct simulation simulation;
+    begin(&fluid, &simulation, &mf_counterflow, &flow);
+    const struct particles *particles = &simulation.particles;
+    double pairs[COUNT];
+    energy_at(&simulation);
+    memcpy(pairs, particles->force[2], sizeof pairs);
+    assert_ok(mf_simulation_compute_forces(&simulation, 0));
+    for (size_t k = 0; k < COUNT; k++) {
+        const bool lower = fmod(particles->position[0][k] + particles->box.length[0],
+                                particles->box.length[0]) < particles->box.length[0] / 2;
+        assert_close(particles->force[2][k] - pairs[k], lower ? 3 : -3, 1e-9);
+    }
+    mf_simulation_clear(&simulation);
+    fluid.setup.interaction[0].parameters = &crossed;
+    assert_fails(mf_simulation_init(&simulation, &fluid.setup, NULL), STATUS_BAD_INPUT,
+                 "two axes of the box");
+    fluid_clear(&fluid);
+}
+
+/// A push that grows with every step: it has a state.
+struct push {
+    double size;
+};
+
+static enum status add_push(const void *parameters, void *state,
+                            const struct interaction_pass *pass) {
+    const double *growth = parameters;
+    struct push *push = state;
+    push->size += *growth;
+    for (size_t k = 0; k < pass->particles->count; k++)
+        pass->particles->force[0][k] += push->size * (pass->particles->id[k] % 2 ? 1 : -1);
+    return STATUS_OK;
+}
+
+static size_t push_spans(void *state, struct memory_span *spans) {
+    spans[0] = (struct memory_span){state, sizeof(struct push)};
+    return 1;
+}
+
+static const struct interaction growing_push = {.name = "growing-push",
+                                                .state_size = sizeof(struct push),
+                                                .add = add_push,
+                                                .spans = push_spans};
+
+/// Velocity Verlet whose particles are also turned, by an angle that grows: it has a state, too.
+static enum status turn(struct simulation *simulation) {
+    double *angle = simulation->integrator_state;
+    struct particles *particles = &simulation->particles;
+    *angle += 1e-3;
+    mf_simulation_kick_and_drift(simulation);
+    TRY(mf_simulation_compute_forces(simulation, 0));
+    mf_simulation_kick(simulation);
+    for (size_t k = 0; k < particles->count; k++) {
+        const double x = particles->velocity[0][k], y = particles->velocity[1][k];
+        particles->velocity[0][k] = x * cos(*angle) - y * sin(*angle);
+        particles->velocity[1][k] = x * sin(*angle) + y * cos(*angle);
+    }
+    return STATUS_OK;
+}
+
+static size_t angle_spans(void *state, struct memory_span *spans) {
+    spans[0] = (struct memory_span){state, sizeof(double)};
+    return 1;
+}
+
+static const struct field no_fields[] = {FIELD_END};
+static const struct integrator turning = {.name = "turning",
+                                          .fields = no_fields,
+                                          .state_size = sizeof(double),
+                                          .spans = angle_spans,
+                                          .step = turn};
+
+/// Both go on, one of them after having been saved and loaded.
+static void check_restart(const struct simulation_setup *setup) {
+    struct simulation whole, pieces;
+    assert_ok(mf_simulation_init(&whole, setup, NULL));
+    assert_ok(mf_simulation_init(&pieces, setup, NULL));
+    assert_ok(mf_simulation_run(&whole, 60));
+    assert_ok(mf_simulation_run(&pieces, 25));
+    restart_simulation(&pieces);
+    assert_ok(mf_simulation_run(&pieces, 35));
+    restart_assert_same(&whole, &pieces);
+    mf_simulation_clear(&whole);
+    mf_simulation_clear(&pieces);
+}
+
+static void test_restart_goes_on_with_the_same_bits_when_an_interaction_has_state(void **state) {
+    (void)state;
+    static const double growth = 0.01;
+    struct fluid fluid;
+    fluid_groot_warren(&fluid, COUNT, 0.01);
+    fluid.setup.interaction[0] = (struct interaction_choice){&growing_push, &growth};
+    fluid.setup.interactions = 1;
+    check_restart(&fluid.setup);
+    fluid_clear(&fluid);
+}
+
+static void test_restart_goes_on_with_the_same_bits_when_an_integrator_has_state(void **state) {
+    (void)state;
+    struct fluid fluid;
+    fluid_groot_warren(&fluid, COUNT, 0.01);
+    fluid.setup.omega = NULL;
+    fluid.setup.integrator = &turning;
+    check_restart(&fluid.setup);
+    fluid_clear(&fluid);
+}
+
+static void test_pairs_come_first_and_too_many_interactions_are_refused(void **state) {
+    (void)state;
+    static const double growth = 0;
+    const struct interaction_choice choice = {&growing_push, &growth};
+    struct fluid fluid;
+    struct simulation simulation;
+    fluid_groot_warren(&fluid, COUNT, 0.01);
+    assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
+    assert_int_equal(simulation.interactions, 1);
+    assert_ptr_equal(simulation.interaction[0].choice.kind, &mf_pairs);
+    while (simulation.interactions < SIMULATION_MOST_INTERACTIONS)
+        assert_ok(mf_simulation_add_interaction(&simulation, &choice));
+    assert_fails(mf_simulation_add_interaction(&simulation, &choice), STATUS_BAD_INPUT,
+                 "growing-push: there are 5 interactions");
+    mf_simulation_clear(&simulation);
+    fluid_clear(&fluid);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_interaction_forces_are_minus_the_slope_of_their_energy),
+        cmocka_unit_test(test_uniform_force_accelerates_all_and_conserves_the_energy),
+        cmocka_unit_test(test_counterflow_drives_halves_apart_and_has_no_potential),
+        cmocka_unit_test(test_restart_goes_on_with_the_same_bits_when_an_interaction_has_state),
+        cmocka_unit_test(test_restart_goes_on_with_the_same_bits_when_an_integrator_has_state),
+        cmocka_unit_test(test_pairs_come_first_and_too_many_interactions_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
