@@ -52,9 +52,12 @@ static void put_topics(FILE *stream, const struct topic *topics, size_t count) {
 /// What a subcommand takes beside options; the folders that are read are those of runs.
 static void put_command(FILE *stream, const struct command *command, const struct topic *topics,
                         size_t count) {
-    fprintf(stream, "        %s) options=\"$options", command->name);
-    put_names(stream, command->options);
-    fprintf(stream, "\"");
+    fprintf(stream, "        %s)", command->name);
+    if (command->options) {
+        fprintf(stream, " options=\"$options");
+        put_names(stream, command->options);
+        fprintf(stream, "\"");
+    }
     if (strcmp(command->usage, cmd_describe.usage) == 0) {
         fprintf(stream, " choices=\"");
         put_topics(stream, topics, count);
