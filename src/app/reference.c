@@ -212,7 +212,10 @@ static void print_topic(FILE *stream, const struct look *look, const struct topi
     char kind[128];
     look->heading(stream, 2, topic->name);
     look->paragraph(stream, topic->summary);
-    if (topic->tables[0] || object)
+    bool any = object != NULL;
+    for (size_t t = 0; topic->tables[t]; t++)
+        any = any || topic->tables[t]->name;
+    if (any)
         look->titles(stream, titles);
     for (size_t t = 0; topic->tables[t]; t++)
         for (const struct field *field = topic->tables[t]; field->name; field++)
@@ -246,7 +249,8 @@ static void print_body(FILE *stream, const struct look *look, const struct topic
                             "own. The groups \"conservative\" and \"dissipative\" are laws, "
                             "chosen by {\"law\": …}; \"dynamics\" are integrators, chosen by "
                             "{\"integrator\": …}; \"method\" are methods, chosen by "
-                            "{\"name\": …}. Numbers are in reduced units: energy k_B T_0, length "
+                            "{\"name\": …}. {\"law\": \"none\"} is no law at all. "
+                            "Numbers are in reduced units: energy k_B T_0, length "
                             "lambda, mass mu, time tau = lambda sqrt(mu/(k_B T_0)).");
     print_topics(stream, look, topics, count);
 }
