@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
 # make                build/mesofit (also ./mesofit), build/libmesofit.a and build/libmesofit.so
-# make install        program, library, headers, figures' scripts, to PREFIX=/usr/local (and DESTDIR)
+# make install        program, library, headers, figures' scripts, man page and completions of bash, to
+#                     PREFIX=/usr/local (and DESTDIR)
+# make docs           docs/reference.md, which tests compare with what the program prints
 # make test           builds and passes all tests: check, then check-physics
 # make check          unit, reference and command-line tests (about a minute)
 # make check-physics  laws and exact limits (minutes)
@@ -39,9 +41,11 @@ PROGRAM  = $(BUILD)/mesofit
 VERSION := $(shell sed -n 's/^.define MESOFIT_VERSION "\(.*\)"/\1/p' include/mesofit.h)
 SONAME   = libmesofit.so.$(word 1,$(subst ., ,$(VERSION)))
 SHARED_LIBRARY = $(BUILD)/libmesofit.so.$(VERSION)
+MAN_PAGE   = $(BUILD)/mesofit.1
+COMPLETION = $(BUILD)/mesofit.bash
 
-.PHONY: all check check-physics check-stress asan tsan fuzz lint bench clean
-all: $(PROGRAM) mesofit $(SHARED_LIBRARY)
+.PHONY: all docs check check-physics check-stress asan tsan fuzz lint bench clean
+all: $(PROGRAM) mesofit $(SHARED_LIBRARY) $(MAN_PAGE) $(COMPLETION)
 
 mesofit: $(PROGRAM)
 	ln -sf $(PROGRAM) $@
@@ -60,6 +64,16 @@ $(SHARED_LIBRARY): $(filter-out $(BUILD)/src/app/%,$(OBJECTS))
 $(PROGRAM): $(filter $(BUILD)/src/app/%,$(OBJECTS)) $(LIBRARY)
 	@echo "ld $@"
 	$(AT)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
+# What the program tells of itself, whole or not at all.
+$(MAN_PAGE): $(PROGRAM)
+	$(AT)$(PROGRAM) describe --format man >$@.partial && mv $@.partial $@
+
+$(COMPLETION): $(PROGRAM)
+	$(AT)$(PROGRAM) describe --format bash >$@.partial && mv $@.partial $@
+
+docs: $(PROGRAM)
+	$(PROGRAM) describe --format markdown >$(BUILD)/reference.md && mv $(BUILD)/reference.md docs
 
 $(BUILD)/%.o: %.c Makefile
 	@mkdir -p $(@D)
@@ -157,7 +171,8 @@ PREFIX ?= /usr/local
 LIBDIR ?= $(PREFIX)/lib
 .PHONY: install check-install
 install: all
-	install -d $(addprefix $(DESTDIR),$(PREFIX)/bin $(PREFIX)/include/mesofit $(LIBDIR)/pkgconfig $(PREFIX)/share/mesofit/plots)
+	install -d $(addprefix $(DESTDIR),$(PREFIX)/bin $(PREFIX)/include/mesofit $(LIBDIR)/pkgconfig \
+	    $(addprefix $(PREFIX)/share/,mesofit/plots man/man1 bash-completion/completions))
 	install $(PROGRAM) $(DESTDIR)$(PREFIX)/bin
 	install -m 644 include/mesofit.h $(DESTDIR)$(PREFIX)/include
 	install -m 644 include/mesofit/*.h $(DESTDIR)$(PREFIX)/include/mesofit
@@ -167,6 +182,8 @@ install: all
 	sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|' mesofit.pc.in \
 	    >$(DESTDIR)$(LIBDIR)/pkgconfig/mesofit.pc
 	install -m 644 plots/*.gp $(DESTDIR)$(PREFIX)/share/mesofit/plots
+	install -m 644 $(MAN_PAGE) $(DESTDIR)$(PREFIX)/share/man/man1
+	install -m 644 $(COMPLETION) $(DESTDIR)$(PREFIX)/share/bash-completion/completions/mesofit
 
 # Into a folder of the build's own, where the examples are built and run as a user's programs.
 STAGE = $(abspath $(BUILD))/stage

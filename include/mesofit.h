@@ -7,6 +7,6 @@
 #include "mesofit/optimiser.h"
 #include "mesofit/simulation.h"
 
-#define MESOFIT_VERSION "0.1.0"
+#define MESOFIT_VERSION "0.2.0"
 
 #endif

@@ -24,7 +24,7 @@ enum mesofit_status {
  *  next call of this thread. */
 MESOFIT_API const char *mesofit_message(void);
 
-/** The version of the library that is linked, such as "0.1.0". */
+/** The version of the library that is linked, such as "0.2.0". */
 MESOFIT_API const char *mesofit_version(void);
 
 #endif

@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/cmd_describe.h"
+
 #include "app/command.h"
+#include "app/completion.h"
+#include "app/reference.h"
 #include "base/nearest.h"
 #include "input/fit_file.h"
 #include "work/simulate.h"
 
 #include <string.h>
 
-/// An object inside another, and the topic or group that says what stands in it.
-struct inner {
-    const char *key, *help, *topic;
+enum { FORMAT };
+
+static const struct command_option options[] = {
+    [FORMAT] = {"--format", "man|markdown|bash",
+                "all of it at once: a man page, Markdown, or the completions of bash"},
+    {NULL, NULL, NULL},
 };
 
-/// A thing that `mesofit describe` knows: its name and a list of field tables.
-struct topic {
-    const char *group, *name, *summary;
-    const struct field *tables[4]; ///< NULL-terminated
-};
-
-static const struct inner run_objects[] = {
+static const struct topic_object run_objects[] = {
     {"scene", "what is simulated, without what is to be found", "scene"},
     {"target", "what was measured, at least one", "target"},
     {"unknowns", "what is to be found; without it the potential", "unknowns"},
@@ -27,7 +28,7 @@ static const struct inner run_objects[] = {
     {NULL, NULL, NULL},
 };
 
-static const struct inner target_objects[] = {
+static const struct topic_object target_objects[] = {
     {"rdf", "g(r); in a mixture one for each pair type, as \"A-B\"", "rdf-target"},
     {"etd", "escape times of pairs", "etd-target"},
     {"vacf", "velocity autocorrelation", "curve-target"},
@@ -37,7 +38,7 @@ static const struct inner target_objects[] = {
     {NULL, NULL, NULL},
 };
 
-static const struct inner unknowns_objects[] = {
+static const struct topic_object unknowns_objects[] = {
     {"potential", "Phi(r)", "potential"},
     {"omega", "omega(r)", "omega"},
     {"numbers",
@@ -47,20 +48,20 @@ static const struct inner unknowns_objects[] = {
     {NULL, NULL, NULL},
 };
 
-static const struct inner potential_objects[] = {
+static const struct topic_object potential_objects[] = {
     {"start", "a law to begin with, in a mixture one for each pair type", "conservative"},
     {"truth", "the law that is known to be true, to be compared with", "conservative"},
     {NULL, NULL, NULL},
 };
 
-static const struct inner omega_objects[] = {
+static const struct topic_object omega_objects[] = {
     {"fixed", "parameters of the curve \"power\" that are not to be found", "fixed"},
     {"start", "a law to begin with", "dissipative"},
     {"truth", "the law that is known to be true, to be compared with", "dissipative"},
     {NULL, NULL, NULL},
 };
 
-static const struct inner scene_objects[] = {
+static const struct topic_object scene_objects[] = {
     {"particles", "how many, and where", "particles"},
     {"conservative", "{\"law\": …}, the potential; in a mixture one for each pair type",
      "conservative"},
@@ -79,13 +80,11 @@ static const struct inner scene_objects[] = {
 /// The objects in what a topic is about.
 static const struct {
     const char *topic;
-    const struct inner *objects;
+    const struct topic_object *objects;
 } contents[] = {
     {"run", run_objects},           {"scene", scene_objects},         {"target", target_objects},
     {"unknowns", unknowns_objects}, {"potential", potential_objects}, {"omega", omega_objects},
 };
-
-enum { MAX_TOPICS = 64 };
 
 static const struct topic fixed_topics[] = {
     {"files", "run", "the top of a run file, for `mesofit fit`", {mf_heading_fields}},
@@ -157,8 +156,7 @@ static size_t add_curves(struct topic *topics, size_t n, const char *group,
     return n;
 }
 
-/// All topics: the fixed ones, and one for each record in the lists.
-static size_t collect(struct topic topics[MAX_TOPICS]) {
+size_t mf_describe_topics(struct topic topics[DESCRIBE_MOST_TOPICS]) {
     size_t n = sizeof fixed_topics / sizeof *fixed_topics;
     memcpy(topics, fixed_topics, sizeof fixed_topics);
     n = add_curves(topics, n, "conservative", mf_curve_potentials);
@@ -183,6 +181,13 @@ static size_t collect(struct topic topics[MAX_TOPICS]) {
     return n;
 }
 
+const struct topic_object *mf_describe_objects(const char *topic) {
+    for (size_t k = 0; k < sizeof contents / sizeof *contents; k++)
+        if (strcmp(contents[k].topic, topic) == 0)
+            return contents[k].objects;
+    return NULL;
+}
+
 static void print_index(const struct topic *topics, size_t count) {
     const char *group = "";
     for (size_t k = 0; k < count; k++) {
@@ -194,8 +199,8 @@ static void print_index(const struct topic *topics, size_t count) {
     printf("\n`mesofit describe NAME` lists the numbers of one of them, or of a whole group.\n");
 }
 
-static void print_objects(const struct inner *objects) {
-    for (; objects->key; objects++) {
+static void print_objects(const struct topic_object *objects) {
+    for (; objects && objects->key; objects++) {
         printf("  %-24s %s\n", objects->key, objects->help);
         printf("  %-24s   object, see `mesofit describe %s`\n", "", objects->topic);
     }
@@ -205,9 +210,7 @@ static void print_topic(const struct topic *topic) {
     printf("%s (%s): %s\n", topic->name, topic->group, topic->summary);
     for (size_t t = 0; topic->tables[t]; t++)
         mf_fields_describe(topic->tables[t], stdout);
-    for (size_t k = 0; k < sizeof contents / sizeof *contents; k++)
-        if (strcmp(contents[k].topic, topic->name) == 0)
-            print_objects(contents[k].objects);
+    print_objects(mf_describe_objects(topic->name));
 }
 
 /// The topics of that name, and all of a group of that name; false if there is none.
@@ -222,10 +225,31 @@ static bool print_named(const struct topic *topics, size_t count, const char *na
     return found;
 }
 
+/// The whole reference, as `format` wants it.
+static enum status print_all(const char *format, const struct topic *topics, size_t count) {
+    static const char *const formats[] = {"man", "markdown", "bash"};
+    char hint[128];
+    if (strcmp(format, formats[0]) == 0)
+        mf_reference_print_man(stdout, topics, count);
+    else if (strcmp(format, formats[1]) == 0)
+        mf_reference_print_markdown(stdout, topics, count);
+    else if (strcmp(format, formats[2]) == 0)
+        mf_completion_print(stdout, topics, count);
+    else {
+        mf_nearest_hint(format, formats, 3, hint, sizeof hint);
+        return mf_status_fail(STATUS_BAD_INPUT, "describe: \"%s\" is no format; %s", format, hint);
+    }
+    return STATUS_OK;
+}
+
 static enum status run(const struct command_line *line) {
-    struct topic topics[MAX_TOPICS];
-    const char *names[MAX_TOPICS];
-    const size_t count = collect(topics);
+    struct topic topics[DESCRIBE_MOST_TOPICS];
+    const char *names[DESCRIBE_MOST_TOPICS];
+    const size_t count = mf_describe_topics(topics);
+    if (line->own[FORMAT] && line->file_count > 0)
+        return mf_status_fail(STATUS_BAD_INPUT, "describe --format prints all, and takes no NAME");
+    if (line->own[FORMAT])
+        return print_all(line->own[FORMAT], topics, count);
     if (line->file_count == 0) {
         print_index(topics, count);
         return STATUS_OK;
@@ -246,5 +270,6 @@ const struct command cmd_describe = {
     .summary = "list everything that a file can say, with units, defaults and ranges",
     .least_files = 0,
     .most_files = 1,
+    .options = options,
     .run = run,
 };

@@ -6,12 +6,12 @@
 
 #include <stddef.h>
 
-enum { COMMAND_MAX_FILES = 64, COMMAND_MAX_OPTIONS = 12 };
+enum { COMMAND_MAX_FILES = 64, COMMAND_MAX_OPTIONS = 12, COMMAND_MAX_COMMANDS = 16 };
 
 /// An option of one subcommand. It may take the place of a common one.
 struct command_option {
     const char *name;  ///< such as "--json"
-    const char *value; ///< what it takes, such as "FILE", or NULL
+    const char *value; ///< what it takes, such as "FILE", choices such as "a|b", or NULL
     const char *help;  ///< one line
 };
 
@@ -36,3 +36,14 @@ struct command {
 };
 
 extern const struct command cmd_simulate, cmd_fit, cmd_plot, cmd_compare, cmd_describe, cmd_bench;
+
+/// All subcommands, in the order of --help, up to NULL.
+extern const struct command *const mf_command_list[];
+
+/// Options that every subcommand takes, up to one without a name.
+extern const struct command_option mf_command_common[];
+
+/// What the program is for, and what its exit codes mean: for --help and for the man page.
+extern const char mf_command_purpose[], mf_command_exit_codes[];
+
+void mf_command_print_help(void);

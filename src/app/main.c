@@ -17,42 +17,6 @@
 #include <string.h>
 #include <unistd.h>
 
-static const struct command *const commands[] = {&cmd_simulate, &cmd_fit,      &cmd_plot,
-                                                 &cmd_compare,  &cmd_describe, &cmd_bench};
-enum { COMMANDS = sizeof commands / sizeof *commands };
-
-static void print_own_options(const struct command *command) {
-    if (command->options)
-        printf("\noptions of %s:\n", command->name);
-    for (const struct command_option *own = command->options; own && own->name; own++)
-        printf("  %s%s%-*s  %s\n", own->name, own->value ? " " : "",
-               16 - (int)strlen(own->name) - (own->value ? 1 : 0), own->value ? own->value : "",
-               own->help);
-}
-
-static void print_help(void) {
-    printf("mesofit " MESOFIT_VERSION
-           ": fit the pair interactions of a coarse liquid to measurements\n\nusage:\n");
-    for (size_t k = 0; k < COMMANDS; k++)
-        printf("  mesofit %-9s %-22s  %s\n", commands[k]->name, commands[k]->usage,
-               commands[k]->summary);
-    printf("\noptions:\n"
-           "  -o DIR        folder for the results (default: \"out\" beside the input file,\n"
-           "                \"compare\" here for compare)\n"
-           "  --threads N   threads (default: all processors; bench engine: 1); results do not "
-           "depend on "
-           "it\n"
-           "  --seed N      seed, instead of the file's\n"
-           "  --resume      go on with an interrupted run in its folder\n"
-           "  --force       replace the fit that the folder holds\n"
-           "  --quiet       no progress\n"
-           "  --help, --version\n");
-    for (size_t k = 0; k < COMMANDS; k++)
-        print_own_options(commands[k]);
-    printf("\nexit code: 0 done; 1 not converged or unstable; 2 bad input, files or options;\n"
-           "3 out of memory; 130 interrupted\n");
-}
-
 static int exit_code(enum status status) {
     switch (status) {
     case STATUS_OK:
@@ -101,9 +65,10 @@ static enum status parse_own_option(const struct command *command, const char *w
 }
 
 static enum status fail_unknown_option(const struct command *command, const char *word) {
-    const char *known[16 + COMMAND_MAX_OPTIONS] = {"-o",      "--threads", "--seed",    "--resume",
-                                                   "--quiet", "--help",    "--version", "--force"};
-    size_t count = 8;
+    const char *known[16 + COMMAND_MAX_OPTIONS];
+    size_t count = 0;
+    for (const struct command_option *common = mf_command_common; common->name; common++)
+        known[count++] = common->name;
     for (const struct command_option *own = command->options; own && own->name; own++)
         if (strcmp(own->name, "-o") != 0)
             known[count++] = own->name;
@@ -165,16 +130,17 @@ static enum status parse_line(const struct command *command, int count, char **w
 }
 
 static enum status find_command(const char *name, const struct command **command) {
-    const char *names[COMMANDS];
+    const char *names[COMMAND_MAX_COMMANDS];
     char hint[256];
-    for (size_t k = 0; k < COMMANDS; k++) {
-        names[k] = commands[k]->name;
-        if (strcmp(name, commands[k]->name) == 0) {
-            *command = commands[k];
+    size_t count = 0;
+    for (; mf_command_list[count]; count++) {
+        names[count] = mf_command_list[count]->name;
+        if (strcmp(name, names[count]) == 0) {
+            *command = mf_command_list[count];
             return STATUS_OK;
         }
     }
-    mf_nearest_hint(name, names, COMMANDS, hint, sizeof hint);
+    mf_nearest_hint(name, names, count, hint, sizeof hint);
     return mf_status_fail(STATUS_BAD_INPUT, "unknown command \"%s\"; %s", name, hint);
 }
 
@@ -232,7 +198,7 @@ static enum status finish_output(enum status status) {
 
 static enum status act(int count, char **words) {
     if (asks_for(count, words, "--help")) {
-        print_help();
+        mf_command_print_help();
         return STATUS_OK;
     }
     if (asks_for(count, words, "--version")) {
@@ -240,7 +206,7 @@ static enum status act(int count, char **words) {
         return STATUS_OK;
     }
     if (count < 2) {
-        print_help();
+        mf_command_print_help();
         return mf_status_fail(STATUS_BAD_INPUT, "give one of these commands");
     }
     mf_program_begin_again(words);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/fields.h"
 
+#include "base/fields_text.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -32,7 +34,9 @@ void mf_fields_set_defaults(const struct field *fields, void *parameters) {
 }
 
 void mf_fields_range_text(const struct field *field, char *text, size_t size) {
-    const double low = field->minimum, high = field->maximum;
+    const bool ranged =
+        field->type == FIELD_NUMBER || field->type == FIELD_INTEGER || field->type == FIELD_LENGTHS;
+    const double low = ranged ? field->minimum : -DBL_MAX, high = ranged ? field->maximum : DBL_MAX;
     const bool bounded_above = high < DBL_MAX && high < FIELD_LARGEST_INTEGER;
     if (low == FIELD_ABOVE_ZERO && !bounded_above)
         snprintf(text, size, "above 0");
@@ -53,61 +57,17 @@ int mf_fields_choice_index(const struct field *field, const char *name) {
     return -1;
 }
 
-static void describe_type(const struct field *field, char *text, size_t size) {
-    switch (field->type) {
-    case FIELD_NUMBER:
-        snprintf(text, size, "number");
-        break;
-    case FIELD_INTEGER:
-    case FIELD_SEED:
-        snprintf(text, size, "integer");
-        break;
-    case FIELD_LENGTHS:
-        snprintf(text, size, "2 or 3 numbers");
-        break;
-    case FIELD_TEXT:
-        snprintf(text, size, "text");
-        break;
-    case FIELD_FILE:
-        snprintf(text, size, "file");
-        break;
-    case FIELD_CHOICE: {
-        size_t used = 0;
-        text[0] = '\0';
-        for (int i = 0; field->choices[i] && used < size; i++)
-            used +=
-                (size_t)snprintf(text + used, size - used, "%s%s", i ? "|" : "", field->choices[i]);
-        break;
-    }
-    }
-}
-
-static void describe_default(const struct field *field, char *text, size_t size) {
-    if (field->required)
-        snprintf(text, size, "required");
-    else if (field->type == FIELD_CHOICE)
-        snprintf(text, size, "%s", field->choices[(int)field->initial]);
-    else if (field->type == FIELD_TEXT || field->type == FIELD_FILE || field->type == FIELD_LENGTHS)
-        snprintf(text, size, "none");
-    else if (isnan(field->initial))
-        snprintf(text, size, "none");
-    else
-        snprintf(text, size, "%.12g", field->initial);
-}
-
 void mf_fields_describe(const struct field *fields, FILE *stream) {
     for (const struct field *field = fields; field->name; field++) {
-        char type[256], fallback[64], range[64] = "";
-        describe_type(field, type, sizeof type);
-        describe_default(field, fallback, sizeof fallback);
-        if (field->type == FIELD_NUMBER || field->type == FIELD_INTEGER ||
-            field->type == FIELD_LENGTHS)
-            mf_fields_range_text(field, range, sizeof range);
+        char type[256], fallback[64], range[64];
+        mf_fields_type_text(field, type, sizeof type);
+        mf_fields_default_text(field, fallback, sizeof fallback);
+        mf_fields_range_text(field, range, sizeof range);
         fprintf(stream, "  %-24s %s%s%s\n", field->name, field->help, field->unit[0] ? ", in " : "",
                 field->unit);
         fprintf(stream, "  %-24s   %s, %s%s%s\n", "", type, field->required ? "" : "default ",
                 fallback, "");
-        if (range[0] && strcmp(range, "any") != 0)
+        if (strcmp(range, "any") != 0)
             fprintf(stream, "  %-24s   range: %s\n", "", range);
     }
 }

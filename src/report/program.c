@@ -153,7 +153,9 @@ enum status mf_program_find_folder(char *path, size_t size, const char *name, co
         if (has_file(path, file))
             return STATUS_OK;
     }
-    return mf_status_fail(STATUS_IO, "no folder %s with %s near the program", name, file);
+    return mf_status_fail(STATUS_IO,
+                          "no folder %s with %s near the program, where `make install` puts it",
+                          name, file);
 }
 
 void mf_program_begin_again(char **words) {

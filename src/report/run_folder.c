@@ -47,6 +47,9 @@ static const char *const results[] = {
     "force_covariance.tsv",
     "pareto_potential_*-*.tsv",
     "checkpoint.bin",
+    // As version 0.1.0 called them, in whose folder this may be.
+    "weight_history.tsv",
+    "pareto_weight.tsv",
 };
 
 /// Whether a pattern is a file's name, the two * being names of types: a date is none.

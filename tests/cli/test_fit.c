@@ -294,7 +294,7 @@ static void test_summary_has_what_other_programs_read(void **state) {
     run_fit("out", "2", UNCONVERGED);
     results_assert_text("out/summary.json", "status", "unconverged");
     results_assert_text("out/summary.json", "method", "imc");
-    results_assert_text("out/summary.json", "version", "0.1.0");
+    results_assert_text("out/summary.json", "version", "0.2.0");
     results_assert_numbers("out/summary.json", numbers);
     char *summary = temporary_folder_read("out/summary.json");
     // Which of the two it is depends on the noise.

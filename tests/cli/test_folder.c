@@ -129,6 +129,20 @@ static void test_a_fit_is_replaced_by_force_alone(void **state) {
     assert_refused("out holds an unfinished fit", "--force");
 }
 
+/// Version 0.1.0 called some tables otherwise: they belong to the run that is replaced, too.
+static void test_tables_of_version_0_1_0_go_with_their_run(void **state) {
+    static const char *const old[] = {"out/weight_history.tsv", "out/pareto_weight.tsv"};
+    write_inputs(*state);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--quiet");
+    run_program_assert_code(&result, 0);
+    for (size_t k = 0; k < 2; k++)
+        temporary_folder_write(*state, old[k], "# r\n1\n", 6);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--quiet");
+    run_program_assert_code(&result, 0);
+    for (size_t k = 0; k < 2; k++)
+        assert_false(temporary_folder_exists(old[k]));
+}
+
 static void test_a_simulation_is_replaced_by_another_without_a_word(void **state) {
     write_inputs(*state);
     for (int time = 0; time < 2; time++) {
@@ -315,6 +329,7 @@ int main(void) {
         TEST(test_inputs_of_a_run_survive_it),
         TEST(test_a_finished_fit_is_not_replaced_by_the_simulation_of_it),
         TEST(test_a_fit_is_replaced_by_force_alone),
+        TEST(test_tables_of_version_0_1_0_go_with_their_run),
         TEST(test_a_simulation_is_replaced_by_another_without_a_word),
         TEST(test_files_that_only_look_like_tables_stay),
         TEST(test_files_of_no_run_are_not_replaced),

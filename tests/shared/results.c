@@ -76,19 +76,20 @@ void results_assert_differ(const char *first, const char *second, const char *na
 /// Read one member of a JSON file into `value`; what else the file holds does not matter.
 static void read_member(const char *file, const char *key, enum field_type type, void *value) {
     struct json_document *document;
-    char outer[64] = "";
-    const char *dot = strchr(key, '.');
-    if (dot)
-        snprintf(outer, sizeof outer, "%.*s", (int)(dot - key), key);
-    const struct field fields[] = {{.name = dot ? dot + 1 : key,
+    const char *last = strrchr(key, '.');
+    const struct field fields[] = {{.name = last ? last + 1 : key,
                                     .type = type,
                                     .required = true,
                                     .minimum = -DBL_MAX,
                                     .maximum = DBL_MAX},
                                    FIELD_END};
     assert_ok(mf_json_open(&document, file));
-    struct json_object root = mf_json_root(document);
-    struct json_object object = dot ? mf_json_child(&root, outer, true) : root;
+    struct json_object object = mf_json_root(document);
+    for (const char *dot; (dot = strchr(key, '.')); key = dot + 1) {
+        char outer[64];
+        snprintf(outer, sizeof outer, "%.*s", (int)(dot - key), key);
+        object = mf_json_child(&object, outer, true);
+    }
     mf_json_fields(&object, fields, value);
     assert_ok(mf_json_close(document, STATUS_OK));
 }

@@ -12,7 +12,7 @@ void results_assert_table(const char *file, size_t columns, size_t rows);
 void results_assert_same(const char *first, const char *second, const char *const *names);
 void results_assert_differ(const char *first, const char *second, const char *name);
 
-/// The finite number at `key` of a JSON file; "physical.pressure_bar" is in an object.
+/// The finite number at `key` of a JSON file; "physical.pressure_bar" is in an object, and so on.
 double results_number(const char *file, const char *key);
 void results_assert_number(const char *file, const char *key, double expected);
 

@@ -3,10 +3,12 @@
 #
 # check_install.sh PREFIX BUILD: what was installed is whole. Every example is built against it, by
 # pkg-config alone, and run; the headers are good C++; the shared library shows no name but its own;
-# the program draws figures from anywhere. Run at the root of the source tree.
+# the program draws figures from anywhere, also where the package has been moved; its man page and its
+# completions are there. Run at the root of the source tree.
 set -eu
 
 prefix=$1
+build=$2
 place=$(realpath "$2")/examples
 root=$(pwd)
 export PKG_CONFIG_PATH="$prefix/lib/pkgconfig" LD_LIBRARY_PATH="$prefix/lib"
@@ -40,5 +42,25 @@ for output in rdf.txt own_force.txt potential.txt own_optimiser.txt omega.txt; d
     [ -s "$output" ] || { echo "an example printed nothing: $output"; exit 1; }
 done
 
-"$prefix/bin/mesofit" --version >/dev/null
+# A folder that is neither that of the sources nor that of the package, which DESTDIR has put elsewhere.
+moved=$(mktemp -d)
+trap 'rm -rf "$moved"' EXIT
+make -s -C "$root" CC="${CC:-cc}" BUILD="$build" DESTDIR="$moved/root" PREFIX=/usr install >/dev/null
+cd "$moved"
+cat >scene.json <<'END'
+{"box": [3, 3, 3], "particles": {"count": 81}, "conservative": {"law": "soft-repulsion"},
+ "dissipative": {"law": "power", "sigma": 3}, "measure": {"samples": 20, "every": 5}, "rdf": {"range": 1}}
+END
+for program in "$prefix/bin/mesofit" "$moved/root/usr/bin/mesofit"; do
+    "$program" --version >/dev/null
+    "$program" simulate scene.json -o run --quiet >/dev/null
+    rm -rf run/figures
+    "$program" plot run
+    [ -s run/figures/simulation.png ] || { echo "$program draws no figure"; exit 1; }
+done
+for place in "$prefix" "$moved/root/usr"; do
+    head -n 1 "$place/share/man/man1/mesofit.1" | grep -q '^\.TH MESOFIT 1 ' || { echo "$place: no man page"; exit 1; }
+    bash -c ". '$place/share/bash-completion/completions/mesofit'; complete -p mesofit" >/dev/null
+done
 echo "examples: OK"
+echo "installed program: OK"

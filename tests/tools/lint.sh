@@ -82,6 +82,7 @@ report format "$(check_format)"
 report cppcheck "$(check_cppcheck)"
 tests/tools/check_layers.sh || failed=1
 tests/tools/check_names.sh "$library" || failed=1
+tests/tools/check_docs.sh || failed=1
 report licence "$(check_licence_lines)"
 report lengths "$(check_lengths)"
 exit $failed

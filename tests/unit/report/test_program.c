@@ -92,7 +92,7 @@ static void test_program_find_folder_goes_up_when_the_program_is_being_built(voi
     snprintf(style, sizeof style, "%s/style.gp", path);
     assert_int_equal(access(style, R_OK), 0);
     assert_fails(mf_program_find_folder(path, sizeof path, "plots", "no-such.gp"), STATUS_IO,
-                 "no folder plots with no-such.gp near the program");
+                 "no folder plots with no-such.gp near the program, where `make install` puts it");
 }
 
 #define IN_FOLDER(test)                                                                            \

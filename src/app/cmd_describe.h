@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What `mesofit describe` knows, for all that tell of it: every object of run and scene
+/// files, by the field tables that read them.
+#pragma once
+
+#include "base/fields.h"
+
+#include <stddef.h>
+
+enum { DESCRIBE_MOST_TOPICS = 64 };
+
+/// A thing with a name of its own: an object of a file, a law, an integrator, a method.
+struct topic {
+    const char *group, *name, *summary;
+    const struct field *tables[4]; ///< NULL-terminated
+};
+
+/// An object inside another, and the topic or group that says what stands in it.
+struct topic_object {
+    const char *key, *help, *topic;
+};
+
+/// All topics, those of a group together: fixed ones, and one for each record in the lists.
+size_t mf_describe_topics(struct topic topics[DESCRIBE_MOST_TOPICS]);
+
+/// The objects in what a topic is about, up to one without a key; NULL if it has none.
+const struct topic_object *mf_describe_objects(const char *topic);

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command.h"
+
+#include "mesofit.h"
+
+#include <string.h>
+
+const struct command *const mf_command_list[] = {
+    &cmd_simulate, &cmd_fit, &cmd_plot, &cmd_compare, &cmd_describe, &cmd_bench, NULL,
+};
+
+_Static_assert(sizeof mf_command_list / sizeof *mf_command_list <= COMMAND_MAX_COMMANDS + 1,
+               "more commands than COMMAND_MAX_COMMANDS");
+
+const struct command_option mf_command_common[] = {
+    {"-o", "DIR",
+     "folder for the results (default: \"out\" beside the input file, \"compare\" here for "
+     "compare)"},
+    {"--threads", "N",
+     "threads (default: all processors; bench engine: 1); results do not depend on it"},
+    {"--seed", "N", "seed, instead of the file's"},
+    {"--resume", NULL, "go on with an interrupted run in its folder"},
+    {"--force", NULL, "replace the fit that the folder holds"},
+    {"--quiet", NULL, "no progress"},
+    {"--help", NULL, "print a summary of all commands and options"},
+    {"--version", NULL, "print the version"},
+    {NULL, NULL, NULL},
+};
+
+const char mf_command_purpose[] = "fit the pair interactions of a coarse liquid to measurements";
+
+const char mf_command_exit_codes[] = "0 done; 1 not converged or unstable; 2 bad input, files or "
+                                     "options; 3 out of memory; 130 interrupted";
+
+static void print_options(const struct command_option *option) {
+    for (; option && option->name; option++)
+        printf("  %s%s%-*s  %s\n", option->name, option->value ? " " : "",
+               16 - (int)strlen(option->name) - (option->value ? 1 : 0),
+               option->value ? option->value : "", option->help);
+}
+
+void mf_command_print_help(void) {
+    printf("mesofit " MESOFIT_VERSION ": %s\n\nusage:\n", mf_command_purpose);
+    for (const struct command *const *command = mf_command_list; *command; command++)
+        printf("  mesofit %-9s %-22s  %s\n", (*command)->name, (*command)->usage,
+               (*command)->summary);
+    printf("\noptions:\n");
+    print_options(mf_command_common);
+    for (const struct command *const *command = mf_command_list; *command; command++) {
+        if ((*command)->options)
+            printf("\noptions of %s:\n", (*command)->name);
+        print_options((*command)->options);
+    }
+    printf("\nexit code: %s\n", mf_command_exit_codes);
+}

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/completion.h"
+
+#include "app/command.h"
+
+#include <string.h>
+
+/// What the words are chosen from: see `_mesofit_words` below.
+static const char *kind_of(const char *value) {
+    if (strstr(value, "FILE"))
+        return "files";
+    if (strstr(value, "SCENE") || strstr(value, ".json"))
+        return "json";
+    return strstr(value, "DIR") ? "folders" : "nothing";
+}
+
+/// "a|b" up to a blank, with blanks between.
+static void put_choices(FILE *stream, const char *value) {
+    for (; *value && *value != ' '; value++)
+        fputc(*value == '|' ? ' ' : *value, stream);
+}
+
+static void put_option_values(FILE *stream, const char *verb, const struct command_option *option) {
+    for (; option && option->name; option++) {
+        if (option->value == NULL)
+            continue;
+        fprintf(stream, "    %s:%s) ", verb, option->name);
+        if (strchr(option->value, '|')) {
+            fprintf(stream, "choices=\"");
+            put_choices(stream, option->value);
+            fprintf(stream, "\" ;;\n");
+        } else {
+            fprintf(stream, "kind=%s ;;\n", kind_of(option->value));
+        }
+    }
+}
+
+static void put_names(FILE *stream, const struct command_option *option) {
+    for (; option && option->name; option++)
+        fprintf(stream, " %s", option->name);
+}
+
+/// Every name that `describe` knows: topics, and each group once.
+static void put_topics(FILE *stream, const struct topic *topics, size_t count) {
+    for (size_t k = 0; k < count; k++) {
+        if (k == 0 || strcmp(topics[k].group, topics[k - 1].group) != 0)
+            fprintf(stream, " %s", topics[k].group);
+        fprintf(stream, " %s", topics[k].name);
+    }
+}
+
+/// What a subcommand takes beside options; the folders that are read are those of runs.
+static void put_command(FILE *stream, const struct command *command, const struct topic *topics,
+                        size_t count) {
+    fprintf(stream, "        %s)", command->name);
+    if (command->options) {
+        fprintf(stream, " options=\"$options");
+        put_names(stream, command->options);
+        fprintf(stream, "\"");
+    }
+    if (strcmp(command->usage, cmd_describe.usage) == 0) {
+        fprintf(stream, " choices=\"");
+        put_topics(stream, topics, count);
+        fprintf(stream, "\"");
+    } else if (strchr(command->usage, '|')) {
+        fprintf(stream, " choices=\"");
+        put_choices(stream, command->usage);
+        fprintf(stream, "\"");
+    }
+    fprintf(stream, " kind=%s ;;\n",
+            strstr(command->usage, "DIR") ? "runs" : kind_of(command->usage));
+}
+
+static const char helpers[] =
+    "# Folders of runs, and those that have folders in which there may be some.\n"
+    "_mesofit_runs() {\n"
+    "    local folder\n"
+    "    compgen -d -- \"$1\" | while IFS= read -r folder; do\n"
+    "        if [ -e \"$folder/summary.json\" ] || compgen -d -- \"$folder/\" >/dev/null; then\n"
+    "            printf '%s\\n' \"$folder\"\n"
+    "        fi\n"
+    "    done\n"
+    "}\n"
+    "\n"
+    "# _mesofit_words WORD KIND CHOICES: how WORD may go on.\n"
+    "_mesofit_words() {\n"
+    "    compgen -W \"$3\" -- \"$1\"\n"
+    "    case $2 in\n"
+    "    runs) _mesofit_runs \"$1\" ;;\n"
+    "    folders) compgen -d -- \"$1\" ;;\n"
+    "    files) compgen -f -- \"$1\" ;;\n"
+    "    json) compgen -d -- \"$1\"; compgen -f -X '!*.json' -- \"$1\" ;;\n"
+    "    esac\n"
+    "}\n"
+    "\n";
+
+static const char ending[] =
+    "    [[ $word != -* ]] || kind=nothing choices=$options\n"
+    "    mapfile -t COMPREPLY < <(_mesofit_words \"$word\" \"$kind\" \"$choices\")\n"
+    "    # Folders end with a slash and names with blanks are quoted, if bash is asking.\n"
+    "    [ \"$kind\" = nothing ] || compopt -o filenames 2>/dev/null\n"
+    "    return 0\n"
+    "}\n"
+    "\n"
+    "complete -F _mesofit mesofit\n";
+
+void mf_completion_print(FILE *stream, const struct topic *topics, size_t count) {
+    fprintf(stream,
+            "# SPDX-License-Identifier: GPL-3.0-or-later\n"
+            "# Completions of bash for mesofit, by `mesofit describe --format bash`.\n\n%s"
+            "_mesofit() {\n"
+            "    local word=${COMP_WORDS[COMP_CWORD]} verb=${COMP_WORDS[1]}\n"
+            "    local kind=nothing choices=\n"
+            "    local options=\"",
+            helpers);
+    put_names(stream, mf_command_common);
+    fprintf(stream, "\"\n    [ \"$COMP_CWORD\" -gt 1 ] || verb=\n"
+                    "    case $verb:${COMP_WORDS[COMP_CWORD - 1]} in\n    :*) choices=\"");
+    for (size_t k = 0; mf_command_list[k]; k++)
+        fprintf(stream, " %s", mf_command_list[k]->name);
+    fprintf(stream, "\" ;;\n");
+    for (size_t k = 0; mf_command_list[k]; k++)
+        put_option_values(stream, mf_command_list[k]->name, mf_command_list[k]->options);
+    put_option_values(stream, "*", mf_command_common);
+    fprintf(stream, "    *)\n        case $verb in\n");
+    for (size_t k = 0; mf_command_list[k]; k++)
+        put_command(stream, mf_command_list[k], topics, count);
+    fprintf(stream, "        esac\n        ;;\n    esac\n%s", ending);
+}

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/reference.h"
+
+#include "app/command.h"
+#include "base/fields_text.h"
+#include "mesofit.h"
+
+#include <ctype.h>
+#include <stdbool.h>
+#include <string.h>
+
+enum { CELLS = 6 };
+
+/// How the parts of a text look in a format.
+struct look {
+    /// @param[in] level  1: a chapter; 2: a section
+    void (*heading)(FILE *stream, int level, const char *text);
+    void (*paragraph)(FILE *stream, const char *text);
+    /// The head of a table.
+    void (*titles)(FILE *stream, const char *const *titles);
+    /// A row, with as many cells as titles; an empty cell says nothing.
+    void (*row)(FILE *stream, const char *const *titles, const char *const *cells);
+    const char *object; ///< printf format of a reference: name and place of a section
+};
+
+// Markdown ----------------------------------------------------------------------------------------
+
+/// With what would be markup spelled out: `|` parts cells, `<` begins a tag, `*` emphasis.
+static void put_markdown(FILE *stream, const char *text) {
+    for (bool code = false; *text; text++) {
+        code = *text == '`' ? !code : code;
+        if (*text == '|' || (!code && (*text == '*' || *text == '<')))
+            fputc('\\', stream);
+        fputc(*text, stream);
+    }
+}
+
+static void markdown_heading(FILE *stream, int level, const char *text) {
+    fprintf(stream, "\n%s ", level == 1 ? "##" : "###");
+    put_markdown(stream, text);
+    fprintf(stream, "\n");
+}
+
+static void markdown_paragraph(FILE *stream, const char *text) {
+    fprintf(stream, "\n");
+    put_markdown(stream, text);
+    fprintf(stream, "\n");
+}
+
+static void markdown_titles(FILE *stream, const char *const *titles) {
+    fprintf(stream, "\n|");
+    for (size_t k = 0; titles[k]; k++)
+        fprintf(stream, " %s |", titles[k]);
+    fprintf(stream, "\n|");
+    for (size_t k = 0; titles[k]; k++)
+        fprintf(stream, "---|");
+    fprintf(stream, "\n");
+}
+
+static void markdown_row(FILE *stream, const char *const *titles, const char *const *cells) {
+    fprintf(stream, "| `");
+    put_markdown(stream, cells[0]);
+    fprintf(stream, "` |");
+    for (size_t k = 1; titles[k]; k++) {
+        fprintf(stream, "%s", cells[k][0] ? " " : "");
+        put_markdown(stream, cells[k]);
+        fprintf(stream, " |");
+    }
+    fprintf(stream, "\n");
+}
+
+static const struct look markdown = {
+    .heading = markdown_heading,
+    .paragraph = markdown_paragraph,
+    .titles = markdown_titles,
+    .row = markdown_row,
+    .object = "object: [%s](#%s)",
+};
+
+// Man pages ---------------------------------------------------------------------------------------
+
+/// With what would be a command of roff spelled out; a `-` stays one that can be copied.
+static void put_man(FILE *stream, const char *text) {
+    if (*text == '.' || *text == '\'')
+        fprintf(stream, "\\&");
+    for (; *text; text++)
+        switch (*text) {
+        case '\\':
+            fprintf(stream, "\\e");
+            break;
+        case '-':
+            fprintf(stream, "\\-");
+            break;
+        case '"':
+            fprintf(stream, "\\(dq");
+            break;
+        default:
+            fputc(*text, stream);
+        }
+}
+
+static void man_heading(FILE *stream, int level, const char *text) {
+    char shown[128];
+    snprintf(shown, sizeof shown, "%s", text);
+    for (char *letter = shown; level == 1 && *letter; letter++)
+        *letter = (char)toupper((unsigned char)*letter);
+    fprintf(stream, ".%s \"", level == 1 ? "SH" : "SS");
+    put_man(stream, shown);
+    fprintf(stream, "\"\n");
+}
+
+static void man_paragraph(FILE *stream, const char *text) {
+    fprintf(stream, ".PP\n");
+    put_man(stream, text);
+    fprintf(stream, "\n");
+}
+
+static void man_titles(FILE *stream, const char *const *titles) {
+    (void)stream;
+    (void)titles;
+}
+
+/// What stands behind the second cell follows it with its titles: "type number; default 0".
+static void man_row(FILE *stream, const char *const *titles, const char *const *cells) {
+    const char *between = "";
+    fprintf(stream, ".TP\n\\fB");
+    put_man(stream, cells[0]);
+    fprintf(stream, "\\fR\n");
+    put_man(stream, cells[1]);
+    fprintf(stream, "\n");
+    for (size_t k = 2; titles[k]; k++) {
+        if (cells[k][0] == '\0')
+            continue;
+        fprintf(stream, "%s%s ", between[0] ? between : ".br\n", titles[k]);
+        put_man(stream, cells[k]);
+        between = "; ";
+    }
+    fprintf(stream, "%s", between[0] ? "\n" : "");
+}
+
+static const struct look man = {
+    .heading = man_heading,
+    .paragraph = man_paragraph,
+    .titles = man_titles,
+    .row = man_row,
+    .object = "object: see %s",
+};
+
+// The text ----------------------------------------------------------------------------------------
+
+static void print_options(FILE *stream, const struct look *look,
+                          const struct command_option *option) {
+    static const char *const titles[] = {"option", "what", NULL};
+    char name[64];
+    look->titles(stream, titles);
+    for (; option->name; option++) {
+        snprintf(name, sizeof name, "%s%s%s", option->name, option->value ? " " : "",
+                 option->value ? option->value : "");
+        look->row(stream, titles, (const char *const[]){name, option->help});
+    }
+}
+
+static void print_commands(FILE *stream, const struct look *look) {
+    static const char *const titles[] = {"command", "what", NULL};
+    char text[128];
+    look->heading(stream, 1, "Commands");
+    look->titles(stream, titles);
+    for (size_t k = 0; mf_command_list[k]; k++) {
+        snprintf(text, sizeof text, "mesofit %s %s", mf_command_list[k]->name,
+                 mf_command_list[k]->usage);
+        look->row(stream, titles, (const char *const[]){text, mf_command_list[k]->summary});
+    }
+    look->heading(stream, 1, "Options");
+    print_options(stream, look, mf_command_common);
+    for (size_t k = 0; mf_command_list[k]; k++) {
+        if (mf_command_list[k]->options == NULL)
+            continue;
+        snprintf(text, sizeof text, "Options of %s", mf_command_list[k]->name);
+        look->heading(stream, 2, text);
+        print_options(stream, look, mf_command_list[k]->options);
+    }
+    look->heading(stream, 1, "Exit status");
+    look->paragraph(stream, mf_command_exit_codes);
+}
+
+static void print_field(FILE *stream, const struct look *look, const char *const *titles,
+                        const struct field *field) {
+    char type[256], fallback[64], range[64];
+    mf_fields_type_text(field, type, sizeof type);
+    mf_fields_default_text(field, fallback, sizeof fallback);
+    mf_fields_range_text(field, range, sizeof range);
+    look->row(stream, titles,
+              (const char *const[CELLS]){field->name, field->help, type, field->unit, fallback,
+                                         strcmp(range, "any") != 0 ? range : ""});
+}
+
+/// An object that has a section, by its topic, or a chapter, by its group.
+static void refer(char *text, size_t size, const struct look *look, const char *name,
+                  const struct topic *topics, size_t count) {
+    char place[64];
+    bool section = false;
+    for (size_t k = 0; k < count; k++)
+        section = section || strcmp(topics[k].name, name) == 0;
+    snprintf(place, sizeof place, "%s%s", section ? "" : "keys-", name);
+    snprintf(text, size, look->object, name, place);
+}
+
+static void print_topic(FILE *stream, const struct look *look, const struct topic *topic,
+                        const struct topic *topics, size_t count) {
+    static const char *const titles[] = {"key", "what", "type", "unit", "default", "range", NULL};
+    const struct topic_object *object = mf_describe_objects(topic->name);
+    char kind[128];
+    look->heading(stream, 2, topic->name);
+    look->paragraph(stream, topic->summary);
+    bool any = object != NULL;
+    for (size_t t = 0; topic->tables[t]; t++)
+        any = any || topic->tables[t]->name;
+    if (any)
+        look->titles(stream, titles);
+    for (size_t t = 0; topic->tables[t]; t++)
+        for (const struct field *field = topic->tables[t]; field->name; field++)
+            print_field(stream, look, titles, field);
+    for (; object && object->key; object++) {
+        refer(kind, sizeof kind, look, object->topic, topics, count);
+        look->row(stream, titles,
+                  (const char *const[CELLS]){object->key, object->help, kind, "", "", ""});
+    }
+}
+
+static void print_topics(FILE *stream, const struct look *look, const struct topic *topics,
+                         size_t count) {
+    char title[64];
+    for (size_t k = 0; k < count; k++) {
+        if (k == 0 || strcmp(topics[k].group, topics[k - 1].group) != 0) {
+            snprintf(title, sizeof title, "Keys: %s", topics[k].group);
+            look->heading(stream, 1, title);
+        }
+        print_topic(stream, look, &topics[k], topics, count);
+    }
+}
+
+static void print_body(FILE *stream, const struct look *look, const struct topic *topics,
+                       size_t count) {
+    print_commands(stream, look);
+    look->heading(stream, 1, "Files");
+    look->paragraph(stream, "Run files, for `mesofit fit`, and scene files, for `mesofit "
+                            "simulate`, are strict JSON. A run file begins with \"run\" below, a "
+                            "scene file with \"scene\"; what is an object has a section of its "
+                            "own. The groups \"conservative\" and \"dissipative\" are laws, "
+                            "chosen by {\"law\": …}; \"dynamics\" are integrators, chosen by "
+                            "{\"integrator\": …}; \"method\" are methods, chosen by "
+                            "{\"name\": …}. {\"law\": \"none\"} is no law at all. "
+                            "Numbers are in reduced units: energy k_B T_0, length "
+                            "lambda, mass mu, time tau = lambda sqrt(mu/(k_B T_0)).");
+    print_topics(stream, look, topics, count);
+}
+
+void mf_reference_print_markdown(FILE *stream, const struct topic *topics, size_t count) {
+    fprintf(stream, "# Reference\n\nThis page is made by `make docs` from what `mesofit describe "
+                    "--format markdown` prints; the man page\n`mesofit(1)` says the same. What "
+                    "runs leave in their folders, every table and every key of\n`summary.json`, "
+                    "is told in [results-of-a-fit.md](results-of-a-fit.md).\n");
+    print_body(stream, &markdown, topics, count);
+}
+
+void mf_reference_print_man(FILE *stream, const struct topic *topics, size_t count) {
+    fprintf(stream, ".TH MESOFIT 1 \"\" \"mesofit " MESOFIT_VERSION "\" \"User Commands\"\n");
+    man.heading(stream, 1, "Name");
+    fprintf(stream, "mesofit \\- %s\n", mf_command_purpose);
+    man.heading(stream, 1, "Synopsis");
+    for (size_t k = 0; mf_command_list[k]; k++) {
+        fprintf(stream, "%s.B mesofit %s\n", k ? ".br\n" : "", mf_command_list[k]->name);
+        put_man(stream, mf_command_list[k]->usage);
+        fprintf(stream, " [option ...]\n");
+    }
+    print_body(stream, &man, topics, count);
+}

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// docs/tutorial.md, command by command, as its reader types them.
+#include "shared/results.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <libgen.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+/// The folder of the sources, which has the program in build.
+static const char *find_sources(void) {
+    static char path[1024];
+    const char *program = getenv("MESOFIT");
+    assert_non_null(program);
+    snprintf(path, sizeof path, "%s", program);
+    char *folder = dirname(path);
+    while (strlen(folder) > 1) {
+        char page[1100];
+        snprintf(page, sizeof page, "%s/docs/tutorial.md", folder);
+        if (access(page, R_OK) == 0)
+            return folder;
+        folder = dirname(folder);
+    }
+    fail_msg("no docs/tutorial.md above %s", program);
+    return NULL;
+}
+
+/// Every command succeeds, the potential has converged and its table is one of LAMMPS's; σ is found
+/// again within three of its errors (false alarms: 0.3 %, but the seed is fixed).
+static void test_tutorial_does_what_it_says(void **state) {
+    char command[4096];
+    const char *sources = find_sources();
+    (void)state;
+    assert_int_equal(symlink(getenv("MESOFIT"), "mesofit"), 0);
+    snprintf(command, sizeof command, "%s/targets", sources);
+    assert_int_equal(symlink(command, "targets"), 0);
+    snprintf(command, sizeof command,
+             "PATH=.:\"$PATH\" '%s/tests/tools/run_page.sh' '%s/docs/tutorial.md' >page.txt 2>&1",
+             sources, sources);
+    if (system(command) != 0)
+        fail_msg("%s", temporary_folder_read("page.txt"));
+    results_assert_text("tutorial/out/summary.json", "status", "converged");
+    results_assert_text("tutorial/omega/summary.json", "status", "converged");
+    assert_true(results_number("tutorial/out/summary.json", "rdf_rmse") < 0.01);
+    const double sigma =
+        results_number("tutorial/omega/summary.json", "parameters.omega.sigma.value");
+    const double error =
+        results_number("tutorial/omega/summary.json", "parameters.omega.sigma.error");
+    assert_true(error > 0 && error < 1 && fabs(sigma - 6) < 3 * error);
+    char *page = temporary_folder_read("page.txt");
+    assert_contains(page, "target rdf: g from 0.005 to 0.995 nm, peak 2.79 at 0.275 nm");
+    assert_contains(page, "omega: sigma = ");
+    free(page);
+    results_assert_table("tutorial/out/potential.tsv", 7, 101);
+    char *table = temporary_folder_read("tutorial/potential.lammps");
+    assert_contains(table, "MESOFIT\nN 86\n\n1 1.55 ");
+    free(table);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_tutorial_does_what_it_says, small_inputs_enter,
+                                        small_inputs_leave),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
