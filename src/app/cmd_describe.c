@@ -18,7 +18,12 @@ static const struct command_option options[] = {
     {NULL, NULL, NULL},
 };
 
-static const struct topic_object run_objects[] = {
+/// An object inside another, and the topic or group that says what stands in it.
+struct inner {
+    const char *key, *help, *topic;
+};
+
+static const struct inner run_objects[] = {
     {"scene", "what is simulated, without what is to be found", "scene"},
     {"target", "what was measured, at least one", "target"},
     {"unknowns", "what is to be found; without it the potential", "unknowns"},
@@ -28,7 +33,7 @@ static const struct topic_object run_objects[] = {
     {NULL, NULL, NULL},
 };
 
-static const struct topic_object target_objects[] = {
+static const struct inner target_objects[] = {
     {"rdf", "g(r); in a mixture one for each pair type, as \"A-B\"", "rdf-target"},
     {"etd", "escape times of pairs", "etd-target"},
     {"vacf", "velocity autocorrelation", "curve-target"},
@@ -38,7 +43,7 @@ static const struct topic_object target_objects[] = {
     {NULL, NULL, NULL},
 };
 
-static const struct topic_object unknowns_objects[] = {
+static const struct inner unknowns_objects[] = {
     {"potential", "Phi(r)", "potential"},
     {"omega", "omega(r)", "omega"},
     {"numbers",
@@ -48,20 +53,20 @@ static const struct topic_object unknowns_objects[] = {
     {NULL, NULL, NULL},
 };
 
-static const struct topic_object potential_objects[] = {
+static const struct inner potential_objects[] = {
     {"start", "a law to begin with, in a mixture one for each pair type", "conservative"},
     {"truth", "the law that is known to be true, to be compared with", "conservative"},
     {NULL, NULL, NULL},
 };
 
-static const struct topic_object omega_objects[] = {
+static const struct inner omega_objects[] = {
     {"fixed", "parameters of the curve \"power\" that are not to be found", "fixed"},
     {"start", "a law to begin with", "dissipative"},
     {"truth", "the law that is known to be true, to be compared with", "dissipative"},
     {NULL, NULL, NULL},
 };
 
-static const struct topic_object scene_objects[] = {
+static const struct inner scene_objects[] = {
     {"particles", "how many, and where", "particles"},
     {"conservative", "{\"law\": …}, the potential; in a mixture one for each pair type",
      "conservative"},
@@ -80,7 +85,7 @@ static const struct topic_object scene_objects[] = {
 /// The objects in what a topic is about.
 static const struct {
     const char *topic;
-    const struct topic_object *objects;
+    const struct inner *objects;
 } contents[] = {
     {"run", run_objects},           {"scene", scene_objects},         {"target", target_objects},
     {"unknowns", unknowns_objects}, {"potential", potential_objects}, {"omega", omega_objects},
@@ -181,11 +186,21 @@ size_t mf_describe_topics(struct topic topics[DESCRIBE_MOST_TOPICS]) {
     return n;
 }
 
-const struct topic_object *mf_describe_objects(const char *topic) {
+static size_t add_object(struct topic_object *objects, size_t n, const char *key, const char *help,
+                         const char *topic) {
+    snprintf(objects[n].key, sizeof objects[n].key, "%s", key);
+    snprintf(objects[n].help, sizeof objects[n].help, "%s", help);
+    snprintf(objects[n].topic, sizeof objects[n].topic, "%s", topic);
+    return n + 1;
+}
+
+size_t mf_describe_objects(const char *topic, struct topic_object objects[DESCRIBE_MOST_OBJECTS]) {
+    size_t n = 0;
     for (size_t k = 0; k < sizeof contents / sizeof *contents; k++)
         if (strcmp(contents[k].topic, topic) == 0)
-            return contents[k].objects;
-    return NULL;
+            for (const struct inner *inner = contents[k].objects; inner->key; inner++)
+                n = add_object(objects, n, inner->key, inner->help, inner->topic);
+    return n;
 }
 
 static void print_index(const struct topic *topics, size_t count) {
@@ -199,10 +214,12 @@ static void print_index(const struct topic *topics, size_t count) {
     printf("\n`mesofit describe NAME` lists the numbers of one of them, or of a whole group.\n");
 }
 
-static void print_objects(const struct topic_object *objects) {
-    for (; objects && objects->key; objects++) {
-        printf("  %-24s %s\n", objects->key, objects->help);
-        printf("  %-24s   object, see `mesofit describe %s`\n", "", objects->topic);
+static void print_objects(const char *topic) {
+    struct topic_object objects[DESCRIBE_MOST_OBJECTS];
+    const size_t count = mf_describe_objects(topic, objects);
+    for (size_t k = 0; k < count; k++) {
+        printf("  %-24s %s\n", objects[k].key, objects[k].help);
+        printf("  %-24s   object, see `mesofit describe %s`\n", "", objects[k].topic);
     }
 }
 
@@ -210,7 +227,7 @@ static void print_topic(const struct topic *topic) {
     printf("%s (%s): %s\n", topic->name, topic->group, topic->summary);
     for (size_t t = 0; topic->tables[t]; t++)
         mf_fields_describe(topic->tables[t], stdout);
-    print_objects(mf_describe_objects(topic->name));
+    print_objects(topic->name);
 }
 
 /// The topics of that name, and all of a group of that name; false if there is none.

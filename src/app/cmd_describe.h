@@ -7,7 +7,7 @@
 
 #include <stddef.h>
 
-enum { DESCRIBE_MOST_TOPICS = 64 };
+enum { DESCRIBE_MOST_TOPICS = 64, DESCRIBE_MOST_OBJECTS = 32 };
 
 /// A thing with a name of its own: an object of a file, a law, an integrator, a method.
 struct topic {
@@ -17,11 +17,11 @@ struct topic {
 
 /// An object inside another, and the topic or group that says what stands in it.
 struct topic_object {
-    const char *key, *help, *topic;
+    char key[64], help[256], topic[64];
 };
 
 /// All topics, those of a group together: fixed ones, and one for each record in the lists.
 size_t mf_describe_topics(struct topic topics[DESCRIBE_MOST_TOPICS]);
 
-/// The objects in what a topic is about, up to one without a key; NULL if it has none.
-const struct topic_object *mf_describe_objects(const char *topic);
+/// The objects in what a topic is about; returns their number.
+size_t mf_describe_objects(const char *topic, struct topic_object objects[DESCRIBE_MOST_OBJECTS]);

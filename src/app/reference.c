@@ -208,11 +208,12 @@ static void refer(char *text, size_t size, const struct look *look, const char *
 static void print_topic(FILE *stream, const struct look *look, const struct topic *topic,
                         const struct topic *topics, size_t count) {
     static const char *const titles[] = {"key", "what", "type", "unit", "default", "range", NULL};
-    const struct topic_object *object = mf_describe_objects(topic->name);
+    struct topic_object objects[DESCRIBE_MOST_OBJECTS];
+    const size_t object_count = mf_describe_objects(topic->name, objects);
     char kind[128];
     look->heading(stream, 2, topic->name);
     look->paragraph(stream, topic->summary);
-    bool any = object != NULL;
+    bool any = object_count > 0;
     for (size_t t = 0; topic->tables[t]; t++)
         any = any || topic->tables[t]->name;
     if (any)
@@ -220,10 +221,10 @@ static void print_topic(FILE *stream, const struct look *look, const struct topi
     for (size_t t = 0; topic->tables[t]; t++)
         for (const struct field *field = topic->tables[t]; field->name; field++)
             print_field(stream, look, titles, field);
-    for (; object && object->key; object++) {
-        refer(kind, sizeof kind, look, object->topic, topics, count);
+    for (size_t k = 0; k < object_count; k++) {
+        refer(kind, sizeof kind, look, objects[k].topic, topics, count);
         look->row(stream, titles,
-                  (const char *const[CELLS]){object->key, object->help, kind, "", "", ""});
+                  (const char *const[CELLS]){objects[k].key, objects[k].help, kind, "", "", ""});
     }
 }
 
