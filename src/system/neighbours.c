@@ -157,7 +157,7 @@ struct watched {
     const struct particles *particles;
 };
 
-/// Whether none of a stretch of particles has moved by half the skin: 0 or 1.
+/// Whether some particle of a stretch has moved by half the skin: 0 or 1.
 SIMD_CLONES static double has_moved(const void *context, size_t begin, size_t end) {
     const struct watched *watched = context;
     const int dimensions = watched->particles->box.dimensions;
