@@ -126,9 +126,9 @@ static void test_fit_finds_a_of_a_twin_from_its_structure(void **state) {
 static void test_fit_finds_the_temperature_and_verifies_at_it(void **state) {
     write_target(*state);
     write_fit(*state,
-              (const char *const[]){
-                  SIGMA, "\"temperature\": {\"minimum\": 0.4, \"maximum\": 2, \"start\": 0.6}",
-                  "\"sigma\": 5", "\"sigma\": 3", NULL});
+              (const char *const[]){SIGMA, "\"temperature\": {\"minimum\": 0.4, \"maximum\": 2}",
+                                    "\"sigma\": 5", "\"sigma\": 3", "\"time_step\"",
+                                    "\"temperature\": 0.6, \"time_step\"", NULL});
     run_fit(0);
     assert_found("temperature", 1, 0.1);
     const double found = number("out/summary.json", "temperature", "value");
@@ -185,7 +185,7 @@ static void test_fit_of_numbers_gives_the_same_bits_from_used_and_in_pieces(void
     static const char *const keys[] = {"value", "error"};
     write_target(*state);
     write_fit(*state,
-              (const char *const[]){GAUSS_NEWTON, "\"name\": \"cma-es\", \"rounds\": 4", NULL});
+              (const char *const[]){GAUSS_NEWTON, "\"name\": \"cma-es\", \"rounds\": 14", NULL});
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "1", "--threads", "1", "--quiet");
     run_program_assert_code(&result, 0);
     RUN_PROGRAM(&result, "fit", "1/used.json", "-o", "again", "--quiet");
