@@ -113,9 +113,13 @@ MESOFIT_API enum mesofit_status mesofit_fit_verify(struct mesofit_fit *fit,
  *  Methods that search ("genetic", "cma-es", "nlopt", "gauss-newton", "pareto") write the unknown
  *  laws by coefficients from 0 to 1. The caller asks for the error of any of them.
  */
+
+/** Coefficients of the laws and of the numbers of the scene that are to be found, one behind the
+ *  other; 0 of a method that does not search. */
 MESOFIT_API size_t mesofit_fit_coefficients(const struct mesofit_fit *fit);
 
-/** Coefficients of the curves that the fit begins with, shape [coefficients]. Fails: NO_MEMORY. */
+/** Those that the fit begins with, shape [coefficients]. Fails: BAD_INPUT if the method does not
+ *  search; NO_MEMORY. */
 MESOFIT_API enum mesofit_status mesofit_fit_start(const struct mesofit_fit *fit,
                                                   double *coefficients);
 

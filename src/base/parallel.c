@@ -56,7 +56,7 @@ static bool comes_before(const struct failure *failure, enum status status, size
 
 static bool may_begin(const struct failure *failure, size_t task) {
     bool may;
-#pragma omp critical(parallel_try)
+#pragma omp critical
     may = failure->status != STATUS_INTERRUPTED && task < failure->task;
     return may;
 }
@@ -69,7 +69,7 @@ static void try_one(const struct parallel_tasks *tasks, size_t task, struct fail
         status = STATUS_NO_MEMORY;
     if (status == STATUS_OK)
         status = tasks->run(tasks->context, task, result);
-#pragma omp critical(parallel_try)
+#pragma omp critical
     {
         if (status == STATUS_OK && tasks->take) {
             tasks->take(tasks->context, task, result);

@@ -47,29 +47,11 @@ static double *begin_column(struct data_column *column, const char *name, double
     return memory;
 }
 
-/// pareto.tsv: every parent that has not failed.
-static enum status write_front(const struct pareto_state *state,
-                               const struct inverse_folder *folder, const struct line *lines,
-                               size_t rows) {
-    enum status status = STATUS_OK;
-    const size_t objectives = state->objectives, most = EXTRA_COLUMNS + 2 * objectives;
-    char names[2 * TARGETS][NAME_SIZE], path[OUTPUT_PATH_SIZE];
-    struct data_column *column = NULL;
-    double *memory = NULL;
-    NEW_ARRAY(column, most);
-    NEW_ARRAY(memory, most * (rows + 1));
-    double *value[EXTRA_COLUMNS + 2 * TARGETS];
-    static const char *const extra[EXTRA_COLUMNS] = {"member", "rank", "chosen", "measured",
-                                                     "error[1]"};
-    for (size_t c = 0; c < most; c++) {
-        const size_t m = (c - EXTRA_COLUMNS) % objectives;
-        if (c >= EXTRA_COLUMNS)
-            snprintf(names[c - EXTRA_COLUMNS], NAME_SIZE, "%s_%s[1]",
-                     mf_targets_names[state->target[m]],
-                     c < EXTRA_COLUMNS + objectives ? "rmse" : "noise");
-        value[c] = begin_column(&column[c], c < EXTRA_COLUMNS ? extra[c] : names[c - EXTRA_COLUMNS],
-                                memory + c * (rows + 1), NULL);
-    }
+/// Rows of pareto.tsv.
+/// @param[out] value  columns, shape [EXTRA_COLUMNS + 2 objectives + numbers][rows]
+static void fill_front(const struct pareto_state *state, const struct line *lines, size_t rows,
+                       double *const *value) {
+    const size_t objectives = state->objectives;
     for (size_t k = 0; k < rows; k++) {
         const size_t parent = lines[k].parent;
         value[0][k] = (double)k + 1;
@@ -81,7 +63,43 @@ static enum status write_front(const struct pareto_state *state,
             value[EXTRA_COLUMNS + m][k] = mf_pareto_value(state, parent)[m];
             value[EXTRA_COLUMNS + objectives + m][k] = state->progress.noise[m];
         }
+        struct inverse_parameter found[INVERSE_MOST_NUMBERS];
+        mf_parametrisation_numbers(&state->parametrisation, mf_nsga2_parent(&state->nsga2, parent),
+                                   NULL, found);
+        for (size_t n = 0; n < state->problem->numbers; n++)
+            value[EXTRA_COLUMNS + 2 * objectives + n][k] = found[n].value;
     }
+}
+
+/// pareto.tsv: every parent that has not failed.
+static enum status write_front(const struct pareto_state *state,
+                               const struct inverse_folder *folder, const struct line *lines,
+                               size_t rows) {
+    enum status status = STATUS_OK;
+    const size_t objectives = state->objectives, of_targets = EXTRA_COLUMNS + 2 * objectives;
+    const struct inverse_problem *problem = state->problem;
+    const size_t most = of_targets + problem->numbers;
+    char names[2 * TARGETS][NAME_SIZE], path[OUTPUT_PATH_SIZE];
+    struct data_column *column = NULL;
+    double *memory = NULL;
+    NEW_ARRAY(column, most);
+    NEW_ARRAY(memory, most * (rows + 1));
+    double *value[EXTRA_COLUMNS + 2 * TARGETS + INVERSE_MOST_NUMBERS];
+    static const char *const extra[EXTRA_COLUMNS] = {"member", "rank", "chosen", "measured",
+                                                     "error[1]"};
+    for (size_t n = 0; n < problem->numbers; n++)
+        value[of_targets + n] = begin_column(&column[of_targets + n], problem->number[n].name,
+                                             memory + (of_targets + n) * (rows + 1), NULL);
+    for (size_t c = 0; c < of_targets; c++) {
+        const size_t m = (c - EXTRA_COLUMNS) % objectives;
+        if (c >= EXTRA_COLUMNS)
+            snprintf(names[c - EXTRA_COLUMNS], NAME_SIZE, "%s_%s[1]",
+                     mf_targets_names[state->target[m]],
+                     c < EXTRA_COLUMNS + objectives ? "rmse" : "noise");
+        value[c] = begin_column(&column[c], c < EXTRA_COLUMNS ? extra[c] : names[c - EXTRA_COLUMNS],
+                                memory + c * (rows + 1), NULL);
+    }
+    fill_front(state, lines, rows, value);
     folder->file(folder->context, "pareto.tsv", path);
     CHECK(mf_data_table_write(path, NULL, column, most, rows));
 done:

@@ -202,6 +202,21 @@ static void test_fit_from_arrays_comes_nearer_and_verifies(void **state) {
     mesofit_fit_free(fit);
 }
 
+/// An inversion moves no variables: it makes none.
+static void test_inversion_has_no_coefficients(void **state) {
+    (void)state;
+    double r[BINS], g[BINS], error[BINS], value = 0.5, variance;
+    make_target(r, g, error);
+    const struct mesofit_fit_options options = small_fit(r, g, error);
+    struct mesofit_fit *fit = mesofit_fit_create(&options);
+    assert_non_null(fit);
+    assert_int_equal(mesofit_fit_coefficients(fit), 0);
+    assert_int_equal(mesofit_fit_start(fit, &value), MESOFIT_BAD_INPUT);
+    assert_non_null(strstr(mesofit_message(), "does not measure candidates"));
+    assert_int_equal(mesofit_fit_evaluate(fit, &value, 1, &value, &variance), MESOFIT_BAD_INPUT);
+    mesofit_fit_free(fit);
+}
+
 static int cancel(void *context, uint32_t iteration, uint64_t done, uint64_t total) {
     (void)iteration, (void)done, (void)total;
     ++*(int *)context;
@@ -274,6 +289,7 @@ int main(void) {
         cmocka_unit_test(test_scene_reads_its_table_from_memory),
         cmocka_unit_test(test_own_force_holds_particles_as_equipartition_says),
         cmocka_unit_test(test_simulations_of_two_threads_are_those_of_one),
+        cmocka_unit_test(test_inversion_has_no_coefficients),
         cmocka_unit_test(test_fit_from_arrays_comes_nearer_and_verifies),
         cmocka_unit_test(test_fit_is_cancelled_by_its_listener_alone),
         cmocka_unit_test(test_handler_of_gsl_is_again_the_callers),

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "problem/numbers.h"
+
+#include "curves/formula.h"
+#include "problem/parametrisation.h"
+#include "shared/is_close.h"
+#include "shared/testing.h"
+
+#include <math.h>
+
+enum { PAIRS = 3 };
+
+/// A mixture with three soft potentials and one friction weight; a of A-B, sigma, the temperature
+/// and lambda are to be found.
+struct mixture {
+    struct formula_soft_repulsion_parameters soft[PAIRS];
+    struct formula_power_omega_parameters power;
+    struct curve potential[PAIRS], omega;
+    struct table tables[UNKNOWNS];
+    struct inverse_problem problem;
+};
+
+static void make_tables(const struct mixture *mixture, double a, double sigma,
+                        struct table tables[UNKNOWNS]) {
+    struct mixture other = *mixture;
+    struct table part[PAIRS] = {{0}};
+    other.soft[1].a = a;
+    other.power.sigma = sigma;
+    for (int pair = 0; pair < PAIRS; pair++)
+        assert_ok(mf_table_init_potential(
+            &part[pair], &(struct curve){&mf_formula_soft_repulsion, &other.soft[pair]}));
+    assert_ok(mf_table_stack(&tables[UNKNOWN_POTENTIAL], part, PAIRS));
+    for (int pair = 0; pair < PAIRS; pair++)
+        mf_table_clear(&part[pair]);
+    assert_ok(mf_table_init_omega(&tables[UNKNOWN_OMEGA],
+                                  &(struct curve){&mf_formula_power_omega, &other.power}));
+}
+
+static void begin(struct mixture *mixture) {
+    *mixture = (struct mixture){.soft = {{25, 1}, {30, 1}, {35, 1}}, .power = {3, 1, 0, 1}};
+    for (int pair = 0; pair < PAIRS; pair++)
+        mixture->potential[pair] = (struct curve){&mf_formula_soft_repulsion, &mixture->soft[pair]};
+    mixture->omega = (struct curve){&mf_formula_power_omega, &mixture->power};
+    make_tables(mixture, 30, 3, mixture->tables);
+    mixture->problem = (struct inverse_problem){
+        .numbers = 4,
+        .number = {{"conservative.A-B.a", "", 10, 50, 40, INVERSE_OF_POTENTIAL, 1,
+                    offsetof(struct formula_soft_repulsion_parameters, a)},
+                   {"dissipative.sigma", "", 1, 9, 3, INVERSE_OF_OMEGA, 0,
+                    offsetof(struct formula_power_omega_parameters, sigma)},
+                   {"temperature", "", 0.5, 1.5, 1, INVERSE_OF_SETUP, 0,
+                    offsetof(struct simulation_setup, temperature)},
+                   {"dynamics.lambda", "", 0, 1, 0.65, INVERSE_OF_SETUP, 0,
+                    offsetof(struct simulation_setup, integrator_parameters) +
+                        offsetof(struct integrator_parameters, lambda)}},
+        .law = {{PAIRS, mixture->potential}, {1, &mixture->omega}},
+        .scene = {.temperature = 1,
+                  .integrator_parameters = {.lambda = 0.5},
+                  .potential = &mixture->tables[UNKNOWN_POTENTIAL],
+                  .omega = &mixture->tables[UNKNOWN_OMEGA]}};
+}
+
+static void finish(struct mixture *mixture) {
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        mf_table_clear(&mixture->tables[kind]);
+}
+
+static void assert_same_table(const struct table *a, const struct table *b) {
+    assert_int_equal(a->curves, b->curves);
+    assert_identical(a->cutoff, b->cutoff);
+    const size_t count = (size_t)a->curves * (TABLE_INTERVALS + 1) * (size_t)a->terms;
+    for (size_t k = 0; k < count; k++)
+        assert_identical(a->coefficient[k], b->coefficient[k]);
+}
+
+static void test_numbers_apply_gives_the_tables_and_settings_of_a_scene_that_says_so(void **state) {
+    (void)state;
+    struct mixture mixture;
+    struct inverse_problem changed = {0};
+    struct table own[UNKNOWNS] = {{0}}, wanted[UNKNOWNS] = {{0}};
+    begin(&mixture);
+    const double value[] = {20, 5, 0.8, 0.7};
+    assert_ok(mf_numbers_apply(&mixture.problem, value, &changed, own));
+    make_tables(&mixture, 20, 5, wanted);
+    assert_same_table(changed.scene.potential, &wanted[UNKNOWN_POTENTIAL]);
+    assert_same_table(changed.scene.omega, &wanted[UNKNOWN_OMEGA]);
+    assert_identical(changed.scene.temperature, 0.8);
+    assert_identical(changed.scene.integrator_parameters.lambda, 0.7);
+    // The problem is as it was.
+    assert_identical(mixture.problem.scene.temperature, 1);
+    assert_identical(mixture.soft[1].a, 30);
+    assert_ptr_equal(mixture.problem.scene.potential, &mixture.tables[UNKNOWN_POTENTIAL]);
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        mf_table_clear(&own[kind]);
+        mf_table_clear(&wanted[kind]);
+    }
+    finish(&mixture);
+}
+
+static void test_numbers_apply_leaves_laws_alone_that_no_number_belongs_to(void **state) {
+    (void)state;
+    struct mixture mixture;
+    struct inverse_problem changed = {0};
+    struct table own[UNKNOWNS] = {{0}};
+    begin(&mixture);
+    mixture.problem.number[0] = mixture.problem.number[2];
+    mixture.problem.numbers = 1;
+    assert_ok(mf_numbers_apply(&mixture.problem, &(double){1.25}, &changed, own));
+    assert_identical(changed.scene.temperature, 1.25);
+    assert_ptr_equal(changed.scene.potential, &mixture.tables[UNKNOWN_POTENTIAL]);
+    assert_ptr_equal(changed.scene.omega, &mixture.tables[UNKNOWN_OMEGA]);
+    assert_null(own[UNKNOWN_POTENTIAL].coefficient);
+    finish(&mixture);
+}
+
+static void test_numbers_are_variables_from_minimum_to_maximum_with_errors(void **state) {
+    (void)state;
+    struct mixture mixture;
+    struct parametrisation parametrisation;
+    struct inverse_parameter found[INVERSE_MOST_NUMBERS];
+    double variables[4], covariance[16] = {0};
+    begin(&mixture);
+    assert_ok(mf_parametrisation_init(&parametrisation, &mixture.problem));
+    assert_int_equal(parametrisation.variables, 4);
+    assert_ok(mf_parametrisation_start(&parametrisation, variables));
+    const double wanted[] = {0.75, 0.25, 0.5, 0.65}, range[] = {40, 8, 1, 1};
+    for (int n = 0; n < 4; n++) {
+        assert_close(variables[n], wanted[n], 1e-12);
+        covariance[5 * n] = 0.01 * 0.01 * (n + 1) * (n + 1);
+    }
+    mf_parametrisation_numbers(&parametrisation, variables, covariance, found);
+    for (int n = 0; n < 4; n++) {
+        assert_close(found[n].value, mixture.problem.number[n].start, 1e-12);
+        assert_close(found[n].error, 0.01 * (n + 1) * range[n], 1e-12);
+    }
+    mf_parametrisation_numbers(&parametrisation, variables, NULL, found);
+    assert_true(isnan(found[0].error));
+    mf_parametrisation_clear(&parametrisation);
+    finish(&mixture);
+}
+
+/// Variables of the numbers stand behind those of the curves, which stay what they were.
+static void test_numbers_stand_behind_the_curves_and_change_none(void **state) {
+    (void)state;
+    struct mixture mixture;
+    struct parametrisation parametrisation;
+    struct unknowns_laws laws;
+    double variables[6], before[OMEGA_POINTS], after[OMEGA_POINTS];
+    begin(&mixture);
+    mixture.problem.unknown[UNKNOWN_OMEGA] =
+        (struct unknown){true, {INVERSE_CURVE_BSPLINE, 5, 0, 6, 0, 1, {0}}, {&mixture.omega}};
+    mixture.problem.numbers = 1;
+    assert_ok(mf_parametrisation_init(&parametrisation, &mixture.problem));
+    assert_int_equal(parametrisation.variables, 6);
+    assert_int_equal(parametrisation.first_number, 5);
+    assert_ok(mf_parametrisation_start(&parametrisation, variables));
+    mf_parametrisation_curve(&parametrisation, UNKNOWN_OMEGA, variables, before);
+    variables[5] = 0.25;
+    mf_parametrisation_curve(&parametrisation, UNKNOWN_OMEGA, variables, after);
+    for (size_t k = 0; k < OMEGA_POINTS; k++)
+        assert_identical(after[k], before[k]);
+    assert_ok(mf_parametrisation_laws(&parametrisation, variables, &laws));
+    struct table wanted[UNKNOWNS] = {{0}};
+    make_tables(&mixture, 20, 3, wanted);
+    assert_same_table(laws.table[UNKNOWN_POTENTIAL], &wanted[UNKNOWN_POTENTIAL]);
+    assert_ptr_equal(laws.table[UNKNOWN_OMEGA], &laws.own[UNKNOWN_OMEGA]);
+    mf_unknowns_laws_clear(&laws);
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        mf_table_clear(&wanted[kind]);
+    mf_parametrisation_clear(&parametrisation);
+    finish(&mixture);
+}
+
+static void test_numbers_bound_is_the_end_that_a_value_has_come_to(void **state) {
+    (void)state;
+    const struct inverse_number number = {.minimum = -2, .maximum = 8};
+    assert_string_equal(mf_numbers_bound(&number, -1.995), "minimum");
+    assert_string_equal(mf_numbers_bound(&number, 8), "maximum");
+    assert_null(mf_numbers_bound(&number, 0));
+    assert_null(mf_numbers_bound(&number, NAN));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_numbers_apply_gives_the_tables_and_settings_of_a_scene_that_says_so),
+        cmocka_unit_test(test_numbers_apply_leaves_laws_alone_that_no_number_belongs_to),
+        cmocka_unit_test(test_numbers_are_variables_from_minimum_to_maximum_with_errors),
+        cmocka_unit_test(test_numbers_stand_behind_the_curves_and_change_none),
+        cmocka_unit_test(test_numbers_bound_is_the_end_that_a_value_has_come_to),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
