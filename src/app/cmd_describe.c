@@ -2,7 +2,7 @@
 #include "app/command.h"
 #include "base/nearest.h"
 #include "input/fit_file.h"
-#include "work/simulate.h"
+#include "observe/measure.h"
 
 #include <string.h>
 
@@ -24,16 +24,6 @@ static const struct inner run_objects[] = {
     {"method", "its \"name\" and numbers", "method"},
     {"core", "where the target is 0", "core"},
     {"verification", "independent simulations of the result", "verification"},
-    {NULL, NULL, NULL},
-};
-
-static const struct inner target_objects[] = {
-    {"rdf", "g(r); in a mixture one for each pair type, as \"A-B\"", "rdf-target"},
-    {"etd", "escape times of pairs", "etd-target"},
-    {"vacf", "velocity autocorrelation", "curve-target"},
-    {"msd", "mean-square displacement", "curve-target"},
-    {"diffusion", "D", "number-target"},
-    {"pressure", "P", "number-target"},
     {NULL, NULL, NULL},
 };
 
@@ -63,11 +53,7 @@ static const struct inner scene_objects[] = {
     {"dissipative", "{\"law\": …}, the friction weight; likewise", "dissipative"},
     {"dynamics", "{\"integrator\": …} and its numbers", "dynamics"},
     {"units", "physical units for the results", "units"},
-    {"measure", "when to sample; this and the rest in a scene file only", "measure"},
-    {"rdf", "g(r)", "rdf"},
-    {"motion", "diffusion; measured if it is there", "motion"},
-    {"etd", "escape times; measured if it is there", "etd"},
-    {"force_covariance", "friction from forces; measured if it is there", "force_covariance"},
+    {"measure", "when to sample; this and observables in a scene file only", "measure"},
     {NULL, NULL, NULL},
 };
 
@@ -76,8 +62,9 @@ static const struct {
     const char *topic;
     const struct inner *objects;
 } contents[] = {
-    {"run", run_objects},           {"scene", scene_objects},         {"target", target_objects},
-    {"unknowns", unknowns_objects}, {"potential", potential_objects}, {"omega", omega_objects},
+    {"run", run_objects},           {"scene", scene_objects},
+    {"unknowns", unknowns_objects}, {"potential", potential_objects},
+    {"omega", omega_objects},
 };
 
 enum { MAX_TOPICS = 64 };
@@ -93,20 +80,6 @@ static const struct topic fixed_topics[] = {
      "\"particles\" of a scene; a mixture has \"types\": {\"A\": 500, \"B\": 300} for \"count\"",
      {mf_placement_count_fields, mf_placement_fields}},
     {"files", "measure", "\"measure\" of a scene file: when to sample", {mf_measure_plan_fields}},
-    {"files", "rdf", "\"rdf\" of a scene file", {mf_simulate_rdf_fields}},
-    {"files",
-     "motion",
-     "\"motion\" of a scene file: diffusion; measured if it is there",
-     {mf_motion_plan_fields}},
-    {"files",
-     "etd",
-     "\"etd\" of a scene file: escape times of pairs; measured if it is there",
-     {mf_etd_grid_fields, mf_etd_plan_fields}},
-    {"files",
-     "force_covariance",
-     "\"force_covariance\" of a scene file: friction as the forces show it; measured if it is "
-     "there",
-     {mf_force_covariance_fields}},
     {"files", "units", "\"units\" of a scene: physical units for the results", {mf_units_fields}},
     {"files", "core", "\"core\" of a run file: where the target is 0", {mf_fit_core_fields}},
     {"files",
@@ -124,13 +97,17 @@ static const struct topic fixed_topics[] = {
      {mf_target_etd_fields, mf_target_files_use_fields}},
     {"target",
      "curve-target",
-     "\"vacf\" and \"msd\": functions of time, each with its file",
-     {mf_target_files_curve_fields, mf_target_files_use_fields}},
+     "a function of time, as \"vacf\" and \"msd\", with its file",
+     {mf_target_curve_time_fields, mf_target_files_use_fields}},
+    {"target",
+     "function-target",
+     "any other function, with its file and the settings of its observable",
+     {mf_target_curve_fields, mf_target_files_use_fields}},
     {"target",
      "number-target",
-     "\"diffusion\" and \"pressure\"",
-     {mf_target_files_number_fields, mf_target_files_use_fields}},
-    {"target", "diffusion-target", "\"diffusion\" besides", {mf_target_files_diffusion_fields}},
+     "a number, as \"diffusion\" and \"pressure\"",
+     {mf_target_curve_number_fields, mf_target_files_use_fields}},
+    {"target", "diffusion-target", "\"diffusion\" besides", {mf_target_curve_diffusion_fields}},
     {"unknowns", "unknowns", "\"unknowns\" of a run file", {NULL}},
     {"unknowns", "potential", "Phi(r), to be found", {mf_inverse_potential_fields}},
     {"unknowns", "omega", "omega(r), to be found", {mf_inverse_omega_fields}},
@@ -151,6 +128,12 @@ static size_t add_curves(struct topic *topics, size_t n, const char *group,
 static size_t collect(struct topic topics[MAX_TOPICS]) {
     size_t n = sizeof fixed_topics / sizeof *fixed_topics;
     memcpy(topics, fixed_topics, sizeof fixed_topics);
+    for (size_t k = 0; mf_observables[k]; k++)
+        if (mf_observables[k]->fields)
+            topics[n++] = (struct topic){"observables",
+                                         mf_observables[k]->name,
+                                         mf_observables[k]->summary,
+                                         {mf_observables[k]->fields}};
     n = add_curves(topics, n, "conservative", mf_curve_potentials);
     n = add_curves(topics, n, "dissipative", mf_curve_omegas);
     for (size_t k = 0; mf_integrator_list[k]; k++)
@@ -179,10 +162,40 @@ static void print_index(const struct topic *topics, size_t count) {
     printf("\n`mesofit describe NAME` lists the numbers of one of them, or of a whole group.\n");
 }
 
+static void print_object(const char *key, const char *help, const char *topic) {
+    printf("  %-24s %s\n", key, help);
+    printf("  %-24s   object, see `mesofit describe %s`\n", "", topic);
+}
+
 static void print_objects(const struct inner *objects) {
-    for (; objects->key; objects++) {
-        printf("  %-24s %s\n", objects->key, objects->help);
-        printf("  %-24s   object, see `mesofit describe %s`\n", "", objects->topic);
+    for (; objects->key; objects++)
+        print_object(objects->key, objects->help, objects->topic);
+}
+
+/// The objects of a scene file that say what is measured.
+static void print_observables(void) {
+    for (size_t k = 0; mf_observables[k]; k++) {
+        const struct observable *observable = mf_observables[k];
+        char help[256];
+        snprintf(help, sizeof help, "%s%s", observable->summary,
+                 observable->always ? "" : "; measured if it is there");
+        if (observable->fields)
+            print_object(observable->name, help, observable->name);
+    }
+}
+
+/// The objects of a run file's "target", and of what form each is.
+static void print_targets(void) {
+    static const char *const forms[] = {[OBSERVABLE_NUMBER] = "number",
+                                        [OBSERVABLE_CURVE] = "function",
+                                        [OBSERVABLE_CURVE_OF_TIME] = "curve"};
+    struct observable_kind found;
+    for (int kind = 0; (found = mf_observable_kind(kind)).observable; kind++) {
+        const struct observable_target *target = found.target;
+        char topic[64];
+        snprintf(topic, sizeof topic, "%s-target",
+                 target->form == OBSERVABLE_OWN_FORM ? target->name : forms[target->form]);
+        print_object(target->name, target->summary, topic);
     }
 }
 
@@ -193,6 +206,10 @@ static void print_topic(const struct topic *topic) {
     for (size_t k = 0; k < sizeof contents / sizeof *contents; k++)
         if (strcmp(contents[k].topic, topic->name) == 0)
             print_objects(contents[k].objects);
+    if (strcmp(topic->name, "scene") == 0)
+        print_observables();
+    if (strcmp(topic->name, "target") == 0)
+        print_targets();
 }
 
 /// The topics of that name, and all of a group of that name; false if there is none.

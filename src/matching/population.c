@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "base/rng.h"
+#include "observe/rdf_force.h"
 
 #include <math.h>
 #include <string.h>
