@@ -99,14 +99,14 @@ t_axis_of(file) = in_units(file, "time[ps]", "{/:Italic t} / ps", t_label)
 # What a target is called, and the unit of its error.
 goal_label(goal) = goal eq "rdf" ? "{/:Italic g}" : goal eq "etd" ? "{/:Italic E}" : \
     goal eq "vacf" ? "VACF" : goal eq "msd" ? "MSD" : \
-    goal eq "diffusion" ? "{/:Italic D}" : "{/:Italic p}"
+    goal eq "diffusion" ? "{/:Italic D}" : goal eq "pressure" ? "{/:Italic p}" : goal
 goal_unit(goal) = goal eq "vacf" ? " / ({/:Italic λ}^2/{/:Italic τ}^2)" : \
     goal eq "msd" ? " / {/:Italic λ}^2" : goal eq "diffusion" ? " / ({/:Italic λ}^2/{/:Italic τ})" : \
     goal eq "pressure" ? " / ({/:Italic k}_B{/:Italic T}_0/{/:Italic λ}^3)" : ""
 rmse_of(goal) = "rmse of " . goal_label(goal) . goal_unit(goal)
 
 # What the column "error" of a fit is, from the targets that used.json says are fitted.
-fitted = !has("used.json") ? "" : system("awk '/\"(rdf|etd|vacf|msd|diffusion|pressure)\":/ { \
+fitted = !has("used.json") ? "" : system("awk '/\"[a-z_]+\":[ \t]*\\{/ { \
     split($0, part, /\"/); kind = part[2] } /\"fitted\":.*\"yes\"/ { printf \" %s\", kind }' used.json")
 error_label = words(fitted) > 1 ? "weighted error" : \
     rmse_of(words(fitted) == 1 ? word(fitted, 1) : "rdf")

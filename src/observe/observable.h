@@ -15,6 +15,9 @@
 
 struct measure_plan;
 
+/// The script that draws x, values and errors of the first file, and a target of that name.
+#define OBSERVABLE_FIGURE_OF_CURVE "curve"
+
 enum { OBSERVABLES_MOST = 16, OBSERVABLE_MOST_SPANS = 8 };
 
 /// Where and of what results are written.
@@ -94,7 +97,7 @@ struct observable {
     const char *stage; ///< what `--explain` calls it if it is not measured
 
     const char *const *files; ///< that `write` makes, NULL-terminated; * for names of types
-    const char *figure;       ///< script in plots/ that draws its files
+    const char *figure;       ///< script in plots/ that draws its files, or that of any curve
 
     const struct observable_target *targets; ///< that it supplies, or NULL
     /// Values of those, shape [targets], from `count` replicas together. Fails: NO_MEMORY.

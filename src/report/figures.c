@@ -228,13 +228,18 @@ static enum status draw_figure(const char *folder, const char *plots, const stru
     return draw(folder, plots, figure->name, "");
 }
 
-/// The figure of an observable as a simulation writes it.
+/// The figure of an observable; that without a script of its own is told what to draw.
 static enum status draw_observable(const char *folder, const char *plots,
                                    const struct observable *observable, size_t *count) {
     if (observable->figure == NULL || !has_files(folder, observable->files))
         return STATUS_OK;
     ++*count;
-    return draw(folder, plots, observable->figure, "");
+    if (strcmp(observable->figure, OBSERVABLE_FIGURE_OF_CURVE) != 0)
+        return draw(folder, plots, observable->figure, "");
+    if (setenv("MESOFIT_TABLE", observable->files[0], 1) != 0 ||
+        setenv("MESOFIT_FIGURE", observable->name, 1) != 0)
+        return mf_status_fail(STATUS_NO_MEMORY, "out of memory");
+    return draw_to(folder, plots, observable->figure, observable->name);
 }
 
 /// Draw all figures, and count them, also those that fail.
