@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "observe/observable.h"
 
+/// Of which nothing else knows.
+extern const struct observable mf_structure_factor;
+
 const struct observable *const mf_observables[] = {
     &mf_rdf_observable,
     &mf_etd_observable,
     &mf_motion_observable,
     &mf_thermodynamics_observable,
     &mf_force_covariance_observable,
+    &mf_structure_factor,
     NULL,
 };
 
