@@ -4,7 +4,7 @@
 #include "io/data_table.h"
 #include "observe/measure.h"
 #include "observe/motion.h"
-#include "observe/replicas.h"
+#include "observe/pooled.h"
 
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
@@ -140,7 +140,7 @@ static enum status result(const void *const *states, size_t count,
     const size_t times = (size_t)((const struct motion *)states[0])->plan.lags + 1;
     double *memory = NULL;
     struct motion_summary *summary = NULL;
-    struct replica_curve *vacf = NULL, *msd = NULL, *diffusion = NULL;
+    struct pooled_curve *vacf = NULL, *msd = NULL, *diffusion = NULL;
     NEW_ARRAY(memory, 4 * times * count);
     NEW_ARRAY(summary, count);
     NEW_ARRAY(vacf, count);
@@ -151,13 +151,13 @@ static enum status result(const void *const *states, size_t count,
         const struct motion_curves curves = {own, own + times, own + 2 * times, own + 3 * times};
         summary[k] = mf_motion_result(states[k], &curves);
         const double blocks = summary[k].blocks;
-        vacf[k] = (struct replica_curve){curves.vacf, curves.vacf_error, blocks};
-        msd[k] = (struct replica_curve){curves.msd, curves.msd_error, blocks};
-        diffusion[k] = (struct replica_curve){&summary[k].msd, &summary[k].msd_error, blocks};
+        vacf[k] = (struct pooled_curve){curves.vacf, curves.vacf_error, blocks};
+        msd[k] = (struct pooled_curve){curves.msd, curves.msd_error, blocks};
+        diffusion[k] = (struct pooled_curve){&summary[k].msd, &summary[k].msd_error, blocks};
     }
-    mf_replicas_join(&values[0], vacf, count);
-    mf_replicas_join(&values[1], msd, count);
-    mf_replicas_join(&values[2], diffusion, count);
+    mf_pooled_join(&values[0], vacf, count);
+    mf_pooled_join(&values[1], msd, count);
+    mf_pooled_join(&values[2], diffusion, count);
 done:
     mf_memory_free(summary);
     mf_memory_free(vacf);

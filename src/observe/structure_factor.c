@@ -17,7 +17,7 @@
 #include "base/statistics.h"
 #include "io/data_table.h"
 #include "observe/measure.h"
-#include "observe/replicas.h"
+#include "observe/pooled.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -355,7 +355,7 @@ static enum status result(const void *const *states, size_t count,
     enum status status = STATUS_OK;
     const size_t bins = ((const struct structure_factor *)states[0])->bins;
     double *own = NULL, *read = NULL;
-    struct replica_curve *replicas = NULL;
+    struct pooled_curve *replicas = NULL;
     NEW_ARRAY(own, 2 * bins);
     NEW_ARRAY(read, 2 * count * values->count);
     NEW_ARRAY(replicas, count);
@@ -365,9 +365,9 @@ static enum status result(const void *const *states, size_t count,
         find_curve(s, 0, own, own + bins);
         for (size_t n = 0; n < values->count; n++)
             read_at(s, own, own + bins, values->x[n], &value[n], &error[n]);
-        replicas[k] = (struct replica_curve){value, error, (double)complete_blocks(s)};
+        replicas[k] = (struct pooled_curve){value, error, (double)complete_blocks(s)};
     }
-    mf_replicas_join(values, replicas, count);
+    mf_pooled_join(values, replicas, count);
 done:
     mf_memory_free(own);
     mf_memory_free(read);

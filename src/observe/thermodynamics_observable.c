@@ -2,7 +2,7 @@
 #include "base/memory.h"
 #include "io/data_table.h"
 #include "observe/measure.h"
-#include "observe/replicas.h"
+#include "observe/pooled.h"
 #include "observe/thermodynamics.h"
 
 #include <math.h>
@@ -119,7 +119,7 @@ static enum status result(const void *const *states, size_t count,
                           const struct observable_values *values) {
     for (size_t k = 0; k < count; k++) {
         const struct thermodynamics_summary s = mf_thermodynamics_result(states[k], 1);
-        mf_replicas_add(values, &s.pressure, &s.pressure_error, count);
+        mf_pooled_add(values, &s.pressure, &s.pressure_error, count);
     }
     return STATUS_OK;
 }

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "observe/replicas.h"
+#include "observe/pooled.h"
 
 #include <math.h>
 
-void mf_replicas_add(const struct observable_values *values, const double *value,
-                     const double *error, size_t count) {
+void mf_pooled_add(const struct observable_values *values, const double *value, const double *error,
+                   size_t count) {
     for (size_t k = 0; k < values->count; k++) {
         values->value[k] += value[k] / (double)count;
         values->error[k] = hypot(values->error[k], error[k] / (double)count);
     }
 }
 
-void mf_replicas_join(const struct observable_values *values, const struct replica_curve *replicas,
-                      size_t count) {
+void mf_pooled_join(const struct observable_values *values, const struct pooled_curve *replicas,
+                    size_t count) {
     for (size_t k = 0; k < count; k++)
-        mf_replicas_add(values, replicas[k].value, replicas[k].error, count);
+        mf_pooled_add(values, replicas[k].value, replicas[k].error, count);
     if (count < 2)
         return;
     const double inside = (double)count * fmax(0, replicas->blocks - 1),
