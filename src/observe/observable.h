@@ -2,7 +2,9 @@
 /// @file The record of an observable, and their list: whatever a simulation measures.
 ///
 /// Scene files, restarts, tables, summaries, `--explain`, `mesofit describe` and figures know an
-/// observable by its record alone. What a record does not need is left out (NULL).
+/// observable by its record alone. What a record does not need is left out (NULL): the least is a
+/// name, a summary, fields, `begin`, `clear`, `sample`, `spans` and `stage`; structure_factor.c is
+/// an example of one file. Tested: test_observable, test_structure_factor.
 #pragma once
 
 #include "base/fields.h"
