@@ -99,14 +99,14 @@ t_axis_of(file) = in_units(file, "time[ps]", "{/:Italic t} / ps", t_label)
 # What a target is called, and the unit of its error.
 target_label(target) = target eq "rdf" ? "{/:Italic g}" : target eq "etd" ? "{/:Italic E}" : \
     target eq "vacf" ? "VACF" : target eq "msd" ? "MSD" : \
-    target eq "diffusion" ? "{/:Italic D}" : "{/:Italic p}"
+    target eq "diffusion" ? "{/:Italic D}" : target eq "pressure" ? "{/:Italic p}" : target
 target_unit(target) = target eq "vacf" ? " / ({/:Italic λ}^2/{/:Italic τ}^2)" : \
     target eq "msd" ? " / {/:Italic λ}^2" : target eq "diffusion" ? " / ({/:Italic λ}^2/{/:Italic τ})" : \
     target eq "pressure" ? " / ({/:Italic k}_B{/:Italic T}_0/{/:Italic λ}^3)" : ""
 rmse_of(target) = "rmse of " . target_label(target) . target_unit(target)
 
 # What the column "error" of a fit is, from the targets that used.json says are fitted.
-fitted = !has("used.json") ? "" : system("awk '/\"(rdf|etd|vacf|msd|diffusion|pressure)\":/ { \
+fitted = !has("used.json") ? "" : system("awk '/\"[a-z_]+\":[ \t]*\\{/ { \
     split($0, part, /\"/); kind = part[2] } /\"fitted\":.*\"yes\"/ { printf \" %s\", kind }' used.json")
 error_label = words(fitted) > 1 ? "weighted error" : \
     rmse_of(words(fitted) == 1 ? word(fitted, 1) : "rdf")

@@ -6,7 +6,7 @@
 #include "app/reference.h"
 #include "base/nearest.h"
 #include "input/fit_file.h"
-#include "work/simulate.h"
+#include "observe/measure.h"
 
 #include <string.h>
 
@@ -30,16 +30,6 @@ static const struct inner run_objects[] = {
     {"method", "its \"name\" and numbers", "method"},
     {"core", "where the target is 0", "core"},
     {"verification", "independent simulations of the result", "verification"},
-    {NULL, NULL, NULL},
-};
-
-static const struct inner target_objects[] = {
-    {"rdf", "g(r); in a mixture one for each pair type, as \"A-B\"", "rdf-target"},
-    {"etd", "escape times of pairs", "etd-target"},
-    {"vacf", "velocity autocorrelation", "curve-target"},
-    {"msd", "mean-square displacement", "curve-target"},
-    {"diffusion", "D", "number-target"},
-    {"pressure", "P", "number-target"},
     {NULL, NULL, NULL},
 };
 
@@ -74,11 +64,7 @@ static const struct inner scene_objects[] = {
     {"interactions", "what acts beside the pairs: {\"harmonic-trap\": {…}, …}", "interactions"},
     {"dynamics", "{\"integrator\": …} and its numbers", "dynamics"},
     {"units", "physical units for the results", "units"},
-    {"measure", "when to sample; this and the rest in a scene file only", "measure"},
-    {"rdf", "g(r)", "rdf"},
-    {"motion", "diffusion; measured if it is there", "motion"},
-    {"etd", "escape times; measured if it is there", "etd"},
-    {"force_covariance", "friction from forces; measured if it is there", "force_covariance"},
+    {"measure", "when to sample; this and observables in a scene file only", "measure"},
     {NULL, NULL, NULL},
 };
 
@@ -87,8 +73,9 @@ static const struct {
     const char *topic;
     const struct inner *objects;
 } contents[] = {
-    {"run", run_objects},           {"scene", scene_objects},         {"target", target_objects},
-    {"unknowns", unknowns_objects}, {"potential", potential_objects}, {"omega", omega_objects},
+    {"run", run_objects},           {"scene", scene_objects},
+    {"unknowns", unknowns_objects}, {"potential", potential_objects},
+    {"omega", omega_objects},
 };
 
 static const struct topic fixed_topics[] = {
@@ -102,20 +89,6 @@ static const struct topic fixed_topics[] = {
      "\"particles\" of a scene; a mixture has \"types\": {\"A\": 500, \"B\": 300} for \"count\"",
      {mf_placement_count_fields, mf_placement_fields}},
     {"files", "measure", "\"measure\" of a scene file: when to sample", {mf_measure_plan_fields}},
-    {"files", "rdf", "\"rdf\" of a scene file", {mf_simulate_rdf_fields}},
-    {"files",
-     "motion",
-     "\"motion\" of a scene file: diffusion; measured if it is there",
-     {mf_motion_plan_fields}},
-    {"files",
-     "etd",
-     "\"etd\" of a scene file: escape times of pairs; measured if it is there",
-     {mf_etd_grid_fields, mf_etd_plan_fields}},
-    {"files",
-     "force_covariance",
-     "\"force_covariance\" of a scene file: friction as the forces show it; measured if it is "
-     "there",
-     {mf_force_covariance_fields}},
     {"files", "units", "\"units\" of a scene: physical units for the results", {mf_units_fields}},
     {"files", "core", "\"core\" of a run file: where the target is 0", {mf_fit_core_fields}},
     {"files",
@@ -133,13 +106,17 @@ static const struct topic fixed_topics[] = {
      {mf_target_etd_fields, mf_target_files_use_fields}},
     {"target",
      "curve-target",
-     "\"vacf\" and \"msd\": functions of time, each with its file",
-     {mf_target_files_curve_fields, mf_target_files_use_fields}},
+     "a function of time, as \"vacf\" and \"msd\", with its file",
+     {mf_target_curve_time_fields, mf_target_files_use_fields}},
+    {"target",
+     "function-target",
+     "any other function, with its file and the settings of its observable",
+     {mf_target_curve_fields, mf_target_files_use_fields}},
     {"target",
      "number-target",
-     "\"diffusion\" and \"pressure\"",
-     {mf_target_files_number_fields, mf_target_files_use_fields}},
-    {"target", "diffusion-target", "\"diffusion\" besides", {mf_target_files_diffusion_fields}},
+     "a number, as \"diffusion\" and \"pressure\"",
+     {mf_target_curve_number_fields, mf_target_files_use_fields}},
+    {"target", "diffusion-target", "\"diffusion\" besides", {mf_target_curve_diffusion_fields}},
     {"unknowns", "unknowns", "\"unknowns\" of a run file", {NULL}},
     {"unknowns", "potential", "Phi(r), to be found", {mf_inverse_potential_fields}},
     {"unknowns", "omega", "omega(r), to be found", {mf_inverse_omega_fields}},
@@ -164,6 +141,12 @@ static size_t add_curves(struct topic *topics, size_t n, const char *group,
 size_t mf_describe_topics(struct topic topics[DESCRIBE_MOST_TOPICS]) {
     size_t n = sizeof fixed_topics / sizeof *fixed_topics;
     memcpy(topics, fixed_topics, sizeof fixed_topics);
+    for (size_t k = 0; mf_observables[k]; k++)
+        if (mf_observables[k]->fields)
+            topics[n++] = (struct topic){"observables",
+                                         mf_observables[k]->name,
+                                         mf_observables[k]->summary,
+                                         {mf_observables[k]->fields}};
     n = add_curves(topics, n, "conservative", mf_curve_potentials);
     n = add_curves(topics, n, "dissipative", mf_curve_omegas);
     for (size_t k = 0; mf_interaction_list[k]; k++)
@@ -194,12 +177,45 @@ static size_t add_object(struct topic_object *objects, size_t n, const char *key
     return n + 1;
 }
 
+/// The objects of a scene file that say what is measured.
+static size_t add_observables(struct topic_object *objects, size_t n) {
+    for (size_t k = 0; mf_observables[k]; k++) {
+        const struct observable *observable = mf_observables[k];
+        char help[sizeof objects->help];
+        snprintf(help, sizeof help, "%s%s", observable->summary,
+                 observable->always ? "" : "; measured if it is there");
+        if (observable->fields)
+            n = add_object(objects, n, observable->name, help, observable->name);
+    }
+    return n;
+}
+
+/// The objects of a run file's "target", and of what form each is.
+static size_t add_targets(struct topic_object *objects, size_t n) {
+    static const char *const forms[] = {[OBSERVABLE_NUMBER] = "number",
+                                        [OBSERVABLE_CURVE] = "function",
+                                        [OBSERVABLE_CURVE_OF_TIME] = "curve"};
+    struct observable_kind found;
+    for (int kind = 0; (found = mf_observable_kind(kind)).observable; kind++) {
+        const struct observable_target *target = found.target;
+        char topic[sizeof objects->topic];
+        snprintf(topic, sizeof topic, "%s-target",
+                 target->form == OBSERVABLE_OWN_FORM ? target->name : forms[target->form]);
+        n = add_object(objects, n, target->name, target->summary, topic);
+    }
+    return n;
+}
+
 size_t mf_describe_objects(const char *topic, struct topic_object objects[DESCRIBE_MOST_OBJECTS]) {
     size_t n = 0;
     for (size_t k = 0; k < sizeof contents / sizeof *contents; k++)
         if (strcmp(contents[k].topic, topic) == 0)
             for (const struct inner *inner = contents[k].objects; inner->key; inner++)
                 n = add_object(objects, n, inner->key, inner->help, inner->topic);
+    if (strcmp(topic, "scene") == 0)
+        n = add_observables(objects, n);
+    if (strcmp(topic, "target") == 0)
+        n = add_targets(objects, n);
     return n;
 }
 

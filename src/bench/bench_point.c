@@ -3,6 +3,9 @@
 
 #include "base/statistics.h"
 #include "dynamics/dpd_verlet.h"
+#include "observe/motion.h"
+#include "observe/rdf_observable.h"
+#include "observe/thermodynamics.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -145,13 +148,25 @@ static void tell(const struct bench_common *common, struct bench_point *point, i
     common->tell(common->context, (uint64_t)steps);
 }
 
+struct bench_measured {
+    struct rdf_observed rdf;
+    struct thermodynamics thermodynamics;
+    struct motion motion;
+    bool moves; ///< whether the motion is measured
+};
+
 /// Run between samples by itself, timed; mf_measure_sample then does the one step that is left.
 static enum status sample(const struct bench_common *common, struct bench_point *point,
                           struct simulation *simulation, const struct measure_plan *plan,
-                          struct measure_observables observables) {
+                          struct bench_measured *measured) {
     double seconds[BLOCKS] = {0}, times[BLOCKS] = {0};
-    if (observables.motion)
-        mf_motion_sample(observables.motion, simulation);
+    const struct observable_use uses[] = {
+        {&mf_rdf_observable, &measured->rdf, NULL},
+        {&mf_thermodynamics_observable, &measured->thermodynamics, NULL},
+        {measured->moves ? &mf_motion_observable : NULL, &measured->motion, NULL},
+        {NULL, NULL, NULL}};
+    if (measured->moves)
+        mf_motion_sample(&measured->motion, simulation);
     for (int64_t k = 0; k < plan->samples; k++) {
         const struct measure_plan next = {plan->equilibration, k + 1, plan->every};
         const int64_t block = k * BLOCKS / plan->samples;
@@ -160,7 +175,7 @@ static enum status sample(const struct bench_common *common, struct bench_point 
         TRY(mf_simulation_run(simulation, (uint64_t)plan->every - 1));
         seconds[block] += processor_seconds() - begin;
         times[block] += (double)(plan->every - 1) * point->time_step;
-        TRY(mf_measure_sample(simulation, &next, observables, NULL));
+        TRY(mf_measure_sample(simulation, &next, uses, NULL));
         tell(common, point, plan->every);
     }
     for (int b = 0; b < BLOCKS; b++)
@@ -217,11 +232,11 @@ static void join_bins(const struct bench_bins *bins, const struct rdf *rdf, cons
 }
 
 static enum status find_results(const struct bench_common *common,
-                                struct measure_observables observables, struct bench_point *point) {
+                                const struct bench_measured *measured, struct bench_point *point) {
     enum status status = STATUS_OK;
     const struct bench_bins *bins = &common->bins;
-    const struct rdf *rdf = observables.rdf;
-    const struct thermodynamics_summary s = mf_thermodynamics_result(observables.thermodynamics, 1);
+    const struct rdf *rdf = &measured->rdf.counted;
+    const struct thermodynamics_summary s = mf_thermodynamics_result(&measured->thermodynamics, 1);
     double *g = NULL, *error = NULL;
     NEW_ARRAY(g, bins->fine.count);
     NEW_ARRAY(error, bins->fine.count);
@@ -234,11 +249,11 @@ static enum status find_results(const struct bench_common *common,
     quantity[BENCH_ENERGY] = (struct bench_number){s.potential_energy, s.potential_energy_error};
     quantity[BENCH_PRESSURE] = (struct bench_number){s.pressure, s.pressure_error};
     quantity[BENCH_DIFFUSION] = (struct bench_number){NAN, NAN};
-    if (observables.motion) {
-        const struct motion_summary motion = mf_motion_result(observables.motion, NULL);
+    if (measured->moves) {
+        const struct motion_summary motion = mf_motion_result(&measured->motion, NULL);
         quantity[BENCH_DIFFUSION] = (struct bench_number){motion.msd, motion.msd_error};
     }
-    find_total(observables.thermodynamics, &rdf->box, (double)rdf->particle_count, point);
+    find_total(&measured->thermodynamics, &rdf->box, (double)rdf->particle_count, point);
 done:
     mf_memory_free(g);
     mf_memory_free(error);
@@ -261,38 +276,35 @@ static struct simulation_setup setup_of(const struct simulation_setup *scene,
 enum status mf_bench_point_run(const struct bench_common *common, struct bench_point *point) {
     enum status status = STATUS_OK;
     struct simulation simulation = {0};
-    struct rdf rdf = {0};
-    struct thermodynamics thermodynamics = {0};
-    struct motion motion = {0};
+    struct bench_measured measured = {0};
     struct simulation_setup setup =
         setup_of(common->setup, common->start, point->method, point->time_step);
     const struct measure_plan plan = plan_of(common, point);
     const struct motion_plan motion_plan = motion_plan_of(common, point, &plan);
-    const bool moves = plan.samples >= LEAST_WINDOWS * motion_plan.lags;
-    const struct measure_observables observables = {
-        .rdf = &rdf, .thermodynamics = &thermodynamics, .motion = moves ? &motion : NULL};
+    measured.moves = plan.samples >= LEAST_WINDOWS * motion_plan.lags;
     double temperature;
     setup.seed = point->seed;
     point->steps = (uint64_t)(plan.samples * plan.every);
     point->time = (double)point->steps * point->time_step;
     NEW_ARRAY(point->g, common->bins.count);
     CHECK(mf_simulation_init(&simulation, &setup, common->start));
-    CHECK(mf_rdf_init(&rdf, &common->bins.fine, &setup.box, simulation.particles.count,
-                      mf_pair_cutoff(&simulation.law), (size_t)plan.samples));
-    CHECK(mf_thermodynamics_init(&thermodynamics, (size_t)plan.samples));
+    CHECK(mf_rdf_init(&measured.rdf.counted, &common->bins.fine, &setup.box,
+                      simulation.particles.count, mf_pair_cutoff(&simulation.law),
+                      (size_t)plan.samples));
+    CHECK(mf_thermodynamics_init(&measured.thermodynamics, (size_t)plan.samples));
     CHECK(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
     tell(common, point, plan.equilibration);
-    if (moves)
-        CHECK(mf_motion_init(&motion, &motion_plan, &simulation, plan.equilibration,
+    if (measured.moves)
+        CHECK(mf_motion_init(&measured.motion, &motion_plan, &simulation, plan.equilibration,
                              plan.samples * plan.every));
-    CHECK(sample(common, point, &simulation, &plan, observables));
-    CHECK(find_results(common, observables, point));
+    CHECK(sample(common, point, &simulation, &plan, &measured));
+    CHECK(find_results(common, &measured, point));
 done:
     point->status = status;
     mf_simulation_clear(&simulation);
-    mf_rdf_clear(&rdf);
-    mf_thermodynamics_clear(&thermodynamics);
-    mf_motion_clear(&motion);
+    mf_rdf_clear(&measured.rdf.counted);
+    mf_thermodynamics_clear(&measured.thermodynamics);
+    mf_motion_clear(&measured.motion);
     return status == STATUS_UNSTABLE ? STATUS_OK : status;
 }
 

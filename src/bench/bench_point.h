@@ -3,6 +3,7 @@
 #pragma once
 
 #include "observe/measure.h"
+#include "observe/rdf.h"
 #include "input/scene.h"
 
 enum { BENCH_METHOD_SIZE = 32 };

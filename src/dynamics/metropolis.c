@@ -64,6 +64,7 @@ void mf_metropolis_clear(struct metropolis *metropolis) {
     mf_particles_clear(&metropolis->particles);
     mf_neighbours_clear(&metropolis->neighbours);
     mf_memory_free(metropolis->order);
+    *metropolis = (struct metropolis){0};
 }
 
 enum status mf_metropolis_refresh(struct metropolis *metropolis) {

@@ -233,7 +233,7 @@ static enum status check_unknowns(const struct fit_file *fit, const char *file) 
                 STATUS_BAD_INPUT,
                 "%s: target.%s.fitted: \"%s\" fits g(r) and pressure; \"no\" compares it "
                 "with the result",
-                file, mf_targets_names[kind], fit->method->name);
+                file, mf_targets_name(kind), fit->method->name);
     if (fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->files.given[TARGET_RDF])
         return mf_status_fail(STATUS_BAD_INPUT, "%s: target.rdf is required to find a potential",
                               file);
@@ -286,7 +286,7 @@ static enum status check_window(const char *file, const char *key, const struct 
         "%s: %s.samples: %lld, one \"every\" %lld steps, are %lld steps, but \"%s\" "
         "looks at %lld; %lld would do",
         file, key, (long long)samples, (long long)every, (long long)(samples * every),
-        mf_targets_names[longest], (long long)window, (long long)((window + every - 1) / every));
+        mf_targets_name(longest), (long long)window, (long long)((window + every - 1) / every));
 }
 
 static enum status check_windows(const struct fit_file *fit, const char *file) {

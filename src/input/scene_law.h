@@ -8,7 +8,7 @@
 #include "curves/table.h"
 #include "io/json.h"
 #include "io/json_write.h"
-#include "input/units.h"
+#include "io/units.h"
 #include "system/composition.h"
 
 /// Owns its curves and its table.

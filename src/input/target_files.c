@@ -3,7 +3,6 @@
 
 #include "base/digest.h"
 #include "base/memory.h"
-#include "io/data_table.h"
 
 #include <math.h>
 #include <string.h>
@@ -15,39 +14,6 @@ static const double origin_intervals = 10;
 static const double default_window = 1.6;
 enum { DEFAULT_LAGS = 50 };
 
-#define CURVE(name) .offset = offsetof(struct target_curve_parameters, name)
-#define COLUMN .maximum = 1000, .unit = ""
-const struct field mf_target_files_curve_fields[] = {
-    {"file", FIELD_FILE, CURVE(file), .required = true, .unit = "",
-     .help = "values at equally spaced times from 0 on, in units of the scene"},
-    {"time_column", FIELD_INTEGER, CURVE(time_column), .initial = 1, .minimum = 1, COLUMN,
-     .help = "number of the column with the times, from 1"},
-    {"value_column", FIELD_INTEGER, CURVE(value_column), .initial = 2, .minimum = 1, COLUMN,
-     .help = "number of the column with the values"},
-    {"error_column", FIELD_INTEGER, CURVE(error_column), .initial = -1, .minimum = -1, COLUMN,
-     .help = "number of the column with their standard errors; 0: none; -1: 3 if there are so many "
-             "columns, else none"},
-    FIELD_END,
-};
-
-#define NUMBER(name) .offset = offsetof(struct target_number, name)
-const struct field mf_target_files_number_fields[] = {
-    {"value", FIELD_NUMBER, NUMBER(value), .required = true, .minimum = -DBL_MAX,
-     .maximum = DBL_MAX, .unit = "reduced", .help = "measured"},
-    {"error", FIELD_NUMBER, NUMBER(error), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "reduced", .help = "its standard error"},
-    FIELD_END,
-};
-
-const struct field mf_target_files_diffusion_fields[] = {
-    {"window", FIELD_NUMBER, NUMBER(window), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "tau",
-     .help =
-         "D is the slope of the MSD over the second half of it, as the value must be; 0: that of "
-         "\"vacf\", \"msd\" or \"etd\" if they are given, else 1.6"},
-    FIELD_END,
-};
-
 #define USE(name) .offset = offsetof(struct target_use, name)
 static const char *const no_or_yes[] = {"no", "yes", NULL};
 const struct field mf_target_files_use_fields[] = {
@@ -58,75 +24,6 @@ const struct field mf_target_files_use_fields[] = {
      .help = "no: only compared with the result"},
     FIELD_END,
 };
-
-static double cell(const struct data_table *table, size_t row, int64_t column) {
-    return table->values[row * table->columns + (size_t)column - 1];
-}
-
-/// Times must be 0, h, 2h, … to the digits of the file.
-static enum status check_times(const struct target_curve *curve, const struct data_table *table) {
-    const struct target_curve_parameters *p = &curve->parameters;
-    for (size_t k = 0; k < table->rows; k++)
-        if (fabs(cell(table, k, p->time_column) - (double)k * curve->interval) >
-            0.01 * curve->interval)
-            return mf_status_fail(STATUS_BAD_INPUT,
-                                  "%s:%zu: the times are not equally spaced from 0", p->file,
-                                  table->line[k]);
-    return STATUS_OK;
-}
-
-static enum status load_curve(struct target_curve *curve, struct data_table *table) {
-    enum status status = STATUS_OK;
-    const struct target_curve_parameters *p = &curve->parameters;
-    CHECK(mf_data_table_read(
-        table, p->file,
-        (size_t)(p->time_column > p->value_column ? p->time_column : p->value_column)));
-    int64_t error_column;
-    CHECK(mf_target_rdf_error_column(p->error_column, p->time_column, p->value_column, table,
-                                     p->file, &error_column));
-    if (table->rows < 3)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu times", p->file, table->rows);
-    CHECK(mf_data_table_check_increasing(table, p->file, (size_t)p->time_column - 1, 0));
-    curve->interval = cell(table, table->rows - 1, p->time_column) / (double)(table->rows - 1);
-    CHECK(check_times(curve, table));
-    NEW_ARRAY(curve->value, table->rows);
-    NEW_ARRAY(curve->error, table->rows);
-    curve->times = table->rows;
-    for (size_t k = 0; k < table->rows; k++) {
-        curve->value[k] = cell(table, k, p->value_column);
-        curve->error[k] = error_column ? cell(table, k, error_column) : 0;
-        if (!(curve->error[k] >= 0)) {
-            status =
-                mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %lld: %g is not a standard error",
-                               p->file, table->line[k], (long long)error_column, curve->error[k]);
-            goto done;
-        }
-    }
-done:
-    return status;
-}
-
-static enum status read_curve(struct target_curve *curve, struct json_object *object) {
-    const size_t faults = mf_json_fault_count(object->document);
-    mf_json_fields(object, mf_target_files_curve_fields, &curve->parameters);
-    mf_json_finish(object);
-    if (mf_json_fault_count(object->document) > faults)
-        return STATUS_OK;
-    struct data_table table = {0};
-    const enum status status = load_curve(curve, &table);
-    mf_data_table_clear(&table);
-    if (status == STATUS_NO_MEMORY)
-        return status;
-    if (status != STATUS_OK)
-        mf_json_fault(object, "file", "%s", mf_status_message());
-    return STATUS_OK;
-}
-
-static enum status read_number(struct target_number *number, struct json_object *object) {
-    mf_json_fields(object, mf_target_files_number_fields, number);
-    mf_json_finish(object);
-    return STATUS_OK;
-}
 
 /// All pair types must have the bins of the first.
 static void check_bins(const struct target_files *files, struct json_object *object) {
@@ -197,34 +94,46 @@ static enum status read_rdf(struct target_files *files, struct json_object *obje
     return collect_rdf(files, box);
 }
 
-/// What belongs to one kind alone.
-static enum status read_kind(struct target_files *files, enum target_kind kind,
-                             struct json_object *object, const struct box *box,
-                             const struct units *units) {
-    switch (kind) {
-    case TARGET_RDF:
+/// Settings that stand beside the values. Two targets of one observable must say the same.
+static enum status read_settings(struct target_files *files, const struct observable_kind *kind,
+                                 struct json_object *object) {
+    const struct observable *observable = kind->observable;
+    void *settings = mf_memory_zeroed(1, observable->settings_size);
+    if (settings == NULL)
+        return STATUS_NO_MEMORY;
+    mf_json_fields(object, observable->fields, settings);
+    void **kept = &files->settings[kind->place];
+    if (*kept && memcmp(*kept, settings, observable->settings_size) != 0)
+        mf_json_fault(object, kind->target->name, "must have the settings of the target before it");
+    mf_memory_free(*kept);
+    *kept = settings;
+    return STATUS_OK;
+}
+
+static enum status read_kind(struct target_files *files, int number, struct json_object *object,
+                             const struct box *box, const struct units *units) {
+    const struct observable_kind kind = mf_observable_kind(number);
+    const enum observable_form form = kind.target->form;
+    if (kind.target->has_settings)
+        TRY(read_settings(files, &kind, object));
+    if (number == TARGET_RDF)
         return read_rdf(files, object, box, units);
-    case TARGET_ETD:
+    if (number == TARGET_ETD)
         return mf_target_etd_read(&files->etd, object);
-    case TARGET_VACF:
-        return read_curve(&files->vacf, object);
-    case TARGET_MSD:
-        return read_curve(&files->msd, object);
-    case TARGET_DIFFUSION:
-        mf_json_fields(object, mf_target_files_diffusion_fields, &files->diffusion);
-        return read_number(&files->diffusion, object);
-    case TARGET_PRESSURE:
-        return read_number(&files->pressure, object);
-    case TARGETS:
-        break;
-    }
+    if (form != OBSERVABLE_NUMBER)
+        return mf_target_curve_read(&files->curve[number], form, object);
+    if (number == TARGET_DIFFUSION)
+        mf_json_fields(object, mf_target_curve_diffusion_fields, &files->number[number]);
+    mf_json_fields(object, mf_target_curve_number_fields, &files->number[number]);
+    mf_json_finish(object);
     return STATUS_OK;
 }
 
 /// A window of D's own beside a curve that has another.
 static void check_window(const struct target_files *files, struct json_object *object) {
-    if (files->diffusion.window > 0 &&
-        (files->vacf.times > 0 || files->msd.times > 0 || files->given[TARGET_ETD]))
+    if (files->number[TARGET_DIFFUSION].window > 0 &&
+        (files->curve[TARGET_VACF].points > 0 || files->curve[TARGET_MSD].points > 0 ||
+         files->given[TARGET_ETD]))
         mf_json_fault(
             object, "diffusion",
             "has a \"window\" of its own beside \"vacf\", \"msd\" or \"etd\", which say it");
@@ -232,9 +141,9 @@ static void check_window(const struct target_files *files, struct json_object *o
 
 /// VACF and MSD come from the same samples.
 static void check_motion(const struct target_files *files, struct json_object *object) {
-    const struct target_curve *vacf = &files->vacf, *msd = &files->msd;
-    if (vacf->times > 0 && msd->times > 0 &&
-        (vacf->times != msd->times || fabs(vacf->interval / msd->interval - 1) > 1e-3))
+    const struct target_curve *vacf = &files->curve[TARGET_VACF], *msd = &files->curve[TARGET_MSD];
+    if (vacf->points > 0 && msd->points > 0 &&
+        (vacf->points != msd->points || fabs(vacf->interval / msd->interval - 1) > 1e-3))
         mf_json_fault(object, "msd", "must have the times of \"vacf\"");
 }
 
@@ -246,8 +155,8 @@ enum status mf_target_files_read(struct target_files *files, struct json_object 
     struct json_object object = mf_json_child(root, "target", true);
     if (object.item == NULL)
         return STATUS_OK;
-    for (int kind = 0; kind < TARGETS; kind++) {
-        struct json_object child = mf_json_child(&object, mf_targets_names[kind], false);
+    for (int kind = 0; mf_targets_name(kind); kind++) {
+        struct json_object child = mf_json_child(&object, mf_targets_name(kind), false);
         files->given[kind] = child.item != NULL;
         mf_json_fields(&child, mf_target_files_use_fields, &files->use[kind]);
         if (!files->given[kind])
@@ -267,10 +176,10 @@ void mf_target_files_clear(struct target_files *files) {
     mf_memory_free(files->rdf_error);
     mf_memory_free(files->rdf_given);
     mf_target_etd_clear(&files->etd);
-    mf_memory_free(files->vacf.value);
-    mf_memory_free(files->vacf.error);
-    mf_memory_free(files->msd.value);
-    mf_memory_free(files->msd.error);
+    for (int kind = 0; kind < TARGETS; kind++)
+        mf_target_curve_clear(&files->curve[kind]);
+    for (size_t place = 0; place < OBSERVABLES_MOST; place++)
+        mf_memory_free(files->settings[place]);
     *files = (struct target_files){0};
 }
 
@@ -288,28 +197,31 @@ static void write_rdf(const struct target_files *files, struct json_writer *writ
     }
 }
 
+static void write_kind(const struct target_files *files, int number, struct json_writer *writer) {
+    const struct observable_kind kind = mf_observable_kind(number);
+    const enum observable_form form = kind.target->form;
+    if (kind.target->has_settings)
+        mf_json_put_fields(writer, kind.observable->fields, files->settings[kind.place]);
+    if (number == TARGET_RDF)
+        write_rdf(files, writer);
+    else if (number == TARGET_ETD)
+        mf_json_put_fields(writer, mf_target_etd_fields, &files->etd.parameters);
+    else if (form == OBSERVABLE_NUMBER)
+        mf_json_put_fields(writer, mf_target_curve_number_fields, &files->number[number]);
+    else
+        mf_json_put_fields(writer, mf_target_curve_fields_of(form),
+                           &files->curve[number].parameters);
+    if (number == TARGET_DIFFUSION)
+        mf_json_put_fields(writer, mf_target_curve_diffusion_fields, &files->number[number]);
+}
+
 void mf_target_files_write(const struct target_files *files, struct json_writer *writer) {
-    const struct {
-        const struct field *fields;
-        const void *parameters;
-    } parts[TARGETS] = {
-        [TARGET_ETD] = {mf_target_etd_fields, &files->etd.parameters},
-        [TARGET_VACF] = {mf_target_files_curve_fields, &files->vacf.parameters},
-        [TARGET_MSD] = {mf_target_files_curve_fields, &files->msd.parameters},
-        [TARGET_DIFFUSION] = {mf_target_files_number_fields, &files->diffusion},
-        [TARGET_PRESSURE] = {mf_target_files_number_fields, &files->pressure},
-    };
     mf_json_begin(writer, "target");
-    for (int kind = 0; kind < TARGETS; kind++) {
+    for (int kind = 0; mf_targets_name(kind); kind++) {
         if (!files->given[kind])
             continue;
-        mf_json_begin(writer, mf_targets_names[kind]);
-        if (kind == TARGET_RDF)
-            write_rdf(files, writer);
-        else
-            mf_json_put_fields(writer, parts[kind].fields, parts[kind].parameters);
-        if (kind == TARGET_DIFFUSION)
-            mf_json_put_fields(writer, mf_target_files_diffusion_fields, &files->diffusion);
+        mf_json_begin(writer, mf_targets_name(kind));
+        write_kind(files, kind, writer);
         mf_json_put_fields(writer, mf_target_files_use_fields, &files->use[kind]);
         mf_json_end(writer);
     }
@@ -327,26 +239,30 @@ void mf_target_files_digest(const struct target_files *files, uint64_t *into) {
     digest(files->rdf_error, files->pairs * files->rdf[0].bins.count, into);
     digest(files->etd.survival, cells, into);
     digest(files->etd.error, cells, into);
-    digest(files->vacf.value, files->vacf.times, into);
-    digest(files->vacf.error, files->vacf.times, into);
-    digest(files->msd.value, files->msd.times, into);
-    digest(files->msd.error, files->msd.times, into);
+    for (int kind = 0; kind < TARGETS; kind++) {
+        const struct target_curve *curve = &files->curve[kind];
+        digest(curve->x, curve->points, into);
+        digest(curve->value, curve->points, into);
+        digest(curve->error, curve->points, into);
+    }
 }
 
 /// Window and interval in which motion is measured, by the first target that defines them: D's own
 /// comes last, since a curve fixes the times at which it is compared.
 static void set_motion(const struct target_files *files, struct targets *targets) {
-    const struct target_curve *curve = files->vacf.times > 0 ? &files->vacf : &files->msd;
+    const struct target_curve *vacf = &files->curve[TARGET_VACF];
+    const struct target_curve *curve = vacf->points > 0 ? vacf : &files->curve[TARGET_MSD];
+    const double window = files->number[TARGET_DIFFUSION].window;
     targets->motion_lags = DEFAULT_LAGS;
     targets->motion_interval = default_window / DEFAULT_LAGS;
-    if (curve->times > 0) {
-        targets->motion_lags = curve->times - 1;
+    if (curve->points > 0) {
+        targets->motion_lags = curve->points - 1;
         targets->motion_interval = curve->interval;
     } else if (files->given[TARGET_ETD]) {
         targets->motion_lags = (size_t)files->etd.grid.times - 1;
         targets->motion_interval = files->etd.interval;
-    } else if (files->diffusion.window > 0) {
-        targets->motion_interval = files->diffusion.window / DEFAULT_LAGS;
+    } else if (window > 0) {
+        targets->motion_interval = window / DEFAULT_LAGS;
     }
 }
 
@@ -382,6 +298,27 @@ enum status mf_target_files_normalise(struct target_files *files, const struct b
     return STATUS_OK;
 }
 
+static struct target target_of(const struct target_files *files, int kind) {
+    const struct target_curve *curve = &files->curve[kind];
+    const struct target_number *number = &files->number[kind];
+    const enum observable_form form = mf_observable_kind(kind).target->form;
+    if (kind == TARGET_RDF)
+        return (struct target){.count = files->pairs * files->rdf[0].bins.count,
+                               .value = files->rdf_g,
+                               .error = files->rdf_error};
+    if (kind == TARGET_ETD)
+        return (struct target){.count = (size_t)(files->etd.grid.times * files->etd.grid.bins),
+                               .value = files->etd.survival,
+                               .error = files->etd.error,
+                               .columns = (size_t)files->etd.grid.bins};
+    if (form == OBSERVABLE_NUMBER)
+        return (struct target){.count = 1, .value = &number->value, .error = &number->error};
+    return (struct target){.count = curve->points,
+                           .value = curve->value,
+                           .error = curve->error,
+                           .x = form == OBSERVABLE_CURVE ? curve->x : NULL};
+}
+
 void mf_target_files_targets(struct target_files *files, bool moves, struct targets *fitted,
                              struct targets *compared) {
     static const double unknown = NAN;
@@ -391,29 +328,11 @@ void mf_target_files_targets(struct target_files *files, bool moves, struct targ
                                  .etd_interval = etd->interval,
                                  .etd_origins = origin_intervals * etd->interval};
     set_motion(files, compared);
-    const size_t cells = (size_t)(etd->grid.times * etd->grid.bins);
-    const struct target targets[TARGETS] = {
-        [TARGET_RDF] = {.count = files->pairs * files->rdf[0].bins.count,
-                        .value = files->rdf_g,
-                        .error = files->rdf_error},
-        [TARGET_ETD] = {.count = cells, .value = etd->survival, .error = etd->error},
-        [TARGET_VACF] = {.count = files->vacf.times,
-                         .value = files->vacf.value,
-                         .error = files->vacf.error},
-        [TARGET_MSD] = {.count = files->msd.times,
-                        .value = files->msd.value,
-                        .error = files->msd.error},
-        [TARGET_DIFFUSION] = {.count = 1,
-                              .value = &files->diffusion.value,
-                              .error = &files->diffusion.error},
-        [TARGET_PRESSURE] = {.count = 1,
-                             .value = &files->pressure.value,
-                             .error = &files->pressure.error},
-    };
-    for (int kind = 0; kind < TARGETS; kind++) {
+    memcpy(compared->settings, files->settings, sizeof files->settings);
+    for (int kind = 0; mf_targets_name(kind); kind++) {
         if (!files->given[kind])
             continue;
-        compared->target[kind] = targets[kind];
+        compared->target[kind] = target_of(files, kind);
         compared->target[kind].weight = files->use[kind].weight;
     }
     *fitted = *compared;
@@ -423,25 +342,15 @@ void mf_target_files_targets(struct target_files *files, bool moves, struct targ
     const bool has_window =
         files->given[TARGET_ETD] || files->given[TARGET_VACF] || files->given[TARGET_MSD];
     if (moves && has_window && !files->given[TARGET_DIFFUSION])
-        compared->target[TARGET_DIFFUSION] = (struct target){1, &unknown, &unknown, 0};
-}
-
-/// A curve's interval must be a whole number of steps.
-static enum status check_interval(const struct target_curve *curve, double time_step) {
-    const double steps = curve->interval / time_step;
-    if (curve->times == 0 || (steps > 0.5 && fabs(steps / fmax(1, round(steps)) - 1) < 1e-3))
-        return STATUS_OK;
-    return mf_status_fail(STATUS_BAD_INPUT,
-                          "%s: its interval %.6g is not a whole number of time steps of %g; %.6g "
-                          "would do",
-                          curve->parameters.file, curve->interval, time_step,
-                          curve->interval / fmax(1, ceil(steps)));
+        compared->target[TARGET_DIFFUSION] =
+            (struct target){.count = 1, .value = &unknown, .error = &unknown};
 }
 
 enum status mf_target_files_check_steps(const struct target_files *files, double time_step) {
     int64_t every;
     if (files->given[TARGET_ETD])
         TRY(mf_target_etd_steps(&files->etd, time_step, &every));
-    TRY(check_interval(&files->vacf, time_step));
-    return check_interval(&files->msd, time_step);
+    for (int kind = 0; kind < TARGETS; kind++)
+        TRY(mf_target_curve_check_steps(&files->curve[kind], time_step));
+    return STATUS_OK;
 }

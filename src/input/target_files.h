@@ -5,29 +5,11 @@
 #include "problem/targets.h"
 #include "inversion/normalisation.h"
 #include "io/json_write.h"
-#include "input/target_rdf.h"
+#include "input/target_curve.h"
 #include "input/target_etd.h"
+#include "input/target_rdf.h"
 
-/// A measured function of time: VACF or MSD.
-struct target_curve {
-    struct target_curve_parameters {
-        char file[FIELD_TEXT_SIZE];
-        int64_t time_column, value_column,
-            error_column; ///< from 1; error_column 0: none, −1: 3 or none
-    } parameters;
-    size_t times;          ///< 0: not given
-    double interval;       ///< [τ]
-    double *value, *error; ///< shape [times]
-};
-
-/// A measured number: the pressure, or D.
-struct target_number {
-    double value, error;
-    double window; ///< of D: the slope of the MSD over its second half; 0: of other targets [τ]
-};
-
-extern const struct field mf_target_files_curve_fields[], mf_target_files_number_fields[];
-extern const struct field mf_target_files_diffusion_fields[], mf_target_files_use_fields[];
+extern const struct field mf_target_files_use_fields[];
 
 struct target_files {
     bool given[TARGETS];
@@ -39,8 +21,10 @@ struct target_files {
     double *rdf_given;                  ///< g before it was divided by its normalisation
     struct normalisation normalisation; ///< by which those that do not say theirs are divided
     struct target_etd etd;
-    struct target_curve vacf, msd;
-    struct target_number diffusion, pressure;
+    struct target_curve curve[TARGETS];   ///< of those that are curves
+    struct target_number number[TARGETS]; ///< of those that are numbers
+    /// Of the observables whose targets say them, by their places in the list; else NULL.
+    void *settings[OBSERVABLES_MOST];
     struct target_use {
         double weight; ///< 0: by the errors
         int fitted;    ///< 0: only compared with the result

@@ -6,7 +6,7 @@
 #include "io/json.h"
 #include "observe/rdf.h"
 #include "input/target_rows.h"
-#include "input/units.h"
+#include "io/units.h"
 
 /// Of the file: columns in units of the scene, or a .dist.tgt of VOTCA.
 enum { TARGET_RDF_COLUMNS, TARGET_RDF_VOTCA };

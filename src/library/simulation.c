@@ -9,6 +9,8 @@
 #include "library/lend.h"
 #include "library/scene_text.h"
 #include "observe/measure.h"
+#include "observe/rdf_observable.h"
+#include "observe/thermodynamics.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -30,10 +32,9 @@ static enum status read_scene(struct scene *scene, const char *file) {
     mf_json_fields(&root, mf_heading_fields, &heading);
     const enum status status = mf_scene_read(scene, &root, SCENE_FITS_NOTHING);
     // What `mesofit simulate` measures is the caller's business here.
-    for (const char *const *key =
-             (const char *const[]){"measure", "rdf", "motion", "etd", "force_covariance", NULL};
-         *key; key++)
-        mf_json_has(&root, *key);
+    mf_json_has(&root, "measure");
+    for (size_t k = 0; mf_observables[k]; k++)
+        mf_json_has(&root, mf_observables[k]->name);
     mf_json_finish(&root);
     scene->setup.seed = heading.seed;
     scene->setup.threads = 1;
@@ -195,20 +196,21 @@ static enum status measure_rdf(struct mesofit_simulation *simulation,
     struct simulation *engine = &simulation->engine;
     const double cutoff = mf_pair_cutoff(&engine->law);
     const double range = plan->range > 0 ? plan->range : cutoff;
-    struct rdf rdf = {0};
+    struct rdf_observed rdf = {0};
+    const struct observable_use uses[] = {{&mf_rdf_observable, &rdf, NULL}, {NULL, NULL, NULL}};
     TRY(check_plan(plan->samples, plan->every));
     if (!(range > 0) || plan->bins == 0)
         return mf_status_fail(STATUS_BAD_INPUT, "g(r) needs bins and, without forces, a range");
     const struct rdf_bins bins = {.width = range / (double)plan->bins, .count = plan->bins};
     const struct measure_plan when = plan_from_now(simulation, plan->samples, plan->every);
-    CHECK(mf_rdf_init(&rdf, &bins, &engine->particles.box, engine->particles.count, cutoff,
+    CHECK(mf_rdf_init(&rdf.counted, &bins, &engine->particles.box, engine->particles.count, cutoff,
                       plan->samples));
-    CHECK(mf_measure_sample(engine, &when, (struct measure_observables){.rdf = &rdf}, NULL));
-    CHECK(mf_rdf_result(&rdf, 1, g, error));
+    CHECK(mf_measure_sample(engine, &when, uses, NULL));
+    CHECK(mf_rdf_result(&rdf.counted, 1, g, error));
     for (size_t k = 0; k < bins.count; k++)
         r[k] = mf_rdf_bins_centre(&bins, k);
 done:
-    mf_rdf_clear(&rdf);
+    mf_rdf_clear(&rdf.counted);
     return status;
 }
 
@@ -223,11 +225,12 @@ static enum status measure_means(struct mesofit_simulation *simulation, size_t s
                                  uint64_t every, struct mesofit_means *means) {
     enum status status = STATUS_OK;
     struct thermodynamics thermodynamics = {0};
+    const struct observable_use uses[] = {{&mf_thermodynamics_observable, &thermodynamics, NULL},
+                                          {NULL, NULL, NULL}};
     TRY(check_plan(samples, every));
     const struct measure_plan when = plan_from_now(simulation, samples, every);
     CHECK(mf_thermodynamics_init(&thermodynamics, samples));
-    CHECK(mf_measure_sample(&simulation->engine, &when,
-                            (struct measure_observables){.thermodynamics = &thermodynamics}, NULL));
+    CHECK(mf_measure_sample(&simulation->engine, &when, uses, NULL));
     const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
     *means = (struct mesofit_means){.temperature = s.temperature,
                                     .temperature_error = s.temperature_error,

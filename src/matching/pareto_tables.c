@@ -94,7 +94,7 @@ static enum status write_front(const struct pareto_state *state,
         const size_t m = (c - EXTRA_COLUMNS) % objectives;
         if (c >= EXTRA_COLUMNS)
             snprintf(names[c - EXTRA_COLUMNS], NAME_SIZE, "%s_%s[1]",
-                     mf_targets_names[state->target[m]],
+                     mf_targets_name(state->target[m]),
                      c < EXTRA_COLUMNS + objectives ? "rmse" : "noise");
         value[c] = begin_column(&column[c], c < EXTRA_COLUMNS ? extra[c] : names[c - EXTRA_COLUMNS],
                                 memory + c * (rows + 1), NULL);
@@ -121,7 +121,7 @@ static enum status write_log(const struct pareto_state *state,
     for (size_t c = 0; c < width; c++) {
         if (c >= LOG_OBJECTIVES)
             snprintf(names[c - LOG_OBJECTIVES], NAME_SIZE, "%s_rmse[1]",
-                     mf_targets_names[state->target[c - LOG_OBJECTIVES]]);
+                     mf_targets_name(state->target[c - LOG_OBJECTIVES]));
         double *value =
             begin_column(&column[c], c < LOG_OBJECTIVES ? first[c] : names[c - LOG_OBJECTIVES],
                          memory + c * (rows + 1), NULL);

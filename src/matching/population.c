@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/rng.h"
+#include "observe/rdf_force.h"
 
 #include <math.h>
 #include <string.h>

@@ -6,8 +6,9 @@
 #include <math.h>
 #include <string.h>
 
-#define GRID(name) .offset = offsetof(struct etd_grid, name)
-const struct field mf_etd_grid_fields[] = {
+#define GRID(name) .offset = offsetof(struct etd_settings, grid.name)
+#define PLAN(name) .offset = offsetof(struct etd_settings, plan.name)
+const struct field mf_etd_fields[] = {
     {"r_minimum", FIELD_NUMBER, GRID(r_minimum), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "lambda", .help = "where the bins of the first separation r_0 begin"},
     {"r_maximum", FIELD_NUMBER, GRID(r_maximum), .required = true, .minimum = FIELD_ABOVE_ZERO,
@@ -16,11 +17,6 @@ const struct field mf_etd_grid_fields[] = {
      .help = "of r_0"},
     {"times", FIELD_INTEGER, GRID(times), .initial = 101, .minimum = 2, .maximum = 100000,
      .unit = "", .help = "number of times, t = 0 among them"},
-    FIELD_END,
-};
-
-#define PLAN(name) .offset = offsetof(struct etd_plan, name)
-const struct field mf_etd_plan_fields[] = {
     {"every", FIELD_INTEGER, PLAN(every), .initial = 1, .minimum = 1, .maximum = 1e9,
      .unit = "steps", .help = "between times; escapes in between go unseen"},
     {"origin_every", FIELD_INTEGER, PLAN(origin_every), .initial = 10, .minimum = 1, .maximum = 1e6,

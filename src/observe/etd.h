@@ -27,8 +27,12 @@ struct etd_plan {
     int64_t origin_every; ///< times between origins
 };
 
-extern const struct field mf_etd_grid_fields[];
-extern const struct field mf_etd_plan_fields[];
+struct etd_settings {
+    struct etd_grid grid;
+    struct etd_plan plan;
+};
+
+extern const struct field mf_etd_fields[]; ///< of etd_settings
 
 /// Blocks of consecutive origins, for the errors; of fewer origins, each is a block.
 enum { ETD_BLOCKS = 10 };

@@ -62,22 +62,28 @@ enum status mf_measure_equilibrate(struct simulation *simulation, const struct m
     return STATUS_OK;
 }
 
+/// The nearest step at which something with an interval of its own is due.
+static int64_t next_due(const struct observable_use *uses) {
+    int64_t next = INT64_MAX;
+    for (; uses->observable; uses++) {
+        const int64_t due = uses->observable->due ? uses->observable->due(uses->state) : INT64_MAX;
+        next = due < next ? due : next;
+    }
+    return next;
+}
+
 /// Run until `step`, and sample what has an interval of its own whenever it is due.
 static enum status run_moving(struct simulation *simulation, int64_t step,
-                              const struct measure_observables *observables,
-                              const struct measure_plan *plan,
+                              const struct observable_use *uses, const struct measure_plan *plan,
                               const struct measure_listener *listener) {
     for (;;) {
-        const int64_t motion = observables->motion ? mf_motion_due(observables->motion) : INT64_MAX;
-        const int64_t etd = observables->etd ? mf_etd_due(observables->etd) : INT64_MAX;
-        const int64_t due = motion < etd ? motion : etd;
+        const int64_t due = next_due(uses);
         TRY(run_until(simulation, due < step ? due : step, plan, listener));
         if (due > step)
             return STATUS_OK;
-        if (motion == due)
-            mf_motion_sample(observables->motion, simulation);
-        if (etd == due)
-            TRY(mf_etd_sample(observables->etd, simulation));
+        for (const struct observable_use *use = uses; use->observable; use++)
+            if (use->observable->due && use->observable->due(use->state) == due)
+                TRY(use->observable->sample(use->state, simulation));
     }
 }
 
@@ -87,47 +93,65 @@ static bool potential_reaches(const struct pair_law *law) {
     return law->potential && law->potential->cutoff >= mf_pair_cutoff(law);
 }
 
+/// What the force pass of the next sample is to count, and for which observable; NULL for none.
+static const struct pair_histogram *find_histogram(const struct observable_use *uses,
+                                                   const struct observable_use **counted) {
+    const struct pair_histogram *histogram = NULL;
+    for (*counted = NULL; uses->observable && histogram == NULL; uses++)
+        if (uses->observable->histogram) {
+            histogram = uses->observable->histogram(uses->state);
+            *counted = histogram ? uses : NULL;
+        }
+    return histogram;
+}
+
+static bool wants_sums(const struct observable_use *uses) {
+    bool sums = false;
+    for (; uses->observable; uses++)
+        sums = sums || uses->observable->sums;
+    return sums;
+}
+
 /// The last step before a sample. The force pass counts and sums what the sample needs; if that
 /// belongs to the middle of the step, a pass of the potential at its end does.
+/// @param[out] counted  the observable that a force pass has counted for, or NULL
 static enum status run_sampled_step(struct simulation *simulation, int64_t due,
-                                    struct measure_observables observables,
-                                    const struct measure_plan *plan) {
+                                    const struct observable_use *uses,
+                                    const struct measure_plan *plan,
+                                    const struct observable_use **counted) {
     struct pair_law *law = &simulation->law;
     const bool midway = simulation->setup.integrator->forces_midway;
-    const bool counts = observables.rdf && (!midway || potential_reaches(law));
-    const struct pair_histogram *histogram = counts ? mf_rdf_histogram(observables.rdf) : NULL;
-    simulation->wants = observables.thermodynamics ? PAIR_FORCES_AND_SUMS : PAIR_FORCES;
+    *counted = NULL;
+    const struct pair_histogram *histogram =
+        !midway || potential_reaches(law) ? find_histogram(uses, counted) : NULL;
+    simulation->wants = wants_sums(uses) ? PAIR_FORCES_AND_SUMS : PAIR_FORCES;
     law->histogram = midway ? NULL : histogram;
-    enum status status = run_moving(simulation, due, &observables, plan, NULL);
+    enum status status = run_moving(simulation, due, uses, plan, NULL);
     if (midway && status == STATUS_OK) {
         law->histogram = histogram;
         status = mf_simulation_compute_potential(simulation);
     }
     law->histogram = NULL;
-    TRY(status);
-    if (histogram)
-        mf_rdf_sample_counted(observables.rdf);
-    else if (observables.rdf)
-        TRY(mf_rdf_sample(observables.rdf, &simulation->particles, &simulation->neighbours));
-    return STATUS_OK;
+    return status;
 }
 
 enum status mf_measure_sample(struct simulation *simulation, const struct measure_plan *plan,
-                              struct measure_observables observables,
+                              const struct observable_use *uses,
                               const struct measure_listener *listener) {
     const int64_t begun = (int64_t)simulation->step - plan->equilibration;
+    const struct observable_use *counted;
     for (int64_t sample = begun / plan->every; sample < plan->samples; sample++) {
         const int64_t due = plan->equilibration + (sample + 1) * plan->every;
         simulation->wants = PAIR_FORCES;
-        TRY(run_moving(simulation, due - 1, &observables, plan, listener));
-        TRY(run_sampled_step(simulation, due, observables, plan));
-        if (observables.force_covariance) // while the forces are still those of the step
-            mf_force_covariance_sample(observables.force_covariance, simulation);
-        if (observables.rdf_force)
-            TRY(mf_rdf_force_sample(observables.rdf_force, &simulation->particles,
-                                    &simulation->neighbours));
-        if (observables.thermodynamics)
-            TRY(mf_thermodynamics_sample(observables.thermodynamics, simulation));
+        TRY(run_moving(simulation, due - 1, uses, plan, listener));
+        TRY(run_sampled_step(simulation, due, uses, plan, &counted));
+        for (const struct observable_use *use = uses; use->observable; use++) {
+            const struct observable *observable = use->observable;
+            if (use == counted)
+                TRY(observable->counted(use->state, simulation));
+            else if (observable->due == NULL)
+                TRY(observable->sample(use->state, simulation));
+        }
         tell(listener, simulation, plan);
     }
     return STATUS_OK;

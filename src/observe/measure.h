@@ -2,12 +2,7 @@
 /// @file Equilibrate a simulation, then step it and feed its observables.
 #pragma once
 
-#include "base/fields.h"
-#include "observe/etd.h"
-#include "observe/force_covariance.h"
-#include "observe/motion.h"
-#include "observe/rdf_force.h"
-#include "observe/thermodynamics.h"
+#include "observe/observable.h"
 
 /// When to sample. All in steps, so that nothing is rounded.
 struct measure_plan {
@@ -21,16 +16,6 @@ extern const struct field mf_measure_plan_fields[];
 /// Steps of a whole plan.
 uint64_t mf_measure_steps(const struct measure_plan *plan);
 
-/// What to measure; NULL members are not computed.
-struct measure_observables {
-    struct rdf *rdf;
-    struct rdf_force *rdf_force;
-    struct thermodynamics *thermodynamics;
-    struct force_covariance *force_covariance;
-    struct motion *motion; ///< begun at the end of the equilibration; has an interval of its own
-    struct etd *etd;       ///< the same
-};
-
 /// Told after each sample, and every second or so between them; `done` of `total` steps. NULL for
 /// none.
 struct measure_listener {
@@ -40,9 +25,10 @@ struct measure_listener {
 
 /// Take the samples of a plan whose equilibration is over: all of them, or after a restart those
 /// that are still due by the number of the simulation's step.
+/// @param[in] uses  what to measure, ended by one without an observable
 /// Fails: as mf_simulation_run; NO_MEMORY. What was sampled before a failure stays.
 enum status mf_measure_sample(struct simulation *simulation, const struct measure_plan *plan,
-                              struct measure_observables observables,
+                              const struct observable_use *uses,
                               const struct measure_listener *listener) MUST_USE;
 
 /// Mean temperature (mf_thermodynamics_temperature) over the last tenth of an equilibration of

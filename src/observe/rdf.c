@@ -189,6 +189,14 @@ enum status mf_rdf_sample(struct rdf *rdf, const struct particles *particles,
     return STATUS_OK;
 }
 
+size_t mf_rdf_spans(struct rdf *rdf, struct memory_span *spans) {
+    spans[0] = (struct memory_span){&rdf->samples, sizeof rdf->samples};
+    spans[1] =
+        (struct memory_span){rdf->histogram, rdf->blocks * all_bins(rdf) * sizeof *rdf->histogram};
+    spans[2] = (struct memory_span){rdf->block_samples, rdf->blocks * sizeof *rdf->block_samples};
+    return RDF_SPANS;
+}
+
 /// Expected pairs in place k of an array over kinds and bins.
 static double ideal_at(const struct rdf *rdf, size_t k) {
     return mf_rdf_ideal_pairs_of(&rdf->bins, k % rdf->bins.count, &rdf->box, &rdf->composition,

@@ -9,7 +9,7 @@
 /// mf_composition_pair.
 #pragma once
 
-#include "base/status.h"
+#include "base/memory.h"
 #include "forces/pair.h"
 
 #include <stddef.h>
@@ -81,6 +81,10 @@ void mf_rdf_sample_counted(struct rdf *rdf);
 /// Add the present configuration. Fails: NO_MEMORY.
 enum status mf_rdf_sample(struct rdf *rdf, const struct particles *particles,
                           const struct neighbours *neighbours) MUST_USE;
+
+/// What goes with a checkpoint.
+enum { RDF_SPANS = 3 };
+size_t mf_rdf_spans(struct rdf *rdf, struct memory_span *spans);
 
 /// g and its standard error over the blocks of all replicas, whose correlation the bins of a kind
 /// of pairs tell together (mf_statistics_inefficiency): of close samples even the means of blocks

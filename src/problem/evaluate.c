@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "problem/evaluate.h"
+#include "observe/rdf_force.h"
 
 #include <math.h>
 
@@ -67,13 +68,13 @@ static enum status sample(struct measurement *measurement, double discard_above,
         so_far.samples = plan->samples * part / PARTS;
         if (so_far.samples < LEAST_SAMPLES)
             continue;
-        TRY(mf_measure_sample(&measurement->simulation, &so_far, measurement->observables, NULL));
+        TRY(mf_measure_sample(&measurement->simulation, &so_far, measurement->use, NULL));
         TRY(score(measurement, observed, result));
         result->stopped = says_enough(result, discard_above, parameters);
         if (result->stopped)
             return STATUS_OK;
     }
-    TRY(mf_measure_sample(&measurement->simulation, plan, measurement->observables, NULL));
+    TRY(mf_measure_sample(&measurement->simulation, plan, measurement->use, NULL));
     return score(measurement, observed, result);
 }
 

@@ -8,12 +8,7 @@
 struct measurement {
     const struct targets *targets; ///< borrowed
     struct simulation simulation;
-    struct rdf rdf;
-    struct rdf_force rdf_force;
-    struct etd etd;
-    struct motion motion;
-    struct thermodynamics thermodynamics;
-    struct measure_observables observables; ///< those of the above that are in use
+    struct observable_use use[OBSERVABLES_MOST + 1];
 };
 
 /// What a simulation is to have.
@@ -30,12 +25,13 @@ struct measurement_setup {
     uint64_t seed;
 };
 
-/// When escape times and motion are sampled, if they are.
-void mf_measurement_plans(const struct targets *targets, double time_step, struct etd_plan *etd,
-                          struct motion_plan *motion);
-
-/// Whether VACF, MSD or D is asked for.
-bool mf_measurement_moves(const struct targets *targets);
+/// List the observables that `setup` asks for with their settings, in simulations with steps of
+/// `time_step` [τ]; none has a state yet. `uses` must be cleared, also after a failure.
+/// @param[out] uses  shape [OBSERVABLES_MOST + 1]
+/// Fails: NO_MEMORY.
+enum status mf_measurement_list(const struct measurement_setup *setup, double time_step,
+                                struct observable_use *uses) MUST_USE;
+void mf_measurement_list_clear(struct observable_use *uses);
 
 /// Steps of the longest window of what is asked for, and the target that it belongs to: a plan must
 /// have as many behind its equilibration. 0 if nothing has a window.
@@ -48,6 +44,10 @@ enum status mf_measurement_init(struct measurement *measurement,
                                 const struct inverse_problem *problem,
                                 const struct measurement_setup *setup) MUST_USE;
 void mf_measurement_clear(struct measurement *measurement);
+
+/// State of an observable; NULL if it is not measured.
+const void *mf_measurement_state(const struct measurement *measurement,
+                                 const struct observable *observable);
 
 /// Values and errors of all targets, one behind the other: shape [targets_values].
 struct observed {

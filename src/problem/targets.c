@@ -3,8 +3,10 @@
 
 #include <math.h>
 
-const char *const mf_targets_names[TARGETS] = {"rdf", "etd",       "vacf",
-                                               "msd", "diffusion", "pressure"};
+const char *mf_targets_name(int kind) {
+    const struct observable_kind found = mf_observable_kind(kind);
+    return found.observable ? found.target->name : NULL;
+}
 
 /// Values of an observable that count as independent, for the variance of its rms: bins of g(r) and
 /// cells of E(t, r_0) next to each other see the same pairs.
@@ -109,18 +111,17 @@ double mf_targets_noise(const struct targets *targets, const struct target_dista
     return combine(targets, distance, noise_of);
 }
 
-/// Blocks of E(t, r_0) along each axis.
+/// Blocks of a matrix along each axis.
 enum { BLOCKS = 10 };
 
-static size_t features_of(const struct targets *targets, enum target_kind kind) {
-    return kind == TARGET_ETD && targets_ask(targets, kind) ? BLOCKS * BLOCKS
-                                                            : targets->target[kind].count;
+static size_t features_of(const struct target *target) {
+    return target->count > 0 && target->columns > 0 ? BLOCKS * BLOCKS : target->count;
 }
 
 size_t mf_targets_features(const struct targets *targets) {
     size_t count = 0;
     for (int kind = 0; kind < TARGETS; kind++)
-        count += features_of(targets, kind);
+        count += features_of(&targets->target[kind]);
     return count;
 }
 
@@ -142,31 +143,32 @@ static void add_cell(struct feature *feature, const struct target *target, const
     feature->square += error * error;
 }
 
-/// One block of the cells of E; those at time 0 are no measurement.
-static struct feature block_of(const struct targets *targets, const double *observed,
-                               size_t block) {
-    const size_t bins = (size_t)targets->etd.bins, times = (size_t)targets->etd.times - 1;
-    const size_t row = block / BLOCKS, column = block % BLOCKS;
+/// One block of the cells of a matrix; those of its first row, E at time 0, are no measurement.
+static struct feature block_of(const struct target *target, const double *observed, size_t block) {
+    const size_t columns = target->columns, rows = target->count / columns - 1;
+    const size_t i = block / BLOCKS, j = block % BLOCKS;
     struct feature feature = {0};
-    for (size_t t = times * row / BLOCKS; t < times * (row + 1) / BLOCKS; t++)
-        for (size_t b = bins * column / BLOCKS; b < bins * (column + 1) / BLOCKS; b++)
-            add_cell(&feature, &targets->target[TARGET_ETD], observed, (t + 1) * bins + b);
+    for (size_t row = rows * i / BLOCKS; row < rows * (i + 1) / BLOCKS; row++)
+        for (size_t c = columns * j / BLOCKS; c < columns * (j + 1) / BLOCKS; c++)
+            add_cell(&feature, target, observed, (row + 1) * columns + c);
     return feature;
 }
 
 void mf_targets_take_features(const struct targets *targets, double *const *observed, double *value,
                               double *error) {
     size_t n = 0;
-    for (int kind = 0; kind < TARGETS; kind++)
-        for (size_t k = 0; k < features_of(targets, kind); k++, n++) {
-            const double *of = observed ? observed[kind] : NULL;
+    for (int kind = 0; kind < TARGETS; kind++) {
+        const struct target *target = &targets->target[kind];
+        const double *of = observed ? observed[kind] : NULL;
+        for (size_t k = 0; k < features_of(target); k++, n++) {
             struct feature feature = {0};
-            if (kind == TARGET_ETD)
-                feature = block_of(targets, of, k);
+            if (target->columns > 0)
+                feature = block_of(target, of, k);
             else
-                add_cell(&feature, &targets->target[kind], of, k);
+                add_cell(&feature, target, of, k);
             value[n] = feature.count > 0 ? feature.value / feature.count : 0;
             if (error)
                 error[n] = feature.count > 0 ? sqrt(feature.square / feature.count) : 0;
         }
+    }
 }

@@ -3,8 +3,12 @@
 #pragma once
 
 #include "observe/etd.h"
+#include "observe/observable.h"
 #include "observe/rdf.h"
 
+/// Kinds of targets are numbers: their order is that in which the observables of the list
+/// (observe/observable.h) supply them. Those that something asks for by name are named here;
+/// others follow. Tested: test_targets.
 enum target_kind {
     TARGET_RDF,
     TARGET_ETD,
@@ -12,11 +16,11 @@ enum target_kind {
     TARGET_MSD,
     TARGET_DIFFUSION,
     TARGET_PRESSURE,
-    TARGETS
+    TARGETS = 16 ///< at most
 };
 
-/// Names in run files and tables, shape [TARGETS].
-extern const char *const mf_targets_names[TARGETS];
+/// Name in run files and tables; NULL beyond the last kind.
+const char *mf_targets_name(int kind);
 
 /// Measured values of one observable. Borrowed.
 struct target {
@@ -24,6 +28,8 @@ struct target {
     const double *value; ///< shape [count]; NaN: not known, left out
     const double *error; ///< standard errors, shape [count]; NaN: not known, left out
     double weight;       ///< of its error in the sum; 0: one over the rms of its errors
+    size_t columns;      ///< of a matrix, else 0
+    const double *x;     ///< shape [count]: of a curve that is told at its own points, else NULL
 };
 
 /// Everything that is asked for, and how it was measured.
@@ -35,6 +41,8 @@ struct targets {
     double etd_origins;     ///< between time origins [τ]
     double motion_interval; ///< of VACF, MSD and D [τ]
     size_t motion_lags;     ///< intervals in the window of VACF, MSD and D
+    /// Of the other observables, by their places in the list, or NULL of one without. Borrowed.
+    const void *settings[OBSERVABLES_MOST];
 };
 
 /// Distance of measured values from one target.
@@ -70,7 +78,8 @@ double mf_targets_variance(const struct targets *targets, const struct target_di
 double mf_targets_noise(const struct targets *targets, const struct target_distance *distance);
 
 /// @name Features: the targets in few enough numbers for a linear model
-/// g(r), VACF, MSD, D and pressure as they are; E(t, r_0) as means over blocks of cells, 10 by 10.
+/// Values as they are, but a matrix, E(t, r_0), as means over blocks of cells, 10 by 10, without
+/// its first row.
 
 size_t mf_targets_features(const struct targets *targets);
 

@@ -4,6 +4,8 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/rng.h"
+#include "observe/motion.h"
+#include "observe/rdf_observable.h"
 
 #include <math.h>
 
@@ -52,7 +54,7 @@ static enum status run_replica(void *context, size_t number, void *result) {
         .seed = mf_rng_child_seed(work->problem->seed, RNG_VERIFICATION, (uint32_t)number, 0)};
     TRY(mf_measurement_init(replica, work->problem, &setup));
     TRY(mf_measure_equilibrate(&replica->simulation, &parameters->plan, &temperature, NULL));
-    return mf_measure_sample(&replica->simulation, &parameters->plan, replica->observables, NULL);
+    return mf_measure_sample(&replica->simulation, &parameters->plan, replica->use, NULL);
 }
 
 static void tell_one(void *context, size_t number, const void *result) {
@@ -118,8 +120,11 @@ static enum status find_rdf_error(const struct measurement *replicas, size_t cou
     if (!targets_ask(targets, TARGET_RDF))
         return STATUS_OK;
     NEW_ARRAY(rdf, count);
-    for (size_t k = 0; k < count; k++)
-        rdf[k] = replicas[k].rdf;
+    for (size_t k = 0; k < count; k++) {
+        const struct rdf_observed *observed =
+            mf_measurement_state(&replicas[k], &mf_rdf_observable);
+        rdf[k] = observed->counted;
+    }
     CHECK(mf_rdf_distance(rdf, count, targets->target[TARGET_RDF].value,
                           &verification->distance[TARGET_RDF].rms,
                           &verification->distance_error[TARGET_RDF]));
@@ -136,15 +141,17 @@ static enum status summarise(struct measurement *replicas, size_t count,
     struct thermodynamics *thermodynamics = NULL;
     NEW_ARRAY(thermodynamics, count);
     for (size_t k = 0; k < count; k++) {
-        thermodynamics[k] = replicas[k].thermodynamics;
+        thermodynamics[k] = *(const struct thermodynamics *)mf_measurement_state(
+            &replicas[k], &mf_thermodynamics_observable);
         verification->engine_steps += replicas[k].simulation.step;
     }
     verification->thermodynamics = mf_thermodynamics_result(thermodynamics, count);
     if (mf_thermodynamics_judge_fit(&verification->thermodynamics, &replicas->simulation.setup) !=
         STATUS_OK)
         snprintf(verification->warning, sizeof verification->warning, "%s", mf_status_message());
-    if (mf_measurement_moves(targets)) {
-        const struct motion_summary motion = mf_motion_result(&replicas->motion, NULL);
+    const void *moved = mf_measurement_state(replicas, &mf_motion_observable);
+    if (moved) {
+        const struct motion_summary motion = mf_motion_result(moved, NULL);
         verification->diffusion_begin = motion.fit_begin;
         verification->diffusion_end = motion.fit_end;
     }

@@ -2,6 +2,7 @@
 /// @file Verification of a result by independent replicas of a longer simulation.
 #pragma once
 
+#include "observe/thermodynamics.h"
 #include "problem/measurement.h"
 
 struct verify_parameters {

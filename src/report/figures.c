@@ -3,6 +3,7 @@
 
 #include "io/input.h"
 #include "io/output.h"
+#include "observe/observable.h"
 #include "report/program.h"
 #include "system/composition.h"
 
@@ -41,9 +42,6 @@ static const struct figure figures[] = {
     {"error", {"history.tsv", "timing.tsv"}, NULL, false},
     {"generations", {"history.tsv"}, "diversity", false},
     {"pareto", {"pareto.tsv", "pareto_history.tsv"}, NULL, false},
-    {"simulation", {"thermodynamics.tsv"}, NULL, false},
-    {"motion", {"motion.tsv"}, NULL, false},
-    {"etd", {"etd.tsv", "etd_error.tsv", "etd_bins.tsv"}, NULL, false},
 };
 
 static const struct figure comparison = {"compare", {"compare.tsv"}, NULL, false};
@@ -74,13 +72,21 @@ static bool is_table(const char *path) {
     return stat(path, &about) == 0 && S_ISREG(about.st_mode) && access(path, R_OK) == 0;
 }
 
-static bool has_tables(const char *folder, const struct figure *figure) {
+/// Whether all files of a list are there.
+static bool has_files(const char *folder, const char *const *files) {
     char path[PATH_SIZE];
-    for (size_t k = 0; figure->tables[k]; k++) {
-        snprintf(path, sizeof path, "%s/%s", folder, figure->tables[k]);
+    for (; *files; files++) {
+        snprintf(path, sizeof path, "%s/%s", folder, *files);
         if (!is_table(path))
             return false;
     }
+    return true;
+}
+
+static bool has_tables(const char *folder, const struct figure *figure) {
+    char path[PATH_SIZE];
+    if (!has_files(folder, figure->tables))
+        return false;
     snprintf(path, sizeof path, "%s/%s", folder, figure->tables[0]);
     return figure->column == NULL || has_column(path, figure->column);
 }
@@ -213,6 +219,29 @@ static enum status draw_pairs(const char *folder, const char *plots, const struc
     return first;
 }
 
+/// Draw a figure if its tables are there, and count it; or one for each pair type.
+static enum status draw_figure(const char *folder, const char *plots, const struct figure *figure,
+                               size_t *count) {
+    if (!has_tables(folder, figure))
+        return figure->by_pairs ? draw_pairs(folder, plots, figure, count) : STATUS_OK;
+    ++*count;
+    return draw(folder, plots, figure->name, "");
+}
+
+/// The figure of an observable; that without a script of its own is told what to draw.
+static enum status draw_observable(const char *folder, const char *plots,
+                                   const struct observable *observable, size_t *count) {
+    if (observable->figure == NULL || !has_files(folder, observable->files))
+        return STATUS_OK;
+    ++*count;
+    if (strcmp(observable->figure, OBSERVABLE_FIGURE_OF_CURVE) != 0)
+        return draw(folder, plots, observable->figure, "");
+    if (setenv("MESOFIT_TABLE", observable->files[0], 1) != 0 ||
+        setenv("MESOFIT_FIGURE", observable->name, 1) != 0)
+        return mf_status_fail(STATUS_NO_MEMORY, "out of memory");
+    return draw_to(folder, plots, observable->figure, observable->name);
+}
+
 /// Draw all figures, and count them, also those that fail.
 static enum status draw_all(const char *folder, size_t *count) {
     enum status first = STATUS_OK;
@@ -220,14 +249,11 @@ static enum status draw_all(const char *folder, size_t *count) {
     if (access(folder, X_OK) != 0)
         return mf_status_fail(STATUS_IO, "%s: %s", folder, strerror(errno));
     TRY(find_plots(plots));
-    for (size_t k = 0; k < sizeof figures / sizeof figures[0]; k++) {
-        enum status status = STATUS_OK;
-        if (has_tables(folder, &figures[k])) {
-            ++*count;
-            status = draw(folder, plots, figures[k].name, "");
-        } else if (figures[k].by_pairs) {
-            status = draw_pairs(folder, plots, &figures[k], count);
-        }
+    const size_t fixed = sizeof figures / sizeof *figures;
+    for (size_t k = 0; k < fixed || mf_observables[k - fixed]; k++) {
+        const enum status status =
+            k < fixed ? draw_figure(folder, plots, &figures[k], count)
+                      : draw_observable(folder, plots, mf_observables[k - fixed], count);
         if (first != STATUS_OK || status == STATUS_OK)
             continue;
         first = status;

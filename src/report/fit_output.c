@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "io/data_table.h"
 #include "io/votca.h"
+#include "observe/rdf_observable.h"
 
 #include <math.h>
 
@@ -173,7 +174,7 @@ static enum status write_rdf(const struct fit_file *fit, const struct observed *
         {"result[1]", observed->value[TARGET_RDF] + first, "%.8g"},
         {"result_error[1]", observed->error[TARGET_RDF] + first, "%.3g"},
         {"r[nm]", nanometres, NULL}};
-    mf_run_folder_rdf(folder, &files->composition, (int)pair, path);
+    mf_rdf_observable_file(folder->path, &files->composition, (int)pair, path);
     CHECK(mf_data_table_write(path, NULL, columns, mf_units_known(units) ? 6 : 5, bins->count));
 done:
     mf_memory_free(r);
@@ -219,60 +220,60 @@ done:
     return status;
 }
 
-/// What a table of VACF or MSD calls its columns, and the same in nm and ps.
-struct motion_names {
-    const char *columns[4], *physical[4];
-    double unit; ///< of VACF or MSD in nm and ps
+/// What the columns of a curve's table are called in nm and ps, of which `factor` makes reduced
+/// units; 0: it has none of them.
+struct physical_unit {
+    const char *columns[4];
+    double factor;
 };
 
-static struct motion_names motion_names(enum target_kind kind, const struct units *units) {
+static struct physical_unit physical_unit(enum target_kind kind, const struct units *units) {
     const double nm2 = units->length * units->length;
+    if (!mf_units_known(units) || (kind != TARGET_MSD && kind != TARGET_VACF))
+        return (struct physical_unit){0};
     if (kind == TARGET_MSD)
-        return (struct motion_names){
-            {"target[lambda^2]", "target_error[lambda^2]", "result[lambda^2]",
-             "result_error[lambda^2]"},
-            {"target[nm^2]", "target_error[nm^2]", "result[nm^2]", "result_error[nm^2]"},
-            nm2};
-    const double ps = mf_units_known(units) ? mf_units_time_ps(units) : 1;
-    return (struct motion_names){{"target[lambda^2/tau^2]", "target_error[lambda^2/tau^2]",
-                                  "result[lambda^2/tau^2]", "result_error[lambda^2/tau^2]"},
-                                 {"target[nm^2/ps^2]", "target_error[nm^2/ps^2]",
-                                  "result[nm^2/ps^2]", "result_error[nm^2/ps^2]"},
-                                 nm2 / (ps * ps)};
+        return (struct physical_unit){
+            {"target[nm^2]", "target_error[nm^2]", "result[nm^2]", "result_error[nm^2]"}, nm2};
+    const double ps = mf_units_time_ps(units);
+    return (struct physical_unit){{"target[nm^2/ps^2]", "target_error[nm^2/ps^2]",
+                                   "result[nm^2/ps^2]", "result_error[nm^2/ps^2]"},
+                                  nm2 / (ps * ps)};
 }
 
-/// VACF or MSD beside its target.
-static enum status write_motion(const struct fit_file *fit, const struct target_curve *target,
-                                const struct observed *observed, enum target_kind kind,
-                                const struct run_folder *folder) {
+/// A curve beside its target: x, target, result, each with its error; VACF and MSD also in nm, ps.
+static enum status write_curve(const struct fit_file *fit, enum target_kind kind,
+                               const struct observed *observed, const struct run_folder *folder) {
     enum status status = STATUS_OK;
-    const struct units *units = &fit->scene.units;
-    const struct motion_names names = motion_names(kind, units);
+    static const char *const words[4] = {"target", "target_error", "result", "result_error"};
+    const struct observable_target *about = mf_observable_kind(kind).target;
+    const struct target_curve *target = &fit->files.curve[kind];
+    const struct physical_unit unit = physical_unit(kind, &fit->scene.units);
     const double *const values[4] = {target->value, target->error, observed->value[kind],
                                      observed->error[kind]};
-    double *time = NULL, *picoseconds = NULL, *physical[4] = {NULL};
-    char path[OUTPUT_PATH_SIZE], name[64];
+    double *x = NULL, *picoseconds = NULL, *physical[4] = {NULL};
+    char path[OUTPUT_PATH_SIZE], name[64], names[4][64];
     struct data_column columns[10];
-    NEW_ARRAY(time, target->times);
-    for (size_t k = 0; k < target->times; k++)
-        time[k] = (double)k * target->interval;
-    picoseconds =
-        mf_units_column(time, target->times, mf_units_known(units) ? mf_units_time_ps(units) : 0);
+    NEW_ARRAY(x, target->points);
+    for (size_t k = 0; k < target->points; k++)
+        x[k] = target->interval > 0 ? (double)k * target->interval : target->x[k];
+    picoseconds = mf_units_column(x, target->points,
+                                  unit.factor > 0 ? mf_units_time_ps(&fit->scene.units) : 0);
     CHECK(picoseconds ? STATUS_OK : STATUS_NO_MEMORY);
-    columns[0] = (struct data_column){"time[tau]", time, NULL};
+    columns[0] = (struct data_column){about->argument, x, NULL};
     columns[5] = (struct data_column){"time[ps]", picoseconds, NULL};
     for (int k = 0; k < 4; k++) {
         const char *format = k % 2 ? "%.3g" : "%.8g";
-        physical[k] = mf_units_column(values[k], target->times, names.unit);
+        physical[k] = mf_units_column(values[k], target->points, unit.factor);
         CHECK(physical[k] ? STATUS_OK : STATUS_NO_MEMORY);
-        columns[1 + k] = (struct data_column){names.columns[k], values[k], format};
-        columns[6 + k] = (struct data_column){names.physical[k], physical[k], format};
+        snprintf(names[k], sizeof names[k], "%s[%s]", words[k], about->unit);
+        columns[1 + k] = (struct data_column){names[k], values[k], format};
+        columns[6 + k] = (struct data_column){unit.columns[k], physical[k], format};
     }
-    snprintf(name, sizeof name, "%s.tsv", mf_targets_names[kind]);
+    snprintf(name, sizeof name, "%s.tsv", about->name);
     mf_run_folder_file(folder, name, path);
-    CHECK(mf_data_table_write(path, NULL, columns, mf_units_known(units) ? 10 : 5, target->times));
+    CHECK(mf_data_table_write(path, NULL, columns, unit.factor > 0 ? 10 : 5, target->points));
 done:
-    mf_memory_free(time);
+    mf_memory_free(x);
     mf_memory_free(picoseconds);
     for (int k = 0; k < 4; k++)
         mf_memory_free(physical[k]);
@@ -287,9 +288,8 @@ enum status mf_fit_output_observables(const struct fit_file *fit, const struct f
         TRY(write_rdf(fit, observed, pair, folder));
     if (files->given[TARGET_ETD])
         TRY(write_etd(fit, observed, folder));
-    if (files->given[TARGET_VACF])
-        TRY(write_motion(fit, &files->vacf, observed, TARGET_VACF, folder));
-    if (files->given[TARGET_MSD])
-        TRY(write_motion(fit, &files->msd, observed, TARGET_MSD, folder));
+    for (int kind = 0; kind < TARGETS; kind++)
+        if (files->curve[kind].points > 0)
+            TRY(write_curve(fit, kind, observed, folder));
     return STATUS_OK;
 }

@@ -3,7 +3,7 @@
 
 #include "problem/parametrisation.h"
 #include "report/fit_change.h"
-#include "report/number_text.h"
+#include "base/number_text.h"
 
 #include <math.h>
 
@@ -75,7 +75,7 @@ static void say_distances(struct progress *to, const struct fit_file *fit,
         mf_number_text(v->distance[kind].rms, v->distance_error[kind], rms);
         const double noises = v->distance[kind].rms / v->distance[kind].noise;
         mf_progress_say(to, "verified: rms of %s - target = %s, statistics alone %.2g%s",
-                        mf_targets_names[kind], rms, v->distance[kind].noise,
+                        mf_targets_name(kind), rms, v->distance[kind].noise,
                         noises > missed ? ": not met, though nothing better was found" : "");
     }
 }

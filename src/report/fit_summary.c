@@ -66,11 +66,11 @@ static void put_distances(struct json_writer *writer, const struct fit_file *fit
     for (int kind = 0; kind < TARGETS; kind++) {
         if (!fit->files.given[kind])
             continue;
-        snprintf(key, sizeof key, "%s_rmse", mf_targets_names[kind]);
+        snprintf(key, sizeof key, "%s_rmse", mf_targets_name(kind));
         put_known(writer, key, v->distance[kind].rms);
-        snprintf(key, sizeof key, "%s_rmse_error", mf_targets_names[kind]);
+        snprintf(key, sizeof key, "%s_rmse_error", mf_targets_name(kind));
         put_known(writer, key, v->distance_error[kind]);
-        snprintf(key, sizeof key, "%s_noise", mf_targets_names[kind]);
+        snprintf(key, sizeof key, "%s_noise", mf_targets_name(kind));
         mf_json_put_number(writer, key, v->distance[kind].noise);
     }
 }

@@ -84,8 +84,8 @@ static enum status check_folder(const char *folder, const char *summary) {
 static bool has_distance(struct json_object *root) {
     char key[64];
     bool found = false;
-    for (int kind = 0; kind < TARGETS; kind++) {
-        snprintf(key, sizeof key, "%s_rmse", mf_targets_names[kind]);
+    for (int kind = 0; mf_targets_name(kind); kind++) {
+        snprintf(key, sizeof key, "%s_rmse", mf_targets_name(kind));
         found = mf_json_has(root, key) || found;
     }
     return found;

@@ -2,6 +2,7 @@
 #include "report/run_folder.h"
 
 #include "io/json.h"
+#include "observe/observable.h"
 #include "report/figures.h"
 
 #include <dirent.h>
@@ -30,21 +31,11 @@ static const char *const results[] = {
     "omega_flat.tsv",
     "omega_history.tsv",
     "omega.tsv",
-    "rdf.tsv",
-    "rdf_*-*.tsv",
-    "thermodynamics.tsv",
-    "motion.tsv",
-    "etd.tsv",
-    "etd_error.tsv",
-    "etd_bins.tsv",
     "etd_cells.tsv",
-    "vacf.tsv",
-    "msd.tsv",
     "pareto.tsv",
     "pareto_history.tsv",
     "pareto_omega.tsv",
     "pareto_potential.tsv",
-    "force_covariance.tsv",
     "pareto_potential_*-*.tsv",
     "checkpoint.bin",
     // As version 0.1.0 called them, in whose folder this may be.
@@ -67,11 +58,26 @@ static bool fits(const char *pattern, const char *name) {
     return dot > second && *dot == '.';
 }
 
+/// A table of an observable, or of a target and what was found of it.
+static bool is_observed(const char *name) {
+    struct observable_kind found;
+    for (size_t k = 0; mf_observables[k]; k++)
+        for (const char *const *file = mf_observables[k]->files; file && *file; file++)
+            if (fits(*file, name))
+                return true;
+    for (int kind = 0; (found = mf_observable_kind(kind)).observable; kind++) {
+        const size_t length = strlen(found.target->name);
+        if (strncmp(name, found.target->name, length) == 0 && strcmp(name + length, ".tsv") == 0)
+            return true;
+    }
+    return false;
+}
+
 static int is_result(const struct dirent *entry) {
     for (size_t k = 0; k < sizeof results / sizeof *results; k++)
         if (fits(results[k], entry->d_name))
             return 1;
-    return 0;
+    return is_observed(entry->d_name);
 }
 
 /// A result, but for the checkpoint, which the new run has replaced by its own.
@@ -262,14 +268,6 @@ void mf_run_folder_close(struct run_folder *folder) {
 void mf_run_folder_file(const struct run_folder *folder, const char *name, char *path) {
     snprintf(path, OUTPUT_PATH_SIZE, "%.*s/%.*s", LONGEST_FOLDER, folder->path, NAME_ROOM - 2,
              name);
-}
-
-void mf_run_folder_rdf(const struct run_folder *folder, const struct composition *composition,
-                       int pair, char *path) {
-    char kind[COMPOSITION_PAIR_NAME_SIZE], name[COMPOSITION_PAIR_NAME_SIZE + 8];
-    mf_composition_pair_name(composition, pair, kind);
-    snprintf(name, sizeof name, "rdf%s%s.tsv", kind[0] ? "_" : "", kind);
-    mf_run_folder_file(folder, name, path);
 }
 
 void mf_run_folder_draw(const struct run_folder *folder) {

@@ -42,9 +42,5 @@ void mf_run_folder_close(struct run_folder *folder);
 /// Path of a file in the folder, into `path` of OUTPUT_PATH_SIZE bytes.
 void mf_run_folder_file(const struct run_folder *folder, const char *name, char *path);
 
-/// Path of the g(r) of a pair type: rdf.tsv, or rdf_A-B.tsv in a mixture.
-void mf_run_folder_rdf(const struct run_folder *folder, const struct composition *composition,
-                       int pair, char *path);
-
 /// Draw the figures of the folder; what fails is a warning on stderr.
 void mf_run_folder_draw(const struct run_folder *folder);

@@ -6,50 +6,29 @@
 #include "work/fit.h"
 #include "input/fit_file.h"
 
-/// What is measured of targets in simulations with some time step.
-struct measured {
-    struct motion_plan motion;
-    struct etd_plan etd;
-    struct explain_measured explain;
-};
-
-static struct measured measured_of(const struct targets *targets,
-                                   const struct simulation_setup *setup, int64_t every) {
-    const struct pair_law law = {.potential = setup->potential, .omega = setup->omega};
-    struct measured measured;
-    mf_measurement_plans(targets, setup->time_step, &measured.etd, &measured.motion);
-    measured.explain = (struct explain_measured){
-        .has_potential = setup->potential != NULL,
-        .cutoff = mf_pair_cutoff(&law),
-        .rdf_range = targets_ask(targets, TARGET_RDF) ? mf_rdf_bins_range(&targets->bins) : 0,
-        .every = every,
-        .sums = targets_ask(targets, TARGET_PRESSURE)};
-    return measured;
-}
-
-static void print_simulation(const struct measured *measured, const struct targets *targets,
-                             const struct simulation_setup *setup) {
-    struct explain_measured explain = measured->explain;
-    explain.etd_plan = &measured->etd;
-    explain.etd_grid = targets_ask(targets, TARGET_ETD) ? &targets->etd : NULL;
-    explain.motion = mf_measurement_moves(targets) ? &measured->motion : NULL;
-    mf_explain_scene(stdout, setup, &explain);
+static enum status print_simulation(const struct measurement_setup *measured,
+                                    const struct simulation_setup *setup) {
+    struct observable_use uses[OBSERVABLES_MOST + 1] = {0};
+    const enum status status = mf_measurement_list(measured, setup->time_step, uses);
+    if (status == STATUS_OK)
+        mf_explain_scene(stdout, setup, uses, measured->plan.every);
+    mf_measurement_list_clear(uses);
+    return status;
 }
 
 /// Simulations with the curves that the fit begins with.
-static void print_simulations(const struct fit_file *fit, const struct unknowns_laws *laws) {
+static enum status print_simulations(const struct fit_file *fit, const struct unknowns_laws *laws) {
     const struct inverse_problem *problem = &fit->problem;
     struct simulation_setup setup = laws->problem.scene;
     setup.potential = laws->table[UNKNOWN_POTENTIAL];
     setup.omega = laws->table[UNKNOWN_OMEGA];
     if (fit->method->kind == INVERSE_MATCHING) {
         const struct inverse_sampling sampling = fit->method->sampling(fit->method_parameters);
-        struct measured measured = measured_of(&problem->targets, &setup, sampling.every);
-        measured.explain.rdf_force = measured.explain.rdf_force_alone =
-            sampling.rdf_force && targets_ask(&problem->targets, TARGET_RDF) &&
-            !composition_is_mixed(&setup.composition);
+        const struct measurement_setup evaluation = {.targets = &problem->targets,
+                                                     .plan.every = sampling.every,
+                                                     .force_estimator = sampling.rdf_force};
         printf("An evaluation of the method \"%s\", one a thread:\n", fit->method->name);
-        print_simulation(&measured, &problem->targets, &setup);
+        TRY(print_simulation(&evaluation, &setup));
     } else {
         printf("The method \"%s\" samples by a Monte Carlo of its own, not by the dynamics of the "
                "scene.\n",
@@ -57,11 +36,10 @@ static void print_simulations(const struct fit_file *fit, const struct unknowns_
     }
     if (fit->verification.time_step > 0)
         setup.time_step = fit->verification.time_step;
-    struct measured measured =
-        measured_of(&problem->compared, &setup, fit->verification.plan.every);
-    measured.explain.sums = true;
+    const struct measurement_setup replica = {
+        .targets = &problem->compared, .plan = fit->verification.plan, .thermodynamics = true};
     printf("A replica of the verification, one a thread:\n");
-    print_simulation(&measured, &problem->compared, &setup);
+    return print_simulation(&replica, &setup);
 }
 
 static void print_numbers(const struct fit_file *fit) {
@@ -105,7 +83,7 @@ enum status mf_fit_explain(const char *file, const struct run_options *options) 
     CHECK(mf_target_sanity_tell(&fit.files, &fit.scene,
                                 &(struct target_sanity_listener){print_line, stdout}));
     print_numbers(&fit);
-    print_simulations(&fit, &laws);
+    CHECK(print_simulations(&fit, &laws));
 done:
     mf_unknowns_laws_clear(&laws);
     mf_unknowns_clear(&unknowns);

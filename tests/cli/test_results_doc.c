@@ -19,6 +19,7 @@ static const char scene[] =
     "10},\n"
     "\"dynamics\": {\"integrator\": \"dpd-verlet\"}, \"force_covariance\": {},\n"
     "\"etd\": {\"r_minimum\": 0.4, \"r_maximum\": 0.9, \"bins\": 6, \"times\": 6, \"every\": 2},\n"
+    "\"structure_factor\": {\"q_maximum\": 9},\n"
     "\"units\": {\"length\": 0.7, \"temperature\": 300, \"mass\": 9e-26}}\n";
 
 #define FIT(target, unknowns, method)                                                              \
@@ -39,7 +40,8 @@ static const struct {
     {"joint.json",
      FIT(", \"msd\": {\"file\": \"scene/motion.tsv\"}, \"vacf\": {\"file\": \"scene/motion.tsv\","
          "\"value_column\": 4, \"error_column\": 5}, \"pressure\": {\"value\": 20, \"fitted\": "
-         "\"no\"}, \"etd\": {\"file\": \"scene/etd.tsv\", \"error_file\": \"scene/etd_error.tsv\","
+         "\"no\"}, \"structure_factor\": {\"file\": \"scene/structure_factor.tsv\", \"q_maximum\": "
+         "9}, \"etd\": {\"file\": \"scene/etd.tsv\", \"error_file\": \"scene/etd_error.tsv\","
          "\"r_minimum\": 0.4, \"r_maximum\": 0.9}",
          ", \"omega\": {\"curve\": \"power\", \"truth\": {\"law\": \"power\", \"sigma\": 3}}",
          "\"name\": \"pareto\", \"population\": 8, \"generations\": 2, \"equilibration\": 20, "

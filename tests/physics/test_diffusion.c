@@ -2,9 +2,9 @@
 //
 // Self-diffusion with friction and noise, and Maxwell's velocities.
 #include "curves/formula.h"
-#include "observe/measure.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
+#include "shared/watched.h"
 #include "shared/testing.h"
 
 #include <math.h>
@@ -29,8 +29,7 @@ static struct motion_summary simulate(const struct fluid *fluid, const struct mo
     assert_ok(mf_motion_init(&motion, plan, &simulation, when->equilibration,
                              when->samples * when->every));
     assert_ok(mf_measure_equilibrate(&simulation, when, &temperature, NULL));
-    assert_ok(mf_measure_sample(&simulation, when, (struct measure_observables){.motion = &motion},
-                                NULL));
+    assert_ok(watched_sample(&simulation, when, (struct watched){.motion = &motion}, NULL));
     const struct motion_summary s = mf_motion_result(&motion, NULL);
     print_message("D = %.4f(%.0f) from the MSD, %.4f(%.0f) by Green and Kubo; "
                   "T %.3f, D_n = %.4f, p = %.2g\n",

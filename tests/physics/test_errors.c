@@ -4,9 +4,9 @@
 // 95 % find the truth within two of their own errors. The truth is the mean of all of them, whose
 // error is a fourteenth of one's.
 #include "base/statistics.h"
-#include "observe/measure.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
+#include "shared/watched.h"
 #include "shared/testing.h"
 
 #include <math.h>
@@ -37,9 +37,8 @@ static void measure(const struct simulation_setup *setup, struct measured *measu
     assert_ok(mf_motion_init(&motion, &plan, &simulation, when.equilibration, 1200));
     assert_ok(mf_thermodynamics_init(&thermodynamics, 300));
     assert_ok(mf_measure_equilibrate(&simulation, &when, &temperature, NULL));
-    const struct measure_observables observables = {.thermodynamics = &thermodynamics,
-                                                    .motion = &motion};
-    assert_ok(mf_measure_sample(&simulation, &when, observables, NULL));
+    const struct watched observables = {.thermodynamics = &thermodynamics, .motion = &motion};
+    assert_ok(watched_sample(&simulation, &when, observables, NULL));
     const struct thermodynamics_summary t = mf_thermodynamics_result(&thermodynamics, 1);
     const struct motion_summary m = mf_motion_result(&motion, NULL);
     *measured =
@@ -103,8 +102,7 @@ static void test_errors_of_close_samples_are_the_scatter_of_g(void **state) {
         assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
         assert_ok(mf_rdf_init(&rdf, &bins, &fluid.setup.box, PARTICLES, 2.5, SAMPLES));
         assert_ok(mf_measure_equilibrate(&simulation, &when, &temperature, NULL));
-        assert_ok(
-            mf_measure_sample(&simulation, &when, (struct measure_observables){.rdf = &rdf}, NULL));
+        assert_ok(watched_sample(&simulation, &when, (struct watched){.rdf = &rdf}, NULL));
         assert_ok(mf_rdf_result(&rdf, 1, value, error));
         for (int n = 0; n < BINS; n++) {
             mf_statistics_add(&g[n], value[n]);

@@ -4,9 +4,9 @@
 // gases that do not see each other.
 #include "base/statistics.h"
 #include "observe/finite_size.h"
-#include "observe/measure.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
+#include "shared/watched.h"
 #include "shared/testing.h"
 
 #include <math.h>
@@ -34,8 +34,7 @@ static void sample(struct fluid *fluid, int64_t samples, struct rdf *rdf) {
     assert_ok(mf_rdf_init_mixture(rdf, &bins, &fluid->setup.box, &fluid->setup.composition, 1,
                                   (size_t)samples));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
-    assert_ok(
-        mf_measure_sample(&simulation, &plan, (struct measure_observables){.rdf = rdf}, NULL));
+    assert_ok(watched_sample(&simulation, &plan, (struct watched){.rdf = rdf}, NULL));
     mf_simulation_clear(&simulation);
 }
 

@@ -2,9 +2,9 @@
 //
 // The friction weight of the standard DPD fluid, 2 k_B T ω² = [3 (1 − r)]², comes back from the
 // covariance of the forces at two time steps.
-#include "observe/measure.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
+#include "shared/watched.h"
 #include "shared/testing.h"
 
 enum { BINS = 20 };
@@ -18,8 +18,8 @@ static void measure(struct force_covariance *covariance, const struct fluid *flu
     assert_ok(mf_simulation_init(&simulation, &fluid->setup, NULL));
     assert_ok(mf_force_covariance_init(covariance, &plan, &simulation, (size_t)samples));
     assert_ok(mf_measure_equilibrate(&simulation, &when, &temperature, NULL));
-    assert_ok(mf_measure_sample(
-        &simulation, &when, (struct measure_observables){.force_covariance = covariance}, NULL));
+    assert_ok(
+        watched_sample(&simulation, &when, (struct watched){.force_covariance = covariance}, NULL));
     mf_simulation_clear(&simulation);
 }
 

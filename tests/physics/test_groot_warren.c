@@ -5,9 +5,9 @@
 #include "curves/formula.h"
 #include "dynamics/dpd_verlet.h"
 #include "io/data_table.h"
-#include "observe/measure.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
+#include "shared/watched.h"
 #include "shared/testing.h"
 #include "shared/variants.h"
 
@@ -39,8 +39,8 @@ static struct thermodynamics_summary simulate(const struct simulation_setup *set
     assert_ok(mf_simulation_init(&simulation, setup, NULL));
     assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)samples));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
-    const struct measure_observables observables = {.rdf = rdf, .thermodynamics = &thermodynamics};
-    assert_ok(mf_measure_sample(&simulation, &plan, observables, NULL));
+    const struct watched observables = {.rdf = rdf, .thermodynamics = &thermodynamics};
+    assert_ok(watched_sample(&simulation, &plan, observables, NULL));
     const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
     print_message("%s, time step %g: kinetic %.4f(%.4f), configurational %.4f(%.4f), U/N "
                   "%.4f(%.4f), pressure %.4f(%.4f)\n",
@@ -207,9 +207,9 @@ static void check_heating(const struct heating *heating) {
     assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
     assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)plan.samples));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
-    const struct measure_observables observables = {.thermodynamics = &thermodynamics};
+    const struct watched observables = {.thermodynamics = &thermodynamics};
     const struct measure_listener listener = {add_end, &ends};
-    assert_ok(mf_measure_sample(&simulation, &plan, observables, &listener));
+    assert_ok(watched_sample(&simulation, &plan, observables, &listener));
     const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
     const double kinetic = ends.sum / (double)ends.count;
     print_message("%s, lambda %g, time step %g: kinetic %.4f(%.4f), configurational %.4f(%.4f)\n",

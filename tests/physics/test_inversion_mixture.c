@@ -177,7 +177,8 @@ static void test_imc_finds_equal_potentials_when_the_types_are_alike(void **stat
     inversions_run(&mf_imc, &problem, 0, phi, &step);
     assert_true(step.converged);
     problem.scene.composition = mf_composition_of_one(PARTICLES);
-    problem.targets.target[TARGET_RDF] = (struct target){BINS, mixture.all, mixture.all_error, 0};
+    problem.targets.target[TARGET_RDF] =
+        (struct target){.count = BINS, .value = mixture.all, .error = mixture.all_error};
     inversions_run(&mf_imc, &problem, 0, alone, &step);
     assert_true(step.converged);
     for (size_t pair = 0; pair < PAIRS; pair++) {

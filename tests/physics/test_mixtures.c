@@ -3,9 +3,9 @@
 // Mixtures whose answer is known: types in name only are the fluid of one type; types that repel
 // each other more stay apart, at the temperature that was set.
 #include "curves/sampled.h"
-#include "observe/measure.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
+#include "shared/watched.h"
 #include "shared/testing.h"
 
 enum { PARTICLES = 3000, BINS = 20, SAMPLES = 200, PAIRS = 3 };
@@ -38,8 +38,8 @@ static void measure(const struct simulation_setup *setup, int64_t equilibration,
     assert_ok(mf_rdf_init_mixture(&rdf, &bins, &setup->box, mixed ? &setup->composition : &one, 1,
                                   SAMPLES));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
-    const struct measure_observables observables = {.rdf = &rdf, .thermodynamics = &thermodynamics};
-    assert_ok(mf_measure_sample(&simulation, &plan, observables, NULL));
+    const struct watched observables = {.rdf = &rdf, .thermodynamics = &thermodynamics};
+    assert_ok(watched_sample(&simulation, &plan, observables, NULL));
     measured->summary = mf_thermodynamics_result(&thermodynamics, 1);
     assert_ok(mf_rdf_result(&rdf, 1, measured->g, measured->error));
     print_message("%d types: configurational %.4f(%.4f), pressure %.4f(%.4f)\n",

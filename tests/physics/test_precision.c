@@ -6,9 +6,9 @@
 
 #include "base/comoments.h"
 #include "base/memory.h"
-#include "observe/measure.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
+#include "shared/watched.h"
 #include "shared/testing.h"
 
 /// Of the error of a force, relative to the root mean square force: bounds of its root mean square
@@ -212,8 +212,8 @@ static void measure(const struct simulation_setup *setup, struct measured *measu
     assert_ok(mf_rdf_init(&rdf, &(struct rdf_bins){0, 0.05, BINS}, &setup->box,
                           simulation.particles.count, 1, SAMPLES));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
-    const struct measure_observables observables = {.rdf = &rdf, .thermodynamics = &thermodynamics};
-    assert_ok(mf_measure_sample(&simulation, &plan, observables, NULL));
+    const struct watched observables = {.rdf = &rdf, .thermodynamics = &thermodynamics};
+    assert_ok(watched_sample(&simulation, &plan, observables, NULL));
     measured->thermodynamics = mf_thermodynamics_result(&thermodynamics, 1);
     assert_ok(mf_rdf_result(&rdf, 1, measured->g, measured->g_error));
     mf_rdf_clear(&rdf);

@@ -4,9 +4,9 @@
 // Monte Carlo, whose distribution is exact, but for the last test.
 #include "curves/formula.h"
 #include "dynamics/metropolis.h"
-#include "observe/measure.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
+#include "shared/watched.h"
 #include "shared/testing.h"
 
 enum { MOST_BINS = 50, VERSIONS = RDF_FORCE_COUNTED + 1 };
@@ -183,8 +183,8 @@ static void test_force_rdf_is_off_as_known_when_the_time_step_is_large(void **st
     assert_ok(
         mf_rdf_force_init(&force, &bins, &fluid.setup.box, PARTICLES, &fluid.potential, 1, 1, 300));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
-    assert_ok(mf_measure_sample(
-        &simulation, &plan, (struct measure_observables){.rdf = &rdf, .rdf_force = &force}, NULL));
+    assert_ok(watched_sample(&simulation, &plan, (struct watched){.rdf = &rdf, .rdf_force = &force},
+                             NULL));
     const double zero = distance(&rdf, &force, RDF_FORCE_FROM_ZERO),
                  infinity = distance(&rdf, &force, RDF_FORCE_FROM_INFINITY),
                  counted = distance(&rdf, &force, RDF_FORCE_COUNTED);

@@ -2,9 +2,9 @@
 //
 // Friction that is thin or strong: a pair gets one or two kicks on its way through, so that the
 // noise itself must be normal. A uniform ζ leaves the shell below at 0.84 of its temperature.
-#include "observe/measure.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
+#include "shared/watched.h"
 #include "shared/testing.h"
 #include "curves/formula.h"
 
@@ -29,8 +29,8 @@ static void check_temperatures(const struct simulation_setup *setup) {
     assert_ok(mf_simulation_init(&simulation, setup, NULL));
     assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)plan.samples));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
-    assert_ok(mf_measure_sample(
-        &simulation, &plan, (struct measure_observables){.thermodynamics = &thermodynamics}, NULL));
+    assert_ok(watched_sample(&simulation, &plan,
+                             (struct watched){.thermodynamics = &thermodynamics}, NULL));
     const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
     print_message("%-15s temperature %.4f(%.4f), configurational %.4f(%.4f)\n",
                   setup->integrator->name, s.temperature, s.temperature_error,

@@ -4,8 +4,8 @@
 // looks at every pair of particles for every time origin. The twin computes distances from the
 // positions themselves, without fractions of the box, lists or records.
 #include "base/memory.h"
-#include "observe/measure.h"
 #include "shared/fluids.h"
+#include "shared/watched.h"
 #include "shared/testing.h"
 
 enum { SAMPLES = 150, EQUILIBRATION = 40 };
@@ -84,8 +84,8 @@ static void measure(const struct simulation_setup *setup, struct etd *etd,
     assert_ok(mf_etd_init(etd, grid, plan, &simulation, EQUILIBRATION, steps));
     assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)when.samples));
     assert_ok(mf_measure_equilibrate(&simulation, &when, &temperature, NULL));
-    const struct measure_observables observables = {.thermodynamics = &thermodynamics, .etd = etd};
-    assert_ok(mf_measure_sample(&simulation, &when, observables, NULL));
+    const struct watched observables = {.thermodynamics = &thermodynamics, .etd = etd};
+    assert_ok(watched_sample(&simulation, &when, observables, NULL));
     assert_true(mf_etd_due(etd) == INT64_MAX);
     // The list was built, and particles sorted, many times.
     assert_true(simulation.list_builds > 10);

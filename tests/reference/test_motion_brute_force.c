@@ -4,9 +4,9 @@
 // that stores its whole trajectory and loops over all pairs of times. The twin unwraps positions
 // by following each particle from sample to sample, and never looks at the counters of boxes.
 #include "base/memory.h"
-#include "observe/measure.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
+#include "shared/watched.h"
 #include "shared/testing.h"
 
 enum { LAGS = 25, EVERY = 3, ORIGIN_EVERY = 4, SAMPLES = 331, EQUILIBRATION = 40 };
@@ -119,9 +119,8 @@ static void assert_motion(const struct simulation_setup *setup) {
     assert_ok(mf_motion_init(&motion, &plan, &simulation, EQUILIBRATION, 990));
     assert_ok(mf_thermodynamics_init(&thermodynamics, 99));
     assert_ok(mf_measure_equilibrate(&simulation, &when, &temperature, NULL));
-    const struct measure_observables observables = {.thermodynamics = &thermodynamics,
-                                                    .motion = &motion};
-    assert_ok(mf_measure_sample(&simulation, &when, observables, NULL));
+    const struct watched observables = {.thermodynamics = &thermodynamics, .motion = &motion};
+    assert_ok(watched_sample(&simulation, &when, observables, NULL));
     const struct motion_summary s = mf_motion_result(&motion, &curves);
     // Whole windows begin at 0, 4, … 304: 77 of them, of which 64 blocks of equal size take 76.
     assert_int_equal(motion.blocks * motion.each, 76);

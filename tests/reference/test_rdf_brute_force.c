@@ -3,10 +3,10 @@
 // The pairs that mf_rdf_sample counts from the simulation's list, and from a list of its own beyond
 // it, are exactly those of a double loop over all particles in double precision.
 #include "dynamics/metropolis.h"
-#include "observe/measure.h"
 #include "observe/rdf.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
+#include "shared/watched.h"
 #include "shared/testing.h"
 
 enum { MOST_BINS = 40, PARTICLES = 200 };
@@ -234,8 +234,7 @@ static void test_rdf_counts_the_end_of_the_step_when_forces_are_midway(void **st
     assert_ok(mf_rdf_init(&measured, &bins, &fluid.setup.box, 1000, 1, 1));
     assert_ok(mf_rdf_init(&end, &bins, &fluid.setup.box, 1000, 1, 1));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
-    assert_ok(mf_measure_sample(&simulation, &plan, (struct measure_observables){.rdf = &measured},
-                                NULL));
+    assert_ok(watched_sample(&simulation, &plan, (struct watched){.rdf = &measured}, NULL));
     assert_ok(mf_rdf_sample(&end, &simulation.particles, &simulation.neighbours));
     for (int k = 0; k < BINS; k++)
         differences += fabs(measured.histogram[k] - end.histogram[k]);

@@ -2,8 +2,8 @@
 //
 // A simulation that was saved in the middle, loaded into a new one and continued has the bits of
 // one that went on in peace, whatever its integrator and while it is sampled.
-#include "observe/measure.h"
 #include "shared/fluids.h"
+#include "shared/watched.h"
 #include "shared/restart.h"
 #include "shared/testing.h"
 
@@ -38,9 +38,8 @@ static void clear(struct run *run) {
 static void sample(struct run *run, int64_t samples) {
     struct measure_plan part = plan;
     part.samples = samples;
-    const struct measure_observables observables = {.rdf = &run->rdf,
-                                                    .thermodynamics = &run->thermodynamics};
-    assert_ok(mf_measure_sample(&run->simulation, &part, observables, NULL));
+    const struct watched observables = {.rdf = &run->rdf, .thermodynamics = &run->thermodynamics};
+    assert_ok(watched_sample(&run->simulation, &part, observables, NULL));
 }
 
 /// All samples that are complete after `steps` steps, and the steps.

@@ -4,6 +4,7 @@
 #include "curves/formula.h"
 #include "dynamics/dpd_verlet.h"
 #include "shared/fluids.h"
+#include "shared/watched.h"
 #include "shared/testing.h"
 
 enum { SAMPLES = 100 };
@@ -18,8 +19,8 @@ static enum status measure(const struct simulation_setup *setup,
     assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)plan->samples));
     CHECK(mf_simulation_init(&simulation, setup, start));
     CHECK(mf_measure_equilibrate(&simulation, plan, &temperature, NULL));
-    CHECK(mf_measure_sample(&simulation, plan,
-                            (struct measure_observables){.thermodynamics = &thermodynamics}, NULL));
+    CHECK(watched_sample(&simulation, plan, (struct watched){.thermodynamics = &thermodynamics},
+                         NULL));
     *summary = mf_thermodynamics_result(&thermodynamics, 1);
 done:
     mf_thermodynamics_clear(&thermodynamics);

@@ -46,9 +46,27 @@ static void test_sweeps_are_the_same_when_particles_are_sorted_often(void **stat
             assert_close(often[k][d], seldom[k][d], 1e-12);
 }
 
+/// Its owner clears it all the same.
+static void test_metropolis_is_empty_when_the_box_is_too_small(void **state) {
+    (void)state;
+    struct formula_soft_repulsion_parameters parameters = {25, 1};
+    const struct curve curve = {&mf_formula_soft_repulsion, &parameters};
+    const struct box box = {3, {2.05, 3, 3}};
+    const struct composition composition = mf_composition_of_one(30);
+    struct metropolis metropolis;
+    struct table potential;
+    assert_ok(mf_table_init_potential(&potential, &curve));
+    assert_fails(mf_metropolis_init(&metropolis, &box, &composition, &potential, 1, 9),
+                 STATUS_BAD_INPUT, "too small for Monte Carlo");
+    assert_null(metropolis.order);
+    mf_metropolis_clear(&metropolis);
+    mf_table_clear(&potential);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_sweeps_are_the_same_when_particles_are_sorted_often),
+        cmocka_unit_test(test_metropolis_is_empty_when_the_box_is_too_small),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

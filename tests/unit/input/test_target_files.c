@@ -87,9 +87,9 @@ static void test_targets_read_takes_the_columns_of_a_curve(void **state) {
                    "\"vacf\": {\"file\": \"v.tsv\", \"time_column\": 2, \"value_column\": 4, "
                    "\"error_column\": 0}",
                    &t));
-    assert_close(t.vacf.interval, 0.5, 0);
-    assert_close(t.vacf.value[2], 1, 0);
-    assert_close(t.vacf.error[2], 0, 0);
+    assert_close(t.curve[TARGET_VACF].interval, 0.5, 0);
+    assert_close(t.curve[TARGET_VACF].value[2], 1, 0);
+    assert_close(t.curve[TARGET_VACF].error[2], 0, 0);
     mf_target_files_clear(&t);
 }
 
@@ -154,9 +154,9 @@ static void test_targets_read_takes_curves_without_errors(void **state) {
     struct target_files t;
     put(state, "v.tsv", "t,vacf\n0,3\n0.1,2\n0.2,1\n");
     assert_ok(read(state, VACF, &t));
-    assert_int_equal(t.vacf.times, 3);
-    assert_close(t.vacf.value[1], 2, 0);
-    assert_close(t.vacf.error[1], 0, 0);
+    assert_int_equal(t.curve[TARGET_VACF].points, 3);
+    assert_close(t.curve[TARGET_VACF].value[1], 2, 0);
+    assert_close(t.curve[TARGET_VACF].error[1], 0, 0);
     mf_target_files_clear(&t);
     assert_refused(state, "\"vacf\": {\"file\": \"v.tsv\", \"error_column\": 3}",
                    "v.tsv:2: 2 columns, at least 3", "\"error_column\"; 0 if");
@@ -205,8 +205,14 @@ static void test_targets_digest_knows_every_number(void **state) {
     write_tables(state);
     assert_ok(read(state, RDF ", " ETD ", " VACF ", " MSD, &t));
     mf_target_files_digest(&t, &before);
-    double *const numbers[] = {t.rdf_g,      t.rdf_error,  t.etd.survival, t.etd.error,
-                               t.vacf.value, t.vacf.error, t.msd.value,    t.msd.error};
+    double *const numbers[] = {t.rdf_g,
+                               t.rdf_error,
+                               t.etd.survival,
+                               t.etd.error,
+                               t.curve[TARGET_VACF].value,
+                               t.curve[TARGET_VACF].error,
+                               t.curve[TARGET_MSD].value,
+                               t.curve[TARGET_MSD].error};
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
         const double good = numbers[k][2];
         numbers[k][2] = good + 1;

@@ -10,7 +10,8 @@ static struct inversion make_inversion(struct inverse_problem *problem, double r
     static const double target = 5;
     *problem = (struct inverse_problem){0};
     problem->targets.target[TARGET_RDF].count = 1;
-    problem->targets.target[TARGET_PRESSURE] = (struct target){pressure, &target, &target, 0};
+    problem->targets.target[TARGET_PRESSURE] =
+        (struct target){.count = pressure, .value = &target, .error = &target};
     return (struct inversion){
         .problem = problem,
         .method = &mf_imc,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What is known exactly of the escape of pairs, and whether errors are what they say.
+#include "observe/etd.h"
 #include "observe/measure.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What is known exactly of motion: free flight, across the borders of the box and with a drift.
-#include "observe/measure.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
+#include "shared/watched.h"
 #include "shared/testing.h"
 
 #include <math.h>
@@ -40,8 +40,7 @@ static struct motion_summary measure(struct simulation *simulation, struct motio
     double temperature;
     assert_ok(mf_motion_init(motion, &plan, simulation, when.equilibration, 1300));
     assert_ok(mf_measure_equilibrate(simulation, &when, &temperature, NULL));
-    assert_ok(
-        mf_measure_sample(simulation, &when, (struct measure_observables){.motion = motion}, NULL));
+    assert_ok(watched_sample(simulation, &when, (struct watched){.motion = motion}, NULL));
     assert_int_equal(simulation->step, 1330);
     return mf_motion_result(motion, &curves);
 }

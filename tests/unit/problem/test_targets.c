@@ -11,11 +11,32 @@ static const double rounding = 1e-14;
 
 enum { TIMES = 21, BINS = 30, CELLS = TIMES * BINS, BLOCKS = 100, BLOCK_CELLS = 6 };
 
+/// The kinds that are named are those that the list of observables supplies first.
+static void test_targets_kinds_are_named_as_the_observables_supply_them(void **state) {
+    (void)state;
+    static const char *const names[] = {[TARGET_RDF] = "rdf",
+                                        [TARGET_ETD] = "etd",
+                                        [TARGET_VACF] = "vacf",
+                                        [TARGET_MSD] = "msd",
+                                        [TARGET_DIFFUSION] = "diffusion",
+                                        [TARGET_PRESSURE] = "pressure"};
+    size_t places = 0;
+    int kinds = 0;
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++)
+        assert_string_equal(mf_targets_name((int)k), names[k]);
+    while (mf_observables[places])
+        places++;
+    while (mf_targets_name(kinds))
+        kinds++;
+    assert_in_range(places, 1, OBSERVABLES_MOST);
+    assert_in_range(kinds, TARGET_PRESSURE + 1, TARGETS);
+}
+
 static void test_targets_distance_is_the_rms_of_what_both_know(void **state) {
     (void)state;
     const double wanted[] = {1, 2, NAN, 4, 5}, wanted_error[] = {0.3, NAN, 1, 0, 9};
     const double value[] = {2, 0, 7, 5, NAN}, error[] = {0.4, 2, 1, NAN, 9};
-    const struct target target = {5, wanted, wanted_error, 0};
+    const struct target target = {.count = 5, .value = wanted, .error = wanted_error};
     const struct target_distance distance = mf_targets_distance(&target, value, error);
     assert_int_equal(distance.count, 3);
     assert_close(distance.rms, sqrt((1 + 4 + 1) / 3.0), rounding);
@@ -25,7 +46,7 @@ static void test_targets_distance_is_the_rms_of_what_both_know(void **state) {
 static void test_targets_distance_is_infinite_when_nothing_is_common(void **state) {
     (void)state;
     const double wanted[] = {1, NAN}, value[] = {NAN, 1}, error[] = {0, 0};
-    const struct target target = {2, wanted, error, 0};
+    const struct target target = {.count = 2, .value = wanted, .error = error};
     const struct target_distance distance = mf_targets_distance(&target, value, error);
     assert_int_equal(distance.count, 0);
     assert_true(distance.rms > 1e300);
@@ -35,11 +56,14 @@ static void test_targets_distance_is_infinite_when_nothing_is_common(void **stat
 static void test_targets_weight_is_one_over_the_errors_when_none_is_given(void **state) {
     (void)state;
     const double value[] = {1, 2, 3, 4}, error[] = {0.3, 0, NAN, 0.4}, none[4] = {0};
-    assert_close(mf_targets_weight(&(struct target){4, value, error, 0}), 1 / sqrt(0.125),
-                 rounding);
-    assert_close(mf_targets_weight(&(struct target){4, value, error, 7}), 7, 0);
+    assert_close(mf_targets_weight(&(struct target){.count = 4, .value = value, .error = error}),
+                 1 / sqrt(0.125), rounding);
+    assert_close(mf_targets_weight(
+                     &(struct target){.count = 4, .value = value, .error = error, .weight = 7}),
+                 7, 0);
     // Without any error it is a number all the same.
-    assert_close(mf_targets_weight(&(struct target){4, value, none, 0}), 100, 1e-10);
+    assert_close(mf_targets_weight(&(struct target){.count = 4, .value = value, .error = none}),
+                 100, 1e-10);
 }
 
 static void test_targets_error_is_that_of_a_single_target_as_it_is(void **state) {
@@ -83,7 +107,7 @@ static void make_cells(double *value, double *error) {
 
 static struct targets escape_targets(const double *value, const double *error) {
     return (struct targets){.etd = {0.5, 1, BINS, TIMES},
-                            .target[TARGET_ETD] = {CELLS, value, error, 0}};
+                            .target[TARGET_ETD] = {CELLS, value, error, 0, BINS, NULL}};
 }
 
 static void test_targets_features_are_means_over_ten_by_ten_blocks_of_escape_times(void **state) {
@@ -108,8 +132,9 @@ static void test_targets_features_use_every_cell_once_when_ten_does_not_divide_t
     enum { FEW_TIMES = 18, FEW_BINS = 7 };
     double cell[FEW_TIMES * FEW_BINS] = {0}, value[BLOCKS];
     const double error[FEW_TIMES * FEW_BINS] = {0};
-    const struct targets targets = {.etd = {0.5, 1, FEW_BINS, FEW_TIMES},
-                                    .target[TARGET_ETD] = {FEW_TIMES * FEW_BINS, cell, error, 0}};
+    const struct targets targets = {
+        .etd = {0.5, 1, FEW_BINS, FEW_TIMES},
+        .target[TARGET_ETD] = {FEW_TIMES * FEW_BINS, cell, error, 0, FEW_BINS, NULL}};
     for (int k = FEW_BINS; k < FEW_TIMES * FEW_BINS; k++) {
         int seen = 0;
         cell[k] = 1;
@@ -189,6 +214,7 @@ static void test_targets_variance_is_that_of_repeated_measurements(void **state)
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_targets_kinds_are_named_as_the_observables_supply_them),
         cmocka_unit_test(test_targets_variance_is_that_of_repeated_measurements),
         cmocka_unit_test(test_targets_distance_is_the_rms_of_what_both_know),
         cmocka_unit_test(test_targets_distance_is_infinite_when_nothing_is_common),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "input/units.h"
+#include "io/units.h"
 
 #include "base/memory.h"
 

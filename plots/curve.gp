@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# A curve with its 95 % band, and its target if there is one: of any observable without a script of
+# its own.
+# Reads the table that MESOFIT_TABLE names: x, values, errors, or of a fit x, target, target_error,
+# result, result_error. Draws figures/MESOFIT_FIGURE.svg and .png.
+
+load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
+
+# A name that begins with < or | would be a command.
+table = "./" . system("printf %s \"$MESOFIT_TABLE\"")
+figure = system("printf %s \"$MESOFIT_FIGURE\"")
+y = column_of(table, "result") > 0 ? 4 : 2
+# The name of column n with its unit, as the header has it.
+header(n) = system(sprintf("awk -F '\t' '/^#/ { sub(/^# */, \"\"); print $%d; exit }'", n) . \
+    from(table))
+
+stats table using 1 name "X" nooutput
+stats table using (low(column(2), band_low(y, y + 1))) name "L" nooutput
+stats table using (high(column(2), band_high(y, y + 1))) name "H" nooutput
+margin = H_max > L_min ? 0.05 * (H_max - L_min) : 0.5
+
+do for [kind in kinds] {
+    eval open(kind, figure, 720, 440)
+    set xrange [low(0, X_min):end_of(X_max)]
+    set yrange [L_min - margin:H_max + margin]
+    set xlabel header(1) noenhanced
+    set ylabel y == 4 ? figure : header(2) noenhanced
+    set key right top vertical
+    plot table using 1:(band_low(y, y + 1)):(band_high(y, y + 1)) \
+            with filledcurves @band linecolor rgb blue, \
+        "" using 1:y with lines title "result" linewidth 2.2 linecolor rgb blue, \
+        "" using 1:(y == 4 ? $2 : NaN) with points title (y == 4 ? "target" : "") \
+            pointtype 7 pointsize 0.38 linecolor rgb ink
+    eval close
+}

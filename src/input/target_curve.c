@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "input/target_curve.h"
+
+#include "base/memory.h"
+#include "input/target_rdf.h"
+#include "io/data_table.h"
+
+#include <math.h>
+
+#define CURVE(name) .offset = offsetof(struct target_curve_parameters, name)
+#define COLUMN .maximum = 1000, .unit = ""
+#define VALUE_COLUMNS                                                                              \
+    {"value_column",                                                                               \
+     FIELD_INTEGER,                                                                                \
+     CURVE(value_column),                                                                          \
+     .initial = 2,                                                                                 \
+     .minimum = 1,                                                                                 \
+     COLUMN,                                                                                       \
+     .help = "number of the column with the values"},                                              \
+        {"error_column",                                                                           \
+         FIELD_INTEGER,                                                                            \
+         CURVE(error_column),                                                                      \
+         .initial = -1,                                                                            \
+         .minimum = -1,                                                                            \
+         COLUMN,                                                                                   \
+         .help = "number of the column with their standard errors; 0: none; -1: 3 if there are "   \
+                 "so many columns, else none"},                                                    \
+        FIELD_END
+
+const struct field mf_target_curve_time_fields[] = {
+    {"file", FIELD_FILE, CURVE(file), .required = true, .unit = "",
+     .help = "values at equally spaced times from 0 on, in units of the scene"},
+    {"time_column", FIELD_INTEGER, CURVE(x_column), .initial = 1, .minimum = 1, COLUMN,
+     .help = "number of the column with the times, from 1"},
+    VALUE_COLUMNS,
+};
+
+const struct field mf_target_curve_fields[] = {
+    {"file", FIELD_FILE, CURVE(file), .required = true, .unit = "",
+     .help = "values at growing x, in units of the scene"},
+    {"x_column", FIELD_INTEGER, CURVE(x_column), .initial = 1, .minimum = 1, COLUMN,
+     .help = "number of the column with x, from 1"},
+    VALUE_COLUMNS,
+};
+
+#define NUMBER(name) .offset = offsetof(struct target_number, name)
+const struct field mf_target_curve_number_fields[] = {
+    {"value", FIELD_NUMBER, NUMBER(value), .required = true, .minimum = -DBL_MAX,
+     .maximum = DBL_MAX, .unit = "reduced", .help = "measured"},
+    {"error", FIELD_NUMBER, NUMBER(error), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
+     .unit = "reduced", .help = "its standard error"},
+    FIELD_END,
+};
+
+const struct field mf_target_curve_diffusion_fields[] = {
+    {"window", FIELD_NUMBER, NUMBER(window), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
+     .unit = "tau",
+     .help =
+         "D is the slope of the MSD over the second half of it, as the value must be; 0: that of "
+         "\"vacf\", \"msd\" or \"etd\" if they are given, else 1.6"},
+    FIELD_END,
+};
+
+const struct field *mf_target_curve_fields_of(enum observable_form form) {
+    return form == OBSERVABLE_CURVE ? mf_target_curve_fields : mf_target_curve_time_fields;
+}
+
+static double cell(const struct data_table *table, size_t row, int64_t column) {
+    return table->values[row * table->columns + (size_t)column - 1];
+}
+
+/// Times must be 0, h, 2h, … to the digits of the file.
+static enum status check_times(const struct target_curve *curve, const struct data_table *table) {
+    const struct target_curve_parameters *p = &curve->parameters;
+    for (size_t k = 0; k < table->rows; k++)
+        if (fabs(cell(table, k, p->x_column) - (double)k * curve->interval) >
+            0.01 * curve->interval)
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s:%zu: the times are not equally spaced from 0", p->file,
+                                  table->line[k]);
+    return STATUS_OK;
+}
+
+/// Check the column of x, and find the interval of times.
+static enum status check_points(struct target_curve *curve, enum observable_form form,
+                                const struct data_table *table) {
+    const struct target_curve_parameters *p = &curve->parameters;
+    const bool of_time = form == OBSERVABLE_CURVE_OF_TIME;
+    if (of_time && table->rows < 3)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu times", p->file, table->rows);
+    TRY(mf_data_table_check_increasing(table, p->file, (size_t)p->x_column - 1,
+                                       of_time ? 0 : -DBL_MAX));
+    if (!of_time)
+        return STATUS_OK;
+    curve->interval = cell(table, table->rows - 1, p->x_column) / (double)(table->rows - 1);
+    return check_times(curve, table);
+}
+
+static enum status load(struct target_curve *curve, enum observable_form form,
+                        struct data_table *table) {
+    enum status status = STATUS_OK;
+    const struct target_curve_parameters *p = &curve->parameters;
+    const int64_t least = p->x_column > p->value_column ? p->x_column : p->value_column;
+    int64_t error_column;
+    CHECK(mf_data_table_read(table, p->file, (size_t)least));
+    CHECK(mf_target_rdf_error_column(p->error_column, p->x_column, p->value_column, table, p->file,
+                                     &error_column));
+    CHECK(check_points(curve, form, table));
+    NEW_ARRAY(curve->x, table->rows);
+    NEW_ARRAY(curve->value, table->rows);
+    NEW_ARRAY(curve->error, table->rows);
+    for (size_t k = 0; k < table->rows; k++) {
+        curve->x[k] = cell(table, k, p->x_column);
+        curve->value[k] = cell(table, k, p->value_column);
+        curve->error[k] = error_column ? cell(table, k, error_column) : 0;
+        if (!(curve->error[k] >= 0)) {
+            status =
+                mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %lld: %g is not a standard error",
+                               p->file, table->line[k], (long long)error_column, curve->error[k]);
+            goto done;
+        }
+    }
+    curve->points = table->rows;
+done:
+    return status;
+}
+
+enum status mf_target_curve_read(struct target_curve *curve, enum observable_form form,
+                                 struct json_object *object) {
+    const size_t faults = mf_json_fault_count(object->document);
+    mf_json_fields(object, mf_target_curve_fields_of(form), &curve->parameters);
+    mf_json_finish(object);
+    if (mf_json_fault_count(object->document) > faults)
+        return STATUS_OK;
+    struct data_table table = {0};
+    const enum status status = load(curve, form, &table);
+    mf_data_table_clear(&table);
+    if (status == STATUS_NO_MEMORY)
+        return status;
+    if (status != STATUS_OK)
+        mf_json_fault(object, "file", "%s", mf_status_message());
+    return STATUS_OK;
+}
+
+void mf_target_curve_clear(struct target_curve *curve) {
+    mf_memory_free(curve->x);
+    mf_memory_free(curve->value);
+    mf_memory_free(curve->error);
+    *curve = (struct target_curve){0};
+}
+
+enum status mf_target_curve_check_steps(const struct target_curve *curve, double time_step) {
+    const double steps = curve->interval / time_step;
+    if (!(curve->interval > 0) || (steps > 0.5 && fabs(steps / fmax(1, round(steps)) - 1) < 1e-3))
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: its interval %.6g is not a whole number of time steps of %g; %.6g "
+                          "would do",
+                          curve->parameters.file, curve->interval, time_step,
+                          curve->interval / fmax(1, ceil(steps)));
+}

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file A measured curve, or a number, to be matched: for every target that needs no reader of its
+/// own.
+#pragma once
+
+#include "io/json.h"
+#include "observe/observable.h"
+
+struct target_curve {
+    struct target_curve_parameters {
+        char file[FIELD_TEXT_SIZE];
+        int64_t x_column, value_column,
+            error_column; ///< from 1; error_column 0: none, −1: 3 or none
+    } parameters;
+    size_t points;             ///< 0: not given
+    double interval;           ///< between times [τ]; 0: of a curve that is no function of time
+    double *x, *value, *error; ///< shape [points]
+};
+
+/// Fields of target_curve_parameters: of a function of time, and of any other.
+extern const struct field mf_target_curve_time_fields[], mf_target_curve_fields[];
+
+/// Those of a form, OBSERVABLE_CURVE or OBSERVABLE_CURVE_OF_TIME.
+const struct field *mf_target_curve_fields_of(enum observable_form form);
+
+/// Read the members of {"file": …}: x grows from row to row; times begin at 0 and are equally
+/// spaced to the digits of the file. Faults (shape, times, negative errors, …) go to the document
+/// and leave the target empty. Fails: NO_MEMORY. Tested: test_target_files.
+enum status mf_target_curve_read(struct target_curve *curve, enum observable_form form,
+                                 struct json_object *object) MUST_USE;
+void mf_target_curve_clear(struct target_curve *curve);
+
+/// BAD_INPUT with the time steps that would do if the interval is not a whole number of steps.
+enum status mf_target_curve_check_steps(const struct target_curve *curve,
+                                        double time_step) MUST_USE;
+
+/// A measured number: the pressure, or D.
+struct target_number {
+    double value, error;
+    double window; ///< of D: the slope of the MSD over its second half; 0: of other targets [τ]
+};
+
+extern const struct field mf_target_curve_number_fields[], mf_target_curve_diffusion_fields[];

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/data_table.h"
+#include "observe/etd.h"
+#include "observe/measure.h"
+
+#include <math.h>
+
+static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+                         const struct measure_plan *plan) {
+    const struct etd_settings *s = settings;
+    return mf_etd_init(state, &s->grid, &s->plan, simulation, plan->equilibration,
+                       plan->samples * plan->every);
+}
+
+static void clear(void *state) {
+    mf_etd_clear(state);
+}
+
+static int64_t due(const void *state) {
+    return mf_etd_due(state);
+}
+
+static enum status sample(void *state, struct simulation *simulation) {
+    return mf_etd_sample(state, simulation);
+}
+
+static size_t spans(void *state, struct memory_span *spans) {
+    return mf_etd_spans(state, spans);
+}
+
+static enum status make_room(void *state) {
+    return mf_etd_make_room(state);
+}
+
+// Tables ------------------------------------------------------------------------------------------
+
+static double centre(const struct etd_grid *grid, size_t bin) {
+    const double width = (grid->r_maximum - grid->r_minimum) / (double)grid->bins;
+    return grid->r_minimum + width * ((double)bin + 0.5);
+}
+
+/// Time between samples [τ].
+static double interval(const struct etd *etd, const struct observable_results *results) {
+    return (double)etd->plan.every * results->setup->time_step;
+}
+
+/// Times, then a column for each bin of the matrix `values`, shape [times, bins].
+static enum status write_matrix(const struct etd *etd, const struct observable_results *results,
+                                const char *file, const char *what, const double *values,
+                                const char *format) {
+    enum status status = STATUS_OK;
+    const size_t times = (size_t)etd->grid.times, bins = (size_t)etd->grid.bins;
+    double *columns = NULL;
+    struct data_column *column = NULL;
+    char(*name)[48] = NULL;
+    char path[OUTPUT_PATH_SIZE];
+    NEW_ARRAY(columns, (bins + 1) * times);
+    NEW_ARRAY(column, bins + 1);
+    NEW_ARRAY(name, bins + 1);
+    for (size_t k = 0; k <= bins; k++) {
+        column[k] = (struct data_column){name[k], columns + k * times, k ? format : NULL};
+        snprintf(name[k], sizeof *name, k ? "%s(r0=%.6g)[1]" : "time[tau]", what,
+                 k ? centre(&etd->grid, k - 1) : 0);
+        for (size_t t = 0; t < times; t++)
+            columns[k * times + t] =
+                k ? values[t * bins + k - 1] : (double)t * interval(etd, results);
+    }
+    mf_observable_file(results, file, path);
+    status = mf_data_table_write(path, NULL, column, bins + 1, times);
+done:
+    mf_memory_free(columns);
+    mf_memory_free(column);
+    mf_memory_free(name);
+    return status;
+}
+
+static enum status write_bins(const struct etd *etd, const struct observable_results *results,
+                              const uint64_t *pairs) {
+    enum status status = STATUS_OK;
+    const size_t bins = (size_t)etd->grid.bins;
+    double *r = NULL, *n = NULL;
+    char path[OUTPUT_PATH_SIZE];
+    NEW_ARRAY(r, bins);
+    NEW_ARRAY(n, bins);
+    for (size_t k = 0; k < bins; k++) {
+        r[k] = centre(&etd->grid, k);
+        n[k] = (double)pairs[k];
+    }
+    const struct data_column columns[] = {{"r0[lambda]", r, NULL}, {"pairs[1]", n, "%.0f"}};
+    mf_observable_file(results, "etd_bins.tsv", path);
+    status = mf_data_table_write(path, NULL, columns, 2, bins);
+done:
+    mf_memory_free(r);
+    mf_memory_free(n);
+    return status;
+}
+
+/// etd.tsv and etd_error.tsv: time, then E or its standard error for each bin of r_0, nan where no
+/// pair began; and etd_bins.tsv: r_0, pairs.
+static enum status write(const void *state, const struct observable_results *results) {
+    enum status status = STATUS_OK;
+    const struct etd *etd = state;
+    double *survival = NULL, *error = NULL;
+    uint64_t *pairs = NULL;
+    NEW_ARRAY(survival, etd_cells(etd));
+    NEW_ARRAY(error, etd_cells(etd));
+    NEW_ARRAY(pairs, (size_t)etd->grid.bins);
+    CHECK(mf_etd_result(&etd, 1, survival, error, pairs));
+    CHECK(write_matrix(etd, results, "etd.tsv", "E", survival, "%.8g"));
+    CHECK(write_matrix(etd, results, "etd_error.tsv", "E_error", error, "%.3g"));
+    CHECK(write_bins(etd, results, pairs));
+done:
+    mf_memory_free(survival);
+    mf_memory_free(error);
+    mf_memory_free(pairs);
+    return status;
+}
+
+static void put(const void *state, const struct observable_results *results,
+                struct json_writer *writer) {
+    const struct etd *etd = state;
+    uint64_t pairs = 0;
+    for (size_t block = 0; block < etd->blocks; block++)
+        for (int64_t bin = 0; bin < etd->grid.bins; bin++)
+            pairs += etd->counts[block * etd_cells(etd) + (size_t)bin];
+    mf_json_begin(writer, "etd");
+    mf_json_put_integer(writer, "origins", (int64_t)etd->origins);
+    mf_json_put_integer(writer, "pairs", (int64_t)pairs);
+    mf_json_put_number(writer, "interval", interval(etd, results));
+    mf_json_end(writer);
+}
+
+/// Nanoseconds of a particle and sample; of a pair and sample, and of one at an origin.
+static const double gather_cost = 4, follow_cost = 2.4, begin_cost = 30;
+
+static void explain(const void *settings, const struct simulation_setup *setup,
+                    double samples_every, struct stages *stages) {
+    (void)samples_every;
+    const struct etd_settings *s = settings;
+    const double every = (double)s->plan.every, origin_every = (double)s->plan.origin_every;
+    const double r = s->grid.r_maximum;
+    const double pairs = mf_stages_pairs_within(setup, r);
+    const double listed = mf_stages_pairs_within(setup, fmax(r, mf_stages_cutoff(setup)));
+    const double origin = (begin_cost * pairs + mf_stages_cost.go_through * listed) / origin_every;
+    mf_stages_add(stages, "escape times", true,
+                  (gather_cost + follow_cost * pairs + origin) / every,
+                  "%.0f pairs a particle within %g, one step in %.0f; an origin in %.0f", pairs, r,
+                  every, origin_every * every);
+}
+
+/// Values have the shape [times, bins] of the grid.
+static enum status result(const void *const *states, size_t count,
+                          const struct observable_values *values) {
+    const struct etd *const *etd = (const struct etd *const *)states;
+    TRY(mf_etd_result(etd, count, values->value, values->error, NULL));
+    // At time 0 all are there: no measurement.
+    for (size_t k = 0; k < (size_t)etd[0]->grid.bins; k++)
+        values->value[k] = NAN;
+    return STATUS_OK;
+}
+
+static const struct observable_target targets[] = {
+    {.name = "etd", .summary = "escape times of pairs", .form = OBSERVABLE_OWN_FORM},
+    {.name = NULL}};
+
+static const char *const files[] = {"etd.tsv", "etd_error.tsv", "etd_bins.tsv", NULL};
+
+const struct observable mf_etd_observable = {
+    .name = "etd",
+    .summary = "escape times of pairs",
+    .fields = mf_etd_fields,
+    .settings_size = sizeof(struct etd_settings),
+    .state_size = sizeof(struct etd),
+    .begin = begin,
+    .clear = clear,
+    .due = due,
+    .sample = sample,
+    .spans = spans,
+    .make_room = make_room,
+    .write = write,
+    .put = put,
+    .explain = explain,
+    .stage = "escape times",
+    .files = files,
+    .figure = "etd",
+    .targets = targets,
+    .result = result,
+};

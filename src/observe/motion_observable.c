@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/memory.h"
+#include "base/number_text.h"
+#include "io/data_table.h"
+#include "observe/measure.h"
+#include "observe/motion.h"
+#include "observe/pooled.h"
+
+static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+                         const struct measure_plan *plan) {
+    return mf_motion_init(state, settings, simulation, plan->equilibration,
+                          plan->samples * plan->every);
+}
+
+static void clear(void *state) {
+    mf_motion_clear(state);
+}
+
+static int64_t due(const void *state) {
+    return mf_motion_due(state);
+}
+
+static enum status sample(void *state, struct simulation *simulation) {
+    mf_motion_sample(state, simulation);
+    return STATUS_OK;
+}
+
+static size_t spans(void *state, struct memory_span *spans) {
+    return mf_motion_spans(state, spans);
+}
+
+/// motion.tsv: time, MSD, VACF, each with its standard error.
+static enum status write(const void *state, const struct observable_results *results) {
+    enum status status = STATUS_OK;
+    const struct motion *motion = state;
+    const struct units *units = results->units;
+    const size_t rows = (size_t)motion->plan.lags + 1;
+    const bool known = mf_units_known(units);
+    const double ps = known ? mf_units_time_ps(units) : 1, nm2 = units->length * units->length;
+    double *time = NULL, *values = NULL, *picoseconds = NULL, *physical = NULL;
+    char path[OUTPUT_PATH_SIZE];
+    NEW_ARRAY(time, rows);
+    NEW_ARRAY(values, 4 * rows);
+    const struct motion_curves curves = {values, values + rows, values + 2 * rows,
+                                         values + 3 * rows};
+    mf_motion_result(motion, &curves);
+    for (size_t k = 0; k < rows; k++)
+        time[k] = (double)k * (double)motion->plan.every * motion->time_step;
+    picoseconds = mf_units_column(time, rows, ps);
+    physical = mf_units_column(values, 4 * rows, nm2);
+    CHECK(picoseconds && physical ? STATUS_OK : STATUS_NO_MEMORY);
+    for (size_t k = 2 * rows; k < 4 * rows; k++)
+        physical[k] /= ps * ps;
+    const struct data_column columns[] = {{"time[tau]", time, NULL},
+                                          {"msd[lambda^2]", curves.msd, "%.8g"},
+                                          {"msd_error[lambda^2]", curves.msd_error, "%.3g"},
+                                          {"vacf[lambda^2/tau^2]", curves.vacf, "%.8g"},
+                                          {"vacf_error[lambda^2/tau^2]", curves.vacf_error, "%.3g"},
+                                          {"time[ps]", picoseconds, NULL},
+                                          {"msd[nm^2]", physical, "%.8g"},
+                                          {"msd_error[nm^2]", physical + rows, "%.3g"},
+                                          {"vacf[nm^2/ps^2]", physical + 2 * rows, "%.8g"},
+                                          {"vacf_error[nm^2/ps^2]", physical + 3 * rows, "%.3g"}};
+    mf_observable_file(results, "motion.tsv", path);
+    CHECK(mf_data_table_write(path, NULL, columns, known ? 10 : 5, rows));
+done:
+    mf_memory_free(time);
+    mf_memory_free(picoseconds);
+    mf_memory_free(physical);
+    mf_memory_free(values);
+    return status;
+}
+
+/// The object "motion": diffusion coefficients with errors, in cm²/s too when the units are known,
+/// and the test of the velocities.
+static void put(const void *state, const struct observable_results *results,
+                struct json_writer *writer) {
+    const struct units *units = results->units;
+    const struct motion_summary s = mf_motion_result(state, NULL);
+    mf_json_begin(writer, "motion");
+    if (mf_motion_judge(&s) != STATUS_OK)
+        mf_json_put_text(writer, "warning", mf_status_message());
+    mf_json_put_number(writer, "diffusion_msd", s.msd);
+    mf_json_put_number(writer, "diffusion_msd_error", s.msd_error);
+    mf_json_put_number(writer, "diffusion_green_kubo", s.green_kubo);
+    const double error = mf_motion_green_kubo_uncertainty(&s);
+    mf_json_put_number(writer, "diffusion_green_kubo_error", error);
+    mf_json_put_number(writer, "diffusion_green_kubo_sampling", s.green_kubo_sampling);
+    mf_json_put_number(writer, "diffusion_green_kubo_truncation", s.green_kubo_truncation);
+    if (mf_units_known(units)) {
+        const double unit = mf_units_diffusion_cm2_per_s(units);
+        mf_json_put_number(writer, "diffusion_msd_cm2_per_s", s.msd * unit);
+        mf_json_put_number(writer, "diffusion_msd_error_cm2_per_s", s.msd_error * unit);
+        mf_json_put_number(writer, "diffusion_green_kubo_cm2_per_s", s.green_kubo * unit);
+        mf_json_put_number(writer, "diffusion_green_kubo_error_cm2_per_s", error * unit);
+    }
+    mf_json_put_number(writer, "fit_begin", s.fit_begin);
+    mf_json_put_number(writer, "fit_end", s.fit_end);
+    if (s.maxwell.numbers > 0) {
+        mf_json_put_number(writer, "velocities_tested", s.maxwell.numbers);
+        mf_json_put_number(writer, "velocities_kolmogorov_smirnov", s.maxwell.statistic);
+        mf_json_put_number(writer, "velocities_p_value", s.maxwell.probability);
+    }
+    mf_json_end(writer);
+}
+
+/// Both diffusion coefficients.
+static void say(const void *state, char *line, size_t size) {
+    char msd[NUMBER_TEXT_SIZE], green_kubo[NUMBER_TEXT_SIZE];
+    const struct motion_summary s = mf_motion_result(state, NULL);
+    mf_number_text(s.msd, s.msd_error, msd);
+    mf_number_text(s.green_kubo, mf_motion_green_kubo_uncertainty(&s), green_kubo);
+    snprintf(line, size, "D = %s by the MSD from %.4g to %.4g tau, %s by Green and Kubo", msd,
+             s.fit_begin, s.fit_end, green_kubo);
+}
+
+static enum status judge(const void *state, const struct simulation_setup *setup) {
+    (void)setup;
+    const struct motion_summary s = mf_motion_result(state, NULL);
+    return mf_motion_judge(&s);
+}
+
+/// Nanoseconds of a particle and sample, and of each of its time origins.
+static const double gather_cost = 4, correlate_cost = 1.3;
+
+static void explain(const void *settings, const struct simulation_setup *setup,
+                    double samples_every, struct stages *stages) {
+    (void)setup, (void)samples_every;
+    const struct motion_plan *plan = settings;
+    const double every = (double)plan->every;
+    const double origins = (double)plan->lags / (double)plan->origin_every + 1;
+    mf_stages_add(stages, "diffusion", true, (gather_cost + correlate_cost * origins) / every,
+                  "%.0f time origins, one step in %.0f", origins, every);
+}
+
+/// VACF, MSD, and D of the MSD.
+static enum status result(const void *const *states, size_t count,
+                          const struct observable_values *values) {
+    enum status status = STATUS_OK;
+    const size_t times = (size_t)((const struct motion *)states[0])->plan.lags + 1;
+    double *memory = NULL;
+    struct motion_summary *summary = NULL;
+    struct pooled_curve *vacf = NULL, *msd = NULL, *diffusion = NULL;
+    NEW_ARRAY(memory, 4 * times * count);
+    NEW_ARRAY(summary, count);
+    NEW_ARRAY(vacf, count);
+    NEW_ARRAY(msd, count);
+    NEW_ARRAY(diffusion, count);
+    for (size_t k = 0; k < count; k++) {
+        double *own = memory + 4 * times * k;
+        const struct motion_curves curves = {own, own + times, own + 2 * times, own + 3 * times};
+        summary[k] = mf_motion_result(states[k], &curves);
+        const double blocks = summary[k].blocks;
+        vacf[k] = (struct pooled_curve){curves.vacf, curves.vacf_error, blocks};
+        msd[k] = (struct pooled_curve){curves.msd, curves.msd_error, blocks};
+        diffusion[k] = (struct pooled_curve){&summary[k].msd, &summary[k].msd_error, blocks};
+    }
+    mf_pooled_join(&values[0], vacf, count);
+    mf_pooled_join(&values[1], msd, count);
+    mf_pooled_join(&values[2], diffusion, count);
+done:
+    mf_memory_free(summary);
+    mf_memory_free(vacf);
+    mf_memory_free(msd);
+    mf_memory_free(diffusion);
+    mf_memory_free(memory);
+    return status;
+}
+
+static const struct observable_target targets[] = {
+    {.name = "vacf",
+     .summary = "velocity autocorrelation",
+     .form = OBSERVABLE_CURVE_OF_TIME,
+     .argument = "time[tau]",
+     .unit = "lambda^2/tau^2"},
+    {.name = "msd",
+     .summary = "mean-square displacement",
+     .form = OBSERVABLE_CURVE_OF_TIME,
+     .argument = "time[tau]",
+     .unit = "lambda^2"},
+    {.name = "diffusion", .summary = "D", .form = OBSERVABLE_NUMBER},
+    {.name = NULL}};
+
+static const char *const files[] = {"motion.tsv", NULL};
+
+const struct observable mf_motion_observable = {
+    .name = "motion",
+    .summary = "diffusion",
+    .fields = mf_motion_plan_fields,
+    .settings_size = sizeof(struct motion_plan),
+    .state_size = sizeof(struct motion),
+    .begin = begin,
+    .clear = clear,
+    .due = due,
+    .sample = sample,
+    .spans = spans,
+    .write = write,
+    .put = put,
+    .say = say,
+    .judge = judge,
+    .explain = explain,
+    .stage = "diffusion",
+    .files = files,
+    .figure = "motion",
+    .targets = targets,
+    .result = result,
+};

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "observe/observable.h"
+
+/// Of which nothing else knows.
+extern const struct observable mf_structure_factor;
+
+const struct observable *const mf_observables[] = {
+    &mf_rdf_observable,
+    &mf_etd_observable,
+    &mf_motion_observable,
+    &mf_thermodynamics_observable,
+    &mf_force_covariance_observable,
+    &mf_structure_factor,
+    NULL,
+};
+
+struct observable_kind mf_observable_kind(int kind) {
+    for (size_t place = 0; mf_observables[place]; place++) {
+        const struct observable_target *targets = mf_observables[place]->targets;
+        for (size_t n = 0; targets && targets[n].name; n++)
+            if (kind-- == 0)
+                return (struct observable_kind){mf_observables[place], &targets[n], place, n};
+    }
+    return (struct observable_kind){0};
+}
+
+void mf_observable_file(const struct observable_results *results, const char *name, char *path) {
+    snprintf(path, OUTPUT_PATH_SIZE, "%.*s/%.255s", OUTPUT_PATH_SIZE - 258, results->folder, name);
+}

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The record of an observable, and their list: whatever a simulation measures.
+///
+/// Scene files, restarts, tables, summaries, `--explain`, `mesofit describe` and figures know an
+/// observable by its record alone. What a record does not need is left out (NULL): the least is a
+/// name, a summary, fields, `begin`, `clear`, `sample`, `spans` and `stage`; structure_factor.c is
+/// an example of one file. Tested: test_observable, test_structure_factor.
+#pragma once
+
+#include "base/fields.h"
+#include "base/memory.h"
+#include "dynamics/simulation.h"
+#include "io/json_write.h"
+#include "io/output.h"
+#include "io/units.h"
+#include "observe/stages.h"
+
+struct measure_plan;
+
+/// The script that draws x, values and errors of the first file, and a target of that name.
+#define OBSERVABLE_FIGURE_OF_CURVE "curve"
+
+enum { OBSERVABLES_MOST = 16, OBSERVABLE_MOST_SPANS = 8 };
+
+/// Where and of what results are written.
+struct observable_results {
+    const struct simulation_setup *setup;
+    const struct measure_plan *plan;
+    const struct units *units;
+    const char *folder;
+};
+
+/// How a target is told in a run file.
+enum observable_form {
+    OBSERVABLE_NUMBER,        ///< by a value and its error
+    OBSERVABLE_CURVE,         ///< by a table of x, values, errors
+    OBSERVABLE_CURVE_OF_TIME, ///< the same at equal times from 0 on, of whole time steps
+    OBSERVABLE_OWN_FORM,      ///< by a reader of its own (input/target_files.c)
+};
+
+/// What an observable supplies as a target of fits.
+struct observable_target {
+    const char *name;    ///< in run files and tables; NULL ends a list
+    const char *summary; ///< for `mesofit describe`
+    enum observable_form form;
+    const char *argument, *unit; ///< of a curve: "q[1/lambda]", "1"
+    bool has_settings; ///< the observable's, in its object of a run file, beside the values
+};
+
+/// The values of one target over replicas, and their standard errors.
+struct observable_values {
+    size_t count;          ///< 0: not asked for
+    const double *x;       ///< shape [count]: where a curve is to be told, as the target has it
+    double *value, *error; ///< shape [count], zeroed; NaN: not measured
+};
+
+struct observable {
+    const char *name;    ///< of its object in a scene file
+    const char *summary; ///< for `mesofit describe`
+    bool always;         ///< measured by `mesofit simulate` even if the scene does not name it
+
+    const struct field *fields; ///< of the settings
+    size_t settings_size, state_size;
+
+    /// Prepare a zeroed state for the samples of a plan. Fails: BAD_INPUT, NO_MEMORY; the state is
+    /// then cleared as after a success.
+    enum status (*begin)(void *state, const void *settings, const struct simulation *simulation,
+                         const struct measure_plan *plan);
+    void (*clear)(void *state);
+
+    bool sums; ///< its samples want energy and virial of the force pass
+    /// What the force pass of a sampled step is to count, or NULL if it cannot; `counted` then
+    /// stands for `sample`. One observable at a time is served so, the others sample.
+    const struct pair_histogram *(*histogram)(void *state);
+    enum status (*counted)(void *state, struct simulation *simulation);
+    /// The step of its next sample, INT64_MAX after the last. Without it samples are the plan's.
+    int64_t (*due)(const void *state);
+    /// Add the present configuration, with the forces of its step. Fails: NO_MEMORY.
+    enum status (*sample)(void *state, struct simulation *simulation);
+
+    /// What goes with a checkpoint, at most OBSERVABLE_MOST_SPANS; returns their number.
+    size_t (*spans)(void *state, struct memory_span *spans);
+    /// If lengths of the spans depend on the state: the first span, alone, is restored before.
+    enum status (*make_room)(void *state);
+
+    /// Write its tables. Fails: IO, NO_MEMORY.
+    enum status (*write)(const void *state, const struct observable_results *results);
+    /// Add its numbers to summary.json.
+    void (*put)(const void *state, const struct observable_results *results,
+                struct json_writer *writer);
+    /// A line for the person.
+    void (*say)(const void *state, char *line, size_t size);
+    /// Whether its results can be trusted; the message is a warning if not.
+    enum status (*judge)(const void *state, const struct simulation_setup *setup);
+
+    /// Its stages of `--explain`, `every` being the steps between the plan's samples.
+    void (*explain)(const void *settings, const struct simulation_setup *setup, double every,
+                    struct stages *stages);
+    const char *stage; ///< what `--explain` calls it if it is not measured
+
+    const char *const *files; ///< that `write` makes, NULL-terminated; * for names of types
+    const char *figure;       ///< script in plots/ that draws its files, or that of any curve
+
+    const struct observable_target *targets; ///< that it supplies, or NULL
+    /// Values of those, shape [targets], from `count` replicas together. Fails: NO_MEMORY.
+    enum status (*result)(const void *const *states, size_t count,
+                          const struct observable_values *values);
+};
+
+/// All observables, NULL-terminated.
+extern const struct observable *const mf_observables[];
+
+/// An observable of a simulation; a list of them ends with one of which `observable` is NULL.
+struct observable_use {
+    const struct observable *observable;
+    void *state, *settings;
+};
+
+/// A target, by its number among those of the whole list.
+struct observable_kind {
+    const struct observable *observable; ///< NULL: there are not so many
+    const struct observable_target *target;
+    size_t place;  ///< of the observable in the list
+    size_t number; ///< of the target among those of the observable
+};
+struct observable_kind mf_observable_kind(int kind);
+
+/// Path of a table in the folder of the results, into OUTPUT_PATH_SIZE bytes.
+void mf_observable_file(const struct observable_results *results, const char *name, char *path);
+
+extern const struct observable mf_rdf_observable, mf_etd_observable, mf_motion_observable;
+extern const struct observable mf_thermodynamics_observable, mf_force_covariance_observable;

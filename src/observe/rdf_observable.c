@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "observe/rdf_observable.h"
+
+#include "base/memory.h"
+#include "io/data_table.h"
+#include "observe/measure.h"
+
+#include <math.h>
+
+#define MEMBER(name) .offset = offsetof(struct rdf_settings, name)
+static const struct field fields[] = {
+    {"range", FIELD_NUMBER, MEMBER(range), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
+     .unit = "lambda", .help = "of g(r); 0 means the cutoff of the forces, if there are any"},
+    {"bins", FIELD_INTEGER, MEMBER(bins), .initial = 100, .minimum = 1, .maximum = 100000,
+     .unit = "", .help = "of g(r)"},
+    {"estimator", FIELD_CHOICE, MEMBER(estimator), .choices = mf_rdf_force_estimators,
+     .initial = RDF_FORCE_NOT_USED, .unit = "",
+     .help = "of g(r): force is worth twice the samples, but a large time step puts it off"},
+    FIELD_END,
+};
+
+/// Where g(r) ends [λ]: with the forces, unless the settings say where; 0 if nothing does.
+static double range_of(const struct rdf_settings *settings, const struct simulation_setup *setup) {
+    if (settings->of_target)
+        return mf_rdf_bins_range(&settings->target);
+    return settings->range > 0 ? settings->range : mf_stages_cutoff(setup);
+}
+
+static struct rdf_bins bins_of(const struct rdf_settings *settings,
+                               const struct simulation_setup *setup) {
+    if (settings->of_target)
+        return settings->target;
+    return (struct rdf_bins){.width = range_of(settings, setup) / (double)settings->bins,
+                             .count = (size_t)settings->bins};
+}
+
+static enum status check(const struct rdf_settings *settings,
+                         const struct simulation_setup *setup) {
+    if (!(range_of(settings, setup) > 0))
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "rdf: the scene has no forces whose cutoff is the range of g(r): say how "
+            "far, as in {\"range\": 2}");
+    if (settings->of_target || settings->estimator != RDF_FORCE_USED)
+        return STATUS_OK;
+    if (composition_is_mixed(&setup->composition))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "rdf: \"estimator\": \"force\" is not for mixtures; "
+                              "\"histogram\" counts their partial g(r)");
+    if (setup->interactions > 0)
+        return mf_status_fail(STATUS_BAD_INPUT, "rdf: \"estimator\": \"force\" knows the forces of "
+                                                "pairs alone, not \"interactions\"");
+    if (!mf_rdf_force_applies(setup->potential, setup->temperature))
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "rdf: \"estimator\": \"force\" wants a potential that keeps particles "
+            "apart, of 10 k_B T at least where r is 0");
+    return STATUS_OK;
+}
+
+static bool uses_force(const struct rdf_settings *settings, const struct simulation_setup *setup) {
+    return settings->estimator == RDF_FORCE_USED && setup->interactions == 0 &&
+           !composition_is_mixed(&setup->composition) &&
+           mf_rdf_force_applies(setup->potential, setup->temperature);
+}
+
+static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+                         const struct measure_plan *plan) {
+    const struct simulation_setup *setup = &simulation->setup;
+    const struct rdf_settings *s = settings;
+    struct rdf_observed *observed = state;
+    const size_t samples = (size_t)plan->samples;
+    const double cutoff = mf_stages_cutoff(setup);
+    TRY(check(s, setup));
+    const struct rdf_bins bins = bins_of(s, setup);
+    const bool force = uses_force(s, setup);
+    if (!force || !s->of_target)
+        TRY(mf_rdf_init_mixture(&observed->counted, &bins, &setup->box, &setup->composition, cutoff,
+                                samples));
+    if (!force)
+        return STATUS_OK;
+    return mf_rdf_force_init(&observed->force, &bins, &setup->box, simulation->particles.count,
+                             setup->potential, setup->temperature, cutoff, samples);
+}
+
+static void clear(void *state) {
+    struct rdf_observed *observed = state;
+    mf_rdf_clear(&observed->counted);
+    mf_rdf_force_clear(&observed->force);
+}
+
+static const struct pair_histogram *histogram(void *state) {
+    struct rdf_observed *observed = state;
+    return observed->counted.planned > 0 ? mf_rdf_histogram(&observed->counted) : NULL;
+}
+
+static enum status sample_force(struct rdf_observed *observed, struct simulation *simulation) {
+    if (observed->force.planned == 0)
+        return STATUS_OK;
+    return mf_rdf_force_sample(&observed->force, &simulation->particles, &simulation->neighbours);
+}
+
+static enum status counted(void *state, struct simulation *simulation) {
+    struct rdf_observed *observed = state;
+    mf_rdf_sample_counted(&observed->counted);
+    return sample_force(observed, simulation);
+}
+
+static enum status sample(void *state, struct simulation *simulation) {
+    struct rdf_observed *observed = state;
+    if (observed->counted.planned > 0)
+        TRY(mf_rdf_sample(&observed->counted, &simulation->particles, &simulation->neighbours));
+    return sample_force(observed, simulation);
+}
+
+static size_t spans(void *state, struct memory_span *spans) {
+    struct rdf_observed *observed = state;
+    size_t n = 0;
+    if (observed->counted.planned > 0)
+        n = mf_rdf_spans(&observed->counted, spans);
+    if (observed->force.planned > 0)
+        n += mf_rdf_force_spans(&observed->force, spans + n);
+    return n;
+}
+
+void mf_rdf_observable_file(const char *folder, const struct composition *composition, int pair,
+                            char *path) {
+    char kind[COMPOSITION_PAIR_NAME_SIZE];
+    mf_composition_pair_name(composition, pair, kind);
+    snprintf(path, OUTPUT_PATH_SIZE, "%.*s/rdf%s%s.tsv",
+             OUTPUT_PATH_SIZE - COMPOSITION_PAIR_NAME_SIZE - 16, folder, kind[0] ? "_" : "", kind);
+}
+
+/// rdf.tsv, or in a mixture rdf_A-A.tsv, rdf_A-B.tsv and so on: r, g as the estimator tells it, g
+/// as counted, each with its standard error.
+static enum status write(const void *state, const struct observable_results *results) {
+    enum status status = STATUS_OK;
+    const struct rdf_observed *observed = state;
+    const struct rdf *rdf = &observed->counted;
+    const struct rdf_bins *bins = &rdf->bins;
+    const bool force = observed->force.planned > 0;
+    const size_t all = rdf->pairs * bins->count;
+    const struct units *units = results->units;
+    double *r = NULL, *g = NULL, *error = NULL, *counted = NULL, *counted_error = NULL;
+    double *nanometres = NULL;
+    char path[OUTPUT_PATH_SIZE];
+    NEW_ARRAY(r, bins->count);
+    NEW_ARRAY(g, bins->count);
+    NEW_ARRAY(error, bins->count);
+    NEW_ARRAY(counted, all);
+    NEW_ARRAY(counted_error, all);
+    for (size_t k = 0; k < bins->count; k++)
+        r[k] = mf_rdf_bins_centre(bins, k);
+    nanometres = mf_units_column(r, bins->count, units->length);
+    CHECK(nanometres ? STATUS_OK : STATUS_NO_MEMORY);
+    CHECK(mf_rdf_result(rdf, 1, counted, counted_error));
+    if (force)
+        CHECK(mf_rdf_force_result(&observed->force, 1, RDF_FORCE_COUNTED, g, error));
+    for (size_t pair = 0; pair < rdf->pairs; pair++) {
+        const size_t first = pair * bins->count;
+        size_t count = force ? 5 : 3;
+        struct data_column columns[6] = {
+            {"r[lambda]", r, NULL},
+            {"g[1]", force ? g : counted + first, "%.8g"},
+            {"g_error[1]", force ? error : counted_error + first, "%.3g"},
+            {"g_histogram[1]", counted + first, "%.8g"},
+            {"g_histogram_error[1]", counted_error + first, "%.3g"}};
+        if (mf_units_known(units))
+            columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
+        mf_rdf_observable_file(results->folder, &rdf->composition, (int)pair, path);
+        CHECK(mf_data_table_write(path, NULL, columns, count, bins->count));
+    }
+done:
+    mf_memory_free(r);
+    mf_memory_free(nanometres);
+    mf_memory_free(g);
+    mf_memory_free(error);
+    mf_memory_free(counted);
+    mf_memory_free(counted_error);
+    return status;
+}
+
+/// Nanoseconds of a pair and sample: to count it, and to see what forces tell.
+static const double count_cost = 1.0, flux_cost = 5;
+
+static void explain_counting(const struct simulation_setup *setup, double range, double every,
+                             struct stages *stages) {
+    const double cutoff = mf_stages_cutoff(setup), pairs = mf_stages_pairs_within(setup, cutoff);
+    const double farther = mf_stages_pairs_within(setup, range);
+    if (range <= cutoff * (1 + 1e-9))
+        mf_stages_add(
+            stages, "g(r)", true, count_cost * pairs / every, "counted in %s of one step in %.0f",
+            setup->integrator->forces_midway ? "a pass at the end" : "the force pass", every);
+    else
+        mf_stages_add(stages, "g(r)", true,
+                      (mf_stages_cost.sort + (mf_stages_cost.build + count_cost) * farther) / every,
+                      "to %.3g, beyond the forces: a list of its own, one step in %.0f", range,
+                      every);
+}
+
+static void explain(const void *settings, const struct simulation_setup *setup, double every,
+                    struct stages *stages) {
+    const struct rdf_settings *s = settings;
+    const double range = range_of(s, setup);
+    const bool force = s->estimator == RDF_FORCE_USED && setup->interactions == 0 &&
+                       !composition_is_mixed(&setup->composition);
+    if (force && s->of_target)
+        mf_stages_add(stages, "g(r)", false, 0,
+                      "from forces; counted if a potential keeps no pair apart");
+    else
+        explain_counting(setup, range, every, stages);
+    if (force)
+        mf_stages_add(
+            stages, "g(r) from forces", true,
+            flux_cost * mf_stages_pairs_within(setup, fmax(range, mf_stages_cutoff(setup))) / every,
+            "one step in %.0f: the forces without friction and noise, then all pairs", every);
+}
+
+/// Values have the shape [pairs, bins].
+static enum status result(const void *const *states, size_t count,
+                          const struct observable_values *values) {
+    enum status status = STATUS_OK;
+    struct rdf *rdf = NULL;
+    struct rdf_force *force = NULL;
+    NEW_ARRAY(rdf, count);
+    NEW_ARRAY(force, count);
+    for (size_t k = 0; k < count; k++) {
+        const struct rdf_observed *observed = states[k];
+        rdf[k] = observed->counted;
+        force[k] = observed->force;
+    }
+    if (force->planned > 0)
+        CHECK(mf_rdf_force_result(force, count, RDF_FORCE_COUNTED, values->value, values->error));
+    else
+        CHECK(mf_rdf_result(rdf, count, values->value, values->error));
+done:
+    mf_memory_free(rdf);
+    mf_memory_free(force);
+    return status;
+}
+
+static const struct observable_target targets[] = {
+    {.name = "rdf",
+     .summary = "g(r); in a mixture one for each pair type, as \"A-B\"",
+     .form = OBSERVABLE_OWN_FORM},
+    {.name = NULL}};
+
+static const char *const files[] = {"rdf.tsv", "rdf_*-*.tsv", NULL};
+
+const struct observable mf_rdf_observable = {
+    .name = "rdf",
+    .summary = "g(r)",
+    .always = true,
+    .fields = fields,
+    .settings_size = sizeof(struct rdf_settings),
+    .state_size = sizeof(struct rdf_observed),
+    .begin = begin,
+    .clear = clear,
+    .histogram = histogram,
+    .counted = counted,
+    .sample = sample,
+    .spans = spans,
+    .write = write,
+    .explain = explain,
+    .stage = "g(r)",
+    .targets = targets,
+    .result = result,
+    .files = files,
+};

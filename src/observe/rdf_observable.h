@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file g(r) as simulations measure it: counted, from forces, or both.
+#pragma once
+
+#include "observe/observable.h"
+#include "observe/rdf_force.h"
+
+struct rdf_settings {
+    double range;   ///< 0: the cutoff of the forces [λ]
+    int64_t bins;   ///< from 0 to the range
+    int estimator;  ///< enum rdf_force_estimator; with forces the pairs are counted as well
+    bool of_target; ///< bins are those of a target, and pairs are counted only where forces tell
+                    ///< nothing: in mixtures and without a barrier (mf_rdf_force_applies)
+    struct rdf_bins target;
+};
+
+/// What is not planned is not measured.
+struct rdf_observed {
+    struct rdf counted;
+    struct rdf_force force;
+};
+
+/// Path of the table of a pair type, rdf.tsv or in a mixture rdf_A-B.tsv, into OUTPUT_PATH_SIZE
+/// bytes.
+void mf_rdf_observable_file(const char *folder, const struct composition *composition, int pair,
+                            char *path);

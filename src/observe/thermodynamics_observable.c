@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/memory.h"
+#include "io/data_table.h"
+#include "observe/measure.h"
+#include "observe/pooled.h"
+#include "observe/thermodynamics.h"
+
+#include <math.h>
+
+static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+                         const struct measure_plan *plan) {
+    (void)settings, (void)simulation;
+    return mf_thermodynamics_init(state, (size_t)plan->samples);
+}
+
+static void clear(void *state) {
+    mf_thermodynamics_clear(state);
+}
+
+static enum status sample(void *state, struct simulation *simulation) {
+    return mf_thermodynamics_sample(state, simulation);
+}
+
+static size_t spans(void *state, struct memory_span *spans) {
+    struct thermodynamics *t = state;
+    spans[0] = (struct memory_span){&t->samples, sizeof t->samples};
+    spans[1] =
+        (struct memory_span){t->values, THERMODYNAMICS_QUANTITIES * t->planned * sizeof *t->values};
+    return 2;
+}
+
+/// thermodynamics.tsv: a row for each sample.
+static enum status write(const void *state, const struct observable_results *results) {
+    enum status status = STATUS_OK;
+    const struct thermodynamics *t = state;
+    const struct units *units = results->units;
+    const double *energy = mf_thermodynamics_series(t, THERMODYNAMICS_POTENTIAL_ENERGY);
+    const double *pressure = mf_thermodynamics_series(t, THERMODYNAMICS_PRESSURE);
+    double *step = NULL, *time = NULL, *configurational = NULL, *physical[3] = {NULL};
+    char path[OUTPUT_PATH_SIZE];
+    NEW_ARRAY(step, t->samples);
+    NEW_ARRAY(time, t->samples);
+    NEW_ARRAY(configurational, t->samples);
+    for (size_t k = 0; k < t->samples; k++) {
+        step[k] = (double)(results->plan->equilibration + (int64_t)(k + 1) * results->plan->every);
+        time[k] = step[k] * results->setup->time_step;
+        configurational[k] = mf_thermodynamics_series(t, THERMODYNAMICS_FORCE_SQUARES)[k] /
+                             mf_thermodynamics_series(t, THERMODYNAMICS_LAPLACIAN)[k];
+    }
+    // bar is a force on an area.
+    const bool known = mf_units_known(units), in_space = results->setup->box.dimensions == 3;
+    physical[0] = mf_units_column(time, t->samples, known ? mf_units_time_ps(units) : 0);
+    physical[1] =
+        mf_units_column(energy, t->samples, known ? mf_units_energy_kj_per_mol(units) : 0);
+    physical[2] = mf_units_column(pressure, t->samples, known ? mf_units_pressure_bar(units) : 0);
+    CHECK(physical[0] && physical[1] && physical[2] ? STATUS_OK : STATUS_NO_MEMORY);
+    const struct data_column columns[] = {
+        {"step", step, NULL},
+        {"time[tau]", time, NULL},
+        {"temperature[T_0]", mf_thermodynamics_series(t, THERMODYNAMICS_TEMPERATURE), "%.8g"},
+        {"potential_energy[k_B.T_0]", energy, "%.12g"},
+        {"pressure[k_B.T_0/lambda^d]", pressure, "%.8g"},
+        {"temperature_configurational[T_0]", configurational, "%.8g"},
+        {"time[ps]", physical[0], NULL},
+        {"potential_energy[kJ/mol]", physical[1], "%.8g"},
+        {"pressure[bar]", physical[2], "%.8g"}};
+    mf_observable_file(results, "thermodynamics.tsv", path);
+    CHECK(mf_data_table_write(path, NULL, columns, !known ? 6 : in_space ? 9 : 8, t->samples));
+done:
+    for (int k = 0; k < 3; k++)
+        mf_memory_free(physical[k]);
+    mf_memory_free(step);
+    mf_memory_free(time);
+    mf_memory_free(configurational);
+    return status;
+}
+
+static enum status judge(const void *state, const struct simulation_setup *setup) {
+    const struct thermodynamics_summary s = mf_thermodynamics_result(state, 1);
+    return mf_thermodynamics_judge(&s, setup);
+}
+
+/// Means with errors, and the object "physical" when the units are known.
+static void put(const void *state, const struct observable_results *results,
+                struct json_writer *writer) {
+    const struct thermodynamics_summary s = mf_thermodynamics_result(state, 1);
+    if (mf_thermodynamics_judge(&s, results->setup) != STATUS_OK)
+        mf_json_put_text(writer, "warning", mf_status_message());
+    mf_json_put_number(writer, "temperature", s.temperature);
+    mf_json_put_number(writer, "temperature_error", s.temperature_error);
+    if (isfinite(s.temperature_configurational)) {
+        mf_json_put_number(writer, "temperature_configurational", s.temperature_configurational);
+        mf_json_put_number(writer, "temperature_configurational_error",
+                           s.temperature_configurational_error);
+    }
+    mf_json_put_number(writer, "potential_energy", s.potential_energy);
+    mf_json_put_number(writer, "potential_energy_error", s.potential_energy_error);
+    mf_json_put_number(writer, "pressure", s.pressure);
+    mf_json_put_number(writer, "pressure_error", s.pressure_error);
+    mf_units_put(results->units, writer, s.potential_energy, s.pressure);
+}
+
+/// Nanoseconds of a pair and sample: of the sums, and of the configurational temperature.
+static const double sum_cost = 0.2, curvature_cost = 8;
+
+static const char sums_stage[] = "energy, virial, temperature";
+
+static void explain(const void *settings, const struct simulation_setup *setup, double every,
+                    struct stages *stages) {
+    (void)settings;
+    const double pairs = mf_stages_pairs_within(setup, mf_stages_cutoff(setup));
+    mf_stages_add(stages, sums_stage, true, (sum_cost * pairs + 2) / every, "one step in %.0f",
+                  every);
+    mf_stages_add(stages, "configurational temperature", true, curvature_cost * pairs / every,
+                  "one step in %.0f, in double precision", every);
+}
+
+static enum status result(const void *const *states, size_t count,
+                          const struct observable_values *values) {
+    for (size_t k = 0; k < count; k++) {
+        const struct thermodynamics_summary s = mf_thermodynamics_result(states[k], 1);
+        mf_pooled_add(values, &s.pressure, &s.pressure_error, count);
+    }
+    return STATUS_OK;
+}
+
+static const struct observable_target targets[] = {
+    {.name = "pressure", .summary = "P", .form = OBSERVABLE_NUMBER}, {.name = NULL}};
+
+static const char *const files[] = {"thermodynamics.tsv", NULL};
+
+const struct observable mf_thermodynamics_observable = {
+    .name = "thermodynamics",
+    .summary = "temperatures, energy, pressure",
+    .always = true,
+    .state_size = sizeof(struct thermodynamics),
+    .begin = begin,
+    .clear = clear,
+    .sums = true,
+    .sample = sample,
+    .spans = spans,
+    .write = write,
+    .put = put,
+    .judge = judge,
+    .explain = explain,
+    .stage = sums_stage,
+    .files = files,
+    .figure = "simulation",
+    .targets = targets,
+    .result = result,
+};

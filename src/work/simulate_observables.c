@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "work/simulate_observables.h"
+
+#include "io/checkpoint.h"
+
+enum status mf_simulate_observables_read(struct simulate_observables *observables,
+                                         struct json_object *root) {
+    *observables = (struct simulate_observables){0};
+    struct observable_use *use = observables->use;
+    for (size_t k = 0; mf_observables[k]; k++) {
+        const struct observable *observable = mf_observables[k];
+        struct json_object object = {0};
+        if (observable->fields)
+            object = mf_json_child(root, observable->name, false);
+        if (object.item == NULL && !observable->always)
+            continue;
+        use->observable = observable;
+        if (observable->fields) {
+            use->settings = mf_memory_zeroed(1, observable->settings_size);
+            if (use->settings == NULL)
+                return STATUS_NO_MEMORY;
+            mf_json_fields(&object, observable->fields, use->settings);
+        }
+        if (object.item)
+            mf_json_finish(&object);
+        use++;
+    }
+    return STATUS_OK;
+}
+
+void mf_simulate_observables_clear(struct simulate_observables *observables) {
+    for (struct observable_use *use = observables->use; use->observable; use++) {
+        if (use->state)
+            use->observable->clear(use->state);
+        mf_memory_free(use->state);
+        mf_memory_free(use->settings);
+    }
+    *observables = (struct simulate_observables){0};
+}
+
+void mf_simulate_observables_write_used(const struct simulate_observables *observables,
+                                        struct json_writer *writer) {
+    for (const struct observable_use *use = observables->use; use->observable; use++) {
+        if (use->settings == NULL)
+            continue;
+        mf_json_begin(writer, use->observable->name);
+        mf_json_put_fields(writer, use->observable->fields, use->settings);
+        mf_json_end(writer);
+    }
+}
+
+enum status mf_simulate_observables_begin(struct simulate_observables *observables,
+                                          const struct simulation *simulation,
+                                          const struct measure_plan *plan) {
+    for (struct observable_use *use = observables->use; use->observable; use++) {
+        use->state = mf_memory_zeroed(1, use->observable->state_size);
+        if (use->state == NULL)
+            return STATUS_NO_MEMORY;
+        TRY(use->observable->begin(use->state, use->settings, simulation, plan));
+    }
+    return STATUS_OK;
+}
+
+size_t mf_simulate_observables_spans(struct simulate_observables *observables,
+                                     struct simulation *simulation, struct memory_span *spans) {
+    size_t n = mf_simulation_spans(simulation, spans);
+    for (const struct observable_use *use = observables->use; use->observable; use++)
+        n += use->observable->spans(use->state, spans + n);
+    return n;
+}
+
+enum status mf_simulate_observables_load(struct simulate_observables *observables,
+                                         struct simulation *simulation, const char *file,
+                                         uint64_t digest) {
+    struct memory_span spans[SIMULATE_MOST_SPANS];
+    size_t n = mf_simulation_spans(simulation, spans);
+    for (const struct observable_use *use = observables->use; use->observable; use++) {
+        size_t own = use->observable->spans(use->state, spans + n);
+        if (use->observable->make_room) {
+            TRY(mf_checkpoint_load_span(file, digest, n, &spans[n]));
+            TRY(use->observable->make_room(use->state));
+            own = use->observable->spans(use->state, spans + n);
+        }
+        n += own;
+    }
+    TRY(mf_checkpoint_load(file, digest, spans, n));
+    return mf_simulation_restore(simulation);
+}
+
+enum status mf_simulate_observables_write(const struct simulate_observables *observables,
+                                          const struct observable_results *results) {
+    for (const struct observable_use *use = observables->use; use->observable; use++)
+        if (use->observable->write)
+            TRY(use->observable->write(use->state, results));
+    return STATUS_OK;
+}
+
+void mf_simulate_observables_put(const struct simulate_observables *observables,
+                                 const struct observable_results *results,
+                                 struct json_writer *writer) {
+    for (const struct observable_use *use = observables->use; use->observable; use++)
+        if (use->observable->put)
+            use->observable->put(use->state, results, writer);
+}
+
+void mf_simulate_observables_say(const struct simulate_observables *observables,
+                                 const struct simulation_setup *setup, struct progress *to) {
+    for (const struct observable_use *use = observables->use; use->observable; use++) {
+        char line[256];
+        if (use->observable->say) {
+            use->observable->say(use->state, line, sizeof line);
+            mf_progress_say(to, "%s", line);
+        }
+        if (use->observable->judge && use->observable->judge(use->state, setup) != STATUS_OK)
+            mf_progress_say(to, "mesofit: warning: %s", mf_status_message());
+    }
+}

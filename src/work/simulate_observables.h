@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What a scene file asks to be measured: all of the list that it names or that always is.
+#pragma once
+
+#include "io/json.h"
+#include "observe/measure.h"
+#include "report/progress.h"
+
+struct simulate_observables {
+    struct observable_use use[OBSERVABLES_MOST + 1]; ///< settings are NULL of one without fields
+};
+
+/// Read the objects of a scene file; faults go to its document. Fails: NO_MEMORY.
+enum status mf_simulate_observables_read(struct simulate_observables *observables,
+                                         struct json_object *root) MUST_USE;
+void mf_simulate_observables_clear(struct simulate_observables *observables);
+
+/// Write the settings as they were read.
+void mf_simulate_observables_write_used(const struct simulate_observables *observables,
+                                        struct json_writer *writer);
+
+/// Fails: as the records' `begin`.
+enum status mf_simulate_observables_begin(struct simulate_observables *observables,
+                                          const struct simulation *simulation,
+                                          const struct measure_plan *plan) MUST_USE;
+
+enum { SIMULATE_MOST_SPANS = SIMULATION_SPANS + OBSERVABLES_MOST * OBSERVABLE_MOST_SPANS };
+
+/// Spans of a checkpoint, the simulation's first; returns their number.
+size_t mf_simulate_observables_spans(struct simulate_observables *observables,
+                                     struct simulation *simulation, struct memory_span *spans);
+
+/// Restore all of a checkpoint. Fails: as mf_checkpoint_load; NO_MEMORY.
+enum status mf_simulate_observables_load(struct simulate_observables *observables,
+                                         struct simulation *simulation, const char *file,
+                                         uint64_t digest) MUST_USE;
+
+/// Write all tables. Fails: IO, NO_MEMORY.
+enum status mf_simulate_observables_write(const struct simulate_observables *observables,
+                                          const struct observable_results *results) MUST_USE;
+
+/// Add all numbers to summary.json.
+void mf_simulate_observables_put(const struct simulate_observables *observables,
+                                 const struct observable_results *results,
+                                 struct json_writer *writer);
+
+/// Say what a person is to know, and what is not to be trusted.
+void mf_simulate_observables_say(const struct simulate_observables *observables,
+                                 const struct simulation_setup *setup, struct progress *to);
