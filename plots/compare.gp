@@ -29,14 +29,14 @@ omega_truth = truth_in("omega_compare.tsv")
 
 # Distances from `begin`, beyond the cores; the same range for all, so that peaks stand above wells.
 begin = 0
-reach = 0
+widest = 0
 if (with_rdf) {
     stats "rdf_compare.tsv" using 1 name "R" nooutput
     stats "rdf_compare.tsv" using (high(known(2), known(4))) name "G" nooutput
     stats "rdf_compare.tsv" using (high(known(2), known(4)) > 1e-3 ? $1 : NaN) name "B" nooutput
     with_target = has_numbers("rdf_compare.tsv", 2)
     begin = B_records > 0 ? floor(10 * (B_min - 0.06)) / 10.0 : 0
-    reach = R_max
+    widest = R_max
 }
 if (with_phi) {
     stats "potential_compare.tsv" using 1 name "R" nooutput
@@ -45,12 +45,12 @@ if (with_phi) {
     bottom = low(0, real(word(view, 3)))
     first = floor(10 * real(word(view, 2))) / 10.0
     begin = with_rdf ? low(begin, first) : first
-    reach = high(reach, R_max)
+    widest = high(widest, R_max)
 }
 begin = high(0, begin)
 if (with_omega) {
     stats "omega_compare.tsv" using 1 name "R" nooutput
-    reach = high(reach, R_max)
+    widest = high(widest, R_max)
     # Where the data say nothing the bands are wide: they may leave the figure.
     stats "omega_compare.tsv" using ($1 < begin ? NaN : high($2, known(4))) name "W" nooutput
     stats "omega_compare.tsv" using ($1 < begin ? NaN : $2 + low(1.96 * known(3), 0.3 * W_max)) \
@@ -136,7 +136,7 @@ do for [kind in kinds] {
     set tics nomirror out scale 0.6
     set grid xtics ytics linetype 1 linewidth 0.5 linecolor rgb "#e4e4e4"
 
-    set xrange [begin:reach > begin ? reach : begin + 1]
+    set xrange [begin:widest > begin ? widest : begin + 1]
     set xtics autofreq
     set ytics autofreq
     set format "%h"

@@ -25,7 +25,7 @@ r0_label = in_units("etd_cells.tsv", "r0[nm]", "{/:Italic r}_0 / nm", "{/:Italic
 stats "etd_cells.tsv" using (ps * $1) name "T" nooutput
 stats "etd_cells.tsv" using (nm * $2) name "R" nooutput
 stats "etd_cells.tsv" using (valid(3) && valid(5) ? abs($5 - $3) : 0) name "D" nooutput
-reach = D_max > 0 ? D_max : 1
+limit = D_max > 0 ? D_max : 1
 half = bins > 1 ? 0.5 * (R_max - R_min) / (bins - 1) : 0.5
 times = T_records / bins
 step = T_max / high(1, times - 1)
@@ -61,8 +61,8 @@ do for [kind in kinds] {
     set xlabel t_axis_of("etd_cells.tsv")
     eval name_axis(r0_label, 0.024)
     set palette defined (-1 blue, -0.5 "#8fbfdd", 0 "#f7f7f7", 0.5 "#eeb48c", 1 vermillion)
-    set cbrange [-reach:reach]
-    set cbtics step_of(reach / 1.5) scale 0.5
+    set cbrange [-limit:limit]
+    set cbtics step_of(limit / 1.5) scale 0.5
     set colorbox vertical user origin screen 0.82, screen 0.11 size screen 0.025, screen 0.34 \
         noborder
     set label 2 "{/:Italic E} − {/:Italic E}_{target}" at screen 0.97, screen 0.28 center rotate

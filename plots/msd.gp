@@ -12,7 +12,7 @@ combined(a, b) = nm2 * sqrt(known(a)**2 + known(b)**2)
 stats "msd.tsv" using (ps * $1) name "T" nooutput
 stats "msd.tsv" using (nm2 * high($2, $4)) name "M" nooutput
 stats "msd.tsv" using (high(nm2 * abs($4 - $2), 1.96 * combined(3, 5))) name "D" nooutput
-reach = D_max > 0 ? 1.15 * D_max : 1
+limit = D_max > 0 ? 1.15 * D_max : 1
 
 do for [kind in kinds] {
     eval open(kind, "msd", 720, 560)
@@ -36,8 +36,8 @@ do for [kind in kinds] {
 
     set tmargin at screen 0.34
     set bmargin at screen 0.125
-    set yrange [-reach:reach]
-    set ytics step_of(reach / 1.5)
+    set yrange [-limit:limit]
+    set ytics step_of(limit / 1.5)
     set format x "%h"
     set xlabel t_axis_of("msd.tsv")
     eval name_axis("result − target", 0.024)

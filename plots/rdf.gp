@@ -14,7 +14,7 @@ nm = factor_of(table, "r[nm]", 1)
 stats table using ($1 * nm) name "R" nooutput
 stats table using (high($2, $4)) name "G" nooutput
 stats table using (high(abs($4 - $2), combined(3, 5))) name "D" nooutput
-reach = D_max > 0 ? 1.15 * D_max : 1
+limit = D_max > 0 ? 1.15 * D_max : 1
 
 do for [kind in kinds] {
     eval open(kind, "rdf" . pair, 720, 560)
@@ -36,8 +36,8 @@ do for [kind in kinds] {
 
     set tmargin at screen 0.34
     set bmargin at screen 0.125
-    set yrange [-reach:reach]
-    set ytics step_of(reach / 1.5)
+    set yrange [-limit:limit]
+    set ytics step_of(limit / 1.5)
     set format x "%h"
     set xlabel r_axis_of(table)
     eval name_axis("{/:Italic g} − {/:Italic g}_{target}", 0.024)

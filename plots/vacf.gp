@@ -16,7 +16,7 @@ ps = factor_of("vacf.tsv", "time[ps]", 1)
 stats "vacf.tsv" using (ps * $1) name "T" nooutput
 stats "vacf.tsv" using (low($2 / target, $4 / result)) name "L" nooutput
 stats "vacf.tsv" using (high(abs(difference(2, 4)), 1.96 * combined(3, 5))) name "D" nooutput
-reach = D_max > 0 ? 1.15 * D_max : 1
+limit = D_max > 0 ? 1.15 * D_max : 1
 
 do for [kind in kinds] {
     eval open(kind, "vacf", 720, 560)
@@ -41,8 +41,8 @@ do for [kind in kinds] {
 
     set tmargin at screen 0.34
     set bmargin at screen 0.125
-    set yrange [-reach:reach]
-    set ytics step_of(reach / 1.5)
+    set yrange [-limit:limit]
+    set ytics step_of(limit / 1.5)
     set format x "%h"
     set xlabel t_axis_of("vacf.tsv")
     eval name_axis("result − target", 0.024)

@@ -42,7 +42,7 @@ struct run {
     struct bench_point reference, *points; ///< shape [method_count, step_count]
     struct bench_row *rows;
     size_t row_count;
-    struct bench_reach reach[BENCH_MOST_METHODS];
+    struct bench_limit limit[BENCH_MOST_METHODS];
     uint64_t steps_done, steps_total;
 };
 
@@ -261,7 +261,7 @@ static enum status run_points(struct run *run) {
 
 // Results -----------------------------------------------------------------------------------------
 
-/// Rows and reach of one method, up to its first unstable time step.
+/// Rows and limit of one method, up to its first unstable time step.
 static void judge(struct run *run, size_t method) {
     const struct bench_point *points = run->points + method * run->step_count;
     const struct bench_row *first = run->rows + run->row_count;
@@ -269,7 +269,7 @@ static void judge(struct run *run, size_t method) {
     for (; count < run->step_count && points[count].status == STATUS_OK; count++)
         run->rows[run->row_count++] = mf_bench_row_of(&points[count], &run->reference,
                                                       run->points_common.bins.count, run->wanted);
-    run->reach[method] = mf_bench_reach_of(first, count, run->wanted);
+    run->limit[method] = mf_bench_limit_of(first, count, run->wanted);
 }
 
 static enum status write_table(struct run *run, const struct bench_diagram *diagram) {
@@ -303,7 +303,7 @@ static enum status report(struct run *run) {
         .row = run->rows,
         .rows = run->row_count,
         .reference = mf_bench_row_of(&run->reference, &run->reference, bins, run->wanted),
-        .reach = run->reach,
+        .limit = run->limit,
         .method = names,
         .methods = run->method_count,
         .has_omega = run->scene.scene.setup.omega != NULL};

@@ -62,8 +62,8 @@ void mf_bench_number_text(char *text, size_t size, double value, double error) {
 size_t mf_bench_cheapest(const struct bench_diagram *diagram) {
     size_t best = diagram->methods;
     for (size_t m = 0; m < diagram->methods; m++)
-        if (diagram->reach[m].method &&
-            (best == diagram->methods || diagram->reach[m].cpu < diagram->reach[best].cpu))
+        if (diagram->limit[m].method &&
+            (best == diagram->methods || diagram->limit[m].cpu < diagram->limit[best].cpu))
             best = m;
     return best;
 }
@@ -129,28 +129,28 @@ static void print_reference(FILE *stream, const struct bench_diagram *diagram) {
             noise);
 }
 
-static void print_reaches(FILE *stream, const struct bench_diagram *diagram) {
+static void print_limits(FILE *stream, const struct bench_diagram *diagram) {
     fprintf(stream, "\nlargest time step with |dg| <= %g:\n", diagram->wanted);
     for (size_t m = 0; m < diagram->methods; m++) {
-        const struct bench_reach *reach = &diagram->reach[m];
+        const struct bench_limit *limit = &diagram->limit[m];
         fprintf(stream, "%-16s", diagram->method[m]);
-        if (reach->method == NULL) {
+        if (limit->method == NULL) {
             fprintf(stream, "  none\n");
             continue;
         }
-        print_cell(stream, 12, reach->time_step, reach->time_step_error, 1);
+        print_cell(stream, 12, limit->time_step, limit->time_step_error, 1);
         fprintf(stream, " tau");
-        print_cell(stream, 9, reach->cpu, reach->cpu_error, 1e3);
+        print_cell(stream, 9, limit->cpu, limit->cpu_error, 1e3);
         fprintf(stream, " ms/tau%s\n",
-                reach->is_bounded ? "" : "  (the largest that was run and is stable)");
+                limit->is_bounded ? "" : "  (the largest that was run and is stable)");
     }
 }
 
 /// The method that the others are measured against: the one that the program takes by itself.
-static const struct bench_reach *find_usual(const struct bench_diagram *diagram) {
+static const struct bench_limit *find_usual(const struct bench_diagram *diagram) {
     for (size_t m = 0; m < diagram->methods; m++)
-        if (diagram->reach[m].method && strcmp(diagram->method[m], "dpd-verlet(0.5)") == 0)
-            return &diagram->reach[m];
+        if (diagram->limit[m].method && strcmp(diagram->method[m], "dpd-verlet(0.5)") == 0)
+            return &diagram->limit[m];
     return NULL;
 }
 
@@ -163,15 +163,15 @@ static void print_recommendation(FILE *stream, const struct bench_diagram *diagr
                 diagram->wanted);
         return;
     }
-    const struct bench_reach *reach = &diagram->reach[best], *usual = find_usual(diagram);
+    const struct bench_limit *limit = &diagram->limit[best], *usual = find_usual(diagram);
     fprintf(stream, "\nfor |dg| <= %g take %s with a time step of %.2g tau: %.3g ms/tau",
-            diagram->wanted, reach->method, reach->time_step, 1e3 * reach->cpu);
-    if (usual && usual != reach) {
+            diagram->wanted, limit->method, limit->time_step, 1e3 * limit->cpu);
+    if (usual && usual != limit) {
         char cell[CELL_SIZE];
-        const double ratio = usual->cpu / reach->cpu;
+        const double ratio = usual->cpu / limit->cpu;
         mf_bench_number_text(
             cell, sizeof cell, ratio,
-            ratio * hypot(usual->cpu_error / usual->cpu, reach->cpu_error / reach->cpu));
+            ratio * hypot(usual->cpu_error / usual->cpu, limit->cpu_error / limit->cpu));
         fprintf(stream, ", %s times less than %s at %.2g tau", cell, usual->method,
                 usual->time_step);
     }
@@ -189,7 +189,7 @@ void mf_bench_accuracy_table(FILE *stream, const struct bench_diagram *diagram) 
     fprintf(stream, diagram->has_omega ? "\n" : "  %13s  %13s\n", "kT", "kT/tau");
     for (size_t k = 0; k < diagram->rows; k++)
         print_row(stream, diagram, &diagram->row[k]);
-    print_reaches(stream, diagram);
+    print_limits(stream, diagram);
     print_recommendation(stream, diagram);
 }
 
@@ -206,15 +206,15 @@ static void put_row(struct json_writer *writer, const char *role, const struct b
     mf_json_end(writer);
 }
 
-static void put_reach(struct json_writer *writer, const char *role,
-                      const struct bench_reach *reach) {
+static void put_limit(struct json_writer *writer, const char *role,
+                      const struct bench_limit *limit) {
     mf_json_begin(writer, NULL);
     mf_json_put_text(writer, "role", role);
-    mf_json_put_text(writer, "integrator", reach->method);
-    mf_json_put_number(writer, "time_step", reach->time_step);
-    mf_json_put_number(writer, "time_step_error", reach->time_step_error);
-    mf_json_put_number(writer, "cpu", reach->cpu);
-    mf_json_put_number(writer, "cpu_error", reach->cpu_error);
+    mf_json_put_text(writer, "integrator", limit->method);
+    mf_json_put_number(writer, "time_step", limit->time_step);
+    mf_json_put_number(writer, "time_step_error", limit->time_step_error);
+    mf_json_put_number(writer, "cpu", limit->cpu);
+    mf_json_put_number(writer, "cpu_error", limit->cpu_error);
     mf_json_end(writer);
 }
 
@@ -226,11 +226,11 @@ enum status mf_bench_accuracy_json(FILE *stream, const struct bench_diagram *dia
     for (size_t k = 0; k < diagram->rows; k++)
         put_row(writer, "point", &diagram->row[k]);
     for (size_t m = 0; m < diagram->methods; m++)
-        if (diagram->reach[m].method)
-            put_reach(writer, "reach", &diagram->reach[m]);
+        if (diagram->limit[m].method)
+            put_limit(writer, "limit", &diagram->limit[m]);
     const size_t best = mf_bench_cheapest(diagram);
     if (best < diagram->methods)
-        put_reach(writer, "recommendation", &diagram->reach[best]);
+        put_limit(writer, "recommendation", &diagram->limit[best]);
     const enum status status = mf_json_write_stream(writer, stream, "the results");
     mf_json_writer_free(writer);
     return status;
@@ -250,10 +250,10 @@ void mf_bench_accuracy_tsv(FILE *stream, const struct bench_diagram *diagram) {
     fprintf(stream, "# extrapolated with a time step of %.6g\n# wanted %.6g\n",
             diagram->extrapolation.partner, diagram->wanted);
     for (size_t m = 0; m < diagram->methods; m++)
-        if (diagram->reach[m].method)
-            fprintf(stream, "# reach %s %.6g %.6g tau %.6g %.6g s/tau\n", diagram->method[m],
-                    diagram->reach[m].time_step, diagram->reach[m].time_step_error,
-                    diagram->reach[m].cpu, diagram->reach[m].cpu_error);
+        if (diagram->limit[m].method)
+            fprintf(stream, "# limit %s %.6g %.6g tau %.6g %.6g s/tau\n", diagram->method[m],
+                    diagram->limit[m].time_step, diagram->limit[m].time_step_error,
+                    diagram->limit[m].cpu, diagram->limit[m].cpu_error);
     fprintf(stream, "# integrator");
     for (int k = 0; k < BENCH_COLUMNS; k++)
         fprintf(stream, "\t%s[%s]", columns[k].key, columns[k].unit);

@@ -15,7 +15,7 @@ struct bench_diagram {
     const struct bench_row *row;              ///< one method after the other, time steps growing
     size_t rows;                              //
     struct bench_row reference;               ///< at its own time step: changes are 0
-    const struct bench_reach *reach;          ///< of each method
+    const struct bench_limit *limit;          ///< of each method
     const char *const *method;                ///< their names
     size_t methods;
     bool has_omega;
@@ -25,14 +25,14 @@ struct bench_diagram {
 /// Tested: test_bench_accuracy_output.
 void mf_bench_number_text(char *text, size_t size, double value, double error);
 
-/// Index of the method whose reach costs least; `methods` if none has any.
+/// Index of the method whose largest good time step costs least; `methods` if none has any.
 /// Tested: test_bench_accuracy_output.
 size_t mf_bench_cheapest(const struct bench_diagram *diagram);
 
-/// Tables of errors and reaches, and the recommendation. Tested: test_bench_accuracy_output.
+/// Tables of errors and limits, and the recommendation. Tested: test_bench_accuracy_output.
 void mf_bench_accuracy_table(FILE *stream, const struct bench_diagram *diagram);
 
-/// A list of objects with "role": reference, point, reach or recommendation.
+/// A list of objects with "role": reference, point, limit or recommendation.
 /// Fails: IO, NO_MEMORY. Tested: test_bench_accuracy.
 enum status mf_bench_accuracy_json(FILE *stream, const struct bench_diagram *diagram) MUST_USE;
 

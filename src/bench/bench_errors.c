@@ -109,20 +109,20 @@ struct bench_row mf_bench_row_of(const struct bench_point *point,
 
 // What to recommend -------------------------------------------------------------------------------
 
-struct bench_reach mf_bench_reach_of(const struct bench_row *rows, size_t count, double wanted) {
+struct bench_limit mf_bench_limit_of(const struct bench_row *rows, size_t count, double wanted) {
     size_t good = 0;
     while (good < count && rows[good].value[BENCH_G_LARGEST] <= wanted)
         good++;
     if (good == 0)
-        return (struct bench_reach){.method = NULL};
+        return (struct bench_limit){.method = NULL};
     const double *low = rows[good - 1].value;
-    struct bench_reach reach = {.method = rows[good - 1].method,
+    struct bench_limit limit = {.method = rows[good - 1].method,
                                 .time_step = low[BENCH_TIME_STEP],
                                 .cpu = low[BENCH_CPU],
                                 .cpu_error = low[BENCH_CPU_ERROR],
                                 .is_bounded = good < count};
     if (good == count)
-        return reach;
+        return limit;
     const double *high = rows[good].value;
     const double rise = log(high[BENCH_G_LARGEST] / low[BENCH_G_LARGEST]);
     const double steps = log(high[BENCH_TIME_STEP] / low[BENCH_TIME_STEP]);
@@ -131,11 +131,11 @@ struct bench_reach mf_bench_reach_of(const struct bench_row *rows, size_t count,
     // What the interpolated error is uncertain by moves the crossing along.
     const double noise = hypot((1 - part) * low[BENCH_G_LARGEST_ERROR] / low[BENCH_G_LARGEST],
                                part * high[BENCH_G_LARGEST_ERROR] / high[BENCH_G_LARGEST]);
-    reach.time_step *= exp(part * steps);
-    reach.time_step_error = reach.time_step * noise * steps / rise;
-    reach.cpu *= exp(part * costs);
+    limit.time_step *= exp(part * steps);
+    limit.time_step_error = limit.time_step * noise * steps / rise;
+    limit.cpu *= exp(part * costs);
     const double timing = hypot((1 - part) * low[BENCH_CPU_ERROR] / low[BENCH_CPU],
                                 part * high[BENCH_CPU_ERROR] / high[BENCH_CPU]);
-    reach.cpu_error = reach.cpu * hypot(noise * costs / rise, timing);
-    return reach;
+    limit.cpu_error = limit.cpu * hypot(noise * costs / rise, timing);
+    return limit;
 }

@@ -50,7 +50,7 @@ struct bench_row mf_bench_row_of(const struct bench_point *point,
 double mf_bench_expected_largest(const double *error, size_t count);
 
 /// Largest time step of a method with an error |Δg| that is wanted.
-struct bench_reach {
+struct bench_limit {
     const char *method; ///< NULL: not even the smallest has it
     double time_step, time_step_error;
     double cpu, cpu_error; ///< [s/τ]
@@ -60,4 +60,4 @@ struct bench_reach {
 /// Climb the rows of one method, in the order of their time steps, to the first whose largest |Δg|
 /// is above `wanted`, and interpolate between it and the last in logarithms.
 /// Tested: test_bench_errors.
-struct bench_reach mf_bench_reach_of(const struct bench_row *rows, size_t count, double wanted);
+struct bench_limit mf_bench_limit_of(const struct bench_row *rows, size_t count, double wanted);

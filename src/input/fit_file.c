@@ -256,7 +256,7 @@ static enum status check_bins(const struct fit_file *fit, const char *file) {
 
 /// An inversion samples the pair potential alone.
 static enum status check_interactions(const struct fit_file *fit, const char *file) {
-    if (fit->method->update == NULL || fit->scene.setup.interactions == 0)
+    if (fit->method->kind != INVERSE_INVERSION || fit->scene.setup.interactions == 0)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
                           "%s: scene.interactions: \"%s\" samples pairs alone; the methods that "

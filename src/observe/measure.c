@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "observe/measure.h"
 
+#include "observe/thermodynamics.h"
+
 #define MEMBER(name) .offset = offsetof(struct measure_plan, name)
 const struct field mf_measure_plan_fields[] = {
     {"equilibration", FIELD_INTEGER, MEMBER(equilibration), .initial = 1000, .minimum = 0,

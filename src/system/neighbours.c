@@ -9,10 +9,11 @@
 
 /// Cells are halved along one axis after the other, the fastest first, as long as this many
 /// particles remain in one: fewer candidates are looked at, but fewer particles share the work of
-/// finding them. Measured for reach 1 1 1, 1 1 2 and 2 2 2 on Zen 3: 1240, 950 and 690 µs for 2744
-/// particles with 45 in a cell of the range; 690, 600 and 910 µs for 4000 with 18; 280, 320 and
-/// 930 µs for 3000 with 7. Along the last axis a halved cell is halved again, which shortens the
-/// runs: 3 % more steps/s for Lennard-Jones on Zen 5, while it costs a fluid with 3 in a cell 5 %.
+/// finding them. Measured for range_cells 1 1 1, 1 1 2 and 2 2 2 on Zen 3: 1240, 950 and 690 µs for
+/// 2744 particles with 45 in a cell of the range; 690, 600 and 910 µs for 4000 with 18; 280, 320
+/// and 930 µs for 3000 with 7. Along the last axis a halved cell is halved again, which shortens
+/// the runs: 3 % more steps/s for Lennard-Jones on Zen 5, while it costs a fluid with 3 in a cell 5
+/// %.
 static const double fewest_in_cell = 5;
 
 /// Cells for each particle, at most: more would only be empty.
@@ -24,23 +25,24 @@ static void shape_cells(struct neighbours *neighbours, const struct box *box) {
     double in_cell = pow(neighbours->range, box->dimensions) / room;
     neighbours->cell_total = 1;
     for (int d = 2; d >= 0; d--) {
-        neighbours->reach[d] = neighbours->cells[d] = 1;
+        neighbours->range_cells[d] = neighbours->cells[d] = 1;
         if (d >= box->dimensions)
             continue;
         if (in_cell / 2 >= fewest_in_cell) {
             in_cell /= 2;
-            neighbours->reach[d] = d == 2 ? 2 * NEIGHBOURS_MOST_REACH : NEIGHBOURS_MOST_REACH;
+            neighbours->range_cells[d] =
+                d == 2 ? 2 * NEIGHBOURS_MOST_RANGE_CELLS : NEIGHBOURS_MOST_RANGE_CELLS;
         }
-        const double width = fmax(neighbours->range / neighbours->reach[d], narrowest);
+        const double width = fmax(neighbours->range / neighbours->range_cells[d], narrowest);
         neighbours->cells[d] = (int)fmax(1, floor(box->length[d] / width));
         neighbours->cell_total *= (size_t)neighbours->cells[d];
     }
 }
 
-/// Divide the planes of cells into parts at least as thick as their reach.
+/// Divide the planes of cells into parts at least as thick as the range.
 static void divide(struct neighbours *neighbours) {
     const int planes = neighbours->cells[0];
-    int parts = planes / neighbours->reach[0] / 2 * 2;
+    int parts = planes / neighbours->range_cells[0] / 2 * 2;
     if (neighbours->kind == NEIGHBOURS_FULL || parts < 4)
         parts = 1;
     neighbours->parts = parts < NEIGHBOURS_MOST_PARTS ? parts : NEIGHBOURS_MOST_PARTS;

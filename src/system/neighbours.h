@@ -58,7 +58,7 @@ struct neighbours {
     double entries_each; ///< places of the list for each particle
     double *built[3];    ///< positions at the last build, unwrapped like `position` since then
     int cells[3];        ///< along each axis; the last is the fastest
-    int reach[3];        ///< neighbours lie within so many cells
+    int range_cells[3];  ///< the range in cells: neighbours lie within so many
     size_t cell_total;
     uint32_t *cell_start; ///< shape [cell_total + 1]; particles are sorted by cell
     uint32_t *cell_of;    ///< shape [count]
@@ -77,9 +77,9 @@ enum status mf_neighbours_init(struct neighbours *neighbours, enum neighbours_ki
                                double skin) MUST_USE;
 void mf_neighbours_clear(struct neighbours *neighbours);
 
-/// Whether the cells within reach along an axis are all that there are.
+/// Whether the cells in range along an axis are all that there are.
 static inline bool neighbours_span_axis(const struct neighbours *neighbours, int d) {
-    return neighbours->cells[d] <= 2 * neighbours->reach[d];
+    return neighbours->cells[d] <= 2 * neighbours->range_cells[d];
 }
 
 /// Places on the list of all particles.

@@ -9,8 +9,8 @@
 
 #include <stdlib.h>
 
-enum { WIDEST = 2 * NEIGHBOURS_MOST_REACH + 1 };
-_Static_assert(PAIR_SEARCH_MOST_ROWS >= WIDEST * WIDEST, "rows in reach");
+enum { WIDEST = 2 * NEIGHBOURS_MOST_RANGE_CELLS + 1 };
+_Static_assert(PAIR_SEARCH_MOST_ROWS >= WIDEST * WIDEST, "rows in range");
 
 // Sorting -----------------------------------------------------------------------------------------
 
@@ -55,17 +55,17 @@ struct nearby {
     int cell, image;
 };
 
-/// Those within reach of one along axis d: all of them once, if the axis is short.
+/// Those in range of one along axis d: all of them once, if the axis is short.
 static int find_nearby(const struct neighbours *neighbours, int d, int cell,
                        struct nearby nearby[WIDEST]) {
-    const int n = neighbours->cells[d], reach = neighbours->reach[d];
+    const int n = neighbours->cells[d], range = neighbours->range_cells[d];
     int found = 0;
     if (neighbours_span_axis(neighbours, d)) {
         for (int c = 0; c < n; c++)
             nearby[found++] = (struct nearby){c, 0};
         return found;
     }
-    for (int c = cell - reach; c <= cell + reach; c++) {
+    for (int c = cell - range; c <= cell + range; c++) {
         const int image = c < 0 ? -1 : c < n ? 0 : 1;
         nearby[found++] = (struct nearby){c - image * n, image};
     }
@@ -78,8 +78,8 @@ static int find_gap(int a, int b, int n) {
     return nearest > 1 ? nearest - 1 : 0;
 }
 
-/// How many cells neighbours reach along the last axis, given the gaps along the others: −1 where
-/// there are none.
+/// In how many cells along the last axis neighbours may be, given the gaps along the others: −1
+/// where there are none.
 static int find_depth(const struct neighbours *neighbours, const struct box *box, int gap_x,
                       int gap_y) {
     const double x = gap_x * box->length[0] / neighbours->cells[0];
@@ -90,18 +90,18 @@ static int find_depth(const struct neighbours *neighbours, const struct box *box
     const double width = box->length[2] / neighbours->cells[2];
     if (neighbours_span_axis(neighbours, 2))
         return neighbours->cells[2];
-    return (int)fmin(ceil(sqrt(left) / width), neighbours->reach[2]);
+    return (int)fmin(ceil(sqrt(left) / width), neighbours->range_cells[2]);
 }
 
 /// Whether the pairs between two planes stand in the list of the one at `plane`.
 ///
-/// With planes enough, those from it up to its reach ahead, across the boundary of the box too: so
+/// With planes enough, those from it up to the range ahead, across the boundary of the box too: so
 /// a part of the system reaches only into the next. Else those behind it in the order of memory.
 static bool owns_pairs(const struct neighbours *neighbours, int plane, int other) {
-    const int n = neighbours->cells[0], reach = neighbours->reach[0];
-    if (n <= 2 * reach)
+    const int n = neighbours->cells[0], range = neighbours->range_cells[0];
+    if (n <= 2 * range)
         return other > plane;
-    return other != plane && (other - plane + n) % n <= reach;
+    return other != plane && (other - plane + n) % n <= range;
 }
 
 static void add_row(struct pair_search_rows *rows, const struct neighbours *neighbours,

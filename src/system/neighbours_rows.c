@@ -19,7 +19,7 @@ enum status mf_neighbours_init_rows(struct neighbours *neighbours, const struct 
     rows->wrap = false;
     for (int d = 0; d < box->dimensions; d++)
         rows->wrap |= neighbours_span_axis(neighbours, d);
-    rows->margin = neighbours_span_axis(neighbours, 2) ? 0 : neighbours->reach[2];
+    rows->margin = neighbours_span_axis(neighbours, 2) ? 0 : neighbours->range_cells[2];
     const size_t images = rows->margin > 0 ? 2 * neighbours->count : 0;
     const size_t room = neighbours->count + images + row_count(neighbours) * ROW_PADDING;
     for (int d = 0; d < 3; d++)

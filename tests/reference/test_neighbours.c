@@ -208,7 +208,7 @@ static void test_neighbours_are_complete_when_there_are_several_cells_to_the_ran
     static const struct {
         struct box box;
         size_t count;
-        int reach[3];
+        int range_cells[3];
     } cases[] = {
         {{3, {9, 8, 10}}, 600, {1, 1, 1}},     {{3, {9, 8, 10}}, 1200, {1, 1, 4}},
         {{3, {9, 8, 10}}, 2000, {1, 2, 4}},    {{3, {9, 8, 10}}, 4000, {2, 2, 4}},
@@ -221,7 +221,8 @@ static void test_neighbours_are_complete_when_there_are_several_cells_to_the_ran
             make_gas(&particles, &cases[c].box, cases[c].count, 1);
             assert_ok(mf_neighbours_init(&neighbours, (enum neighbours_kind)kind, &cases[c].box,
                                          cases[c].count, 1.7, 0.3));
-            assert_memory_equal(neighbours.reach, cases[c].reach, sizeof neighbours.reach);
+            assert_memory_equal(neighbours.range_cells, cases[c].range_cells,
+                                sizeof neighbours.range_cells);
             assert_ok(mf_neighbours_sort_and_build(&neighbours, &particles));
             uint8_t *entries = count_entries(&neighbours);
             check_entries(&neighbours, entries);

@@ -35,11 +35,11 @@ static char *print(const struct bench_diagram *diagram) {
     return text;
 }
 
-static void test_cheapest_reach_is_recommended_with_its_gain(void **state) {
+static void test_cheapest_limit_is_recommended_with_its_gain(void **state) {
     (void)state;
     const char *const names[] = {"dpd-verlet(0.5)", "shardlow", "aboba"};
     const struct bench_row row = {.method = names[0], .value = {[BENCH_TIME_STEP] = 0.01}};
-    const struct bench_reach reach[] = {{names[0], 0.03, 0.001, 0.006, 0.0003, true},
+    const struct bench_limit limit[] = {{names[0], 0.03, 0.001, 0.006, 0.0003, true},
                                         {NULL, 0, 0, 0, 0, false},
                                         {names[2], 0.06, 0.002, 0.003, 0.0001, false}};
     struct bench_diagram diagram = {.scene = "small",
@@ -48,7 +48,7 @@ static void test_cheapest_reach_is_recommended_with_its_gain(void **state) {
                                     .row = &row,
                                     .rows = 1,
                                     .reference = row,
-                                    .reach = reach,
+                                    .limit = limit,
                                     .method = names,
                                     .methods = 3,
                                     .has_omega = true};
@@ -68,7 +68,7 @@ static void test_cheapest_reach_is_recommended_with_its_gain(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_numbers_have_as_many_digits_as_their_error_allows),
-        cmocka_unit_test(test_cheapest_reach_is_recommended_with_its_gain),
+        cmocka_unit_test(test_cheapest_limit_is_recommended_with_its_gain),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -99,25 +99,25 @@ static struct bench_row make_row(double time_step, double largest) {
     return row;
 }
 
-static void test_reach_lies_on_the_power_law_of_the_errors(void **state) {
+static void test_limit_lies_on_the_power_law_of_the_errors(void **state) {
     (void)state;
     const struct bench_row rows[] = {make_row(0.1, 0.01), make_row(0.2, 0.04), make_row(0.4, 0.16)};
-    const struct bench_reach reach = mf_bench_reach_of(rows, 3, 0.0225);
-    assert_string_equal(reach.method, "one");
-    assert_close(reach.time_step, 0.15, 1e-12);
-    assert_close(reach.cpu, 1 / 0.15, 1e-9);
-    assert_true(reach.is_bounded);
+    const struct bench_limit limit = mf_bench_limit_of(rows, 3, 0.0225);
+    assert_string_equal(limit.method, "one");
+    assert_close(limit.time_step, 0.15, 1e-12);
+    assert_close(limit.cpu, 1 / 0.15, 1e-9);
+    assert_true(limit.is_bounded);
     // Errors of 7 % or so, halved by the square root.
-    assert_in_range(1e4 * reach.time_step_error / reach.time_step, 300, 500);
+    assert_in_range(1e4 * limit.time_step_error / limit.time_step, 300, 500);
 }
 
-static void test_reach_ends_at_the_first_step_that_is_too_large(void **state) {
+static void test_limit_ends_at_the_first_step_that_is_too_large(void **state) {
     (void)state;
     const struct bench_row rows[] = {make_row(0.1, 0.01), make_row(0.2, 0.04), make_row(0.4, 0.01)};
-    assert_close(mf_bench_reach_of(rows, 3, 0.02).time_step, 0.1 * sqrt(2), 1e-12);
-    assert_null(mf_bench_reach_of(rows, 3, 0.005).method);
-    assert_null(mf_bench_reach_of(rows, 0, 1).method);
-    const struct bench_reach all = mf_bench_reach_of(rows, 3, 1);
+    assert_close(mf_bench_limit_of(rows, 3, 0.02).time_step, 0.1 * sqrt(2), 1e-12);
+    assert_null(mf_bench_limit_of(rows, 3, 0.005).method);
+    assert_null(mf_bench_limit_of(rows, 0, 1).method);
+    const struct bench_limit all = mf_bench_limit_of(rows, 3, 1);
     assert_close(all.time_step, 0.4, 0);
     assert_false(all.is_bounded);
 }
@@ -129,8 +129,8 @@ int main(void) {
         cmocka_unit_test(test_row_has_largest_change_and_rms_without_noise),
         cmocka_unit_test(test_noise_alone_has_an_rms_of_0),
         cmocka_unit_test(test_expected_largest_is_that_of_half_normal_numbers),
-        cmocka_unit_test(test_reach_lies_on_the_power_law_of_the_errors),
-        cmocka_unit_test(test_reach_ends_at_the_first_step_that_is_too_large),
+        cmocka_unit_test(test_limit_lies_on_the_power_law_of_the_errors),
+        cmocka_unit_test(test_limit_ends_at_the_first_step_that_is_too_large),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
