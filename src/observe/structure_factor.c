@@ -378,7 +378,7 @@ done:
 // Record ------------------------------------------------------------------------------------------
 
 /// Nanoseconds of a particle and wave vector.
-static const double wave_cost = 0.7;
+static const double wave_cost = 1.1;
 
 static void explain(const void *settings, const struct simulation_setup *setup, double every,
                     struct stages *stages) {
