@@ -14,7 +14,7 @@ struct entry {
     const struct field *field;
     const char *fixed; ///< why it cannot be an unknown; NULL: it can
     enum inverse_place place;
-    int pair;
+    int part;
     size_t offset;
     double value; ///< that the scene gives
 };
@@ -34,7 +34,7 @@ static const char *not_a_number(const struct field *field) {
     case FIELD_SEED:
         return "it is an integer, and only numbers that change little by little can be found";
     case FIELD_LENGTHS:
-        return "it is several numbers, and the particles would have another density";
+        return "it is several numbers";
     case FIELD_TEXT:
     case FIELD_FILE:
         return "it is a text, not a number";
@@ -97,7 +97,7 @@ static void add_law(struct entries *entries, const char *key, const struct scene
         snprintf(prefix, sizeof prefix, "%s.%s%s", key, name, name[0] ? "." : "");
         if (curve->family)
             add(entries, prefix, curve->family->fields, NULL,
-                &(struct entry){.place = place, .pair = pair}, curve->parameters);
+                &(struct entry){.place = place, .part = pair}, curve->parameters);
     }
 }
 
@@ -106,16 +106,21 @@ static void list(struct entries *entries, const struct scene *scene) {
     static const char places[] = "it says how many particles there are, or where they begin";
     const struct simulation_setup *setup = &scene->setup;
     const struct entry nowhere = {.place = INVERSE_OF_SETUP};
-    const struct entry dynamics = {.place = INVERSE_OF_SETUP,
-                                   .offset =
-                                       offsetof(struct simulation_setup, integrator_parameters)};
+    const struct entry dynamics = {.place = INVERSE_OF_DYNAMICS};
     entries->count = 0;
     add_top(entries, scene);
     add_law(entries, "conservative", &scene->potential, INVERSE_OF_POTENTIAL, &setup->composition);
     add_law(entries, "dissipative", &scene->omega, INVERSE_OF_OMEGA, &setup->composition);
     if (setup->integrator)
         add(entries, "dynamics.", setup->integrator->fields, NULL, &dynamics,
-            &setup->integrator_parameters);
+            setup->integrator_parameters);
+    for (int k = 0; k < setup->interactions; k++) {
+        const struct interaction_choice *choice = &setup->interaction[k];
+        char prefix[INVERSE_NUMBER_NAME_SIZE];
+        snprintf(prefix, sizeof prefix, "interactions.%s.", choice->kind->name);
+        add(entries, prefix, choice->kind->fields, NULL,
+            &(struct entry){.place = INVERSE_OF_INTERACTION, .part = k}, choice->parameters);
+    }
     add(entries, "particles.", mf_placement_count_fields, places, &nowhere, NULL);
     add(entries, "particles.", mf_placement_fields, places, &nowhere, NULL);
     add(entries, "units.", mf_units_fields, converts, &nowhere, NULL);
@@ -177,7 +182,7 @@ static void read_one(struct json_object *numbers, const struct entry *entry,
     snprintf(number->name, sizeof number->name, "%s", entry->path);
     number->unit = entry->field->unit;
     number->place = entry->place;
-    number->pair = entry->pair;
+    number->part = entry->part;
     number->offset = entry->offset;
     if (mf_json_fault_count(object.document) > faults)
         return;

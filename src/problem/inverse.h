@@ -61,6 +61,8 @@ enum inverse_place {
     INVERSE_OF_POTENTIAL = UNKNOWN_POTENTIAL,
     INVERSE_OF_OMEGA = UNKNOWN_OMEGA,
     INVERSE_OF_SETUP,
+    INVERSE_OF_DYNAMICS,
+    INVERSE_OF_INTERACTION,
 };
 
 enum { INVERSE_MOST_NUMBERS = 16, INVERSE_NUMBER_NAME_SIZE = 96 };
@@ -72,8 +74,8 @@ struct inverse_number {
     double minimum, maximum;             ///< its range
     double start;                        ///< to begin with
     enum inverse_place place;
-    int pair;      ///< curve of the law
-    size_t offset; ///< in the parameters of the curve, or in struct simulation_setup
+    int part;      ///< curve of the law, or which of the interactions
+    size_t offset; ///< in the parameters of that, or in struct simulation_setup
 };
 
 /// The curves of a law of the scene. Borrowed.

@@ -35,7 +35,7 @@ static enum status tabulate(const struct inverse_problem *problem, enum unknown_
         memcpy(parameters, law->curve[pair].parameters, family->size);
         for (size_t n = 0; n < problem->numbers; n++) {
             const struct inverse_number *number = &problem->number[n];
-            if (number->place == (enum inverse_place)kind && number->pair == pair)
+            if (number->place == (enum inverse_place)kind && number->part == pair)
                 memcpy(parameters + number->offset, &value[n], sizeof value[n]);
         }
         const struct curve curve = {family, parameters};
@@ -62,21 +62,63 @@ static bool concerns(const struct inverse_problem *problem, enum unknown_kind ki
     return false;
 }
 
+/// A copy of some parameters, for numbers to be written into.
+static enum status copy(const void **parameters, size_t size, void **own) {
+    if (*own)
+        return STATUS_OK;
+    *own = mf_memory_zeroed(1, size);
+    if (*own == NULL)
+        return STATUS_NO_MEMORY;
+    if (*parameters)
+        memcpy(*own, *parameters, size);
+    *parameters = *own;
+    return STATUS_OK;
+}
+
+/// Write a number that is no parameter of a law to where the scene has it.
+static enum status put(const struct inverse_number *number, double value,
+                       struct simulation_setup *scene, struct numbers_own *own) {
+    char *to = NULL;
+    if (number->place == INVERSE_OF_SETUP) {
+        to = (char *)scene;
+    } else if (number->place == INVERSE_OF_DYNAMICS) {
+        TRY(copy(&scene->integrator_parameters, scene->integrator->parameters_size,
+                 &own->dynamics));
+        to = own->dynamics;
+    } else if (number->place == INVERSE_OF_INTERACTION) {
+        struct interaction_choice *choice = &scene->interaction[number->part];
+        TRY(copy(&choice->parameters, choice->kind->parameters_size,
+                 &own->interaction[number->part]));
+        to = own->interaction[number->part];
+    }
+    if (to)
+        memcpy(to + number->offset, &value, sizeof value);
+    return STATUS_OK;
+}
+
 enum status mf_numbers_apply(const struct inverse_problem *problem, const double *value,
-                             struct inverse_problem *changed, struct table own[UNKNOWNS]) {
+                             struct inverse_problem *changed, struct numbers_own *own) {
     *changed = *problem;
     for (size_t n = 0; n < problem->numbers; n++)
-        if (problem->number[n].place == INVERSE_OF_SETUP)
-            memcpy((char *)&changed->scene + problem->number[n].offset, &value[n], sizeof value[n]);
+        TRY(put(&problem->number[n], value[n], &changed->scene, own));
     if (concerns(problem, UNKNOWN_POTENTIAL)) {
-        TRY(tabulate(problem, UNKNOWN_POTENTIAL, value, &own[UNKNOWN_POTENTIAL]));
-        changed->scene.potential = &own[UNKNOWN_POTENTIAL];
+        TRY(tabulate(problem, UNKNOWN_POTENTIAL, value, &own->table[UNKNOWN_POTENTIAL]));
+        changed->scene.potential = &own->table[UNKNOWN_POTENTIAL];
     }
     if (concerns(problem, UNKNOWN_OMEGA)) {
-        TRY(tabulate(problem, UNKNOWN_OMEGA, value, &own[UNKNOWN_OMEGA]));
-        changed->scene.omega = &own[UNKNOWN_OMEGA];
+        TRY(tabulate(problem, UNKNOWN_OMEGA, value, &own->table[UNKNOWN_OMEGA]));
+        changed->scene.omega = &own->table[UNKNOWN_OMEGA];
     }
     return STATUS_OK;
+}
+
+void mf_numbers_own_clear(struct numbers_own *own) {
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        mf_table_clear(&own->table[kind]);
+    for (int k = 0; k < INTERACTION_MOST; k++)
+        mf_memory_free(own->interaction[k]);
+    mf_memory_free(own->dynamics);
+    *own = (struct numbers_own){0};
 }
 
 void mf_numbers_start(const struct inverse_problem *problem, double *value) {

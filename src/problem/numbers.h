@@ -7,15 +7,22 @@
 /// What a run file says of one: struct inverse_number.
 extern const struct field mf_numbers_fields[];
 
+/// What is made for values: tables of laws, and parameters of the integrator and the interactions.
+struct numbers_own {
+    struct table table[UNKNOWNS];
+    void *dynamics, *interaction[INTERACTION_MOST];
+};
+
 /// The problem whose scene has these values: settings are replaced, and the table of a law with a
 /// changed parameter is made anew. Laws that are unknown curves stay as they are.
 /// @param[in]  value    shape [problem->numbers]
 /// @param[out] changed  borrows what `problem` does, and `own`
-/// @param[out] own      tables that were made; to be cleared, also after a failure
+/// @param[in,out] own   zero; what was made, to be cleared, also after a failure
 /// Fails: NO_MEMORY; BAD_INPUT if a law has no table with these values.
 /// Threads: any number at once. Tested: test_numbers.
 enum status mf_numbers_apply(const struct inverse_problem *problem, const double *value,
-                             struct inverse_problem *changed, struct table own[UNKNOWNS]) MUST_USE;
+                             struct inverse_problem *changed, struct numbers_own *own) MUST_USE;
+void mf_numbers_own_clear(struct numbers_own *own);
 
 /// The values that a fit begins with, shape [problem->numbers].
 void mf_numbers_start(const struct inverse_problem *problem, double *value);

@@ -70,11 +70,11 @@ enum status mf_unknowns_laws_make(const struct unknowns *unknowns,
                                   const double *const curve[UNKNOWNS], const double *number,
                                   struct unknowns_laws *laws) {
     *laws = (struct unknowns_laws){0};
-    TRY(mf_numbers_apply(unknowns->problem, number, &laws->problem, laws->own));
+    TRY(mf_numbers_apply(unknowns->problem, number, &laws->problem, &laws->own));
     laws->table[UNKNOWN_POTENTIAL] = laws->problem.scene.potential;
     laws->table[UNKNOWN_OMEGA] = laws->problem.scene.omega;
     for (int kind = 0; kind < UNKNOWNS; kind++) {
-        struct table *own = &laws->own[kind];
+        struct table *own = &laws->own.table[kind];
         if (curve[kind] == NULL)
             continue;
         TRY(kind == UNKNOWN_POTENTIAL
@@ -86,8 +86,7 @@ enum status mf_unknowns_laws_make(const struct unknowns *unknowns,
 }
 
 void mf_unknowns_laws_clear(struct unknowns_laws *laws) {
-    for (int kind = 0; kind < UNKNOWNS; kind++)
-        mf_table_clear(&laws->own[kind]);
+    mf_numbers_own_clear(&laws->own);
 }
 
 enum status mf_unknowns_laws_start(const struct unknowns *unknowns, struct unknowns_laws *laws) {

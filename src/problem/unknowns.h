@@ -48,7 +48,7 @@ void mf_unknowns_start(const struct unknowns *unknowns, enum unknown_kind kind, 
 /// Fails: NO_MEMORY; BAD_INPUT as mf_numbers_apply.
 struct unknowns_laws {
     struct inverse_problem problem;
-    struct table own[UNKNOWNS]; ///< zero for what is the scene's
+    struct numbers_own own; ///< zero for what is the scene's
     const struct table *table[UNKNOWNS];
 };
 enum status mf_unknowns_laws_make(const struct unknowns *unknowns,

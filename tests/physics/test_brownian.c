@@ -9,6 +9,7 @@
 #include "shared/fluids.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
+#include "shared/watched.h"
 
 #include <math.h>
 
@@ -107,8 +108,8 @@ static struct thermodynamics_summary simulate(const struct simulation_setup *set
     assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)plan->samples));
     assert_ok(mf_rdf_init(&rdf, &bins, &setup->box, PARTICLES, 1, (size_t)plan->samples));
     assert_ok(mf_measure_equilibrate(&simulation, plan, &temperature, NULL));
-    const struct measure_observables observables = {.rdf = &rdf, .thermodynamics = &thermodynamics};
-    assert_ok(mf_measure_sample(&simulation, plan, observables, NULL));
+    const struct watched watched = {.rdf = &rdf, .thermodynamics = &thermodynamics};
+    assert_ok(watched_sample(&simulation, plan, watched, NULL));
     assert_ok(mf_rdf_result(&rdf, 1, g, error));
     const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
     mf_rdf_clear(&rdf);

@@ -8,6 +8,7 @@
 #include "shared/fluids.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
+#include "shared/watched.h"
 
 #include <math.h>
 
@@ -30,8 +31,8 @@ static struct thermodynamics_summary measure(const struct simulation_setup *setu
     assert_ok(mf_simulation_init(&simulation, &trapped, NULL));
     assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)plan->samples));
     assert_ok(mf_measure_equilibrate(&simulation, plan, &temperature, NULL));
-    const struct measure_observables observables = {.thermodynamics = &thermodynamics};
-    assert_ok(mf_measure_sample(&simulation, plan, observables, NULL));
+    const struct watched watched = {.thermodynamics = &thermodynamics};
+    assert_ok(watched_sample(&simulation, plan, watched, NULL));
     const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
     mf_thermodynamics_clear(&thermodynamics);
     mf_simulation_clear(&simulation);

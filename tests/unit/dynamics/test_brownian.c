@@ -8,6 +8,7 @@
 #include "shared/is_close.h"
 #include "shared/restart.h"
 #include "shared/testing.h"
+#include "shared/watched.h"
 
 #include <math.h>
 
@@ -99,8 +100,8 @@ static void test_brownian_is_judged_by_the_configurational_temperature(void **st
         assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
         assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)plan.samples));
         assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
-        const struct measure_observables observables = {.thermodynamics = &thermodynamics};
-        assert_ok(mf_measure_sample(&simulation, &plan, observables, NULL));
+        const struct watched watched = {.thermodynamics = &thermodynamics};
+        assert_ok(watched_sample(&simulation, &plan, watched, NULL));
         const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
         print_message("time step %g: configurational %.3f(%.3f), after equilibration %.3f\n",
                       cases[n].time_step, s.temperature_configurational,

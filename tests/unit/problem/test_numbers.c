@@ -2,6 +2,7 @@
 #include "problem/numbers.h"
 
 #include "curves/formula.h"
+#include "dynamics/dpd_verlet.h"
 #include "problem/parametrisation.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
@@ -9,6 +10,8 @@
 #include <math.h>
 
 enum { PAIRS = 3 };
+
+static const struct dpd_verlet_parameters half = {.lambda = 0.5};
 
 /// A mixture with three soft potentials and one friction weight; a of A-B, sigma, the temperature
 /// and lambda are to be found.
@@ -50,12 +53,12 @@ static void begin(struct mixture *mixture) {
                     offsetof(struct formula_power_omega_parameters, sigma)},
                    {"temperature", "", 0.5, 1.5, 1, INVERSE_OF_SETUP, 0,
                     offsetof(struct simulation_setup, temperature)},
-                   {"dynamics.lambda", "", 0, 1, 0.65, INVERSE_OF_SETUP, 0,
-                    offsetof(struct simulation_setup, integrator_parameters) +
-                        offsetof(struct integrator_parameters, lambda)}},
+                   {"dynamics.lambda", "", 0, 1, 0.65, INVERSE_OF_DYNAMICS, 0,
+                    offsetof(struct dpd_verlet_parameters, lambda)}},
         .law = {{PAIRS, mixture->potential}, {1, &mixture->omega}},
         .scene = {.temperature = 1,
-                  .integrator_parameters = {.lambda = 0.5},
+                  .integrator = &mf_dpd_verlet,
+                  .integrator_parameters = &half,
                   .potential = &mixture->tables[UNKNOWN_POTENTIAL],
                   .omega = &mixture->tables[UNKNOWN_OMEGA]}};
 }
@@ -77,23 +80,26 @@ static void test_numbers_apply_gives_the_tables_and_settings_of_a_scene_that_say
     (void)state;
     struct mixture mixture;
     struct inverse_problem changed = {0};
-    struct table own[UNKNOWNS] = {{0}}, wanted[UNKNOWNS] = {{0}};
+    struct numbers_own own = {0};
+    struct table wanted[UNKNOWNS] = {{0}};
     begin(&mixture);
     const double value[] = {20, 5, 0.8, 0.7};
-    assert_ok(mf_numbers_apply(&mixture.problem, value, &changed, own));
+    assert_ok(mf_numbers_apply(&mixture.problem, value, &changed, &own));
     make_tables(&mixture, 20, 5, wanted);
     assert_same_table(changed.scene.potential, &wanted[UNKNOWN_POTENTIAL]);
     assert_same_table(changed.scene.omega, &wanted[UNKNOWN_OMEGA]);
     assert_identical(changed.scene.temperature, 0.8);
-    assert_identical(changed.scene.integrator_parameters.lambda, 0.7);
+    const struct dpd_verlet_parameters *dynamics = changed.scene.integrator_parameters;
+    assert_identical(dynamics->lambda, 0.7);
+    assert_identical(half.lambda, 0.5);
     // The problem is as it was.
     assert_identical(mixture.problem.scene.temperature, 1);
     assert_identical(mixture.soft[1].a, 30);
     assert_ptr_equal(mixture.problem.scene.potential, &mixture.tables[UNKNOWN_POTENTIAL]);
     for (int kind = 0; kind < UNKNOWNS; kind++) {
-        mf_table_clear(&own[kind]);
         mf_table_clear(&wanted[kind]);
     }
+    mf_numbers_own_clear(&own);
     finish(&mixture);
 }
 
@@ -101,15 +107,16 @@ static void test_numbers_apply_leaves_laws_alone_that_no_number_belongs_to(void 
     (void)state;
     struct mixture mixture;
     struct inverse_problem changed = {0};
-    struct table own[UNKNOWNS] = {{0}};
+    struct numbers_own own = {0};
     begin(&mixture);
     mixture.problem.number[0] = mixture.problem.number[2];
     mixture.problem.numbers = 1;
-    assert_ok(mf_numbers_apply(&mixture.problem, &(double){1.25}, &changed, own));
+    assert_ok(mf_numbers_apply(&mixture.problem, &(double){1.25}, &changed, &own));
     assert_identical(changed.scene.temperature, 1.25);
     assert_ptr_equal(changed.scene.potential, &mixture.tables[UNKNOWN_POTENTIAL]);
     assert_ptr_equal(changed.scene.omega, &mixture.tables[UNKNOWN_OMEGA]);
-    assert_null(own[UNKNOWN_POTENTIAL].coefficient);
+    assert_null(own.table[UNKNOWN_POTENTIAL].coefficient);
+    mf_numbers_own_clear(&own);
     finish(&mixture);
 }
 
@@ -163,7 +170,7 @@ static void test_numbers_stand_behind_the_curves_and_change_none(void **state) {
     struct table wanted[UNKNOWNS] = {{0}};
     make_tables(&mixture, 20, 3, wanted);
     assert_same_table(laws.table[UNKNOWN_POTENTIAL], &wanted[UNKNOWN_POTENTIAL]);
-    assert_ptr_equal(laws.table[UNKNOWN_OMEGA], &laws.own[UNKNOWN_OMEGA]);
+    assert_ptr_equal(laws.table[UNKNOWN_OMEGA], &laws.own.table[UNKNOWN_OMEGA]);
     mf_unknowns_laws_clear(&laws);
     for (int kind = 0; kind < UNKNOWNS; kind++)
         mf_table_clear(&wanted[kind]);

@@ -204,7 +204,7 @@ static void test_parametrisation_laws_are_those_of_the_scene_when_they_are_known
     both.problem.scene.potential = &known;
     assert_ok(mf_parametrisation_laws(&both.parametrisation, both.variables, &laws));
     assert_ptr_equal(laws.table[UNKNOWN_POTENTIAL], &known);
-    assert_ptr_equal(laws.table[UNKNOWN_OMEGA], &laws.own[UNKNOWN_OMEGA]);
+    assert_ptr_equal(laws.table[UNKNOWN_OMEGA], &laws.own.table[UNKNOWN_OMEGA]);
     mf_table_evaluate(laws.table[UNKNOWN_OMEGA], 0.75, &value, NULL, NULL);
     assert_close(value, 1.5, 0.02);
     mf_unknowns_laws_clear(&laws);
