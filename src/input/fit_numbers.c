@@ -168,6 +168,9 @@ static void check_range(struct json_object *object, const struct field *field,
     if (number->minimum >= number->maximum)
         mf_json_fault(object, "maximum", "%g is not above the minimum %g", number->maximum,
                       number->minimum);
+    else if (!isfinite(number->maximum - number->minimum))
+        mf_json_fault(object, "maximum", "%g is too far from the minimum %g", number->maximum,
+                      number->minimum);
     else if (number->start < number->minimum || number->start > number->maximum)
         mf_json_fault(object, "start", "%g is not between the minimum %g and the maximum %g",
                       number->start, number->minimum, number->maximum);
@@ -175,8 +178,8 @@ static void check_range(struct json_object *object, const struct field *field,
 
 static void read_one(struct json_object *numbers, const struct entry *entry,
                      struct inverse_number *number) {
+    const size_t faults = mf_json_fault_count(numbers->document);
     struct json_object object = mf_json_child(numbers, entry->path, false);
-    const size_t faults = mf_json_fault_count(object.document);
     mf_json_fields(&object, mf_numbers_fields, number);
     mf_json_finish(&object);
     snprintf(number->name, sizeof number->name, "%s", entry->path);
@@ -184,7 +187,7 @@ static void read_one(struct json_object *numbers, const struct entry *entry,
     number->place = entry->place;
     number->part = entry->part;
     number->offset = entry->offset;
-    if (mf_json_fault_count(object.document) > faults)
+    if (mf_json_fault_count(numbers->document) > faults)
         return;
     check_range(&object, entry->field, number);
     if (isnan(number->start))

@@ -67,7 +67,7 @@ static const struct fault faults[] = {
           "is called \"coefficients\" now"),
     FAULT("an unknown of 0.1", OMEGA, OMEGA ", \"weight\": {}", "unknowns.weight",
           "is called \"omega\" now"),
-    FAULT("no unknown", OMEGA, "", "unknowns", "needs \"potential\", \"omega\" or both"),
+    FAULT("no unknown", OMEGA, "", "unknowns", "needs \"potential\", \"omega\" or \"numbers\""),
     FAULT("another unknown", OMEGA, OMEGA ", \"mass\": {}", "unknowns.mass", "unknown key"),
     FAULT("a potential that is known and unknown", OMEGA, OMEGA ", \"potential\": {}",
           "scene.conservative", "unknown key"),

@@ -211,6 +211,28 @@ static void test_explain_tells_of_numbers(void **state) {
     assert_contains(result.out, "beginning with 5.");
 }
 
+/// A law of one pair type of a mixture, and a number of the integrator.
+static void test_explain_tells_of_numbers_of_a_pair_type_and_of_the_integrator(void **state) {
+    write_target(*state);
+    write_fit(*state, (const char *const[]){
+                          SIGMA,
+                          "\"conservative.A-B.a\": {\"minimum\": 1, \"maximum\": 80}, "
+                          "\"dynamics.lambda\": {\"minimum\": 0.1, \"maximum\": 0.4}",
+                          "\"count\": 192", "\"types\": {\"A\": 92, \"B\": 100}",
+                          "{\"law\": \"soft-repulsion\", \"a\": 25}",
+                          "{\"A-A\": {\"law\": \"soft-repulsion\", \"a\": 25}, \"B-A\": {\"law\": "
+                          "\"soft-repulsion\", \"a\": 30}, \"B-B\": {\"law\": \"none\"}},\n"
+                          "\"dynamics\": {\"integrator\": \"dpd-verlet\"}",
+                          NULL});
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "conservative.A-B.a is to be found from 1 to 80");
+    assert_contains(result.out, "beginning with 30.");
+    // The scene's is out of the range: the middle.
+    assert_contains(result.out,
+                    "dynamics.lambda is to be found from 0.1 to 0.4, beginning with 0.25.");
+}
+
 static void test_fit_refuses_numbers_that_cannot_be_found(void **state) {
 #define RANGE "\": {\"minimum\": 1, \"maximum\": 2}"
     static const struct {
@@ -237,6 +259,10 @@ static void test_fit_refuses_numbers_that_cannot_be_found(void **state) {
          "\"maximum\": 8, \"strat\": 2",
          {"sigma.strat: unknown key", "\"start\""}},
         {SIGMA, "", {"unknowns.numbers: names none"}},
+        {SIGMA, "\"dissipative.sigma\": 3", {"dissipative.sigma: expected an object"}},
+        {SIGMA,
+         "\"conservative.a\": {\"minimum\": -1e308, \"maximum\": 1e308}",
+         {"conservative.a.maximum: 1e+308 is too far from the minimum"}},
         {GAUSS_NEWTON, "\"name\": \"imc\"", {"method.name: \"imc\" does not find numbers"}},
         {"\"numbers\": {" SIGMA,
          "\"omega\": {}, \"numbers\": {" SIGMA,
@@ -282,6 +308,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_fit_says_that_a_number_is_at_its_bound),
         TEST_WITHOUT_FIGURES(test_fit_of_numbers_gives_the_same_bits_from_used_and_in_pieces),
         TEST_WITHOUT_FIGURES(test_explain_tells_of_numbers),
+        TEST_WITHOUT_FIGURES(test_explain_tells_of_numbers_of_a_pair_type_and_of_the_integrator),
         TEST_WITHOUT_FIGURES(test_fit_refuses_numbers_that_cannot_be_found),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
