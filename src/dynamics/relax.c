@@ -5,12 +5,19 @@
 
 enum { MOST_STEPS = 500 };
 
-/// Forces that change a velocity by so many thermal ones in a time step are an overlap; liquids of
-/// any potential here stay below 3.
+/// So many times the thermal force are an overlap; liquids of any potential here stay below 3.
 static const double overlap = 10;
 
 /// Largest shift in the first step, in mean spacings; it goes down to 0 over all steps.
 static const double first_shift = 0.05;
+
+/// The force that changes a velocity by a thermal one in a time step, or that moves a particle
+/// without velocities by a free step.
+static double thermal_force(const struct simulation_setup *setup) {
+    return simulation_is_overdamped(setup)
+               ? 2 * setup->temperature / setup->integrator->free_step(setup)
+               : sqrt(setup->temperature) / setup->time_step;
+}
 
 static void shift(struct particles *particles, double enough, double cap) {
     const int dimensions = particles->box.dimensions;
@@ -26,7 +33,7 @@ static void shift(struct particles *particles, double enough, double cap) {
 
 enum status mf_relax_overlaps(struct simulation *simulation) {
     struct particles *particles = &simulation->particles;
-    const double enough = sqrt(simulation->setup.temperature) / simulation->setup.time_step;
+    const double enough = thermal_force(&simulation->setup);
     const double spacing = pow(mf_particles_density(particles), -1.0 / particles->box.dimensions);
     TRY(mf_simulation_compute_potential(simulation));
     if (!(mf_particles_largest_force(particles) > overlap * enough))

@@ -264,6 +264,15 @@ static enum status check_interactions(const struct fit_file *fit, const char *fi
                           file, fit->method->name);
 }
 
+/// Without velocities there is no VACF to be measured.
+static enum status check_velocities(const struct fit_file *fit, const char *file) {
+    const struct simulation_setup *setup = &fit->scene.setup;
+    if (!simulation_is_overdamped(setup) || !fit->files.given[TARGET_VACF])
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT, "%s: target.vacf: \"%s\" has no velocities", file,
+                          setup->integrator->name);
+}
+
 static enum status check_steps(const struct fit_file *fit, const char *file) {
     enum status status = mf_target_files_check_steps(&fit->files, fit->scene.setup.time_step);
     if (status != STATUS_OK)
@@ -314,6 +323,7 @@ enum status mf_fit_file_check(const struct fit_file *fit, const char *file) {
         return mf_status_fail(STATUS_BAD_INPUT, "%s: target: nothing is to be fitted", file);
     TRY(check_bins(fit, file));
     TRY(check_interactions(fit, file));
+    TRY(check_velocities(fit, file));
     TRY(check_steps(fit, file));
     TRY(check_windows(fit, file));
     if (fit->scene.setup.placement.kind == PLACEMENT_FILE)

@@ -105,6 +105,22 @@ static void test_inversion_is_refused_when_the_scene_has_interactions(void **sta
     assert_contains(result.err, "run.json: scene.interactions: \"imc\" samples pairs alone");
 }
 
+static void test_vacf_is_refused_when_there_are_no_velocities(void **state) {
+    static struct run_program_result result;
+    static const char vacf[] = "0 1 0.1\n0.1 0.8 0.1\n0.2 0.5 0.1\n0.3 0.3 0.1\n0.4 0.2 0.1\n";
+    temporary_folder_write(*state, "target.tsv", small_inputs_target, strlen(small_inputs_target));
+    temporary_folder_write(*state, "vacf.tsv", vacf, strlen(vacf));
+    static const char run[] =
+        "{\"target\": {\"rdf\": {\"file\": \"target.tsv\"}, \"vacf\": {\"file\": \"vacf.tsv\"}},\n"
+        "\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, \"time_step\": 0.02,\n"
+        "\"dynamics\": {\"integrator\": \"brownian\"}},\n"
+        "\"method\": {\"name\": \"genetic\", \"samples\": 100}}\n";
+    temporary_folder_write(*state, "run.json", run, strlen(run));
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "refused");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "run.json: target.vacf: \"brownian\" has no velocities");
+}
+
 /// The target is no drop's: what counts is that candidates are simulated in the trap, not refused
 /// as collapsed, with dynamics whose temperature is told by their positions.
 static void test_candidates_are_simulated_with_interactions_and_without_velocities(void **state) {
@@ -139,6 +155,7 @@ int main(void) {
         TEST(test_explain_and_describe_tell_of_interactions),
         TEST(test_scenes_are_refused_when_interactions_do_not_suit),
         TEST(test_inversion_is_refused_when_the_scene_has_interactions),
+        TEST(test_vacf_is_refused_when_there_are_no_velocities),
         TEST(test_candidates_are_simulated_with_interactions_and_without_velocities),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

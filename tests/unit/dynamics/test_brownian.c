@@ -83,6 +83,24 @@ static void test_brownian_is_unstable_when_a_step_is_far_too_long(void **state) 
     fluid_clear(&fluid);
 }
 
+/// Lennard-Jones at random: the forces of overlaps would fling beads far in their first step.
+static void test_brownian_begins_well_when_particles_overlap_at_random(void **state) {
+    (void)state;
+    struct fluid fluid;
+    fluid_lennard_jones(&fluid, 500, 2e-4);
+    fluid.setup.omega = NULL;
+    fluid.setup.integrator = &mf_brownian;
+    fluid.setup.placement.kind = PLACEMENT_RANDOM;
+    for (uint64_t seed = 1; seed <= 5; seed++) {
+        struct simulation simulation;
+        fluid.setup.seed = seed;
+        assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
+        assert_ok(mf_simulation_run(&simulation, 200));
+        mf_simulation_clear(&simulation);
+    }
+    fluid_clear(&fluid);
+}
+
 /// Without a kinetic temperature the positions are judged, and a step that heats them is told.
 static void test_brownian_is_judged_by_the_configurational_temperature(void **state) {
     (void)state;
@@ -123,6 +141,7 @@ int main(void) {
         cmocka_unit_test(test_brownian_has_the_same_bits_for_any_number_of_threads),
         cmocka_unit_test(test_brownian_takes_the_set_temperature_for_the_pressure),
         cmocka_unit_test(test_brownian_is_unstable_when_a_step_is_far_too_long),
+        cmocka_unit_test(test_brownian_begins_well_when_particles_overlap_at_random),
         cmocka_unit_test(test_brownian_is_judged_by_the_configurational_temperature),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
