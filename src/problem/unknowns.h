@@ -4,7 +4,7 @@
 /// All methods need these; those that move variables make the curves by problem/parametrisation.h.
 #pragma once
 
-#include "problem/inverse.h"
+#include "problem/numbers.h"
 #include "problem/omega_grid.h"
 #include "problem/potential_grid.h"
 
