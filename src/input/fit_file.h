@@ -45,10 +45,6 @@ struct fit_file {
 enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
                               const struct run_options *options) MUST_USE;
 
-/// Check how the parts of what was read fit together, by beginning a simulation; `file` is named in
-/// messages. Fails: BAD_INPUT; NO_MEMORY.
-enum status mf_fit_file_check(const struct fit_file *fit, const char *file) MUST_USE;
-
 /// Read a run file and check it. Fails: BAD_INPUT with all faults; IO; NO_MEMORY.
 enum status mf_fit_file_read(struct fit_file *fit, const char *file,
                              const struct run_options *options) MUST_USE;

@@ -2,7 +2,7 @@
 #include "mesofit/fit.h"
 
 #include "base/memory.h"
-#include "input/fit_file.h"
+#include "input/fit_check.h"
 #include "library/fit.h"
 #include "library/fit_text.h"
 #include "library/guard.h"
@@ -55,7 +55,7 @@ static enum status open_run(struct mesofit_fit **made, const char *file,
     CHECK(mf_fit_file_parse(&fit->file, file, &options));
     if (own)
         CHECK(add_own_laws(fit, own));
-    CHECK(mf_fit_file_check(&fit->file, file));
+    CHECK(mf_fit_check(&fit->file, file));
     CHECK(begin(fit));
 done:
     if (status != STATUS_OK) {

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "input/fit_check.h"
+
+#include "input/target_sanity.h"
+#include "inversion/inversion.h"
+#include "problem/unknowns.h"
+
+/// Begin one simulation, so that a box too small for the forces or particles without room are found
+/// now and not by the verification after the fit.
+static enum status begin_one(const struct inverse_problem *problem) {
+    enum status status = STATUS_OK;
+    struct unknowns unknowns = {0};
+    struct unknowns_laws laws = {0};
+    struct simulation simulation = {0};
+    CHECK(mf_unknowns_init(&unknowns, problem));
+    CHECK(mf_unknowns_laws_start(&unknowns, &laws));
+    struct simulation_setup setup = laws.problem.scene;
+    setup.omega = laws.table[UNKNOWN_OMEGA];
+    CHECK(mf_simulation_init(&simulation, &setup, NULL));
+done:
+    mf_simulation_clear(&simulation);
+    mf_unknowns_laws_clear(&laws);
+    mf_unknowns_clear(&unknowns);
+    return status;
+}
+
+/// The same with each number at the ends of its range.
+static enum status try_scene(const struct inverse_problem *problem) {
+    TRY(begin_one(problem));
+    for (size_t n = 0; n < problem->numbers; n++)
+        for (int end = 0; end < 2; end++) {
+            struct inverse_problem other = *problem;
+            struct inverse_number *number = &other.number[n];
+            number->start = end ? number->maximum : number->minimum;
+            const enum status status = begin_one(&other);
+            if (status != STATUS_OK)
+                return mf_status_prefix(status, "with %s = %g", number->name, number->start);
+        }
+    return STATUS_OK;
+}
+
+static enum status check_range(const struct fit_file *fit, const char *file, const char *target,
+                               double range) {
+    const struct box *box = &fit->scene.setup.box;
+    if (mf_box_shortest(box) >= 2 * range)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: scene.box: the shortest edge %g is below twice the range of the "
+                          "target \"%s\", %g",
+                          file, mf_box_shortest(box), target, range);
+}
+
+static enum status check_unknowns(const struct fit_file *fit, const char *file) {
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        if (fit->unknown[kind].wanted && !fit->method->fits[kind])
+            return mf_status_fail(STATUS_BAD_INPUT, "%s: method.name: \"%s\" does not find %s",
+                                  file, fit->method->name, mf_inverse_unknown_names[kind]);
+    if (fit->numbers > 0 && fit->method->kind == INVERSE_INVERSION)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: method.name: \"%s\" does not find numbers",
+                              file, fit->method->name);
+    for (int kind = 0; kind < TARGETS && fit->method->kind == INVERSE_INVERSION; kind++)
+        if (kind != TARGET_RDF && kind != TARGET_PRESSURE &&
+            targets_ask(&fit->problem.targets, kind))
+            return mf_status_fail(
+                STATUS_BAD_INPUT,
+                "%s: target.%s.fitted: \"%s\" fits g(r) and pressure; \"no\" compares it "
+                "with the result",
+                file, mf_targets_name(kind), fit->method->name);
+    if (fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->files.given[TARGET_RDF])
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: target.rdf is required to find a potential",
+                              file);
+    if (fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->files.use[TARGET_RDF].fitted)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: target.rdf.fitted: a potential is found from its g(r)", file);
+    return STATUS_OK;
+}
+
+static enum status check_bins(const struct fit_file *fit, const char *file) {
+    const size_t bins = fit->problem.targets.target[TARGET_RDF].count;
+    if (fit->method->kind != INVERSE_INVERSION || bins <= INVERSION_MOST_BINS)
+        return STATUS_OK;
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "%s: target.rdf: an inversion takes %d bins at most, of all pairs, and there "
+        "are %zu: join bins, or end the target by \"cutoff\"",
+        file, INVERSION_MOST_BINS, bins);
+}
+
+/// An inversion samples the pair potential alone.
+static enum status check_interactions(const struct fit_file *fit, const char *file) {
+    if (fit->method->kind != INVERSE_INVERSION || fit->scene.setup.interactions == 0)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: scene.interactions: \"%s\" samples pairs alone; the methods that "
+                          "simulate candidates, as \"gauss-newton\", carry them",
+                          file, fit->method->name);
+}
+
+/// Without velocities there is no VACF to be measured.
+static enum status check_velocities(const struct fit_file *fit, const char *file) {
+    const struct simulation_setup *setup = &fit->scene.setup;
+    if (!simulation_is_overdamped(setup) || !fit->files.given[TARGET_VACF])
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT, "%s: target.vacf: \"%s\" has no velocities", file,
+                          setup->integrator->name);
+}
+
+static enum status check_steps(const struct fit_file *fit, const char *file) {
+    enum status status = mf_target_files_check_steps(&fit->files, fit->scene.setup.time_step);
+    if (status != STATUS_OK)
+        return mf_status_prefix(status, "%s: scene.time_step", file);
+    if (fit->verification.time_step > 0)
+        status = mf_target_files_check_steps(&fit->files, fit->verification.time_step);
+    return status == STATUS_OK ? STATUS_OK
+                               : mf_status_prefix(status, "%s: verification.time_step", file);
+}
+
+/// A simulation must be as long as the longest window of what is measured in it.
+static enum status check_window(const char *file, const char *key, const struct targets *targets,
+                                double time_step, int64_t samples, int64_t every) {
+    enum target_kind longest;
+    const int64_t window = mf_measurement_window(targets, time_step, &longest);
+    if (samples * every >= window)
+        return STATUS_OK;
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "%s: %s.samples: %lld, one \"every\" %lld steps, are %lld steps, but \"%s\" "
+        "looks at %lld; %lld would do",
+        file, key, (long long)samples, (long long)every, (long long)(samples * every),
+        mf_targets_name(longest), (long long)window, (long long)((window + every - 1) / every));
+}
+
+static enum status check_windows(const struct fit_file *fit, const char *file) {
+    const struct verify_parameters *verification = &fit->verification;
+    const double time_step = fit->scene.setup.time_step;
+    if (fit->method->kind == INVERSE_MATCHING) {
+        const struct inverse_sampling sampling = fit->method->sampling(fit->method_parameters);
+        TRY(check_window(file, "method", &fit->problem.targets, time_step, sampling.samples,
+                         sampling.every));
+    }
+    return check_window(file, "verification", &fit->problem.compared,
+                        verification->time_step > 0 ? verification->time_step : time_step,
+                        verification->plan.samples, verification->plan.every);
+}
+
+enum status mf_fit_check(const struct fit_file *fit, const char *file) {
+    const struct target_files *files = &fit->files;
+    TRY(check_unknowns(fit, file));
+    if (files->given[TARGET_RDF])
+        TRY(check_range(fit, file, "rdf", mf_rdf_bins_range(&files->rdf[0].bins)));
+    if (files->given[TARGET_ETD])
+        TRY(check_range(fit, file, "etd", files->etd.grid.r_maximum));
+    if (mf_targets_count(&fit->problem.targets) == 0)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: target: nothing is to be fitted", file);
+    TRY(check_bins(fit, file));
+    TRY(check_interactions(fit, file));
+    TRY(check_velocities(fit, file));
+    TRY(check_steps(fit, file));
+    TRY(check_windows(fit, file));
+    if (fit->scene.setup.placement.kind == PLACEMENT_FILE)
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "%s: scene.particles.placement: a fit places its particles on a lattice "
+            "or at random",
+            file);
+    const enum status status = try_scene(&fit->problem);
+    if (status != STATUS_OK)
+        return mf_status_prefix(status, "%s: scene", file);
+    return mf_target_sanity_check(files, &fit->scene, file);
+}
