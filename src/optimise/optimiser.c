@@ -3,8 +3,8 @@
 
 #include "base/names.h"
 
-const struct optimiser *const mf_optimisers[] = {&mf_genetic_optimiser, &mf_cmaes_optimiser,
-                                                 &mf_nlopt_optimiser, NULL};
+#define OPTIMISER_LIST(name) &mf_##name##_optimiser,
+const struct optimiser *const mf_optimisers[] = {OPTIMISERS(OPTIMISER_LIST) NULL};
 
 NAMED_RECORD(struct optimiser);
 

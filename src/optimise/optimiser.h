@@ -72,15 +72,23 @@ struct optimiser {
     size_t (*spans)(void *state, struct memory_span *spans);
 };
 
-/// All optimisers, NULL-terminated.
+/// The optimisers: mf_genetic_optimiser and so on, each driven by a method of matching.
+#define OPTIMISERS(EACH)                                                                           \
+    EACH(genetic)                                                                                  \
+    EACH(cmaes)                                                                                    \
+    EACH(nlopt)
+
+#define OPTIMISER_DECLARE(name) extern const struct optimiser mf_##name##_optimiser;
+OPTIMISERS(OPTIMISER_DECLARE)
+#undef OPTIMISER_DECLARE
+
+/// All of them, NULL-terminated.
 extern const struct optimiser *const mf_optimisers[];
 
 /// The one of that name, or NULL.
 const struct optimiser *mf_optimiser_find(const char *name);
 
 /// @name For those who write one
-
-extern const struct optimiser mf_genetic_optimiser, mf_cmaes_optimiser, mf_nlopt_optimiser;
 
 /// Fails with BAD_INPUT unless there are variables and a box of finite, positive size, and the
 /// start, if there is one, is finite.

@@ -71,16 +71,9 @@ int mf_inverse_free_parameters(const double fixed[INVERSE_PARAMETERS]) {
     return count;
 }
 
-const struct inverse_method *const mf_inverse_methods[] = {&mf_automatic,
-                                                           &mf_imc,
-                                                           &mf_ibi,
-                                                           &mf_hnc,
-                                                           &mf_matching_genetic,
-                                                           &mf_matching_cmaes,
-                                                           &mf_matching_nlopt,
-                                                           &mf_gauss_newton,
-                                                           &mf_pareto,
-                                                           NULL};
+#define INVERSE_LIST(name) &mf_##name,
+#define INVERSE_LIST_MATCHING(name) &mf_matching_##name,
+const struct inverse_method *const mf_inverse_methods[] = {INVERSE_METHODS(INVERSE_LIST) NULL};
 
 /// An error that has fallen in this last part of the iterations still falls.
 static const double recent = 0.25;

@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "curves/curve.h"
 #include "dynamics/simulation.h"
+#include "optimise/optimiser.h"
 #include "problem/targets.h"
 
 enum unknown_kind { UNKNOWN_POTENTIAL, UNKNOWN_OMEGA, UNKNOWNS };
@@ -224,10 +225,21 @@ struct inverse_method {
     enum status (*write)(const void *state, const struct inverse_folder *folder);
 };
 
-/// All methods, NULL-terminated.
-extern const struct inverse_method *const mf_inverse_methods[];
+/// All methods: inversions, those that drive an optimiser, and those that take steps of their own.
+#define INVERSE_METHODS(EACH)                                                                      \
+    EACH(automatic)                                                                                \
+    EACH(imc)                                                                                      \
+    EACH(ibi)                                                                                      \
+    EACH(hnc)                                                                                      \
+    OPTIMISERS(EACH##_MATCHING)                                                                    \
+    EACH(gauss_newton)                                                                             \
+    EACH(pareto)
 
-extern const struct inverse_method mf_imc, mf_ibi, mf_hnc, mf_automatic;
-extern const struct inverse_method mf_gauss_newton;
-extern const struct inverse_method mf_pareto;
-extern const struct inverse_method mf_matching_genetic, mf_matching_cmaes, mf_matching_nlopt;
+#define INVERSE_DECLARE(name) extern const struct inverse_method mf_##name;
+#define INVERSE_DECLARE_MATCHING(name) extern const struct inverse_method mf_matching_##name;
+INVERSE_METHODS(INVERSE_DECLARE)
+#undef INVERSE_DECLARE
+#undef INVERSE_DECLARE_MATCHING
+
+/// The same, NULL-terminated.
+extern const struct inverse_method *const mf_inverse_methods[];

@@ -25,10 +25,7 @@ static char *shell(const char *command) {
 static void test_reference_page_is_what_the_program_prints(void **state) {
     (void)state;
     char path[1024];
-    const char *program = getenv("MESOFIT");
-    assert_non_null(program);
-    snprintf(path, sizeof path, "%.*s/../docs/reference.md", (int)(strrchr(program, '/') - program),
-             program);
+    snprintf(path, sizeof path, "%s/docs/reference.md", run_program_sources());
     char *page = temporary_folder_read(path);
     char *printed = shell("\"$MESOFIT\" describe --format markdown");
     if (strcmp(page, printed) != 0)

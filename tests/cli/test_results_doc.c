@@ -111,10 +111,7 @@ static void check_folder(const char *folder) {
 static void test_doc_tells_of_all_that_runs_leave(void **state) {
     static struct run_program_result result;
     char path[1024];
-    const char *program = getenv("MESOFIT");
-    assert_non_null(program);
-    snprintf(path, sizeof path, "%.*s/../docs/results-of-a-fit.md",
-             (int)(strrchr(program, '/') - program), program);
+    snprintf(path, sizeof path, "%s/docs/results-of-a-fit.md", run_program_sources());
     doc = temporary_folder_read(path);
     small_inputs_write(*state, "scene.json", scene, NULL, NULL);
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "scene", "--quiet");

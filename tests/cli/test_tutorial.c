@@ -6,35 +6,16 @@
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
 
-#include <libgen.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
 
-/// The folder of the sources, which has the program in build.
-static const char *find_sources(void) {
-    static char path[1024];
-    const char *program = getenv("MESOFIT");
-    assert_non_null(program);
-    snprintf(path, sizeof path, "%s", program);
-    char *folder = dirname(path);
-    while (strlen(folder) > 1) {
-        char page[1100];
-        snprintf(page, sizeof page, "%s/docs/tutorial.md", folder);
-        if (access(page, R_OK) == 0)
-            return folder;
-        folder = dirname(folder);
-    }
-    fail_msg("no docs/tutorial.md above %s", program);
-    return NULL;
-}
-
 /// Every command succeeds, the potential has converged and its table is one of LAMMPS's; σ is found
 /// again within three of its errors (false alarms: 0.3 %, but the seed is fixed).
 static void test_tutorial_does_what_it_says(void **state) {
     char command[4096];
-    const char *sources = find_sources();
+    const char *sources = run_program_sources();
     (void)state;
     assert_int_equal(symlink(getenv("MESOFIT"), "mesofit"), 0);
     snprintf(command, sizeof command, "%s/targets", sources);

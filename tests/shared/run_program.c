@@ -5,6 +5,7 @@
 #include "shared/testing.h"
 
 #include <ftw.h>
+#include <libgen.h>
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
@@ -32,6 +33,21 @@ static const char *program_path(void) {
     if (path == NULL)
         fail_msg("the environment variable MESOFIT does not say where the program is");
     return path;
+}
+
+const char *run_program_sources(void) {
+    static char path[1024];
+    snprintf(path, sizeof path, "%s", program_path());
+    char *folder = dirname(path);
+    while (strlen(folder) > 1) {
+        char page[1100];
+        snprintf(page, sizeof page, "%s/ARCHITECTURE.md", folder);
+        if (access(page, R_OK) == 0)
+            return folder;
+        folder = dirname(folder);
+    }
+    fail_msg("no sources above %s", program_path());
+    return NULL;
 }
 
 /// posix_spawn knows no limits: the child inherits ours, which nothing here can run into.

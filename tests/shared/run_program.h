@@ -32,6 +32,9 @@ void run_program(struct run_program_result *result, const struct run_program_how
 #define RUN_PROGRAM(result, ...)                                                                   \
     run_program((result), &(struct run_program_how){0}, (const char *const[]){__VA_ARGS__, NULL})
 
+/// The folder of the sources, above that of the program, however deep in it the build is.
+const char *run_program_sources(void);
+
 /// The program ended with `expected`; its words are shown if not.
 void run_program_assert_code(const struct run_program_result *result, int expected);
 
