@@ -289,7 +289,7 @@ static void settle(const struct state *state, struct inverse_step *step) {
         snprintf(why, sizeof why, "its error has not fallen in %u iterations", progress->idle);
     snprintf(
         step->reason, sizeof step->reason,
-        "%s, but %s %.2g, %.2g by statistics: more \"variables\", a wider range of the curve or "
+        "%s, but %s %.2g, %.2g by statistics: more \"coefficients\", a wider range of the curve or "
         "another start may lead on%s",
         why, what, progress->error, progress->noise,
         step->used_up ? ", if the target can be met at all" : "");

@@ -90,6 +90,9 @@ static void check_file_limit(const char *verb, const char *input, long limit) {
     static struct run_program_result result;
     const struct run_program_how how = {.largest_file = limit};
     run_program(&result, &how, (const char *const[]){verb, input, "--quiet", NULL});
+    // LLVM's OpenMP wants 1024 bytes of its own, before anything else.
+    if (limit < 1024 && strstr(result.err, "OMP: Error"))
+        return;
     run_program_assert_refused(&result, ".", verb, 1,
                                (const char *[]){"cannot write out/", "File too large", NULL});
 }
