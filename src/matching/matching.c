@@ -22,19 +22,13 @@ struct parameters {
     int surrogate;
 };
 
-/// The same with the parameters of each optimiser behind it.
-struct genetic_settings {
-    struct parameters common;
-    struct genetic_parameters optimiser;
-};
-struct cmaes_settings {
-    struct parameters common;
-    struct cmaes_parameters optimiser;
-};
-struct nlopt_settings {
-    struct parameters common;
-    struct nlopt_parameters optimiser;
-};
+/// The same with the parameters of each optimiser behind it: struct genetic_settings and so on.
+#define SETTINGS(record, name, summary)                                                            \
+    struct record##_settings {                                                                     \
+        struct parameters common;                                                                  \
+        struct record##_parameters optimiser;                                                      \
+    };
+OPTIMISERS(SETTINGS)
 
 /// What a method has of its own: what it drives, and where the parameters of that are.
 struct driven {
@@ -252,13 +246,13 @@ static void describe(struct state *state, struct inverse_step *step, bool finish
 /// Measure what the optimiser, and then the linear model, thinks best. Each stage is done once,
 /// also if an interruption comes between them.
 static enum status check(struct state *state, bool last) {
-    enum { NOTHING, FAVOURITE, SURROGATE };
+    enum { NOTHING, INCUMBENT, SURROGATE };
     struct progress *progress = &state->progress;
     if (!state->optimiser->incumbent(state->optimiser_state, state->incumbent))
         return STATUS_OK;
     if (progress->stage == NOTHING && wants_check(state, last))
-        progress->stage = FAVOURITE;
-    if (progress->stage == FAVOURITE) {
+        progress->stage = INCUMBENT;
+    if (progress->stage == INCUMBENT) {
         TRY(check_incumbent(state, 0));
         progress->stage = SURROGATE;
     }
@@ -301,27 +295,27 @@ static size_t spans(void *memory, struct memory_span *span) {
     return n;
 }
 
-#define MATCHING(its_name, its_optimiser, its_settings, its_fields, its_summary)                   \
-    {                                                                                              \
-        .name = its_name, .summary = its_summary, .kind = INVERSE_MATCHING,                        \
-        .own = &(const struct driven){&(its_optimiser), offsetof(struct its_settings, optimiser)}, \
-        .tables =                                                                                  \
-            (const struct inverse_table[]){{its_fields, offsetof(struct its_settings, optimiser)}, \
-                                           {mf_population_fields, 0},                              \
-                                           {own_fields, 0},                                        \
-                                           {NULL, 0}},                                             \
-        .parameters_size = sizeof(struct its_settings), .state_size = sizeof(struct state),        \
-        .fits = {true, true}, .most_iterations = most_iterations,                                  \
-        .sampling = mf_population_sampling, .keeps_parts = true, .columns = columns,               \
-        .create = create, .destroy = destroy, .iterate = iterate, .spans = spans,                  \
-    }
-
-const struct inverse_method mf_matching_genetic =
-    MATCHING("genetic", mf_genetic_optimiser, genetic_settings, mf_genetic_fields,
-             "genetic algorithm over smooth curves; A. G. Baydin (2008)");
-const struct inverse_method mf_matching_cmaes =
-    MATCHING("cma-es", mf_cmaes_optimiser, cmaes_settings, mf_cmaes_fields,
-             "evolution strategy with covariance matrix adaptation; N. Hansen, arXiv:1604.00772");
-const struct inverse_method mf_matching_nlopt =
-    MATCHING("nlopt", mf_nlopt_optimiser, nlopt_settings, mf_nlopt_fields,
-             "algorithms of NLopt by name; S. G. Johnson, github.com/stevengj/nlopt");
+#define MATCHING(record, its_name, its_summary)                                                    \
+    const struct inverse_method mf_matching_##record = {                                           \
+        .name = its_name,                                                                          \
+        .summary = its_summary,                                                                    \
+        .kind = INVERSE_MATCHING,                                                                  \
+        .own = &(const struct driven){&mf_##record##_optimiser,                                    \
+                                      offsetof(struct record##_settings, optimiser)},              \
+        .tables = (const struct inverse_table[]){{mf_##record##_fields,                            \
+                                                  offsetof(struct record##_settings, optimiser)},  \
+                                                 {mf_population_fields, 0},                        \
+                                                 {own_fields, 0},                                  \
+                                                 {NULL, 0}},                                       \
+        .parameters_size = sizeof(struct record##_settings),                                       \
+        .state_size = sizeof(struct state),                                                        \
+        .fits = {true, true},                                                                      \
+        .most_iterations = most_iterations,                                                        \
+        .sampling = mf_population_sampling,                                                        \
+        .keeps_parts = true,                                                                       \
+        .columns = columns,                                                                        \
+        .create = create,                                                                          \
+        .destroy = destroy,                                                                        \
+        .iterate = iterate,                                                                        \
+        .spans = spans};
+OPTIMISERS(MATCHING)

@@ -392,8 +392,6 @@ static size_t spans(void *memory, struct memory_span *span) {
 
 const struct optimiser mf_cmaes_optimiser = {
     .name = "cma-es",
-    .summary = "evolution strategy with covariance matrix adaptation; N. Hansen, "
-               "arXiv:1604.00772 (2016)",
     .tables = (const struct field *const[]){mf_cmaes_fields, NULL},
     .parameters_size = sizeof(struct cmaes_parameters),
     .state_size = sizeof(struct state),

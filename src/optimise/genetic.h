@@ -38,9 +38,6 @@ struct genetic_parameters {
     int64_t generations;
 };
 
-/// All but genes and their range, which belong to the problem.
-extern const struct field mf_genetic_fields[];
-
 struct genetic {
     struct genetic_parameters parameters;
     uint64_t seed;

@@ -198,7 +198,6 @@ static size_t spans(void *memory, struct memory_span *span) {
 
 const struct optimiser mf_genetic_optimiser = {
     .name = "genetic",
-    .summary = "genetic algorithm, its elite measured again and again; A. G. Baydin (2008)",
     .tables = (const struct field *const[]){mf_genetic_fields, NULL},
     .parameters_size = sizeof(struct genetic_parameters),
     .state_size = sizeof(struct state),

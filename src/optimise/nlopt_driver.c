@@ -286,7 +286,6 @@ static size_t spans(void *memory, struct memory_span *span) {
 
 const struct optimiser mf_nlopt_optimiser = {
     .name = "nlopt",
-    .summary = "an algorithm of NLopt; S. G. Johnson, github.com/stevengj/nlopt",
     .tables = (const struct field *const[]){mf_nlopt_fields, NULL},
     .parameters_size = sizeof(struct nlopt_parameters),
     .state_size = sizeof(struct state),

@@ -3,7 +3,7 @@
 
 #include "base/names.h"
 
-#define OPTIMISER_LIST(name) &mf_##name##_optimiser,
+#define OPTIMISER_LIST(record, name, summary) &mf_##record##_optimiser,
 const struct optimiser *const mf_optimisers[] = {OPTIMISERS(OPTIMISER_LIST) NULL};
 
 NAMED_RECORD(struct optimiser);

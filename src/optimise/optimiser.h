@@ -35,8 +35,7 @@ struct optimiser_round {
 enum { OPTIMISER_MAX_SPANS = 32 };
 
 struct optimiser {
-    const char *name;                  ///< in run files
-    const char *summary;               ///< one line, with citation
+    const char *name;                  ///< in run files, as OPTIMISERS has it
     const struct field *const *tables; ///< of the parameter struct, NULL-terminated
     size_t parameters_size;
     size_t state_size;
@@ -72,13 +71,17 @@ struct optimiser {
     size_t (*spans)(void *state, struct memory_span *spans);
 };
 
-/// The optimisers: mf_genetic_optimiser and so on, each driven by a method of matching.
+/// The optimisers, each driven by a method of that name: mf_genetic_optimiser has struct
+/// genetic_parameters, read by mf_genetic_fields.
 #define OPTIMISERS(EACH)                                                                           \
-    EACH(genetic)                                                                                  \
-    EACH(cmaes)                                                                                    \
-    EACH(nlopt)
+    EACH(genetic, "genetic", "genetic algorithm over smooth curves; A. G. Baydin (2008)")          \
+    EACH(cmaes, "cma-es",                                                                          \
+         "evolution strategy with covariance matrix adaptation; N. Hansen, arXiv:1604.00772")      \
+    EACH(nlopt, "nlopt", "algorithms of NLopt by name; S. G. Johnson, github.com/stevengj/nlopt")
 
-#define OPTIMISER_DECLARE(name) extern const struct optimiser mf_##name##_optimiser;
+#define OPTIMISER_DECLARE(record, name, summary)                                                   \
+    extern const struct optimiser mf_##record##_optimiser;                                         \
+    extern const struct field mf_##record##_fields[];
 OPTIMISERS(OPTIMISER_DECLARE)
 #undef OPTIMISER_DECLARE
 
@@ -127,4 +130,3 @@ struct nlopt_parameters {
     int64_t evaluations;
     double step, tolerance;
 };
-extern const struct field mf_genetic_fields[], mf_cmaes_fields[], mf_nlopt_fields[];

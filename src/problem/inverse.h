@@ -236,7 +236,8 @@ struct inverse_method {
     EACH(pareto)
 
 #define INVERSE_DECLARE(name) extern const struct inverse_method mf_##name;
-#define INVERSE_DECLARE_MATCHING(name) extern const struct inverse_method mf_matching_##name;
+#define INVERSE_DECLARE_MATCHING(record, name, summary)                                            \
+    extern const struct inverse_method mf_matching_##record;
 INVERSE_METHODS(INVERSE_DECLARE)
 #undef INVERSE_DECLARE
 #undef INVERSE_DECLARE_MATCHING

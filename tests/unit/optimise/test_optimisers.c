@@ -380,9 +380,9 @@ static void test_discard_above_is_unknown_before_a_round_is_told(void **state) {
 
 static void test_optimiser_find_knows_every_optimiser_when_named(void **state) {
     (void)state;
-    assert_ptr_equal(mf_optimiser_find("genetic"), &mf_genetic_optimiser);
-    assert_ptr_equal(mf_optimiser_find("cma-es"), &mf_cmaes_optimiser);
-    assert_ptr_equal(mf_optimiser_find("nlopt"), &mf_nlopt_optimiser);
+#define FOUND(record, name, summary)                                                               \
+    assert_ptr_equal(mf_optimiser_find(name), &mf_##record##_optimiser);
+    OPTIMISERS(FOUND)
     assert_null(mf_optimiser_find("simplex"));
 }
 
