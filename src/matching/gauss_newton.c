@@ -21,9 +21,15 @@
 static const double widen = 1.4, narrow = 0.7, widest = 0.3;
 
 /// The error is at its noise up to this multiple of it, which is known to a tenth or two. What is
-/// there for so many iterations, or has not fallen by more than chance for so many, has settled: a
-/// D whose error went below its noise in iteration 6 wandered about in it for 13 more.
+/// there for so many iterations, and where the model hardly wants to go on, or has not fallen by
+/// more than chance for so many, has settled: a D whose error went below its noise in iteration 6
+/// wandered about in it for 13 more.
 static const double noise_margin = 1.1;
+
+/// The model hardly wants to go on if its step is at most this many standard errors of its place,
+/// rms over variables. An error whose noise is that of many loose points is small far from where
+/// the sharp ones want to be: a number found from S(q) stopped 5 of its errors away.
+static const double small_step = 1;
 enum { SETTLED_AT_NOISE = 2, SETTLED_IDLE = 10 };
 
 /// Candidates are spread by this part of the radius, so that the model is asked for little beyond.
@@ -199,10 +205,21 @@ static void judge(struct state *state, double error, double noise, double varian
     }
 }
 
+/// Step that the model proposes from the best, in its standard errors, rms over variables.
+static double step_in_errors(const struct state *state, const struct surrogate_model *model) {
+    const size_t variables = state->parametrisation.variables;
+    double squares = 0;
+    for (size_t n = 0; n < variables; n++) {
+        const double step = model->best[n] - state->best[n];
+        squares += step * step / model->covariance[n * variables + n];
+    }
+    return sqrt(squares / (double)variables);
+}
+
 /// Count the iterations at the noise, and those without progress.
-static void watch(struct progress *progress) {
-    progress->at_noise =
-        progress->error <= noise_margin * progress->noise ? progress->at_noise + 1 : 0;
+static void watch(struct progress *progress, double step) {
+    const bool rests = progress->error <= noise_margin * progress->noise && step <= small_step;
+    progress->at_noise = rests ? progress->at_noise + 1 : 0;
     progress->idle++;
     if (!(progress->error > progress->reference - sqrt(2 * progress->variance))) {
         progress->reference = progress->error;
@@ -219,12 +236,13 @@ static enum status propose(struct state *state) {
     CHECK(mf_surrogate_fit(&state->population.surrogate, state->best, state->progress.reach, &model,
                            &known));
     if (known) {
+        const double step = step_in_errors(state, &model);
         memcpy(state->proposal, model.best, state->parametrisation.variables * sizeof *model.best);
         CHECK(mf_population_remeasure(&state->population, state->proposal,
                                       (size_t)state->own.checks, &error, &noise, &variance, NULL));
         judge(state, error, noise, variance);
         if (state->progress.known)
-            watch(&state->progress);
+            watch(&state->progress, step);
     }
     state->has_model = known;
     CHECK(mf_parametrisation_curves_bands(&state->parametrisation, state->best,
