@@ -3,36 +3,44 @@
 
 #include "input/target_sanity.h"
 #include "inversion/inversion.h"
+#include "problem/measurement.h"
 #include "problem/unknowns.h"
 
 /// Begin one simulation, so that a box too small for the forces or particles without room are found
 /// now and not by the verification after the fit.
-static enum status begin_one(const struct inverse_problem *problem) {
+static enum status begin_one(const struct fit_file *fit, const struct inverse_problem *problem) {
     enum status status = STATUS_OK;
     struct unknowns unknowns = {0};
     struct unknowns_laws laws = {0};
-    struct simulation simulation = {0};
+    struct measurement measurement = {0};
     CHECK(mf_unknowns_init(&unknowns, problem));
     CHECK(mf_unknowns_laws_start(&unknowns, &laws));
-    struct simulation_setup setup = laws.problem.scene;
-    setup.omega = laws.table[UNKNOWN_OMEGA];
-    CHECK(mf_simulation_init(&simulation, &setup, NULL));
+    const struct measurement_setup setup = {.targets = &problem->compared,
+                                            .potential = laws.table[UNKNOWN_POTENTIAL],
+                                            .omega = laws.table[UNKNOWN_OMEGA],
+                                            .time_step = fit->verification.time_step,
+                                            .plan = fit->verification.plan,
+                                            .thermodynamics = true,
+                                            .threads = 1,
+                                            .seed = problem->seed};
+    CHECK(mf_measurement_init(&measurement, &laws.problem, &setup));
 done:
-    mf_simulation_clear(&simulation);
+    mf_measurement_clear(&measurement);
     mf_unknowns_laws_clear(&laws);
     mf_unknowns_clear(&unknowns);
     return status;
 }
 
 /// The same with each number at the ends of its range.
-static enum status try_scene(const struct inverse_problem *problem) {
-    TRY(begin_one(problem));
+static enum status try_scene(const struct fit_file *fit) {
+    const struct inverse_problem *problem = &fit->problem;
+    TRY(begin_one(fit, problem));
     for (size_t n = 0; n < problem->numbers; n++)
         for (int end = 0; end < 2; end++) {
             struct inverse_problem other = *problem;
             struct inverse_number *number = &other.number[n];
             number->start = end ? number->maximum : number->minimum;
-            const enum status status = begin_one(&other);
+            const enum status status = begin_one(fit, &other);
             if (status != STATUS_OK)
                 return mf_status_prefix(status, "with %s = %g", number->name, number->start);
         }
@@ -163,7 +171,7 @@ enum status mf_fit_check(const struct fit_file *fit, const char *file) {
             "%s: scene.particles.placement: a fit places its particles on a lattice "
             "or at random",
             file);
-    const enum status status = try_scene(&fit->problem);
+    const enum status status = try_scene(fit);
     if (status != STATUS_OK)
         return mf_status_prefix(status, "%s: scene", file);
     return mf_target_sanity_check(files, &fit->scene, file);

@@ -66,6 +66,14 @@ static void say_changes(struct progress *to, const struct unknowns *unknowns,
 /// A target that is off by more than so many statistical errors is not met by what was fitted.
 static const double missed = 20;
 
+/// Values of a target that are known.
+static size_t values_of(const struct target *target) {
+    size_t known = 0;
+    for (size_t k = 0; k < target->count; k++)
+        known += isfinite(target->value[k]);
+    return known;
+}
+
 static void say_distances(struct progress *to, const struct fit_file *fit,
                           const struct verification *v) {
     for (int kind = 0; kind < TARGETS; kind++) {
@@ -74,8 +82,13 @@ static void say_distances(struct progress *to, const struct fit_file *fit,
             continue;
         mf_number_text(v->distance[kind].rms, v->distance_error[kind], rms);
         const double noises = v->distance[kind].rms / v->distance[kind].noise;
-        mf_progress_say(to, "verified: rms of %s - target = %s, statistics alone %.2g%s",
-                        mf_targets_name(kind), rms, v->distance[kind].noise,
+        const size_t known = values_of(&fit->problem.compared.target[kind]);
+        char of[96] = "";
+        if (v->distance[kind].count < known)
+            snprintf(of, sizeof of, ", of %zu of its %zu values: no others were measured",
+                     v->distance[kind].count, known);
+        mf_progress_say(to, "verified: rms of %s - target = %s, statistics alone %.2g%s%s",
+                        mf_targets_name(kind), rms, v->distance[kind].noise, of,
                         noises > missed ? ": not met, though nothing better was found" : "");
     }
 }

@@ -58,27 +58,10 @@ static void write_fit(struct temporary_folder *folder, const char *const replace
     }
 }
 
-/// A number of the object "parameters" in a summary: "conservative.a" and "value".
-static double number(const char *file, const char *name, const char *key) {
-    char quoted[96];
-    char *text = temporary_folder_read(file);
-    char *object = strstr(text, "\"parameters\"");
-    assert_non_null(object);
-    snprintf(quoted, sizeof quoted, "\"%s\"", name);
-    object = strstr(object, quoted);
-    assert_non_null(object);
-    *strchr(object, '}') = '\0';
-    snprintf(quoted, sizeof quoted, "\"%s\"", key);
-    const char *at = strstr(object, quoted);
-    const double value = at ? strtod(strchr(at, ':') + 1, NULL) : NAN;
-    free(text);
-    return value;
-}
-
 /// False alarms: 3 in 1000 for another seed, if the errors are honest.
 static void assert_found(const char *name, double truth, double largest_error) {
-    const double value = number("out/summary.json", name, "value");
-    const double error = number("out/summary.json", name, "error");
+    const double value = results_parameter("out/summary.json", name, "value");
+    const double error = results_parameter("out/summary.json", name, "error");
     if (!(error > 0 && error < largest_error) || !(fabs(value - truth) < 3 * error))
         fail_msg("%s = %g +- %g, not %g", name, value, error, truth);
 }
@@ -112,7 +95,7 @@ static void test_fit_finds_sigma_of_a_twin_by_nlopt(void **state) {
     write_fit(*state, (const char *const[]){GAUSS_NEWTON,
                                             "\"name\": \"nlopt\", \"evaluations\": 25", NULL});
     run_fit(0);
-    assert_close(number("out/summary.json", "dissipative.sigma", "value"), 3, 0.6);
+    assert_close(results_parameter("out/summary.json", "dissipative.sigma", "value"), 3, 0.6);
 }
 
 static void test_fit_finds_a_of_a_twin_from_its_structure(void **state) {
@@ -131,7 +114,7 @@ static void test_fit_finds_the_temperature_and_verifies_at_it(void **state) {
                                     "\"temperature\": 0.6, \"time_step\"", NULL});
     run_fit(0);
     assert_found("temperature", 1, 0.1);
-    const double found = number("out/summary.json", "temperature", "value");
+    const double found = results_parameter("out/summary.json", "temperature", "value");
     assert_close(results_number("out/summary.json", "temperature"), found, 0.03 * found);
 }
 
@@ -147,8 +130,8 @@ static void test_fit_finds_two_numbers_side_by_side(void **state) {
         write_fit(*state, (const char *const[]){MSD, MSD ", " RDF, SIGMA, SIGMA ", " A,
                                                 GAUSS_NEWTON, methods[k], NULL});
         run_fit(0);
-        assert_close(number("out/summary.json", "conservative.a", "value"), 25, 3);
-        assert_close(number("out/summary.json", "dissipative.sigma", "value"), 3, 0.6);
+        assert_close(results_parameter("out/summary.json", "conservative.a", "value"), 25, 3);
+        assert_close(results_parameter("out/summary.json", "dissipative.sigma", "value"), 3, 0.6);
     }
 }
 
@@ -194,8 +177,8 @@ static void test_fit_of_numbers_gives_the_same_bits_from_used_and_in_pieces(void
     run_program_in_pieces(0, words);
     results_assert_same("1", "pieces", tables);
     for (int k = 0; k < 2; k++)
-        assert_close(number("pieces/summary.json", "dissipative.sigma", keys[k]),
-                     number("1/summary.json", "dissipative.sigma", keys[k]), 0);
+        assert_close(results_parameter("pieces/summary.json", "dissipative.sigma", keys[k]),
+                     results_parameter("1/summary.json", "dissipative.sigma", keys[k]), 0);
     char *text = temporary_folder_read("1/numbers_history.tsv");
     assert_non_null(strstr(text, "dissipative.sigma["));
     assert_non_null(strstr(text, "dissipative.sigma_error["));

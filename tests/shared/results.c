@@ -119,3 +119,19 @@ void results_assert_text(const char *file, const char *key, const char *expected
     if (strcmp(value, expected) != 0)
         fail_msg("%s: %s is \"%s\", not \"%s\"", file, key, value, expected);
 }
+
+double results_parameter(const char *file, const char *name, const char *key) {
+    char quoted[96];
+    char *text = temporary_folder_read(file);
+    char *object = strstr(text, "\"parameters\"");
+    assert_non_null(object);
+    snprintf(quoted, sizeof quoted, "\"%s\"", name);
+    object = strstr(object, quoted);
+    assert_non_null(object);
+    *strchr(object, '}') = '\0';
+    snprintf(quoted, sizeof quoted, "\"%s\"", key);
+    const char *at = strstr(object, quoted);
+    const double value = at ? strtod(strchr(at, ':') + 1, NULL) : NAN;
+    free(text);
+    return value;
+}

@@ -19,3 +19,7 @@ void results_assert_number(const char *file, const char *key, double expected);
 /// There are finite numbers at all `keys`, NULL-terminated.
 void results_assert_numbers(const char *file, const char *const *keys);
 void results_assert_text(const char *file, const char *key, const char *expected);
+
+/// A number of the object "parameters" in a summary, as of "conservative.a" its "value"; NaN if
+/// there is no such key.
+double results_parameter(const char *file, const char *name, const char *key);
