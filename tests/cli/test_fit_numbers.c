@@ -28,7 +28,7 @@ static const char soft_fluid[] =
 #define SIGMA "\"dissipative.sigma\": {\"minimum\": 1, \"maximum\": 8}"
 #define A "\"conservative.a\": {\"minimum\": 10, \"maximum\": 60, \"start\": 50}"
 #define NUMBERS "\"unknowns\": {\"numbers\": {" SIGMA "}}"
-#define GAUSS_NEWTON "\"name\": \"gauss-newton\", \"iterations\": 8"
+#define GAUSS_NEWTON "\"name\": \"gauss-newton\", \"iterations\": 14"
 
 /// The scene says sigma = 5: there the fit begins.
 static const char fit[] =

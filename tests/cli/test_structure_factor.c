@@ -110,25 +110,26 @@ static void test_number_is_found_from_a_structure_factor_begun_far_away(void **s
     static struct run_program_result result;
     static const char numbers[] =
         "{\"seed\": 6, \"target\": {\"structure_factor\": {\"file\": \"target.tsv\", "
-        "\"q_maximum\": 9,\n"
-        "\"bins\": 30}}, \"unknowns\": {\"numbers\": {\"conservative.a\": {\"minimum\": 5, "
+        "\"q_maximum\": 14,\n"
+        "\"bins\": 200}}, \"unknowns\": {\"numbers\": {\"conservative.a\": {\"minimum\": 5, "
         "\"maximum\": 50}}},\n"
         "\"scene\": {" FLUID ", \"conservative\": {\"law\": \"soft-repulsion\", \"a\": 12}},\n"
-        "\"method\": {\"name\": \"gauss-newton\", \"equilibration\": 200, \"samples\": 40, "
+        "\"method\": {\"name\": \"gauss-newton\", \"equilibration\": 200, \"samples\": 10, "
         "\"every\": 10,\n"
         "\"temperature_tolerance\": 0.4}, \"verification\": {\"replicas\": 4, \"equilibration\": "
         "100,\n"
         "\"samples\": 20, \"every\": 20}}\n";
-    write_text(*state, "scene.json", scene);
+    small_inputs_write(*state, "scene.json", scene, "\"q_maximum\": 9, \"bins\": 30",
+                       "\"q_maximum\": 14, \"bins\": 200");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "whole");
-    char *table = temporary_folder_read("whole/structure_factor.tsv"), longer[8192];
+    char *table = temporary_folder_read("whole/structure_factor.tsv"), longer[32768];
     snprintf(longer, sizeof longer, "%s30\t1\t0.01\t9\n", table);
     free(table);
     write_text(*state, "target.tsv", longer);
     write_text(*state, "numbers.json", numbers);
     RUN_PROGRAM(&result, "fit", "numbers.json", "-o", "numbers");
     run_program_assert_code(&result, 0);
-    assert_contains(result.err, "of 23 of its 24 values");
+    assert_contains(result.err, ": no others were measured");
     const double a = results_parameter("numbers/summary.json", "conservative.a", "value");
     const double error = results_parameter("numbers/summary.json", "conservative.a", "error");
     print_message("a = %g(%g)\n", a, error);
