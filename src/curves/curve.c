@@ -34,6 +34,10 @@ enum status mf_curve_create(struct curve *curve, const struct curve_family *fami
     return STATUS_OK;
 }
 
+enum status mf_curve_check(const struct curve *curve) {
+    return curve->family->check ? curve->family->check(curve->parameters) : STATUS_OK;
+}
+
 void mf_curve_clear(struct curve *curve) {
     if (curve->parameters && curve->family->clear)
         curve->family->clear(curve->parameters);

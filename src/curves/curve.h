@@ -16,6 +16,8 @@ struct curve_family {
     size_t size;                ///< bytes of the parameter struct
     double (*value)(const void *parameters, double r);
     double (*cutoff)(const void *parameters);
+    /// Refuse what is in range each and not together; NULL: nothing to refuse.
+    enum status (*check)(const void *parameters);
     void (*clear)(void *parameters); ///< frees what the parameters own; NULL if nothing
 };
 
@@ -36,6 +38,9 @@ const struct curve_family *mf_curve_find(const struct curve_family *const *list,
 
 /// Start a curve with the family's default parameters.
 enum status mf_curve_create(struct curve *curve, const struct curve_family *family) MUST_USE;
+
+/// Whether the parameters go together. Fails: BAD_INPUT. Tested: test_curves.
+enum status mf_curve_check(const struct curve *curve) MUST_USE;
 
 /// Free the parameters; a zeroed curve is fine.
 void mf_curve_clear(struct curve *curve);

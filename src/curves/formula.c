@@ -118,6 +118,15 @@ static double power_omega_cutoff(const void *parameters) {
     return ((const struct formula_power_omega_parameters *)parameters)->cutoff;
 }
 
+static enum status power_omega_check(const void *parameters) {
+    const struct formula_power_omega_parameters *p = parameters;
+    if (p->inner_cutoff < p->cutoff)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "the inner_cutoff %g is not below the cutoff %g: omega would be 0",
+                          p->inner_cutoff, p->cutoff);
+}
+
 #define OMEGA(member) .offset = offsetof(struct formula_power_omega_parameters, member)
 static const struct field power_omega_fields[] = {
     {"sigma", FIELD_NUMBER, OMEGA(sigma), .initial = 2.1213203435596424, AT_LEAST_ZERO,
@@ -140,4 +149,5 @@ const struct curve_family mf_formula_power_omega = {
     .size = sizeof(struct formula_power_omega_parameters),
     .value = power_omega_value,
     .cutoff = power_omega_cutoff,
+    .check = power_omega_check,
 };

@@ -72,6 +72,7 @@ static void spline_slopes(const double *y, double *m, double *ratio) {
 }
 
 enum status mf_table_init_potential(struct table *table, const struct curve *curve) {
+    TRY(mf_curve_check(curve));
     enum status status = STATUS_OK;
     double *y = NULL, *m = NULL, *ratio = NULL;
     CHECK(allocate(table, mf_curve_cutoff(curve), 4, 1));
@@ -103,6 +104,7 @@ done:
 }
 
 enum status mf_table_init_omega(struct table *table, const struct curve *curve) {
+    TRY(mf_curve_check(curve));
     enum status status = STATUS_OK;
     CHECK(allocate(table, mf_curve_cutoff(curve), 2, 1));
     for (int k = 0; k < TABLE_INTERVALS; k++) {

@@ -35,7 +35,8 @@ struct table {
     float (*single)[4]; ///< the same rounded
 };
 
-/// Φ: cubic spline, shifted so that Φ(cutoff) = 0.
+/// Φ: cubic spline, shifted so that Φ(cutoff) = 0. Fails, as for ω: NO_MEMORY, BAD_INPUT where the
+/// curve's parameters do not go together.
 enum status mf_table_init_potential(struct table *table, const struct curve *curve) MUST_USE;
 
 /// ω: straight pieces.

@@ -11,12 +11,16 @@ struct parameters {
 };
 
 static enum status begin(const void *parameters, void *state, const struct particles *particles) {
+    static const double most_boxes = 100; // farther away it is in other units, as nm and pm
     const struct parameters *own = parameters;
     (void)state;
-    if (particles->box.dimensions == 3 || own->stiffness[2] == 0)
-        return STATUS_OK;
-    return mf_status_fail(STATUS_BAD_INPUT,
-                          "harmonic-trap: \"stiffness\" has 3 numbers, the scene 2 dimensions");
+    for (int d = 0; d < particles->box.dimensions; d++)
+        if (!(fabs(own->centre[d]) <= most_boxes * particles->box.length[d]))
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "interactions.harmonic-trap.centre[%d]: %g is more than %g boxes "
+                                  "of %g away",
+                                  d, own->centre[d], most_boxes, particles->box.length[d]);
+    return STATUS_OK;
 }
 
 static enum status add(const void *parameters, void *state, const struct interaction_pass *pass) {

@@ -45,7 +45,6 @@ enum { INTERACTION_SPANS = 4 };
 /// The interactions that a scene can name, in the order in which they act.
 #define INTERACTIONS(EACH)                                                                         \
     EACH(mf_uniform_force)                                                                         \
-    EACH(mf_counterflow)                                                                           \
     EACH(mf_harmonic_trap)
 
 #define INTERACTION_DECLARE(record) extern const struct interaction record;

@@ -20,6 +20,14 @@ const struct field mf_fit_core_fields[] = {
 
 NAMED_RECORD(struct inverse_method);
 
+/// Where forces from outside act, g(r) does not follow from those of pairs.
+static void check_estimator(const struct fit_file *fit, struct json_object *method) {
+    if (fit->method->sampling && fit->scene.setup.interactions > 0 &&
+        fit->method->sampling(fit->method_parameters).rdf_force)
+        mf_json_fault(method, "estimator",
+                      "\"force\" knows the forces of pairs alone, not \"interactions\"");
+}
+
 static enum status read_method(struct fit_file *fit, struct json_object *root) {
     const char **names;
     struct json_object object = mf_json_child(root, "method", true);
@@ -36,6 +44,7 @@ static enum status read_method(struct fit_file *fit, struct json_object *root) {
         return STATUS_NO_MEMORY;
     for (const struct inverse_table *table = fit->method->tables; table->fields; table++)
         mf_json_fields(&object, table->fields, (char *)fit->method_parameters + table->offset);
+    check_estimator(fit, &object);
     mf_json_finish(&object);
     return STATUS_OK;
 }

@@ -218,6 +218,43 @@ static enum status read_all(struct json_object *numbers, const struct scene *sce
     return STATUS_OK;
 }
 
+/// The parameters that are sought go together at all ends of their ranges, so that each candidate
+/// is a curve. Tells of the first corner where they do not.
+static enum status check_corners(struct json_object *numbers, const struct curve *curve,
+                                 const struct inverse_number *const *number, size_t count) {
+    void *parameters = mf_memory_zeroed(1, curve->family->size);
+    if (parameters == NULL)
+        return STATUS_NO_MEMORY;
+    memcpy(parameters, curve->parameters, curve->family->size);
+    const struct curve other = {curve->family, parameters};
+    enum status status = STATUS_OK;
+    for (size_t corner = 0; corner < (size_t)1 << count && status == STATUS_OK; corner++) {
+        for (size_t n = 0; n < count; n++)
+            memcpy((char *)parameters + number[n]->offset,
+                   corner >> n & 1 ? &number[n]->maximum : &number[n]->minimum, sizeof(double));
+        status = mf_curve_check(&other);
+    }
+    if (status != STATUS_OK)
+        mf_json_fault(numbers, number[0]->name, "at ends of the ranges %s", mf_status_message());
+    mf_memory_free(parameters);
+    return STATUS_OK;
+}
+
+static enum status check_law(struct json_object *numbers, const struct scene_law *law,
+                             enum inverse_place place, const struct inverse_number *number,
+                             size_t count) {
+    for (int pair = 0; pair < law->curves; pair++) {
+        const struct inverse_number *own[INVERSE_MOST_NUMBERS];
+        size_t found = 0;
+        for (size_t n = 0; n < count; n++)
+            if (number[n].place == place && number[n].part == pair)
+                own[found++] = &number[n];
+        if (found > 0)
+            TRY(check_corners(numbers, &law->curve[pair], own, found));
+    }
+    return STATUS_OK;
+}
+
 enum status mf_fit_numbers_read(struct json_object *unknowns, const struct scene *scene,
                                 struct inverse_number number[INVERSE_MOST_NUMBERS], size_t *count) {
     enum status status = STATUS_OK;
@@ -234,6 +271,10 @@ enum status mf_fit_numbers_read(struct json_object *unknowns, const struct scene
     CHECK(read_all(&numbers, scene, &entries, number, count));
     if (*count == 0 && mf_json_fault_count(unknowns->document) == 0)
         mf_json_fault(unknowns, "numbers", "names none");
+    if (mf_json_fault_count(unknowns->document) == 0) {
+        CHECK(check_law(&numbers, &scene->potential, INVERSE_OF_POTENTIAL, number, *count));
+        CHECK(check_law(&numbers, &scene->omega, INVERSE_OF_OMEGA, number, *count));
+    }
     mf_json_finish(&numbers);
 done:
     mf_memory_free(entries.entry);

@@ -11,10 +11,11 @@ struct scene_interactions {
     struct interaction_choice choice[INTERACTION_MOST];
     void *parameters[INTERACTION_MOST];
     int count;
+    int dimensions; ///< of the scene: how many numbers a vector has
 };
 
 /// Read them from the member "interactions" of `parent`, in the order of mf_interaction_list, and
-/// give them to `setup`. Faults go to the document. Fails: NO_MEMORY.
+/// give them to `setup`, whose box is known. Faults go to the document. Fails: NO_MEMORY.
 enum status mf_scene_interactions_read(struct scene_interactions *interactions,
                                        struct json_object *parent,
                                        struct simulation_setup *setup) MUST_USE;

@@ -76,10 +76,12 @@ static enum status load_points(struct curve *curve, struct json_object *object,
     return status == STATUS_NO_MEMORY ? status : STATUS_OK;
 }
 
-/// A table that could not be loaded has no points: forget the curve, the fault is recorded.
+/// A table that could not be loaded has no points, and parameters may not go together: forget the
+/// curve, the fault is recorded.
 static bool is_usable(const struct curve *curve) {
-    return curve->family != &mf_sampled_family ||
-           ((const struct sampled_parameters *)curve->parameters)->spline != NULL;
+    if (curve->family == &mf_sampled_family)
+        return ((const struct sampled_parameters *)curve->parameters)->spline != NULL;
+    return mf_curve_check(curve) == STATUS_OK;
 }
 
 enum status mf_scene_read_curve(struct curve *curve, struct json_object *parent, const char *key,
@@ -98,6 +100,8 @@ enum status mf_scene_read_curve(struct curve *curve, struct json_object *parent,
         mf_json_fields(&object, family->fields, curve->parameters);
         if (family == &mf_sampled_family && mf_json_fault_count(object.document) == faults)
             TRY(load_points(curve, &object, units));
+        if (mf_json_fault_count(object.document) == faults && mf_curve_check(curve) != STATUS_OK)
+            mf_json_fault(&object, NULL, "%s", mf_status_message());
         if (!is_usable(curve))
             mf_curve_clear(curve);
     }

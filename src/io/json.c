@@ -203,6 +203,11 @@ bool mf_json_has(struct json_object *object, const char *key) {
     return ask(object, key) != NULL;
 }
 
+int mf_json_count(const struct json_object *object, const char *key) {
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(object->item, key);
+    return cJSON_IsArray(item) ? cJSON_GetArraySize(item) : 0;
+}
+
 void mf_json_renamed(struct json_object *object, const char *old, const char *today) {
     // Only then: the name is not to be proposed as the nearest one.
     if (cJSON_GetObjectItemCaseSensitive(object->item, old) && ask(object, old))
@@ -298,7 +303,7 @@ static bool is_in_range(struct json_object *object, const char *key, const struc
 static void read_lengths(struct json_object *object, const struct field *field, const cJSON *item,
                          char *member) {
     double lengths[3] = {0};
-    const int count = cJSON_IsArray(item) ? cJSON_GetArraySize(item) : 0;
+    const int count = mf_json_count(object, field->name);
     if (count < 2 || count > 3) {
         if (cJSON_IsArray(item))
             mf_json_fault(object, field->name, "expected 2 or 3 numbers, found %d", count);

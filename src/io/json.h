@@ -49,6 +49,9 @@ struct json_object mf_json_child(struct json_object *parent, const char *key, bo
 /// True if `key` is present, with any value. Counts as asked for.
 bool mf_json_has(struct json_object *object, const char *key);
 
+/// How many items the array at `key` has; 0 if there is none. Counts as nothing. Tested: test_json.
+int mf_json_count(const struct json_object *object, const char *key);
+
 /// The key of member number n of an object whose keys the file chooses, or NULL beyond the last.
 /// The text lives with the document. Counts as nothing: the reader asks for the keys that it takes.
 const char *mf_json_key(const struct json_object *object, size_t n);

@@ -175,7 +175,7 @@ static void put_field(struct json_writer *writer, const struct field *field, con
         break;
     case FIELD_LENGTHS:
         memcpy(number, member, sizeof number);
-        if (number[0] != 0 || number[1] != 0 || number[2] != 0)
+        if (field->required || number[0] != 0 || number[1] != 0 || number[2] != 0)
             mf_json_put_numbers(writer, field->name, number, number[2] != 0 ? 3 : 2);
         break;
     case FIELD_TEXT:

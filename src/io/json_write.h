@@ -33,8 +33,9 @@ void mf_json_put_numbers(struct json_writer *writer, const char *key, const doub
                          size_t count);
 
 /// Write every member that `fields` describes; FIELD_TEXT and FIELD_FILE that are empty, and
-/// FIELD_LENGTHS that are all 0, are left out. Reading the result back gives the same bits, except
-/// that a relative FIELD_FILE is written absolute, so that it names the same file from any folder.
+/// FIELD_LENGTHS that are all 0 and not required, are left out. Reading the result back gives the
+/// same bits, except that a relative FIELD_FILE is written absolute, so that it names the same file
+/// from any folder.
 void mf_json_put_fields(struct json_writer *writer, const struct field *fields,
                         const void *parameters);
 

@@ -253,6 +253,18 @@ static void test_fit_refuses_numbers_that_cannot_be_found(void **state) {
         {SIGMA,
          "\"conservative.cutoff\": {\"minimum\": 1, \"maximum\": 3}",
          {"scene: with conservative.cutoff = 3: "}},
+        {SIGMA,
+         "\"dissipative.inner_cutoff\": {\"minimum\": 0, \"maximum\": 3}",
+         {"numbers.dissipative.inner_cutoff: at ends of the ranges the inner_cutoff 3 is not "
+          "below the cutoff 1"}},
+        {SIGMA,
+         "\"dissipative.inner_cutoff\": {\"minimum\": 0, \"maximum\": 0.9},"
+         "\"dissipative.cutoff\": {\"minimum\": 0.8, \"maximum\": 1.5}",
+         {"at ends of the ranges the inner_cutoff 0.9 is not below the cutoff 0.8"}},
+        {"5}},\n\"method\": {",
+         "5},\n\"interactions\": {\"uniform-force\": {\"force\": [1, 0, 0]}}},\n"
+         "\"method\": {\"estimator\": \"force\", ",
+         {"run.json: method.estimator: \"force\" knows the forces of pairs alone"}},
     };
     write_target(*state);
     assert_int_equal(mkdir("out", 0777), 0);

@@ -52,6 +52,49 @@ static void test_simulate_goes_on_with_the_same_bits_without_velocities(void **s
     results_assert_same("whole", "pieces", tables);
 }
 
+/// Forces that are all 0, and that are 0 along the last axis: a vector has all of its numbers.
+static void test_used_scene_runs_again_when_forces_are_zero(void **state) {
+    static const char *const forces[] = {"[0, 0, 0]", "[0.5, 0, 0]"};
+    static struct run_program_result result;
+    for (size_t k = 0; k < sizeof forces / sizeof *forces; k++) {
+        char text[128];
+        snprintf(
+            text, sizeof text,
+            "{\"uniform-force\": {\"force\": %s}, \"harmonic-trap\": {\"stiffness\": [0, 0, 0]}}",
+            forces[k]);
+        write(*state, "{\"harmonic-trap\": {\"stiffness\": [3, 3, 3], \"centre\": [1, 2, 3]}}",
+              text);
+        RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--force");
+        run_program_assert_code(&result, 0);
+        char *used = temporary_folder_read("out/used.json");
+        assert_contains(used, forces[k]);
+        free(used);
+        RUN_PROGRAM(&result, "simulate", "out/used.json", "-o", "again", "--force");
+        run_program_assert_code(&result, 0);
+        results_assert_same("out", "again", tables);
+    }
+}
+
+/// In two dimensions a third number acts on nothing.
+static void test_scene_in_a_plane_refuses_a_third_number(void **state) {
+    static const char plane[] =
+        "{\"seed\": 1, \"dimensions\": 2, \"box\": [6, 6], \"particles\": {\"count\": 50},\n"
+        "\"interactions\": {\"uniform-force\": {\"force\": [1, 2, 3]}},\n"
+        "\"measure\": {\"equilibration\": 10, \"samples\": 2, \"every\": 1}, \"rdf\": {\"range\": "
+        "2}}";
+    static struct run_program_result result;
+    small_inputs_write(*state, "scene.json", plane, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "refused");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "force: has 3 numbers, but the scene has 2 dimensions");
+    assert_int_equal(run_program_lines(result.err), 1);
+    small_inputs_write(*state, "scene.json", plane, "[1, 2, 3]", "[1, 0]");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "simulate", "out/used.json", "-o", "again");
+    run_program_assert_code(&result, 0);
+}
+
 static void test_explain_and_describe_tell_of_interactions(void **state) {
     static struct run_program_result result;
     write(*state, NULL, NULL);
@@ -76,10 +119,17 @@ static void test_scenes_are_refused_when_interactions_do_not_suit(void **state) 
          "interactions.harmonic-tarp: unknown key; did you mean \"harmonic-trap\"?"},
         {"\"stiffness\": [3, 3, 3], ", "", "interactions.harmonic-trap.stiffness: missing"},
         {"[3, 3, 3]", "[3, -3, 3]", "interactions.harmonic-trap.stiffness[1]: "},
-        {"{\"harmonic-trap\"",
-         "{\"counterflow\": {\"force\": 1, \"across\": \"x\"}, \"harmonic-trap\"",
-         "two axes of the box"},
+        {"[3, 3, 3]", "[3, 3]",
+         "interactions.harmonic-trap.stiffness: has 2 numbers, but the scene has 3 dimensions"},
+        {"[1, 2, 3]", "[1, 2]",
+         "interactions.harmonic-trap.centre: has 2 numbers, but the scene has 3 dimensions"},
+        {"[1, 2, 3]", "[1, 2, 1e300]",
+         "interactions.harmonic-trap.centre[2]: 1e+300 is more than 100 boxes of 6 away"},
         {"\"friction\": 2", "\"friction\": 0", "dynamics.friction: "},
+        {"\"interactions\"",
+         "\"dissipative\": {\"law\": \"power\", \"inner_cutoff\": 3, \"cutoff\": 1}, "
+         "\"interactions\"",
+         "dissipative: the inner_cutoff 3 is not below the cutoff 1"},
         {"\"interactions\"", "\"dissipative\": {\"law\": \"power\"}, \"interactions\"",
          "brownian knows no friction"},
         {"\"measure\"", "\"rdf\": {\"estimator\": \"force\"}, \"measure\"",
@@ -152,6 +202,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_simulate_takes_a_trap_and_dynamics_without_velocities),
         TEST(test_simulate_goes_on_with_the_same_bits_without_velocities),
+        TEST(test_used_scene_runs_again_when_forces_are_zero),
+        TEST(test_scene_in_a_plane_refuses_a_third_number),
         TEST(test_explain_and_describe_tell_of_interactions),
         TEST(test_scenes_are_refused_when_interactions_do_not_suit),
         TEST(test_inversion_is_refused_when_the_scene_has_interactions),

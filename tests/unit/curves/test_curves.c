@@ -104,6 +104,23 @@ static void test_power_omega_is_zero_outside_its_shell_when_it_has_an_inner_cuto
     mf_curve_clear(&curve);
 }
 
+static void test_power_omega_is_refused_when_nothing_is_between_its_cutoffs(void **state) {
+    (void)state;
+    struct curve curve = make(&mf_formula_power_omega);
+    struct formula_power_omega_parameters *p = curve.parameters;
+    struct table table = {0};
+    p->cutoff = 1;
+    for (p->inner_cutoff = 1; p->inner_cutoff <= 3; p->inner_cutoff += 2) {
+        assert_fails(mf_curve_check(&curve), STATUS_BAD_INPUT, "is not below the cutoff 1");
+        assert_fails(mf_table_init_omega(&table, &curve), STATUS_BAD_INPUT, "below the cutoff 1");
+        mf_table_clear(&table);
+    }
+    p->inner_cutoff = 0.99;
+    assert_ok(mf_table_init_omega(&table, &curve));
+    mf_table_clear(&table);
+    mf_curve_clear(&curve);
+}
+
 /// Largest difference of a table and its curve: value and force, from `first` to the cutoff.
 struct difference {
     double value, slope;
@@ -397,6 +414,7 @@ int main(void) {
         cmocka_unit_test(test_soft_repulsion_has_the_force_of_groot_and_warren_when_differenced),
         cmocka_unit_test(test_gaussian_has_its_values_when_shifted),
         cmocka_unit_test(test_power_omega_is_zero_outside_its_shell_when_it_has_an_inner_cutoff),
+        cmocka_unit_test(test_power_omega_is_refused_when_nothing_is_between_its_cutoffs),
         cmocka_unit_test(test_table_follows_its_potential_when_smooth),
         cmocka_unit_test(test_table_is_zero_when_beyond_the_cutoff),
         cmocka_unit_test(test_table_stack_holds_each_curve_as_it_was_alone),

@@ -193,6 +193,16 @@ static void test_json_fields_demands_required_ones_when_the_object_is_there(void
 
 // Keys and objects --------------------------------------------------------------------------------
 
+static void test_json_count_is_of_the_items_of_an_array(void **state) {
+    struct json_document *document = open_text(state, "{\"a\": [1, 2, 3], \"b\": [], \"c\": 7}");
+    const struct json_object root = mf_json_root(document);
+    assert_int_equal(mf_json_count(&root, "a"), 3);
+    assert_int_equal(mf_json_count(&root, "b"), 0);
+    assert_int_equal(mf_json_count(&root, "c"), 0);
+    assert_int_equal(mf_json_count(&root, "d"), 0);
+    assert_ok(mf_json_close(document, STATUS_OK));
+}
+
 static void test_json_finish_suggests_the_nearest_key_when_one_is_unknown(void **state) {
     assert_fault(state, "{\"sede\": 1}", "run.json: sede: unknown key; did you mean \"seed\"?");
     assert_fault(state, "{\"Seed\": 1}", "Seed: unknown key; did you mean \"seed\"?");
@@ -353,6 +363,7 @@ int main(void) {
         IN_FOLDER(test_json_fields_says_what_it_found_when_the_type_is_wrong),
         IN_FOLDER(test_json_fields_refuses_texts_when_they_do_not_fit),
         IN_FOLDER(test_json_fields_demands_required_ones_when_the_object_is_there),
+        IN_FOLDER(test_json_count_is_of_the_items_of_an_array),
         IN_FOLDER(test_json_finish_suggests_the_nearest_key_when_one_is_unknown),
         IN_FOLDER(test_json_open_records_a_fault_when_a_key_stands_twice),
         IN_FOLDER(test_json_child_reports_paths_when_objects_are_nested),

@@ -66,6 +66,24 @@ static void test_json_put_fields_makes_a_file_absolute_when_it_is_relative(void 
     free(text);
 }
 
+static void test_json_put_fields_writes_what_is_required_when_it_is_zero(void **state) {
+    static const struct field required[] = {
+        {"force", FIELD_LENGTHS, 0, .required = true, .minimum = -1, .maximum = 1}, FIELD_END};
+    static const double force[3] = {0, 0, 0};
+    double again[3] = {1, 1, 1};
+    const char *file = temporary_folder_file(*state, "used.json");
+    struct json_writer *writer = mf_json_writer_create();
+    mf_json_put_fields(writer, required, force);
+    assert_ok(mf_json_write(writer, file));
+    mf_json_writer_free(writer);
+    struct json_document *document;
+    assert_ok(mf_json_open(&document, file));
+    struct json_object root = mf_json_root(document);
+    mf_json_fields(&root, required, again);
+    assert_ok(mf_json_close(document, STATUS_OK));
+    assert_memory_equal(again, force, sizeof again);
+}
+
 static void test_json_write_prints_the_tree_when_objects_are_nested(void **state) {
     struct json_writer *writer = mf_json_writer_create();
     assert_non_null(writer);
@@ -187,6 +205,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         IN_FOLDER(test_json_put_fields_reads_back_the_same_bits_when_digits_are_many),
         IN_FOLDER(test_json_put_fields_makes_a_file_absolute_when_it_is_relative),
+        IN_FOLDER(test_json_put_fields_writes_what_is_required_when_it_is_zero),
         IN_FOLDER(test_json_write_prints_the_tree_when_objects_are_nested),
         IN_FOLDER(test_json_write_writes_null_when_a_number_is_not_finite),
         IN_FOLDER(test_json_write_writes_nothing_when_the_tree_has_a_problem),
