@@ -60,6 +60,18 @@ static void test_simulate_leaves_out_what_needs_velocities(void **state) {
     free(table);
 }
 
+static void test_errors_of_one_sample_are_null(void **state) {
+    static struct run_program_result result;
+    write(*state, "\"samples\": 300", "\"samples\": 1");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    char *summary = temporary_folder_read("out/summary.json");
+    assert_contains(summary, "\"potential_energy_error\":\tnull");
+    assert_contains(summary, "\"pressure_error\":\tnull");
+    assert_contains(summary, "\"temperature_configurational_error\":\tnull");
+    free(summary);
+}
+
 static void test_bench_accuracy_is_refused_without_velocities(void **state) {
     static struct run_program_result result;
     write(*state, NULL, NULL);
@@ -179,6 +191,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_simulate_takes_a_trap_and_dynamics_without_velocities),
         TEST(test_simulate_leaves_out_what_needs_velocities),
+        TEST(test_errors_of_one_sample_are_null),
         TEST(test_bench_accuracy_is_refused_without_velocities),
         TEST(test_simulate_goes_on_with_the_same_bits_without_velocities),
         TEST(test_explain_and_describe_tell_of_interactions),
