@@ -60,6 +60,17 @@ static void test_simulate_leaves_out_what_needs_velocities(void **state) {
     free(table);
 }
 
+static void test_figure_of_motion_is_drawn_without_velocities(void **state) {
+    static struct run_program_result result;
+    small_inputs_need_gnuplot();
+    write(*state, "\"measure\": {\"equilibration\": 1500, \"samples\": 300",
+          "\"motion\": {\"lags\": 10}, \"measure\": {\"equilibration\": 50, \"samples\": 10");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    assert_null(strstr(result.err, "no figure"));
+    assert_true(temporary_folder_exists("out/figures/motion.svg"));
+}
+
 static void test_errors_of_one_sample_are_null(void **state) {
     static struct run_program_result result;
     write(*state, "\"samples\": 300", "\"samples\": 1");
@@ -191,6 +202,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_simulate_takes_a_trap_and_dynamics_without_velocities),
         TEST(test_simulate_leaves_out_what_needs_velocities),
+        cmocka_unit_test_setup_teardown(test_figure_of_motion_is_drawn_without_velocities,
+                                        small_inputs_enter, small_inputs_leave),
         TEST(test_errors_of_one_sample_are_null),
         TEST(test_bench_accuracy_is_refused_without_velocities),
         TEST(test_simulate_goes_on_with_the_same_bits_without_velocities),
