@@ -322,6 +322,11 @@ static enum status carry_out(struct run *run, const char *file) {
     if (composition_is_mixed(&run->scene.scene.setup.composition))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: particles.types: bench accuracy wants one component", file);
+    if (simulation_is_overdamped(&run->scene.scene.setup))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: dynamics.integrator: bench accuracy wants velocities, which "
+                              "\"%s\" has not",
+                              file, run->scene.scene.setup.integrator->name);
     TRY(choose(run));
     if (run->options->output) { // two minutes are not to be lost
         TRY(mf_output_open(&probe, run->options->output));

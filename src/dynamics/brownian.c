@@ -72,6 +72,19 @@ static void move(void *context, size_t begin, size_t end) {
     }
 }
 
+/// y = x − ½ sqrt(2 D Δt) R with R of the last step, whose increments Δt F/γ + sqrt(2 D Δt) R are
+/// independent: the MSD of free particles is 2 d D t at every lag, that of x lacks half a step.
+static void forget(const struct simulation *simulation, double *positions) {
+    const struct particles *particles = &simulation->particles;
+    const struct state *state = simulation->integrator_state;
+    const double half = 0.5 * free_step(&simulation->setup);
+    for (int d = 0; d < particles->box.dimensions; d++) {
+        const double *noise = particles->attribute[state->noise].value[d];
+        for (size_t k = 0; k < particles->count; k++)
+            positions[(size_t)d * particles->count + particles->id[k]] -= half * noise[k];
+    }
+}
+
 static enum status step(struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
     mf_parallel_for(particles->count, particles->threads, move, simulation);
@@ -94,5 +107,6 @@ const struct integrator mf_brownian = {
     .state_size = sizeof(struct state),
     .begin = begin,
     .free_step = free_step,
+    .forget = forget,
     .step = step,
 };

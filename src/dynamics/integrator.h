@@ -38,6 +38,10 @@ struct integrator {
     /// along an axis [λ]. They have no kinetic temperature; `velocity` is what a particle moved in
     /// the last step, over Δt. NULL: there are velocities.
     double (*free_step)(const struct simulation_setup *setup);
+    /// Dynamics whose noise outlasts a step take here from positions, shape [dimensions, count] by
+    /// particle id, what their next steps will still share with the last [λ]: displacements between
+    /// what is left have no memory. NULL: positions are that already.
+    void (*forget)(const struct simulation *simulation, double *positions);
     /// Advance by one step, with one call of mf_simulation_compute_forces.
     enum status (*step)(struct simulation *simulation);
 };

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "observe/measure.h"
 
+#include "base/statistics.h"
 #include "observe/thermodynamics.h"
+
+#include <math.h>
 
 #define MEMBER(name) .offset = offsetof(struct measure_plan, name)
 const struct field mf_measure_plan_fields[] = {
@@ -43,24 +46,62 @@ static enum status run_until(struct simulation *simulation, int64_t step,
     return STATUS_OK;
 }
 
-enum status mf_measure_equilibrate(struct simulation *simulation, const struct measure_plan *plan,
-                                   double *temperature, const struct measure_listener *listener) {
-    // Pieces short enough to tell of progress; their temperatures over the last tenth are averaged.
-    enum { PIECES = 100, LAST = 10 };
+// Pieces short enough to tell of progress; the temperatures after the last of them count.
+enum { PIECES = 100, LAST = 10 };
+
+/// Temperatures as ratios, those of velocities over 1.
+struct ratios {
+    double above[LAST], below[LAST];
+};
+
+/// A single snapshot's ratio is biased and may be anything: that of the sums counts. If the wanted
+/// temperature T is the true one, squares − T · laplacian is 0 on average: its scatter gives the
+/// error, however wild the ratio.
+static struct measure_temperature configurational(const struct ratios *ratios, double wanted) {
+    struct running_mean above = {0}, below = {0}, excess = {0};
+    for (int k = 0; k < LAST; k++) {
+        mf_statistics_add(&above, ratios->above[k]);
+        mf_statistics_add(&below, ratios->below[k]);
+        mf_statistics_add(&excess, ratios->above[k] - wanted * ratios->below[k]);
+    }
+    return (struct measure_temperature){above.mean / below.mean,
+                                        mf_statistics_standard_error(&excess) / fabs(below.mean)};
+}
+
+static struct measure_temperature kinetic(const struct ratios *ratios) {
     double sum = 0;
+    for (int k = 0; k < LAST; k++)
+        sum += ratios->above[k];
+    return (struct measure_temperature){sum / LAST, 0};
+}
+
+enum status mf_measure_settle(struct simulation *simulation, const struct measure_plan *plan,
+                              struct measure_temperature *temperature,
+                              const struct measure_listener *listener) {
+    struct ratios ratios;
     for (int64_t piece = 1; piece <= PIECES; piece++) {
         const int64_t end = plan->equilibration * piece / PIECES;
+        const int64_t last = piece - 1 - (PIECES - LAST);
         simulation->wants = PAIR_FORCES;
         TRY(run_until(simulation, end - 1, plan, listener));
-        simulation->wants = piece > PIECES - LAST ? PAIR_FORCES_AND_SUMS : PAIR_FORCES;
+        simulation->wants = last >= 0 ? PAIR_FORCES_AND_SUMS : PAIR_FORCES;
         TRY(run_until(simulation, end, plan, listener));
-        double here = 0;
-        if (piece > PIECES - LAST)
-            TRY(mf_thermodynamics_temperature(simulation, &here));
-        sum += here;
+        if (last >= 0)
+            TRY(mf_thermodynamics_temperature(simulation, &ratios.above[last],
+                                              &ratios.below[last]));
         tell(listener, simulation, plan);
     }
-    *temperature = sum / LAST;
+    const struct simulation_setup *setup = &simulation->setup;
+    *temperature = simulation_is_overdamped(setup) ? configurational(&ratios, setup->temperature)
+                                                   : kinetic(&ratios);
+    return STATUS_OK;
+}
+
+enum status mf_measure_equilibrate(struct simulation *simulation, const struct measure_plan *plan,
+                                   double *temperature, const struct measure_listener *listener) {
+    struct measure_temperature settled;
+    TRY(mf_measure_settle(simulation, plan, &settled, listener));
+    *temperature = settled.mean;
     return STATUS_OK;
 }
 

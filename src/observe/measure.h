@@ -31,8 +31,23 @@ enum status mf_measure_sample(struct simulation *simulation, const struct measur
                               const struct observable_use *uses,
                               const struct measure_listener *listener) MUST_USE;
 
-/// Mean temperature (mf_thermodynamics_temperature) over the last tenth of an equilibration of
-/// plan->equilibration steps, which it runs [k_B T_0].
+/// A temperature after equilibration [k_B T_0]; NaN if it is not known: without velocities and
+/// without pairs in range.
+struct measure_temperature {
+    double mean;
+    double error; ///< 0 with velocities: their mean is judged as it is
+};
+
+/// Run an equilibration of plan->equilibration steps and take the temperature of its last tenth:
+/// the mean kinetic one, or without velocities the configurational one, Σ|∇U|²/Σ∇²U over ten
+/// snapshots, with the error that it would have if it were the set one (E. C. Fieller, J. R. Stat.
+/// Soc. B 16, 175 (1954)).
+/// Fails: as mf_simulation_run; NO_MEMORY. Tested: test_brownian, test_evaluate.
+enum status mf_measure_settle(struct simulation *simulation, const struct measure_plan *plan,
+                              struct measure_temperature *temperature,
+                              const struct measure_listener *listener) MUST_USE;
+
+/// The same for those who want no error.
 enum status mf_measure_equilibrate(struct simulation *simulation, const struct measure_plan *plan,
                                    double *temperature,
                                    const struct measure_listener *listener) MUST_USE;

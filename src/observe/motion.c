@@ -38,6 +38,7 @@ enum status mf_motion_init(struct motion *motion, const struct motion_plan *plan
                               .dimensions = simulation->setup.box.dimensions,
                               .count = simulation->particles.count,
                               .time_step = simulation->setup.time_step,
+                              .flies = !simulation_is_overdamped(&simulation->setup),
                               .begin = begin,
                               .slots = (size_t)(plan->lags / plan->origin_every + 1)};
     const size_t origins = complete_origins(plan, (size_t)(steps / plan->every));
@@ -90,8 +91,11 @@ static void subtract_mean(double *values, size_t count) {
         values[k] -= mean;
 }
 
-/// Unwrapped positions and velocities, by id, relative to those of the centre of mass.
-static void gather(struct motion *motion, const struct particles *particles) {
+/// Unwrapped positions and velocities, by id, relative to those of the centre of mass. Without
+/// velocities no momentum is conserved: the centre of mass diffuses, too, and its share stays.
+static void gather(struct motion *motion, const struct simulation *simulation) {
+    const struct particles *particles = &simulation->particles;
+    const struct integrator *integrator = simulation->setup.integrator;
     const size_t count = motion->count;
     for (int d = 0; d < motion->dimensions; d++) {
         double *x = motion->now + (size_t)d * count;
@@ -101,9 +105,13 @@ static void gather(struct motion *motion, const struct particles *particles) {
             x[id] = particles->position[d][k] + particles->image[d][k] * particles->box.length[d];
             v[id] = particles->velocity[d][k];
         }
-        subtract_mean(x, count);
-        subtract_mean(v, count);
+        if (motion->flies) {
+            subtract_mean(x, count);
+            subtract_mean(v, count);
+        }
     }
+    if (integrator->forget)
+        integrator->forget(simulation, motion->now);
 }
 
 /// Two states of the particles, shape [dimensions, count] each.
@@ -160,7 +168,8 @@ static void correlate(struct motion *motion, size_t origin, int threads) {
     motion->squares[place] +=
         mf_parallel_sum(motion->count, threads, sum_squares, &positions) / count;
     motion->products[place] +=
-        mf_parallel_sum(motion->count, threads, sum_products, &velocities) / count;
+        motion->flies ? mf_parallel_sum(motion->count, threads, sum_products, &velocities) / count
+                      : NAN;
 }
 
 void mf_motion_sample(struct motion *motion, const struct simulation *simulation) {
@@ -168,7 +177,7 @@ void mf_motion_sample(struct motion *motion, const struct simulation *simulation
     const struct particles *particles = &simulation->particles;
     const size_t every = (size_t)motion->plan.origin_every, lags = (size_t)motion->plan.lags;
     const size_t sample = motion->samples, all = motion->blocks * motion->each;
-    gather(motion, particles);
+    gather(motion, simulation);
     const size_t state = 2 * (size_t)motion->dimensions * motion->count;
     if (sample % every == 0 && sample / every < all)
         memcpy(motion->origins + sample / every % motion->slots * state, motion->now,

@@ -9,6 +9,12 @@
 /// Molecular Simulation (2nd ed., 2002), sections 4.4 and 5.3; M. P. Allen and D. J. Tildesley,
 /// Computer Simulation of Liquids (2nd ed., 2017), section 8.5. Positions are unwrapped, and
 /// positions and velocities are those relative to the centre of mass.
+///
+/// Dynamics without velocities conserve no momentum: positions are those in the box, since the
+/// centre of mass diffuses as the particles do, and without its share D would be (1 − 1/N) too
+/// small. A drift, such as that of a uniform force, is in their MSD. They are read where the noise
+/// of the last step has been taken off (`forget` of the integrator), so that the MSD of free
+/// particles is 2 d D t at every lag. They have no VACF, and all that comes of it is NaN.
 #pragma once
 
 #include "base/fields.h"
@@ -30,6 +36,7 @@ struct motion {
     int dimensions;
     size_t count; ///< of particles
     double time_step;
+    bool flies;    ///< has velocities, and a momentum that is conserved
     int64_t begin; ///< step of the first sample
     size_t blocks; ///< of time origins, for the errors
     size_t each;   ///< time origins in a block

@@ -104,14 +104,16 @@ static void put(const void *state, const struct observable_results *results,
     mf_json_end(writer);
 }
 
-/// Both diffusion coefficients.
+/// Both diffusion coefficients; without velocities there is one.
 static void say(const void *state, char *line, size_t size) {
+    const struct motion *motion = state;
     char msd[NUMBER_TEXT_SIZE], green_kubo[NUMBER_TEXT_SIZE];
-    const struct motion_summary s = mf_motion_result(state, NULL);
+    const struct motion_summary s = mf_motion_result(motion, NULL);
     mf_number_text(s.msd, s.msd_error, msd);
     mf_number_text(s.green_kubo, mf_motion_green_kubo_uncertainty(&s), green_kubo);
-    snprintf(line, size, "D = %s by the MSD from %.4g to %.4g tau, %s by Green and Kubo", msd,
-             s.fit_begin, s.fit_end, green_kubo);
+    snprintf(line, size, "D = %s by the MSD from %.4g to %.4g tau%s%s%s", msd, s.fit_begin,
+             s.fit_end, motion->flies ? ", " : "", motion->flies ? green_kubo : "",
+             motion->flies ? " by Green and Kubo" : "");
 }
 
 static enum status judge(const void *state, const struct simulation_setup *setup) {

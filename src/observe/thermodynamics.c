@@ -41,15 +41,13 @@ done:
     return status;
 }
 
-enum status mf_thermodynamics_temperature(const struct simulation *simulation,
-                                          double *temperature) {
-    double squares = NAN, laplacian = 1;
-    *temperature = mf_simulation_temperature(simulation);
+enum status mf_thermodynamics_temperature(const struct simulation *simulation, double *above,
+                                          double *below) {
+    *above = mf_simulation_temperature(simulation);
+    *below = 1;
     if (!simulation_is_overdamped(&simulation->setup) || simulation->law.potential == NULL)
         return STATUS_OK;
-    TRY(configurational(simulation, &squares, &laplacian));
-    *temperature = squares / laplacian;
-    return STATUS_OK;
+    return configurational(simulation, above, below);
 }
 
 enum status mf_thermodynamics_sample(struct thermodynamics *thermodynamics,

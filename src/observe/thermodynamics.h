@@ -26,10 +26,11 @@ void mf_thermodynamics_clear(struct thermodynamics *thermodynamics);
 enum status mf_thermodynamics_sample(struct thermodynamics *thermodynamics,
                                      const struct simulation *simulation) MUST_USE;
 
-/// The temperature of the simulation as it is now: kinetic, or without velocities configurational;
-/// NaN without either. Fails: NO_MEMORY.
-enum status mf_thermodynamics_temperature(const struct simulation *simulation,
-                                          double *temperature) MUST_USE;
+/// The temperature of the simulation as it is now, a ratio above/below whose parts are summed over
+/// snapshots each: kinetic over 1, or without velocities configurational; NaN without either.
+/// Fails: NO_MEMORY.
+enum status mf_thermodynamics_temperature(const struct simulation *simulation, double *above,
+                                          double *below) MUST_USE;
 
 /// The series of one quantity, shape [samples].
 const double *mf_thermodynamics_series(const struct thermodynamics *thermodynamics,

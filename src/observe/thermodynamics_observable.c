@@ -80,6 +80,12 @@ static enum status judge(const void *state, const struct simulation_setup *setup
     return mf_thermodynamics_judge(&s, setup);
 }
 
+/// One sample tells no error: null.
+static void put_error(struct json_writer *writer, const char *name,
+                      const struct thermodynamics_summary *summary, double error) {
+    mf_json_put_number(writer, name, summary->blocks > 1 ? error : NAN);
+}
+
 /// Means with errors, and the object "physical" when the units are known.
 static void put(const void *state, const struct observable_results *results,
                 struct json_writer *writer) {
@@ -87,16 +93,16 @@ static void put(const void *state, const struct observable_results *results,
     if (mf_thermodynamics_judge(&s, results->setup) != STATUS_OK)
         mf_json_put_text(writer, "warning", mf_status_message());
     mf_json_put_number(writer, "temperature", s.temperature);
-    mf_json_put_number(writer, "temperature_error", s.temperature_error);
+    put_error(writer, "temperature_error", &s, s.temperature_error);
     if (isfinite(s.temperature_configurational)) {
         mf_json_put_number(writer, "temperature_configurational", s.temperature_configurational);
-        mf_json_put_number(writer, "temperature_configurational_error",
-                           s.temperature_configurational_error);
+        put_error(writer, "temperature_configurational_error", &s,
+                  s.temperature_configurational_error);
     }
     mf_json_put_number(writer, "potential_energy", s.potential_energy);
-    mf_json_put_number(writer, "potential_energy_error", s.potential_energy_error);
+    put_error(writer, "potential_energy_error", &s, s.potential_energy_error);
     mf_json_put_number(writer, "pressure", s.pressure);
-    mf_json_put_number(writer, "pressure_error", s.pressure_error);
+    put_error(writer, "pressure_error", &s, s.pressure_error);
     mf_units_put(results->units, writer, s.potential_energy, s.pressure);
 }
 

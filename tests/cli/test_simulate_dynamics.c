@@ -42,6 +42,56 @@ static void test_simulate_takes_a_trap_and_dynamics_without_velocities(void **st
     results_assert_same("out", "again", tables);
 }
 
+static void test_simulate_leaves_out_what_needs_velocities(void **state) {
+    static struct run_program_result result;
+    write(*state, "\"measure\": {\"equilibration\": 1500, \"samples\": 300",
+          "\"motion\": {\"every\": 2}, \"measure\": {\"equilibration\": 1500, \"samples\": 300");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.err, "by the MSD from ");
+    assert_null(strstr(result.err, "Green"));
+    assert_null(strstr(result.err, "warning: D"));
+    char *summary = temporary_folder_read("out/summary.json");
+    assert_contains(summary, "\"diffusion_green_kubo\":\tnull");
+    assert_contains(summary, "\"diffusion_green_kubo_error\":\tnull");
+    free(summary);
+    char *table = temporary_folder_read("out/motion.tsv");
+    assert_contains(table, "\tnan\tnan\n");
+    free(table);
+}
+
+static void test_figure_of_motion_is_drawn_without_velocities(void **state) {
+    static struct run_program_result result;
+    small_inputs_need_gnuplot();
+    write(*state, "\"measure\": {\"equilibration\": 1500, \"samples\": 300",
+          "\"motion\": {\"lags\": 10}, \"measure\": {\"equilibration\": 50, \"samples\": 10");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    assert_null(strstr(result.err, "no figure"));
+    assert_true(temporary_folder_exists("out/figures/motion.svg"));
+}
+
+static void test_errors_of_one_sample_are_null(void **state) {
+    static struct run_program_result result;
+    write(*state, "\"samples\": 300", "\"samples\": 1");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    char *summary = temporary_folder_read("out/summary.json");
+    assert_contains(summary, "\"potential_energy_error\":\tnull");
+    assert_contains(summary, "\"pressure_error\":\tnull");
+    assert_contains(summary, "\"temperature_configurational_error\":\tnull");
+    free(summary);
+}
+
+static void test_bench_accuracy_is_refused_without_velocities(void **state) {
+    static struct run_program_result result;
+    write(*state, NULL, NULL);
+    RUN_PROGRAM(&result, "bench", "accuracy", "scene.json", "--time", "1");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "scene.json: dynamics.integrator: bench accuracy wants velocities");
+    assert_int_equal(run_program_lines(result.err), 1);
+}
+
 static void test_simulate_goes_on_with_the_same_bits_without_velocities(void **state) {
     static struct run_program_result result;
     write(*state, "\"samples\": 300", "\"samples\": 900");
@@ -201,6 +251,11 @@ int main(void) {
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
     const struct CMUnitTest tests[] = {
         TEST(test_simulate_takes_a_trap_and_dynamics_without_velocities),
+        TEST(test_simulate_leaves_out_what_needs_velocities),
+        cmocka_unit_test_setup_teardown(test_figure_of_motion_is_drawn_without_velocities,
+                                        small_inputs_enter, small_inputs_leave),
+        TEST(test_errors_of_one_sample_are_null),
+        TEST(test_bench_accuracy_is_refused_without_velocities),
         TEST(test_simulate_goes_on_with_the_same_bits_without_velocities),
         TEST(test_used_scene_runs_again_when_forces_are_zero),
         TEST(test_scene_in_a_plane_refuses_a_third_number),

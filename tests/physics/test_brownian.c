@@ -59,6 +59,53 @@ static void test_free_particles_diffuse_by_einsteins_law(void **state) {
     fluid_clear(&fluid);
 }
 
+/// MSD(t) = 2 d D t + (f t/γ)² at every lag from the first on, of so few beads that the centre of
+/// mass carries a quarter of it. Windows do not overlap, so that their number gives the error.
+static void test_motion_of_free_particles_is_exact_at_every_lag(void **state) {
+    (void)state;
+    enum { COUNT = 4, LAGS = 10, WINDOWS = 4000 };
+    static const struct brownian_parameters parameters = {.friction = 2.5};
+    static const struct { double force[3]; } drift = {{0, 30, 0}};
+    const struct motion_plan plan = {
+        .every = 1, .lags = LAGS, .origin_every = LAGS, .fit_from = 0.5};
+    const struct measure_plan when = {.equilibration = 1, .samples = 1, .every = LAGS * WINDOWS};
+    for (int n = 0; n < 2; n++) {
+        struct fluid fluid;
+        struct simulation simulation;
+        struct motion motion;
+        double msd[LAGS + 1], msd_error[LAGS + 1], vacf[LAGS + 1], vacf_error[LAGS + 1];
+        double temperature, most = 0;
+        make_free(&fluid, 3, COUNT, 0.01, &parameters);
+        fluid.setup.interaction[0] = (struct interaction_choice){&mf_uniform_force, &drift};
+        fluid.setup.interactions = n;
+        assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
+        assert_ok(mf_motion_init(&motion, &plan, &simulation, 1, when.every));
+        assert_ok(mf_measure_equilibrate(&simulation, &when, &temperature, NULL));
+        assert_ok(watched_sample(&simulation, &when, (struct watched){.motion = &motion}, NULL));
+        const struct motion_curves curves = {msd, msd_error, vacf, vacf_error};
+        const struct motion_summary s = mf_motion_result(&motion, &curves);
+        for (int lag = 1; lag <= LAGS; lag++) {
+            const double t = 0.01 * lag, square = 2 / 2.5 * t, way = n * 30 / 2.5 * t;
+            const double variance = 6 * square * square + 4 * square * way * way;
+            const double error = sqrt(variance / (COUNT * WINDOWS));
+            const double off = (msd[lag] - 3 * square - way * way) / error;
+            most = fmax(most, fabs(off));
+            assert_close(off, 0, deviations);
+            assert_true(isnan(vacf[lag]) && isnan(vacf_error[lag]));
+        }
+        print_message(
+            "drift %g: MSD at the first lag %.5f, at most %.1f errors off; D %.4f(%.4f)\n",
+            n * 30 / 2.5, msd[1], most, s.msd, s.msd_error);
+        if (n == 0)
+            assert_close(s.msd, 1 / 2.5, deviations * s.msd_error);
+        assert_true(isnan(s.green_kubo) && isnan(mf_motion_green_kubo_uncertainty(&s)));
+        assert_ok(mf_motion_judge(&s));
+        mf_motion_clear(&motion);
+        mf_simulation_clear(&simulation);
+        fluid_clear(&fluid);
+    }
+}
+
 /// <x²> = k_B T/k at any stable time step: here k Δt/γ = 1 and 1.6, where the method of Euler and
 /// Maruyama has 2 and 5 times as much.
 static void test_trapped_particles_have_exact_width_at_large_time_steps(void **state) {
@@ -155,6 +202,7 @@ static void test_soft_fluid_has_the_structure_of_dpd(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_free_particles_diffuse_by_einsteins_law),
+        cmocka_unit_test(test_motion_of_free_particles_is_exact_at_every_lag),
         cmocka_unit_test(test_trapped_particles_have_exact_width_at_large_time_steps),
         cmocka_unit_test(test_soft_fluid_has_the_structure_of_dpd),
     };

@@ -133,6 +133,34 @@ static void test_simulation_goes_on_when_two_particles_share_a_spot(void **state
     fluid_clear(&fluid);
 }
 
+/// A uniform force carries all along, by far faster than they move among each other; what is hot
+/// besides is found as ever.
+static void test_simulation_goes_on_when_it_drifts_as_a_whole(void **state) {
+    (void)state;
+    static const struct { double force[3]; } drift = {{100, 0, 0}};
+    for (int n = 0; n < 2; n++) {
+        struct fluid fluid;
+        struct simulation simulation;
+        fluid_groot_warren(&fluid, PARTICLES, n == 0 ? 0.01 : 0.002);
+        fluid.setup.interaction[0] = (struct interaction_choice){&mf_uniform_force, &drift};
+        fluid.setup.interactions = 1;
+        if (n == 1) {
+            fluid.setup.omega = NULL;
+            fluid.setup.integrator = &mf_brownian;
+            fluid.setup.temperature = 0.1;
+        }
+        assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
+        assert_ok(mf_simulation_run(&simulation, 200));
+        const double speed = simulation.particles.velocity[0][0];
+        assert_true(speed * speed > 0.5 * fluid.setup.temperature_limit);
+        for (size_t k = 0; k < PARTICLES; k++)
+            simulation.particles.force[1][k] += k % 2 ? 1e5 : -1e5;
+        assert_int_equal(mf_simulation_run(&simulation, 1), STATUS_UNSTABLE);
+        mf_simulation_clear(&simulation);
+        fluid_clear(&fluid);
+    }
+}
+
 /// Values of Φ at 0, 0.25, …, 1, from `wild`.
 static void make_wild_table(const double wild[5], struct table *table) {
     static const double r[] = {0, 0.25, 0.5, 0.75, 1};
@@ -258,6 +286,7 @@ int main(void) {
         cmocka_unit_test(test_simulation_is_unstable_soon_when_many_particles_are_flung_far),
         cmocka_unit_test(test_simulation_is_unstable_when_particles_overlap),
         cmocka_unit_test(test_simulation_goes_on_when_two_particles_share_a_spot),
+        cmocka_unit_test(test_simulation_goes_on_when_it_drifts_as_a_whole),
         cmocka_unit_test(test_simulation_is_unstable_when_the_table_is_wild),
         cmocka_unit_test(test_metropolis_ends_when_the_table_is_wild),
         cmocka_unit_test(test_evaluate_is_a_score_when_the_potential_is_wild),

@@ -3,6 +3,7 @@
 // Single simulations of a small soft fluid, and rounds of them.
 #include "problem/evaluate.h"
 
+#include "dynamics/brownian.h"
 #include "matching/population.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
@@ -142,6 +143,40 @@ static void test_evaluate_fails_when_the_temperature_is_another(void **state) {
     fluid_clear(&made.fluid);
 }
 
+/// Without velocities the temperature is a ratio of noisy sums: for a few beads in a large box it
+/// says little, and beads without Φ have none. Neither is the candidate's fault; a time step that
+/// heats a dense fluid beyond all bounds is.
+static void test_evaluate_knows_how_well_a_temperature_is_known(void **state) {
+    (void)state;
+    static const struct brownian_parameters parameters = {.friction = 1};
+    enum { DILUTE, WITHOUT_PHI, HOT, CASES };
+    for (int n = 0; n < CASES; n++)
+        for (uint64_t seed = 1; seed <= 10; seed++) {
+            struct made made;
+            struct evaluate_result result;
+            begin(&made);
+            made.parameters.temperature_tolerance = 0.1;
+            made.parameters.plan =
+                (struct measure_plan){.equilibration = 2000, .samples = 4, .every = 5};
+            struct simulation_setup *scene = &made.problem.scene;
+            scene->omega = NULL;
+            scene->integrator = &mf_brownian;
+            scene->integrator_parameters = &parameters;
+            scene->time_step = n == HOT ? 0.03 : 0.002;
+            scene->potential = n == WITHOUT_PHI ? NULL : scene->potential;
+            for (int d = 0; d < 3 && n == DILUTE; d++)
+                scene->box.length[d] *= 2;
+            const struct evaluate_candidate candidate = {.potential = scene->potential,
+                                                         .discard_above = HUGE_VAL,
+                                                         .threads = 1,
+                                                         .seed = seed};
+            const enum status found =
+                mf_evaluate(&made.problem, &candidate, &made.parameters, NULL, NULL, &result);
+            assert_int_equal(found, n == HOT ? STATUS_UNSTABLE : STATUS_OK);
+            fluid_clear(&made.fluid);
+        }
+}
+
 static void ignore(void *context, const struct inverse_progress *progress) {
     (void)context, (void)progress;
 }
@@ -205,6 +240,7 @@ int main(void) {
         cmocka_unit_test(test_evaluate_races_with_fewer_samples_than_looks),
         cmocka_unit_test(test_evaluate_begins_where_it_is_told),
         cmocka_unit_test(test_evaluate_fails_when_the_temperature_is_another),
+        cmocka_unit_test(test_evaluate_knows_how_well_a_temperature_is_known),
         cmocka_unit_test(test_candidates_race_with_the_same_bits_for_any_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
