@@ -139,8 +139,16 @@ static const double deviations = 4;
 /// Blocks to know a temperature by.
 enum { LEAST_BLOCKS = 5 };
 
+/// So many times the temperature, or none at all, is no chance, however large the error that goes
+/// with it: steps that are far too long give -613(242) and 3625(9341) for 1.
+static const double absurd = 3;
+
 static bool agrees(double temperature, double error, double wanted) {
     return fabs(temperature - wanted) <= band * wanted + deviations * error;
+}
+
+static bool is_absurd(double temperature, double wanted) {
+    return temperature <= 0 || temperature > absurd * wanted;
 }
 
 enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary,
@@ -152,7 +160,8 @@ enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary
         return STATUS_OK;
     if ((!flies || agrees(s->temperature, s->temperature_error, wanted)) &&
         (isnan(s->temperature_configurational) ||
-         agrees(s->temperature_configurational, s->temperature_configurational_error, wanted)))
+         (agrees(s->temperature_configurational, s->temperature_configurational_error, wanted) &&
+          (flies || !is_absurd(s->temperature_configurational, wanted)))))
         return STATUS_OK;
     if (!flies)
         return mf_status_fail(STATUS_UNSTABLE,

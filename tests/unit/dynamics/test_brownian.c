@@ -107,7 +107,7 @@ static void test_brownian_is_judged_by_the_configurational_temperature(void **st
     static const struct {
         double time_step;
         enum status verdict;
-    } cases[] = {{0.004, STATUS_OK}, {0.02, STATUS_UNSTABLE}};
+    } cases[] = {{0.004, STATUS_OK}, {0.024, STATUS_UNSTABLE}};
     const struct measure_plan plan = {.equilibration = 400, .samples = 100, .every = 4};
     for (int n = 0; n < 2; n++) {
         struct fluid fluid;
@@ -135,6 +135,25 @@ static void test_brownian_is_judged_by_the_configurational_temperature(void **st
     }
 }
 
+/// Steps that are far too long give numbers whose errors are as large.
+static void test_brownian_is_unstable_when_its_temperature_is_absurd(void **state) {
+    (void)state;
+    static const struct {
+        double temperature, error;
+        enum status verdict;
+    } cases[] = {
+        {-613, 242, STATUS_UNSTABLE}, {3625, 9341, STATUS_UNSTABLE}, {0.7, 0.2, STATUS_OK}};
+    const struct simulation_setup setup = {.temperature = 1, .integrator = &mf_brownian};
+    for (int n = 0; n < 3; n++) {
+        const struct thermodynamics_summary s = {
+            .blocks = 20,
+            .temperature = NAN,
+            .temperature_configurational = cases[n].temperature,
+            .temperature_configurational_error = cases[n].error};
+        assert_int_equal(mf_thermodynamics_judge(&s, &setup), cases[n].verdict);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_brownian_goes_on_with_the_same_bits_when_restarted),
@@ -143,6 +162,7 @@ int main(void) {
         cmocka_unit_test(test_brownian_is_unstable_when_a_step_is_far_too_long),
         cmocka_unit_test(test_brownian_begins_well_when_particles_overlap_at_random),
         cmocka_unit_test(test_brownian_is_judged_by_the_configurational_temperature),
+        cmocka_unit_test(test_brownian_is_unstable_when_its_temperature_is_absurd),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
