@@ -10,9 +10,11 @@ load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 table = "./" . system("printf %s \"$MESOFIT_TABLE\"")
 figure = system("printf %s \"$MESOFIT_FIGURE\"")
 y = column_of(table, "result") > 0 ? 4 : 2
-# The name of column n with its unit, as the header has it.
-header(n) = system(sprintf("awk -F '\t' '/^#/ { sub(/^# */, \"\"); print $%d; exit }'", n) . \
-    from(table))
+# The name of column n and its unit, "q / lambda^{-1}" for "q[1/lambda]", "S" for "S[1]".
+header(n) = system(sprintf("awk -F '\t' '/^#/ { sub(/^# */, \"\"); h = $%d; ", n) . \
+    "gsub(/[{}_@&~^\\\\]/, \" \", h); sub(/\\[1\\]$/, \"\", h); " . \
+    "if (sub(/\\[1\\//, \" / \", h)) sub(/\\]$/, \"^{-1}\", h); sub(/\\[/, \" / \", h); sub(/\\]/, \"\", h); " . \
+    "gsub(/lambda/, \"λ\", h); gsub(/tau/, \"τ\", h); print h; exit }'" . from(table))
 
 stats table using 1 name "X" nooutput
 stats table using (low(column(2), band_low(y, y + 1))) name "L" nooutput
@@ -23,12 +25,12 @@ do for [kind in kinds] {
     eval open(kind, figure, 720, 440)
     set xrange [low(0, X_min):end_of(X_max)]
     set yrange [L_min - margin:H_max + margin]
-    set xlabel header(1) noenhanced
-    set ylabel y == 4 ? figure : header(2) noenhanced
-    set key right top vertical
+    set xlabel header(1)
+    if (y == 4) { set ylabel figure noenhanced } else { set ylabel header(2) }
+    if (y == 4) { set key right top vertical } else { unset key }
     plot table using 1:(band_low(y, y + 1)):(band_high(y, y + 1)) \
             with filledcurves @band linecolor rgb blue, \
-        "" using 1:y with lines title "result" linewidth 2.2 linecolor rgb blue, \
+        "" using 1:y with lines title (y == 4 ? "result" : "") linewidth 2.2 linecolor rgb blue, \
         "" using 1:(y == 4 ? $2 : NaN) with points title (y == 4 ? "target" : "") \
             pointtype 7 pointsize 0.38 linecolor rgb ink
     eval close
