@@ -55,9 +55,10 @@ $(LIBRARY): $(filter-out $(BUILD)/src/app/%,$(OBJECTS))
 	@echo "ar $@"
 	$(AT)ar rcs $@ $^
 
-$(SHARED_LIBRARY): $(filter-out $(BUILD)/src/app/%,$(OBJECTS))
+$(SHARED_LIBRARY): $(filter-out $(BUILD)/src/app/%,$(OBJECTS)) src/library/exports.map
 	@echo "ld $@"
-	$(AT)$(CC) -shared -Wl,-soname,$(SONAME) -Wl,--no-undefined $(LDFLAGS) -o $@ $^ $(LDLIBS)
+	$(AT)$(CC) -shared -Wl,-soname,$(SONAME) -Wl,--no-undefined \
+	    -Wl,--version-script=src/library/exports.map $(LDFLAGS) -o $@ $(filter %.o,$^) $(LDLIBS)
 	@ln -sf $(@F) $(BUILD)/$(SONAME)
 	@ln -sf $(SONAME) $(BUILD)/libmesofit.so
 

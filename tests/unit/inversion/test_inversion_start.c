@@ -34,14 +34,18 @@ static void make(struct made *made, int start) {
         made->g[k] = g * (1 + noise * normal[0]);
         made->error[k] = noise * g;
     }
-    made->problem = (struct inverse_problem){
-        .targets = {.bins = bins, .target[TARGET_RDF] = {BINS, made->g, made->error, 0}},
-        .unknown[UNKNOWN_POTENTIAL] = {.wanted = true},
-        .scene = made->fluid.setup,
-        .core_threshold = 1e-3,
-        .core_stiffness = 2000,
-        .seed = 5,
-        .threads = 1};
+    made->problem =
+        (struct inverse_problem){.targets = {.bins = bins,
+                                             .target[TARGET_RDF] = {.count = BINS,
+                                                                    .value = made->g,
+                                                                    .error = made->error,
+                                                                    .weight = 0}},
+                                 .unknown[UNKNOWN_POTENTIAL] = {.wanted = true},
+                                 .scene = made->fluid.setup,
+                                 .core_threshold = 1e-3,
+                                 .core_stiffness = 2000,
+                                 .seed = 5,
+                                 .threads = 1};
     made->settings = (struct inversion_settings){.common = {.replicas = 2,
                                                             .equilibration = 10,
                                                             .samples = 8,

@@ -30,7 +30,9 @@ static void begin(struct made *made) {
         made->error[k] = 0.01;
     }
     made->problem = (struct inverse_problem){
-        .targets = {.bins = {0, 0.05, BINS}, .target[TARGET_RDF] = {BINS, made->g, made->error, 0}},
+        .targets = {.bins = {0, 0.05, BINS},
+                    .target[TARGET_RDF] =
+                        {.count = BINS, .value = made->g, .error = made->error, .weight = 0}},
         .unknown[UNKNOWN_OMEGA] = {true, {0, VARIABLES, 0, 6, 0, 1, {0}}, {NULL}},
         .scene = made->fluid.setup,
         .seed = 3,

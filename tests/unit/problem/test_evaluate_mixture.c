@@ -41,10 +41,14 @@ static void begin(struct slabs *slabs) {
     }
     for (int d = 0; d < 3; d++)
         slabs->position[d] = slabs->memory[d];
-    slabs->problem = (struct inverse_problem){
-        .targets = {.bins = bins, .target[TARGET_RDF] = {PAIRS * BINS, slabs->g, slabs->error, 0}},
-        .scene = slabs->fluid.setup,
-        .threads = 1};
+    slabs->problem =
+        (struct inverse_problem){.targets = {.bins = bins,
+                                             .target[TARGET_RDF] = {.count = PAIRS * BINS,
+                                                                    .value = slabs->g,
+                                                                    .error = slabs->error,
+                                                                    .weight = 0}},
+                                 .scene = slabs->fluid.setup,
+                                 .threads = 1};
 }
 
 /// g of each pair type, by all pairs of ids.

@@ -71,7 +71,8 @@ static void test_targets_error_is_that_of_a_single_target_as_it_is(void **state)
     const double value[] = {1}, error[] = {0.5};
     struct target_distance distance[TARGETS] = {
         [TARGET_MSD] = {3, 0.25, 1, 0}, [TARGET_VACF] = {99, 99, 1, 0}};
-    const struct targets targets = {.target[TARGET_MSD] = {1, value, error, 8}};
+    const struct targets targets = {
+        .target[TARGET_MSD] = {.count = 1, .value = value, .error = error, .weight = 8}};
     assert_int_equal(mf_targets_count(&targets), 1);
     assert_close(mf_targets_error(&targets, distance), 3, 0);
     assert_close(mf_targets_noise(&targets, distance), 0.25, 0);
@@ -80,8 +81,9 @@ static void test_targets_error_is_that_of_a_single_target_as_it_is(void **state)
 static void test_targets_error_is_1_at_the_errors_of_several_targets(void **state) {
     (void)state;
     const double value[] = {1, 1}, small[] = {0.01, 0.01}, large[] = {5, 5};
-    const struct targets targets = {.target[TARGET_RDF] = {2, value, small, 0},
-                                    .target[TARGET_DIFFUSION] = {1, value, large, 0}};
+    const struct targets targets = {
+        .target[TARGET_RDF] = {.count = 2, .value = value, .error = small, .weight = 0},
+        .target[TARGET_DIFFUSION] = {.count = 1, .value = value, .error = large, .weight = 0}};
     struct target_distance distance[TARGETS] = {
         [TARGET_RDF] = {0.01, 0.02, 2, 0}, [TARGET_DIFFUSION] = {5, 10, 1, 0}};
     assert_int_equal(mf_targets_count(&targets), 2);
@@ -170,8 +172,9 @@ static void test_targets_features_are_0_when_the_target_does_not_know(void **sta
     (void)state;
     const double g[] = {1, NAN, 3}, g_error[] = {0.1, 0.2, NAN}, d[] = {NAN}, d_error[] = {NAN};
     double seen_g[] = {2, 5, NAN}, seen_d[] = {4}, value[4], error[4];
-    const struct targets targets = {.target[TARGET_RDF] = {3, g, g_error, 0},
-                                    .target[TARGET_DIFFUSION] = {1, d, d_error, 0}};
+    const struct targets targets = {
+        .target[TARGET_RDF] = {.count = 3, .value = g, .error = g_error, .weight = 0},
+        .target[TARGET_DIFFUSION] = {.count = 1, .value = d, .error = d_error, .weight = 0}};
     double *observed[TARGETS] = {[TARGET_RDF] = seen_g, [TARGET_DIFFUSION] = seen_d};
     assert_int_equal(mf_targets_features(&targets), 4);
     mf_targets_take_features(&targets, NULL, value, error);
@@ -192,7 +195,9 @@ static void test_targets_variance_is_that_of_repeated_measurements(void **state)
     (void)state;
     enum { MEASUREMENTS = 4000 };
     static const double wanted = 1, target_error = 7, truth = 1.5, error = 0.1;
-    const struct targets targets = {.target[TARGET_DIFFUSION] = {1, &wanted, &target_error, 0}};
+    const struct targets targets = {
+        .target[TARGET_DIFFUSION] = {
+            .count = 1, .value = &wanted, .error = &target_error, .weight = 0}};
     struct rng_sequence random = mf_rng_sequence_begin(3, RNG_INITIAL, 0, 0);
     double mean = 0, square = 0, variance = 0;
     for (int k = 0; k < MEASUREMENTS; k++) {

@@ -56,8 +56,9 @@ static void test_fit_verdict_names_the_pressure_when_it_was_fitted_and_is_off(vo
 static void test_fit_verdict_is_worse_when_the_difference_is_no_chance(void **state) {
     (void)state;
     static const double value[10] = {0}, error[10] = {0};
-    const struct targets targets = {.target[TARGET_RDF] = {10, value, error, 10},
-                                    .target[TARGET_DIFFUSION] = {1, value, error, 100}};
+    const struct targets targets = {
+        .target[TARGET_RDF] = {.count = 10, .value = value, .error = error, .weight = 10},
+        .target[TARGET_DIFFUSION] = {.count = 1, .value = value, .error = error, .weight = 100}};
     struct targets one = targets;
     char reason[INVERSE_REASON_SIZE];
     struct verification found = {
