@@ -42,20 +42,6 @@ static void write_target(struct temporary_folder *folder) {
     run_program_assert_code(&result, 0);
 }
 
-/// `key` of a parameter in a summary's text; NaN if it has none.
-static double parameter(const char *file, const char *name, const char *key) {
-    char *text = temporary_folder_read(file);
-    char *object = strstr(text, "\"parameters\"");
-    assert_non_null(object);
-    object = strstr(object, name);
-    assert_non_null(object);
-    *strchr(object, '}') = '\0';
-    const char *number = strstr(object, key);
-    const double value = number ? strtod(strchr(number, ':') + 1, NULL) : NAN;
-    free(text);
-    return value;
-}
-
 /// False alarms: 3 in 1000 for another seed, if the errors are honest.
 static void test_fit_finds_a_known_sigma_within_its_error(void **state) {
     write_target(*state);
@@ -69,13 +55,13 @@ static void test_fit_finds_a_known_sigma_within_its_error(void **state) {
     assert_true(results_number("out/summary.json", "start.error") > 0);
     assert_true(results_number("out/summary.json", "error") > 0);
     assert_contains(result.err, "exponent = 1 (fixed)");
-    const double sigma = parameter("out/summary.json", "sigma", "value");
-    const double error = parameter("out/summary.json", "sigma", "error");
+    const double sigma = results_parameter("out/summary.json", "sigma", "value");
+    const double error = results_parameter("out/summary.json", "sigma", "error");
     assert_true(error > 0.01 && error < 0.3);
     assert_true(fabs(sigma - 3) < 3 * error);
-    assert_close(parameter("out/summary.json", "exponent", "value"), 1, 0);
-    assert_true(isnan(parameter("out/summary.json", "exponent", "error")));
-    assert_close(parameter("out/summary.json", "inner_cutoff", "value"), 0, 0);
+    assert_close(results_parameter("out/summary.json", "exponent", "value"), 1, 0);
+    assert_true(isnan(results_parameter("out/summary.json", "exponent", "error")));
+    assert_close(results_parameter("out/summary.json", "inner_cutoff", "value"), 0, 0);
 }
 
 /// A sigma of 3 is asked for of a range from 4 to 6: the fit ends there and says so.
@@ -109,8 +95,8 @@ test_fit_with_fixed_parameters_gives_the_same_bits_from_used_and_in_pieces(void 
     results_assert_same("1", "pieces", tables);
     static const char *const keys[] = {"value", "error"};
     for (int k = 0; k < 2; k++)
-        assert_close(parameter("pieces/summary.json", "sigma", keys[k]),
-                     parameter("1/summary.json", "sigma", keys[k]), 0);
+        assert_close(results_parameter("pieces/summary.json", "sigma", keys[k]),
+                     results_parameter("1/summary.json", "sigma", keys[k]), 0);
 }
 
 /// Each replica of the verification is one window long: only their scatter tells of the error.
@@ -160,9 +146,9 @@ static void test_every_method_fits_sigma_alone(void **state) {
         free(text);
         RUN_PROGRAM(&result, "fit", "run.json", "--force", "-o", "out", "--quiet");
         run_program_assert_code(&result, 0);
-        const double sigma = parameter("out/summary.json", "sigma", "value");
+        const double sigma = results_parameter("out/summary.json", "sigma", "value");
         assert_true(sigma > 2 && sigma < 4);
-        assert_close(parameter("out/summary.json", "exponent", "value"), 1, 0);
+        assert_close(results_parameter("out/summary.json", "exponent", "value"), 1, 0);
     }
 }
 

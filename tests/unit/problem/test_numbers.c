@@ -120,6 +120,29 @@ static void test_numbers_apply_leaves_laws_alone_that_no_number_belongs_to(void 
     finish(&mixture);
 }
 
+static void test_numbers_apply_copies_the_parameters_of_an_interaction(void **state) {
+    (void)state;
+    static const struct interaction kind = {.name = "two", .parameters_size = 2 * sizeof(double)};
+    static const double given[2] = {3, 4};
+    const struct inverse_problem problem = {
+        .numbers = 1,
+        .number = {{.name = "interactions.two.second",
+                    .maximum = 9,
+                    .place = INVERSE_OF_INTERACTION,
+                    .part = 1,
+                    .offset = sizeof(double)}},
+        .scene = {.interaction = {{&kind, given}, {&kind, given}}, .interactions = 2}};
+    struct inverse_problem changed = {0};
+    struct numbers_own own = {0};
+    assert_ok(mf_numbers_apply(&problem, &(double){7}, &changed, &own));
+    const double *second = changed.scene.interaction[1].parameters;
+    assert_identical(second[0], 3);
+    assert_identical(second[1], 7);
+    assert_identical(given[1], 4);
+    assert_ptr_equal(changed.scene.interaction[0].parameters, given);
+    mf_numbers_own_clear(&own);
+}
+
 static void test_numbers_are_variables_from_minimum_to_maximum_with_errors(void **state) {
     (void)state;
     struct mixture mixture;
@@ -191,6 +214,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_numbers_apply_gives_the_tables_and_settings_of_a_scene_that_says_so),
         cmocka_unit_test(test_numbers_apply_leaves_laws_alone_that_no_number_belongs_to),
+        cmocka_unit_test(test_numbers_apply_copies_the_parameters_of_an_interaction),
         cmocka_unit_test(test_numbers_are_variables_from_minimum_to_maximum_with_errors),
         cmocka_unit_test(test_numbers_stand_behind_the_curves_and_change_none),
         cmocka_unit_test(test_numbers_bound_is_the_end_that_a_value_has_come_to),
