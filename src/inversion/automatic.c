@@ -48,9 +48,8 @@ static bool newton_helped(const struct inversion *inversion) {
 /// Inside the basin of inverse Monte Carlo: near the noise, where its response holds, or where its
 /// steps converge.
 static bool in_basin(const struct inversion *inversion) {
-    const struct target_distance *rdf = &inversion->distance[TARGET_RDF];
     const bool first = isinf(inversion->progress.best[TARGET_RDF].rms);
-    return rdf->rms < 2 * rdf->noise ||
+    return mf_inversion_is_near(inversion) ||
            (!first && (newton_helped(inversion) || predicts(inversion)));
 }
 

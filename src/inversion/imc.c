@@ -26,7 +26,18 @@ static const struct field own_fields[] = {
 static const char *const columns[] = {INVERSION_COLUMNS, "regularisation[1]", "misfit[1]",
                                       "directions", NULL};
 
-enum status mf_imc_step(const struct inversion *inversion, const struct imc_parameters *parameters,
+/// Near the noise a step that is as smooth as the noise allows is none at all, though g still asks
+/// for one along the ramp. There the step is the most probable one, with the prior of the band.
+static double choose_strength(struct inversion *inversion,
+                              const struct imc_parameters *parameters) {
+    if (parameters->regularisation != 0 || parameters->strength > 0 ||
+        !mf_inversion_is_near(inversion))
+        return parameters->strength;
+    inversion->settling = true;
+    return mf_inversion_band_prior(inversion);
+}
+
+enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters *parameters,
                         double *step, double extra[3]) {
     const struct inverse_problem *problem = inversion->problem;
     const struct target *pressure = &problem->targets.target[TARGET_PRESSURE];
@@ -41,7 +52,8 @@ enum status mf_imc_step(const struct inversion *inversion, const struct imc_para
         system.wanted = *pressure->value - inversion->pressure.value;
     }
     NEW_ARRAY(x, grid->known);
-    CHECK(solvers[parameters->regularisation](&system, parameters->strength, x, &solution));
+    CHECK(solvers[parameters->regularisation](&system, choose_strength(inversion, parameters), x,
+                                              &solution));
     for (size_t a = 0; a < grid->known; a++)
         step[grid->known_point[a]] = x[a];
     extra[0] = solution.strength;

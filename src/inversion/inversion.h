@@ -77,10 +77,12 @@ struct inversion {
     double *ideal, *target_counts;            ///< shape [bins]
     double *excess, *variance;                ///< of S in the known bins, shape [known]
     double *covariance;                       ///< C of S in the known bins, shape [known, known]
+    double misfit;                            ///< χ² of the excess by bin
     double inefficiency;                      ///< samples that count as one independent
     double disagreement;                      ///< of the replicas, mf_replicas_disagreement
     struct target_distance distance[TARGETS]; ///< of the samples from what is asked for
     double own_noise;                         ///< of g by the samples alone, rms
+    bool settling;                            ///< the step is the most probable one, near the noise
     struct inversion_pressure pressure;
     double *phi, *step; ///< present potential and the step from it, shape [points]
     double *other_step; ///< what to do if the step makes it worse
@@ -99,6 +101,7 @@ struct inversion {
         struct target_distance least[TARGETS]; ///< nearest so far, of all that was kept
         struct inversion_drift drift;          ///< of the potentials sampled since the start
         double best_own_noise, best_disagreement;
+        double responses;                 ///< samples behind C, of all iterations near the noise
         double first_error, second_error; ///< of g, in the first two iterations from a start
     } progress;
 };
@@ -160,6 +163,9 @@ enum status mf_inversion_start_again(struct inversion *inversion) MUST_USE;
 /// Why a fit that has finished did not converge, in words.
 void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]);
 
+/// Whether g is so near to its target, by its noise, that C hardly changes any more.
+bool mf_inversion_is_near(const struct inversion *inversion);
+
 /// Whether the ramp of the potential grows without end; never with a pressure, which holds it.
 bool mf_inversion_runs_away(const struct inversion *inversion);
 
@@ -177,6 +183,7 @@ void mf_ibi_step(const struct inversion *inversion, double *step);
 /// The same with the slope of the hypernetted chain. Fails: NO_MEMORY.
 enum status mf_hnc_step(const struct inversion *inversion, double ridge, double *step) MUST_USE;
 
-/// The regularised Newton step; `extra` are strength, misfit and directions. Fails: NO_MEMORY.
-enum status mf_imc_step(const struct inversion *inversion, const struct imc_parameters *parameters,
+/// The regularised Newton step; `extra` are strength, misfit and directions. Sets `settling`.
+/// Fails: NO_MEMORY.
+enum status mf_imc_step(struct inversion *inversion, const struct imc_parameters *parameters,
                         double *step, double extra[3]) MUST_USE;

@@ -91,18 +91,50 @@ static double spread(const struct inversion *inversion, const double *v, double 
     return variance;
 }
 
+/// Σ ← Σ + factor u uᵀ.
+static void add_square(struct inversion *inversion, double factor, const double *u) {
+    const size_t n = inversion->grid.known;
+    for (size_t a = 0; a < n; a++)
+        for (size_t b = 0; b < n; b++)
+            inversion->band.covariance[a * n + b] += factor * u[a] * u[b];
+}
+
+/// The way of A and of the pressure that the most probable step x = Σ Bᵀ W^½ excess would go from
+/// here. Of A it counts as an error: Σ ← Σ + (A/σ_A²)² Σw (Σw)ᵀ.
+static enum status add_way(struct inversion *inversion, const struct imc_system *system,
+                           const double *weight, double *scratch) {
+    enum status status = STATUS_OK;
+    const size_t n = inversion->grid.known;
+    struct inverse_ramp *ramp = &inversion->band.ramp;
+    double *asked = NULL, *step = NULL;
+    NEW_ARRAY(asked, n);
+    NEW_ARRAY(step, n);
+    for (size_t a = 0; a < n; a++)
+        for (size_t b = 0; b < n; b++)
+            asked[a] += system->covariance[b * n + a] * system->excess[b] /
+                        (system->temperature * system->variance[b]);
+    spread(inversion, asked, step);
+    ramp->way = ramp->pressure_way = 0;
+    for (size_t a = 0; a < n; a++) {
+        ramp->way += weight[a] * step[a];
+        ramp->pressure_way += inversion->pressure.slope[a] * step[a];
+    }
+    const double variance = spread(inversion, weight, scratch);
+    add_square(inversion, pow(ramp->way / variance, 2), scratch);
+done:
+    mf_memory_free(asked);
+    mf_memory_free(step);
+    return status;
+}
+
 /// What a pressure with its error adds: Σ ← Σ − Σp (Σp)ᵀ/(p·Σp + σ_P²).
 static void add_pressure(struct inversion *inversion, double *scratch) {
-    const size_t n = inversion->grid.known;
     const double open = spread(inversion, inversion->pressure.slope, scratch);
     inversion->band.ramp.pressure_open = sqrt(open);
     if (!targets_ask(&inversion->problem->targets, TARGET_PRESSURE))
         return;
     const double noise = inversion->distance[TARGET_PRESSURE].noise;
-    for (size_t a = 0; a < n; a++)
-        for (size_t b = 0; b < n; b++)
-            inversion->band.covariance[a * n + b] -=
-                scratch[a] * scratch[b] / (open + noise * noise);
+    add_square(inversion, -1 / (open + noise * noise), scratch);
 }
 
 /// Standard errors, those of A, and those of Φ if A were known.
@@ -156,13 +188,14 @@ done:
     return status;
 }
 
-/// Variances of the excess, as large as what is left of it shows them to be: χ² by bin, if above 1.
+/// χ² by bin, if above 1: by so much the variances are larger, as what is left of the excess shows.
 /// R. T. Birge, Phys. Rev. 40, 207 (1932).
-static void find_variance(const struct imc_system *system, const double *nothing,
-                          double *variance) {
-    const double chi2 = fmax(1, mf_imc_solve_misfit(system, nothing));
-    for (size_t a = 0; a < system->size; a++)
-        variance[a] = chi2 * system->variance[a];
+static double birge_factor(const struct inversion *inversion) {
+    return fmax(1, inversion->misfit);
+}
+
+double mf_inversion_band_prior(const struct inversion *inversion) {
+    return birge_factor(inversion) / pow(inversion->problem->scene.temperature, 2);
 }
 
 enum status mf_inversion_band_find(struct inversion *inversion) {
@@ -174,11 +207,13 @@ enum status mf_inversion_band_find(struct inversion *inversion) {
     NEW_ARRAY(scratch, grid->known);
     NEW_ARRAY(variance, grid->known);
     struct imc_system system = mf_inversion_system(inversion);
-    find_variance(&system, scratch, variance);
+    for (size_t a = 0; a < system.size; a++)
+        variance[a] = birge_factor(inversion) * system.variance[a];
     system.variance = variance;
     CHECK(mf_inversion_band_covariance(&system, band->covariance, &band->ramp.directions));
-    add_pressure(inversion, scratch);
     weigh_ramp(inversion, weight);
+    CHECK(add_way(inversion, &system, weight, scratch));
+    add_pressure(inversion, scratch);
     find_errors(inversion, weight, scratch);
     if (!isnan(band->covariance[0]))
         CHECK(find_flat(inversion));

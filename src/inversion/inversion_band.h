@@ -10,6 +10,10 @@
 /// Where more of the excess is left than these say, χ² by bin above 1, the σ_a² are that much
 /// larger: a fit stops within 1.7 times the noise, and what it leaves is an error of Φ too.
 ///
+/// What the most probable step from there would still change of the ramp is an error too. `imc` and
+/// `auto` take this step near the noise, and end when it is below half of the errors of A and of
+/// the pressure.
+///
 /// Errors of bins count as independent. Those by sampling are correlated as S is, and with that
 /// F = n C/(k_B T)² (n independent configurations; the canonical ensemble is an exponential family)
 /// would determine water's ramp within 0.008 k_B T; but then every systematic error of the target
@@ -42,6 +46,9 @@ struct inversion_band {
 /// Fails: NO_MEMORY. Tested: test_inversion_band.
 enum status mf_inversion_band_covariance(const struct imc_system *system, double *covariance,
                                          double *directions) MUST_USE;
+
+/// Strength of mf_imc_solve's prior with which its step is the most probable one.
+double mf_inversion_band_prior(const struct inversion *inversion);
 
 enum status mf_inversion_band_init(struct inversion_band *band, size_t known,
                                    size_t points) MUST_USE;

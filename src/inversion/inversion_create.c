@@ -197,6 +197,8 @@ size_t mf_inversion_spans(void *memory, struct memory_span *span) {
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         span[n++] = (struct memory_span){arrays[k], bytes};
     span[n++] = (struct memory_span){inversion->best_counts, inversion->bins * sizeof(double)};
+    const size_t known = inversion->grid.known;
+    span[n++] = (struct memory_span){inversion->covariance, known * known * sizeof(double)};
     n += mf_inversion_band_spans(&inversion->band, inversion->grid.points, span + n);
     return n + mf_replicas_spans(&inversion->replicas, span + n);
 }

@@ -40,6 +40,11 @@ void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INV
         snprintf(reason, INVERSE_REASON_SIZE,
                  "g agrees, but the pressure is %.3g off, with an error of %.2g", pressure->rms,
                  pressure->noise);
+    else if (agrees && p->best_own_noise <= settings->precision)
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "g agrees, but it still asks for another ramp A (1 - r/cutoff), by %.2g k_B T_0 "
+                 "with an error of %.2g: more \"iterations\" are needed, or a \"pressure\"",
+                 inversion->band.ramp.way, inversion->band.ramp.error);
     else if (agrees)
         snprintf(
             reason, INVERSE_REASON_SIZE,

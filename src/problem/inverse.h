@@ -112,6 +112,8 @@ enum { INVERSE_EXTRA = 9, INVERSE_REASON_SIZE = 256 };
 /// What g(r) leaves open of a potential: the ramp A (1 − r/r_c).
 struct inverse_ramp {
     double error;         ///< standard error of A [k_B T_0]; 0: not known
+    double way;           ///< of A that the target still asks for [k_B T_0]; part of the error
+    double pressure_way;  ///< the same of the pressure [k_B T_0/λ^d]
     double pressure;      ///< ∂P/∂A [1/λ^d]
     double pressure_open; ///< standard error of the pressure by g(r) alone [k_B T_0/λ^d]
     double directions;    ///< of the potential that the data determine,

@@ -151,13 +151,45 @@ static void test_inversion_band_widens_when_more_than_noise_is_left(void **state
     struct inversion *inversion = &made.inversion;
     assert_ok(mf_inversion_iterate(inversion, &step, &listener));
     for (int left = 0; left < 2; left++) {
+        // Of alternating signs, which no ramp removes.
+        const double noises = left ? 3 : 0.5;
         for (size_t a = 0; a < inversion->grid.known; a++)
-            inversion->excess[a] = (left ? 3 : 0.5) * sqrt(inversion->variance[a]);
+            inversion->excess[a] = (a % 2 ? noises : -noises) * sqrt(inversion->variance[a]);
+        inversion->misfit = noises * noises;
         assert_ok(mf_inversion_band_find(inversion));
         error[left] = inversion->band.error[inversion->grid.known_point[30]];
     }
     print_message("errors of %.4f and %.4f\n", error[0], error[1]);
     assert_true(error[1] > 1.2 * error[0] && error[1] < 3.01 * error[0]);
+    clear(&made);
+}
+
+/// An excess that the response makes of a ramp asks for it back, and its errors are not less.
+static void test_inversion_band_counts_the_ramp_that_is_asked_for(void **state) {
+    (void)state;
+    struct made made;
+    struct inverse_step step;
+    const struct inverse_listener listener = {ignore, NULL};
+    const double ramp = 1.5;
+    make(&made, INVERSION_FROM_MEAN_FORCE);
+    made.settings.common.samples = 200;
+    assert_ok(mf_inversion_create(&made.inversion, &mf_imc, &made.problem, &made.settings));
+    struct inversion *inversion = &made.inversion;
+    const struct potential_grid *grid = &inversion->grid;
+    assert_ok(mf_inversion_iterate(inversion, &step, &listener));
+    for (size_t a = 0; a < grid->known; a++) {
+        inversion->excess[a] = 0;
+        for (size_t b = 0; b < grid->known; b++)
+            inversion->excess[a] += inversion->covariance[a * grid->known + b] * ramp *
+                                    mf_potential_grid_ramp(grid, grid->known_point[b]) /
+                                    made.problem.scene.temperature;
+    }
+    inversion->misfit = 1;
+    assert_ok(mf_inversion_band_find(inversion));
+    const struct inverse_ramp found = inversion->band.ramp;
+    print_message("ramp %.3f, asked for %.3f, error %.3f\n", ramp, found.way, found.error);
+    assert_true(fabs(found.way - ramp) < 0.2 * ramp);
+    assert_true(found.error > fabs(found.way));
     clear(&made);
 }
 
@@ -167,6 +199,7 @@ int main(void) {
         cmocka_unit_test(test_inversion_start_is_the_target_as_it_stands_without_errors),
         cmocka_unit_test(test_inversion_start_is_poor_when_g_is_far_off_under_tension),
         cmocka_unit_test(test_inversion_band_widens_when_more_than_noise_is_left),
+        cmocka_unit_test(test_inversion_band_counts_the_ramp_that_is_asked_for),
         cmocka_unit_test(test_inversion_create_refuses_a_hole_beyond_the_core),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
