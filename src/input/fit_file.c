@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "base/names.h"
+#include "input/fit_base.h"
 #include "input/fit_check.h"
 
 #include <math.h>
@@ -107,12 +108,13 @@ static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind k
     if (object->item == NULL)
         return STATUS_OK;
     mf_json_renamed(object, "genes", "coefficients");
+    TRY(mf_scene_law_read(&unknown->start, object, "start", laws, composition, units));
+    mf_fit_base_check(unknown, kind, object);
     if (p->maximum <= p->minimum)
         mf_json_fault(object, "maximum", "%g is not above the minimum %g", p->maximum, p->minimum);
     if (kind == UNKNOWN_OMEGA && p->cutoff <= p->inner_cutoff)
         mf_json_fault(object, "cutoff", "%g is not above the inner cutoff %g", p->cutoff,
                       p->inner_cutoff);
-    TRY(mf_scene_law_read(&unknown->start, object, "start", laws, composition, units));
     TRY(mf_scene_law_read(&unknown->truth, object, "truth", laws, composition, units));
     mf_json_finish(object);
     return STATUS_OK;
@@ -226,7 +228,8 @@ enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
 enum status mf_fit_file_read(struct fit_file *fit, const char *file,
                              const struct run_options *options) {
     TRY(mf_fit_file_parse(fit, file, options));
-    return mf_fit_check(fit, file);
+    TRY(mf_fit_check(fit, file));
+    return mf_fit_base_find(fit);
 }
 
 void mf_fit_file_clear(struct fit_file *fit) {
@@ -235,6 +238,7 @@ void mf_fit_file_clear(struct fit_file *fit) {
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         mf_scene_law_clear(&fit->unknown[kind].start);
         mf_scene_law_clear(&fit->unknown[kind].truth);
+        mf_memory_free(fit->unknown[kind].base);
     }
     mf_memory_free(fit->method_parameters);
     mf_input_files_clear(&fit->inputs);

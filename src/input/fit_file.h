@@ -22,6 +22,7 @@ struct fit_unknown {
     struct unknown_parameters parameters;
     struct scene_law start; ///< without a curve: as mf_unknowns_start says
     struct scene_law truth; ///< the true curves where they are known
+    double *base;           ///< of struct unknown
 };
 
 /// Owns everything that the problem borrows.

@@ -153,6 +153,11 @@ bool mf_inversion_keeps(struct inversion *inversion);
 /// beside one another is a force. Fails: NO_MEMORY. Tested: test_inversion_start.
 enum status mf_inversion_start(struct inversion *inversion) MUST_USE;
 
+/// The curve that an inversion of the problem begins with, shape [points of mf_unknowns_points]:
+/// that of the problem, or the hypernetted chain's, in two dimensions −k_B T ln g. Fails:
+/// NO_MEMORY; BAD_INPUT as mf_inversion_create.
+enum status mf_inversion_start_curve(const struct inverse_problem *problem, double *curve) MUST_USE;
+
 /// Whether the start was the hypernetted chain's and leads nowhere, after an iteration whose
 /// potential was kept or not.
 bool mf_inversion_start_is_poor(const struct inversion *inversion, bool kept);

@@ -6,6 +6,7 @@
 #include "observe/finite_size.h"
 
 #include <math.h>
+#include <string.h>
 
 static const char *const starts[] = {"auto", "mean-force", NULL};
 
@@ -156,21 +157,36 @@ static enum status refuse_holes(const struct inversion *inversion) {
     return STATUS_OK;
 }
 
+/// All but the samplers, with phi where it begins.
+static enum status prepare(struct inversion *inversion, const struct inverse_problem *problem) {
+    inversion->problem = problem;
+    inversion->bins = problem->targets.target[TARGET_RDF].count;
+    TRY(choose_size(inversion));
+    TRY(mf_potential_grid_init(&inversion->grid, problem));
+    TRY(refuse_holes(inversion));
+    TRY(allocate(inversion));
+    count_target(inversion);
+    return mf_inversion_start(inversion);
+}
+
+enum status mf_inversion_start_curve(const struct inverse_problem *problem, double *curve) {
+    struct inversion inversion = {0};
+    mf_fields_set_defaults(mf_inversion_fields, &inversion.settings.common);
+    const enum status status = prepare(&inversion, problem);
+    if (status == STATUS_OK)
+        memcpy(curve, inversion.phi, inversion.grid.points * sizeof *curve);
+    mf_inversion_destroy(&inversion);
+    return status;
+}
+
 enum status mf_inversion_create(void *memory, const struct inverse_method *method,
                                 const struct inverse_problem *problem, const void *parameters) {
     struct inversion *inversion = memory;
     const struct rdf_bins *bins = &problem->targets.bins;
     inversion->settings = *(const struct inversion_settings *)parameters;
     inversion->method = method;
-    inversion->problem = problem;
-    inversion->bins = problem->targets.target[TARGET_RDF].count;
     const struct inversion_parameters *p = &inversion->settings.common;
-    TRY(choose_size(inversion));
-    TRY(mf_potential_grid_init(&inversion->grid, problem));
-    TRY(refuse_holes(inversion));
-    TRY(allocate(inversion));
-    count_target(inversion);
-    TRY(mf_inversion_start(inversion));
+    TRY(prepare(inversion, problem));
     TRY(mf_potential_grid_table(&inversion->grid, inversion->phi, &inversion->table));
     TRY(mf_replicas_init(&inversion->replicas, (size_t)p->replicas, (enum sampler_kind)p->sampler,
                          &(struct sampler_system){.cancel = problem->scene.cancel,

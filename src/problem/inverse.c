@@ -16,39 +16,57 @@ const char *const mf_inverse_unknown_names[UNKNOWNS] = {"potential", "omega"};
 static const char *const potential_curves[] = {"bezier", "bspline", NULL};
 static const char *const omega_curves[] = {"bezier", "bspline", "power", NULL};
 
+/// In the order of enum unknown_base.
+static const char *const potential_bases[] = {"none", "start", "mean-force", "hypernetted-chain",
+                                              "auto", NULL};
+static const char *const omega_bases[] = {"none", "start", NULL};
+
 #define MEMBER(name) .offset = offsetof(struct unknown_parameters, name)
-#define CURVE(its_names, its_maximum, its_unit)                                                    \
-    {"curve",                                                                                      \
-     FIELD_CHOICE,                                                                                 \
-     MEMBER(shape),                                                                                \
-     .choices = its_names,                                                                         \
-     .initial = 0,                                                                                 \
-     .unit = "",                                                                                   \
-     .help =                                                                                       \
-         "that coefficients make: Bezier-smoothed random walk, cubic B-splines, or a formula"},    \
-        {"coefficients",                                                                           \
-         FIELD_INTEGER,                                                                            \
-         MEMBER(coefficients),                                                                     \
-         .initial = 0,                                                                             \
-         .minimum = 0,                                                                             \
-         .maximum = 1000,                                                                          \
-         .unit = "",                                                                               \
-         .help = "of the curve; 0: 100 of bezier, 12 of bspline, of power 3 less those that are "  \
-                 "fixed"},                                                                         \
-        {"minimum",           FIELD_NUMBER,       MEMBER(minimum),  .initial = 0,                  \
-         .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = its_unit, .help = "least coefficient"},  \
-        {"maximum",           FIELD_NUMBER,       MEMBER(maximum),  .initial = its_maximum,        \
+#define CURVE(its_names, its_bases, its_base, its_base_help, its_maximum, its_unit)                 \
+    {"curve",                                                                                       \
+     FIELD_CHOICE,                                                                                  \
+     MEMBER(shape),                                                                                 \
+     .choices = its_names,                                                                          \
+     .initial = 0,                                                                                  \
+     .unit = "",                                                                                    \
+     .help =                                                                                        \
+         "that coefficients make: Bezier-smoothed random walk, cubic B-splines, or a formula"},     \
+        {"coefficients",                                                                            \
+         FIELD_INTEGER,                                                                             \
+         MEMBER(coefficients),                                                                      \
+         .initial = 0,                                                                              \
+         .minimum = 0,                                                                              \
+         .maximum = 1000,                                                                           \
+         .unit = "",                                                                                \
+         .help = "of the curve; 0: 100 of bezier, 12 of bspline, of power 3 less those that are "   \
+                 "fixed"},                                                                          \
+        {"base",     FIELD_CHOICE,         MEMBER(base), .choices = its_bases, .initial = its_base, \
+         .unit = "", .help = its_base_help},                                                        \
+        {"minimum",                                                                                 \
+         FIELD_NUMBER,                                                                              \
+         MEMBER(minimum),                                                                           \
+         .initial = NAN,                                                                            \
+         .minimum = -DBL_MAX,                                                                       \
+         .maximum = DBL_MAX,                                                                        \
+         .unit = its_unit,                                                                          \
+         .help = "least coefficient; default: 0 without a base, else -maximum"},                    \
+        {"maximum",           FIELD_NUMBER,       MEMBER(maximum),  .initial = its_maximum,         \
          .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = its_unit, .help = "largest coefficient"},
 
 const struct field mf_inverse_potential_fields[] = {
-    CURVE(potential_curves, 6.5, "k_B T_0") // ends at the target's range
+    CURVE(potential_curves, potential_bases, BASE_AUTO,
+          "what the curve is added to; auto: \"start\" if there is one, else hypernetted-chain, "
+          "the inversion of g, or in two dimensions mean-force, -k_B T ln g",
+          6.5, "k_B T_0") // ends at the target's range
     FIELD_END,
 };
 
 const struct field mf_inverse_omega_fields[] = {
-    CURVE(omega_curves, 6.5, "sqrt(mu/tau)"){"inner_cutoff", FIELD_NUMBER, MEMBER(inner_cutoff),
-                                             .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-                                             .unit = "lambda", .help = "below which omega is 0"},
+    CURVE(omega_curves, omega_bases, BASE_NONE,
+          "what the curve is added to; start: that of \"start\", or a straight line", 6.5,
+          "sqrt(mu/tau)"){"inner_cutoff", FIELD_NUMBER, MEMBER(inner_cutoff), .initial = 0,
+                          .minimum = 0, .maximum = DBL_MAX, .unit = "lambda",
+                          .help = "below which omega is 0"},
     {"cutoff", FIELD_NUMBER, MEMBER(cutoff), .initial = 1, .minimum = FIELD_ABOVE_ZERO,
      .maximum = DBL_MAX, .unit = "lambda", .help = "where omega ends"},
     FIELD_END,

@@ -22,6 +22,11 @@ extern const char *const mf_inverse_unknown_names[UNKNOWNS];
 /// [0, 4] and r_0 from the inner cutoff to half-way to the cutoff.
 enum { INVERSE_CURVE_BEZIER, INVERSE_CURVE_BSPLINE, INVERSE_CURVE_POWER };
 
+/// What the curve of an unknown's coefficients is added to: nothing; its start (mf_unknowns_start);
+/// of a potential −k_B T ln g or the hypernetted-chain inversion of g; or what seems best: the
+/// start where the file gives one, else that inversion, in two dimensions −k_B T ln g.
+enum unknown_base { BASE_NONE, BASE_START, BASE_MEAN_FORCE, BASE_HNC, BASE_AUTO };
+
 /// Parameters of the formula, in this order everywhere: σ [sqrt(mass/time)], s, r_0 [λ]. Each is a
 /// variable unless it is held fixed.
 enum { INVERSE_SIGMA, INVERSE_EXPONENT, INVERSE_INNER_CUTOFF, INVERSE_PARAMETERS };
@@ -33,6 +38,7 @@ struct unknown_parameters {
     double minimum, maximum;          ///< of a variable [k_B T_0] or [sqrt(mass/time)]
     double inner_cutoff, cutoff;      ///< of a friction weight [λ]
     double fixed[INVERSE_PARAMETERS]; ///< of the formula; NaN: to be found
+    int base;                         ///< enum unknown_base, as the file says
 };
 
 extern const struct field mf_inverse_potential_fields[], mf_inverse_omega_fields[];
@@ -55,6 +61,9 @@ struct unknown {
     struct unknown_parameters parameters;
     /// To begin with, or NULL: of a potential for each pair type, of a friction weight for all.
     const struct curve *start[COMPOSITION_MOST_PAIRS];
+    /// What the curve of the coefficients is added to, shape [points of mf_unknowns_points]; NULL:
+    /// nothing. It has the detail of the target that few smooth coefficients cannot have.
+    const double *base;
 };
 
 /// Where a number of a scene stands: in a curve of a law that is known, or in the setup.

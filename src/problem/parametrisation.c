@@ -106,14 +106,21 @@ void mf_parametrisation_clear(struct parametrisation *parametrisation) {
     *parametrisation = (struct parametrisation){0};
 }
 
-/// Σ of basis and variables, in the unknown's unit.
+/// What coefficients are added to.
+static double base_of(const struct parametrisation *parametrisation, enum unknown_kind kind,
+                      size_t point) {
+    const double *base = unknown_of(parametrisation, kind)->base;
+    return base ? base[point] : 0;
+}
+
+/// The base and Σ of basis and variables, in the unknown's unit.
 static void linear_curve(const struct parametrisation *parametrisation, enum unknown_kind kind,
                          const double *x, double *curve) {
     const struct unknown_parameters *p = &unknown_of(parametrisation, kind)->parameters;
     const size_t count = mf_parametrisation_variables(parametrisation, kind);
     for (size_t k = 0; k < mf_unknowns_points(&parametrisation->unknowns, kind); k++) {
         const double *row = parametrisation->basis[kind] + k * count;
-        double sum = 0;
+        double sum = base_of(parametrisation, kind, k);
         for (size_t n = 0; n < count; n++)
             sum += row[n] * (p->minimum + x[n] * (p->maximum - p->minimum));
         curve[k] = kind == UNKNOWN_OMEGA ? fmax(0, sum) : sum;
@@ -278,6 +285,19 @@ done:
     return status;
 }
 
+/// What coefficients add up to where the fit begins.
+static void start_curve(const struct parametrisation *parametrisation, enum unknown_kind kind,
+                        double *curve) {
+    const struct unknown *unknown = unknown_of(parametrisation, kind);
+    const size_t points = mf_unknowns_points(&parametrisation->unknowns, kind);
+    if (unknown->base == NULL || mf_unknowns_has_start(&parametrisation->unknowns, kind))
+        mf_unknowns_start(&parametrisation->unknowns, kind, curve);
+    else
+        memcpy(curve, unknown->base, points * sizeof *curve);
+    for (size_t k = 0; k < points; k++)
+        curve[k] -= base_of(parametrisation, kind, k);
+}
+
 static enum status start_of(const struct parametrisation *parametrisation, enum unknown_kind kind,
                             double *variables) {
     enum status status = STATUS_OK;
@@ -287,7 +307,7 @@ static enum status start_of(const struct parametrisation *parametrisation, enum 
         return STATUS_OK;
     }
     NEW_ARRAY(curve, mf_unknowns_points(&parametrisation->unknowns, kind));
-    mf_unknowns_start(&parametrisation->unknowns, kind, curve);
+    start_curve(parametrisation, kind, curve);
     for (size_t n = 0; n < mf_unknowns_curve_count(&parametrisation->unknowns, kind); n++)
         CHECK(start_of_curve(parametrisation, kind, n,
                              curve + n * mf_unknowns_points_each(&parametrisation->unknowns, kind),

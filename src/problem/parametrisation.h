@@ -9,11 +9,11 @@
 
 struct parametrisation {
     struct unknowns unknowns;
-    size_t variables;       ///< of all unknowns
-    size_t first_number;    ///< variable of the first number, behind those of the curves
-    size_t first[UNKNOWNS]; ///< variable of each
-    double
-        *basis[UNKNOWNS]; ///< shape [points, variables of it]: curve = basis · x; NULL: a formula
+    size_t variables;        ///< of all unknowns
+    size_t first_number;     ///< variable of the first number, behind those of the curves
+    size_t first[UNKNOWNS];  ///< variable of each
+    double *basis[UNKNOWNS]; ///< shape [points, variables of it]: curve = base + basis · x, with
+                             ///< the base of the problem; NULL: a formula
 };
 
 /// Fails: NO_MEMORY; BAD_INPUT as mf_potential_grid_init.
@@ -60,7 +60,8 @@ enum status mf_parametrisation_band(const struct parametrisation *parametrisatio
 enum status mf_parametrisation_laws(const struct parametrisation *parametrisation,
                                     const double *variables, struct unknowns_laws *laws) MUST_USE;
 
-/// Variables nearest to the curves that the fit begins with (mf_unknowns_start). Fails: NO_MEMORY.
+/// Variables nearest to the curves that the fit begins with: those of the file, or the base, or
+/// mf_unknowns_start. Fails: NO_MEMORY.
 enum status mf_parametrisation_start(const struct parametrisation *parametrisation,
                                      double *variables) MUST_USE;
 

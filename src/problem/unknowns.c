@@ -66,6 +66,13 @@ void mf_unknowns_start(const struct unknowns *unknowns, enum unknown_kind kind, 
                                      : middle * (1 - grid->r[k] / grid->cutoff);
 }
 
+bool mf_unknowns_has_start(const struct unknowns *unknowns, enum unknown_kind kind) {
+    for (size_t curve = 0; curve < mf_unknowns_curve_count(unknowns, kind); curve++)
+        if (unknowns->problem->unknown[kind].start[curve])
+            return true;
+    return false;
+}
+
 enum status mf_unknowns_laws_make(const struct unknowns *unknowns,
                                   const double *const curve[UNKNOWNS], const double *number,
                                   struct unknowns_laws *laws) {

@@ -39,6 +39,9 @@ void mf_unknowns_curve_name(const struct unknowns *unknowns, enum unknown_kind k
 /// force and a friction weight that falls linearly from the middle of its range.
 void mf_unknowns_start(const struct unknowns *unknowns, enum unknown_kind kind, double *curve);
 
+/// Whether the run file gives the curve that a fit begins with, of a mixture for any pair type.
+bool mf_unknowns_has_start(const struct unknowns *unknowns, enum unknown_kind kind);
+
 /// What a simulation of some curves and numbers is made of: the problem with these numbers in its
 /// scene; tables for the kernels of the curves that are given, and of the scene's laws where
 /// `curve` is NULL. What was made must be cleared with mf_unknowns_laws_clear, even after a

@@ -39,8 +39,14 @@ static void begin(struct both *both, bool potential, bool omega) {
     both->problem = (struct inverse_problem){
         .targets = {.bins = {0, 0.1, BINS},
                     .target[TARGET_RDF] = {.count = BINS, .value = both->g}},
-        .unknown = {{potential, {bspline, POTENTIAL_GENES, -20, 80, 0, 0, {0}}, {&both->potential}},
-                    {omega, {bspline, WEIGHT_GENES, 0, 5, 0.1, 1.5, {0}}, {&both->omega}}},
+        .unknown = {{potential,
+                     {bspline, POTENTIAL_GENES, -20, 80, 0, 0, {0}, BASE_NONE},
+                     {&both->potential},
+                     NULL},
+                    {omega,
+                     {bspline, WEIGHT_GENES, 0, 5, 0.1, 1.5, {0}, BASE_NONE},
+                     {&both->omega},
+                     NULL}},
         .scene = {.temperature = 1},
         .core_threshold = 1e-3,
         .core_stiffness = 2000};
@@ -118,6 +124,33 @@ static void test_parametrisation_start_falls_from_the_middle_when_no_weight_is_g
     mf_parametrisation_curve(&both.parametrisation, UNKNOWN_OMEGA, both.variables, curve);
     for (int k = 0; k < OMEGA_POINTS; k++)
         assert_close(curve[k], 2.5 * (1 - both.parametrisation.unknowns.omega.r[k] / 1.5), 0.02);
+    mf_parametrisation_clear(&both.parametrisation);
+}
+
+/// Without a start of its own a fit begins with the base itself, and a change of coefficients
+/// changes the curve as without a base.
+static void test_parametrisation_adds_coefficients_to_the_base(void **state) {
+    (void)state;
+    struct both both;
+    double base[MOST_POINTS] = {0}, curve[MOST_POINTS], moved[MOST_POINTS], without[2][MOST_POINTS];
+    begin(&both, true, false);
+    for (int k = CORE; k < BINS; k++)
+        base[k] = 3 * sin(0.7 * k) * (k % 2 ? 1.5 : 1); // as rough as no 12 coefficients are
+    for (int step = 0; step < 2; step++) {
+        both.variables[3] += 0.1 * step;
+        mf_parametrisation_curve(&both.parametrisation, UNKNOWN_POTENTIAL, both.variables,
+                                 without[step]);
+    }
+    both.problem.unknown[UNKNOWN_POTENTIAL].base = base;
+    both.problem.unknown[UNKNOWN_POTENTIAL].start[0] = NULL;
+    assert_ok(mf_parametrisation_start(&both.parametrisation, both.variables));
+    mf_parametrisation_curve(&both.parametrisation, UNKNOWN_POTENTIAL, both.variables, curve);
+    both.variables[3] += 0.1;
+    mf_parametrisation_curve(&both.parametrisation, UNKNOWN_POTENTIAL, both.variables, moved);
+    for (int k = CORE; k < BINS; k++) {
+        assert_close(curve[k], base[k], 1e-9);
+        assert_close(moved[k] - curve[k], without[1][k] - without[0][k], 1e-9);
+    }
     mf_parametrisation_clear(&both.parametrisation);
 }
 
@@ -217,9 +250,10 @@ static void begin_power_with(struct both *both, int64_t variables, double sigma,
     *both = (struct both){.power = {2.5, 1.5, 0.4, 1.6}};
     both->omega = (struct curve){&mf_formula_power_omega, &both->power};
     both->problem.unknown[UNKNOWN_OMEGA] = (struct unknown){
-        true,
-        {INVERSE_CURVE_POWER, variables, 0, 5, 0.1, 1.6, {sigma, exponent, inner_cutoff}},
-        {&both->omega}};
+        .wanted = true,
+        .parameters =
+            {INVERSE_CURVE_POWER, variables, 0, 5, 0.1, 1.6, {sigma, exponent, inner_cutoff}, 0},
+        .start = {&both->omega}};
     assert_ok(mf_parametrisation_init(&both->parametrisation, &both->problem));
     assert_ok(mf_parametrisation_start(&both->parametrisation, both->variables));
 }
@@ -333,6 +367,7 @@ int main(void) {
         cmocka_unit_test(test_parametrisation_start_is_the_same_alone_and_beside_the_other),
         cmocka_unit_test(test_parametrisation_start_is_clamped_when_it_leaves_the_range),
         cmocka_unit_test(test_parametrisation_start_falls_from_the_middle_when_no_weight_is_given),
+        cmocka_unit_test(test_parametrisation_adds_coefficients_to_the_base),
         cmocka_unit_test(test_parametrisation_curve_of_a_weight_is_never_negative),
         cmocka_unit_test(
             test_parametrisation_band_is_the_error_that_the_covariance_gives_the_curve),
