@@ -58,13 +58,19 @@ struct state {
     } progress;
 };
 
+/// What becomes of the best of a linear model.
+enum { UNUSED, TRIED, JOINS };
+static const char *const surrogates[] = {"no", "yes", "join", NULL};
+
 #define MEMBER(name) .offset = offsetof(struct parameters, name)
 static const struct field own_fields[] = {
     {"checks", FIELD_INTEGER, MEMBER(checks), .initial = 2, .minimum = 1,
      .maximum = POPULATION_MOST, .unit = "",
      .help = "fresh measurements of what is thought best, before it is believed"},
-    {"surrogate", FIELD_CHOICE, MEMBER(surrogate), .choices = mf_population_no_or_yes, .initial = 1,
-     .unit = "", .help = "whether to try what a linear model of all simulations thinks best, too"},
+    {"surrogate", FIELD_CHOICE, MEMBER(surrogate), .choices = surrogates, .initial = TRIED,
+     .unit = "",
+     .help = "whether to try what a linear model of all simulations thinks best, too; join: and let "
+             "it join the genetic population"},
     FIELD_END,
 };
 
@@ -203,6 +209,8 @@ static enum status try_surrogate(struct state *state) {
         goto done;
     memcpy(state->incumbent, model.best, state->parametrisation.variables * sizeof(double));
     CHECK(check_incumbent(state, 1));
+    if (state->parameters.surrogate == JOINS && state->optimiser->suggest)
+        state->optimiser->suggest(state->optimiser_state, state->incumbent);
 done:
     mf_surrogate_model_clear(&model);
     return status;
@@ -283,6 +291,11 @@ static enum status iterate(void *memory, struct inverse_step *step,
     return STATUS_OK;
 }
 
+static enum status write(const void *memory, const struct inverse_folder *folder) {
+    const struct state *state = memory;
+    return mf_population_write(&state->population, folder);
+}
+
 static size_t spans(void *memory, struct memory_span *span) {
     struct state *state = memory;
     const size_t bytes = state->parametrisation.variables * sizeof(double);
@@ -317,5 +330,6 @@ static size_t spans(void *memory, struct memory_span *span) {
         .create = create,                                                                          \
         .destroy = destroy,                                                                        \
         .iterate = iterate,                                                                        \
-        .spans = spans};
+        .spans = spans,                                                                            \
+        .write = write};
 OPTIMISERS(MATCHING)

@@ -29,14 +29,14 @@ const struct field mf_population_fields[] = {
     {"estimator", FIELD_CHOICE, MEMBER(evaluate.estimator), .choices = mf_rdf_force_estimators,
      .initial = RDF_FORCE_NOT_USED, .unit = "",
      .help = "of g(r): force is worth twice the samples, but a large time step puts it off"},
-    {"racing", FIELD_NUMBER, MEMBER(evaluate.racing), .initial = 0, .minimum = 0, .maximum = 100,
+    {"racing", FIELD_NUMBER, MEMBER(evaluate.racing), .initial = 2, .minimum = 0, .maximum = 100,
      .unit = "standard errors",
      .help = "by which a running error must be hopeless for its simulation to stop; 0: never"},
     {"precision", FIELD_NUMBER, MEMBER(evaluate.precision), .initial = 0, .minimum = 0,
      .maximum = 1, .unit = "",
      .help = "relative standard error of an error with which its simulation stops; 0: never"},
     {"warm_start", FIELD_CHOICE, MEMBER(warm_start), .choices = mf_population_no_or_yes,
-     .initial = 0, .unit = "", .help = "begin where the best simulation of the last round ended"},
+     .initial = 1, .unit = "", .help = "begin where the best simulation of the last round ended"},
     {"common_noise", FIELD_CHOICE, MEMBER(common_noise), .choices = mf_population_no_or_yes,
      .initial = 0, .unit = "", .help = "the same random numbers for all candidates of a round"},
     FIELD_END,
@@ -65,6 +65,8 @@ enum status mf_population_init(struct population *population,
     NEW_ARRAY(population->variances, POPULATION_MOST);
     NEW_ARRAY(population->distances, POPULATION_MOST * TARGETS);
     NEW_ARRAY(population->first, parametrisation->variables);
+    NEW_ARRAY(population->shown, POPULATION_MOST * parametrisation->variables);
+    NEW_ARRAY(population->shown_error, POPULATION_MOST);
     const struct targets *targets = &parametrisation->unknowns.problem->targets;
     const size_t features = mf_targets_features(targets);
     NEW_ARRAY(population->features, POPULATION_MOST * features);
@@ -87,6 +89,8 @@ void mf_population_clear(struct population *population) {
     mf_memory_free(population->variances);
     mf_memory_free(population->distances);
     mf_memory_free(population->first);
+    mf_memory_free(population->shown);
+    mf_memory_free(population->shown_error);
     mf_memory_free(population->features);
     mf_memory_free(population->target);
     mf_memory_free(population->target_error);
@@ -276,6 +280,17 @@ static void remember(struct population *population, const double *variables, dou
         mf_surrogate_add(&population->surrogate, variables, features);
 }
 
+/// Keep a round to be written.
+static void show(struct population *population, const struct optimiser_round *round) {
+    enum { LEAST = 8 };
+    const size_t bytes = population->parametrisation->variables * sizeof(double);
+    if (round->count < LEAST)
+        return;
+    memcpy(population->shown, round->variables, round->count * bytes);
+    memcpy(population->shown_error, population->errors, round->count * sizeof(double));
+    population->shown_count = round->count;
+}
+
 enum status mf_population_measure(struct population *population,
                                   const struct optimiser_round *round, double discard_above,
                                   const struct inverse_listener *listener) {
@@ -303,6 +318,7 @@ enum status mf_population_measure(struct population *population,
         remember(population, round->variables + k * population->parametrisation->variables,
                  population->errors[k], population->features + k * population->surrogate.features);
     }
+    show(population, round);
     return STATUS_OK;
 }
 

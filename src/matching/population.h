@@ -40,10 +40,12 @@ struct population {
     struct surrogate surrogate;        ///< that remembers them
     double *target, *target_error;     ///< shape [features]
     double *first;                     ///< shape [variables]: the first candidate of the last round
-    double *position;                  ///< shape [dimensions, particles]: where simulations begin
-    double *best_position;             ///< where the best of this round ended
-    uint32_t iteration, iterations;    ///< for progress: of the method, at most
-    double best;                       ///< for progress: the method's error so far, or NaN
+    double *shown, *shown_error;       ///< the last large round, to be written
+    size_t shown_count;
+    double *position;               ///< shape [dimensions, particles]: where simulations begin
+    double *best_position;          ///< where the best of this round ended
+    uint32_t iteration, iterations; ///< for progress: of the method, at most
+    double best;                    ///< for progress: the method's error so far, or NaN
     struct population_survey survey;
     struct population_totals {
         uint64_t rounds, evaluations, steps;
@@ -76,6 +78,12 @@ void mf_population_next_round(struct population *population);
 enum status mf_population_remeasure(struct population *population, const double *variables,
                                     size_t count, double *error, double *noise, double *variance,
                                     struct target_distance *distance) MUST_USE;
+
+/// Write the curves of the last round of at least eight candidates: population_potential.tsv and so
+/// on, r and a column for each that did not fail, from the least error on, as their names say.
+/// Nothing before there is one. Fails: IO, NO_MEMORY. (population_tables.c)
+enum status mf_population_write(const struct population *population,
+                                const struct inverse_folder *folder) MUST_USE;
 
 void mf_population_forget_survey(struct population *population);
 

@@ -6,10 +6,12 @@
 #include "base/statistics.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const char *const crossovers[] = {"one-point", "two-point", "blend", NULL};
-static const char *const mutations[] = {"scale", "correlated", NULL};
+static const char *const mutations[] = {"scale", "correlated", "walk", NULL};
+static const char *const initials[] = {"walks", "uniform", NULL};
 
 #define MEMBER(name) .offset = offsetof(struct genetic_parameters, name)
 #define PROBABILITY .minimum = 0, .maximum = 1, .unit = ""
@@ -19,13 +21,14 @@ const struct field mf_genetic_fields[] = {
     {"crossover", FIELD_NUMBER, MEMBER(crossover), .initial = 0.91, PROBABILITY,
      .help = "probability of crossover of two parents"},
     {"crossover_kind", FIELD_CHOICE, MEMBER(crossover_kind), .choices = crossovers,
-     .initial = GENETIC_ONE_POINT, .unit = "",
+     .initial = GENETIC_BLEND, .unit = "",
      .help = "blend mixes two curves smoothly along their genes"},
-    {"mutation", FIELD_NUMBER, MEMBER(mutation), .initial = 0.1, PROBABILITY,
+    {"mutation", FIELD_NUMBER, MEMBER(mutation), .initial = 1, PROBABILITY,
      .help = "probability that a child is mutated"},
     {"mutation_kind", FIELD_CHOICE, MEMBER(mutation_kind), .choices = mutations,
-     .initial = GENETIC_SCALE, .unit = "",
-     .help = "correlated adds a smooth bump over neighbouring genes"},
+     .initial = GENETIC_WALK, .unit = "",
+     .help = "scale: single genes; correlated: a smooth bump over neighbouring genes; walk: a "
+             "smooth random walk, as long as the survivors differ"},
     {"mutated_genes", FIELD_NUMBER, MEMBER(mutated_genes), .initial = 0.1, PROBABILITY,
      .help =
          "probability of each gene of a mutated child to be scaled by 1/2 to 2; width of a bump"},
@@ -39,6 +42,15 @@ const struct field mf_genetic_fields[] = {
      PROBABILITY, .help = "with which the best wins; else the second best, and so on"},
     {"remeasurements", FIELD_INTEGER, MEMBER(remeasurements), .initial = 2, .minimum = 1,
      .maximum = 1000, .unit = "", .help = "fresh measurements before the elite is replaced"},
+    {"initial", FIELD_CHOICE, MEMBER(initial), .choices = initials, .initial = GENETIC_WALKS,
+     .unit = "",
+     .help = "first generation: random walks from where the fit begins, or genes uniform in their "
+             "range"},
+    {"step", FIELD_NUMBER, MEMBER(step), .initial = 0.02, .minimum = FIELD_ABOVE_ZERO, .maximum = 1,
+     .unit = "", .help = "of the first walks, rms, as a fraction of the genes' range"},
+    {"patience", FIELD_INTEGER, MEMBER(patience), .initial = 10, .minimum = 0, .maximum = 1e6,
+     .unit = "",
+     .help = "generations without a better elite, after which it has settled; 0: never"},
     {"generations", FIELD_INTEGER, MEMBER(generations), .initial = 21, .minimum = 1, .maximum = 1e6,
      .unit = "", .help = "after which the fit ends"},
     FIELD_END,
@@ -48,23 +60,60 @@ static size_t total_genes(const struct genetic *genetic) {
     return (size_t)(genetic->parameters.population * genetic->parameters.genes);
 }
 
+/// The gene itself, or its mirror image if it left its range.
+static double within_range(double gene, const struct genetic_parameters *p) {
+    if (gene >= p->gene_minimum && gene <= p->gene_maximum)
+        return gene;
+    const double range = p->gene_maximum - p->gene_minimum;
+    const double mirrored = mf_optimiser_reflect((gene - p->gene_minimum) / range);
+    return fmin(fmax(p->gene_minimum + range * mirrored, p->gene_minimum), p->gene_maximum);
+}
+
+/// Genes uniform in their range.
+static void fill_uniform(struct genetic *genetic, struct rng_sequence *random) {
+    const struct genetic_parameters *p = &genetic->parameters;
+    for (size_t k = 0; k < total_genes(genetic); k++)
+        genetic->population[k] =
+            p->gene_minimum + (p->gene_maximum - p->gene_minimum) * mf_rng_sequence_uniform(random);
+}
+
+/// Walks from the start, or from the middle of the range.
+static void fill_walks(struct genetic *genetic, const double *start, struct rng_sequence *random) {
+    const struct genetic_parameters *p = &genetic->parameters;
+    const double middle = 0.5 * (p->gene_minimum + p->gene_maximum);
+    for (int64_t k = 0; k < p->population; k++) {
+        double *individual = genetic->population + k * p->genes;
+        for (int64_t n = 0; n < p->genes; n++)
+            individual[n] = start ? start[n] : middle;
+        mf_genetic_walk(individual, p->genes, p->step * (p->gene_maximum - p->gene_minimum),
+                        random);
+        for (int64_t n = 0; n < p->genes; n++)
+            individual[n] = within_range(individual[n], p);
+    }
+}
+
 enum status mf_genetic_init(struct genetic *genetic, const struct genetic_parameters *parameters,
-                            uint64_t seed) {
+                            const double *start, uint64_t seed) {
     enum status status = STATUS_OK;
     *genetic = (struct genetic){.parameters = *parameters,
                                 .seed = seed,
                                 .rows = parameters->population,
+                                .spread = parameters->step,
+                                .median = HUGE_VAL,
                                 .elite_error = GENETIC_FAILED};
     NEW_ARRAY(genetic->population,
               (size_t)((parameters->population + parameters->remeasurements) * parameters->genes));
     // Children come in pairs: one place more for the last of an odd population.
     NEW_ARRAY(genetic->offspring, total_genes(genetic) + (size_t)parameters->genes);
+    NEW_ARRAY(genetic->ranked, (size_t)parameters->population);
     NEW_ARRAY(genetic->elite, (size_t)parameters->genes);
     struct rng_sequence random = mf_rng_sequence_begin(seed, RNG_INITIAL, 0, 0);
-    for (size_t k = 0; k < total_genes(genetic); k++)
-        genetic->population[k] =
-            parameters->gene_minimum + (parameters->gene_maximum - parameters->gene_minimum) *
-                                           mf_rng_sequence_uniform(&random);
+    if (parameters->initial == GENETIC_UNIFORM)
+        fill_uniform(genetic, &random);
+    else
+        fill_walks(genetic, start, &random);
+    if (start)
+        memcpy(genetic->population, start, (size_t)parameters->genes * sizeof *start);
 done:
     if (status != STATUS_OK)
         mf_genetic_clear(genetic);
@@ -74,6 +123,7 @@ done:
 void mf_genetic_clear(struct genetic *genetic) {
     mf_memory_free(genetic->population);
     mf_memory_free(genetic->offspring);
+    mf_memory_free(genetic->ranked);
     mf_memory_free(genetic->elite);
     *genetic = (struct genetic){0};
 }
@@ -93,6 +143,7 @@ bool mf_genetic_offer(struct genetic *genetic, const double *genes, double error
     memcpy(genetic->elite, genes, (size_t)genetic->parameters.genes * sizeof *genes);
     genetic->elite_error = error;
     genetic->elite_measured = measured;
+    genetic->elite_since = genetic->generation;
     return true;
 }
 
@@ -105,18 +156,38 @@ static void copy_winner(const struct genetic *genetic, const double *errors, dou
     memcpy(child, mf_genetic_individual(genetic, winner), (size_t)p->genes * sizeof *child);
 }
 
-/// The gene itself, or its mirror image if it left its range.
-static double within_range(double gene, const struct genetic_parameters *p) {
-    if (gene >= p->gene_minimum && gene <= p->gene_maximum)
-        return gene;
-    const double range = p->gene_maximum - p->gene_minimum;
-    const double mirrored = mf_optimiser_reflect((gene - p->gene_minimum) / range);
-    return fmin(fmax(p->gene_minimum + range * mirrored, p->gene_minimum), p->gene_maximum);
+static int compare_numbers(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/// Median error of the population.
+static double find_median(struct genetic *genetic, const double *errors) {
+    const size_t count = (size_t)genetic->parameters.population;
+    memcpy(genetic->ranked, errors, count * sizeof *errors);
+    qsort(genetic->ranked, count, sizeof *errors, compare_numbers);
+    return genetic->ranked[count / 2];
+}
+
+/// rms over genes of the standard deviation over the better half.
+static double find_spread(const struct genetic *genetic, const double *errors) {
+    const struct genetic_parameters *p = &genetic->parameters;
+    double sum = 0;
+    for (int64_t gene = 0; gene < p->genes; gene++) {
+        struct running_mean over = {0};
+        for (int64_t k = 0; k < p->population; k++)
+            if (errors[k] <= genetic->median)
+                mf_statistics_add(&over, mf_genetic_individual(genetic, k)[gene]);
+        sum += over.squares / over.count;
+    }
+    return sqrt(sum / (double)p->genes) / (p->gene_maximum - p->gene_minimum);
 }
 
 void mf_genetic_next_generation(struct genetic *genetic, const double *errors) {
     const struct genetic_parameters *p = &genetic->parameters;
     genetic->generation++;
+    genetic->median = find_median(genetic, errors);
+    genetic->spread = find_spread(genetic, errors);
     for (int64_t pair = 0; pair < p->population; pair += 2) {
         struct rng_sequence random = mf_rng_sequence_begin(genetic->seed, RNG_SELECTION,
                                                            genetic->generation, (uint32_t)pair);
@@ -125,8 +196,8 @@ void mf_genetic_next_generation(struct genetic *genetic, const double *errors) {
         copy_winner(genetic, errors, second, &random);
         if (mf_rng_sequence_uniform(&random) < p->crossover)
             mf_genetic_recombine(first, second, p, &random);
-        mf_genetic_mutate(first, p, &random);
-        mf_genetic_mutate(second, p, &random);
+        mf_genetic_mutate(first, genetic, &random);
+        mf_genetic_mutate(second, genetic, &random);
     }
     for (size_t k = 0; k < total_genes(genetic); k++)
         genetic->population[k] = within_range(genetic->offspring[k], p);

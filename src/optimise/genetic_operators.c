@@ -84,6 +84,9 @@ static double normal(double u, double v) {
 /// Largest usual step of what is added, as a share of the range.
 static const double added = 0.1;
 
+/// Least spread that steps are taken from, as a share of the range.
+static const double least_spread = 1e-4;
+
 void mf_genetic_mutate_scale(double *genes, const struct genetic_parameters *parameters,
                              struct rng_sequence *random) {
     const double range = parameters->gene_maximum - parameters->gene_minimum;
@@ -112,8 +115,44 @@ void mf_genetic_mutate_correlated(double *genes, const struct genetic_parameters
     }
 }
 
-void mf_genetic_mutate(double *genes, const struct genetic_parameters *parameters,
-                       struct rng_sequence *random) {
+void mf_genetic_walk(double *genes, int64_t count, double height, struct rng_sequence *random) {
+    const double longest = pow((double)count, mf_rng_sequence_uniform(random));
+    double squares = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        // The same numbers twice: once for the scale, once to be added.
+        struct rng_sequence modes = *random;
+        const double scale = pass == 0 ? 0 : height / sqrt(squares / (double)count);
+        for (int64_t k = 0; k < count; k++) {
+            struct rng_sequence numbers = modes;
+            const double t = (double)(count - k) / (double)count;
+            double sum = 0;
+            for (int64_t m = 1; (double)m <= longest; m++) {
+                const double wave = ((double)m - 0.5) * M_PI;
+                const double u = mf_rng_sequence_uniform(&numbers);
+                sum += normal(u, mf_rng_sequence_uniform(&numbers)) * sin(wave * t) / wave;
+            }
+            squares += pass == 0 ? sum * sum : 0;
+            genes[k] += scale * sum;
+        }
+    }
+    for (int64_t m = 1; (double)m <= longest; m++) {
+        mf_rng_sequence_uniform(random);
+        mf_rng_sequence_uniform(random);
+    }
+}
+
+void mf_genetic_mutate_walk(double *genes, const struct genetic *genetic,
+                            struct rng_sequence *random) {
+    const struct genetic_parameters *p = &genetic->parameters;
+    const double range = p->gene_maximum - p->gene_minimum;
+    const double u = mf_rng_sequence_uniform(random), v = mf_rng_sequence_uniform(random);
+    const double octaves = 4 * mf_rng_sequence_uniform(random);
+    const double spread = fmax(genetic->spread, least_spread);
+    mf_genetic_walk(genes, p->genes, range * spread * fabs(normal(u, v)) * exp2(-octaves), random);
+}
+
+void mf_genetic_mutate(double *genes, const struct genetic *genetic, struct rng_sequence *random) {
+    const struct genetic_parameters *parameters = &genetic->parameters;
     if (mf_rng_sequence_uniform(random) >= parameters->mutation)
         return;
     switch ((enum genetic_mutation_kind)parameters->mutation_kind) {
@@ -122,6 +161,9 @@ void mf_genetic_mutate(double *genes, const struct genetic_parameters *parameter
         break;
     case GENETIC_CORRELATED:
         mf_genetic_mutate_correlated(genes, parameters, random);
+        break;
+    case GENETIC_WALK:
+        mf_genetic_mutate_walk(genes, genetic, random);
         break;
     }
 }

@@ -8,12 +8,10 @@
 #include "optimise/genetic.h"
 #include "optimise/optimiser.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 struct state {
     struct genetic genetic;
-    double discard_above;
     double *errors;     ///< shape [population + remeasurements]: scratch
     double *challenger; ///< shape [genes]: scratch
 };
@@ -36,24 +34,34 @@ static enum status create(void *memory, const struct optimiser_space *space,
     enum status status = STATUS_OK;
     struct state *state = memory;
     struct genetic_parameters p = *(const struct genetic_parameters *)parameters;
+    double *start = NULL;
     CHECK(mf_optimiser_check_space(space));
     CHECK(mf_optimiser_check_round(space, (size_t)(p.population + p.remeasurements)));
     p.genes = (int64_t)space->variables;
     p.gene_minimum = space->minimum;
     p.gene_maximum = space->maximum;
-    state->discard_above = HUGE_VAL;
     NEW_ARRAY(state->errors, (size_t)(p.population + p.remeasurements));
     NEW_ARRAY(state->challenger, space->variables);
-    CHECK(mf_genetic_init(&state->genetic, &p, space->seed));
+    if (space->start)
+        NEW_ARRAY(start, space->variables);
     for (size_t k = 0; space->start && k < space->variables; k++)
-        state->genetic.population[k] = optimiser_variable(space, mf_optimiser_start(space, k));
+        start[k] = optimiser_variable(space, mf_optimiser_start(space, k));
+    CHECK(mf_genetic_init(&state->genetic, &p, start, space->seed));
 done:
+    mf_memory_free(start);
     return status;
+}
+
+/// Whether the elite has stood its ground for long.
+static bool has_settled(const struct genetic *genetic) {
+    const int64_t patience = genetic->parameters.patience;
+    return patience > 0 && genetic->elite_measured > 0 &&
+           genetic->generation >= genetic->elite_since + (uint64_t)patience;
 }
 
 /// Whether all generations are measured, and perhaps a last challenger is left.
 static bool is_over(const struct genetic *genetic) {
-    return genetic->generation >= (uint32_t)genetic->parameters.generations;
+    return has_settled(genetic) || genetic->generation >= (uint32_t)genetic->parameters.generations;
 }
 
 /// Rows of the population that this round leaves out.
@@ -116,18 +124,6 @@ static void add_challenger(struct state *state) {
         memcpy(genetic->population + (size_t)k * genes, state->challenger, genes * sizeof(double));
 }
 
-static int compare_numbers(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/// Median of the population; sorts `errors`. Of the winners of the usual tournaments (eight, 0.75)
-/// one in 43 is beyond it.
-static double median(double *errors, int64_t count) {
-    qsort(errors, (size_t)count, sizeof *errors, compare_numbers);
-    return errors[count / 2];
-}
-
 static void tell_generation(struct state *state) {
     struct genetic *genetic = &state->genetic;
     const int64_t population = genetic->parameters.population;
@@ -142,7 +138,6 @@ static void tell_generation(struct state *state) {
     mf_genetic_next_generation(genetic, state->errors);
     if (challenger >= 0)
         add_challenger(state);
-    state->discard_above = median(state->errors, population);
 }
 
 static enum status tell(void *memory, const double *errors, const double *variances) {
@@ -175,8 +170,20 @@ static double spread(const void *memory) {
     return mf_genetic_diversity(&((const struct state *)memory)->genetic);
 }
 
+static bool settled(const void *memory) {
+    return has_settled(&((const struct state *)memory)->genetic);
+}
+
+/// In the last place of the next generation.
+static void suggest(void *memory, const double *genes) {
+    struct genetic *genetic = &((struct state *)memory)->genetic;
+    const struct genetic_parameters *p = &genetic->parameters;
+    memcpy(genetic->population + (p->population - 1) * p->genes, genes,
+           (size_t)p->genes * sizeof *genes);
+}
+
 static double discard_above(const void *memory) {
-    return ((const struct state *)memory)->discard_above;
+    return ((const struct state *)memory)->genetic.median;
 }
 
 static size_t spans(void *memory, struct memory_span *span) {
@@ -185,7 +192,7 @@ static size_t spans(void *memory, struct memory_span *span) {
     const struct genetic_parameters *p = &genetic->parameters;
     const size_t row = (size_t)p->genes * sizeof(double);
     size_t n = 0;
-    span[n++] = (struct memory_span){&state->discard_above, sizeof state->discard_above};
+    span[n++] = (struct memory_span){&genetic->median, sizeof genetic->median};
     span[n++] = (struct memory_span){&genetic->generation, sizeof genetic->generation};
     span[n++] = (struct memory_span){&genetic->rows, sizeof genetic->rows};
     span[n++] = (struct memory_span){genetic->population,
@@ -193,6 +200,8 @@ static size_t spans(void *memory, struct memory_span *span) {
     span[n++] = (struct memory_span){genetic->elite, row};
     span[n++] = (struct memory_span){&genetic->elite_error, sizeof genetic->elite_error};
     span[n++] = (struct memory_span){&genetic->elite_measured, sizeof genetic->elite_measured};
+    span[n++] = (struct memory_span){&genetic->spread, sizeof genetic->spread};
+    span[n++] = (struct memory_span){&genetic->elite_since, sizeof genetic->elite_since};
     return n;
 }
 
@@ -210,5 +219,7 @@ const struct optimiser mf_genetic_optimiser = {
     .incumbent = incumbent,
     .spread = spread,
     .discard_above = discard_above,
+    .suggest = suggest,
+    .settled = settled,
     .spans = spans,
 };

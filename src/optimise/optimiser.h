@@ -60,6 +60,8 @@ struct optimiser {
     /// Error beyond which a candidate hardly changes what happens next, by the round told last;
     /// HUGE_VAL if that is not known. The same before and after `ask`.
     double (*discard_above)(const void *state);
+    /// Let variables that somebody else found join, shape [variables], or NULL: it does not listen.
+    void (*suggest)(void *state, const double *variables);
     /// Whether it ended since it could do no better, before its budget was used up. NULL: it never
     /// does.
     bool (*settled)(const void *state);

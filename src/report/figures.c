@@ -41,6 +41,7 @@ static const struct figure figures[] = {
     {"msd", {"msd.tsv"}, "target", false},
     {"error", {"history.tsv", "timing.tsv"}, NULL, false},
     {"generations", {"history.tsv"}, "diversity", false},
+    {"population", {"population_potential.tsv", "potential.tsv"}, NULL, false},
     {"pareto", {"pareto.tsv", "pareto_history.tsv"}, NULL, false},
 };
 

@@ -199,7 +199,7 @@ static double *mutated(double gene, const struct genetic_parameters *parameters,
     assert_non_null(genes);
     for (int k = 0; k < DRAWS; k++)
         genes[k] = gene;
-    mf_genetic_mutate(genes, parameters, &random);
+    mf_genetic_mutate(genes, &(struct genetic){.parameters = *parameters}, &random);
     return genes;
 }
 
@@ -272,7 +272,7 @@ static void test_genetic_mutate_spares_the_children_that_are_not_drawn(void **st
     int mutated = 0;
     for (int child = 0; child < CHILDREN; child++) {
         double genes[GENES] = {1, 1, 1, 1};
-        mf_genetic_mutate(genes, &some, &random);
+        mf_genetic_mutate(genes, &(struct genetic){.parameters = some}, &random);
         int changed = 0;
         for (int k = 0; k < GENES; k++)
             changed += genes[k] != 1;
@@ -308,6 +308,49 @@ static void test_genetic_mutate_correlated_adds_a_smooth_bump(void **state) {
     assert_close(mean, 0, 5 * sqrt(squares / TRIALS));
 }
 
+/// The variance of Brownian motion grows in proportion to the way from where it is 0: at the last
+/// of 64 genes it is 1/64 of that at the first, for walks of all modes. Scaled to one height, with
+/// modes that are broken off anywhere, walks are still flat at the first gene and 0 beyond the
+/// last.
+static void test_genetic_walk_has_its_height_and_ends_at_zero(void **state) {
+    enum { COUNT = 64, TRIALS = 2000 };
+    (void)state;
+    double first = 0, last = 0, mean = 0;
+    struct rng_sequence random = begin(5);
+    for (int trial = 0; trial < TRIALS; trial++) {
+        double genes[COUNT] = {0}, squares = 0;
+        mf_genetic_walk(genes, COUNT, 2, &random);
+        for (int k = 0; k < COUNT; k++)
+            squares += genes[k] * genes[k] / COUNT;
+        assert_close(squares, 4, 1e-9);
+        first += genes[0] * genes[0] / TRIALS;
+        last += genes[COUNT - 1] * genes[COUNT - 1] / TRIALS;
+        mean += genes[0] / TRIALS;
+    }
+    print_message("mean squares %.3f at the first gene and %.4f at the last\n", first, last);
+    assert_true(first > 4 && first < 8 && last < first / 40 && last > first / 4000);
+    assert_close(mean, 0, 5 * sqrt(first / TRIALS));
+}
+
+/// Steps are in proportion to the survivors' spread.
+static void test_genetic_mutate_walk_steps_as_far_as_survivors_differ(void **state) {
+    enum { COUNT = 20 };
+    (void)state;
+    double step[2][COUNT] = {{0}};
+    for (int k = 0; k < 2; k++) {
+        const struct genetic genetic = {.parameters = {.genes = COUNT,
+                                                       .gene_minimum = -1,
+                                                       .gene_maximum = 3,
+                                                       .mutation = 1,
+                                                       .mutation_kind = GENETIC_WALK},
+                                        .spread = k == 0 ? 0.01 : 0.05};
+        struct rng_sequence random = begin(6);
+        mf_genetic_mutate(step[k], &genetic, &random);
+    }
+    for (int k = 0; k < COUNT; k++)
+        assert_close(step[1][k], 5 * step[0][k], 1e-12);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_genetic_tournament_wins_with_the_probabilities_of_its_rule),
@@ -321,6 +364,8 @@ int main(void) {
         cmocka_unit_test(test_genetic_mutate_keeps_to_its_probabilities),
         cmocka_unit_test(test_genetic_mutate_spares_the_children_that_are_not_drawn),
         cmocka_unit_test(test_genetic_mutate_correlated_adds_a_smooth_bump),
+        cmocka_unit_test(test_genetic_walk_has_its_height_and_ends_at_zero),
+        cmocka_unit_test(test_genetic_mutate_walk_steps_as_far_as_survivors_differ),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

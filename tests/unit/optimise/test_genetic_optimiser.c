@@ -143,6 +143,67 @@ static void test_discard_above_is_the_median_of_the_last_generation(void **state
     end(&run);
 }
 
+/// Walks begin about the start, which is individual 0, with the rms that is asked for.
+static void test_first_walks_are_about_the_start(void **state) {
+    enum { COUNT = 50, MANY = 400 };
+    (void)state;
+    struct genetic genetic;
+    double start[COUNT], squares = 0;
+    for (int k = 0; k < COUNT; k++)
+        start[k] = 0.3 + 0.005 * k;
+    const struct genetic_parameters parameters = {
+        .population = MANY, .genes = COUNT, .gene_maximum = 1, .step = 0.02, .remeasurements = 1};
+    assert_ok(mf_genetic_init(&genetic, &parameters, start, 4));
+    assert_memory_equal(mf_genetic_individual(&genetic, 0), start, sizeof start);
+    for (int k = 1; k < MANY; k++)
+        for (int n = 0; n < COUNT; n++)
+            squares += pow(mf_genetic_individual(&genetic, k)[n] - start[n], 2);
+    assert_close(sqrt(squares / (COUNT * (MANY - 1))), 0.02, 1e-9);
+    mf_genetic_clear(&genetic);
+}
+
+/// Once an elite has stood its ground for the generations of its patience; a better one begins
+/// anew.
+static void test_it_settles_when_its_patience_is_over(void **state) {
+    (void)state;
+    struct run run = {.state = mf_memory_zeroed(1, mf_genetic_optimiser.state_size)};
+    const struct optimiser_space space = {.variables = GENES, .maximum = 1, .seed = 3};
+    mf_fields_set_defaults(mf_genetic_fields, &run.parameters);
+    run.parameters.population = POPULATION;
+    run.parameters.generations = 100;
+    run.parameters.patience = 3;
+    run.parameters.mutation = 1;
+    assert_ok(mf_genetic_optimiser.create(run.state, &space, &run.parameters));
+    ask(&run);
+    tell(&run, (double[]){5, 4, 3, 2, 1, 6});
+    tell(&run, (double[]){9, 9, 9, 9, 9, 9, 1, 1}); // the elite of generation 1
+    tell(&run, (double[]){1, 9, 9, 9, 9, 9});
+    assert_false(mf_genetic_optimiser.settled(run.state));
+    tell(&run, (double[]){1, 9, 9, 9, 0.5, 9}); // a challenger at the last moment
+    assert_int_equal(run.round.count, REMEASUREMENTS);
+    tell(&run, (double[]){0.5, 0.5}); // is better: three more
+    assert_false(mf_genetic_optimiser.settled(run.state));
+    assert_int_equal(run.round.count, POPULATION);
+    for (int generation = 0; generation < 3; generation++) {
+        assert_int_equal(run.round.count, POPULATION);
+        tell(&run, (double[]){0.5, 9, 9, 9, 9, 9});
+    }
+    assert_true(mf_genetic_optimiser.settled(run.state));
+    assert_int_equal(run.round.count, 0);
+    end(&run);
+}
+
+static void test_what_is_suggested_joins_the_next_generation(void **state) {
+    (void)state;
+    const double found[GENES] = {0.1, 0.2, 0.3};
+    struct run run = begin(10);
+    tell(&run, (double[]){5, 4, 3, 2, 1, 6});
+    mf_genetic_optimiser.suggest(run.state, found);
+    ask(&run);
+    assert_genes(row(&run, POPULATION - 1), found);
+    end(&run);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_challenger_becomes_elite_by_fresh_measurements_alone),
@@ -150,6 +211,9 @@ int main(void) {
         cmocka_unit_test(test_last_round_measures_the_last_challenger_alone),
         cmocka_unit_test(test_twins_of_the_elite_are_no_challengers),
         cmocka_unit_test(test_discard_above_is_the_median_of_the_last_generation),
+        cmocka_unit_test(test_first_walks_are_about_the_start),
+        cmocka_unit_test(test_it_settles_when_its_patience_is_over),
+        cmocka_unit_test(test_what_is_suggested_joins_the_next_generation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
