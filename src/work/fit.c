@@ -404,7 +404,7 @@ enum status mf_fit_run(const char *file, const struct run_options *options) {
     struct run *run = NULL;
     NEW_ARRAY(run, 1);
     run->progress = mf_progress_begin(options->quiet);
-    run->progress.left_for = "all iterations"; // it may converge before
+    run->progress.may_end_early = true; // it may converge before the last iteration
     CHECK(prepare(run, file, options));
     status = iterate(run);
     if (status == STATUS_OK)
