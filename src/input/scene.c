@@ -282,6 +282,14 @@ void mf_scene_clear(struct scene *scene) {
     *scene = (struct scene){0};
 }
 
+const char *mf_scene_warning(const struct scene *scene) {
+    if (simulation_holds_temperature(&scene->setup) || (scene->unknown & SCENE_FITS_OMEGA))
+        return NULL;
+    return "nothing holds the temperature: without \"dissipative\", friction and noise, a "
+           "simulation "
+           "conserves its energy, and its temperature drifts";
+}
+
 static void write_count(const struct simulation_setup *setup, struct json_writer *writer) {
     const struct composition *composition = &setup->composition;
     if (!composition_is_mixed(composition)) {

@@ -38,6 +38,10 @@ void mf_scene_clear(struct scene *scene);
 /// units.
 double mf_scene_mass_density(const struct scene *scene);
 
+/// What a person should know before the scene is simulated, one line without friction and noise,
+/// when nothing holds the temperature; NULL: nothing.
+const char *mf_scene_warning(const struct scene *scene);
+
 /// Write everything that mf_scene_read reads, defaults filled in.
 void mf_scene_write(const struct scene *scene, struct json_writer *writer);
 

@@ -267,6 +267,34 @@ static void test_ideal_gas_has_no_configurational_temperature(void **state) {
 #define TEST_WITHOUT_FIGURES(name)                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
+/// Without friction and noise, and not with them or without velocities.
+static void test_simulate_warns_when_nothing_holds_the_temperature(void **state) {
+    static struct run_program_result result;
+    static const struct {
+        const char *to;
+        bool warned;
+    } cases[] = {{"\"skin\": 0.3", true},
+                 {"\"dissipative\": {\"law\": \"power\", \"sigma\": 3}", false},
+                 {"\"dynamics\": {\"integrator\": \"brownian\"}, \"time_step\": 0.0001", false}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        small_inputs_write(*state, "scene.json",
+                           "{\"box\": [3, 3, 3], \"particles\": {\"count\": 81},\n"
+                           "\"conservative\": {\"law\": \"soft-repulsion\"}, MORE,\n"
+                           "\"measure\": {\"equilibration\": 1, \"samples\": 2}}",
+                           "MORE", cases[k].to);
+        RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+        run_program_assert_code(&result, 0);
+        assert_int_equal(strstr(result.err, "mesofit: warning: nothing holds the temperature: ") !=
+                             NULL,
+                         cases[k].warned);
+    }
+    temporary_folder_write(*state, "target.tsv", small_inputs_target, strlen(small_inputs_target));
+    small_inputs_write(*state, "run.json", small_inputs_run,
+                       ",\n    \"dissipative\": {\"law\": \"power\", \"sigma\": 2}", "");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit");
+    assert_contains(result.err, "mesofit: warning: scene: nothing holds the temperature: ");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_simulate_draws_its_figure_when_gnuplot_is_there),
@@ -281,6 +309,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_explain_tells_what_is_on_and_off),
         TEST_WITHOUT_FIGURES(test_unstable_scene_ends_with_step_and_force),
         TEST_WITHOUT_FIGURES(test_simulate_warns_when_only_the_kinetic_temperature_is_right),
+        TEST_WITHOUT_FIGURES(test_simulate_warns_when_nothing_holds_the_temperature),
         TEST_WITHOUT_FIGURES(test_one_sample_is_enough),
         TEST_WITHOUT_FIGURES(test_ideal_gas_has_no_configurational_temperature),
     };
