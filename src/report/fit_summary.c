@@ -59,6 +59,11 @@ static void put_known(struct json_writer *writer, const char *key, double value)
         mf_json_put_number(writer, key, value);
 }
 
+/// One sample tells no error.
+static double known_error(double error) {
+    return error > 0 ? error : NAN;
+}
+
 /// "etd_rmse", "etd_rmse_error", "etd_noise", and so on for every target.
 static void put_distances(struct json_writer *writer, const struct fit_file *fit,
                           const struct verification *v) {
@@ -245,11 +250,11 @@ static void put_kirkwood_buff(struct json_writer *writer, const struct fit_file 
     put_known(writer, "target_kirkwood_buff", target.integral);
     put_known(writer, "target_kirkwood_buff_error", target.integral_error);
     put_known(writer, "kirkwood_buff", found.integral);
-    put_known(writer, "kirkwood_buff_error", found.integral_error);
+    put_known(writer, "kirkwood_buff_error", known_error(found.integral_error));
     put_known(writer, "target_compressibility", target.compressibility);
     put_known(writer, "target_compressibility_error", target.compressibility_error);
     put_known(writer, "compressibility", found.compressibility);
-    put_known(writer, "compressibility_error", found.compressibility_error);
+    put_known(writer, "compressibility_error", known_error(found.compressibility_error));
 }
 
 static void put_verification(struct json_writer *writer, const struct fit_file *fit,
@@ -261,13 +266,14 @@ static void put_verification(struct json_writer *writer, const struct fit_file *
     put_diffusion(writer, fit, v);
     put_kirkwood_buff(writer, fit, v);
     mf_json_put_number(writer, "temperature", t->temperature);
-    mf_json_put_number(writer, "temperature_error", t->temperature_error);
+    mf_json_put_number(writer, "temperature_error", known_error(t->temperature_error));
     put_known(writer, "temperature_configurational", t->temperature_configurational);
-    put_known(writer, "temperature_configurational_error", t->temperature_configurational_error);
+    put_known(writer, "temperature_configurational_error",
+              known_error(t->temperature_configurational_error));
     mf_json_put_number(writer, "potential_energy", t->potential_energy);
-    mf_json_put_number(writer, "potential_energy_error", t->potential_energy_error);
+    mf_json_put_number(writer, "potential_energy_error", known_error(t->potential_energy_error));
     mf_json_put_number(writer, "pressure", t->pressure);
-    mf_json_put_number(writer, "pressure_error", t->pressure_error);
+    mf_json_put_number(writer, "pressure_error", known_error(t->pressure_error));
     mf_json_put_number(writer, "verification_steps", (double)v->engine_steps);
     mf_units_put(&fit->scene.units, writer, t->potential_energy, t->pressure);
 }

@@ -263,10 +263,6 @@ static void test_ideal_gas_has_no_configurational_temperature(void **state) {
     free(table);
 }
 
-#define TEST(name) cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
-#define TEST_WITHOUT_FIGURES(name)                                                                 \
-    cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
-
 /// Without friction and noise, and not with them or without velocities.
 static void test_simulate_warns_when_nothing_holds_the_temperature(void **state) {
     static struct run_program_result result;
@@ -294,6 +290,10 @@ static void test_simulate_warns_when_nothing_holds_the_temperature(void **state)
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit");
     assert_contains(result.err, "mesofit: warning: scene: nothing holds the temperature: ");
 }
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
+#define TEST_WITHOUT_FIGURES(name)                                                                 \
+    cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
 int main(void) {
     const struct CMUnitTest tests[] = {
