@@ -137,8 +137,8 @@ static void put_ramp(struct json_writer *writer, const struct inverse_ramp *ramp
 }
 
 static void put_parameter(struct json_writer *writer, const char *name,
-                          const struct inverse_parameter *parameter, bool fixed,
-                          const char *bound) {
+                          const struct inverse_parameter *parameter, bool fixed, const char *bound,
+                          bool undetermined) {
     mf_json_begin(writer, name);
     put_known(writer, "value", parameter->value);
     if (fixed)
@@ -147,6 +147,8 @@ static void put_parameter(struct json_writer *writer, const char *name,
         put_known(writer, "error", parameter->error);
     if (bound)
         mf_json_put_text(writer, "bound", bound);
+    if (undetermined)
+        mf_json_put_text(writer, "undetermined", "yes");
     mf_json_end(writer);
 }
 
@@ -164,12 +166,13 @@ static void put_parameters(struct json_writer *writer, const struct fit_file *fi
     for (int k = 0; formula && k < INVERSE_PARAMETERS; k++)
         put_parameter(writer, mf_inverse_fixed_fields[k].name, &result->parameter[k],
                       !isnan(p->fixed[k]),
-                      mf_parametrisation_parameter_bound(p, k, result->parameter[k].value));
+                      mf_parametrisation_parameter_bound(p, k, result->parameter[k].value), false);
     if (formula)
         mf_json_end(writer);
     for (size_t n = 0; n < fit->numbers; n++)
         put_parameter(writer, fit->number[n].name, &result->number[n], false,
-                      mf_numbers_bound(&fit->number[n], result->number[n].value));
+                      mf_numbers_bound(&fit->number[n], result->number[n].value),
+                      mf_numbers_undetermined(&fit->number[n], &result->number[n]));
     mf_json_end(writer);
 }
 
