@@ -20,10 +20,15 @@ const struct field mf_fit_core_fields[] = {
 
 NAMED_RECORD(struct inverse_method);
 
-/// Where forces from outside act, g(r) does not follow from those of pairs.
+/// Where forces from outside act, g(r) does not follow from those of pairs; partial g(r) do not
+/// follow from the force on a bead of either type.
 static void check_estimator(const struct fit_file *fit, struct json_object *method) {
-    if (fit->method->sampling && fit->scene.setup.interactions > 0 &&
-        fit->method->sampling(fit->method_parameters).rdf_force)
+    if (fit->method->sampling == NULL || !fit->method->sampling(fit->method_parameters).rdf_force)
+        return;
+    if (composition_is_mixed(&fit->scene.setup.composition))
+        mf_json_fault(method, "estimator",
+                      "\"force\" is not for mixtures; \"histogram\" counts their partial g(r)");
+    if (fit->scene.setup.interactions > 0)
         mf_json_fault(method, "estimator",
                       "\"force\" knows the forces of pairs alone, not \"interactions\"");
 }
