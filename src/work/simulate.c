@@ -159,8 +159,11 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
 
 static void warn(struct run *run) {
     const char *warning = mf_scene_warning(&run->scene);
+    char line[SCENE_LINE_SIZE];
     if (warning)
         mf_progress_say(&run->progress, "mesofit: warning: %s", warning);
+    if (mf_scene_is_hot(&run->scene, line))
+        mf_progress_say(&run->progress, "mesofit: warning: %s", line);
 }
 
 static enum status carry_out(struct run *run) {

@@ -284,6 +284,11 @@ static void test_simulate_warns_when_nothing_holds_the_temperature(void **state)
                              NULL,
                          cases[k].warned);
     }
+    small_inputs_write(*state, "scene.json", small_inputs_scene, "\"temperature\": 1",
+                       "\"temperature\": 300");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    assert_contains(result.err, "mesofit: warning: temperature: 300 in units of k_B T_0");
+    assert_contains(result.err, "kelvins belong into \"units\"");
     temporary_folder_write(*state, "target.tsv", small_inputs_target, strlen(small_inputs_target));
     small_inputs_write(*state, "run.json", small_inputs_run,
                        ",\n    \"dissipative\": {\"law\": \"power\", \"sigma\": 2}", "");
