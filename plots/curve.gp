@@ -17,8 +17,9 @@ header(n) = system(sprintf("awk -F '\t' '/^#/ { sub(/^# */, \"\"); h = $%d; ", n
     "gsub(/lambda/, \"λ\", h); gsub(/tau/, \"τ\", h); print h; exit }'" . from(table))
 
 stats table using 1 name "X" nooutput
-stats table using (low(column(2), band_low(y, y + 1))) name "L" nooutput
-stats table using (high(column(2), band_high(y, y + 1))) name "H" nooutput
+# Errors are nan where they are not known: there is no band then.
+stats table using (low(column(2), column(y) - 1.96 * known(y + 1))) name "L" nooutput
+stats table using (high(column(2), column(y) + 1.96 * known(y + 1))) name "H" nooutput
 margin = H_max > L_min ? 0.05 * (H_max - L_min) : 0.5
 
 do for [kind in kinds] {

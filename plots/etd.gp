@@ -16,7 +16,11 @@ r0_axis = strlen(distances) ? in_units(distances, "r[nm]", "{/:Italic r}_0 / nm"
 
 stats "etd.tsv" using (ps * $1) name "T" nooutput
 stats "etd.tsv" using 1 name "F" nooutput
-stats "etd_bins.tsv" using ($2 > 0 ? $0 : 1/0) name "B" nooutput
+# From the first bin to the last with pairs enough for a curve, an error below 0.05; if none has so many,
+# with any.
+stats "etd_bins.tsv" using 2 name "P" nooutput
+enough = P_max < 100 ? 1 : 100
+stats "etd_bins.tsv" using ($2 >= enough ? $0 : 1/0) name "B" nooutput
 first = B_records > 0 ? int(B_min) : 0
 last = B_records > 0 ? int(B_max) : 0
 curves = low(6, last - first + 1)

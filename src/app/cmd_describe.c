@@ -62,7 +62,10 @@ static const struct inner scene_objects[] = {
      "conservative"},
     {"dissipative", "{\"law\": …}, the friction weight; likewise", "dissipative"},
     {"interactions", "what acts beside the pairs: {\"harmonic-trap\": {…}, …}", "interactions"},
-    {"dynamics", "{\"integrator\": …} and its numbers", "dynamics"},
+    {"dynamics",
+     "{\"integrator\": …} and its numbers; without it \"aboba\" if there is friction, else "
+     "\"velocity-verlet\"",
+     "dynamics"},
     {"units", "physical units for the results", "units"},
     {"measure", "when to sample; this and observables in a scene file only", "measure"},
     {NULL, NULL, NULL},

@@ -2,8 +2,38 @@
 #include "base/faults.h"
 
 #include <stdio.h>
+#include <string.h>
+
+/// The line that begins with these words; NULL if there is none.
+static char *find_line(struct faults *faults, const char *words) {
+    for (char *line = faults->text; line; line = strchr(line, '\n')) {
+        line += *line == '\n';
+        if (strncmp(line, words, strlen(words)) == 0)
+            return line;
+    }
+    return NULL;
+}
+
+void mf_faults_take_back(struct faults *faults, const char *words) {
+    char *line = faults->told > 0 ? find_line(faults, words) : NULL;
+    if (line == NULL)
+        return;
+    char *next = line + strcspn(line, "\n");
+    if (*next == '\n')
+        next++;
+    else if (line > faults->text)
+        line--; // the last one takes the end of the line before with it
+    memmove(line, next, strlen(next) + 1);
+    faults->length = strlen(faults->text);
+    faults->told--;
+    faults->count--;
+    faults->full = false;
+}
 
 void mf_faults_add(struct faults *faults, const char *line) {
+    const char *same = faults->told > 0 ? find_line(faults, line) : NULL;
+    if (same && strchr("\n", same[strlen(line)]))
+        return;
     faults->count++;
     if (faults->full)
         return;

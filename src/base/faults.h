@@ -20,8 +20,12 @@ struct faults {
     char text[FAULTS_SIZE]; ///< one told fault a line
 };
 
-/// Add one line. After FAULTS_TOLD lines, or when the text is full, faults are only counted.
+/// Add one line, unless it is told already. After FAULTS_TOLD lines, or when the text is full,
+/// faults are only counted.
 void mf_faults_add(struct faults *faults, const char *line);
+
+/// Take back the line that begins with these words, if there is one: another explains it.
+void mf_faults_take_back(struct faults *faults, const char *words);
 
 /// OK if there are none; otherwise BAD_INPUT with all lines and how many were left out.
 enum status mf_faults_status(const struct faults *faults) MUST_USE;

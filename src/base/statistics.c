@@ -2,6 +2,7 @@
 #include "base/statistics.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 void mf_statistics_add(struct running_mean *running, double value) {
     running->count += 1;
@@ -88,4 +89,12 @@ double mf_statistics_correlated_error(const double *values, size_t length, size_
     if (!(variance > 0))
         return variance;
     return sqrt(variance * mf_statistics_inefficiency(values, length, chains, 1) / (double)n);
+}
+
+void mf_statistics_forget_errors(double *error, size_t count) {
+    bool known = false;
+    for (size_t k = 0; k < count; k++)
+        known = known || error[k] > 0;
+    for (size_t k = 0; k < count && !known; k++)
+        error[k] = NAN;
 }

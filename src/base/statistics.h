@@ -44,3 +44,7 @@ double mf_statistics_inefficiency(const double *values, size_t length, size_t ch
 /// @param[in] values  shape [chains, length]
 /// Tested: test_statistics, test_errors.
 double mf_statistics_correlated_error(const double *values, size_t length, size_t chains);
+
+/// What a person is told of standard errors of one curve: if none is above 0, they are those of a
+/// single value, and all become NaN, not known. Tested: test_statistics.
+void mf_statistics_forget_errors(double *error, size_t count);

@@ -70,8 +70,8 @@ static const struct field no_fields[] = {FIELD_END};
 
 const struct integrator mf_aboba = {
     .name = "aboba",
-    .summary = "drift, kick, exact friction pair by pair, kick, drift; X. Shang, Comput. Phys. "
-               "Commun. 262, 107834 (2021)",
+    .summary = "drift, kick, exact friction pair by pair, kick, drift, the default with friction; "
+               "X. Shang, Comput. Phys. Commun. 262, 107834 (2021)",
     .fields = no_fields,
     .dissipative = true,
     .friction = &exact,

@@ -7,6 +7,7 @@
 #include "base/simd.h"
 #include "base/visible.h"
 #include "dynamics/relax.h"
+#include "dynamics/unstable.h"
 
 static enum status place(struct simulation *simulation, const struct simulation_start *start) {
     const struct simulation_setup *setup = &simulation->setup;
@@ -233,13 +234,14 @@ static enum status fail_unstable(const struct simulation *simulation, double squ
     const struct simulation_setup *setup = &simulation->setup;
     const bool flies = !simulation_is_overdamped(setup);
     const double unit = flies ? 1 : setup->time_step * setup->time_step;
-    return mf_status_fail(STATUS_UNSTABLE,
-                          "unstable at step %llu: %s %.3g (limit %g), largest force "
-                          "%.3g; lower \"time_step\" or soften the potential",
-                          (unsigned long long)simulation->step,
-                          flies ? "kinetic temperature" : "mean squared step along an axis",
-                          mf_visible_number(square * unit), largest_square(setup) * unit,
-                          mf_visible_number(mf_particles_largest_force(&simulation->particles)));
+    char advice[UNSTABLE_ADVICE_SIZE];
+    mf_unstable_advise(simulation, advice);
+    return mf_status_fail(
+        STATUS_UNSTABLE, "unstable at step %llu: %s %.3g (limit %g), largest force %.3g; %s",
+        (unsigned long long)simulation->step,
+        flies ? "kinetic temperature" : "mean squared step along an axis",
+        mf_visible_number(square * unit), largest_square(setup) * unit,
+        mf_visible_number(mf_particles_largest_force(&simulation->particles)), advice);
 }
 
 /// Before a list is built: particles flung beyond the reach of box_fraction would meet on a few
@@ -251,12 +253,14 @@ static enum status watch_flight(const struct simulation *simulation) {
                           mf_box_shortest(&particles->box);
     if (flight <= 0x1p18)
         return STATUS_OK;
+    char advice[UNSTABLE_ADVICE_SIZE];
+    mf_unstable_advise(simulation, advice);
     return mf_status_fail(
         STATUS_UNSTABLE,
         "unstable at step %llu: particles fly %.3g times the edge of the box in a "
-        "step, largest force %.3g; lower \"time_step\" or soften the potential",
+        "step, largest force %.3g; %s",
         (unsigned long long)simulation->step, mf_visible_number(flight),
-        mf_visible_number(mf_particles_largest_force(particles)));
+        mf_visible_number(mf_particles_largest_force(particles)), advice);
 }
 
 /// Count the time since `begin` to a phase; returns the present time.

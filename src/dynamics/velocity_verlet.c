@@ -12,7 +12,8 @@ static const struct field fields[] = {FIELD_END};
 
 const struct integrator mf_velocity_verlet = {
     .name = "velocity-verlet",
-    .summary = "NVE; W. C. Swope et al., J. Chem. Phys. 76, 637 (1982)",
+    .summary =
+        "NVE, the default without friction; W. C. Swope et al., J. Chem. Phys. 76, 637 (1982)",
     .fields = fields,
     .dissipative = false,
     .step = step,

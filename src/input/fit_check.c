@@ -54,7 +54,8 @@ static enum status check_range(const struct fit_file *fit, const char *file, con
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
                           "%s: scene.box: the shortest edge %g is below twice the range of the "
-                          "target \"%s\", %g",
+                          "target \"%s\", %g; are both in the same unit? A larger box with more "
+                          "particles, or a target that ends earlier, would do",
                           file, mf_box_shortest(box), target, range);
 }
 

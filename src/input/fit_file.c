@@ -21,17 +21,22 @@ const struct field mf_fit_core_fields[] = {
 
 NAMED_RECORD(struct inverse_method);
 
-/// Where forces from outside act, g(r) does not follow from those of pairs.
+/// Where forces from outside act, g(r) does not follow from those of pairs; partial g(r) do not
+/// follow from the force on a bead of either type.
 static void check_estimator(const struct fit_file *fit, struct json_object *method) {
-    if (fit->method->sampling && fit->scene.setup.interactions > 0 &&
-        fit->method->sampling(fit->method_parameters).rdf_force)
+    if (fit->method->sampling == NULL || !fit->method->sampling(fit->method_parameters).rdf_force)
+        return;
+    if (composition_is_mixed(&fit->scene.setup.composition))
+        mf_json_fault(method, "estimator",
+                      "\"force\" is not for mixtures; \"histogram\" counts their partial g(r)");
+    if (fit->scene.setup.interactions > 0)
         mf_json_fault(method, "estimator",
                       "\"force\" knows the forces of pairs alone, not \"interactions\"");
 }
 
 static enum status read_method(struct fit_file *fit, struct json_object *root) {
     const char **names;
-    struct json_object object = mf_json_child(root, "method", true);
+    struct json_object object = mf_json_child_of(root, "method", true, "name");
     if (object.item == NULL)
         return STATUS_OK;
     TRY(mf_names_collect(mf_inverse_methods, NULL, &names));
@@ -135,15 +140,33 @@ static enum status read_unknowns(struct fit_file *fit, struct json_object *root)
     }
     TRY(mf_fit_numbers_read(&object, &fit->scene, fit->number, &fit->numbers));
     if (object.item) {
+        const size_t faults = mf_json_fault_count(root->document);
         mf_json_renamed(&object, "weight", mf_inverse_unknown_names[UNKNOWN_OMEGA]);
         mf_json_finish(&object);
         if (!fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->unknown[UNKNOWN_OMEGA].wanted &&
-            !mf_json_has(&object, "numbers"))
+            !mf_json_has(&object, "numbers") && mf_json_fault_count(root->document) == faults)
             mf_json_fault(root, "unknowns", "needs \"potential\", \"omega\" or \"numbers\"");
     } else {
         fit->unknown[UNKNOWN_POTENTIAL].wanted = true;
     }
     return STATUS_OK;
+}
+
+/// What stands in scene files, but not in the scene of a fit.
+static void refuse_foreign(struct json_object *scene, int unknown) {
+    if (unknown & SCENE_FITS_POTENTIAL)
+        mf_json_refuse(
+            scene, "conservative",
+            "it is to be found; \"start\" in \"unknowns.potential\" takes a law to begin "
+            "with");
+    if (unknown & SCENE_FITS_OMEGA)
+        mf_json_refuse(
+            scene, "dissipative",
+            "it is to be found; \"start\" in \"unknowns.omega\" takes a law to begin with");
+    mf_json_refuse(scene, "seed", "it stands at the top of a run file");
+    mf_json_refuse(scene, "measure", "\"method\" and \"verification\" say when a fit samples");
+    for (size_t k = 0; mf_observables[k]; k++)
+        mf_json_refuse(scene, mf_observables[k]->name, "a fit measures what its \"target\" names");
 }
 
 /// The scene leaves out what "unknowns" names.
@@ -158,6 +181,7 @@ static enum status read_scene(struct fit_file *fit, struct json_object *root) {
                   (mf_json_has(&unknowns, mf_inverse_unknown_names[1]) ? SCENE_FITS_OMEGA : 0);
     }
     TRY(mf_scene_read(&fit->scene, &scene, unknown));
+    refuse_foreign(&scene, unknown);
     mf_json_finish(&scene);
     return STATUS_OK;
 }

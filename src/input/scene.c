@@ -63,7 +63,8 @@ static void read_top(struct scene *scene, struct json_object *object) {
     for (int d = 0; d < 3; d++)
         setup->box.length[d] = d < top.dimensions ? top.box[d] : 1;
     if (top.box[0] > 0 && (top.box[2] > 0) != (top.dimensions == 3))
-        mf_json_fault(object, "box", "has %d edges, but the scene has %d dimensions",
+        mf_json_fault(object, "box",
+                      "has %d edges, but the scene has %d dimensions; \"dimensions\" says how many",
                       top.box[2] > 0 ? 3 : 2, (int)top.dimensions);
     setup->temperature = top.temperature;
     setup->time_step = top.time_step;
@@ -78,7 +79,7 @@ NAMED_RECORD(struct integrator);
 static enum status read_dynamics(struct scene *scene, struct json_object *object, int unknown) {
     const char **names;
     TRY(mf_names_collect(mf_integrator_list, NULL, &names));
-    struct json_object dynamics = mf_json_child(object, "dynamics", false);
+    struct json_object dynamics = mf_json_child_of(object, "dynamics", false, "integrator");
     const bool dissipative = scene->omega.curves > 0 || (unknown & SCENE_FITS_OMEGA);
     const char *name = dissipative ? mf_aboba.name : mf_velocity_verlet.name;
     if (dynamics.item)
@@ -222,10 +223,21 @@ double mf_scene_mass_density(const struct scene *scene) {
     return 1e-3 * kilograms / (mf_box_volume(&scene->setup.box) * pow(metres, 3));
 }
 
+/// Hardly a multiple of T_0, often a number of kelvins.
+static const double hottest = 50;
+
+bool mf_scene_is_hot(const struct scene *scene, char line[SCENE_LINE_SIZE]) {
+    snprintf(line, SCENE_LINE_SIZE,
+             "temperature: %g in units of k_B T_0, which is 1 as a rule; kelvins belong into "
+             "\"units\"",
+             scene->setup.temperature);
+    return scene->setup.temperature > hottest && !mf_units_known(&scene->units);
+}
+
 /// Masses that are not in kg and temperatures that are in K.
 static void check_units(const struct scene *scene, struct json_object *object) {
     static const double densest = 30; // g/cm³: no matter is denser
-    static const double hottest = 50, atomic_mass = 1e-3 / UNITS_AVOGADRO;
+    static const double atomic_mass = 1e-3 / UNITS_AVOGADRO;
     const struct simulation_setup *setup = &scene->setup;
     const double mass = scene->units.mass;
     if (!mf_units_known(&scene->units) || mf_json_fault_count(object->document) > 0)
@@ -280,6 +292,14 @@ void mf_scene_clear(struct scene *scene) {
     mf_memory_free(scene->integrator_parameters);
     mf_scene_interactions_clear(&scene->interactions);
     *scene = (struct scene){0};
+}
+
+const char *mf_scene_warning(const struct scene *scene) {
+    if (simulation_holds_temperature(&scene->setup) || (scene->unknown & SCENE_FITS_OMEGA))
+        return NULL;
+    return "nothing holds the temperature: without \"dissipative\", friction and noise, a "
+           "simulation "
+           "conserves its energy, and its temperature drifts";
 }
 
 static void write_count(const struct simulation_setup *setup, struct json_writer *writer) {

@@ -87,7 +87,7 @@ static bool is_usable(const struct curve *curve) {
 enum status mf_scene_read_curve(struct curve *curve, struct json_object *parent, const char *key,
                                 const struct curve_family *const *list, const struct units *units) {
     const char **names;
-    struct json_object object = mf_json_child(parent, key, false);
+    struct json_object object = mf_json_child_of(parent, key, false, "law");
     if (object.item == NULL)
         return STATUS_OK;
     TRY(mf_names_collect(list, "none", &names));
@@ -168,7 +168,7 @@ enum status mf_scene_law_read(struct scene_law *law, struct json_object *parent,
         return STATUS_OK;
     }
     if (composition_is_mixed(composition)) {
-        struct json_object object = mf_json_child(parent, key, false);
+        struct json_object object = mf_json_child_of(parent, key, false, "law");
         if (object.item == NULL)
             return STATUS_OK;
         if (!mf_json_has(&object, "law"))

@@ -156,7 +156,9 @@ enum status mf_target_files_read(struct target_files *files, struct json_object 
     if (object.item == NULL)
         return STATUS_OK;
     for (int kind = 0; mf_targets_name(kind); kind++) {
-        struct json_object child = mf_json_child(&object, mf_targets_name(kind), false);
+        const bool is_number = mf_observable_kind(kind).target->form == OBSERVABLE_NUMBER;
+        struct json_object child =
+            mf_json_child_of(&object, mf_targets_name(kind), false, is_number ? "value" : "file");
         files->given[kind] = child.item != NULL;
         mf_json_fields(&child, mf_target_files_use_fields, &files->use[kind]);
         if (!files->given[kind])

@@ -35,7 +35,9 @@ const struct field mf_target_rdf_fields[] = {
      .help = "number of the column with g"},
     {"error_column", FIELD_INTEGER, MEMBER(error_column), .initial = -1, .minimum = -1, COLUMN,
      .help = "number of the column with the standard error of g; 0: none, they are estimated from "
-             "the scatter of neighbouring bins; -1: 3 if there are so many columns, else none"},
+             "the scatter of neighbouring bins; -1: 3 if there are so many columns, else none; a "
+             "column "
+             "of nan is none"},
     {"bin_width", FIELD_NUMBER, MEMBER(bin_width), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "lambda",
      .help =
@@ -61,6 +63,14 @@ static double cell(const struct data_table *table, size_t row, int64_t column) {
     return table->values[row * table->columns + (size_t)column - 1];
 }
 
+/// Whether a column has any number: nothing but nan stands for errors that are not known.
+static bool is_known(const struct data_table *table, int64_t column) {
+    bool known = false;
+    for (size_t k = 0; k < table->rows; k++)
+        known = known || isfinite(cell(table, k, column));
+    return known;
+}
+
 enum status mf_target_rdf_error_column(int64_t asked, int64_t first, int64_t second,
                                        const struct data_table *table, const char *file,
                                        int64_t *column) {
@@ -75,6 +85,8 @@ enum status mf_target_rdf_error_column(int64_t asked, int64_t first, int64_t sec
             file, table->line[0], table->columns, (long long)asked);
     if (asked < 0)
         *column = columns < USUAL || first == USUAL || second == USUAL ? 0 : USUAL;
+    if (*column > 0 && !is_known(table, *column))
+        *column = 0;
     return STATUS_OK;
 }
 

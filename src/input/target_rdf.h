@@ -43,7 +43,7 @@ enum status mf_target_rdf_read(struct target_rdf *target, struct json_object *ob
 
 /// The column with the errors of a table whose values stand in the columns `first` and `second`.
 /// @param[in]  asked   in the run file; −1: 3 if there are so many columns, else none
-/// @param[out] column  from 1; 0: there is none
+/// @param[out] column  from 1; 0: there is none, or it is nan in all rows
 /// Fails: BAD_INPUT if the table has fewer columns than `asked`.
 enum status mf_target_rdf_error_column(int64_t asked, int64_t first, int64_t second,
                                        const struct data_table *table, const char *file,

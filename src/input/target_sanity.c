@@ -28,9 +28,6 @@ static const double deep = 0.95, few_neighbours = 4;
 /// ρ d³ of a gas.
 static const double dilute = 0.01;
 
-/// Hardly a multiple of T_0, often a number of kelvins.
-static const double hot = 50;
-
 /// g(r) of one pair type, and how many beads there are.
 struct view {
     char name[sizeof "rdf." + COMPOSITION_PAIR_NAME_SIZE];
@@ -375,11 +372,8 @@ enum status mf_target_sanity_tell(const struct target_files *files, const struct
         warn_of_density(&view, listener);
     }
     tell_normalisation(&files->normalisation, listener);
-    if (scene->setup.temperature > hot && !mf_units_known(&scene->units))
-        say(listener,
-            "mesofit: warning: scene.temperature: %g in units of k_B T_0, which is 1 as a rule; "
-            "kelvins "
-            "belong into \"units\"",
-            scene->setup.temperature);
+    char line[SCENE_LINE_SIZE];
+    if (mf_scene_is_hot(scene, line))
+        say(listener, "mesofit: warning: scene.%s", line);
     return STATUS_OK;
 }

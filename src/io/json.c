@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/nearest.h"
 #include "base/visible.h"
+#include "io/json_item.h"
 #include "io/json_syntax.h"
 #include "io/output.h"
 #include "io/text_file.h"
@@ -48,24 +49,10 @@ void mf_json_fault(struct json_object *object, const char *key, const char *form
     mf_faults_add(&object->document->faults, visible);
 }
 
-static void describe_item(const cJSON *item, char *text, size_t size) {
-    if (cJSON_IsString(item))
-        snprintf(text, size, "the text \"%.40s\"", item->valuestring);
-    else if (cJSON_IsNumber(item))
-        snprintf(text, size, "the number %.15g", item->valuedouble);
-    else if (cJSON_IsBool(item))
-        snprintf(text, size, "%s", cJSON_IsTrue(item) ? "true" : "false");
-    else
-        snprintf(text, size, "%s",
-                 cJSON_IsArray(item)    ? "an array"
-                 : cJSON_IsObject(item) ? "an object"
-                                        : "null");
-}
-
 static void fault_wrong_type(struct json_object *object, const char *key, const char *expected,
                              const cJSON *item) {
     char found[64];
-    describe_item(item, found, sizeof found);
+    mf_json_item_describe(item, found, sizeof found);
     mf_json_fault(object, key, "expected %s, found %s", expected, found);
 }
 
@@ -93,22 +80,6 @@ static void find_duplicates(struct json_object *object) {
         }
         index++;
     }
-}
-
-/// cJSON looks for a key from the first member on: what is read of an object, and the search for
-/// keys that stand twice, takes as long as the square of their number.
-static enum status check_members(const char *file, const cJSON *item) {
-    const cJSON *member;
-    int count = 0;
-    cJSON_ArrayForEach(member, item) {
-        count++;
-        if (member->child)
-            TRY(check_members(file, member));
-    }
-    if (cJSON_IsObject(item) && count > JSON_MOST_MEMBERS)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: an object has %d keys; %d are the most", file,
-                              count, JSON_MOST_MEMBERS);
-    return STATUS_OK;
 }
 
 /// The syntax was checked, so what cJSON refuses is a \u escape without a meaning.
@@ -143,7 +114,7 @@ enum status mf_json_open(struct json_document **document, const char *file) {
     CHECK(mf_text_file_read(file, &text, &length));
     CHECK(mf_json_syntax_check(file, text));
     CHECK(parse(opened, text));
-    CHECK(check_members(file, opened->root));
+    CHECK(mf_json_item_check(file, opened->root));
     struct json_object root = view(opened, opened->root);
     find_duplicates(&root);
     *document = opened;
@@ -186,14 +157,27 @@ static const cJSON *ask(struct json_object *object, const char *key) {
     return cJSON_GetObjectItemCaseSensitive(object->item, key);
 }
 
+static void fault_no_object(struct json_object *parent, const char *key, const char *chief,
+                            const cJSON *item) {
+    char found[64], meant[128];
+    mf_json_item_describe(item, found, sizeof found);
+    mf_json_item_complete(item, chief, meant, sizeof meant);
+    mf_json_fault(parent, key, "expected an object, found %s%s", found, meant);
+}
+
 struct json_object mf_json_child(struct json_object *parent, const char *key, bool required) {
+    return mf_json_child_of(parent, key, required, NULL);
+}
+
+struct json_object mf_json_child_of(struct json_object *parent, const char *key, bool required,
+                                    const char *chief) {
     const cJSON *item = ask(parent, key);
     struct json_object child = view(parent->document, NULL);
     join_path(child.path, sizeof child.path, parent->path, key);
     if (cJSON_IsObject(item))
         child.item = item;
     else if (item)
-        fault_wrong_type(parent, key, "an object", item);
+        fault_no_object(parent, key, chief, item);
     else if (required && parent->item)
         mf_json_fault(parent, key, "missing: an object is required");
     return child;
@@ -223,6 +207,23 @@ const char *mf_json_key(const struct json_object *object, size_t n) {
     return NULL;
 }
 
+void mf_json_refuse(struct json_object *object, const char *key, const char *reason) {
+    // Only then: the key is not to be proposed as one that is known.
+    if (cJSON_GetObjectItemCaseSensitive(object->item, key) && ask(object, key))
+        mf_json_fault(object, key, "unknown key: %s", reason);
+}
+
+/// A key that is nearly that of what is missing tells why it is.
+static void take_back_missing(struct json_object *object, const char *given) {
+    const char *meant = mf_nearest_name(given, object->asked, object->asked_count);
+    char path[2 * JSON_PATH_SIZE], words[LINE_SIZE];
+    if (meant == NULL)
+        return;
+    join_path(path, sizeof path, object->path, meant);
+    snprintf(words, sizeof words, "%.1024s: %s: missing: ", object->document->file, path);
+    mf_faults_take_back(&object->document->faults, words);
+}
+
 void mf_json_finish(struct json_object *object) {
     const cJSON *member;
     cJSON_ArrayForEach(member, (const cJSON *)object->item) {
@@ -230,6 +231,7 @@ void mf_json_finish(struct json_object *object) {
             continue;
         char hint[LINE_SIZE / 4];
         mf_nearest_hint(member->string, object->asked, object->asked_count, hint, sizeof hint);
+        take_back_missing(object, member->string);
         mf_json_fault(object, member->string, "unknown key; %s", hint);
     }
 }
@@ -404,12 +406,23 @@ void mf_json_fields(struct json_object *object, const struct field *fields, void
     }
 }
 
+static void fault_missing_choice(struct json_object *object, const char *key,
+                                 const char *const *known) {
+    char hint[LINE_SIZE / 4] = "";
+    size_t count = 0;
+    while (known && known[count])
+        count++;
+    mf_nearest_hint("", known, count, hint, sizeof hint);
+    mf_json_fault(object, key, "missing: a text is required%s%s", known ? "; " : "",
+                  known ? hint : "");
+}
+
 const char *mf_json_choice(struct json_object *object, const char *key, const char *const *known,
                            const char *fallback) {
     const cJSON *item = ask(object, key);
     if (item == NULL) {
         if (fallback == NULL && object->item)
-            mf_json_fault(object, key, "missing: a text is required");
+            fault_missing_choice(object, key, known);
         return fallback;
     }
     const char *text = read_text(object, key, "a text", item);

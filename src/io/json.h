@@ -46,6 +46,11 @@ struct json_object mf_json_root(struct json_document *document);
 /// mf_json_fields reads the defaults.
 struct json_object mf_json_child(struct json_object *parent, const char *key, bool required);
 
+/// The same of an object whose chief key, as "law", may be all that somebody has written of it: the
+/// fault then says {"law": …}. Tested: test_json.
+struct json_object mf_json_child_of(struct json_object *parent, const char *key, bool required,
+                                    const char *chief);
+
 /// True if `key` is present, with any value. Counts as asked for.
 bool mf_json_has(struct json_object *object, const char *key);
 
@@ -58,6 +63,9 @@ const char *mf_json_key(const struct json_object *object, size_t n);
 
 /// Refuse the name that a key had in an earlier version, and say its name of today.
 void mf_json_renamed(struct json_object *object, const char *old, const char *today);
+
+/// Refuse a key that has no place here, if it is present, with the reason. Tested: test_json.
+void mf_json_refuse(struct json_object *object, const char *key, const char *reason);
 
 /// Read the members described by `fields` into `parameters`, defaults where absent.
 /// FIELD_FILE values are joined to the folder of the document's file unless absolute. An absent
@@ -76,7 +84,8 @@ const char *mf_json_choice(struct json_object *object, const char *key, const ch
 void mf_json_fault(struct json_object *object, const char *key, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/// Record every key of the object that nobody asked for as unknown, with the nearest asked one.
+/// Record every key of the object that nobody asked for as unknown, with the nearest asked one; if
+/// that was missing, one line tells of both.
 void mf_json_finish(struct json_object *object);
 
 /// Number of faults so far.

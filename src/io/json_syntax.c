@@ -29,6 +29,8 @@ static enum status expected(const struct checker *checker, const char *what) {
         snprintf(found, sizeof found, "the end of the file");
     else if (c == '\n' || c == '\r')
         snprintf(found, sizeof found, "the end of the line");
+    else if (c == '/' || c == '#')
+        snprintf(found, sizeof found, "'%c' (JSON has no comments)", c);
     else if (c > ' ' && c < 127)
         snprintf(found, sizeof found, "'%c'", c);
     else
@@ -135,6 +137,8 @@ static enum status check_list(struct checker *checker, char close, const char *s
     while (*checker->at == ',') {
         checker->at++;
         skip_space(checker);
+        if (*checker->at == close)
+            return expected(checker, "something behind the last comma");
         TRY(check_element(checker));
         skip_space(checker);
     }

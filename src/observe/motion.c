@@ -46,7 +46,7 @@ enum status mf_motion_init(struct motion *motion, const struct motion_plan *plan
         return mf_status_fail(
             STATUS_BAD_INPUT,
             "motion: %lld lags of %lld steps are longer than the %lld steps of the "
-            "measurement",
+            "measurement; lower \"lags\", or raise \"samples\" of \"measure\"",
             (long long)plan->lags, (long long)plan->every, (long long)steps);
     // Blocks of the same size: the mean over them is the mean over their origins.
     motion->each = (origins + MOST_BLOCKS - 1) / MOST_BLOCKS;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/memory.h"
 #include "base/number_text.h"
+#include "base/statistics.h"
 #include "io/data_table.h"
 #include "observe/measure.h"
 #include "observe/motion.h"
@@ -44,6 +45,8 @@ static enum status write(const void *state, const struct observable_results *res
     const struct motion_curves curves = {values, values + rows, values + 2 * rows,
                                          values + 3 * rows};
     mf_motion_result(motion, &curves);
+    mf_statistics_forget_errors(curves.msd_error, rows);
+    mf_statistics_forget_errors(curves.vacf_error, rows);
     for (size_t k = 0; k < rows; k++)
         time[k] = (double)k * (double)motion->plan.every * motion->time_step;
     picoseconds = mf_units_column(time, rows, ps);
@@ -76,8 +79,9 @@ done:
 static void put(const void *state, const struct observable_results *results,
                 struct json_writer *writer) {
     const struct units *units = results->units;
-    const struct motion_summary s = mf_motion_result(state, NULL);
+    struct motion_summary s = mf_motion_result(state, NULL);
     mf_json_begin(writer, "motion");
+    mf_statistics_forget_errors(&s.msd_error, 1);
     if (mf_motion_judge(&s) != STATUS_OK)
         mf_json_put_text(writer, "warning", mf_status_message());
     mf_json_put_number(writer, "diffusion_msd", s.msd);

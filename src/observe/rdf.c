@@ -113,7 +113,8 @@ enum status mf_rdf_init_mixture(struct rdf *rdf, const struct rdf_bins *bins, co
             status =
                 mf_status_fail(STATUS_BAD_INPUT,
                                "the box is too small for the RDF: its shortest edge %g is below "
-                               "twice the range %g",
+                               "twice the range %g; a larger box with more particles, or a "
+                               "shorter \"range\" of \"rdf\", would do",
                                mf_box_shortest(box), mf_rdf_bins_range(bins));
             goto done;
         }

@@ -2,6 +2,7 @@
 #include "observe/rdf_observable.h"
 
 #include "base/memory.h"
+#include "base/statistics.h"
 #include "io/data_table.h"
 #include "observe/measure.h"
 
@@ -159,6 +160,8 @@ static enum status write(const void *state, const struct observable_results *res
     for (size_t pair = 0; pair < rdf->pairs; pair++) {
         const size_t first = pair * bins->count;
         size_t count = force ? 5 : 3;
+        mf_statistics_forget_errors(counted_error + first, bins->count);
+        mf_statistics_forget_errors(error, force ? bins->count : 0);
         struct data_column columns[6] = {
             {"r[lambda]", r, NULL},
             {"g[1]", force ? g : counted + first, "%.8g"},

@@ -310,6 +310,7 @@ static enum status write(const void *state, const struct observable_results *res
         char pair[COMPOSITION_PAIR_NAME_SIZE] = "", brackets[COMPOSITION_PAIR_NAME_SIZE + 2] = "";
         double *value = values + 2 * curve * s->bins, *error = value + s->bins;
         find_curve(s, curve, value, error);
+        mf_statistics_forget_errors(error, s->bins);
         if (curve > 0) {
             mf_composition_pair_name(&s->composition, (int)curve - 1, pair);
             snprintf(brackets, sizeof brackets, "(%s)", pair);

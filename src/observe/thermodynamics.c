@@ -180,6 +180,12 @@ enum status mf_thermodynamics_judge_fit(const struct thermodynamics_summary *sum
     static const double least = 0.025, errors = 3;
     const struct thermodynamics_summary *s = summary;
     TRY(mf_thermodynamics_judge(summary, setup));
+    if (s->blocks >= LEAST_BLOCKS && !simulation_holds_temperature(setup) &&
+        !agrees(s->temperature, s->temperature_error, setup->temperature))
+        return mf_status_fail(STATUS_UNSTABLE,
+                              "the temperature is %.3g, not %.3g: nothing holds it; give the scene "
+                              "\"dissipative\", friction and noise",
+                              s->temperature, setup->temperature);
     const double wanted = simulation_holds_temperature(setup) ? setup->temperature : s->temperature;
     const double off = s->temperature_configurational - wanted;
     if (s->blocks < LEAST_BLOCKS ||

@@ -62,7 +62,8 @@ enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary
 
 /// A stricter look at what was fitted: the configurational temperature off by more than 2.5 % and
 /// three standard errors says that the potential and its time step do not belong together, though
-/// the velocities look right. Fails: UNSTABLE with the numbers in the message. Tested:
+/// the velocities look right. Without friction the kinetic one must be near that of the setup, too,
+/// for which the target holds. Fails: UNSTABLE with the numbers in the message. Tested:
 /// test_thermodynamics.
 enum status mf_thermodynamics_judge_fit(const struct thermodynamics_summary *summary,
                                         const struct simulation_setup *setup) MUST_USE;

@@ -131,3 +131,9 @@ const char *mf_numbers_bound(const struct inverse_number *number, double value) 
     const double part = (value - number->minimum) / (number->maximum - number->minimum);
     return part < near ? "minimum" : part > 1 - near ? "maximum" : NULL;
 }
+
+bool mf_numbers_undetermined(const struct inverse_number *number,
+                             const struct inverse_parameter *found) {
+    return mf_numbers_bound(number, found->value) == NULL &&
+           4 * found->error > 0.5 * (number->maximum - number->minimum);
+}

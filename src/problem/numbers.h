@@ -30,3 +30,10 @@ void mf_numbers_start(const struct inverse_problem *problem, double *value);
 /// The end of its range, "minimum" or "maximum", that a value has come to within a thousandth of
 /// the range; NULL if none.
 const char *mf_numbers_bound(const struct inverse_number *number, double value);
+
+/// Whether the targets say nothing of a number: two of its standard errors to each side are more
+/// than half of its range, of which the range alone would leave 1.15. At an end of the range they
+/// say that it is too narrow, and an error that is not known (NaN) tells nothing. Tested:
+/// test_numbers.
+bool mf_numbers_undetermined(const struct inverse_number *number,
+                             const struct inverse_parameter *found);

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/rng.h"
+#include "base/statistics.h"
 #include "observe/motion.h"
 #include "observe/rdf_observable.h"
 
@@ -128,6 +129,7 @@ static enum status find_rdf_error(const struct measurement *replicas, size_t cou
     CHECK(mf_rdf_distance(rdf, count, targets->target[TARGET_RDF].value,
                           &verification->distance[TARGET_RDF].rms,
                           &verification->distance_error[TARGET_RDF]));
+    mf_statistics_forget_errors(&verification->distance_error[TARGET_RDF], 1);
 done:
     mf_memory_free(rdf);
     return status;
@@ -160,6 +162,9 @@ static enum status summarise(struct measurement *replicas, size_t count,
     mf_measurement_distance(&verification->observed, targets, verification->distance);
     CHECK(find_errors(replicas, count, verification));
     CHECK(find_rdf_error(replicas, count, verification));
+    for (int kind = 0; kind < TARGETS; kind++)
+        mf_statistics_forget_errors(verification->observed.error[kind],
+                                    targets->target[kind].count);
 done:
     mf_memory_free(thermodynamics);
     return status;

@@ -159,6 +159,21 @@ static enum status check_lengths(const struct compared *fits, size_t count,
     return STATUS_OK;
 }
 
+/// A length of one folder that has no unit may be another one: a person has to know.
+static void warn_of_lengths(const struct compared *fits, size_t count, const char *const *folders) {
+    size_t with = count, without = count;
+    for (size_t k = 0; k < count; k++) {
+        size_t *first = isnan(fits[k].result.summary.length_unit_nm) ? &without : &with;
+        *first = *first < count ? *first : k;
+    }
+    if (with < count && without < count)
+        fprintf(
+            stderr,
+            "mesofit: warning: compare: lambda is %.6g nm in %s and has no \"units\" in %s: all "
+            "is compared in reduced units, as if it were the same\n",
+            fits[with].result.summary.length_unit_nm, folders[with], folders[without]);
+}
+
 enum status mf_compare_folders(const char *const *folders, size_t count, const char *out,
                                bool quiet) {
     enum status status = STATUS_OK;
@@ -171,6 +186,8 @@ enum status mf_compare_folders(const char *const *folders, size_t count, const c
         CHECK(find_path(&fits[k], folders[k]));
     }
     CHECK(check_lengths(fits, count, folders));
+    if (!quiet)
+        warn_of_lengths(fits, count, folders);
     name_fits(fits, count);
     CHECK(write_tables(out, fits, count));
     if (!quiet)

@@ -30,16 +30,22 @@ static void say_parameters(struct progress *to, const struct fit_file *fit,
     mf_progress_say(to, "%s", line);
 }
 
-/// "dissipative.sigma = 3.02(4)".
+/// "dissipative.sigma = 3.02(4)"; what is no result does not look like one.
 static void say_numbers(struct progress *to, const struct fit_file *fit,
                         const struct inverse_parameter *found) {
     for (size_t n = 0; n < fit->numbers; n++) {
+        const struct inverse_number *number = &fit->number[n];
         char text[NUMBER_TEXT_SIZE], mark[32] = "";
-        const char *bound = mf_numbers_bound(&fit->number[n], found[n].value);
+        const char *bound = mf_numbers_bound(number, found[n].value);
         if (bound)
             snprintf(mark, sizeof mark, " (at its %s)", bound);
         mf_number_text(found[n].value, found[n].error, text);
-        mf_progress_say(to, "%s = %s%s", fit->number[n].name, text, mark);
+        if (mf_numbers_undetermined(number, &found[n]))
+            mf_progress_say(to, "%s: undetermined by the targets, anything from %g to %g may be it",
+                            number->name, number->minimum, number->maximum);
+        else
+            mf_progress_say(to, "%s = %s%s%s", number->name, text, mark,
+                            isnan(found[n].error) ? ", of unknown error" : "");
     }
 }
 

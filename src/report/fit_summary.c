@@ -59,6 +59,11 @@ static void put_known(struct json_writer *writer, const char *key, double value)
         mf_json_put_number(writer, key, value);
 }
 
+/// One sample tells no error.
+static double known_error(double error) {
+    return error > 0 ? error : NAN;
+}
+
 /// "etd_rmse", "etd_rmse_error", "etd_noise", and so on for every target.
 static void put_distances(struct json_writer *writer, const struct fit_file *fit,
                           const struct verification *v) {
@@ -132,8 +137,8 @@ static void put_ramp(struct json_writer *writer, const struct inverse_ramp *ramp
 }
 
 static void put_parameter(struct json_writer *writer, const char *name,
-                          const struct inverse_parameter *parameter, bool fixed,
-                          const char *bound) {
+                          const struct inverse_parameter *parameter, bool fixed, const char *bound,
+                          bool undetermined) {
     mf_json_begin(writer, name);
     put_known(writer, "value", parameter->value);
     if (fixed)
@@ -142,6 +147,8 @@ static void put_parameter(struct json_writer *writer, const char *name,
         put_known(writer, "error", parameter->error);
     if (bound)
         mf_json_put_text(writer, "bound", bound);
+    if (undetermined)
+        mf_json_put_text(writer, "undetermined", "yes");
     mf_json_end(writer);
 }
 
@@ -159,12 +166,13 @@ static void put_parameters(struct json_writer *writer, const struct fit_file *fi
     for (int k = 0; formula && k < INVERSE_PARAMETERS; k++)
         put_parameter(writer, mf_inverse_fixed_fields[k].name, &result->parameter[k],
                       !isnan(p->fixed[k]),
-                      mf_parametrisation_parameter_bound(p, k, result->parameter[k].value));
+                      mf_parametrisation_parameter_bound(p, k, result->parameter[k].value), false);
     if (formula)
         mf_json_end(writer);
     for (size_t n = 0; n < fit->numbers; n++)
         put_parameter(writer, fit->number[n].name, &result->number[n], false,
-                      mf_numbers_bound(&fit->number[n], result->number[n].value));
+                      mf_numbers_bound(&fit->number[n], result->number[n].value),
+                      mf_numbers_undetermined(&fit->number[n], &result->number[n]));
     mf_json_end(writer);
 }
 
@@ -245,11 +253,11 @@ static void put_kirkwood_buff(struct json_writer *writer, const struct fit_file 
     put_known(writer, "target_kirkwood_buff", target.integral);
     put_known(writer, "target_kirkwood_buff_error", target.integral_error);
     put_known(writer, "kirkwood_buff", found.integral);
-    put_known(writer, "kirkwood_buff_error", found.integral_error);
+    put_known(writer, "kirkwood_buff_error", known_error(found.integral_error));
     put_known(writer, "target_compressibility", target.compressibility);
     put_known(writer, "target_compressibility_error", target.compressibility_error);
     put_known(writer, "compressibility", found.compressibility);
-    put_known(writer, "compressibility_error", found.compressibility_error);
+    put_known(writer, "compressibility_error", known_error(found.compressibility_error));
 }
 
 static void put_verification(struct json_writer *writer, const struct fit_file *fit,
@@ -261,13 +269,14 @@ static void put_verification(struct json_writer *writer, const struct fit_file *
     put_diffusion(writer, fit, v);
     put_kirkwood_buff(writer, fit, v);
     mf_json_put_number(writer, "temperature", t->temperature);
-    mf_json_put_number(writer, "temperature_error", t->temperature_error);
+    mf_json_put_number(writer, "temperature_error", known_error(t->temperature_error));
     put_known(writer, "temperature_configurational", t->temperature_configurational);
-    put_known(writer, "temperature_configurational_error", t->temperature_configurational_error);
+    put_known(writer, "temperature_configurational_error",
+              known_error(t->temperature_configurational_error));
     mf_json_put_number(writer, "potential_energy", t->potential_energy);
-    mf_json_put_number(writer, "potential_energy_error", t->potential_energy_error);
+    mf_json_put_number(writer, "potential_energy_error", known_error(t->potential_energy_error));
     mf_json_put_number(writer, "pressure", t->pressure);
-    mf_json_put_number(writer, "pressure_error", t->pressure_error);
+    mf_json_put_number(writer, "pressure_error", known_error(t->pressure_error));
     mf_json_put_number(writer, "verification_steps", (double)v->engine_steps);
     mf_units_put(&fit->scene.units, writer, t->potential_energy, t->pressure);
 }

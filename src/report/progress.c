@@ -40,10 +40,9 @@ void mf_progress_tell(struct progress *progress, uint64_t done, uint64_t total, 
     char left[32] = "?";
     if (fresh > 0)
         format_duration(elapsed * (double)(total - done) / fresh, left);
-    fprintf(stderr, "%s%s  %3.0f %%  %.3g %s/s  %s left%s%s%s",
-            progress->terminal ? "\r\033[K" : "", text, 100 * (double)done / (double)total,
-            elapsed > 0 ? fresh / elapsed : 0, unit, left, progress->left_for ? " for " : "",
-            progress->left_for ? progress->left_for : "", progress->terminal ? "" : "\n");
+    fprintf(stderr, "%s%s  %3.0f %%  %.3g %s/s  %s%s left%s", progress->terminal ? "\r\033[K" : "",
+            text, 100 * (double)done / (double)total, elapsed > 0 ? fresh / elapsed : 0, unit,
+            progress->may_end_early ? "at most " : "", left, progress->terminal ? "" : "\n");
     fflush(stderr);
     progress->open_line = progress->terminal;
 }

@@ -12,7 +12,7 @@ struct progress {
     double last;          ///< clock of the last line [s]
     uint64_t done_before; ///< parts that a run before a restart had done
     bool open_line;       ///< the terminal's line has no end yet
-    const char *left_for; ///< what the time left is for, if not all of it may be needed; or NULL
+    bool may_end_early;   ///< the time left is the most that it may take
 };
 
 struct progress mf_progress_begin(bool quiet);

@@ -96,6 +96,8 @@ void mf_explain_scene(FILE *out, const struct simulation_setup *setup,
     add_forces(&stages, setup);
     add_interactions(&stages, setup);
     add_observables(&stages, setup, uses, (double)every);
+    if (!simulation_holds_temperature(setup))
+        mf_stages_add(&stages, "thermostat", false, 0, "nothing holds the temperature");
     double total = 0;
     for (int k = 0; k < stages.count; k++)
         total += stages.stage[k].nanoseconds;

@@ -146,6 +146,9 @@ static void say_line(void *progress, const char *line) {
 /// What is to be fitted, so that a wrong column or unit is seen before the work.
 static enum status tell_targets(struct run *run) {
     const struct target_etd *etd = &run->fit.files.etd;
+    const char *warning = mf_scene_warning(&run->fit.scene);
+    if (warning)
+        mf_progress_say(&run->progress, "mesofit: warning: scene: %s", warning);
     if (etd->left_out > 0)
         mf_progress_say(&run->progress,
                         "target.etd: %zu of %zu cells of the target are not known and left out",
@@ -404,7 +407,7 @@ enum status mf_fit_run(const char *file, const struct run_options *options) {
     struct run *run = NULL;
     NEW_ARRAY(run, 1);
     run->progress = mf_progress_begin(options->quiet);
-    run->progress.left_for = "all iterations"; // it may converge before
+    run->progress.may_end_early = true; // it may converge before the last iteration
     CHECK(prepare(run, file, options));
     status = iterate(run);
     if (status == STATUS_OK)

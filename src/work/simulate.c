@@ -157,9 +157,19 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
     return mf_run_folder_begin(&run->folder, options->resume);
 }
 
+static void warn(struct run *run) {
+    const char *warning = mf_scene_warning(&run->scene);
+    char line[SCENE_LINE_SIZE];
+    if (warning)
+        mf_progress_say(&run->progress, "mesofit: warning: %s", warning);
+    if (mf_scene_is_hot(&run->scene, line))
+        mf_progress_say(&run->progress, "mesofit: warning: %s", line);
+}
+
 static enum status carry_out(struct run *run) {
     const struct measure_listener listener = {tell, run};
     double temperature;
+    warn(run);
     TRY(mf_measure_equilibrate(&run->simulation, &run->plan, &temperature, &listener));
     return mf_measure_sample(&run->simulation, &run->plan, run->observables.use, &listener);
 }

@@ -158,6 +158,13 @@ static void test_compare_refuses_results_of_different_units_of_length(void **sta
     assert_false(temporary_folder_exists("all"));
     RUN_PROGRAM(&result, "compare", "reduced", "wide", "wide", "-o", "all");
     run_program_assert_code(&result, 0);
+    assert_contains(result.err,
+                    "mesofit: warning: compare: lambda is 0.7 nm in wide and has no \"units\" in "
+                    "reduced: all is compared in reduced units");
+    RUN_PROGRAM(&result, "compare", "wide", "wide", "-o", "all");
+    assert_null(strstr(result.err, "lambda"));
+    RUN_PROGRAM(&result, "compare", "reduced", "reduced", "-o", "all");
+    assert_null(strstr(result.err, "lambda"));
 }
 
 int main(void) {

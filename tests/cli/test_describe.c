@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // `mesofit describe`: it tells of every key that the readers of files know.
+#include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
@@ -86,6 +87,35 @@ static void test_describe_of_a_group_is_all_that_it_holds(void **state) {
     assert_null(strstr(result.out, "(target)"));
 }
 
+/// The integrator that a scene without "dynamics" gets is called the default in words alone.
+static void assert_default(void *state, const char *text, const char *integrator,
+                           const char *words) {
+    char line[256];
+    small_inputs_write(state, "scene.json", text, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", integrator, "--quiet");
+    run_program_assert_code(&result, 0);
+    snprintf(line, sizeof line, "%s/used.json", integrator);
+    results_assert_text(line, "dynamics.integrator", integrator);
+    RUN_PROGRAM(&result, "describe", integrator);
+    snprintf(line, sizeof line, "the default %s friction", words);
+    assert_contains(result.out, line);
+    RUN_PROGRAM(&result, "describe", "scene");
+    snprintf(line, sizeof line, "\"%s\"", integrator);
+    assert_contains(result.out, line);
+}
+
+#define SCENE_WITH(more)                                                                           \
+    "{\"box\": [4, 4, 4], \"particles\": {\"count\": 64}, "                                        \
+    "\"measure\": {\"equilibration\": 1, \"samples\": 2, \"every\": 1}" more "}"
+
+static void test_describe_says_which_integrator_is_the_default(void **state) {
+    assert_default(*state, SCENE_WITH(", \"dissipative\": {\"law\": \"power\", \"sigma\": 3}"),
+                   "aboba", "with");
+    assert_default(*state,
+                   SCENE_WITH(", \"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25}"),
+                   "velocity-verlet", "without");
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
 
 int main(void) {
@@ -93,6 +123,7 @@ int main(void) {
         TEST(test_describe_tells_of_every_key_that_a_reader_knows),
         TEST(test_describe_knows_every_topic_that_it_names),
         TEST(test_describe_of_a_group_is_all_that_it_holds),
+        TEST(test_describe_says_which_integrator_is_the_default),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -253,6 +253,15 @@ static void test_fit_of_a_mixture_is_refused_in_a_line_when_a_pair_is_wrong(void
            (const char *[]){"run.json: scene.particles.types.A: 1 is out of range", NULL});
 }
 
+/// It counted them by a histogram without a word.
+static void test_fit_of_a_mixture_refuses_to_estimate_g_from_forces(void **state) {
+    write_fit(*state, CMA_ES); // and the targets
+    small_inputs_write(*state, "good.json", fit, METHOD, CMA_ES);
+    assert_int_equal(mkdir("out", 0700), 0);
+    refuse(*state, "\"population\": 7", "\"population\": 7, \"estimator\": \"force\"", 1,
+           (const char *[]){"run.json: method.estimator: \"force\" is not for mixtures", NULL});
+}
+
 /// Of 4 A in 81 beads 20 have 1, which becomes 2.
 static void test_imc_of_a_mixture_refuses_particles_that_change_its_shares(void **state) {
     static struct run_program_result result;
@@ -279,6 +288,7 @@ int main(void) {
         TEST(test_imc_of_a_mixture_writes_a_potential_for_each_pair_type),
         TEST(test_cma_es_of_a_mixture_writes_a_potential_for_each_pair_type),
         TEST(test_gauss_newton_of_a_mixture_tells_its_bands),
+        TEST(test_fit_of_a_mixture_refuses_to_estimate_g_from_forces),
         TEST(test_imc_of_a_mixture_gives_the_same_bits_for_any_threads),
         TEST(test_auto_of_a_mixture_by_dynamics_gives_the_same_bits_for_any_threads),
         TEST(test_cma_es_of_a_mixture_gives_the_same_bits_for_any_threads),

@@ -289,6 +289,23 @@ static void test_fit_refuses_numbers_that_cannot_be_found(void **state) {
     }
 }
 
+/// Friction does not change where beads are in equilibrium, which is all that g(r) shows.
+static void test_fit_says_that_a_number_is_undetermined(void **state) {
+    static const char *const methods[] = {GAUSS_NEWTON, "\"name\": \"cma-es\", \"rounds\": 4"};
+    write_target(*state);
+    for (int k = 0; k < 2; k++) {
+        write_fit(*state, (const char *const[]){MSD, RDF, GAUSS_NEWTON, methods[k], NULL});
+        RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
+        assert_contains(result.err,
+                        "\ndissipative.sigma: undetermined by the targets, anything from "
+                        "1 to 8 may be it\n");
+        assert_null(strstr(result.err, "dissipative.sigma = "));
+        char *text = temporary_folder_read("out/summary.json");
+        assert_contains(text, "\"undetermined\":\t\"yes\"");
+        free(text);
+    }
+}
+
 #define TEST_WITHOUT_FIGURES(name)                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -301,6 +318,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_fit_finds_two_numbers_side_by_side),
         TEST_WITHOUT_FIGURES(test_fit_finds_a_number_beside_a_curve),
         TEST_WITHOUT_FIGURES(test_fit_says_that_a_number_is_at_its_bound),
+        TEST_WITHOUT_FIGURES(test_fit_says_that_a_number_is_undetermined),
         TEST_WITHOUT_FIGURES(test_fit_of_numbers_gives_the_same_bits_from_used_and_in_pieces),
         TEST_WITHOUT_FIGURES(test_explain_tells_of_numbers),
         TEST_WITHOUT_FIGURES(test_explain_tells_of_numbers_of_a_pair_type_and_of_the_integrator),

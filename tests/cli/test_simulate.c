@@ -263,6 +263,39 @@ static void test_ideal_gas_has_no_configurational_temperature(void **state) {
     free(table);
 }
 
+/// Without friction and noise, and not with them or without velocities.
+static void test_simulate_warns_when_nothing_holds_the_temperature(void **state) {
+    static struct run_program_result result;
+    static const struct {
+        const char *to;
+        bool warned;
+    } cases[] = {{"\"skin\": 0.3", true},
+                 {"\"dissipative\": {\"law\": \"power\", \"sigma\": 3}", false},
+                 {"\"dynamics\": {\"integrator\": \"brownian\"}, \"time_step\": 0.0001", false}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        small_inputs_write(*state, "scene.json",
+                           "{\"box\": [3, 3, 3], \"particles\": {\"count\": 81},\n"
+                           "\"conservative\": {\"law\": \"soft-repulsion\"}, MORE,\n"
+                           "\"measure\": {\"equilibration\": 1, \"samples\": 2}}",
+                           "MORE", cases[k].to);
+        RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+        run_program_assert_code(&result, 0);
+        assert_int_equal(strstr(result.err, "mesofit: warning: nothing holds the temperature: ") !=
+                             NULL,
+                         cases[k].warned);
+    }
+    small_inputs_write(*state, "scene.json", small_inputs_scene, "\"temperature\": 1",
+                       "\"temperature\": 300");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    assert_contains(result.err, "mesofit: warning: temperature: 300 in units of k_B T_0");
+    assert_contains(result.err, "kelvins belong into \"units\"");
+    temporary_folder_write(*state, "target.tsv", small_inputs_target, strlen(small_inputs_target));
+    small_inputs_write(*state, "run.json", small_inputs_run,
+                       ",\n    \"dissipative\": {\"law\": \"power\", \"sigma\": 2}", "");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit");
+    assert_contains(result.err, "mesofit: warning: scene: nothing holds the temperature: ");
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
 #define TEST_WITHOUT_FIGURES(name)                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
@@ -281,6 +314,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_explain_tells_what_is_on_and_off),
         TEST_WITHOUT_FIGURES(test_unstable_scene_ends_with_step_and_force),
         TEST_WITHOUT_FIGURES(test_simulate_warns_when_only_the_kinetic_temperature_is_right),
+        TEST_WITHOUT_FIGURES(test_simulate_warns_when_nothing_holds_the_temperature),
         TEST_WITHOUT_FIGURES(test_one_sample_is_enough),
         TEST_WITHOUT_FIGURES(test_ideal_gas_has_no_configurational_temperature),
     };

@@ -206,6 +206,29 @@ static void test_pairs_come_first_and_too_many_interactions_are_refused(void **s
     fluid_clear(&fluid);
 }
 
+/// A simulation that blows up says so if a potential from outside is why, and only then.
+static void test_unstable_names_the_interaction_that_most_of_the_force_is_from(void **state) {
+    (void)state;
+    const struct {
+        double stiffness, time_step;
+        const char *words;
+    } cases[] = {
+        {0.1, 1, "soften the potential"}, // at most 0.2 of forces of the pairs of about 100
+        {5000, 0.01, "most of it from \"harmonic-trap\""},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct fluid fluid;
+        struct simulation simulation;
+        const struct numbers numbers = {
+            {cases[k].stiffness, cases[k].stiffness, cases[k].stiffness}};
+        begin(&fluid, &simulation, &mf_harmonic_trap, &numbers);
+        simulation.setup.time_step = cases[k].time_step;
+        assert_fails(mf_simulation_run(&simulation, 20), STATUS_UNSTABLE, cases[k].words);
+        mf_simulation_clear(&simulation);
+        fluid_clear(&fluid);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_interaction_forces_are_minus_the_slope_of_their_energy),
@@ -213,6 +236,7 @@ int main(void) {
         cmocka_unit_test(test_restart_goes_on_with_the_same_bits_when_an_interaction_has_state),
         cmocka_unit_test(test_restart_goes_on_with_the_same_bits_when_an_integrator_has_state),
         cmocka_unit_test(test_pairs_come_first_and_too_many_interactions_are_refused),
+        cmocka_unit_test(test_unstable_names_the_interaction_that_most_of_the_force_is_from),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

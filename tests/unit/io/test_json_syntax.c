@@ -34,8 +34,9 @@ static void test_json_syntax_check_accepts_when_the_text_is_json(void **state) {
 static void test_json_syntax_check_gives_the_place_when_the_text_is_malformed(void **state) {
     (void)state;
     assert_malformed("{\n  \"a\": 1\n  \"b\": 2\n}", "f.json:3:3: expected ',' or '}', found '\"'");
-    assert_malformed("{\"a\": 1,}", "f.json:1:9: expected a key in double quotes, found '}'");
-    assert_malformed("{\"a\": [1,]}", ":1:10: expected a value, found ']'");
+    assert_malformed("{\"a\": 1,}",
+                     "f.json:1:9: expected something behind the last comma, found '}'");
+    assert_malformed("{\"a\": [1,]}", ":1:10: expected something behind the last comma, found ']'");
     assert_malformed("{\"a\" 1}", ":1:6: expected ':' after the key, found '1'");
     assert_malformed("{\"a\": NaN}", ":1:7: expected a value, found 'N'");
     assert_malformed("{\"ä\": nul}", ":1:7: expected a value, found 'n'");

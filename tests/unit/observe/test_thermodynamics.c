@@ -223,6 +223,15 @@ static void test_judge_of_a_fit_sees_a_few_percent_of_the_positions(void **state
     assert_ok(mf_thermodynamics_judge_fit(&s, &fluid.setup));
     s.temperature_configurational = NAN;
     assert_ok(mf_thermodynamics_judge_fit(&s, &fluid.setup));
+    // A simulation may go where its energy leads it, but a target has its temperature.
+    fluid.setup.omega = NULL;
+    assert_ok(mf_thermodynamics_judge_fit(&s, &fluid.setup));
+    s.temperature = 0.79;
+    assert_ok(mf_thermodynamics_judge(&s, &fluid.setup));
+    assert_fails(mf_thermodynamics_judge_fit(&s, &fluid.setup), STATUS_UNSTABLE,
+                 "0.79, not 1: nothing holds it");
+    s.blocks = 4;
+    assert_ok(mf_thermodynamics_judge_fit(&s, &fluid.setup));
     fluid_clear(&fluid);
 }
 

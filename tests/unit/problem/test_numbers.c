@@ -213,6 +213,19 @@ static void test_numbers_bound_is_the_end_that_a_value_has_come_to(void **state)
     assert_null(mf_numbers_bound(&number, NAN));
 }
 
+static void test_numbers_undetermined_are_those_with_most_of_their_range_open(void **state) {
+    (void)state;
+    const struct inverse_number number = {.minimum = -2, .maximum = 10};
+    // Of what is anywhere in the range, the standard deviation is 12/sqrt(12).
+    assert_true(mf_numbers_undetermined(&number, &(struct inverse_parameter){4, sqrt(12)}));
+    assert_true(mf_numbers_undetermined(&number, &(struct inverse_parameter){4, 1.6}));
+    assert_false(mf_numbers_undetermined(&number, &(struct inverse_parameter){4, 1.4}));
+    assert_true(mf_numbers_undetermined(&number, &(struct inverse_parameter){4, INFINITY}));
+    assert_false(mf_numbers_undetermined(&number, &(struct inverse_parameter){4, NAN}));
+    // Pressed against an end by the targets.
+    assert_false(mf_numbers_undetermined(&number, &(struct inverse_parameter){10, 3}));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_numbers_apply_gives_the_tables_and_settings_of_a_scene_that_says_so),
@@ -221,6 +234,7 @@ int main(void) {
         cmocka_unit_test(test_numbers_are_variables_from_minimum_to_maximum_with_errors),
         cmocka_unit_test(test_numbers_stand_behind_the_curves_and_change_none),
         cmocka_unit_test(test_numbers_bound_is_the_end_that_a_value_has_come_to),
+        cmocka_unit_test(test_numbers_undetermined_are_those_with_most_of_their_range_open),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

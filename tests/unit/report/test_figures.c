@@ -194,6 +194,33 @@ static void test_draws_dynamics_of_a_fit(void **state) {
     assert_true(figure_folders_drawn(folder, "msd"));
 }
 
+/// A first bin of one pair would be a line along E = 1 below the others, and a band of everything.
+static void test_draws_etd_of_the_bins_with_pairs_enough(void **state) {
+    char folder[FIGURE_PATH];
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    figure_folders_make(folder, "etd_bins");
+    figure_folders_write(folder, "etd.tsv",
+                         "# time[tau]\tE(r0=0.1)[1]\tE(r0=0.3)[1]\tE(r0=0.5)[1]\tE(r0=0.7)[1]\n"
+                         "0\tnan\t1\t1\t1\n0.5\tnan\t1\t0.9\t0.8\n1\tnan\t1\t0.5\t0.4\n");
+    figure_folders_write(folder, "etd_error.tsv",
+                         "# time[tau]\tE_error\tE_error\tE_error\tE_error\n0\tnan\t0\t0\t0\n"
+                         "0.5\tnan\t0.5\t0.02\t0.01\n1\tnan\t0.5\t0.02\t0.01\n");
+    figure_folders_write(folder, "etd_bins.tsv",
+                         "# r0[lambda]\tpairs[1]\n0.1\t0\n0.3\t1\n0.5\t150\n0.7\t5000\n");
+    figure_folders_draw(folder);
+    assert_true(figure_folders_drawn(folder, "etd"));
+    assert_false(figure_folders_say(folder, "etd", "0.300"));
+    assert_true(figure_folders_say(folder, "etd", "0.500"));
+    assert_true(figure_folders_say(folder, "etd", "0.700"));
+    figure_folders_write(folder, "etd_bins.tsv",
+                         "# r0[lambda]\tpairs[1]\n0.1\t0\n0.3\t1\n0.5\t15\n0.7\t50\n");
+    figure_folders_draw(folder);
+    assert_false(figure_folders_say(folder, "etd", "0.100"));
+    assert_true(figure_folders_say(folder, "etd", "0.300"));
+    assert_true(figure_folders_say(folder, "etd", "0.700"));
+}
+
 static void test_draws_etd_of_no_known_result(void **state) {
     (void)state;
     figure_folders_skip_without_gnuplot();
@@ -320,6 +347,7 @@ int main(void) {
         cmocka_unit_test(test_potential_is_shown_up_to_its_barrier),
         cmocka_unit_test(test_soft_potential_is_shown_almost_whole),
         cmocka_unit_test(test_draws_dynamics_of_a_fit),
+        cmocka_unit_test(test_draws_etd_of_the_bins_with_pairs_enough),
         cmocka_unit_test(test_draws_etd_of_no_known_result),
         cmocka_unit_test(test_draws_bands_and_truth_where_they_are_known),
         cmocka_unit_test(test_error_is_named_after_what_was_fitted),
