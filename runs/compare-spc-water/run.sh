@@ -1,16 +1,24 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# Fit water's potential by five methods and put them side by side: runs/compare-spc-water/out/compare.
+# Fit water's potential by nine methods and put them side by side: runs/compare-spc-water/out/compare.
 # Options of `mesofit fit` may follow, for example --seed 2.
 set -eu
 cd "$(dirname "$0")/../.."
 here=runs/compare-spc-water
-for method in genetic nlopt cma-es; do
-    ./mesofit fit $here/$method.json -o $here/out/$method "$@"
+folders=
+fit() {
+    name=$1 file=$2
+    shift 2
+    # What has not converged is compared too.
+    ./mesofit fit "$file" -o "$here/out/$name" "$@" || [ $? -eq 1 ]
+    folders="$folders $here/out/$name"
+}
+for name in original genetic memetic cma-es nlopt; do
+    fit $name $here/$name.json "$@"
 done
-for method in gauss-newton imc; do
-    ./mesofit fit runs/spc-water-$method/run.json -o $here/out/$method "$@"
+for name in gauss-newton imc ibi hnc; do
+    fit $name runs/spc-water-$name/run.json "$@"
 done
-./mesofit compare $here/out/genetic $here/out/nlopt $here/out/cma-es $here/out/gauss-newton \
-    $here/out/imc -o $here/out/compare
+# shellcheck disable=SC2086
+./mesofit compare $folders -o $here/out/compare

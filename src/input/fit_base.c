@@ -7,15 +7,19 @@
 
 #include <math.h>
 
+/// BASE_AUTO as far as the file says it: the start, or else what is found in the target.
 static enum unknown_base base_of(const struct fit_unknown *unknown) {
-    if (unknown->parameters.base != BASE_AUTO)
-        return (enum unknown_base)unknown->parameters.base;
-    return unknown->start.curves > 0 ? BASE_START : BASE_HNC;
+    if (unknown->parameters.base == BASE_AUTO && unknown->start.curves > 0)
+        return BASE_START;
+    return (enum unknown_base)unknown->parameters.base;
 }
 
 void mf_fit_base_check(struct fit_unknown *unknown, enum unknown_kind kind,
                        struct json_object *object) {
     struct unknown_parameters *p = &unknown->parameters;
+    if (p->base == BASE_AUTO && !mf_json_has(object, "base") &&
+        (mf_json_has(object, "minimum") || mf_json_has(object, "maximum")))
+        p->base = BASE_NONE;
     const enum unknown_base base = base_of(unknown);
     if (isnan(p->minimum))
         p->minimum = base == BASE_NONE ? 0 : -p->maximum;
@@ -30,22 +34,31 @@ void mf_fit_base_check(struct fit_unknown *unknown, enum unknown_kind kind,
         mf_json_fault(object, "base", "\"start\" needs a start");
 }
 
-/// The base of an unknown; that of the target whatever start there is.
+/// The hypernetted chain's. Of a target that ends before its oscillations do it is far off and puts
+/// the liquid under tension: there `auto` takes −k_B T ln g.
+static enum status fill_hnc(const struct inverse_problem *problem, const struct unknowns *unknowns,
+                            bool even_under_tension, double *curve) {
+    double pressure;
+    TRY(mf_inversion_start_curve(problem, curve, &pressure));
+    if (pressure < 0 && !even_under_tension)
+        mf_potential_grid_start(&unknowns->potential, problem, curve);
+    return STATUS_OK;
+}
+
+/// The base of an unknown; what is made of the target, whatever start there is.
 static enum status fill_base(const struct fit_file *fit, const struct unknowns *unknowns,
                              enum unknown_kind kind, double *curve) {
     struct inverse_problem without = fit->problem;
+    const enum unknown_base base = base_of(&fit->unknown[kind]);
     for (int pair = 0; pair < COMPOSITION_MOST_PAIRS; pair++)
         without.unknown[UNKNOWN_POTENTIAL].start[pair] = NULL;
-    switch (base_of(&fit->unknown[kind])) {
-    case BASE_HNC:
-        return mf_inversion_start_curve(&without, curve);
-    case BASE_MEAN_FORCE:
-        mf_potential_grid_start(&unknowns->potential, &without, curve);
-        return STATUS_OK;
-    default:
+    if (base == BASE_START)
         mf_unknowns_start(unknowns, kind, curve);
-        return STATUS_OK;
-    }
+    else if (base == BASE_MEAN_FORCE)
+        mf_potential_grid_start(&unknowns->potential, &without, curve);
+    else
+        return fill_hnc(&without, unknowns, base == BASE_HNC, curve);
+    return STATUS_OK;
 }
 
 enum status mf_fit_base_find(struct fit_file *fit) {

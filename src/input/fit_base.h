@@ -4,8 +4,9 @@
 
 #include "input/fit_file.h"
 
-/// The base that the file asks for, BASE_AUTO resolved for three dimensions; and its faults: a base
-/// of a formula, or a range of coefficients that are to be added but never below 0.
+/// Faults of what the file says of the base: one of a formula, or a range of coefficients that are
+/// to be added but never below 0. Sets what the file leaves out: none where it gives the range of
+/// the coefficients, which then is that of the curve; and the lower end of the range.
 void mf_fit_base_check(struct fit_unknown *unknown, enum unknown_kind kind,
                        struct json_object *object);
 

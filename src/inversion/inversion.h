@@ -154,9 +154,11 @@ bool mf_inversion_keeps(struct inversion *inversion);
 enum status mf_inversion_start(struct inversion *inversion) MUST_USE;
 
 /// The curve that an inversion of the problem begins with, shape [points of mf_unknowns_points]:
-/// that of the problem, or the hypernetted chain's, in two dimensions −k_B T ln g. Fails:
-/// NO_MEMORY; BAD_INPUT as mf_inversion_create.
-enum status mf_inversion_start_curve(const struct inverse_problem *problem, double *curve) MUST_USE;
+/// that of the problem, or the hypernetted chain's, in two dimensions −k_B T ln g; and its virial
+/// pressure with the target's g: below 0 the curve may lead nowhere. Fails: NO_MEMORY; BAD_INPUT as
+/// mf_inversion_create. Tested: test_fit_base.
+enum status mf_inversion_start_curve(const struct inverse_problem *problem, double *curve,
+                                     double *pressure) MUST_USE;
 
 /// Whether the start was the hypernetted chain's and leads nowhere, after an iteration whose
 /// potential was kept or not.

@@ -169,10 +169,33 @@ static enum status prepare(struct inversion *inversion, const struct inverse_pro
     return mf_inversion_start(inversion);
 }
 
-enum status mf_inversion_start_curve(const struct inverse_problem *problem, double *curve) {
+/// The virial pressure if the pairs were as the target has them: (d N k_B T − Σ S* r Φ')/(d V).
+static enum status find_pressure(struct inversion *inversion, double *pressure) {
+    const struct potential_grid *grid = &inversion->grid;
+    const double dimensions = inversion->box.dimensions;
+    double virial = dimensions * (double)mf_composition_particles(&inversion->composition) *
+                    inversion->problem->scene.temperature;
+    double volume = 1, slope;
+    TRY(mf_potential_grid_table(grid, inversion->phi, &inversion->table));
+    for (size_t n = 0; n < grid->known; n++) {
+        const double r = grid->r[grid->known_point[n]];
+        const int pair = (int)(grid->known_point[n] / (grid->bins + 1));
+        mf_table_evaluate_pair(&inversion->table, pair, r, NULL, &slope, NULL);
+        virial -= inversion->target_counts[grid->known_bin[n]] * r * slope;
+    }
+    for (int d = 0; d < inversion->box.dimensions; d++)
+        volume *= inversion->box.length[d];
+    *pressure = virial / (dimensions * volume);
+    return STATUS_OK;
+}
+
+enum status mf_inversion_start_curve(const struct inverse_problem *problem, double *curve,
+                                     double *pressure) {
     struct inversion inversion = {0};
     mf_fields_set_defaults(mf_inversion_fields, &inversion.settings.common);
-    const enum status status = prepare(&inversion, problem);
+    enum status status = prepare(&inversion, problem);
+    if (status == STATUS_OK)
+        status = find_pressure(&inversion, pressure);
     if (status == STATUS_OK)
         memcpy(curve, inversion.phi, inversion.grid.points * sizeof *curve);
     mf_inversion_destroy(&inversion);

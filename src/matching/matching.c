@@ -69,8 +69,9 @@ static const struct field own_fields[] = {
      .help = "fresh measurements of what is thought best, before it is believed"},
     {"surrogate", FIELD_CHOICE, MEMBER(surrogate), .choices = surrogates, .initial = TRIED,
      .unit = "",
-     .help = "whether to try what a linear model of all simulations thinks best, too; join: and let "
-             "it join the genetic population"},
+     .help =
+         "whether to try what a linear model of all simulations thinks best, too; join: and let "
+         "it join the genetic population"},
     FIELD_END,
 };
 

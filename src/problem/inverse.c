@@ -56,7 +56,8 @@ static const char *const omega_bases[] = {"none", "start", NULL};
 const struct field mf_inverse_potential_fields[] = {
     CURVE(potential_curves, potential_bases, BASE_AUTO,
           "what the curve is added to; auto: \"start\" if there is one, else hypernetted-chain, "
-          "the inversion of g, or in two dimensions mean-force, -k_B T ln g",
+          "the inversion of g, or where that fails and in two dimensions mean-force, -k_B T ln g. "
+          "Default: none where \"minimum\" or \"maximum\" is given, else auto",
           6.5, "k_B T_0") // ends at the target's range
     FIELD_END,
 };

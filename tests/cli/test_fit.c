@@ -122,7 +122,7 @@ static void test_genetic_gives_the_same_bits_from_its_used_settings(void **state
 }
 
 static void test_genetic_with_forces_gives_the_same_bits_from_its_used_settings(void **state) {
-    write_fit(*state, GENETIC("0.5") ", \"estimator\": \"force\"");
+    write_fit(*state, GENETIC("0.5") ", \"estimator\": \"force\", \"initial\": \"uniform\"");
     check_used(CONVERGED);
     small_inputs_write(*state, "run.json", fit, METHOD, GENETIC("0.5"));
     run_fit("other", "2", CONVERGED);
@@ -235,7 +235,7 @@ static void test_explain_tells_how_an_evaluation_measures_the_rdf(void **state) 
     run_program_assert_code(&result, 0);
     assert_contains(result.out, "An evaluation of the method \"genetic\", one a thread:");
     assert_null(strstr(result.out, "g(r) from forces"));
-    write_fit(*state, GENETIC("0.5") ", \"estimator\": \"force\"");
+    write_fit(*state, GENETIC("0.5") ", \"estimator\": \"force\", \"initial\": \"uniform\"");
     RUN_PROGRAM(&result, "fit", "run.json", "--explain");
     run_program_assert_code(&result, 0);
     assert_contains(result.out, "g(r)                               off         from forces");

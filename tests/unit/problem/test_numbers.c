@@ -178,10 +178,9 @@ static void test_numbers_stand_behind_the_curves_and_change_none(void **state) {
     double variables[6], before[OMEGA_POINTS], after[OMEGA_POINTS];
     begin(&mixture);
     mixture.problem.unknown[UNKNOWN_OMEGA] =
-        (struct unknown){
-            .wanted = true,
-            .parameters = {INVERSE_CURVE_BSPLINE, 5, 0, 6, 0, 1, {0}, BASE_NONE},
-            .start = {&mixture.omega}};
+        (struct unknown){.wanted = true,
+                         .parameters = {INVERSE_CURVE_BSPLINE, 5, 0, 6, 0, 1, {0}, BASE_NONE},
+                         .start = {&mixture.omega}};
     mixture.problem.numbers = 1;
     assert_ok(mf_parametrisation_init(&parametrisation, &mixture.problem));
     assert_int_equal(parametrisation.variables, 6);
