@@ -63,6 +63,21 @@ static bool are_equal(struct part a, struct part b) {
     return true;
 }
 
+/// Whether a stands behind b where the order does not matter: what is longer does, and of the same
+/// length what differs first in its nodes.
+static bool is_behind(struct part a, struct part b) {
+    if (a.end - a.begin != b.end - b.begin)
+        return a.end - a.begin > b.end - b.begin;
+    for (int k = 0; k <= a.end - a.begin; k++) {
+        const struct expression_node *x = &a.of->node[a.begin + k], *y = &b.of->node[b.begin + k];
+        if (x->kind != y->kind)
+            return x->kind > y->kind;
+        if (x->constant != y->constant)
+            return x->constant > y->constant;
+    }
+    return false;
+}
+
 // What a rule makes: no longer than what it was made of, so that it always fits -------------------
 
 static void put(struct expression *to, struct part part) {
@@ -86,6 +101,14 @@ static bool make_number(struct expression *to, double value) {
 static bool make(struct expression *to, struct part part) {
     put(to, part);
     return true;
+}
+
+/// x ∘ y
+static bool make_pair(struct expression *to, struct part x, enum expression_kind operation,
+                      struct part y) {
+    put(to, x);
+    put(to, y);
+    return done(to, operation);
 }
 
 /// k x
@@ -167,12 +190,9 @@ static bool reduce_add(struct part a, struct part b, struct expression *to) {
     const double k = factor_of(&x), m = factor_of(&y);
     if (!is_number(b) && are_equal(x, y))
         return make_scaled(to, k + m, x);
-    if (m == -1) {
-        put(to, a);
-        put(to, y);
-        return done(to, EXPRESSION_SUBTRACT);
-    }
-    return false;
+    if (m == -1)
+        return make_pair(to, a, EXPRESSION_SUBTRACT, y);
+    return !is_number(b) && is_behind(a, b) && make_pair(to, b, EXPRESSION_ADD, a);
 }
 
 static bool reduce_subtract(struct part a, struct part b, struct expression *to) {
@@ -216,6 +236,8 @@ static bool scale(double c, struct part b, struct expression *to) {
         return make(to, b);
     if (is_scaled(b))
         return make_scaled(to, c * number(first(b)), second(b));
+    if (c < 0 && kind(b) == EXPRESSION_SUBTRACT)
+        return make_scaled_pair(to, -c, second(b), EXPRESSION_SUBTRACT, first(b));
     if (kind(b) == EXPRESSION_DIVIDE && is_number(first(b))) {
         put_number(to, c * number(first(b)));
         put(to, second(b));
@@ -249,8 +271,11 @@ static bool reduce_multiply(struct part a, struct part b, struct expression *to)
         mf_expression_push(to, EXPRESSION_ADD, 0);
         return done(to, EXPRESSION_EXP);
     }
-    const double p = exponent_of(&a), q = exponent_of(&b);
-    return are_equal(a, b) && make_power(to, a, p + q);
+    struct part x = a, y = b;
+    const double p = exponent_of(&x), q = exponent_of(&y);
+    if (are_equal(x, y))
+        return make_power(to, x, p + q);
+    return is_behind(a, b) && make_pair(to, b, EXPRESSION_MULTIPLY, a);
 }
 
 static bool reduce_divide(struct part a, struct part b, struct expression *to) {
@@ -264,6 +289,12 @@ static bool reduce_divide(struct part a, struct part b, struct expression *to) {
         return make_scaled_pair(to, number(first(a)), second(a), EXPRESSION_DIVIDE, b);
     if (is_scaled(b) && number(first(b)) != 0)
         return make_scaled_pair(to, 1 / number(first(b)), a, EXPRESSION_DIVIDE, second(b));
+    if (kind(b) == EXPRESSION_EXP && is_scaled(first(b))) {
+        put(to, a);
+        make_scaled(to, -number(first(first(b))), second(first(b)));
+        mf_expression_push(to, EXPRESSION_EXP, 0);
+        return done(to, EXPRESSION_MULTIPLY);
+    }
     if (kind(b) == EXPRESSION_POWER && is_number(a) && number(a) == 1)
         return make_power(to, first(b), -number(second(b)));
     if (kind(b) == EXPRESSION_POWER) {
@@ -286,6 +317,10 @@ static bool reduce_power(struct part a, double p, struct expression *to) {
     }
     if (kind(a) == EXPRESSION_POWER && is_whole(p))
         return make_power(to, first(a), p * number(second(a)));
+    if (kind(a) == EXPRESSION_EXP) {
+        make_scaled(to, p, first(a));
+        return done(to, EXPRESSION_EXP);
+    }
     const bool scaled = is_scaled(a) || (kind(a) == EXPRESSION_DIVIDE && is_number(first(a)));
     if (scaled && (number(first(a)) > 0 || (is_whole(p) && number(first(a)) != 0)))
         return make_scaled_power(to, pow(number(first(a)), p), second(a), is_scaled(a) ? p : -p);
