@@ -222,6 +222,7 @@ static enum status find_curve(struct formulas_state *state,
     }
     TRY(state->inner.method->iterate(state->inner.state, &step, listener));
     take_curve(state, &step);
+    state->points.noise = step.noise;
     if (step.finished)
         state->progress.stage = FORMULAS_BREED;
     return STATUS_OK;
@@ -474,13 +475,15 @@ static void choose(struct formulas_state *state) {
     progress->variance = chosen->variance;
 }
 
-/// Simulate the front; then the next cycle, if there is one.
+/// Simulate the front; then the next cycle, if one is needed.
 static enum status simulate(struct formulas_state *state, const struct inverse_listener *listener,
                             bool *finished) {
     struct formulas_progress *progress = &state->progress;
     TRY(measure(state, listener));
     choose(state);
+    // Nearer than its noise there is nothing left to learn from differences.
     *finished = state->kind == UNKNOWN_OMEGA || progress->nearest == 0 ||
+                progress->error <= mf_inverse_noise_margin * progress->noise ||
                 progress->cycle + 1 >= (uint32_t)state->own.cycles;
     if (*finished)
         return STATUS_OK;
@@ -505,7 +508,7 @@ static void conclude(const struct formulas_state *state, struct inverse_step *st
     else
         snprintf(step->reason, sizeof step->reason,
                  "no formula of at most %lld nodes was near enough to the curve to be simulated, "
-                 "or every simulation failed",
+                 "or every simulation failed, as it does where \"equilibration\" is too short",
                  (long long)state->own.programming.nodes);
 }
 
@@ -562,6 +565,7 @@ static size_t spans(void *memory, struct memory_span *span) {
     size_t n = 0;
     span[n++] = (struct memory_span){&state->progress, sizeof state->progress};
     span[n++] = (struct memory_span){state->formula, sizeof state->formula};
+    span[n++] = (struct memory_span){&state->points.noise, sizeof state->points.noise};
     span[n++] = (struct memory_span){state->front, sizeof state->front};
     span[n++] = (struct memory_span){state->y, of_curve};
     span[n++] = (struct memory_span){state->weight, of_curve};

@@ -37,10 +37,11 @@ static const double is_good = 3;
 /// Children of a structure that is kept already which are fitted all the same.
 static const double is_tried_again = 0.2;
 
-/// Children that come from one parent alone, at random, and rounds after which the best of all
-/// islands go to each.
+/// Children that come from one parent alone, or from none, and rounds after which the best of all
+/// islands go to each. Measured: of four searches for Morse's potential in 24 rounds all find it so,
+/// two where islands mix after three rounds and parents are rather the good ones of their length.
 static const double mutates = 0.6, is_new = 0.03;
-enum { ROUNDS_APART = 3 };
+enum { ROUNDS_APART = 12 };
 
 static void clear_island(struct programming_island *island) {
     for (int length = 0; length <= PROGRAMMING_MOST_NODES; length++)
@@ -107,15 +108,14 @@ static int members_of(const struct programming_member row[PROGRAMMING_KEPT]) {
     return members;
 }
 
-/// A parent: of a length at random, rather a good one. NULL while that length has none.
+/// A parent: any of a length at random. NULL while that length has none.
 static const struct expression *choose(struct rng_sequence *random,
                                        const struct programming_parameters *parameters,
                                        const struct programming_island *island) {
     const uint32_t length = 1 + mf_rng_sequence_below(random, (uint32_t)parameters->nodes);
     const struct programming_member *row = island->member[length];
     const int members = members_of(row);
-    const double place = mf_rng_sequence_uniform(random) * mf_rng_sequence_uniform(random);
-    return members > 0 ? &row[(int)(place * members)].expression : NULL;
+    return members > 0 ? &row[mf_rng_sequence_below(random, (uint32_t)members)].expression : NULL;
 }
 
 static struct expression breed(struct rng_sequence *random,
@@ -288,8 +288,8 @@ enum status mf_programming_reconsider(struct programming *programming) {
 // The front ---------------------------------------------------------------------------------------
 
 /// Errors that count as none, as a part of the points' own size; by which a longer formula must be
-/// better; and by which a tidy one may be worse.
-static const double nothing = 1e-9, gain = 0.02, loss = 0.01;
+/// better; and by which a tidy one may be worse, as a part of it or of the noise.
+static const double nothing = 1e-9, gain = 0.02, loss = 0.01, noise_share = 0.5;
 
 /// What the error of 0 would be in place of the points.
 static double size_of(const struct programming_points *points,
@@ -324,8 +324,8 @@ static double rounded(double value, int digits) {
 static void tidy(const struct programming_points *points, struct programming_scratch *scratch,
                  struct programming_member *member) {
     bool held[EXPRESSION_MOST] = {false};
-    const double allowed =
-        fmax((1 + loss) * member->error, nothing * size_of(points, scratch));
+    const double allowed = fmax(hypot(member->error, noise_share * points->noise),
+                                fmax((1 + loss) * member->error, nothing * size_of(points, scratch)));
     const struct expression *e = &member->expression;
     for (int k = 0; k < e->length; k++)
         if (mf_expression_is_exponent(e, k) && rint(e->node[k].constant) != 0)

@@ -32,6 +32,7 @@ struct programming_points {
     /// straight line from −3 s on: pairs at a distance that they hardly ever have do not see how
     /// high a barrier is, but a hole. 0: as they are.
     double softness;
+    double noise; ///< of the residuals, rms; 0: not known
 };
 
 enum { PROGRAMMING_MOST_NODES = 30, PROGRAMMING_KEPT = 16, PROGRAMMING_MOST_ISLANDS = 64 };
@@ -82,7 +83,7 @@ enum status mf_programming_reconsider(struct programming *programming) MUST_USE;
 
 /// The front of error against length: each member is better than all shorter ones by more than
 /// 2 %. Exponents that may as well be whole numbers are, and constants have no more digits than
-/// make the error smaller by 1 %.
+/// make the error smaller by 1 %, or by half of the noise as squares add.
 /// @param[out] front  shape [PROGRAMMING_MOST_NODES]
 /// @return members, shortest first. Fails: NO_MEMORY. Tested: test_programming.
 enum status mf_programming_front(const struct programming *programming,
