@@ -447,24 +447,40 @@ done:
     return status;
 }
 
-/// The shortest formula that is as good as the best by chance.
+/// The best formula by simulations, and the least error that the response expects of one; 0 if none
+/// could be simulated.
+static int find_nearest(const struct formulas_state *state, double *expected) {
+    double least = OPTIMISER_FAILED;
+    int nearest = 0;
+    *expected = INFINITY;
+    for (int length = 1; length <= PROGRAMMING_MOST_NODES; length++) {
+        const struct formulas_member *member = &state->front[length];
+        if (!is_known(state, length))
+            continue;
+        *expected = fmin(*expected, member->formula.error);
+        if (member->error < least)
+            nearest = length;
+        least = fmin(least, member->error);
+    }
+    return nearest;
+}
+
+/// The shortest formula that is as good as the best by chance: by the simulations, whose noise is
+/// their own, and by the response, whose noise is that of the curve.
 static void choose(struct formulas_state *state) {
     struct formulas_progress *progress = &state->progress;
-    double least = OPTIMISER_FAILED;
-    for (int length = 1; length <= PROGRAMMING_MOST_NODES; length++)
-        if (is_known(state, length) && state->front[length].error < least) {
-            least = state->front[length].error;
-            progress->nearest = length;
-        }
+    double expected;
+    progress->nearest = progress->chosen = find_nearest(state, &expected);
     if (progress->nearest == 0)
         return;
-    const double variance = state->front[progress->nearest].variance;
-    progress->chosen = progress->nearest;
-    for (int length = progress->nearest; length > 0; length--)
+    const struct formulas_member *best = &state->front[progress->nearest];
+    for (int length = progress->nearest; length > 0; length--) {
+        const struct formulas_member *member = &state->front[length];
         if (is_known(state, length) &&
-            state->front[length].error <=
-                least + chance * sqrt(variance + state->front[length].variance))
+            member->error <= best->error + chance * sqrt(best->variance + member->variance) &&
+            member->formula.error <= hypot(expected, state->points.noise))
             progress->chosen = length;
+    }
     const struct formulas_member *chosen = &state->front[progress->chosen];
     char text[EXPRESSION_TEXT_SIZE];
     mf_expression_print(&chosen->formula.expression, EXPRESSION_PLAIN, text);

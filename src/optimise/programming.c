@@ -289,7 +289,8 @@ enum status mf_programming_reconsider(struct programming *programming) {
 
 /// Errors that count as none, as a part of the points' own size; by which a longer formula must be
 /// better; and by which a tidy one may be worse, as a part of it or of the noise.
-static const double nothing = 1e-9, gain = 0.02, loss = 0.01, noise_share = 0.5;
+static const double nothing = 1e-9, gain = 0.02, loss = 0.01;
+static const double exponent_share = 1, digits_share = 0.5;
 
 /// What the error of 0 would be in place of the points.
 static double size_of(const struct programming_points *points,
@@ -320,21 +321,29 @@ static double rounded(double value, int digits) {
     return strtod(text, NULL);
 }
 
+/// The error that a tidy formula may have.
+static double allowed_error(const struct programming_points *points,
+                            struct programming_scratch *scratch, double error,
+                            double share_of_noise) {
+    return fmax(hypot(error, share_of_noise * points->noise),
+                fmax((1 + loss) * error, nothing * size_of(points, scratch)));
+}
+
 /// Whole exponents first, then few digits, constant after constant.
 static void tidy(const struct programming_points *points, struct programming_scratch *scratch,
                  struct programming_member *member) {
     bool held[EXPRESSION_MOST] = {false};
-    const double allowed = fmax(hypot(member->error, noise_share * points->noise),
-                                fmax((1 + loss) * member->error, nothing * size_of(points, scratch)));
     const struct expression *e = &member->expression;
+    double allowed = allowed_error(points, scratch, member->error, exponent_share);
     for (int k = 0; k < e->length; k++)
         if (mf_expression_is_exponent(e, k) && rint(e->node[k].constant) != 0)
             settle_constant(points, scratch, k, rint(e->node[k].constant), allowed, held, member);
+    allowed = allowed_error(points, scratch, member->error, digits_share);
     for (int k = e->length - 1; k >= 0; k--)
         for (int digits = 1; digits <= 15 && e->node[k].kind == EXPRESSION_CONSTANT && !held[k];
              digits++)
-            settle_constant(points, scratch, k, rounded(e->node[k].constant, digits), allowed,
-                            held, member);
+            settle_constant(points, scratch, k, rounded(e->node[k].constant, digits), allowed, held,
+                            member);
 }
 
 enum status mf_programming_polish(const struct programming_points *points,

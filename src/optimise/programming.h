@@ -82,8 +82,8 @@ enum status mf_programming_round(struct programming *programming) MUST_USE;
 enum status mf_programming_reconsider(struct programming *programming) MUST_USE;
 
 /// The front of error against length: each member is better than all shorter ones by more than
-/// 2 %. Exponents that may as well be whole numbers are, and constants have no more digits than
-/// make the error smaller by 1 %, or by half of the noise as squares add.
+/// 2 %. Exponents that may as well be whole numbers within the noise are, and constants have no more
+/// digits than make the error smaller by 1 %, or by half of the noise as squares add.
 /// @param[out] front  shape [PROGRAMMING_MOST_NODES]
 /// @return members, shortest first. Fails: NO_MEMORY. Tested: test_programming.
 enum status mf_programming_front(const struct programming *programming,
