@@ -91,7 +91,7 @@ static struct dual combine(enum expression_kind kind, struct dual a, struct dual
 }
 
 double mf_expression_value(const struct expression *expression, double r, double *slope) {
-    struct dual stack[EXPRESSION_MOST];
+    struct dual stack[EXPRESSION_MOST] = {{0}};
     int top = 0;
     for (int k = 0; k < expression->length; k++) {
         const struct expression_node *node = &expression->node[k];

@@ -59,5 +59,17 @@ struct formulas_state {
     } progress;
 };
 
+/// The chosen formula is the shortest within so many standard errors of the best.
+enum { FORMULAS_CHANCE = 2 };
+
+/// The unknown as a formula makes it, shape [points].
+void mf_formulas_make_curve(const struct formulas_state *state, const struct expression *expression,
+                            double *curve);
+
+/// Simulate the front; then begin the next cycle, if one is needed.
+/// Fails: INTERRUPTED, NO_MEMORY, BAD_INPUT as mf_evaluate.
+enum status mf_formulas_simulate(struct formulas_state *state,
+                                 const struct inverse_listener *listener, bool *finished) MUST_USE;
+
 /// formulas.tsv, formulas.tex and formulas.h.
 enum status mf_formulas_write(const void *state, const struct inverse_folder *folder);

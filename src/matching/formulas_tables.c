@@ -65,10 +65,8 @@ static enum status write_latex(const struct formulas_state *state,
 /// formulas.h: a function a formula, named by its nodes.
 static enum status write_c(const struct formulas_state *state,
                            const struct inverse_folder *folder) {
-    const double last = mf_unknowns_r(&state->unknowns,
-                                      state->kind)[mf_unknowns_points(&state->unknowns,
-                                                                      state->kind) -
-                                                   1];
+    const double last = mf_unknowns_r(
+        &state->unknowns, state->kind)[mf_unknowns_points(&state->unknowns, state->kind) - 1];
     struct output output;
     TRY(open_in(folder, "formulas.h", &output));
     fprintf(output.stream, "#include <math.h>\n");
@@ -81,8 +79,7 @@ static enum status write_c(const struct formulas_state *state,
         fprintf(output.stream,
                 "\n/* For %.10g <= r < %.10g. */\nstatic inline double formula_%d(double r) {\n"
                 "    return %s - (%.17g);\n}\n",
-                state->points.r[0], last, expression->length, text,
-                shift_of(state, expression));
+                state->points.r[0], last, expression->length, text, shift_of(state, expression));
     }
     return mf_output_commit(&output);
 }

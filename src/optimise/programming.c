@@ -19,8 +19,7 @@ const struct field mf_programming_fields[] = {
     {"depth", FIELD_INTEGER, MEMBER(depth), .initial = 7, .minimum = 1, .maximum = 30, .unit = "",
      .help = "levels of a formula at most"},
     {"islands", FIELD_INTEGER, MEMBER(islands), .initial = 8, .minimum = 1,
-     .maximum = PROGRAMMING_MOST_ISLANDS, .unit = "",
-     .help = "groups of formulas that rarely mix"},
+     .maximum = PROGRAMMING_MOST_ISLANDS, .unit = "", .help = "groups of formulas that rarely mix"},
     {"rounds", FIELD_INTEGER, MEMBER(rounds), .initial = 12, .minimum = 1, .maximum = 10000,
      .unit = "", .help = "of breeding"},
     {"children", FIELD_INTEGER, MEMBER(children), .initial = 1000, .minimum = 1, .maximum = 1e7,
@@ -28,9 +27,9 @@ const struct field mf_programming_fields[] = {
     FIELD_END,
 };
 
-/// Steps of the fit of a child's constants, from the best of so many starts; of those whose error is
-/// then this multiple of what is kept at least; and of the members of a front. Measured: of starts
-/// at random (e^(−cr) − d)² finds its constants from 13 in 100, from the best of eight 34.
+/// Steps of the fit of a child's constants, from the best of so many starts; of those whose error
+/// is then this multiple of what is kept at least; and of the members of a front. Measured: of
+/// starts at random (e^(−cr) − d)² finds its constants from 13 in 100, from the best of eight 34.
 enum { CHILD_STARTS = 8, CHILD_STEPS = 12, GOOD_STEPS = 40, FRONT_STEPS = 200 };
 static const double is_good = 3;
 
@@ -38,8 +37,9 @@ static const double is_good = 3;
 static const double is_tried_again = 0.2;
 
 /// Children that come from one parent alone, or from none, and rounds after which the best of all
-/// islands go to each. Measured: of four searches for Morse's potential in 24 rounds all find it so,
-/// two where islands mix after three rounds and parents are rather the good ones of their length.
+/// islands go to each. Measured: of four searches for Morse's potential in 24 rounds all find it
+/// so, two where islands mix after three rounds and parents are rather the good ones of their
+/// length.
 static const double mutates = 0.6, is_new = 0.03;
 enum { ROUNDS_APART = 12 };
 
@@ -186,8 +186,8 @@ static bool is_kept(const struct programming_island *island, const struct expres
 static void try_child(const struct programming *programming, struct programming_scratch *scratch,
                       struct rng_sequence *random, struct programming_island *island) {
     const struct programming_points *points = programming->points;
-    struct programming_member child = {
-        .expression = breed(random, &programming->parameters, island)};
+    struct programming_member child = {.expression =
+                                           breed(random, &programming->parameters, island)};
     mf_expression_simplify(&child.expression);
     drop_shift(points, &child.expression);
     if (!is_allowed(&programming->parameters, &child.expression) ||
@@ -238,11 +238,10 @@ static void mix(struct programming *programming) {
 }
 
 enum status mf_programming_round(struct programming *programming) {
-    TRY(mf_parallel_try(
-        &(struct parallel_tasks){.count = (size_t)programming->parameters.islands,
-                                 .threads = programming->threads,
-                                 .run = live,
-                                 .context = programming}));
+    TRY(mf_parallel_try(&(struct parallel_tasks){.count = (size_t)programming->parameters.islands,
+                                                 .threads = programming->threads,
+                                                 .run = live,
+                                                 .context = programming}));
     programming->round++;
     mix(programming);
     return STATUS_OK;
@@ -262,8 +261,8 @@ static enum status reconsider(void *context, size_t task, void *result) {
         struct programming_member *member = &before->member[0][0] + n;
         if (!isfinite(member->error))
             continue;
-        member->error = mf_programming_fit(programming->points, &scratch, &member->expression,
-                                           NULL, GOOD_STEPS);
+        member->error = mf_programming_fit(programming->points, &scratch, &member->expression, NULL,
+                                           GOOD_STEPS);
         if (isfinite(member->error) && is_regular(programming->points, &member->expression))
             keep(island, member);
     }
@@ -274,11 +273,10 @@ done:
 }
 
 enum status mf_programming_reconsider(struct programming *programming) {
-    TRY(mf_parallel_try(
-        &(struct parallel_tasks){.count = (size_t)programming->parameters.islands,
-                                 .threads = programming->threads,
-                                 .run = reconsider,
-                                 .context = programming}));
+    TRY(mf_parallel_try(&(struct parallel_tasks){.count = (size_t)programming->parameters.islands,
+                                                 .threads = programming->threads,
+                                                 .run = reconsider,
+                                                 .context = programming}));
     for (int length = 0; length <= PROGRAMMING_MOST_NODES; length++)
         programming->best[length].error = INFINITY;
     mix(programming);
@@ -352,8 +350,7 @@ enum status mf_programming_polish(const struct programming_points *points,
     struct programming_scratch scratch;
     struct programming_member fitted = *member;
     CHECK(mf_programming_fit_init(&scratch, points));
-    fitted.error =
-        mf_programming_fit(points, &scratch, &fitted.expression, NULL, FRONT_STEPS);
+    fitted.error = mf_programming_fit(points, &scratch, &fitted.expression, NULL, FRONT_STEPS);
     if (!is_regular(points, &fitted.expression)) {
         fitted = *member;
         fitted.error = mf_programming_fit_error(points, &scratch, &fitted.expression);

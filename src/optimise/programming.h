@@ -3,10 +3,10 @@
 ///
 /// J. R. Koza, Genetic Programming (1992). Islands of formulas are changed by crossover, mutation
 /// of subtrees and of points, growing and hoisting; each child is simplified, and its constants are
-/// fitted by least squares with its derivatives (M. Kommenda et al., Genet. Program. Evolvable Mach.
-/// 21, 471 (2020)). An island keeps the best few of each length, of different structure, so that
-/// what is short need not compete with what is long. A formula that is not finite everywhere between
-/// the first point and the last is dropped.
+/// fitted by least squares with its derivatives (M. Kommenda et al., Genet. Program. Evolvable
+/// Mach. 21, 471 (2020)). An island keeps the best few of each length, of different structure, so
+/// that what is short need not compete with what is long. A formula that is not finite everywhere
+/// between the first point and the last is dropped.
 #pragma once
 
 #include "base/fields.h"
@@ -60,7 +60,7 @@ struct programming {
     uint64_t seed;
     int threads;
     const atomic_bool *cancel;
-    struct programming_island *island; ///< shape [islands]
+    struct programming_island *island;                          ///< shape [islands]
     struct programming_member best[PROGRAMMING_MOST_NODES + 1]; ///< of each length
     uint64_t round;
 };
@@ -82,8 +82,8 @@ enum status mf_programming_round(struct programming *programming) MUST_USE;
 enum status mf_programming_reconsider(struct programming *programming) MUST_USE;
 
 /// The front of error against length: each member is better than all shorter ones by more than
-/// 2 %. Exponents that may as well be whole numbers within the noise are, and constants have no more
-/// digits than make the error smaller by 1 %, or by half of the noise as squares add.
+/// 2 %. Exponents that may as well be whole numbers within the noise are, and constants have no
+/// more digits than make the error smaller by 1 %, or by half of the noise as squares add.
 /// @param[out] front  shape [PROGRAMMING_MOST_NODES]
 /// @return members, shortest first. Fails: NO_MEMORY. Tested: test_programming.
 enum status mf_programming_front(const struct programming *programming,

@@ -93,7 +93,8 @@ static void go_back_power(const double *x, const double *p, const double *value,
     bool positive = true;
     for (size_t k = 0; k < count; k++) {
         positive = positive && x[k] > 0;
-        dx[k] = adjoint[k] * p[k] * (x[k] != 0 ? value[k] / x[k] : mf_expression_power(0, p[k] - 1));
+        dx[k] =
+            adjoint[k] * p[k] * (x[k] != 0 ? value[k] / x[k] : mf_expression_power(0, p[k] - 1));
     }
     for (size_t k = 0; k < count; k++)
         dp[k] = positive ? adjoint[k] * value[k] * log(x[k]) : 0;
@@ -121,8 +122,8 @@ static void go_back(const struct expression *expression, int node, size_t count,
     for (size_t k = 0; k < count; k++) {
         const bool product = kind == EXPRESSION_MULTIPLY, quotient = kind == EXPRESSION_DIVIDE;
         da[k] = adjoint[k] * (product ? b[k] : quotient ? 1 / b[k] : 1);
-        db[k] = adjoint[k] * (product    ? a[k]
-                              : quotient ? -value[k] / b[k]
+        db[k] = adjoint[k] * (product                       ? a[k]
+                              : quotient                    ? -value[k] / b[k]
                               : kind == EXPRESSION_SUBTRACT ? -1
                                                             : 1);
     }
@@ -170,8 +171,7 @@ static double find_residuals(const struct programming_points *points,
                              const struct expression *expression) {
     if (!evaluate(points, scratch, expression))
         return INFINITY;
-    const double *whole =
-        scratch->value + (size_t)(expression->length - 1) * (points->count + 1);
+    const double *whole = scratch->value + (size_t)(expression->length - 1) * (points->count + 1);
     const double shift = isnan(points->zero) ? 0 : whole[points->count];
     for (size_t k = 0; k < points->count; k++)
         scratch->difference[k] =
@@ -273,8 +273,8 @@ static bool move(const struct expression *from, const int *constant, int constan
     for (int n = 0; n < constants; n++) {
         double *value = &to->node[constant[n]].constant;
         *value += step[n];
-        const double most = mf_expression_is_exponent(to, constant[n]) ? largest_exponent
-                                                                       : largest_constant;
+        const double most =
+            mf_expression_is_exponent(to, constant[n]) ? largest_exponent : largest_constant;
         if (!(fabs(*value) <= most))
             return false;
     }
@@ -283,9 +283,9 @@ static bool move(const struct expression *from, const int *constant, int constan
 
 /// Try steps of growing damping until one helps; the squares after it, or those before.
 static double try_steps(const struct programming_points *points,
-                        struct programming_scratch *scratch,
-                        const struct normal_equations *normal, const int *constant,
-                        double squares, double *damping, struct expression *expression) {
+                        struct programming_scratch *scratch, const struct normal_equations *normal,
+                        const int *constant, double squares, double *damping,
+                        struct expression *expression) {
     double step[EXPRESSION_MOST];
     struct expression next;
     for (; *damping < 1e10; *damping *= 8) {
@@ -342,8 +342,7 @@ double mf_programming_fit(const struct programming_points *points,
                           const bool *held, int iterations) {
     int constant[EXPRESSION_MOST];
     const int constants = find_constants(expression, held, constant);
-    const double squares =
-        descend(points, scratch, expression, constant, constants, iterations);
+    const double squares = descend(points, scratch, expression, constant, constants, iterations);
     return sqrt(squares / (double)points->rows);
 }
 

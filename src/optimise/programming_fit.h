@@ -6,7 +6,7 @@
 
 /// Scratch of one thread.
 struct programming_scratch {
-    double *value, *adjoint; ///< shape [EXPRESSION_MOST, count + 1]: of each node at each point
+    double *value, *adjoint;    ///< shape [EXPRESSION_MOST, count + 1]: of each node at each point
     double *difference, *slope; ///< shape [count]: softened f − y, and its derivative by f
     double *jacobian;           ///< shape [EXPRESSION_MOST, count]: ∂f by each constant
     double *residual, *columns; ///< shape [rows], [EXPRESSION_MOST, rows]
@@ -37,5 +37,4 @@ bool mf_programming_fit_stays(const struct expression *expression, int node);
 
 /// Move a constant factor of the whole alone, if there is one. Returns the error.
 double mf_programming_fit_scale(const struct programming_points *points,
-                                struct programming_scratch *scratch,
-                                struct expression *expression);
+                                struct programming_scratch *scratch, struct expression *expression);

@@ -49,9 +49,9 @@ static void push_random(struct rng_sequence *random, int depth, struct expressio
     } else if (choice < 3) {
         push_power(random, to);
     } else {
-        static const enum expression_kind operations[] = {
-            EXPRESSION_ADD, EXPRESSION_SUBTRACT, EXPRESSION_MULTIPLY, EXPRESSION_MULTIPLY,
-            EXPRESSION_DIVIDE};
+        static const enum expression_kind operations[] = {EXPRESSION_ADD, EXPRESSION_SUBTRACT,
+                                                          EXPRESSION_MULTIPLY, EXPRESSION_MULTIPLY,
+                                                          EXPRESSION_DIVIDE};
         push_random(random, depth - 1, to);
         mf_expression_push(to, operations[choice - 3], 0);
     }
@@ -73,8 +73,8 @@ static int random_part(struct rng_sequence *random, const struct expression *exp
 }
 
 /// `in` with nodes begin … end of `from` in the place of the part that ends with `at`.
-static struct expression replace(const struct expression *in, int at,
-                                 const struct expression *from, int begin, int end) {
+static struct expression replace(const struct expression *in, int at, const struct expression *from,
+                                 int begin, int end) {
     struct expression made = {0};
     const bool fits = mf_expression_append(&made, in, 0, mf_expression_begin(in, at) - 1) &&
                       mf_expression_append(&made, from, begin, end) &&
@@ -104,8 +104,8 @@ static void push_joined(struct rng_sequence *random, const struct expression *fr
     mf_expression_append(to, &other, 0, other.length - 1);
     if (!behind)
         mf_expression_append(to, from, begin, end);
-    mf_expression_push(to, (enum expression_kind)(EXPRESSION_ADD + mf_rng_sequence_below(random, 4)),
-                       0);
+    mf_expression_push(
+        to, (enum expression_kind)(EXPRESSION_ADD + mf_rng_sequence_below(random, 4)), 0);
 }
 
 /// A part x becomes exp(−c x), x^p, (x + c)^p, or is joined with another.
@@ -144,9 +144,8 @@ static struct expression change_node(struct rng_sequence *random, const struct e
     const int at = (int)mf_rng_sequence_below(random, (uint32_t)made.length);
     struct expression_node *node = &made.node[at];
     if (mf_expression_is_exponent(&made, at)) {
-        node->constant = uniform(random) < 0.5
-                             ? exponents[mf_rng_sequence_below(random, EXPONENTS)]
-                             : -node->constant;
+        node->constant = uniform(random) < 0.5 ? exponents[mf_rng_sequence_below(random, EXPONENTS)]
+                                               : -node->constant;
     } else if (mf_expression_arguments(node->kind) == 0) {
         const bool distance = node->kind != EXPRESSION_DISTANCE && uniform(random) < 0.3;
         node->kind = distance ? EXPRESSION_DISTANCE : EXPRESSION_CONSTANT;

@@ -51,7 +51,8 @@ static double morse(double r) {
     return 1.5 * x * x;
 }
 
-static const struct programming_parameters usual = {12, 7, 8, 6, 1000}, longer = {10, 7, 8, 24, 1000};
+static const struct programming_parameters usual = {12, 7, 8, 6, 1000},
+                                           longer = {10, 7, 8, 24, 1000};
 
 static struct programming_member search(const struct sample *sample, uint64_t seed, int threads,
                                         const struct programming_parameters *parameters) {
@@ -166,8 +167,7 @@ static void test_programming_gives_the_same_bits_for_any_threads_and_after_a_res
         for (int k = 1; k < 3; k++) {
             assert_identical(programming[k].best[length].error, programming[0].best[length].error);
             assert_memory_equal(&programming[k].best[length].expression,
-                                &programming[0].best[length].expression,
-                                sizeof(struct expression));
+                                &programming[0].best[length].expression, sizeof(struct expression));
         }
     for (int k = 0; k < 3; k++)
         mf_programming_clear(&programming[k]);
@@ -203,8 +203,7 @@ int main(void) {
         cmocka_unit_test(test_programming_finds_a_gaussian_when_its_points_are_exact),
         cmocka_unit_test(test_programming_finds_morse_when_its_points_are_exact),
         cmocka_unit_test(test_programming_finds_lennard_jones_when_its_points_are_noisy),
-        cmocka_unit_test(
-            test_programming_gives_the_same_bits_for_any_threads_and_after_a_restart),
+        cmocka_unit_test(test_programming_gives_the_same_bits_for_any_threads_and_after_a_restart),
         cmocka_unit_test(test_programming_does_not_see_what_the_response_does_not_see),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
