@@ -18,7 +18,7 @@
 static const struct field own_fields[] = {
     {"checks", FIELD_INTEGER, OWN(checks), .initial = 2, .minimum = 1, .maximum = 100, .unit = "",
      .help = "simulations of each formula of the front"},
-    {"cycles", FIELD_INTEGER, OWN(cycles), .initial = 3, .minimum = 1, .maximum = 100, .unit = "",
+    {"cycles", FIELD_INTEGER, OWN(cycles), .initial = 4, .minimum = 1, .maximum = 100, .unit = "",
      .help = "of breeding and simulating, of a potential; a friction weight has one"},
     {"curve_particles", FIELD_INTEGER, OWN(curve_particles), .initial = 0, .minimum = 0,
      .maximum = 1e7, .unit = "",
@@ -53,7 +53,8 @@ static void destroy(void *memory) {
     mf_programming_clear(&state->programming);
     mf_unknowns_clear(&state->unknowns);
     double *arrays[] = {state->y,     state->weight,      state->response, state->offset,
-                        state->curve, state->curve_error, state->target,   state->found};
+                        state->curve, state->curve_error, state->target,   state->found,
+                        state->start, state->softness};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         mf_memory_free(arrays[k]);
 }
@@ -128,9 +129,8 @@ static void find_points(struct formulas_state *state) {
     state->points = (struct programming_points){
         .count = state->count,
         .r = r + state->first,
-        .rows = state->count,
+        .rows = (potential ? 2 : 1) * state->count,
         .zero = potential ? r[points - 1] : NAN,
-        .softness = potential ? state->problem->scene.temperature : 0,
     };
 }
 
@@ -140,20 +140,32 @@ static enum status allocate(struct formulas_state *state) {
     state->features = mf_targets_features(&state->problem->targets);
     NEW_ARRAY(state->y, state->count);
     NEW_ARRAY(state->weight, state->count);
-    NEW_ARRAY(state->response, state->count * state->count);
-    NEW_ARRAY(state->offset, state->count);
+    NEW_ARRAY(state->response, 2 * state->count * state->count);
+    NEW_ARRAY(state->offset, 2 * state->count);
+    NEW_ARRAY(state->start, state->count);
+    NEW_ARRAY(state->softness, state->count);
     NEW_ARRAY(state->curve, points);
     NEW_ARRAY(state->curve_error, points);
     NEW_ARRAY(state->target, state->features);
     NEW_ARRAY(state->found, (PROGRAMMING_MOST_NODES + 1) * state->features);
     state->points.y = state->y;
     state->points.offset = state->offset;
+    state->points.softness = state->softness;
     if (state->kind == UNKNOWN_POTENTIAL)
         state->points.response = state->response;
     else
         state->points.weight = state->weight;
 done:
     return status;
+}
+
+/// Where a g below 1 says that pairs are few, they see differences the less the higher they are.
+/// Elsewhere the response is linear: else a ramp, which g(r) does not see, would seem to matter.
+static void soften(struct formulas_state *state) {
+    for (size_t k = 0; k < state->count; k++) {
+        const double g = state->target[state->first + k];
+        state->softness[k] = g < 1 ? state->problem->scene.temperature / (1 - g) : 0;
+    }
 }
 
 static enum status create(void *memory, const struct inverse_method *method,
@@ -168,21 +180,35 @@ static enum status create(void *memory, const struct inverse_method *method,
     find_points(state);
     TRY(allocate(state));
     mf_targets_take_features(&problem->targets, NULL, state->target, NULL);
-    if (state->kind == UNKNOWN_POTENTIAL)
+    if (state->kind == UNKNOWN_POTENTIAL) {
+        soften(state);
         TRY(create_inner(state));
+    }
     return mf_programming_init(&state->programming, &state->points, &state->own.programming,
                                problem->seed, problem->threads, problem->scene.cancel);
 }
 
 // The curve ---------------------------------------------------------------------------------------
 
-/// The residuals of a potential become those of g(r): δg_a = −Σ_b C_ab δΦ_b/(k_B T S_ideal,a).
+/// What a difference from the inversion's curve by 1 k_B T costs, where g(r) knows it, as if g(r)
+/// were off by as much. g(r) hardly sees changes that are smooth; without this a formula for water
+/// was 4 k_B T away, its pressure 20 times that of the curve.
+static const double rein = 0.004;
+
+/// The residuals of a potential become those of g(r): δg_a = −Σ_b C_ab δΦ_b/(k_B T S_ideal,a);
+/// behind them stand the differences from the curve. Both count half of the rows.
 static void take_response(struct formulas_state *state, const struct inverse_response *from) {
     const double temperature = state->problem->scene.temperature;
     for (size_t a = 0; a < state->count; a++)
         for (size_t b = 0; b < state->count; b++)
-            state->response[a * state->count + b] = -from->covariance[a * state->count + b] /
+            state->response[a * state->count + b] = -M_SQRT2 *
+                                                    from->covariance[a * state->count + b] /
                                                     (temperature * from->ideal[state->first + a]);
+    for (size_t a = 0; a < state->count; a++) {
+        const double g = state->target[state->first + a];
+        state->response[(state->count + a) * state->count + a] =
+            M_SQRT2 * rein / temperature * fmin(1, fmax(0, g));
+    }
 }
 
 static void take_curve(struct formulas_state *state, const struct inverse_step *step) {
@@ -192,6 +218,7 @@ static void take_curve(struct formulas_state *state, const struct inverse_step *
         memcpy(state->curve_error, step->curve_error[UNKNOWN_POTENTIAL],
                points * sizeof *state->curve_error);
     memcpy(state->y, state->curve + state->first, state->count * sizeof *state->y);
+    memcpy(state->start, state->y, state->count * sizeof *state->start);
     take_response(state, &step->response);
     state->progress.evaluations = step->evaluations;
     state->progress.engine_steps = step->engine_steps;
@@ -317,8 +344,9 @@ static size_t spans(void *memory, struct memory_span *span) {
     span[n++] = (struct memory_span){state->front, sizeof state->front};
     span[n++] = (struct memory_span){state->y, of_curve};
     span[n++] = (struct memory_span){state->weight, of_curve};
-    span[n++] = (struct memory_span){state->offset, of_curve};
-    span[n++] = (struct memory_span){state->response, state->count * of_curve};
+    span[n++] = (struct memory_span){state->start, of_curve};
+    span[n++] = (struct memory_span){state->offset, 2 * of_curve};
+    span[n++] = (struct memory_span){state->response, 2 * state->count * of_curve};
     span[n++] = (struct memory_span){state->curve, points * sizeof(double)};
     span[n++] = (struct memory_span){state->curve_error, points * sizeof(double)};
     span[n++] = (struct memory_span){state->found, (PROGRAMMING_MOST_NODES + 1) * state->features *

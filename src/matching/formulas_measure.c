@@ -13,7 +13,7 @@
 
 /// Formulas whose g(r) would be off by more than this, or by so many times that of the best, are
 /// not simulated: the first may be no liquid.
-static const double hopeless = 1, too_far = 3;
+static const double hopeless = 1, too_far = 2;
 
 void mf_formulas_make_curve(const struct formulas_state *state, const struct expression *expression,
                             double *curve) {
@@ -132,7 +132,10 @@ static void compare_with(const struct formulas_state *state, int length, double 
     mf_formulas_make_curve(state, &state->front[length].formula.expression, curve);
     memcpy(y, curve + state->first, state->count * sizeof *y);
     for (size_t a = 0; a < state->count; a++)
-        offset[a] = found[state->first + a] - state->target[state->first + a];
+        offset[a] = M_SQRT2 * (found[state->first + a] - state->target[state->first + a]);
+    for (size_t a = 0; a < state->count; a++)
+        offset[state->count + a] =
+            state->response[(state->count + a) * state->count + a] * (y[a] - state->start[a]);
 }
 
 /// A formula that was simulated with constants by which the response makes up for what that showed.
@@ -142,7 +145,7 @@ static enum status refine(const struct formulas_state *state, int length,
     double *curve = NULL, *y = NULL, *offset = NULL;
     NEW_ARRAY(curve, mf_unknowns_points(&state->unknowns, state->kind));
     NEW_ARRAY(y, state->count);
-    NEW_ARRAY(offset, state->count);
+    NEW_ARRAY(offset, 2 * state->count);
     compare_with(state, length, curve, y, offset);
     struct programming_points points = state->points;
     points.y = y;

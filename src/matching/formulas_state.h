@@ -42,8 +42,10 @@ struct formulas_state {
     size_t first;                ///< of the unknown's points; they follow one another
     size_t features;             ///< of the targets
     double *y, *weight;          ///< shape [count]: what formulas are compared with
-    double *response;            ///< shape [count, count]: of g(r) in its known bins
-    double *offset;              ///< shape [count]: g(r) − g*(r) where f = y
+    double *softness;            ///< shape [count]
+    double *start;               ///< shape [count]: the potential of the inversion
+    double *response;            ///< shape [2 count, count]: of g(r), and of what reins formulas in
+    double *offset;              ///< shape [2 count]: of both where f = y
     double *curve, *curve_error; ///< shape [points]: the best so far
     double *target;              ///< shape [features]
     double *found;               ///< shape [lengths, features]: as simulated

@@ -25,7 +25,7 @@ static enum status write_front(const struct formulas_state *state,
                                const struct inverse_folder *folder) {
     struct output output;
     TRY(open_in(folder, "formulas.tsv", &output));
-    fprintf(output.stream, "nodes\tchosen\texpected\terror[1]\terror_error[1]\tformula\n");
+    fprintf(output.stream, "# nodes\tchosen\texpected\terror[1]\terror_error[1]\tformula\n");
     for (int k = 1; k <= PROGRAMMING_MOST_NODES; k++) {
         const struct formulas_member *member = &state->front[k];
         if (member->formula.expression.length == 0)

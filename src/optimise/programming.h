@@ -28,10 +28,10 @@ struct programming_points {
     const double *offset; ///< shape [rows], or NULL: 0
     /// A formula counts as shifted so that it is 0 here; NaN: as it is.
     double zero;
-    /// Differences d = f − y count as s log(1 + d/s) above 0 and as s (1 − exp(−d/s)) below, in a
-    /// straight line from −3 s on: pairs at a distance that they hardly ever have do not see how
-    /// high a barrier is, but a hole. 0: as they are.
-    double softness;
+    /// Shape [count], or NULL. Differences d = f − y count as s log(1 + d/s) above 0 and as
+    /// s (1 − exp(−d/s)) below, in a straight line from −3 s on: pairs at a distance that they
+    /// hardly ever have do not see how high a barrier is, but a hole. 0: as they are.
+    const double *softness;
     double noise; ///< of the residuals, rms; 0: not known
 };
 

@@ -131,10 +131,10 @@ static void go_back(const struct expression *expression, int node, size_t count,
 
 /// How a difference counts, and its derivative.
 static double soften(double difference, double softness, double *slope) {
-    const double x = difference / softness, end = -3;
     *slope = 1;
     if (softness == 0)
         return difference;
+    const double x = difference / softness, end = -3;
     if (x > 0) {
         *slope = 1 / (1 + x);
         return softness * log1p(x);
@@ -175,7 +175,8 @@ static double find_residuals(const struct programming_points *points,
     const double shift = isnan(points->zero) ? 0 : whole[points->count];
     for (size_t k = 0; k < points->count; k++)
         scratch->difference[k] =
-            soften(whole[k] - shift - points->y[k], points->softness, &scratch->slope[k]);
+            soften(whole[k] - shift - points->y[k], points->softness ? points->softness[k] : 0,
+                   &scratch->slope[k]);
     respond(points, scratch->difference, scratch->residual);
     double squares = 0;
     for (size_t row = 0; row < points->rows; row++) {

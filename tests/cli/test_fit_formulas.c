@@ -90,7 +90,7 @@ static void test_formulas_finds_a_friction_weight_from_its_curve(void **state) {
     assert_contains(text, "\"formula\":\t\"-3*(r - 1)\"");
     assert_contains(text, "\"status\":\t\"finished\"");
     read_file("out/formulas.tsv", text, sizeof text);
-    assert_contains(text, "nodes\tchosen\texpected\terror[1]\terror_error[1]\tformula\n");
+    assert_contains(text, "# nodes\tchosen\texpected\terror[1]\terror_error[1]\tformula\n");
     assert_contains(text, "\t-3*(r - 1)\n");
     read_file("out/formulas.tex", text, sizeof text);
     assert_contains(text, "\\omega(r) = -3 \\, \\left(r - 1\\right)\n");

@@ -20,8 +20,8 @@ struct sample {
 
 static void take(struct sample *sample, double (*curve)(double r), double low, double high,
                  double zero, double noise) {
-    sample->points = (struct programming_points){
-        POINTS, sample->r, sample->y, sample->weight, NULL, POINTS, NULL, zero, 0, 0};
+    sample->points = (struct programming_points){POINTS, sample->r, sample->y, sample->weight, NULL,
+                                                 POINTS, NULL,      zero,      NULL,           0};
     for (int k = 0; k < POINTS; k++) {
         double normal[4];
         mf_rng_normal4(mf_rng_philox(7, RNG_INITIAL, (uint32_t)k, 0, 0), normal);
