@@ -18,7 +18,7 @@
 static const struct field own_fields[] = {
     {"checks", FIELD_INTEGER, OWN(checks), .initial = 2, .minimum = 1, .maximum = 100, .unit = "",
      .help = "simulations of each formula of the front"},
-    {"cycles", FIELD_INTEGER, OWN(cycles), .initial = 4, .minimum = 1, .maximum = 100, .unit = "",
+    {"cycles", FIELD_INTEGER, OWN(cycles), .initial = 3, .minimum = 1, .maximum = 100, .unit = "",
      .help = "of breeding and simulating, of a potential; a friction weight has one"},
     {"curve_particles", FIELD_INTEGER, OWN(curve_particles), .initial = 0, .minimum = 0,
      .maximum = 1e7, .unit = "",
