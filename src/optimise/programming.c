@@ -356,6 +356,10 @@ enum status mf_programming_polish(const struct programming_points *points,
         fitted.error = mf_programming_fit_error(points, &scratch, &fitted.expression);
     }
     tidy(points, &scratch, &fitted);
+    // A power may have become a first one.
+    mf_expression_simplify(&fitted.expression);
+    drop_shift(points, &fitted.expression);
+    fitted.error = mf_programming_fit_error(points, &scratch, &fitted.expression);
     *member = fitted;
 done:
     mf_programming_fit_clear(&scratch);
@@ -375,6 +379,8 @@ enum status mf_programming_front(const struct programming *programming,
             continue;
         front[*members] = programming->best[length];
         CHECK(mf_programming_polish(programming->points, &front[*members]));
+        if (!(front[*members].error < (1 - gain) * least))
+            continue;
         least = front[(*members)++].error;
     }
 done:

@@ -193,7 +193,7 @@ static void test_programming_does_not_see_what_the_response_does_not_see(void **
     assert_ok(mf_programming_polish(&sample.points, &member));
     assert_close(member.error, 0, 1e-7);
     assert_close(member.expression.node[0].constant, 12.5, 1e-6);
-    assert_close(member.expression.node[2].constant, 1, 1e-6);
+    assert_close(member.expression.node[2].constant, -1, 1e-6);
 }
 
 int main(void) {
