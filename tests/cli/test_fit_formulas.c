@@ -26,8 +26,8 @@ static const char soft_fluid[] =
 static const char fit_potential[] =
     "{\"seed\": 3, \"target\": {\"rdf\": {\"file\": \"target/rdf.tsv\"}},\n"
     "\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, \"time_step\": 0.02},\n"
-    "\"method\": {\"name\": \"formulas\", \"nodes\": 9, \"islands\": 3, \"rounds\": 2, "
-    "\"children\": 100, \"cycles\": 2,\n"
+    "\"method\": {\"name\": \"formulas\", \"nodes\": 9, \"islands\": 3, \"rounds\": 3, "
+    "\"children\": 800, \"cycles\": 2,\n"
     "\"equilibration\": 50, \"samples\": 10, \"every\": 8, \"temperature_tolerance\": 0.5},\n"
     "\"core\": {\"threshold\": 0.05, \"stiffness\": 50},\n"
     "\"verification\": {\"replicas\": 2, \"equilibration\": 20, \"samples\": 5, \"every\": 8}}\n";
