@@ -3,19 +3,18 @@
 
 #include "base/memory.h"
 #include "base/names.h"
+#include "curves/expression_law.h"
 #include "curves/formula.h"
 #include "curves/sampled.h"
 
 const struct curve_family *const mf_curve_potentials[] = {
-    &mf_formula_lennard_jones,
-    &mf_formula_soft_repulsion,
-    &mf_formula_gaussian,
-    &mf_sampled_family,
-    NULL,
+    &mf_formula_lennard_jones, &mf_formula_soft_repulsion, &mf_formula_gaussian,
+    &mf_expression_potential,  &mf_sampled_family,         NULL,
 };
 
 const struct curve_family *const mf_curve_omegas[] = {
     &mf_formula_power_omega,
+    &mf_expression_omega,
     &mf_sampled_family,
     NULL,
 };

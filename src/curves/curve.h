@@ -16,8 +16,9 @@ struct curve_family {
     size_t size;                ///< bytes of the parameter struct
     double (*value)(const void *parameters, double r);
     double (*cutoff)(const void *parameters);
-    /// Refuse what is in range each and not together; NULL: nothing to refuse.
-    enum status (*check)(const void *parameters);
+    /// Refuse what is in range each and not together, and make what `value` needs besides, as of a
+    /// formula that is text; NULL: neither.
+    enum status (*check)(void *parameters);
     void (*clear)(void *parameters); ///< frees what the parameters own; NULL if nothing
 };
 
@@ -39,7 +40,8 @@ const struct curve_family *mf_curve_find(const struct curve_family *const *list,
 /// Start a curve with the family's default parameters.
 enum status mf_curve_create(struct curve *curve, const struct curve_family *family) MUST_USE;
 
-/// Whether the parameters go together. Fails: BAD_INPUT. Tested: test_curves.
+/// Whether the parameters go together: to be asked after they were set, and before any value.
+/// Fails: BAD_INPUT. Tested: test_curves.
 enum status mf_curve_check(const struct curve *curve) MUST_USE;
 
 /// Free the parameters; a zeroed curve is fine.

@@ -118,7 +118,7 @@ static double power_omega_cutoff(const void *parameters) {
     return ((const struct formula_power_omega_parameters *)parameters)->cutoff;
 }
 
-static enum status power_omega_check(const void *parameters) {
+static enum status power_omega_check(void *parameters) {
     const struct formula_power_omega_parameters *p = parameters;
     if (p->inner_cutoff < p->cutoff)
         return STATUS_OK;

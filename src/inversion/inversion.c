@@ -326,6 +326,7 @@ static void describe(const struct inversion *inversion, const double *own, bool 
         .curve_flat = {inversion->band.flat},
         .without_ramp = inversion->band.without_ramp,
         .ramp = inversion->band.ramp,
+        .response = {inversion->covariance, inversion->ideal},
         .converged = converged,
         .finished = converged || stuck || mf_inversion_runs_away(inversion) ||
                     progress->iteration + 1 >= p->iterations,

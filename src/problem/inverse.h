@@ -129,6 +129,13 @@ struct inverse_ramp {
     double bins;          ///< out of so many
 };
 
+/// Linear response of the pairs S in each bin to the potential, as an inversion samples it: ∂⟨S_a⟩/
+/// ∂Φ_b = −C_ab/k_B T over the known bins of the potential's grid; g = S/S_ideal.
+struct inverse_response {
+    const double *covariance; ///< C, shape [known, known]; NULL where the method has none
+    const double *ideal;      ///< S if g were 1, shape [bins]
+};
+
 /// State of a fit after an iteration. Arrays belong to the method.
 struct inverse_step {
     uint32_t iteration;    ///< from 0
@@ -147,6 +154,8 @@ struct inverse_step {
     /// none.
     const double *without_ramp;
     struct inverse_ramp ramp;
+    struct inverse_response response;
+    const char *formula; ///< of the curve, as a scene's law "expression" has it; NULL: it is none
     struct inverse_parameter
         parameter[INVERSE_PARAMETERS]; ///< of a friction weight that is a formula
     struct inverse_parameter number[INVERSE_MOST_NUMBERS]; ///< of the problem, the best so far
@@ -244,7 +253,8 @@ struct inverse_method {
     EACH(hnc)                                                                                      \
     OPTIMISERS(EACH##_MATCHING)                                                                    \
     EACH(gauss_newton)                                                                             \
-    EACH(pareto)
+    EACH(pareto)                                                                                   \
+    EACH(formulas)
 
 #define INVERSE_DECLARE(name) extern const struct inverse_method mf_##name;
 #define INVERSE_DECLARE_MATCHING(record, name, summary)                                            \

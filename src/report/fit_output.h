@@ -21,6 +21,7 @@ struct fit_result {
     struct inverse_ramp ramp;                  ///< error 0: not known
     const struct inverse_parameter *parameter; ///< shape [INVERSE_PARAMETERS], of a formula
     const struct inverse_parameter *number;    ///< shape [problem.numbers]
+    const char *formula;                       ///< of the curve, or ""
     const char *reason;                        ///< why it has not converged, or settled, or ""
     const struct verification *verification;   ///< NULL if there was none
 };

@@ -103,6 +103,8 @@ void mf_fit_report_say(struct progress *to, const struct fit_file *fit,
                        const struct unknowns *unknowns, const struct fit_result *result) {
     const struct verification *v = result->verification;
     say_changes(to, unknowns, result);
+    if (result->formula[0])
+        mf_progress_say(to, "formula: %s", result->formula);
     say_parameters(to, fit, result->parameter);
     say_numbers(to, fit, result->number);
     say_distances(to, fit, v);

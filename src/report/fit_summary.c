@@ -300,6 +300,8 @@ enum status mf_fit_output_summary(const struct fit_file *fit, const struct unkno
     mf_json_put_number(writer, "evaluations", (double)result->evaluations);
     mf_json_put_number(writer, "engine_steps", (double)result->engine_steps);
     put_known(writer, "error", result->error);
+    if (result->formula[0])
+        mf_json_put_text(writer, "formula", result->formula);
     if (result->verification)
         put_verification(writer, fit, result->verification);
     put_normalisation(writer, fit);

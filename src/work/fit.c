@@ -39,6 +39,7 @@ struct run {
         struct inverse_ramp ramp;
         struct inverse_parameter parameter[INVERSE_PARAMETERS], number[INVERSE_MOST_NUMBERS];
         char reason[INVERSE_REASON_SIZE];
+        char formula[FIELD_TEXT_SIZE]; ///< or ""
     } standing;
 };
 
@@ -213,6 +214,7 @@ static struct fit_result result_so_far(const struct run *run, enum status status
                                 .number = s->number,
                                 .error = s->error,
                                 .first_error = mf_history_first_error(&run->history),
+                                .formula = s->formula,
                                 .reason = s->reason};
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         result.curve[kind] = run->curve[kind];
@@ -262,6 +264,8 @@ static enum status record(struct run *run, const struct inverse_step *step) {
     memcpy(run->standing.parameter, step->parameter, sizeof run->standing.parameter);
     memcpy(run->standing.number, step->number, sizeof run->standing.number);
     memcpy(run->standing.reason, step->reason, sizeof run->standing.reason);
+    snprintf(run->standing.formula, sizeof run->standing.formula, "%s",
+             step->formula ? step->formula : "");
     mf_history_add(&run->history, step, run->standing.seconds);
     TRY(mf_history_write(&run->history, run->fit.method, &run->unknowns, &run->folder));
     const struct fit_result result = result_so_far(run, STATUS_UNCONVERGED);

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "curves/expression_law.h"
+
+#include "curves/expression_text.h"
+#include "curves/table.h"
+
+#include <math.h>
+
+static double cutoff(const void *parameters) {
+    return ((const struct expression_parameters *)parameters)->cutoff;
+}
+
+/// The formula is finite from the inner cutoff to the cutoff, in each interval of a table.
+static enum status check_range(const struct expression_parameters *p, const char *advice) {
+    double where;
+    if (p->inner_cutoff >= p->cutoff)
+        return mf_status_fail(STATUS_BAD_INPUT, "the inner_cutoff %g is not below the cutoff %g",
+                              p->inner_cutoff, p->cutoff);
+    if (mf_expression_is_finite(&p->expression, p->inner_cutoff, p->cutoff, TABLE_INTERVALS,
+                                &where))
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "the formula \"%s\" divides by 0, or is no number, near r = %.4g%s",
+                          p->formula, where, where == p->inner_cutoff ? advice : "");
+}
+
+static enum status check_potential(void *parameters) {
+    struct expression_parameters *p = parameters;
+    TRY(mf_expression_parse(&p->expression, p->formula));
+    TRY(check_range(p, ": below \"inner_cutoff\" the potential would be a straight line"));
+    p->shift = mf_expression_value(&p->expression, p->cutoff, NULL);
+    p->inner_value = mf_expression_value(&p->expression, p->inner_cutoff, &p->inner_slope);
+    return STATUS_OK;
+}
+
+static enum status check_omega(void *parameters) {
+    struct expression_parameters *p = parameters;
+    TRY(mf_expression_parse(&p->expression, p->formula));
+    TRY(check_range(p, ": below \"inner_cutoff\" omega would be 0"));
+    for (int k = 0; k < TABLE_INTERVALS; k++) {
+        const double r = p->inner_cutoff + (p->cutoff - p->inner_cutoff) * k / TABLE_INTERVALS;
+        if (mf_expression_value(&p->expression, r, NULL) < 0)
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "the formula \"%s\" is negative at r = %.4g: omega is not",
+                                  p->formula, r);
+    }
+    return STATUS_OK;
+}
+
+static double potential_value(const void *parameters, double r) {
+    const struct expression_parameters *p = parameters;
+    if (r >= p->cutoff)
+        return 0;
+    if (r < p->inner_cutoff)
+        return p->inner_value - p->shift + p->inner_slope * (r - p->inner_cutoff);
+    return mf_expression_value(&p->expression, r, NULL) - p->shift;
+}
+
+static double omega_value(const void *parameters, double r) {
+    const struct expression_parameters *p = parameters;
+    const bool inside = r > p->inner_cutoff || (r == 0 && p->inner_cutoff == 0);
+    return inside && r < p->cutoff ? mf_expression_value(&p->expression, r, NULL) : 0;
+}
+
+#define MEMBER(name) .offset = offsetof(struct expression_parameters, name)
+#define FIELDS(inner_help, cutoff_help)                                                            \
+    {                                                                                              \
+        {"formula",                                                                                \
+         FIELD_TEXT,                                                                               \
+         MEMBER(formula),                                                                          \
+         .required = true,                                                                         \
+         .unit = "",                                                                               \
+         .help = "of the distance r: numbers, + - * / ^ and exp, such as 4*(1/r^12 - 1/r^6)"},     \
+            {"inner_cutoff", FIELD_NUMBER,       MEMBER(inner_cutoff), .initial = 0,               \
+             .minimum = 0,   .maximum = DBL_MAX, .unit = "lambda",     .help = inner_help},        \
+            {"cutoff",                                                                             \
+             FIELD_NUMBER,                                                                         \
+             MEMBER(cutoff),                                                                       \
+             .initial = 1,                                                                         \
+             .minimum = FIELD_ABOVE_ZERO,                                                          \
+             .maximum = DBL_MAX,                                                                   \
+             .unit = "lambda",                                                                     \
+             .help = cutoff_help},                                                                 \
+            FIELD_END,                                                                             \
+    }
+
+static const struct field potential_fields[] =
+    FIELDS("below it the potential is a straight line with the slope there",
+           "distance beyond which the potential is 0");
+
+static const struct field omega_fields[] =
+    FIELDS("r_0: omega is 0 at and below it", "r_c: omega is 0 beyond it");
+
+const struct curve_family mf_expression_potential = {
+    .name = "expression",
+    .summary = "a formula of r, shifted to 0 at the cutoff",
+    .fields = potential_fields,
+    .size = sizeof(struct expression_parameters),
+    .value = potential_value,
+    .cutoff = cutoff,
+    .check = check_potential,
+};
+
+const struct curve_family mf_expression_omega = {
+    .name = "expression",
+    .summary = "omega as a formula of r for r_0 < r <= r_c, else 0",
+    .fields = omega_fields,
+    .size = sizeof(struct expression_parameters),
+    .value = omega_value,
+    .cutoff = cutoff,
+    .check = check_omega,
+};
