@@ -22,13 +22,14 @@ static const struct variant {
     struct setting {
         const char *name;
         double value;
-    } settings[6];
+    } settings[8];
     double sphere, rosenbrock, rastrigin, edge, noisy, failing;
 } variants[] = {
 #define GENETIC(crossover, mutation)                                                               \
     &mf_genetic_optimiser, {                                                                       \
         {"crossover_kind", crossover}, {"mutation_kind", mutation}, {"population", 60},            \
-            {"mutation", 1}, {"mutated_genes", 0.3}, {                                             \
+            {"mutation", 1}, {"mutated_genes", 0.3}, {"initial", GENETIC_UNIFORM},                 \
+            {"patience", 0}, {                                                                     \
             "generations", 50                                                                      \
         }                                                                                          \
     }
@@ -38,6 +39,7 @@ static const struct variant {
     {GENETIC(GENETIC_ONE_POINT, GENETIC_CORRELATED), 6e-7, 8, 12, 1e-3, 0.011, 1e-5},
     {GENETIC(GENETIC_TWO_POINT, GENETIC_CORRELATED), 6e-7, 8, 12, 1e-3, 0.011, 1e-5},
     {GENETIC(GENETIC_BLEND, GENETIC_CORRELATED), 6e-7, 8, 12, 1e-3, 0.011, 1e-5},
+    {GENETIC(GENETIC_BLEND, GENETIC_WALK), 6e-5, 3, 8, 0.02, 0.011, 1e-5},
 #define NLOPT(algorithm)                                                                           \
     &mf_nlopt_optimiser, {                                                                         \
         {"algorithm", algorithm}, {                                                                \
@@ -59,7 +61,7 @@ enum { VARIANTS = sizeof variants / sizeof *variants };
 
 static void *parameters_of(const struct variant *variant) {
     void *parameters = landscape_parameters(variant->optimiser);
-    for (int k = 0; k < 6 && variant->settings[k].name; k++)
+    for (int k = 0; k < 8 && variant->settings[k].name; k++)
         landscape_set(variant->optimiser, parameters, variant->settings[k].name,
                       variant->settings[k].value);
     return parameters;
