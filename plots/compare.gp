@@ -69,8 +69,12 @@ if (with_error) {
 
 # Heights in points, from the top: legend in two columns, the panels over r, the row of errors.
 with_truth = phi_truth >= 0 || omega_truth >= 0
-with_band = (with_phi ? has_numbers("potential_compare.tsv", 3) : 0) + \
+# More bands than these lie on each other and hide the curves.
+most_bands = 5
+with_band = count > most_bands ? 0 : \
+    (with_phi ? has_numbers("potential_compare.tsv", 3) : 0) + \
     (with_omega ? has_numbers("omega_compare.tsv", 3) : 0)
+banded = with_band ? count : 0
 extra = with_target + with_truth + (with_band > 0) + with_error
 rows = (count + extra + 1) / 2
 legend = 24 + 21 * rows
@@ -156,10 +160,10 @@ do for [kind in kinds] {
         set yrange [bottom - 0.1 * (top - bottom):top]
         eval name_axis(phi_label, 0.012)
         plot 0 linewidth 0.8 linecolor rgb ink, \
-            for [i = 1:count] "potential_compare.tsv" index (i - 1) \
+            for [i = 1:banded] "potential_compare.tsv" index (i - 1) \
                 using 1:(band_low(2, 3)):(band_high(2, 3)) with filledcurves @band \
                 linecolor rgb colour_of(i - 1), \
-            for [i = 1:count] "" index (i - 1) using 1:2 with lines linestyle i, \
+            for [i = 1:count] "potential_compare.tsv" index (i - 1) using 1:2 with lines linestyle i, \
             for [i = phi_truth:phi_truth] "" index (i < 0 ? 0 : i) using 1:4 with lines @true_line
     }
     if (with_omega) {
@@ -167,10 +171,11 @@ do for [kind in kinds] {
         eval next_panel(panel)
         set yrange [0:V_max > 0 || W_max > 0 ? 1.08 * high(V_max, W_max) : 1]
         eval name_axis(omega_label, 0.012)
-        plot for [i = 1:count] "omega_compare.tsv" index (i - 1) \
+        plot 0 linewidth 0.8 linecolor rgb ink, \
+            for [i = 1:banded] "omega_compare.tsv" index (i - 1) \
                 using 1:(band_low(2, 3)):(band_high(2, 3)) with filledcurves @band \
                 linecolor rgb colour_of(i - 1), \
-            for [i = 1:count] "" index (i - 1) using 1:2 with lines linestyle i, \
+            for [i = 1:count] "omega_compare.tsv" index (i - 1) using 1:2 with lines linestyle i, \
             for [i = omega_truth:omega_truth] "" index (i < 0 ? 0 : i) using 1:4 \
                 with lines @true_line
     }

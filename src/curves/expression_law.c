@@ -30,6 +30,10 @@ static enum status check_potential(void *parameters) {
     TRY(check_range(p, ": below \"inner_cutoff\" the potential would be a straight line"));
     p->shift = mf_expression_value(&p->expression, p->cutoff, NULL);
     p->inner_value = mf_expression_value(&p->expression, p->inner_cutoff, &p->inner_slope);
+    if (!isfinite(p->inner_value) || !isfinite(p->inner_slope) || !isfinite(p->shift))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "the formula \"%s\" has no finite value and slope at r = %.4g",
+                              p->formula, p->inner_cutoff);
     return STATUS_OK;
 }
 

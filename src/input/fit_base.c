@@ -14,8 +14,7 @@ static enum unknown_base base_of(const struct fit_unknown *unknown) {
     return (enum unknown_base)unknown->parameters.base;
 }
 
-void mf_fit_base_check(struct fit_unknown *unknown, enum unknown_kind kind,
-                       struct json_object *object) {
+void mf_fit_base_check(struct fit_unknown *unknown, struct json_object *object) {
     struct unknown_parameters *p = &unknown->parameters;
     if (p->base == BASE_AUTO && !mf_json_has(object, "base") &&
         (mf_json_has(object, "minimum") || mf_json_has(object, "maximum")))
@@ -30,17 +29,19 @@ void mf_fit_base_check(struct fit_unknown *unknown, enum unknown_kind kind,
                       "%g: coefficients are added to the base and must be free to fall below 0; "
                       "with \"base\": \"none\" they make the curve alone",
                       p->minimum);
-    else if (base == BASE_START && unknown->start.curves == 0 && kind == UNKNOWN_POTENTIAL)
+    else if (base == BASE_START && unknown->start.curves == 0)
         mf_json_fault(object, "base", "\"start\" needs a start");
 }
 
 /// The hypernetted chain's. Of a target that ends before its oscillations do it is far off and puts
-/// the liquid under tension: there `auto` takes −k_B T ln g.
+/// the liquid under tension; and some targets have none. There `auto` takes −k_B T ln g.
 static enum status fill_hnc(const struct inverse_problem *problem, const struct unknowns *unknowns,
                             bool even_under_tension, double *curve) {
     double pressure;
-    TRY(mf_inversion_start_curve(problem, curve, &pressure));
-    if (pressure < 0 && !even_under_tension)
+    const enum status status = mf_inversion_start_curve(problem, curve, &pressure);
+    if (even_under_tension || status == STATUS_NO_MEMORY)
+        return status;
+    if (status != STATUS_OK || pressure < 0)
         mf_potential_grid_start(&unknowns->potential, problem, curve);
     return STATUS_OK;
 }
@@ -56,6 +57,9 @@ static enum status fill_base(const struct fit_file *fit, const struct unknowns *
         mf_unknowns_start(unknowns, kind, curve);
     else if (base == BASE_MEAN_FORCE)
         mf_potential_grid_start(&unknowns->potential, &without, curve);
+    else if (base == BASE_HNC && fit->problem.scene.box.dimensions != 3)
+        return mf_status_fail(STATUS_BAD_INPUT, "unknowns.potential.base: the hypernetted chain is "
+                                                "for three dimensions; \"mean-force\" is not");
     else
         return fill_hnc(&without, unknowns, base == BASE_HNC, curve);
     return STATUS_OK;

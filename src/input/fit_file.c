@@ -114,7 +114,7 @@ static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind k
         return STATUS_OK;
     mf_json_renamed(object, "genes", "coefficients");
     TRY(mf_scene_law_read(&unknown->start, object, "start", laws, composition, units));
-    mf_fit_base_check(unknown, kind, object);
+    mf_fit_base_check(unknown, object);
     if (p->maximum <= p->minimum)
         mf_json_fault(object, "maximum", "%g is not above the minimum %g", p->maximum, p->minimum);
     if (kind == UNKNOWN_OMEGA && p->cutoff <= p->inner_cutoff)

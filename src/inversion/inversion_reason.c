@@ -43,8 +43,10 @@ void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INV
     else if (agrees && p->best_own_noise <= settings->precision)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "g agrees, but it still asks for another ramp A (1 - r/cutoff), by %.2g k_B T_0 "
-                 "with an error of %.2g: more \"iterations\" are needed, or a \"pressure\"",
-                 inversion->band.ramp.way, inversion->band.ramp.error);
+                 "with an error of %.2g, and a pressure by %.2g with one of %.2g: more "
+                 "\"iterations\" are needed, or a \"pressure\"",
+                 inversion->band.ramp.way, inversion->band.ramp.error,
+                 inversion->band.ramp.pressure_way, inversion->band.ramp.pressure_open);
     else if (agrees)
         snprintf(
             reason, INVERSE_REASON_SIZE,

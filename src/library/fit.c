@@ -2,6 +2,7 @@
 #include "mesofit/fit.h"
 
 #include "base/memory.h"
+#include "input/fit_base.h"
 #include "input/fit_check.h"
 #include "library/fit.h"
 #include "library/fit_text.h"
@@ -56,6 +57,7 @@ static enum status open_run(struct mesofit_fit **made, const char *file,
     if (own)
         CHECK(add_own_laws(fit, own));
     CHECK(mf_fit_check(&fit->file, file));
+    CHECK(mf_fit_base_find(&fit->file));
     CHECK(begin(fit));
 done:
     if (status != STATUS_OK) {

@@ -113,19 +113,25 @@ static void destroy(void *memory) {
 static enum status create_optimiser(struct state *state, const void *parameters) {
     enum status status = STATUS_OK;
     double *start = NULL;
+    size_t *block = NULL;
     NEW_ARRAY(start, state->parametrisation.variables);
+    NEW_ARRAY(block, state->parametrisation.variables);
     CHECK(mf_parametrisation_start(&state->parametrisation, start));
-    const struct optimiser_space space = {.variables = state->parametrisation.variables,
-                                          .minimum = 0,
-                                          .maximum = 1,
-                                          .start = start,
-                                          .seed = state->problem->seed,
-                                          .most = POPULATION_MOST};
+    const struct optimiser_space space = {
+        .variables = state->parametrisation.variables,
+        .minimum = 0,
+        .maximum = 1,
+        .start = start,
+        .seed = state->problem->seed,
+        .most = POPULATION_MOST,
+        .blocks = mf_parametrisation_blocks(&state->parametrisation, block),
+        .block = block};
     state->optimiser_state = mf_memory_zeroed(1, state->optimiser->state_size);
     CHECK(state->optimiser_state ? STATUS_OK : STATUS_NO_MEMORY);
     CHECK(state->optimiser->create(state->optimiser_state, &space, parameters));
     state->created = true;
 done:
+    mf_memory_free(block);
     mf_memory_free(start);
     return status;
 }

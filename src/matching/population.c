@@ -29,14 +29,14 @@ const struct field mf_population_fields[] = {
     {"estimator", FIELD_CHOICE, MEMBER(evaluate.estimator), .choices = mf_rdf_force_estimators,
      .initial = RDF_FORCE_NOT_USED, .unit = "",
      .help = "of g(r): force is worth twice the samples, but a large time step puts it off"},
-    {"racing", FIELD_NUMBER, MEMBER(evaluate.racing), .initial = 2, .minimum = 0, .maximum = 100,
+    {"racing", FIELD_NUMBER, MEMBER(evaluate.racing), .initial = 0, .minimum = 0, .maximum = 100,
      .unit = "standard errors",
      .help = "by which a running error must be hopeless for its simulation to stop; 0: never"},
     {"precision", FIELD_NUMBER, MEMBER(evaluate.precision), .initial = 0, .minimum = 0,
      .maximum = 1, .unit = "",
      .help = "relative standard error of an error with which its simulation stops; 0: never"},
     {"warm_start", FIELD_CHOICE, MEMBER(warm_start), .choices = mf_population_no_or_yes,
-     .initial = 1, .unit = "", .help = "begin where the best simulation of the last round ended"},
+     .initial = 0, .unit = "", .help = "begin where the best simulation of the last round ended"},
     {"common_noise", FIELD_CHOICE, MEMBER(common_noise), .choices = mf_population_no_or_yes,
      .initial = 0, .unit = "", .help = "the same random numbers for all candidates of a round"},
     FIELD_END,
@@ -280,15 +280,23 @@ static void remember(struct population *population, const double *variables, dou
         mf_surrogate_add(&population->surrogate, variables, features);
 }
 
-/// Keep a round to be written.
+/// Keep a round to be written, but for copies, which are a challenger measured again.
 static void show(struct population *population, const struct optimiser_round *round) {
     enum { LEAST = 8 };
     const size_t bytes = population->parametrisation->variables * sizeof(double);
-    if (round->count < LEAST)
+    size_t distinct = 0;
+    for (size_t k = 0; k < round->count; k++)
+        distinct += copies_before(round, population->parametrisation->variables, k) == 0;
+    if (distinct < LEAST)
         return;
-    memcpy(population->shown, round->variables, round->count * bytes);
-    memcpy(population->shown_error, population->errors, round->count * sizeof(double));
-    population->shown_count = round->count;
+    population->shown_count = 0;
+    for (size_t k = 0; k < round->count; k++) {
+        if (copies_before(round, population->parametrisation->variables, k) > 0)
+            continue;
+        memcpy((char *)population->shown + population->shown_count * bytes,
+               (const char *)round->variables + k * bytes, bytes);
+        population->shown_error[population->shown_count++] = population->errors[k];
+    }
 }
 
 enum status mf_population_measure(struct population *population,
@@ -401,6 +409,11 @@ size_t mf_population_spans(struct population *population, struct memory_span *sp
                                      population->parametrisation->variables * sizeof(double)};
     span[n++] = (struct memory_span){
         population->features, POPULATION_MOST * population->surrogate.features * sizeof(double)};
+    span[n++] = (struct memory_span){population->shown, POPULATION_MOST *
+                                                            population->parametrisation->variables *
+                                                            sizeof(double)};
+    span[n++] = (struct memory_span){population->shown_error, errors};
+    span[n++] = (struct memory_span){&population->shown_count, sizeof population->shown_count};
     n += mf_surrogate_spans(&population->surrogate, span + n);
     return n;
 }

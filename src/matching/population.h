@@ -91,5 +91,5 @@ void mf_population_forget_survey(struct population *population);
 void mf_population_tell_failure(const struct population *population, const char *why,
                                 char reason[INVERSE_REASON_SIZE]);
 
-enum { CANDIDATES_SPANS = 9 + SURROGATE_SPANS };
+enum { CANDIDATES_SPANS = 12 + SURROGATE_SPANS };
 size_t mf_population_spans(struct population *population, struct memory_span *spans);

@@ -70,50 +70,70 @@ static double within_range(double gene, const struct genetic_parameters *p) {
 }
 
 /// Genes uniform in their range.
-static void fill_uniform(struct genetic *genetic, struct rng_sequence *random) {
-    const struct genetic_parameters *p = &genetic->parameters;
-    for (size_t k = 0; k < total_genes(genetic); k++)
-        genetic->population[k] =
+static void fill_uniform(const struct genetic_parameters *p, double *genes, size_t count,
+                         struct rng_sequence *random) {
+    for (size_t k = 0; k < count; k++)
+        genes[k] =
             p->gene_minimum + (p->gene_maximum - p->gene_minimum) * mf_rng_sequence_uniform(random);
 }
 
-/// Walks from the start, or from the middle of the range.
-static void fill_walks(struct genetic *genetic, const double *start, struct rng_sequence *random) {
+/// One block of an individual: a walk from the start, or from the middle of the range.
+static void fill_walk(const struct genetic_parameters *p, double *genes, size_t count,
+                      const double *start, struct rng_sequence *random) {
+    const double range = p->gene_maximum - p->gene_minimum;
+    for (size_t k = 0; k < count; k++)
+        genes[k] = start ? start[k] : p->gene_minimum + 0.5 * range;
+    mf_genetic_walk(genes, (int64_t)count, p->step * range, random);
+    for (size_t k = 0; k < count; k++)
+        genes[k] = within_range(genes[k], p);
+}
+
+static void fill_individual(struct genetic *genetic, double *genes, const double *start,
+                            struct rng_sequence *random) {
     const struct genetic_parameters *p = &genetic->parameters;
-    const double middle = 0.5 * (p->gene_minimum + p->gene_maximum);
-    for (int64_t k = 0; k < p->population; k++) {
-        double *individual = genetic->population + k * p->genes;
-        for (int64_t n = 0; n < p->genes; n++)
-            individual[n] = start ? start[n] : middle;
-        mf_genetic_walk(individual, p->genes, p->step * (p->gene_maximum - p->gene_minimum),
-                        random);
-        for (int64_t n = 0; n < p->genes; n++)
-            individual[n] = within_range(individual[n], p);
-    }
+    for (size_t b = 0, gene = 0; b < genetic->blocks; gene += genetic->block[b], b++)
+        if (p->initial == GENETIC_UNIFORM || genetic->block[b] == 1)
+            fill_uniform(p, genes + gene, genetic->block[b], random);
+        else
+            fill_walk(p, genes + gene, genetic->block[b], start ? start + gene : NULL, random);
+}
+
+/// The blocks of the space, or one of all genes.
+static void take_blocks(struct genetic *genetic, const struct optimiser_space *space) {
+    if (space->blocks == 0)
+        genetic->block[0] = space->variables;
+    for (size_t b = 0; b < space->blocks; b++)
+        genetic->block[b] = space->block[b];
+    for (size_t b = 0; b < genetic->blocks; b++)
+        genetic->spread[b] = genetic->parameters.step;
 }
 
 enum status mf_genetic_init(struct genetic *genetic, const struct genetic_parameters *parameters,
-                            const double *start, uint64_t seed) {
+                            const struct optimiser_space *space) {
     enum status status = STATUS_OK;
-    *genetic = (struct genetic){.parameters = *parameters,
-                                .seed = seed,
-                                .rows = parameters->population,
-                                .spread = parameters->step,
+    struct genetic_parameters p = *parameters;
+    p.genes = (int64_t)space->variables;
+    p.gene_minimum = space->minimum;
+    p.gene_maximum = space->maximum;
+    *genetic = (struct genetic){.parameters = p,
+                                .seed = space->seed,
+                                .rows = p.population,
+                                .blocks = space->blocks > 0 ? space->blocks : 1,
                                 .median = HUGE_VAL,
                                 .elite_error = GENETIC_FAILED};
-    NEW_ARRAY(genetic->population,
-              (size_t)((parameters->population + parameters->remeasurements) * parameters->genes));
+    NEW_ARRAY(genetic->population, (size_t)((p.population + p.remeasurements) * p.genes));
     // Children come in pairs: one place more for the last of an odd population.
-    NEW_ARRAY(genetic->offspring, total_genes(genetic) + (size_t)parameters->genes);
-    NEW_ARRAY(genetic->ranked, (size_t)parameters->population);
-    NEW_ARRAY(genetic->elite, (size_t)parameters->genes);
-    struct rng_sequence random = mf_rng_sequence_begin(seed, RNG_INITIAL, 0, 0);
-    if (parameters->initial == GENETIC_UNIFORM)
-        fill_uniform(genetic, &random);
-    else
-        fill_walks(genetic, start, &random);
-    if (start)
-        memcpy(genetic->population, start, (size_t)parameters->genes * sizeof *start);
+    NEW_ARRAY(genetic->offspring, total_genes(genetic) + (size_t)p.genes);
+    NEW_ARRAY(genetic->ranked, (size_t)p.population);
+    NEW_ARRAY(genetic->elite, (size_t)p.genes);
+    NEW_ARRAY(genetic->block, genetic->blocks);
+    NEW_ARRAY(genetic->spread, genetic->blocks);
+    take_blocks(genetic, space);
+    struct rng_sequence random = mf_rng_sequence_begin(space->seed, RNG_INITIAL, 0, 0);
+    for (int64_t k = 0; k < p.population; k++)
+        fill_individual(genetic, genetic->population + k * p.genes, space->start, &random);
+    if (space->start)
+        memcpy(genetic->population, space->start, space->variables * sizeof(double));
 done:
     if (status != STATUS_OK)
         mf_genetic_clear(genetic);
@@ -124,6 +144,8 @@ void mf_genetic_clear(struct genetic *genetic) {
     mf_memory_free(genetic->population);
     mf_memory_free(genetic->offspring);
     mf_memory_free(genetic->ranked);
+    mf_memory_free(genetic->block);
+    mf_memory_free(genetic->spread);
     mf_memory_free(genetic->elite);
     *genetic = (struct genetic){0};
 }
@@ -169,25 +191,28 @@ static double find_median(struct genetic *genetic, const double *errors) {
     return genetic->ranked[count / 2];
 }
 
-/// rms over genes of the standard deviation over the better half.
-static double find_spread(const struct genetic *genetic, const double *errors) {
+/// rms over the genes of each block of the standard deviation over the better half.
+static void find_spread(struct genetic *genetic, const double *errors) {
     const struct genetic_parameters *p = &genetic->parameters;
-    double sum = 0;
-    for (int64_t gene = 0; gene < p->genes; gene++) {
-        struct running_mean over = {0};
-        for (int64_t k = 0; k < p->population; k++)
-            if (errors[k] <= genetic->median)
-                mf_statistics_add(&over, mf_genetic_individual(genetic, k)[gene]);
-        sum += over.squares / over.count;
+    for (size_t b = 0, gene = 0; b < genetic->blocks; b++) {
+        double sum = 0;
+        for (size_t end = gene + genetic->block[b]; gene < end; gene++) {
+            struct running_mean over = {0};
+            for (int64_t k = 0; k < p->population; k++)
+                if (errors[k] <= genetic->median)
+                    mf_statistics_add(&over, mf_genetic_individual(genetic, k)[gene]);
+            sum += over.squares / over.count;
+        }
+        genetic->spread[b] =
+            sqrt(sum / (double)genetic->block[b]) / (p->gene_maximum - p->gene_minimum);
     }
-    return sqrt(sum / (double)p->genes) / (p->gene_maximum - p->gene_minimum);
 }
 
 void mf_genetic_next_generation(struct genetic *genetic, const double *errors) {
     const struct genetic_parameters *p = &genetic->parameters;
     genetic->generation++;
     genetic->median = find_median(genetic, errors);
-    genetic->spread = find_spread(genetic, errors);
+    find_spread(genetic, errors);
     for (int64_t pair = 0; pair < p->population; pair += 2) {
         struct rng_sequence random = mf_rng_sequence_begin(genetic->seed, RNG_SELECTION,
                                                            genetic->generation, (uint32_t)pair);

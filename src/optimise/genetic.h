@@ -55,18 +55,21 @@ struct genetic {
     double *elite;         ///< shape [genes]
     double elite_error;    ///< mean of its measurements; GENETIC_FAILED if there is no elite yet
     double elite_measured; ///< how many they were
-    double
-        spread; ///< of the better half's genes about their means, rms, as a fraction of the range
-    double median; ///< error of the last generation; HUGE_VAL before. Of the winners of the usual
-                   ///< tournaments (eight, 0.75) one in 43 is beyond it
+    size_t blocks;         ///< of genes that walk together
+    size_t *block;         ///< shape [blocks]: genes of each
+    double *spread; ///< shape [blocks]: of the better half's genes about their means, rms, as
+                    ///< a fraction of the range
+    double median;  ///< error of the last generation; HUGE_VAL before. Of the winners of the usual
+                    ///< tournaments (eight, 0.75) one in 43 is beyond it
     uint32_t elite_since; ///< generation of the elite
 };
 
-/// First generation: genes uniform in their range, or the start and random walks from it.
-/// @param[in] start  shape [genes]: individual 0; NULL: as all others, about the middle of the
-/// range Fails: NO_MEMORY.
+/// First generation: genes uniform in their range, or the start and random walks from it; blocks of
+/// one gene, which are no curve, are uniform in any case. Of `space` it takes variables, range,
+/// seed, blocks and the start, which becomes individual 0; without one walks are about the middle.
+/// Fails: NO_MEMORY.
 enum status mf_genetic_init(struct genetic *genetic, const struct genetic_parameters *parameters,
-                            const double *start, uint64_t seed) MUST_USE;
+                            const struct optimiser_space *space) MUST_USE;
 void mf_genetic_clear(struct genetic *genetic);
 
 /// Genes of one individual, shape [genes].
@@ -127,8 +130,8 @@ void mf_genetic_blend(double *a, double *b, int64_t genes, struct rng_sequence *
 /// off at M = genes^u, u uniform in (0, 1), and scaled to the rms `height` over the genes.
 void mf_genetic_walk(double *genes, int64_t count, double height, struct rng_sequence *random);
 
-/// A walk of |z| 2^(−4u) times the survivors' spread, at least `least_spread` of the range, is
-/// added: steps are as long as those that led to the survivors, and shrink with them.
+/// In each block a walk is added, of |z| 2^(1 − 5u) times the survivors' spread there, at least
+/// 1e-4 of the range: steps are as long as those that led to the survivors, and shrink with them.
 void mf_genetic_mutate_walk(double *genes, const struct genetic *genetic,
                             struct rng_sequence *random);
 

@@ -143,12 +143,15 @@ void mf_genetic_walk(double *genes, int64_t count, double height, struct rng_seq
 
 void mf_genetic_mutate_walk(double *genes, const struct genetic *genetic,
                             struct rng_sequence *random) {
-    const struct genetic_parameters *p = &genetic->parameters;
-    const double range = p->gene_maximum - p->gene_minimum;
-    const double u = mf_rng_sequence_uniform(random), v = mf_rng_sequence_uniform(random);
-    const double octaves = 4 * mf_rng_sequence_uniform(random);
-    const double spread = fmax(genetic->spread, least_spread);
-    mf_genetic_walk(genes, p->genes, range * spread * fabs(normal(u, v)) * exp2(-octaves), random);
+    const double range = genetic->parameters.gene_maximum - genetic->parameters.gene_minimum;
+    for (size_t b = 0; b < genetic->blocks; b++) {
+        const double u = mf_rng_sequence_uniform(random), v = mf_rng_sequence_uniform(random);
+        const double octaves = 1 - 5 * mf_rng_sequence_uniform(random);
+        const double spread = fmax(genetic->spread[b], least_spread);
+        mf_genetic_walk(genes, (int64_t)genetic->block[b],
+                        range * spread * fabs(normal(u, v)) * exp2(octaves), random);
+        genes += genetic->block[b];
+    }
 }
 
 void mf_genetic_mutate(double *genes, const struct genetic *genetic, struct rng_sequence *random) {

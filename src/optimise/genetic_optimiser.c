@@ -33,20 +33,19 @@ static enum status create(void *memory, const struct optimiser_space *space,
                           const void *parameters) {
     enum status status = STATUS_OK;
     struct state *state = memory;
-    struct genetic_parameters p = *(const struct genetic_parameters *)parameters;
+    const struct genetic_parameters *p = parameters;
+    struct optimiser_space inside = *space;
     double *start = NULL;
     CHECK(mf_optimiser_check_space(space));
-    CHECK(mf_optimiser_check_round(space, (size_t)(p.population + p.remeasurements)));
-    p.genes = (int64_t)space->variables;
-    p.gene_minimum = space->minimum;
-    p.gene_maximum = space->maximum;
-    NEW_ARRAY(state->errors, (size_t)(p.population + p.remeasurements));
+    CHECK(mf_optimiser_check_round(space, (size_t)(p->population + p->remeasurements)));
+    NEW_ARRAY(state->errors, (size_t)(p->population + p->remeasurements));
     NEW_ARRAY(state->challenger, space->variables);
-    if (space->start)
-        NEW_ARRAY(start, space->variables);
+    NEW_ARRAY(start, space->variables);
     for (size_t k = 0; space->start && k < space->variables; k++)
         start[k] = optimiser_variable(space, mf_optimiser_start(space, k));
-    CHECK(mf_genetic_init(&state->genetic, &p, start, space->seed));
+    if (space->start)
+        inside.start = start;
+    CHECK(mf_genetic_init(&state->genetic, p, &inside));
 done:
     mf_memory_free(start);
     return status;
@@ -152,6 +151,10 @@ static enum status tell(void *memory, const double *errors, const double *varian
     } else if (has_challenger(genetic)) {
         judge_challenger(genetic, state->errors);
         genetic->rows = genetic->parameters.population;
+        // If it has won, patience begins anew, with it in the place of the elite.
+        if (!is_over(genetic))
+            memcpy(genetic->population, genetic->elite,
+                   (size_t)genetic->parameters.genes * sizeof(double));
     }
     return STATUS_OK;
 }
@@ -200,7 +203,7 @@ static size_t spans(void *memory, struct memory_span *span) {
     span[n++] = (struct memory_span){genetic->elite, row};
     span[n++] = (struct memory_span){&genetic->elite_error, sizeof genetic->elite_error};
     span[n++] = (struct memory_span){&genetic->elite_measured, sizeof genetic->elite_measured};
-    span[n++] = (struct memory_span){&genetic->spread, sizeof genetic->spread};
+    span[n++] = (struct memory_span){genetic->spread, genetic->blocks * sizeof *genetic->spread};
     span[n++] = (struct memory_span){&genetic->elite_since, sizeof genetic->elite_since};
     return n;
 }

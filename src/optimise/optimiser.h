@@ -24,6 +24,10 @@ struct optimiser_space {
     const double *start; ///< shape [variables]: where to begin, or NULL for the optimiser's choice
     uint64_t seed;
     size_t most; ///< candidates that a round may have; 0: any number
+    /// Variables that belong together, as those of a curve, shape [blocks], adding up to all of
+    /// them; 0: all are one.
+    size_t blocks;
+    const size_t *block;
 };
 
 /// Candidates to be measured.

@@ -64,10 +64,9 @@ const struct field mf_inverse_potential_fields[] = {
 
 const struct field mf_inverse_omega_fields[] = {
     CURVE(omega_curves, omega_bases, BASE_NONE,
-          "what the curve is added to; start: that of \"start\", or a straight line", 6.5,
-          "sqrt(mu/tau)"){"inner_cutoff", FIELD_NUMBER, MEMBER(inner_cutoff), .initial = 0,
-                          .minimum = 0, .maximum = DBL_MAX, .unit = "lambda",
-                          .help = "below which omega is 0"},
+          "what the curve is added to; start: that of \"start\"", 6.5, "sqrt(mu/tau)"){
+        "inner_cutoff", FIELD_NUMBER, MEMBER(inner_cutoff), .initial = 0, .minimum = 0,
+        .maximum = DBL_MAX, .unit = "lambda", .help = "below which omega is 0"},
     {"cutoff", FIELD_NUMBER, MEMBER(cutoff), .initial = 1, .minimum = FIELD_ABOVE_ZERO,
      .maximum = DBL_MAX, .unit = "lambda", .help = "where omega ends"},
     FIELD_END,

@@ -201,6 +201,17 @@ void mf_parametrisation_curve(const struct parametrisation *parametrisation, enu
         mf_potential_grid_complete(&parametrisation->unknowns.potential, curve);
 }
 
+size_t mf_parametrisation_blocks(const struct parametrisation *parametrisation, size_t *block) {
+    size_t count = 0;
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        for (size_t first = 0; first < mf_parametrisation_variables(parametrisation, kind);
+             first += variables_of_curve(parametrisation, kind))
+            block[count++] = variables_of_curve(parametrisation, kind);
+    for (size_t n = 0; n < parametrisation->unknowns.problem->numbers; n++)
+        block[count++] = 1;
+    return count;
+}
+
 void mf_parametrisation_numbers(const struct parametrisation *parametrisation,
                                 const double *variables, const double *covariance,
                                 struct inverse_parameter *number) {

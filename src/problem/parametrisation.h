@@ -60,6 +60,10 @@ enum status mf_parametrisation_band(const struct parametrisation *parametrisatio
 enum status mf_parametrisation_laws(const struct parametrisation *parametrisation,
                                     const double *variables, struct unknowns_laws *laws) MUST_USE;
 
+/// Variables that belong together: of each curve, and each number alone; returns how many blocks.
+/// @param[out] block  variables of each, shape [variables], of which the first ones are set
+size_t mf_parametrisation_blocks(const struct parametrisation *parametrisation, size_t *block);
+
 /// Variables nearest to the curves that the fit begins with: those of the file, or the base, or
 /// mf_unknowns_start. Fails: NO_MEMORY.
 enum status mf_parametrisation_start(const struct parametrisation *parametrisation,

@@ -63,7 +63,7 @@ static const struct fault common_faults[] = {
     FAULT("a law alone", DISSIPATIVE, "\"power\"",
           "dissipative: expected an object, found the text \"power\": write {\"law\": \"power\"}"),
     FAULT("no law", DISSIPATIVE, "{\"sigma\": 2}", "dissipative.law: missing: a text is required; ",
-          "known: none, power, table"),
+          "known: none, power, expression, table"),
     FAULT("an integrator alone", STEP, STEP ", \"dynamics\": \"aboba\"",
           "write {\"integrator\": \"aboba\"}"),
     FAULT("a comma too many", STEP, STEP ",,", "input.json:", "expected a key"),

@@ -67,12 +67,12 @@ void landscape_set(const struct optimiser *optimiser, void *parameters, const ch
 
 struct landscape_run landscape_begin(const struct optimiser *optimiser, void *parameters,
                                      const struct landscape_drive *drive) {
-    const struct optimiser_space space = {drive->variables,
-                                          drive->landscape->minimum,
-                                          drive->landscape->maximum,
-                                          drive->start,
-                                          drive->seed,
-                                          drive->most};
+    const struct optimiser_space space = {.variables = drive->variables,
+                                          .minimum = drive->landscape->minimum,
+                                          .maximum = drive->landscape->maximum,
+                                          .start = drive->start,
+                                          .seed = drive->seed,
+                                          .most = drive->most};
     struct landscape_run run = {optimiser, parameters, mf_memory_zeroed(1, optimiser->state_size)};
     assert_non_null(run.state);
     assert_ok(optimiser->create(run.state, &space, parameters));

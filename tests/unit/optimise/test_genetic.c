@@ -26,6 +26,15 @@ static const struct genetic_parameters usual = {
     .initial = GENETIC_UNIFORM,
 };
 
+static enum status begin(struct genetic *genetic, const struct genetic_parameters *parameters,
+                         uint64_t seed) {
+    return mf_genetic_init(genetic, parameters,
+                           &(struct optimiser_space){.variables = (size_t)parameters->genes,
+                                                     .minimum = parameters->gene_minimum,
+                                                     .maximum = parameters->gene_maximum,
+                                                     .seed = seed});
+}
+
 /// A function to be minimised, measured with normal noise.
 struct problem {
     double noise;
@@ -71,7 +80,7 @@ static void step(struct genetic *genetic, struct problem *problem, double *error
 
 static void evolve(struct genetic *genetic, const struct genetic_parameters *parameters,
                    struct problem problem) {
-    assert_ok(mf_genetic_init(genetic, parameters, NULL, problem.seed));
+    assert_ok(begin(genetic, parameters, problem.seed));
     double *errors = calloc((size_t)parameters->population, sizeof *errors);
     assert_non_null(errors);
     for (int64_t k = 0; k < parameters->generations; k++)
@@ -98,7 +107,7 @@ static void test_genetic_never_loses_its_elite_when_there_is_no_noise(void **sta
     struct problem problem = {.seed = 4};
     struct genetic genetic;
     double errors[100], best = GENETIC_FAILED;
-    assert_ok(mf_genetic_init(&genetic, &usual, NULL, problem.seed));
+    assert_ok(begin(&genetic, &usual, problem.seed));
     for (int k = 0; k < 30; k++) {
         step(&genetic, &problem, errors);
         assert_true(genetic.elite_error <= best * (1 + 1e-12));
@@ -157,7 +166,7 @@ static void test_genetic_next_generation_fills_any_population(void **state) {
         struct genetic genetic;
         parameters.population = population;
         parameters.mutation = 0;
-        assert_ok(mf_genetic_init(&genetic, &parameters, NULL, 3));
+        assert_ok(begin(&genetic, &parameters, 3));
         double parents[9 * GENES];
         memcpy(parents, genetic.population, (size_t)(population * GENES) * sizeof(double));
         mf_genetic_next_generation(&genetic, errors);
@@ -181,7 +190,7 @@ static void test_genetic_genes_stay_in_their_range(void **state) {
     parameters.gene_maximum = 4; // half or twice of which is outside
     parameters.mutated_genes = 1;
     double errors[100] = {0};
-    assert_ok(mf_genetic_init(&genetic, &parameters, NULL, 3));
+    assert_ok(begin(&genetic, &parameters, 3));
     for (int generation = 0; generation < 5; generation++) {
         mf_genetic_next_generation(&genetic, errors);
         for (int k = 0; k < 100 * GENES; k++)
@@ -197,7 +206,7 @@ static void test_genetic_has_no_elite_when_all_have_failed(void **state) {
     double errors[POPULATION];
     (void)state;
     parameters.population = POPULATION;
-    assert_ok(mf_genetic_init(&genetic, &parameters, NULL, 3));
+    assert_ok(begin(&genetic, &parameters, 3));
     for (int k = 0; k < POPULATION; k++)
         errors[k] = GENETIC_FAILED;
     assert_false(mf_genetic_offer(&genetic, genetic.population, GENETIC_FAILED, 2));
@@ -212,7 +221,7 @@ static void test_genetic_has_no_elite_when_all_have_failed(void **state) {
 static void test_genetic_remeasure_elite_is_the_mean_of_all_measurements(void **state) {
     struct genetic genetic;
     (void)state;
-    assert_ok(mf_genetic_init(&genetic, &usual, NULL, 3));
+    assert_ok(begin(&genetic, &usual, 3));
     assert_true(mf_genetic_offer(&genetic, genetic.population, 4, 2));
     assert_false(mf_genetic_offer(&genetic, mf_genetic_individual(&genetic, 1), 4, 2));
     mf_genetic_remeasure_elite(&genetic, 10);
@@ -231,7 +240,7 @@ static void test_genetic_init_spreads_the_genes_over_their_range(void **state) {
     (void)state;
     parameters.gene_minimum = -3;
     parameters.gene_maximum = 5;
-    assert_ok(mf_genetic_init(&genetic, &parameters, NULL, 3));
+    assert_ok(begin(&genetic, &parameters, 3));
     for (int k = 0; k < 100 * GENES; k++) {
         assert_true(genetic.population[k] > -3 && genetic.population[k] < 5);
         mean += genetic.population[k] / (100 * GENES);

@@ -332,23 +332,28 @@ static void test_genetic_walk_has_its_height_and_ends_at_zero(void **state) {
     assert_close(mean, 0, 5 * sqrt(first / TRIALS));
 }
 
-/// Steps are in proportion to the survivors' spread.
+/// Steps are in proportion to the survivors' spread, block by block.
 static void test_genetic_mutate_walk_steps_as_far_as_survivors_differ(void **state) {
-    enum { COUNT = 20 };
+    enum { FIRST = 20, COUNT = 21 };
     (void)state;
     double step[2][COUNT] = {{0}};
     for (int k = 0; k < 2; k++) {
+        size_t block[] = {FIRST, 1};
+        double spread[] = {k == 0 ? 0.01 : 0.05, k == 0 ? 0.02 : 0.06};
         const struct genetic genetic = {.parameters = {.genes = COUNT,
                                                        .gene_minimum = -1,
                                                        .gene_maximum = 3,
                                                        .mutation = 1,
                                                        .mutation_kind = GENETIC_WALK},
-                                        .spread = k == 0 ? 0.01 : 0.05};
+                                        .blocks = 2,
+                                        .block = block,
+                                        .spread = spread};
         struct rng_sequence random = begin(6);
         mf_genetic_mutate(step[k], &genetic, &random);
     }
     for (int k = 0; k < COUNT; k++)
-        assert_close(step[1][k], 5 * step[0][k], 1e-12);
+        assert_close(step[1][k], (k < FIRST ? 5 : 3) * step[0][k], 1e-12);
+    assert_true(step[0][FIRST] != 0);
 }
 
 int main(void) {

@@ -143,22 +143,35 @@ static void test_discard_above_is_the_median_of_the_last_generation(void **state
     end(&run);
 }
 
-/// Walks begin about the start, which is individual 0, with the rms that is asked for.
+/// Walks begin about the start, which is individual 0, with the rms that is asked for; a block of
+/// one gene is drawn anywhere in the range.
 static void test_first_walks_are_about_the_start(void **state) {
-    enum { COUNT = 50, MANY = 400 };
+    enum { CURVE = 50, COUNT = CURVE + 1, MANY = 400 };
     (void)state;
     struct genetic genetic;
-    double start[COUNT], squares = 0;
+    double start[COUNT], squares = 0, mean = 0, spread = 0;
     for (int k = 0; k < COUNT; k++)
         start[k] = 0.3 + 0.005 * k;
     const struct genetic_parameters parameters = {
-        .population = MANY, .genes = COUNT, .gene_maximum = 1, .step = 0.02, .remeasurements = 1};
-    assert_ok(mf_genetic_init(&genetic, &parameters, start, 4));
+        .population = MANY, .step = 0.02, .remeasurements = 1};
+    assert_ok(mf_genetic_init(&genetic, &parameters,
+                              &(struct optimiser_space){.variables = COUNT,
+                                                        .maximum = 1,
+                                                        .start = start,
+                                                        .seed = 4,
+                                                        .blocks = 2,
+                                                        .block = (size_t[]){CURVE, 1}}));
     assert_memory_equal(mf_genetic_individual(&genetic, 0), start, sizeof start);
-    for (int k = 1; k < MANY; k++)
-        for (int n = 0; n < COUNT; n++)
-            squares += pow(mf_genetic_individual(&genetic, k)[n] - start[n], 2);
-    assert_close(sqrt(squares / (COUNT * (MANY - 1))), 0.02, 1e-9);
+    for (int k = 1; k < MANY; k++) {
+        const double *genes = mf_genetic_individual(&genetic, k);
+        for (int n = 0; n < CURVE; n++)
+            squares += pow(genes[n] - start[n], 2);
+        mean += genes[CURVE] / (MANY - 1);
+        spread += pow(genes[CURVE] - 0.5, 2) / (MANY - 1);
+    }
+    assert_close(sqrt(squares / (CURVE * (MANY - 1))), 0.02, 1e-9);
+    assert_close(mean, 0.5, 5 * sqrt(1 / 12.0 / MANY));
+    assert_close(spread, 1 / 12.0, 0.015);
     mf_genetic_clear(&genetic);
 }
 
@@ -181,8 +194,11 @@ static void test_it_settles_when_its_patience_is_over(void **state) {
     assert_false(mf_genetic_optimiser.settled(run.state));
     tell(&run, (double[]){1, 9, 9, 9, 0.5, 9}); // a challenger at the last moment
     assert_int_equal(run.round.count, REMEASUREMENTS);
+    double challenger[GENES];
+    copy_row(&run, 0, challenger);
     tell(&run, (double[]){0.5, 0.5}); // is better: three more
     assert_false(mf_genetic_optimiser.settled(run.state));
+    assert_genes(row(&run, 0), challenger);
     assert_int_equal(run.round.count, POPULATION);
     for (int generation = 0; generation < 3; generation++) {
         assert_int_equal(run.round.count, POPULATION);

@@ -39,7 +39,7 @@ static const struct variant {
     {GENETIC(GENETIC_ONE_POINT, GENETIC_CORRELATED), 6e-7, 8, 12, 1e-3, 0.011, 1e-5},
     {GENETIC(GENETIC_TWO_POINT, GENETIC_CORRELATED), 6e-7, 8, 12, 1e-3, 0.011, 1e-5},
     {GENETIC(GENETIC_BLEND, GENETIC_CORRELATED), 6e-7, 8, 12, 1e-3, 0.011, 1e-5},
-    {GENETIC(GENETIC_BLEND, GENETIC_WALK), 6e-5, 3, 8, 0.02, 0.011, 1e-5},
+    {GENETIC(GENETIC_BLEND, GENETIC_WALK), 6e-5, 3, 8, 0.02, 0.011, 6e-5},
 #define NLOPT(algorithm)                                                                           \
     &mf_nlopt_optimiser, {                                                                         \
         {"algorithm", algorithm}, {                                                                \
