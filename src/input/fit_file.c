@@ -110,8 +110,10 @@ static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind k
     check_coefficients(p, object);
     if (p->coefficients == 0)
         p->coefficients = coefficients_of_curve[p->shape];
-    if (object->item == NULL)
+    if (object->item == NULL) {
+        mf_fit_base_check(unknown, object);
         return STATUS_OK;
+    }
     mf_json_renamed(object, "genes", "coefficients");
     TRY(mf_scene_law_read(&unknown->start, object, "start", laws, composition, units));
     mf_fit_base_check(unknown, object);

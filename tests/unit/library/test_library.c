@@ -217,6 +217,24 @@ static void test_inversion_has_no_coefficients(void **state) {
     mesofit_fit_free(fit);
 }
 
+/// Coefficients are added to what is made of the target: none of them is where a fit begins.
+static void test_fit_begins_at_its_base(void **state) {
+    (void)state;
+    double r[BINS], g[BINS], error[BINS], start[200];
+    make_target(r, g, error);
+    struct mesofit_fit_options options = small_fit(r, g, error);
+    options.method = "genetic";
+    options.settings = "{\"population\": 4, \"generations\": 1}";
+    struct mesofit_fit *fit = mesofit_fit_create(&options);
+    assert_non_null(fit);
+    const size_t count = mesofit_fit_coefficients(fit);
+    assert_in_range(count, 1, 200);
+    assert_int_equal(mesofit_fit_start(fit, start), MESOFIT_OK);
+    for (size_t k = 0; k < count; k++)
+        assert_close(start[k], 0.5, 1e-9);
+    mesofit_fit_free(fit);
+}
+
 static int cancel(void *context, uint32_t iteration, uint64_t done, uint64_t total) {
     (void)iteration, (void)done, (void)total;
     ++*(int *)context;
@@ -290,6 +308,7 @@ int main(void) {
         cmocka_unit_test(test_own_force_holds_particles_as_equipartition_says),
         cmocka_unit_test(test_simulations_of_two_threads_are_those_of_one),
         cmocka_unit_test(test_inversion_has_no_coefficients),
+        cmocka_unit_test(test_fit_begins_at_its_base),
         cmocka_unit_test(test_fit_from_arrays_comes_nearer_and_verifies),
         cmocka_unit_test(test_fit_is_cancelled_by_its_listener_alone),
         cmocka_unit_test(test_handler_of_gsl_is_again_the_callers),
