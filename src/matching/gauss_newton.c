@@ -239,7 +239,8 @@ static enum status propose(struct state *state) {
         const double step = step_in_errors(state, &model);
         memcpy(state->proposal, model.best, state->parametrisation.variables * sizeof *model.best);
         CHECK(mf_population_remeasure(&state->population, state->proposal,
-                                      (size_t)state->own.checks, &error, &noise, &variance, NULL));
+                                      (size_t)state->own.checks, 1, &error, &noise, &variance,
+                                      NULL));
         judge(state, error, noise, variance);
         if (state->progress.known)
             watch(&state->progress, step);

@@ -18,7 +18,7 @@
 
 struct parameters {
     struct population_parameters population;
-    int64_t checks;
+    int64_t checks, check_length;
     int surrogate;
 };
 
@@ -67,6 +67,9 @@ static const struct field own_fields[] = {
     {"checks", FIELD_INTEGER, MEMBER(checks), .initial = 2, .minimum = 1,
      .maximum = POPULATION_MOST, .unit = "",
      .help = "fresh measurements of what is thought best, before it is believed"},
+    {"check_length", FIELD_INTEGER, MEMBER(check_length), .initial = 1, .minimum = 1,
+     .maximum = 1000, .unit = "",
+     .help = "of their simulations, in those of a round: a liquid may boil after a while only"},
     {"surrogate", FIELD_CHOICE, MEMBER(surrogate), .choices = surrogates, .initial = TRIED,
      .unit = "",
      .help =
@@ -188,7 +191,8 @@ static bool wants_check(const struct state *state, bool last) {
 static enum status check_incumbent(struct state *state, double slack) {
     double error, noise, variance;
     TRY(mf_population_remeasure(&state->population, state->incumbent,
-                                (size_t)state->parameters.checks, &error, &noise, &variance, NULL));
+                                (size_t)state->parameters.checks, state->parameters.check_length,
+                                &error, &noise, &variance, NULL));
     if (error >= OPTIMISER_FAILED ||
         (state->progress.known && error > state->progress.error + slack * sqrt(variance)))
         return STATUS_OK;

@@ -167,7 +167,7 @@ static enum status check_one(struct pareto_state *state, size_t parent) {
     struct target_distance distance[TARGETS];
     double error, noise, variance, value[TARGETS];
     TRY(mf_population_remeasure(&state->population, mf_nsga2_parent(&state->nsga2, parent),
-                                (size_t)state->own.checks, &error, &noise, &variance, distance));
+                                (size_t)state->own.checks, 1, &error, &noise, &variance, distance));
     take_distances(state, error, distance, value);
     for (size_t m = 0; m < state->objectives && error < OPTIMISER_FAILED; m++)
         state->progress.noise[m] = distance[state->target[m]].noise;

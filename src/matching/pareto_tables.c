@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "io/data_table.h"
 #include "io/output.h"
+#include "matching/curve_tables.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -135,41 +136,20 @@ done:
     return status;
 }
 
-/// pareto_potential.tsv or pareto_omega.tsv, or one of several potentials: a column a member of
-/// the front, named by its number in pareto.tsv.
-static enum status write_curve(const struct pareto_state *state, enum unknown_kind kind,
-                               size_t curve, const struct inverse_folder *folder,
-                               const struct line *lines, size_t members) {
+/// pareto_potential.tsv and so on: the members of the front, named by their numbers in pareto.tsv.
+static enum status write_curves(const struct pareto_state *state,
+                                const struct inverse_folder *folder, const struct line *lines,
+                                size_t members) {
     enum status status = STATUS_OK;
-    const struct parametrisation *parametrisation = &state->parametrisation;
-    const size_t points = mf_unknowns_points(&parametrisation->unknowns, kind);
-    const size_t each = points / mf_unknowns_curve_count(&parametrisation->unknowns, kind),
-                 first = curve * each;
-    struct data_column *column = NULL;
-    double *curves = NULL;
-    char *names = NULL, name[UNKNOWNS_NAME_SIZE], file[UNKNOWNS_NAME_SIZE + 16];
-    char path[OUTPUT_PATH_SIZE];
-    NEW_ARRAY(column, members + 1);
-    NEW_ARRAY(curves, (members + 1) * points);
-    NEW_ARRAY(names, (members + 1) * NAME_SIZE);
-    column[0] = (struct data_column){"r[lambda]",
-                                     mf_unknowns_r(&parametrisation->unknowns, kind) + first, NULL};
+    struct curve_tables_member *member = NULL;
+    NEW_ARRAY(member, members);
     for (size_t k = 0; k < members; k++) {
-        snprintf(names + k * NAME_SIZE, NAME_SIZE, "%zu", k + 1);
-        mf_parametrisation_curve(parametrisation, kind,
-                                 mf_nsga2_parent(&state->nsga2, lines[k].parent),
-                                 curves + k * points);
-        column[k + 1] =
-            (struct data_column){names + k * NAME_SIZE, curves + k * points + first, "%.8g"};
+        member[k].variables = mf_nsga2_parent(&state->nsga2, lines[k].parent);
+        snprintf(member[k].name, sizeof member[k].name, "%zu", k + 1);
     }
-    mf_unknowns_curve_name(&parametrisation->unknowns, kind, curve, name);
-    snprintf(file, sizeof file, "pareto_%s.tsv", name);
-    folder->file(folder->context, file, path);
-    CHECK(mf_data_table_write(path, NULL, column, members + 1, each));
+    CHECK(mf_curve_tables_write(&state->parametrisation, folder, "pareto", NULL, member, members));
 done:
-    mf_memory_free(column);
-    mf_memory_free(curves);
-    mf_memory_free(names);
+    mf_memory_free(member);
     return status;
 }
 
@@ -182,12 +162,7 @@ enum status mf_pareto_write_tables(const void *memory, const struct inverse_fold
     const size_t rows = sort_lines(state, lines, &members);
     CHECK(write_front(state, folder, lines, rows));
     CHECK(write_log(state, folder));
-    for (int kind = 0; kind < UNKNOWNS; kind++)
-        for (size_t curve = 0;
-             state->problem->unknown[kind].wanted &&
-             curve < mf_unknowns_curve_count(&state->parametrisation.unknowns, kind);
-             curve++)
-            CHECK(write_curve(state, kind, curve, folder, lines, members));
+    CHECK(write_curves(state, folder, lines, members));
 done:
     mf_memory_free(lines);
     return status;

@@ -132,11 +132,15 @@ static void split(const struct population *population, double *position, double 
         column[d] = position + (size_t)d * (size_t)scene->placement.count;
 }
 
-/// One simulation of some variables. A failed one has the worst error.
+/// One simulation of some variables, `length` times as long as those of a round. A failed one has
+/// the worst error.
 static enum status measure(const struct population *population, const double *variables,
-                           uint64_t seed, double discard_above, int threads, double *features,
-                           double *end, struct evaluate_result *result) {
+                           int64_t length, uint64_t seed, double discard_above, int threads,
+                           double *features, double *end, struct evaluate_result *result) {
     struct unknowns_laws laws;
+    struct evaluate_parameters parameters = population->parameters.evaluate;
+    parameters.plan.equilibration *= length;
+    parameters.plan.samples *= length;
     double *begin_column[3] = {NULL}, *end_column[3] = {NULL};
     split(population, population->position, begin_column);
     split(population, end, end_column);
@@ -150,8 +154,7 @@ static enum status measure(const struct population *population, const double *va
         .seed = seed,
     };
     if (status == STATUS_OK)
-        status = mf_evaluate(&laws.problem, &candidate, &population->parameters.evaluate, features,
-                             end_column, result);
+        status = mf_evaluate(&laws.problem, &candidate, &parameters, features, end_column, result);
     if (status == STATUS_UNSTABLE || (status == STATUS_OK && !isfinite(result->error))) {
         result->error = OPTIMISER_FAILED;
         result->variance = 0;
@@ -250,7 +253,7 @@ static enum status measure_one(void *context, size_t task, void *memory) {
     struct measured *measured = memory;
     const size_t index = work->index[task];
     return measure(population,
-                   work->round->variables + index * population->parametrisation->variables,
+                   work->round->variables + index * population->parametrisation->variables, 1,
                    seed_of(population, work->round, index), work->discard_above, work->threads,
                    population->features + index * population->surrogate.features, measured->end,
                    &measured->result);
@@ -344,6 +347,7 @@ static struct target_distance mean_distance(const struct evaluate_result *result
 struct fresh {
     const struct population *population;
     const double *variables;
+    int64_t length;
     struct evaluate_result *results;
     double *features; ///< shape [count, features]
 };
@@ -354,16 +358,16 @@ static enum status measure_afresh(void *context, size_t k, void *end) {
     const uint64_t seed =
         mf_rng_child_seed(population->parametrisation->unknowns.problem->seed, RNG_REMEASUREMENT,
                           (uint32_t)population->totals.remeasured, (uint32_t)k);
-    return measure(population, fresh->variables, seed, HUGE_VAL, 1,
+    return measure(population, fresh->variables, fresh->length, seed, HUGE_VAL, 1,
                    fresh->features + k * population->surrogate.features, end, &fresh->results[k]);
 }
 
 enum status mf_population_remeasure(struct population *population, const double *variables,
-                                    size_t count, double *error, double *noise, double *variance,
-                                    struct target_distance *distance) {
+                                    size_t count, int64_t length, double *error, double *noise,
+                                    double *variance, struct target_distance *distance) {
     enum status status = STATUS_OK;
     const size_t each = population->surrogate.features;
-    struct fresh fresh = {population, variables, NULL, NULL};
+    struct fresh fresh = {population, variables, length, NULL, NULL};
     NEW_ARRAY(fresh.results, count);
     NEW_ARRAY(fresh.features, count * each);
     CHECK(mf_parallel_try(

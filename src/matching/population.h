@@ -74,10 +74,11 @@ void mf_population_next_round(struct population *population);
 
 /// Mean error of `count` fresh measurements of one candidate, the noise in each, and the variance
 /// of the mean; OPTIMISER_FAILED if one of them fails.
+/// @param[in]  length    of their simulations, in those of a round
 /// @param[out] distance  shape [TARGETS]: means, or NULL
 enum status mf_population_remeasure(struct population *population, const double *variables,
-                                    size_t count, double *error, double *noise, double *variance,
-                                    struct target_distance *distance) MUST_USE;
+                                    size_t count, int64_t length, double *error, double *noise,
+                                    double *variance, struct target_distance *distance) MUST_USE;
 
 /// Write the curves of the last round of at least eight candidates: population_potential.tsv and so
 /// on, r and a column for each that did not fail, from the least error on, as their names say.

@@ -51,6 +51,10 @@ const struct field mf_genetic_fields[] = {
     {"patience", FIELD_INTEGER, MEMBER(patience), .initial = 10, .minimum = 0, .maximum = 1e6,
      .unit = "",
      .help = "generations without a better elite, after which it has settled; 0: never"},
+    {"islands", FIELD_INTEGER, MEMBER(islands), .initial = 1, .minimum = 1, .maximum = 1000,
+     .unit = "", .help = "parts of the population that breed alone"},
+    {"migration", FIELD_INTEGER, MEMBER(migration), .initial = 5, .minimum = 1, .maximum = 1e6,
+     .unit = "", .help = "every so many generations all islands breed with all"},
     {"generations", FIELD_INTEGER, MEMBER(generations), .initial = 21, .minimum = 1, .maximum = 1e6,
      .unit = "", .help = "after which the fit ends"},
     FIELD_END,
@@ -115,6 +119,10 @@ enum status mf_genetic_init(struct genetic *genetic, const struct genetic_parame
     p.genes = (int64_t)space->variables;
     p.gene_minimum = space->minimum;
     p.gene_maximum = space->maximum;
+    if (2 * p.islands > p.population)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "\"islands\": %lld of a population of %lld: each needs two",
+                              (long long)p.islands, (long long)p.population);
     *genetic = (struct genetic){.parameters = p,
                                 .seed = space->seed,
                                 .rows = p.population,
@@ -169,12 +177,34 @@ bool mf_genetic_offer(struct genetic *genetic, const double *genes, double error
     return true;
 }
 
-/// A copy of the winner of a tournament.
-static void copy_winner(const struct genetic *genetic, const double *errors, double *child,
-                        struct rng_sequence *random) {
+/// First individual of an island: couples of children stay together.
+static int64_t shore(const struct genetic_parameters *p, int64_t island) {
+    return island == p->islands ? p->population
+                                : 2 * ((p->population + 1) / 2 * island / p->islands);
+}
+
+/// Rows from which the parents of a couple of children are drawn.
+struct parents {
+    int64_t first, count;
+};
+
+static struct parents parents_of(const struct genetic *genetic, int64_t child) {
     const struct genetic_parameters *p = &genetic->parameters;
-    const int64_t winner = mf_genetic_tournament(errors, genetic->rows, p->tournament_size,
-                                                 p->tournament_probability, random);
+    int64_t island = 0;
+    if (p->islands <= 1 || genetic->generation % (uint64_t)p->migration == 0)
+        return (struct parents){0, genetic->rows};
+    while (shore(p, island + 1) <= child)
+        island++;
+    return (struct parents){shore(p, island), shore(p, island + 1) - shore(p, island)};
+}
+
+/// A copy of the winner of a tournament.
+static void copy_winner(const struct genetic *genetic, struct parents parents, const double *errors,
+                        double *child, struct rng_sequence *random) {
+    const struct genetic_parameters *p = &genetic->parameters;
+    const int64_t winner = parents.first + mf_genetic_tournament(errors + parents.first,
+                                                                 parents.count, p->tournament_size,
+                                                                 p->tournament_probability, random);
     memcpy(child, mf_genetic_individual(genetic, winner), (size_t)p->genes * sizeof *child);
 }
 
@@ -216,9 +246,10 @@ void mf_genetic_next_generation(struct genetic *genetic, const double *errors) {
     for (int64_t pair = 0; pair < p->population; pair += 2) {
         struct rng_sequence random = mf_rng_sequence_begin(genetic->seed, RNG_SELECTION,
                                                            genetic->generation, (uint32_t)pair);
+        const struct parents parents = parents_of(genetic, pair);
         double *first = genetic->offspring + pair * p->genes, *second = first + p->genes;
-        copy_winner(genetic, errors, first, &random);
-        copy_winner(genetic, errors, second, &random);
+        copy_winner(genetic, parents, errors, first, &random);
+        copy_winner(genetic, parents, errors, second, &random);
         if (mf_rng_sequence_uniform(&random) < p->crossover)
             mf_genetic_recombine(first, second, p, &random);
         mf_genetic_mutate(first, genetic, &random);

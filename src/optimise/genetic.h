@@ -37,9 +37,11 @@ struct genetic_parameters {
     double tournament_probability; ///< with which the best of those left wins
     int64_t remeasurements;        ///< of a challenger before it replaces the elite
     int64_t generations;
-    int initial;      ///< enum genetic_initial_kind: the first generation
-    double step;      ///< rms of a walk of the first generation, as a fraction of the range
-    int64_t patience; ///< generations without a better elite after which it has settled; 0: never
+    int initial;       ///< enum genetic_initial_kind: the first generation
+    double step;       ///< rms of a walk of the first generation, as a fraction of the range
+    int64_t patience;  ///< generations without a better elite after which it has settled; 0: never
+    int64_t islands;   ///< parts of the population that breed alone, but for every
+    int64_t migration; ///< so many generations, when all breed with all
 };
 
 struct genetic {
@@ -67,7 +69,7 @@ struct genetic {
 /// First generation: genes uniform in their range, or the start and random walks from it; blocks of
 /// one gene, which are no curve, are uniform in any case. Of `space` it takes variables, range,
 /// seed, blocks and the start, which becomes individual 0; without one walks are about the middle.
-/// Fails: NO_MEMORY.
+/// Fails: NO_MEMORY; BAD_INPUT if an island has no couple.
 enum status mf_genetic_init(struct genetic *genetic, const struct genetic_parameters *parameters,
                             const struct optimiser_space *space) MUST_USE;
 void mf_genetic_clear(struct genetic *genetic);
@@ -83,7 +85,9 @@ void mf_genetic_remeasure_elite(struct genetic *genetic, double error);
 bool mf_genetic_offer(struct genetic *genetic, const double *genes, double error, double measured);
 
 /// Replace the population by the offspring of all rows; individual 0 becomes the elite. Genes that
-/// left their range are reflected into it.
+/// left their range are reflected into it. With islands parents are of the same island, and what
+/// follows the population has children in generations of migration alone (R. Tanese, Proc. 3rd Int.
+/// Conf. Genetic Algorithms, 434 (1989)). Tested: test_genetic.
 /// @param[in] errors  shape [rows]
 void mf_genetic_next_generation(struct genetic *genetic, const double *errors);
 
@@ -96,14 +100,14 @@ struct rng_sequence;
 
 enum { GENETIC_LARGEST_TOURNAMENT = 64 };
 
-/// Index of the winner of `size` drawn individuals: the best with probability p, else the second
-/// with p, and so on; the worst if nobody else has won.
+/// Index of the winner of `size` individuals drawn of `count`: the best with probability p, else
+/// the second with p, and so on; the worst if nobody else has won.
 ///
 /// Tried instead: each drawn one in turn meets the winner so far, and the better wins with p. Even
 /// the worst then wins in one tournament of four if it is drawn last, and with the thesis's
 /// parameters the error of a generation's best stood still at 0.14.
-int64_t mf_genetic_tournament(const double *errors, int64_t population, int64_t size,
-                              double probability, struct rng_sequence *random);
+int64_t mf_genetic_tournament(const double *errors, int64_t count, int64_t size, double probability,
+                              struct rng_sequence *random);
 
 /// Cross two individuals in place, in the way that `crossover_kind` names.
 void mf_genetic_recombine(double *a, double *b, const struct genetic_parameters *parameters,

@@ -4,11 +4,11 @@
 
 #include <math.h>
 
-int64_t mf_genetic_tournament(const double *errors, int64_t population, int64_t size,
-                              double probability, struct rng_sequence *random) {
+int64_t mf_genetic_tournament(const double *errors, int64_t count, int64_t size, double probability,
+                              struct rng_sequence *random) {
     int64_t ranked[GENETIC_LARGEST_TOURNAMENT] = {0};
     for (int64_t drawn = 0; drawn < size; drawn++) {
-        const int64_t rival = mf_rng_sequence_below(random, (uint32_t)population);
+        const int64_t rival = mf_rng_sequence_below(random, (uint32_t)count);
         int64_t rank = drawn;
         for (; rank > 0 && errors[rival] < errors[ranked[rank - 1]]; rank--)
             ranked[rank] = ranked[rank - 1];

@@ -31,6 +31,23 @@ static size_t first_point(const struct parametrisation *parametrisation, enum un
     return kind == UNKNOWN_POTENTIAL ? parametrisation->unknowns.potential.core[curve] : 0;
 }
 
+/// The same, but half of the way is that which the target's g(r) goes up and down.
+static void add_steepness(const struct parametrisation *parametrisation, size_t curve,
+                          double *place) {
+    const struct potential_grid *grid = &parametrisation->unknowns.potential;
+    const size_t first = grid->core[curve];
+    const double *g =
+        parametrisation->unknowns.problem->targets.target[TARGET_RDF].value + curve * grid->bins;
+    double whole = 0, way = 0;
+    for (size_t k = first + 1; k < grid->bins; k++)
+        whole += fabs(g[k] - g[k - 1]);
+    for (size_t k = first; k <= grid->bins; k++) {
+        if (k > first && k < grid->bins)
+            way += fabs(g[k] - g[k - 1]);
+        place[k - first] = 0.5 * (place[k - first] + (whole > 0 ? way / whole : place[k - first]));
+    }
+}
+
 /// Where the points of a curve lie between the first that follows its variables (0) and the cutoff
 /// (1).
 static void find_places(const struct parametrisation *parametrisation, enum unknown_kind kind,
@@ -40,6 +57,8 @@ static void find_places(const struct parametrisation *parametrisation, enum unkn
     const double *r = mf_unknowns_r(&parametrisation->unknowns, kind) + curve * points;
     for (size_t k = first; k < points; k++)
         place[k - first] = (r[k] - r[first]) / (r[points - 1] - r[first]);
+    if (unknown_of(parametrisation, kind)->parameters.spacing == SPACING_STEEP)
+        add_steepness(parametrisation, curve, place);
 }
 
 static bool is_formula(const struct parametrisation *parametrisation, enum unknown_kind kind) {

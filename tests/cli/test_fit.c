@@ -255,6 +255,26 @@ static void test_interrupted_genetic_goes_on_with_the_same_bits(void **state) {
     check_interruption(CONVERGED);
 }
 
+/// A column a candidate that lives, named by its error, the least first.
+static void test_genetic_leaves_the_curves_of_its_last_generation(void **state) {
+    write_fit(*state, "\"name\": \"genetic\", \"population\": 9, \"generations\": 2, "
+                      "\"equilibration\": 60, \"samples\": 10, \"every\": 5, "
+                      "\"temperature_tolerance\": 0.3");
+    run_fit("out", "2", CONVERGED);
+    char *text = temporary_folder_read("out/population_potential.tsv");
+    const char *names = strchr(text, '\t');
+    assert_non_null(names);
+    double last = 0;
+    int candidates = 0;
+    for (char *end; *names == '\t'; names = end, candidates++) {
+        const double error = strtod(names, &end);
+        assert_true(error >= last && error < 1e3);
+        last = error;
+    }
+    assert_in_range(candidates, 1, 11);
+    free(text);
+}
+
 static void test_interrupted_fit_says_so_and_refuses_other_settings(void **state) {
     static struct run_program_result result;
     const struct run_program_how how = {.interrupt_after = 0.001};
@@ -410,6 +430,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_interrupted_imc_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_imc_by_dynamics_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_genetic_goes_on_with_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_genetic_leaves_the_curves_of_its_last_generation),
         TEST_WITHOUT_FIGURES(test_interrupted_fit_says_so_and_refuses_other_settings),
         TEST_WITHOUT_FIGURES(test_summary_has_what_other_programs_read),
         TEST_WITHOUT_FIGURES(test_true_potential_stands_beside_the_result),
