@@ -40,6 +40,12 @@ void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INV
         snprintf(reason, INVERSE_REASON_SIZE,
                  "g agrees, but the pressure is %.3g off, with an error of %.2g", pressure->rms,
                  pressure->noise);
+    else if (agrees && isnan(inversion->band.ramp.way))
+        snprintf(
+            reason, INVERSE_REASON_SIZE,
+            "g agrees within %.2g, but its covariances have no inverse, so that the errors of the "
+            "potential are not known: more \"samples\" are needed",
+            p->best_own_noise);
     else if (agrees && p->best_own_noise <= settings->precision)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "g agrees, but it still asks for another ramp A (1 - r/cutoff), by %.2g k_B T_0 "
