@@ -64,6 +64,9 @@ static const char *const surrogates[] = {"no", "yes", "join", NULL};
 
 #define MEMBER(name) .offset = offsetof(struct parameters, name)
 static const struct field own_fields[] = {
+    {"racing", FIELD_NUMBER, MEMBER(population.evaluate.racing), .initial = 0, .minimum = 0,
+     .maximum = 100, .unit = "standard errors",
+     .help = "by which a running error must be hopeless for its simulation to stop; 0: never"},
     {"checks", FIELD_INTEGER, MEMBER(checks), .initial = 2, .minimum = 1,
      .maximum = POPULATION_MOST, .unit = "",
      .help = "fresh measurements of what is thought best, before it is believed"},
@@ -329,6 +332,7 @@ static size_t spans(void *memory, struct memory_span *span) {
         .tables = (const struct inverse_table[]){{mf_##record##_fields,                            \
                                                   offsetof(struct record##_settings, optimiser)},  \
                                                  {mf_population_fields, 0},                        \
+                                                 {mf_population_round_fields, 0},                  \
                                                  {own_fields, 0},                                  \
                                                  {NULL, 0}},                                       \
         .parameters_size = sizeof(struct record##_settings),                                       \

@@ -294,6 +294,7 @@ const struct inverse_method mf_pareto = {
         (const struct inverse_table[]){{mf_nsga2_fields, offsetof(struct pareto_parameters, nsga2)},
                                        {own_fields, 0},
                                        {mf_population_fields, 0},
+                                       {mf_population_round_fields, 0},
                                        {NULL, 0}},
     .parameters_size = sizeof(struct pareto_parameters),
     .state_size = sizeof(struct pareto_state),

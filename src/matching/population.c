@@ -29,12 +29,13 @@ const struct field mf_population_fields[] = {
     {"estimator", FIELD_CHOICE, MEMBER(evaluate.estimator), .choices = mf_rdf_force_estimators,
      .initial = RDF_FORCE_NOT_USED, .unit = "",
      .help = "of g(r): force is worth twice the samples, but a large time step puts it off"},
-    {"racing", FIELD_NUMBER, MEMBER(evaluate.racing), .initial = 0, .minimum = 0, .maximum = 100,
-     .unit = "standard errors",
-     .help = "by which a running error must be hopeless for its simulation to stop; 0: never"},
     {"precision", FIELD_NUMBER, MEMBER(evaluate.precision), .initial = 0, .minimum = 0,
      .maximum = 1, .unit = "",
      .help = "relative standard error of an error with which its simulation stops; 0: never"},
+    FIELD_END,
+};
+
+const struct field mf_population_round_fields[] = {
     {"warm_start", FIELD_CHOICE, MEMBER(warm_start), .choices = mf_population_no_or_yes,
      .initial = 0, .unit = "", .help = "begin where the best simulation of the last round ended"},
     {"common_noise", FIELD_CHOICE, MEMBER(common_noise), .choices = mf_population_no_or_yes,

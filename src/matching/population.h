@@ -17,7 +17,9 @@ struct population_parameters {
     int warm_start, common_noise; ///< 0: no
 };
 
-extern const struct field mf_population_fields[]; ///< of struct population_parameters
+/// Of struct population_parameters: of every simulation, and of rounds of them. "racing" stands
+/// with the methods whose optimiser says what cannot win.
+extern const struct field mf_population_fields[], mf_population_round_fields[];
 extern const char *const mf_population_no_or_yes[];
 
 /// For `struct inverse_method`.
