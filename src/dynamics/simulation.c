@@ -37,19 +37,29 @@ static enum status place(struct simulation *simulation, const struct simulation_
     return STATUS_OK;
 }
 
-struct skin_scene mf_simulation_skin_scene(const struct simulation_setup *setup, double cutoff) {
+double mf_simulation_range(const struct simulation_setup *setup) {
+    const struct pair_law law = {.potential = setup->potential, .omega = setup->omega};
+    double range = mf_pair_cutoff(&law);
+    for (int k = 0; k < setup->interactions; k++) {
+        const struct interaction_choice *choice = &setup->interaction[k];
+        if (choice->kind->range)
+            range = fmax(range, choice->kind->range(choice->parameters));
+    }
+    return range;
+}
+
+struct skin_scene mf_simulation_skin_scene(const struct simulation_setup *setup) {
     return (struct skin_scene){
         .box = &setup->box,
         .count = (size_t)setup->placement.count,
-        .cutoff = cutoff,
+        .cutoff = mf_simulation_range(setup),
         .temperature = setup->temperature,
         .time_step = setup->time_step,
         .free_step = simulation_is_overdamped(setup) ? setup->integrator->free_step(setup) : 0};
 }
 
 static double find_skin(const struct simulation *simulation) {
-    const struct skin_scene scene =
-        mf_simulation_skin_scene(&simulation->setup, mf_pair_cutoff(&simulation->law));
+    const struct skin_scene scene = mf_simulation_skin_scene(&simulation->setup);
     return simulation->setup.skin > 0 ? simulation->setup.skin : mf_skin_choose(&scene);
 }
 
@@ -129,7 +139,7 @@ enum status mf_simulation_init(struct simulation *simulation, const struct simul
     mf_crew_init(&simulation->crew, setup->threads > 1 ? setup->threads : 1);
     simulation->particles.threads = simulation->crew.now;
     CHECK(mf_neighbours_init(&simulation->neighbours, NEIGHBOURS_HALF, &setup->box, count,
-                             mf_pair_cutoff(&simulation->law), find_skin(simulation)));
+                             mf_simulation_range(setup), find_skin(simulation)));
     if (setup->omega && setup->integrator->friction)
         CHECK(mf_friction_init(&simulation->friction, setup->omega, setup->time_step,
                                setup->temperature, setup->integrator->friction));

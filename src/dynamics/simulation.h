@@ -134,8 +134,12 @@ static inline bool simulation_holds_temperature(const struct simulation_setup *s
     return setup->omega || simulation_is_overdamped(setup);
 }
 
+/// What the neighbour list of a simulation is complete for [λ]: the largest of the cutoffs of its
+/// potential and friction weight and the ranges of its interactions. Tested: test_interactions.
+double mf_simulation_range(const struct simulation_setup *setup);
+
 /// What the choice of a skin depends on. The integrator's parameters must be given.
-struct skin_scene mf_simulation_skin_scene(const struct simulation_setup *setup, double cutoff);
+struct skin_scene mf_simulation_skin_scene(const struct simulation_setup *setup);
 
 /// Pressure [k_B T_0 / λ^d] from the sums of the last step: ρ k_B T + conservative virial / (d V).
 /// T is the set temperature if the dynamics hold it (simulation_holds_temperature) and the kinetic

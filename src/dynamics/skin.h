@@ -10,7 +10,7 @@
 struct skin_scene {
     const struct box *box;
     size_t count;       ///< particles
-    double cutoff;      ///< [λ]
+    double cutoff;      ///< what the list is complete for [λ]
     double temperature; ///< [k_B T_0]
     double time_step;   ///< [τ]
     double free_step;   ///< of dynamics without velocities, sqrt(2 D Δt); 0: particles fly [λ]
