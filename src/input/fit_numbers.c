@@ -39,6 +39,7 @@ static const char *not_a_number(const struct field *field) {
     case FIELD_FILE:
         return "it is a text, not a number";
     case FIELD_CHOICE:
+    case FIELD_CHOICES:
         return "it is a choice, not a number";
     }
     return NULL;
