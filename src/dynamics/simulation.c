@@ -6,6 +6,24 @@
 #include "base/visible.h"
 #include "dynamics/relax.h"
 #include "dynamics/unstable.h"
+#include "system/orientation.h"
+
+/// Orientations, if an interaction is about them.
+static enum status give_orientations(struct simulation *simulation) {
+    const struct simulation_setup *setup = &simulation->setup;
+    const struct interaction *oriented = mf_simulation_oriented(setup);
+    if (oriented == NULL)
+        return STATUS_OK;
+    if (setup->box.dimensions != 2)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "interactions.%s: orientations are of two dimensions, not %d",
+                              oriented->name, setup->box.dimensions);
+    if (setup->integrator->orientation_mobility == NULL)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "interactions.%s: \"%s\" turns no orientations; use \"brownian\"",
+                              oriented->name, setup->integrator->name);
+    return mf_orientation_give(&simulation->particles, setup->seed);
+}
 
 static enum status place(struct simulation *simulation, const struct simulation_start *start) {
     const struct simulation_setup *setup = &simulation->setup;
@@ -26,6 +44,7 @@ static enum status place(struct simulation *simulation, const struct simulation_
         break;
     }
     TRY(mf_attributes_give(particles, setup->attribute, &setup->composition, setup->seed));
+    TRY(give_orientations(simulation));
     if (start == NULL || start->velocity[0] == NULL) {
         mf_particles_draw_velocities(particles, (enum particles_speeds)setup->placement.speeds,
                                      setup->temperature, setup->seed);
@@ -54,6 +73,15 @@ static double lightest(const struct simulation_setup *setup) {
     return mass->ranges > 0 ? mf_attributes_span(mass).minimum : 1;
 }
 
+/// Speed of particles without velocities: of what drives them, or of nobody knows what forces if
+/// not even noise moves them.
+static double drift_of(const struct simulation_setup *setup) {
+    static const double slowest = 1e-3; // of the range in a step
+    const double driven = mf_simulation_push(setup) * setup->integrator->mobility(setup);
+    const bool still = driven == 0 && setup->temperature == 0;
+    return still ? slowest * mf_simulation_range(setup) / setup->time_step : driven;
+}
+
 struct skin_scene mf_simulation_skin_scene(const struct simulation_setup *setup) {
     return (struct skin_scene){
         .box = &setup->box,
@@ -61,7 +89,28 @@ struct skin_scene mf_simulation_skin_scene(const struct simulation_setup *setup)
         .cutoff = mf_simulation_range(setup),
         .temperature = setup->temperature / lightest(setup),
         .time_step = setup->time_step,
-        .free_step = simulation_is_overdamped(setup) ? setup->integrator->free_step(setup) : 0};
+        .free_step = simulation_is_overdamped(setup) ? simulation_free_step(setup) : 0,
+        .drift = simulation_is_overdamped(setup) ? drift_of(setup) : 0};
+}
+
+double mf_simulation_push(const struct simulation_setup *setup) {
+    double push = 0;
+    for (int k = 0; k < setup->interactions; k++) {
+        const struct interaction_choice *choice = &setup->interaction[k];
+        push += choice->kind->push ? choice->kind->push(choice->parameters) : 0;
+    }
+    return push;
+}
+
+const struct interaction *mf_simulation_oriented(const struct simulation_setup *setup) {
+    for (int k = 0; k < setup->interactions; k++)
+        if (setup->interaction[k].kind->oriented)
+            return setup->interaction[k].kind;
+    return NULL;
+}
+
+bool mf_simulation_is_thermal(const struct simulation_setup *setup) {
+    return setup->temperature > 0 && mf_simulation_oriented(setup) == NULL;
 }
 
 static double find_skin(const struct simulation *simulation) {
@@ -188,12 +237,15 @@ double mf_simulation_temperature(const struct simulation *simulation) {
 }
 
 /// The mean m v² along an axis beyond which a simulation is unstable: so many times that of the
-/// temperature, or v² of a free particle's steps.
+/// temperature, or v² of a free particle's steps. Particles without velocities that something
+/// drives, or that no noise moves, may move in a step as far as they see each other.
 static double largest_square(const struct simulation_setup *setup) {
-    const double thermal = simulation_is_overdamped(setup)
-                               ? pow(setup->integrator->free_step(setup) / setup->time_step, 2)
-                               : setup->temperature;
-    return setup->temperature_limit * thermal;
+    if (!simulation_is_overdamped(setup))
+        return setup->temperature_limit * setup->temperature;
+    const double range = mf_simulation_range(setup);
+    const double steps = setup->temperature_limit * pow(simulation_free_step(setup), 2);
+    const double far = mf_simulation_is_thermal(setup) ? 0 : range > 0 ? range * range : INFINITY;
+    return fmax(steps, far) / pow(setup->time_step, 2);
 }
 
 static enum status fail_unstable(const struct simulation *simulation, double square) {
@@ -273,6 +325,7 @@ enum status mf_simulation_compute_forces(struct simulation *simulation, double a
     if (law.friction)
         TRY(mf_friction_reserve(law.friction, neighbours));
     begin = count_ticks(simulation, SIMULATION_LIST, begin);
+    mf_orientation_clear_torques(particles);
     const enum status status = pass_over(simulation, 0,
                                          &(struct interaction_pass){.law = &law,
                                                                     .particles = particles,

@@ -128,8 +128,24 @@ double mf_simulation_temperature(const struct simulation *simulation);
 
 /// Whether the dynamics move without velocities, and so without a kinetic temperature.
 static inline bool simulation_is_overdamped(const struct simulation_setup *setup) {
-    return setup->integrator->free_step != NULL;
+    return setup->integrator->mobility != NULL;
 }
+
+/// How far a free particle without velocities moves in a step by noise, sqrt(2 k_B T Δt/γ) along an
+/// axis [λ].
+static inline double simulation_free_step(const struct simulation_setup *setup) {
+    return sqrt(2 * setup->temperature * setup->integrator->mobility(setup) * setup->time_step);
+}
+
+/// The forces that drive each particle for ever, together [k_B T_0/λ].
+double mf_simulation_push(const struct simulation_setup *setup);
+
+/// The first interaction that is about orientations, which particles have for it, or NULL.
+const struct interaction *mf_simulation_oriented(const struct simulation_setup *setup);
+
+/// Whether an equilibrium can be expected, at the temperature of the setup: there is one, and no
+/// interaction drives or turns particles on its own.
+bool mf_simulation_is_thermal(const struct simulation_setup *setup);
 
 /// Whether friction and noise hold the temperature of the setup.
 static inline bool simulation_holds_temperature(const struct simulation_setup *setup) {

@@ -27,8 +27,9 @@ const struct field mf_scene_fields[] = {
      .unit = "", .help = "of space"},
     {"box", FIELD_LENGTHS, MEMBER(box), .required = true, .minimum = FIELD_ABOVE_ZERO,
      .maximum = LARGEST_BOX, .unit = "lambda", .help = "edges of the periodic box"},
-    {"temperature", FIELD_NUMBER, MEMBER(temperature), .initial = 1, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = DBL_MAX, .unit = "T_0", .help = "of the first velocities and of the noise"},
+    {"temperature", FIELD_NUMBER, MEMBER(temperature), .initial = 1, .minimum = 0,
+     .maximum = DBL_MAX, .unit = "T_0",
+     .help = "of the first velocities and of the noise; 0 for dynamics without velocities alone"},
     {"time_step", FIELD_NUMBER, MEMBER(time_step), .initial = 0.01, .minimum = FIELD_ABOVE_ZERO,
      .maximum = DBL_MAX, .unit = "tau", .help = "of the integrator"},
     {"skin", FIELD_NUMBER, MEMBER(skin), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
@@ -98,6 +99,14 @@ static enum status read_dynamics(struct scene *scene, struct json_object *object
     scene->setup.integrator_parameters = scene->integrator_parameters;
     if (dynamics.item)
         mf_json_finish(&dynamics);
+    if (scene->setup.temperature == 0 && integrator->mobility == NULL)
+        mf_json_fault(object, "temperature", "0 is for dynamics without velocities, as \"%s\"",
+                      mf_brownian.name);
+    const struct interaction *oriented = mf_simulation_oriented(&scene->setup);
+    if (oriented && integrator->orientation_mobility == NULL)
+        mf_json_fault(object, "dynamics",
+                      "%s turns no orientations, which \"%s\" is about; use \"%s\"",
+                      integrator->name, oriented->name, mf_brownian.name);
     if (dissipative && !integrator->dissipative)
         mf_json_fault(object, "dynamics",
                       "%s knows no friction; use \"aboba\" with \"dissipative\"", integrator->name);

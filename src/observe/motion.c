@@ -116,7 +116,7 @@ static void gather(struct motion *motion, const struct simulation *simulation) {
         }
     }
     if (integrator->forget)
-        integrator->forget(simulation, motion->now);
+        integrator->forget(simulation, motion->now, NULL);
 }
 
 /// Two states of the particles, shape [dimensions, count] each.

@@ -12,6 +12,9 @@ const struct field mf_attributes_fields[] = {
      .unit = "lambda", .help = "of each particle, likewise, for what asks for it"},
     {"stiffness", FIELD_NUMBER, .initial = NAN, .minimum = 0, .maximum = DBL_MAX, .unit = "",
      .help = "of each particle, likewise, for what asks for it and says its unit"},
+    {"orientation", FIELD_NUMBER, .initial = NAN, .minimum = -1e6, .maximum = 1e6, .unit = "rad",
+     .help = "theta of each particle at the start, likewise, if interactions are about it; uniform "
+             "without"},
     FIELD_END,
 };
 

@@ -9,7 +9,13 @@
 #include "system/composition.h"
 #include "system/particles.h"
 
-enum attributes_name { ATTRIBUTES_MASS, ATTRIBUTES_RADIUS, ATTRIBUTES_STIFFNESS, ATTRIBUTES_NAMES };
+enum attributes_name {
+    ATTRIBUTES_MASS,
+    ATTRIBUTES_RADIUS,
+    ATTRIBUTES_STIFFNESS,
+    ATTRIBUTES_ORIENTATION,
+    ATTRIBUTES_NAMES
+};
 
 struct attributes_range {
     double minimum, maximum;

@@ -139,7 +139,7 @@ static double noise(const struct kept_pairs *kept, uint64_t step) {
     const uint32_t seed = (uint32_t)kept->law.seed, high = (uint32_t)(kept->law.seed >> 32);
     const uint32_t word = rng_philox_lane(seed, high, (uint32_t)step, 0, 1,
                                           rng_stream_word(RNG_PAIR_NOISE, (uint32_t)(step >> 32)));
-    return mf_normal_of_word(&kept->friction.normal, word);
+    return normal_of_word(&kept->friction.normal, word);
 }
 
 /// Velocity of approach along the first axis, of the particle with the larger x relative to the
