@@ -27,6 +27,7 @@ void mf_fields_set_defaults(const struct field *fields, void *parameters) {
             member[0] = '\0';
             break;
         case FIELD_CHOICE:
+        case FIELD_CHOICES:
             memcpy(member, &(int){(int)field->initial}, sizeof(int));
             break;
         }

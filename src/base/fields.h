@@ -19,6 +19,7 @@ enum field_type {
     FIELD_TEXT,    ///< char[FIELD_TEXT_SIZE], not empty
     FIELD_FILE,    ///< char[FIELD_TEXT_SIZE], a path relative to the file that names it
     FIELD_CHOICE,  ///< int: index into `choices`
+    FIELD_CHOICES, ///< int: set of `choices`, a bit each; at least one
 };
 
 enum { FIELD_TEXT_SIZE = 1024 };
@@ -28,9 +29,9 @@ struct field {
     enum field_type type;
     size_t offset;              ///< of the member in the parameter struct
     bool required;              ///< no default: the user must give it
-    double initial;             ///< default of a number, integer, seed or choice
+    double initial;             ///< default of a number, integer, seed, choice or set of them
     double minimum, maximum;    ///< inclusive range of numbers and integers
-    const char *const *choices; ///< FIELD_CHOICE: names, NULL-terminated
+    const char *const *choices; ///< FIELD_CHOICE(S): names, NULL-terminated
     const char *unit;           ///< "k_B T", "λ", "steps", …; "" for pure numbers
     const char *help;           ///< one line
 };

@@ -4,6 +4,17 @@
 #include <math.h>
 #include <stdio.h>
 
+/// The choices of a set, all of them with −1, one after the other.
+static void join_choices(const struct field *field, int set, const char *between, char *text,
+                         size_t size) {
+    size_t used = 0;
+    text[0] = '\0';
+    for (int i = 0; field->choices[i] && used < size; i++)
+        if (set >> i & 1)
+            used += (size_t)snprintf(text + used, size - used, "%s%s", used ? between : "",
+                                     field->choices[i]);
+}
+
 void mf_fields_type_text(const struct field *field, char *text, size_t size) {
     switch (field->type) {
     case FIELD_NUMBER:
@@ -22,12 +33,12 @@ void mf_fields_type_text(const struct field *field, char *text, size_t size) {
     case FIELD_FILE:
         snprintf(text, size, "file");
         break;
-    case FIELD_CHOICE: {
-        size_t used = 0;
-        text[0] = '\0';
-        for (int i = 0; field->choices[i] && used < size; i++)
-            used +=
-                (size_t)snprintf(text + used, size - used, "%s%s", i ? "|" : "", field->choices[i]);
+    case FIELD_CHOICE:
+        join_choices(field, -1, "|", text, size);
+        break;
+    case FIELD_CHOICES: {
+        const int used = snprintf(text, size, "list of ");
+        join_choices(field, -1, "|", text + used, size - (size_t)used);
         break;
     }
     }
@@ -38,6 +49,8 @@ void mf_fields_default_text(const struct field *field, char *text, size_t size) 
         snprintf(text, size, "required");
     else if (field->type == FIELD_CHOICE)
         snprintf(text, size, "%s", field->choices[(int)field->initial]);
+    else if (field->type == FIELD_CHOICES)
+        join_choices(field, (int)field->initial, ", ", text, size);
     else if (field->type == FIELD_TEXT || field->type == FIELD_FILE || field->type == FIELD_LENGTHS)
         snprintf(text, size, "none");
     else if (isnan(field->initial))

@@ -46,13 +46,3 @@ void mf_normal_table_init(struct normal_table *table) {
             table->single[row][n] = (float)table->precise[row][n];
     }
 }
-
-double mf_normal_of_word(const struct normal_table *table, uint32_t word) {
-    const int32_t sign = (int32_t)word < 0 ? -1 : 0;
-    const float tail = (float)((int32_t)word ^ sign) + 0.5F;
-    int32_t bits;
-    memcpy(&bits, &tail, sizeof bits);
-    const double *c = table->precise[(bits >> NORMAL_BITS) - NORMAL_FIRST];
-    const double place = (bits & ((1 << NORMAL_BITS) - 1)) / (double)(1 << NORMAL_BITS);
-    return (sign | 1) * (c[0] + place * (c[1] + place * (c[2] + place * c[3])));
-}

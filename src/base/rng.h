@@ -14,7 +14,7 @@
 enum rng_stream {
     RNG_PAIR_NOISE,    ///< counters: step, smaller id, larger id
     RNG_VELOCITIES,    ///< counters: particle id
-    RNG_PLACEMENT,     ///< counters: particle id, trial
+    RNG_PLACEMENT,     ///< counters: particle id, trial, 0; of an attribute: particle id, number, 1
     RNG_METROPOLIS,    ///< counters: move
     RNG_INITIAL,       ///< first population of an optimiser
     RNG_SELECTION,     ///< optimiser: generation, individual
@@ -76,10 +76,11 @@ uint32_t mf_rng_sequence_below(struct rng_sequence *sequence, uint32_t count);
 #define RNG_PHILOX_STEP0 0x9E3779B9u ///< of the first word of the key, from round to round
 #define RNG_PHILOX_STEP1 0xBB67AE85u
 
-/// Word 0 of the same function on plain integers, as the kernels compute it (rng_lanes.h).
-/// Tested against the library's in test_rng.
-static inline uint32_t rng_philox_lane(uint32_t key0, uint32_t key1, uint32_t c0, uint32_t c1,
-                                       uint32_t c2, uint32_t c3) {
+/// The same function on plain integers, in the lanes of a vector loop.
+static inline __attribute__((always_inline)) void rng_philox_words(uint32_t key0, uint32_t key1,
+                                                                   uint32_t c0, uint32_t c1,
+                                                                   uint32_t c2, uint32_t c3,
+                                                                   uint32_t word[4]) {
     for (uint32_t round = 0; round < 10; round++) {
         const uint64_t product0 = (uint64_t)c0 * RNG_PHILOX_MULTIPLIER0;
         const uint64_t product1 = (uint64_t)c2 * RNG_PHILOX_MULTIPLIER1;
@@ -88,7 +89,18 @@ static inline uint32_t rng_philox_lane(uint32_t key0, uint32_t key1, uint32_t c0
         c2 = (uint32_t)(product0 >> 32) ^ c3 ^ (key1 + round * RNG_PHILOX_STEP1);
         c3 = (uint32_t)product0;
     }
-    return c0;
+    word[0] = c0;
+    word[1] = c1;
+    word[2] = c2;
+    word[3] = c3;
+}
+
+/// Its word 0, as the kernels compute it (rng_lanes.h). Tested against the library's in test_rng.
+static inline uint32_t rng_philox_lane(uint32_t key0, uint32_t key1, uint32_t c0, uint32_t c1,
+                                       uint32_t c2, uint32_t c3) {
+    uint32_t word[4];
+    rng_philox_words(key0, key1, c0, c1, c2, c3, word);
+    return word[0];
 }
 
 /// Fourth counter word: the stream in the upper four bits, 28 bits of `extra` below.

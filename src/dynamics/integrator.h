@@ -28,20 +28,25 @@ struct integrator {
     /// INTEGRATOR_SPANS. NULL: nothing.
     size_t (*spans)(void *state, struct memory_span *spans);
     bool dissipative; ///< understands ω(r)
+    bool masses;      ///< moves particles of different masses; else a scene with any is refused
     /// What it makes of ω, if it splits friction and noise off the forces; NULL: they are forces.
     const struct friction_method *friction;
     /// A step begins with the friction of the pairs that the last one kept.
     bool friction_first;
     /// Forces are computed in the middle of the step: those at its end take a pass of their own.
     bool forces_midway;
-    /// Dynamics without velocities say here how far a free particle moves in a step, sqrt(2 D Δt)
-    /// along an axis [λ]. They have no kinetic temperature; `velocity` is what a particle moved in
-    /// the last step, over Δt. NULL: there are velocities.
-    double (*free_step)(const struct simulation_setup *setup);
+    /// Dynamics without velocities say here how fast a force moves a particle, 1/γ [τ/μ]. They have
+    /// no kinetic temperature; `velocity` is what a particle moved in the last step, over Δt. NULL:
+    /// there are velocities.
+    double (*mobility)(const struct simulation_setup *setup);
+    /// The same of a torque, if they turn orientations (system/orientation.h) [τ/(μ λ²)]. NULL:
+    /// they turn none.
+    double (*orientation_mobility)(const struct simulation_setup *setup);
     /// Dynamics whose noise outlasts a step take here from positions, shape [dimensions, count] by
     /// particle id, what their next steps will still share with the last [λ]: displacements between
-    /// what is left have no memory. NULL: positions are that already.
-    void (*forget)(const struct simulation *simulation, double *positions);
+    /// what is left have no memory. Likewise from orientations, shape [count], or NULL. NULL:
+    /// positions are that already.
+    void (*forget)(const struct simulation *simulation, double *positions, double *angles);
     /// Advance by one step, with one call of mf_simulation_compute_forces.
     enum status (*step)(struct simulation *simulation);
 };
@@ -57,7 +62,8 @@ enum { INTEGRATOR_SPANS = 8 };
     EACH(mf_aboba)                                                                                 \
     EACH(mf_aboba_implicit)                                                                        \
     EACH(mf_lowe_andersen)                                                                         \
-    EACH(mf_brownian)
+    EACH(mf_brownian)                                                                              \
+    EACH(mf_euler_maruyama)
 
 #define INTEGRATOR_DECLARE(record) extern const struct integrator record;
 INTEGRATORS(INTEGRATOR_DECLARE)

@@ -11,12 +11,18 @@ static const double overlap = 10;
 /// Largest shift in the first step, in mean spacings; it goes down to 0 over all steps.
 static const double first_shift = 0.05;
 
+/// Without noise this part of the range does for a free step: an overlap moves a particle by the
+/// range.
+static const double quiet_step = 0.1;
+
 /// The force that changes a velocity by a thermal one in a time step, or that moves a particle
 /// without velocities by a free step.
 static double thermal_force(const struct simulation_setup *setup) {
-    return simulation_is_overdamped(setup)
-               ? 2 * setup->temperature / setup->integrator->free_step(setup)
-               : sqrt(setup->temperature) / setup->time_step;
+    if (!simulation_is_overdamped(setup))
+        return sqrt(setup->temperature) / setup->time_step;
+    const double step = setup->temperature > 0 ? simulation_free_step(setup)
+                                               : quiet_step * mf_simulation_range(setup);
+    return step / (setup->integrator->mobility(setup) * setup->time_step);
 }
 
 static void shift(struct particles *particles, double enough, double cap) {

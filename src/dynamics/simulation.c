@@ -3,11 +3,27 @@
 
 #include "base/clock.h"
 #include "base/interrupt.h"
-#include "base/parallel.h"
-#include "base/simd.h"
 #include "base/visible.h"
 #include "dynamics/relax.h"
 #include "dynamics/unstable.h"
+#include "system/orientation.h"
+
+/// Orientations, if an interaction is about them.
+static enum status give_orientations(struct simulation *simulation) {
+    const struct simulation_setup *setup = &simulation->setup;
+    const struct interaction *oriented = mf_simulation_oriented(setup);
+    if (oriented == NULL)
+        return STATUS_OK;
+    if (setup->box.dimensions != 2)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "interactions.%s: orientations are of two dimensions, not %d",
+                              oriented->name, setup->box.dimensions);
+    if (setup->integrator->orientation_mobility == NULL)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "interactions.%s: \"%s\" turns no orientations; use \"brownian\"",
+                              oriented->name, setup->integrator->name);
+    return mf_orientation_give(&simulation->particles, setup->seed);
+}
 
 static enum status place(struct simulation *simulation, const struct simulation_start *start) {
     const struct simulation_setup *setup = &simulation->setup;
@@ -27,8 +43,11 @@ static enum status place(struct simulation *simulation, const struct simulation_
                    particles->count * sizeof *particles->position[d]);
         break;
     }
+    TRY(mf_attributes_give(particles, setup->attribute, &setup->composition, setup->seed));
+    TRY(give_orientations(simulation));
     if (start == NULL || start->velocity[0] == NULL) {
-        mf_particles_draw_velocities(particles, setup->temperature, setup->seed);
+        mf_particles_draw_velocities(particles, (enum particles_speeds)setup->placement.speeds,
+                                     setup->temperature, setup->seed);
         return STATUS_OK;
     }
     for (int d = 0; d < setup->box.dimensions; d++)
@@ -37,19 +56,65 @@ static enum status place(struct simulation *simulation, const struct simulation_
     return STATUS_OK;
 }
 
-struct skin_scene mf_simulation_skin_scene(const struct simulation_setup *setup, double cutoff) {
+double mf_simulation_range(const struct simulation_setup *setup) {
+    const struct pair_law law = {.potential = setup->potential, .omega = setup->omega};
+    double range = mf_pair_cutoff(&law);
+    for (int k = 0; k < setup->interactions; k++) {
+        const struct interaction_choice *choice = &setup->interaction[k];
+        if (choice->kind->range)
+            range = fmax(range, choice->kind->range(choice->parameters));
+    }
+    return range;
+}
+
+/// The lightest particles are the fastest, and wear the list out.
+static double lightest(const struct simulation_setup *setup) {
+    const struct attributes_source *mass = &setup->attribute[ATTRIBUTES_MASS];
+    return mass->ranges > 0 ? mf_attributes_span(mass).minimum : 1;
+}
+
+/// Speed of particles without velocities: of what drives them, or of nobody knows what forces if
+/// not even noise moves them.
+static double drift_of(const struct simulation_setup *setup) {
+    static const double slowest = 1e-3; // of the range in a step
+    const double driven = mf_simulation_push(setup) * setup->integrator->mobility(setup);
+    const bool still = driven == 0 && setup->temperature == 0;
+    return still ? slowest * mf_simulation_range(setup) / setup->time_step : driven;
+}
+
+struct skin_scene mf_simulation_skin_scene(const struct simulation_setup *setup) {
     return (struct skin_scene){
         .box = &setup->box,
         .count = (size_t)setup->placement.count,
-        .cutoff = cutoff,
-        .temperature = setup->temperature,
+        .cutoff = mf_simulation_range(setup),
+        .temperature = setup->temperature / lightest(setup),
         .time_step = setup->time_step,
-        .free_step = simulation_is_overdamped(setup) ? setup->integrator->free_step(setup) : 0};
+        .free_step = simulation_is_overdamped(setup) ? simulation_free_step(setup) : 0,
+        .drift = simulation_is_overdamped(setup) ? drift_of(setup) : 0};
+}
+
+double mf_simulation_push(const struct simulation_setup *setup) {
+    double push = 0;
+    for (int k = 0; k < setup->interactions; k++) {
+        const struct interaction_choice *choice = &setup->interaction[k];
+        push += choice->kind->push ? choice->kind->push(choice->parameters) : 0;
+    }
+    return push;
+}
+
+const struct interaction *mf_simulation_oriented(const struct simulation_setup *setup) {
+    for (int k = 0; k < setup->interactions; k++)
+        if (setup->interaction[k].kind->oriented)
+            return setup->interaction[k].kind;
+    return NULL;
+}
+
+bool mf_simulation_is_thermal(const struct simulation_setup *setup) {
+    return setup->temperature > 0 && mf_simulation_oriented(setup) == NULL;
 }
 
 static double find_skin(const struct simulation *simulation) {
-    const struct skin_scene scene =
-        mf_simulation_skin_scene(&simulation->setup, mf_pair_cutoff(&simulation->law));
+    const struct skin_scene scene = mf_simulation_skin_scene(&simulation->setup);
     return simulation->setup.skin > 0 ? simulation->setup.skin : mf_skin_choose(&scene);
 }
 
@@ -129,7 +194,7 @@ enum status mf_simulation_init(struct simulation *simulation, const struct simul
     mf_crew_init(&simulation->crew, setup->threads > 1 ? setup->threads : 1);
     simulation->particles.threads = simulation->crew.now;
     CHECK(mf_neighbours_init(&simulation->neighbours, NEIGHBOURS_HALF, &setup->box, count,
-                             mf_pair_cutoff(&simulation->law), find_skin(simulation)));
+                             mf_simulation_range(setup), find_skin(simulation)));
     if (setup->omega && setup->integrator->friction)
         CHECK(mf_friction_init(&simulation->friction, setup->omega, setup->time_step,
                                setup->temperature, setup->integrator->friction));
@@ -159,56 +224,6 @@ void mf_simulation_clear(struct simulation *simulation) {
     mf_friction_clear(&simulation->friction);
 }
 
-SIMD_CLONES static void kick_and_drift(void *context, size_t begin, size_t end) {
-    struct simulation *simulation = context;
-    struct particles *particles = &simulation->particles;
-    const double dt = simulation->setup.time_step;
-    for (int d = 0; d < particles->box.dimensions; d++) {
-        double *restrict x = particles->position[d], *restrict v = particles->velocity[d];
-        const double *restrict force = particles->force[d];
-        for (size_t k = begin; k < end; k++) {
-            v[k] += 0.5 * dt * force[k];
-            x[k] += dt * v[k];
-        }
-    }
-}
-
-void mf_simulation_kick_and_drift(struct simulation *simulation) {
-    const struct particles *particles = &simulation->particles;
-    mf_parallel_for(particles->count, particles->threads, kick_and_drift, simulation);
-}
-
-SIMD_CLONES static void kick(void *context, size_t begin, size_t end) {
-    struct simulation *simulation = context;
-    struct particles *particles = &simulation->particles;
-    const double dt = simulation->setup.time_step;
-    for (int d = 0; d < particles->box.dimensions; d++) {
-        double *restrict v = particles->velocity[d];
-        const double *restrict force = particles->force[d];
-        for (size_t k = begin; k < end; k++)
-            v[k] += 0.5 * dt * force[k];
-    }
-}
-
-void mf_simulation_kick(struct simulation *simulation) {
-    const struct particles *particles = &simulation->particles;
-    mf_parallel_for(particles->count, particles->threads, kick, simulation);
-}
-
-SIMD_CLONES static void drift_half(void *context, size_t begin, size_t end) {
-    struct simulation *simulation = context;
-    struct particles *particles = &simulation->particles;
-    const double dt = simulation->setup.time_step;
-    for (int d = 0; d < particles->box.dimensions; d++)
-        for (size_t k = begin; k < end; k++)
-            particles->position[d][k] += 0.5 * dt * particles->velocity[d][k];
-}
-
-void mf_simulation_drift_half(struct simulation *simulation) {
-    const struct particles *particles = &simulation->particles;
-    mf_parallel_for(particles->count, particles->threads, drift_half, simulation);
-}
-
 void mf_simulation_take_temperature(struct simulation *simulation) {
     if (simulation->wants == PAIR_FORCES_AND_SUMS)
         simulation->temperature = mf_particles_temperature(&simulation->particles);
@@ -221,13 +236,16 @@ double mf_simulation_temperature(const struct simulation *simulation) {
                                              : mf_particles_temperature(&simulation->particles);
 }
 
-/// The mean square of a velocity along an axis beyond which a simulation is unstable: so many times
-/// that of the temperature, or of a free particle's steps.
+/// The mean m v² along an axis beyond which a simulation is unstable: so many times that of the
+/// temperature, or v² of a free particle's steps. Particles without velocities that something
+/// drives, or that no noise moves, may move in a step as far as they see each other.
 static double largest_square(const struct simulation_setup *setup) {
-    const double thermal = simulation_is_overdamped(setup)
-                               ? pow(setup->integrator->free_step(setup) / setup->time_step, 2)
-                               : setup->temperature;
-    return setup->temperature_limit * thermal;
+    if (!simulation_is_overdamped(setup))
+        return setup->temperature_limit * setup->temperature;
+    const double range = mf_simulation_range(setup);
+    const double steps = setup->temperature_limit * pow(simulation_free_step(setup), 2);
+    const double far = mf_simulation_is_thermal(setup) ? 0 : range > 0 ? range * range : INFINITY;
+    return fmax(steps, far) / pow(setup->time_step, 2);
 }
 
 static enum status fail_unstable(const struct simulation *simulation, double square) {
@@ -307,6 +325,7 @@ enum status mf_simulation_compute_forces(struct simulation *simulation, double a
     if (law.friction)
         TRY(mf_friction_reserve(law.friction, neighbours));
     begin = count_ticks(simulation, SIMULATION_LIST, begin);
+    mf_orientation_clear_torques(particles);
     const enum status status = pass_over(simulation, 0,
                                          &(struct interaction_pass){.law = &law,
                                                                     .particles = particles,
@@ -344,13 +363,13 @@ enum status mf_simulation_forces_beside(const struct simulation *simulation,
                                                 .wants = PAIR_FORCES});
 }
 
-/// Σ v² tells at once of NaN, overflow and a runaway temperature; what drifts as a whole is asked
+/// Σ m v² tells at once of NaN, overflow and a runaway temperature; what drifts as a whole is asked
 /// for its velocities relative to the mean.
 static enum status watch(const struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
     const double degrees = particles->box.dimensions * ((double)particles->count - 1);
     const double most = largest_square(&simulation->setup);
-    if (mf_particles_square_velocities(particles) / degrees <= most)
+    if (2 * mf_particles_kinetic_energy(particles) / degrees <= most)
         return STATUS_OK;
     const double square = mf_particles_temperature(particles);
     return square <= most ? STATUS_OK : fail_unstable(simulation, square);

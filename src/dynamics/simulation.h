@@ -8,6 +8,7 @@
 #include "dynamics/skin.h"
 #include "forces/interaction.h"
 #include "forces/pair.h"
+#include "system/attributes.h"
 #include "system/neighbours.h"
 #include "system/placement.h"
 
@@ -18,10 +19,11 @@ struct simulation_setup {
     struct box box;
     struct placement placement;
     struct composition composition; ///< types of its beads; all zero: they are alike
-    double temperature;             ///< of the start and of the noise              [k_B T_0]
-    double time_step;               ///< Δt                                         [τ]
-    double skin;                    ///< of the neighbour list; 0: the code chooses [λ]
-    double temperature_limit;       ///< above limit × temperature: UNSTABLE
+    struct attributes_source attribute[ATTRIBUTES_NAMES]; ///< that the particles are given
+    double temperature;       ///< of the start and of the noise              [k_B T_0]
+    double time_step;         ///< Δt                                         [τ]
+    double skin;              ///< of the neighbour list; 0: the code chooses [λ]
+    double temperature_limit; ///< above limit × temperature: UNSTABLE
     const struct integrator *integrator;
     const void *integrator_parameters; ///< its struct, or NULL: the defaults; borrowed
     /// What acts beside the pairs; its parameters are borrowed.
@@ -99,10 +101,10 @@ enum status mf_simulation_forces_beside(const struct simulation *simulation,
 enum status mf_simulation_run(struct simulation *simulation, uint64_t steps) MUST_USE;
 
 /// @name For integrators
-/// v += ½ Δt F, then x += Δt v.
+/// v += ½ Δt F/m, then x += Δt v.
 void mf_simulation_kick_and_drift(struct simulation *simulation);
 
-/// v += ½ Δt F.
+/// v += ½ Δt F/m.
 void mf_simulation_kick(struct simulation *simulation);
 
 /// x += ½ Δt v.
@@ -126,16 +128,36 @@ double mf_simulation_temperature(const struct simulation *simulation);
 
 /// Whether the dynamics move without velocities, and so without a kinetic temperature.
 static inline bool simulation_is_overdamped(const struct simulation_setup *setup) {
-    return setup->integrator->free_step != NULL;
+    return setup->integrator->mobility != NULL;
 }
+
+/// How far a free particle without velocities moves in a step by noise, sqrt(2 k_B T Δt/γ) along an
+/// axis [λ].
+static inline double simulation_free_step(const struct simulation_setup *setup) {
+    return sqrt(2 * setup->temperature * setup->integrator->mobility(setup) * setup->time_step);
+}
+
+/// The forces that drive each particle for ever, together [k_B T_0/λ].
+double mf_simulation_push(const struct simulation_setup *setup);
+
+/// The first interaction that is about orientations, which particles have for it, or NULL.
+const struct interaction *mf_simulation_oriented(const struct simulation_setup *setup);
+
+/// Whether an equilibrium can be expected, at the temperature of the setup: there is one, and no
+/// interaction drives or turns particles on its own.
+bool mf_simulation_is_thermal(const struct simulation_setup *setup);
 
 /// Whether friction and noise hold the temperature of the setup.
 static inline bool simulation_holds_temperature(const struct simulation_setup *setup) {
     return setup->omega || simulation_is_overdamped(setup);
 }
 
+/// What the neighbour list of a simulation is complete for [λ]: the largest of the cutoffs of its
+/// potential and friction weight and the ranges of its interactions. Tested: test_interactions.
+double mf_simulation_range(const struct simulation_setup *setup);
+
 /// What the choice of a skin depends on. The integrator's parameters must be given.
-struct skin_scene mf_simulation_skin_scene(const struct simulation_setup *setup, double cutoff);
+struct skin_scene mf_simulation_skin_scene(const struct simulation_setup *setup);
 
 /// Pressure [k_B T_0 / λ^d] from the sums of the last step: ρ k_B T + conservative virial / (d V).
 /// T is the set temperature if the dynamics hold it (simulation_holds_temperature) and the kinetic

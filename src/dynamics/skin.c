@@ -14,10 +14,16 @@ static double entries(const struct skin_scene *scene, double skin) {
     return density * mf_box_shell_volume(scene->box, 0, scene->cutoff + skin) / 2;
 }
 
+/// Square root of the number of steps in which the fastest particle walks and drifts half the skin.
+static double walk_roots(const struct skin_scene *scene, double fastest, double skin) {
+    const double walk = scene->free_step * fastest, drift = scene->drift * scene->time_step;
+    return skin / (walk + sqrt(walk * walk + 2 * drift * skin));
+}
+
 double mf_skin_interval(const struct skin_scene *scene, double skin) {
     const double fastest = 2 * log((double)scene->count + 1);
-    if (scene->free_step > 0)
-        return fmax(1, pow(skin / (2 * scene->free_step), 2) / fastest + 0.5);
+    if (scene->free_step > 0 || scene->drift > 0) // skin/2 = walk q + drift q² after q² steps
+        return fmax(1, pow(walk_roots(scene, sqrt(fastest), skin), 2) + 0.5);
     const double speed = sqrt(2 * scene->temperature * log((double)scene->count + 1));
     // Half a step on average from the moment when the list runs out to its replacement.
     return fmax(1, skin / (2 * speed * scene->time_step) + 0.5);

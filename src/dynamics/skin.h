@@ -10,10 +10,11 @@
 struct skin_scene {
     const struct box *box;
     size_t count;       ///< particles
-    double cutoff;      ///< [λ]
+    double cutoff;      ///< what the list is complete for [λ]
     double temperature; ///< [k_B T_0]
     double time_step;   ///< [τ]
-    double free_step;   ///< of dynamics without velocities, sqrt(2 D Δt); 0: particles fly [λ]
+    double free_step;   ///< of dynamics without velocities, sqrt(2 D Δt) [λ]
+    double drift;       ///< the same, speed of each particle [λ/τ]; both 0: particles fly
 };
 
 /// The skin [λ] for which a step is expected to take the least time; 0 means a list at every step.

@@ -8,6 +8,7 @@ static double largest_of(const struct simulation *simulation, const struct inter
     struct particles alone = simulation->particles;
     const struct interaction_pass pass = {.law = &simulation->law,
                                           .particles = &alone,
+                                          .neighbours = &simulation->neighbours,
                                           .step = simulation->step,
                                           .conservative = true,
                                           .wants = PAIR_FORCES};

@@ -14,7 +14,7 @@
 struct interaction_pass {
     const struct pair_law *law;          ///< of the pairs, with temperature, time step and seed
     struct particles *particles;         ///< at their present positions
-    const struct neighbours *neighbours; ///< complete for the law
+    const struct neighbours *neighbours; ///< complete for the law and all ranges
     uint64_t step;                       ///< the counter of random numbers
     bool conservative;                   ///< potentials alone: no friction, no noise
     enum pair_wants wants;
@@ -28,6 +28,14 @@ struct interaction {
     size_t parameters_size;     ///< of the struct of its parameters
     size_t state_size;          ///< of what it keeps from step to step, zeroed at first; 0: nothing
     double cost;                ///< nanoseconds a particle and step, for --explain
+    /// How far it looks for pairs [λ]: the neighbour list is complete for that. NULL: not at all.
+    double (*range)(const void *parameters);
+    /// Acts along or on the orientations of particles (system/orientation.h), which they then have,
+    /// unless a pass is of potentials alone: it has none.
+    bool oriented;
+    /// Force on each particle that drives it for ever, in a direction of its own [k_B T_0/λ]. NULL:
+    /// none.
+    double (*push)(const void *parameters);
     /// Check the parameters and begin with the first positions. NULL: nothing to do.
     enum status (*begin)(const void *parameters, void *state, const struct particles *particles);
     void (*clear)(void *state); ///< frees what the state owns; NULL: nothing
@@ -45,7 +53,9 @@ enum { INTERACTION_SPANS = 4 };
 /// The interactions that a scene can name, in the order in which they act.
 #define INTERACTIONS(EACH)                                                                         \
     EACH(mf_uniform_force)                                                                         \
-    EACH(mf_harmonic_trap)
+    EACH(mf_harmonic_trap)                                                                         \
+    EACH(mf_self_propulsion)                                                                       \
+    EACH(mf_polar_alignment)
 
 #define INTERACTION_DECLARE(record) extern const struct interaction record;
 INTERACTIONS(INTERACTION_DECLARE)

@@ -230,7 +230,7 @@ INLINE void pair_ids(struct pair_columns *columns, const struct pair_batch *batc
     }
 }
 
-/// ζ of the words: mf_normal_of_word of each.
+/// ζ of the words: normal_of_word of each.
 INLINE void pair_normal(struct pair_columns *columns, int count, const struct normal_table *table) {
     for (int k = 0; k < count; k += LANES) {
         const lanes_int word = lanes_load_int(columns->noise + k);

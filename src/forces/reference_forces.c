@@ -21,7 +21,7 @@ static double pair_noise(const struct pair_law *law, uint32_t a, uint32_t b, uin
     const uint32_t word =
         rng_philox_lane((uint32_t)law->seed, (uint32_t)(law->seed >> 32), (uint32_t)step, low, high,
                         rng_stream_word(RNG_PAIR_NOISE, (uint32_t)(step >> 32)));
-    return law->friction ? mf_normal_of_word(&law->friction->normal, word)
+    return law->friction ? normal_of_word(&law->friction->normal, word)
                          : sqrt(12) * (double)(int32_t)word * 0x1p-32;
 }
 

@@ -39,6 +39,7 @@ static const char *not_a_number(const struct field *field) {
     case FIELD_FILE:
         return "it is a text, not a number";
     case FIELD_CHOICE:
+    case FIELD_CHOICES:
         return "it is a choice, not a number";
     }
     return NULL;
@@ -123,6 +124,8 @@ static void list(struct entries *entries, const struct scene *scene) {
     }
     add(entries, "particles.", mf_placement_count_fields, places, &nowhere, NULL);
     add(entries, "particles.", mf_placement_fields, places, &nowhere, NULL);
+    add(entries, "particles.", mf_attributes_fields, "it is not the same for all particles",
+        &nowhere, NULL);
     add(entries, "units.", mf_units_fields, converts, &nowhere, NULL);
 }
 

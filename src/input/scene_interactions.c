@@ -22,6 +22,9 @@ static enum status read_one(struct scene_interactions *interactions, struct json
         return STATUS_NO_MEMORY;
     mf_json_fields(&own, kind->fields, parameters);
     check_vectors(&own, kind->fields, interactions->dimensions);
+    if (kind->oriented && interactions->dimensions != 2)
+        mf_json_fault(object, kind->name, "orientations are of two dimensions, not %d",
+                      interactions->dimensions);
     mf_json_finish(&own);
     interactions->parameters[interactions->count] = parameters;
     interactions->choice[interactions->count++] = (struct interaction_choice){kind, parameters};

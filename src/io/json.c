@@ -6,6 +6,7 @@
 #include "base/nearest.h"
 #include "base/visible.h"
 #include "io/json_item.h"
+#include "io/json_list.h"
 #include "io/json_syntax.h"
 #include "io/output.h"
 #include "io/text_file.h"
@@ -187,6 +188,10 @@ bool mf_json_has(struct json_object *object, const char *key) {
     return ask(object, key) != NULL;
 }
 
+bool mf_json_is_object(const struct json_object *object, const char *key) {
+    return cJSON_IsObject(cJSON_GetObjectItemCaseSensitive(object->item, key));
+}
+
 int mf_json_count(const struct json_object *object, const char *key) {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(object->item, key);
     return cJSON_IsArray(item) ? cJSON_GetArraySize(item) : 0;
@@ -255,7 +260,7 @@ static const char *const expected_name[] = {
     [FIELD_NUMBER] = "a number",     [FIELD_INTEGER] = "a whole number",
     [FIELD_SEED] = "a whole number", [FIELD_LENGTHS] = "an array of 2 or 3 numbers",
     [FIELD_TEXT] = "a text",         [FIELD_FILE] = "a text with the name of a file",
-    [FIELD_CHOICE] = "a text",
+    [FIELD_CHOICE] = "a text",       [FIELD_CHOICES] = "a list of texts",
 };
 
 /// A finite number, or false and a fault.
@@ -359,6 +364,7 @@ static void read_field(struct json_object *object, const struct field *field, co
                        char *member) {
     const char *key = field->name;
     double value;
+    int chosen;
     switch (field->type) {
     case FIELD_NUMBER:
         if (read_finite(object, key, expected_name[FIELD_NUMBER], item, &value) &&
@@ -387,6 +393,10 @@ static void read_field(struct json_object *object, const struct field *field, co
     case FIELD_CHOICE:
         if (mf_json_choice(object, key, field->choices, NULL))
             memcpy(member, &(int){mf_fields_choice_index(field, item->valuestring)}, sizeof(int));
+        break;
+    case FIELD_CHOICES:
+        if (mf_json_list_choices(object, field, item, &chosen))
+            memcpy(member, &chosen, sizeof chosen);
         break;
     }
 }

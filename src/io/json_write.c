@@ -155,6 +155,15 @@ static void put_file(struct json_writer *writer, const char *key, const char *fi
     }
 }
 
+static void put_choices(struct json_writer *writer, const struct field *field, int chosen) {
+    cJSON *array = cJSON_CreateArray();
+    for (int k = 0; array && field->choices[k]; k++)
+        if ((chosen >> k & 1) &&
+            !cJSON_AddItemToArray(array, cJSON_CreateString(field->choices[k])))
+            note_problem(writer, field->name, "does not fit into the memory");
+    put(writer, field->name, array);
+}
+
 static void put_field(struct json_writer *writer, const struct field *field, const char *member) {
     double number[3];
     int64_t integer;
@@ -189,6 +198,10 @@ static void put_field(struct json_writer *writer, const struct field *field, con
     case FIELD_CHOICE:
         memcpy(&choice, member, sizeof choice);
         mf_json_put_text(writer, field->name, field->choices[choice]);
+        break;
+    case FIELD_CHOICES:
+        memcpy(&choice, member, sizeof choice);
+        put_choices(writer, field, choice);
         break;
     }
 }

@@ -68,6 +68,10 @@ struct observable {
                          const struct measure_plan *plan);
     void (*clear)(void *state);
 
+    /// Told where its files go, once before the first sample and after a restart, if it writes them
+    /// while it measures. What `results` points to lives as long as the state.
+    void (*open)(void *state, const struct observable_results *results);
+
     bool sums; ///< its samples want energy and virial of the force pass
     /// What the force pass of a sampled step is to count, or NULL if it cannot; `counted` then
     /// stands for `sample`. One observable at a time is served so, the others sample.

@@ -156,7 +156,7 @@ enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary
     const struct thermodynamics_summary *s = summary;
     const bool flies = !simulation_is_overdamped(setup);
     const double wanted = simulation_holds_temperature(setup) ? setup->temperature : s->temperature;
-    if (s->blocks < LEAST_BLOCKS)
+    if (s->blocks < LEAST_BLOCKS || !mf_simulation_is_thermal(setup))
         return STATUS_OK;
     if ((!flies || agrees(s->temperature, s->temperature_error, wanted)) &&
         (isnan(s->temperature_configurational) ||
@@ -180,6 +180,8 @@ enum status mf_thermodynamics_judge_fit(const struct thermodynamics_summary *sum
     static const double least = 0.025, errors = 3;
     const struct thermodynamics_summary *s = summary;
     TRY(mf_thermodynamics_judge(summary, setup));
+    if (!mf_simulation_is_thermal(setup))
+        return STATUS_OK;
     if (s->blocks >= LEAST_BLOCKS && !simulation_holds_temperature(setup) &&
         !agrees(s->temperature, s->temperature_error, setup->temperature))
         return mf_status_fail(STATUS_UNSTABLE,

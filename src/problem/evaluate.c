@@ -27,6 +27,8 @@ static enum status equilibrate(struct simulation *simulation, const struct measu
     struct measure_temperature found;
     TRY(mf_measure_settle(simulation, plan, &found, NULL));
     const double wanted = simulation->setup.temperature;
+    if (!mf_simulation_is_thermal(&simulation->setup))
+        return STATUS_OK;
     // What is not known is not held against it.
     if (fabs(found.mean / wanted - 1) > tolerance + deviations * found.error / wanted)
         return mf_status_fail(STATUS_UNSTABLE,

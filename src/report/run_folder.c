@@ -2,6 +2,7 @@
 #include "report/run_folder.h"
 
 #include "io/json.h"
+#include "io/snapshot.h"
 #include "observe/observable.h"
 #include "report/figures.h"
 
@@ -15,7 +16,11 @@
 #include <unistd.h>
 
 /// Room for the name of any file behind the path of the folder.
-enum { NAME_ROOM = 320, LONGEST_FOLDER = OUTPUT_PATH_SIZE - NAME_ROOM };
+enum {
+    NAME_ROOM = 320,
+    LONGEST_FOLDER = OUTPUT_PATH_SIZE - NAME_ROOM,
+    LONGEST_PLACE = OUTPUT_PATH_SIZE - 258
+};
 
 /// What a run writes beside used.json; with * the tables about the pair types of a mixture.
 static const char *const results[] = {
@@ -83,7 +88,7 @@ static int is_result(const struct dirent *entry) {
     for (size_t k = 0; k < sizeof results / sizeof *results; k++)
         if (fits(results[k], entry->d_name))
             return 1;
-    return is_observed(entry->d_name);
+    return mf_snapshot_is_file(entry->d_name) || is_observed(entry->d_name);
 }
 
 /// A result, but for the checkpoint, which the new run has replaced by its own.
@@ -132,24 +137,34 @@ static enum status refuse_stranger(const char *path, const void *context) {
                           path);
 }
 
-/// Do something with every file of the folder that is one of those.
-static enum status with_files(const struct run_folder *folder, int (*is_one)(const struct dirent *),
-                              enum status (*act)(const char *path, const void *context),
-                              const void *context) {
+static enum status with_files_in(const char *place, int (*is_one)(const struct dirent *),
+                                 enum status (*act)(const char *path, const void *context),
+                                 const void *context) {
     enum status status = STATUS_OK;
     struct dirent **entries;
-    const int count = scandir(folder->path, &entries, is_one, alphasort);
+    const int count = scandir(place, &entries, is_one, alphasort);
     if (count < 0)
-        return mf_status_fail(STATUS_IO, "%s: %s", folder->path, strerror(errno));
+        return mf_status_fail(STATUS_IO, "%s: %s", place, strerror(errno));
     for (int k = 0; k < count; k++) {
         char path[OUTPUT_PATH_SIZE];
-        mf_run_folder_file(folder, entries[k]->d_name, path);
+        snprintf(path, sizeof path, "%.*s/%s", LONGEST_PLACE, place, entries[k]->d_name);
         if (status == STATUS_OK)
             status = act(path, context);
         free(entries[k]);
     }
     free(entries);
     return status;
+}
+
+/// Do something with every file of the folder, and of that of its snapshots, that is one of those.
+static enum status with_files(const struct run_folder *folder, int (*is_one)(const struct dirent *),
+                              enum status (*act)(const char *path, const void *context),
+                              const void *context) {
+    char snapshots[OUTPUT_PATH_SIZE];
+    TRY(with_files_in(folder->path, is_one, act, context));
+    mf_run_folder_file(folder, SNAPSHOT_FOLDER, snapshots);
+    return access(snapshots, F_OK) == 0 ? with_files_in(snapshots, is_one, act, context)
+                                        : STATUS_OK;
 }
 
 // May it be written? ------------------------------------------------------------------------------

@@ -18,8 +18,8 @@ static const struct {
           .tell = 0.7};
 
 static void add_list(struct stages *stages, const struct simulation_setup *setup) {
-    const double cutoff = mf_stages_cutoff(setup);
-    const struct skin_scene scene = mf_simulation_skin_scene(setup, cutoff);
+    const struct skin_scene scene = mf_simulation_skin_scene(setup);
+    const double cutoff = scene.cutoff;
     const bool given = setup->skin > 0;
     const double skin = given ? setup->skin : mf_skin_choose(&scene);
     const double interval = mf_skin_interval(&scene, skin);

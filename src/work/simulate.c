@@ -168,6 +168,8 @@ static void warn(struct run *run) {
 
 static enum status carry_out(struct run *run) {
     const struct measure_listener listener = {tell, run};
+    const struct observable_results results = results_of(run);
+    mf_simulate_observables_open(&run->observables, &results);
     double temperature;
     warn(run);
     TRY(mf_measure_equilibrate(&run->simulation, &run->plan, &temperature, &listener));

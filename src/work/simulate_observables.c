@@ -61,6 +61,13 @@ enum status mf_simulate_observables_begin(struct simulate_observables *observabl
     return STATUS_OK;
 }
 
+void mf_simulate_observables_open(const struct simulate_observables *observables,
+                                  const struct observable_results *results) {
+    for (const struct observable_use *use = observables->use; use->observable; use++)
+        if (use->observable->open)
+            use->observable->open(use->state, results);
+}
+
 size_t mf_simulate_observables_spans(struct simulate_observables *observables,
                                      struct simulation *simulation, struct memory_span *spans) {
     size_t n = mf_simulation_spans(simulation, spans);

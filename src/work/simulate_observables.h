@@ -24,6 +24,10 @@ enum status mf_simulate_observables_begin(struct simulate_observables *observabl
                                           const struct simulation *simulation,
                                           const struct measure_plan *plan) MUST_USE;
 
+/// Tell those that write while they measure where their files go.
+void mf_simulate_observables_open(const struct simulate_observables *observables,
+                                  const struct observable_results *results);
+
 enum { SIMULATE_MOST_SPANS = SIMULATION_SPANS + OBSERVABLES_MOST * OBSERVABLE_MOST_SPANS };
 
 /// Spans of a checkpoint, the simulation's first; returns their number.

@@ -139,7 +139,7 @@ static double noise(const struct kept_pairs *kept, uint64_t step) {
     const uint32_t seed = (uint32_t)kept->law.seed, high = (uint32_t)(kept->law.seed >> 32);
     const uint32_t word = rng_philox_lane(seed, high, (uint32_t)step, 0, 1,
                                           rng_stream_word(RNG_PAIR_NOISE, (uint32_t)(step >> 32)));
-    return mf_normal_of_word(&kept->friction.normal, word);
+    return normal_of_word(&kept->friction.normal, word);
 }
 
 /// Velocity of approach along the first axis, of the particle with the larger x relative to the
@@ -177,7 +177,7 @@ static void check_pair(const struct integrator *integrator,
         variants_select(&variants[v]);
         kept.law.precision = variants[v].precision;
         const uint64_t step = 7 + (uint64_t)v;
-        mf_particles_draw_velocities(particles, 1, step);
+        mf_particles_draw_velocities(particles, PARTICLES_MAXWELL, 1, step);
         const double u = relative(particles), across = particles->velocity[1][0];
         kept_pairs_momentum(particles, before, &size);
         kept_pairs_keep(&kept, step);

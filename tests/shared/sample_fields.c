@@ -15,5 +15,7 @@ const struct field sample_fields[] = {
     {"file", FIELD_FILE, offsetof(struct sample, file), false, 0, 0, 0, NULL, "", "a file"},
     {"kind", FIELD_CHOICE, offsetof(struct sample, kind), false, 1, 0, 0, sample_kinds, "",
      "a kind"},
+    {"kinds", FIELD_CHOICES, offsetof(struct sample, kinds), false, 2, 0, 0, sample_kinds, "",
+     "a set of them"},
     FIELD_END,
 };

@@ -10,10 +10,10 @@ struct sample {
     uint64_t seed;
     double lengths[3];
     char name[FIELD_TEXT_SIZE], file[FIELD_TEXT_SIZE];
-    int kind;
+    int kind, kinds;
 };
 
-/// Choices of `kind`, NULL-terminated.
+/// Choices of `kind` and of the set `kinds`, NULL-terminated.
 extern const char *const sample_kinds[];
 
 extern const struct field sample_fields[];

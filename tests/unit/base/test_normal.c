@@ -31,24 +31,24 @@ static void test_normal_is_the_quantile_when_the_word_is_any(void **state) {
     double worst = 0;
     for (uint32_t n = 0; n < 1U << 31; n += 1 + n / 5000) {
         const double wanted = gsl_cdf_ugaussian_Qinv(((double)n + 0.5) * 0x1p-32);
-        worst = fmax(worst, fabs(mf_normal_of_word(&table, n) - wanted));
+        worst = fmax(worst, fabs(normal_of_word(&table, n) - wanted));
     }
     print_message("largest error of a quantile: %.1e\n", worst);
     assert_close(worst, 0, 5e-7);
-    assert_close(mf_normal_of_word(&table, 0), 6.338, 0.001);
+    assert_close(normal_of_word(&table, 0), 6.338, 0.001);
 }
 
 static void test_normal_changes_sign_when_the_word_is_inverted(void **state) {
     (void)state;
     for (uint32_t n = 0; n < 1U << 31; n += 1 + n / 1000)
-        assert_identical(mf_normal_of_word(&table, ~n), -mf_normal_of_word(&table, n));
+        assert_identical(normal_of_word(&table, ~n), -normal_of_word(&table, n));
 }
 
 static void test_normal_grows_when_the_word_nears_the_tail(void **state) {
     (void)state;
     double before = 0;
     for (uint32_t n = (1U << 31) - 1; n > 4096; n -= 1 + n / 4096) {
-        const double here = mf_normal_of_word(&table, n);
+        const double here = normal_of_word(&table, n);
         assert_true(here >= before);
         before = here;
     }
@@ -61,7 +61,7 @@ static void test_normal_has_the_moments_of_the_law_when_all_words_are_drawn(void
     const uint32_t tail = 1 << 20, stride = 256;
     double sum[5] = {0};
     for (uint64_t n = 0; n < UINT64_C(1) << 31; n += n < tail ? 1 : stride) {
-        const double z = mf_normal_of_word(&table, (uint32_t)(n < tail ? n : n + stride / 2));
+        const double z = normal_of_word(&table, (uint32_t)(n < tail ? n : n + stride / 2));
         double power = n < tail ? 1 : stride;
         for (int k = 1; k <= 4; k++)
             sum[k] += power *= z * z;
@@ -111,7 +111,7 @@ static void test_normal_passes_for_normal_when_words_are_random(void **state) {
     (void)state;
     static double z[DRAWS];
     for (uint32_t n = 0; n < DRAWS; n++)
-        z[n] = mf_normal_of_word(&table, mf_rng_philox(11, RNG_PAIR_NOISE, n, 0, 0).word[0]);
+        z[n] = normal_of_word(&table, mf_rng_philox(11, RNG_PAIR_NOISE, n, 0, 0).word[0]);
     check_moments(z);
     check_distribution(z);
 }

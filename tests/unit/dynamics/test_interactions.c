@@ -49,6 +49,8 @@ static void test_interaction_forces_are_minus_the_slope_of_their_energy(void **s
     (void)state;
     static const double h = 1e-5, tolerance = 1e-5;
     for (size_t n = 0; mf_interaction_list[n]; n++) {
+        if (mf_interaction_list[n]->oriented)
+            continue; // no potential
         struct fluid fluid;
         struct simulation simulation;
         struct numbers numbers;
@@ -201,9 +203,70 @@ static void test_pairs_come_first_and_too_many_interactions_are_refused(void **s
     while (simulation.interactions < SIMULATION_MOST_INTERACTIONS)
         assert_ok(mf_simulation_add_interaction(&simulation, &choice));
     assert_fails(mf_simulation_add_interaction(&simulation, &choice), STATUS_BAD_INPUT,
-                 "growing-push: there are 4 interactions");
+                 "growing-push: there are 6 interactions");
     mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
+}
+
+/// Counts the pairs within a range of its own, by the list.
+static double wide(const void *parameters) {
+    return *(const double *)parameters;
+}
+
+static void count_batch(void *context, const float *squared, size_t count) {
+    (void)squared;
+    *(size_t *)context += count;
+}
+
+static enum status count_pairs(const void *parameters, void *state,
+                               const struct interaction_pass *pass) {
+    size_t *pairs = state;
+    *pairs = 0;
+    mf_neighbours_visit_distances(pass->neighbours, pass->particles, wide(parameters), count_batch,
+                                  pairs);
+    return STATUS_OK;
+}
+
+static const struct interaction counting = {
+    .name = "counting", .state_size = sizeof(size_t), .range = wide, .add = count_pairs};
+
+static size_t count_by_double_loop(const struct particles *particles, double range) {
+    size_t pairs = 0;
+    for (size_t i = 0; i < particles->count; i++)
+        for (size_t j = 0; j < i; j++) {
+            double square = 0;
+            for (int d = 0; d < 3; d++)
+                square += pow(box_nearest(particles->position[d][i] - particles->position[d][j],
+                                          particles->box.length[d]),
+                              2);
+            pairs += square < range * range;
+        }
+    return pairs;
+}
+
+/// Farther than the pairs, nearer than them, and without any.
+static void test_list_is_complete_for_the_range_of_an_interaction(void **state) {
+    (void)state;
+    static const double ranges[] = {1.7, 0.6, 1.7};
+    for (int n = 0; n < 3; n++) {
+        struct fluid fluid;
+        struct simulation simulation;
+        fluid_groot_warren(&fluid, 375, 0.01);
+        if (n == 2)
+            fluid.setup.potential = fluid.setup.omega = NULL;
+        const double without = mf_simulation_range(&fluid.setup);
+        fluid.setup.interaction[0] = (struct interaction_choice){&counting, &ranges[n]};
+        fluid.setup.interactions = 1;
+        assert_close(mf_simulation_range(&fluid.setup), fmax(without, ranges[n]), 0);
+        assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
+        for (int piece = 0; piece < 20; piece++) {
+            assert_ok(mf_simulation_run(&simulation, 5));
+            assert_int_equal(*(const size_t *)simulation.interaction[1].state,
+                             count_by_double_loop(&simulation.particles, ranges[n]));
+        }
+        mf_simulation_clear(&simulation);
+        fluid_clear(&fluid);
+    }
 }
 
 /// A simulation that blows up says so if a potential from outside is why, and only then.
@@ -236,6 +299,7 @@ int main(void) {
         cmocka_unit_test(test_restart_goes_on_with_the_same_bits_when_an_interaction_has_state),
         cmocka_unit_test(test_restart_goes_on_with_the_same_bits_when_an_integrator_has_state),
         cmocka_unit_test(test_pairs_come_first_and_too_many_interactions_are_refused),
+        cmocka_unit_test(test_list_is_complete_for_the_range_of_an_interaction),
         cmocka_unit_test(test_unstable_names_the_interaction_that_most_of_the_force_is_from),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

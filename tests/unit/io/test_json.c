@@ -86,7 +86,7 @@ static void test_json_fields_reads_every_type_when_all_are_given(void **state) {
     assert_ok(read_sample(state,
                           "{\"strength\": 0.25, \"steps\": 1e3, \"seed\": 9007199254740991,"
                           " \"lengths\": [1, 2.5], \"name\": \"\\u00e9\\\"\", \"file\": \"/x/y\","
-                          " \"kind\": \"soft\"}",
+                          " \"kind\": \"soft\", \"kinds\": [\"hard\", \"soft\"]}",
                           &sample));
     assert_identical(sample.strength, 0.25);
     assert_int_equal(sample.steps, 1000);
@@ -97,6 +97,7 @@ static void test_json_fields_reads_every_type_when_all_are_given(void **state) {
     assert_string_equal(sample.name, "é\"");
     assert_string_equal(sample.file, "/x/y");
     assert_int_equal(sample.kind, 0);
+    assert_int_equal(sample.kinds, 3);
 }
 
 static void test_json_fields_gives_defaults_when_nothing_is_given(void **state) {
@@ -109,6 +110,7 @@ static void test_json_fields_gives_defaults_when_nothing_is_given(void **state) 
     assert_identical(sample.lengths[0], 0.0);
     assert_string_equal(sample.name, "");
     assert_int_equal(sample.kind, 1);
+    assert_int_equal(sample.kinds, 2);
 }
 
 static void test_json_fields_joins_the_folder_when_a_file_is_relative(void **state) {
@@ -166,6 +168,11 @@ static void test_json_fields_says_what_it_found_when_the_type_is_wrong(void **st
     assert_fault(state, "{\"kind\": \"sotf\"}",
                  "kind: \"sotf\" is unknown; did you mean \"soft\"?");
     assert_fault(state, "{\"kind\": \"liquid\"}", "kind: \"liquid\" is unknown; known: soft, hard");
+    assert_fault(state, "{\"kinds\": \"soft\"}", "kinds: expected a list of texts, found the text");
+    assert_fault(state, "{\"kinds\": []}", "kinds: expected a list of texts, found an empty one");
+    assert_fault(state, "{\"kinds\": [\"soft\", \"hart\"]}",
+                 "kinds: the text \"hart\" is unknown; did you mean \"hard\"?");
+    assert_fault(state, "{\"kinds\": [3]}", "kinds: the number 3 is unknown; known: soft, hard");
 }
 
 static void test_json_fields_refuses_texts_when_they_do_not_fit(void **state) {
@@ -200,6 +207,8 @@ static void test_json_count_is_of_the_items_of_an_array(void **state) {
     assert_int_equal(mf_json_count(&root, "b"), 0);
     assert_int_equal(mf_json_count(&root, "c"), 0);
     assert_int_equal(mf_json_count(&root, "d"), 0);
+    assert_false(mf_json_is_object(&root, "a"));
+    assert_false(mf_json_is_object(&root, "d"));
     assert_ok(mf_json_close(document, STATUS_OK));
 }
 
@@ -208,7 +217,7 @@ static void test_json_finish_suggests_the_nearest_key_when_one_is_unknown(void *
     assert_fault(state, "{\"Seed\": 1}", "Seed: unknown key; did you mean \"seed\"?");
     assert_fault(
         state, "{\"temperature\": 1}",
-        "temperature: unknown key; known: strength, steps, seed, lengths, name, file, kind");
+        "temperature: unknown key; known: strength, steps, seed, lengths, name, file, kind, kinds");
 }
 
 static void test_json_open_records_a_fault_when_a_key_stands_twice(void **state) {

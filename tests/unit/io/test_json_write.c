@@ -32,6 +32,7 @@ static void assert_round_trip(void **state, const struct sample *sample) {
     assert_string_equal(again.name, sample->name);
     assert_string_equal(again.file, sample->file);
     assert_int_equal(again.kind, sample->kind);
+    assert_int_equal(again.kinds, sample->kinds);
 }
 
 static void test_json_put_fields_reads_back_the_same_bits_when_digits_are_many(void **state) {
@@ -41,13 +42,15 @@ static void test_json_put_fields_reads_back_the_same_bits_when_digits_are_many(v
                             .lengths = {0.1 + 0.2, DBL_MIN, DBL_MAX},
                             .name = "tab\t, \"quote\", é",
                             .file = "/a/b",
-                            .kind = 1};
+                            .kind = 1,
+                            .kinds = 3};
     assert_round_trip(state, &sample);
-    sample = (struct sample){.strength = nextafter(0.1, 1), .steps = 1, .lengths = {1, 2, 0}};
+    sample = (struct sample){
+        .strength = nextafter(0.1, 1), .steps = 1, .lengths = {1, 2, 0}, .kinds = 1};
     assert_round_trip(state, &sample);
-    sample = (struct sample){.strength = 5e-324, .steps = 1};
+    sample = (struct sample){.strength = 5e-324, .steps = 1, .kinds = 2};
     assert_round_trip(state, &sample);
-    sample = (struct sample){.strength = -0.0, .steps = 1};
+    sample = (struct sample){.strength = -0.0, .steps = 1, .kinds = 2};
     assert_round_trip(state, &sample);
 }
 

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/json_list.h"
+
+#include "base/nearest.h"
+#include "io/json_item.h"
+
+#include <cJSON.h>
+
+#include <math.h>
+#include <stdio.h>
+
+bool mf_json_list_choices(struct json_object *object, const struct field *field, const void *item,
+                          int *chosen) {
+    const cJSON *element;
+    char described[JSON_PATH_SIZE];
+    size_t known = 0;
+    *chosen = 0;
+    while (field->choices[known])
+        known++;
+    if (!cJSON_IsArray((const cJSON *)item) || cJSON_GetArraySize(item) == 0) {
+        mf_json_item_describe(item, described, sizeof described);
+        mf_json_fault(object, field->name, "expected a list of texts, found %s",
+                      cJSON_IsArray((const cJSON *)item) ? "an empty one" : described);
+        return false;
+    }
+    cJSON_ArrayForEach(element, (const cJSON *)item) {
+        const char *name = cJSON_IsString(element) ? element->valuestring : NULL;
+        const int number = name ? mf_fields_choice_index(field, name) : -1;
+        if (number < 0) {
+            char hint[JSON_PATH_SIZE];
+            mf_json_item_describe(element, described, sizeof described);
+            mf_nearest_hint(name ? name : "", field->choices, known, hint, sizeof hint);
+            mf_json_fault(object, field->name, "%s is unknown; %s", described, hint);
+            return false;
+        }
+        *chosen |= 1 << number;
+    }
+    return true;
+}

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/snapshot.h"
+
+#include "base/memory.h"
+#include "io/output.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <fnmatch.h>
+#include <string.h>
+#include <unistd.h>
+
+const struct snapshot_format *const mf_snapshot_formats[] = {&mf_snapshot_vtp, &mf_snapshot_json,
+                                                             &mf_snapshot_extxyz, NULL};
+const char *const mf_snapshot_format_names[] = {"vtp", "json", "extxyz", NULL};
+
+// Taking ------------------------------------------------------------------------------------------
+
+/// A new column with room for its numbers, which are the next of `memory`.
+static double *add_column(struct snapshot *snapshot, const char *name, int components, bool vector,
+                          bool whole, size_t *used) {
+    struct snapshot_column *column = &snapshot->column[snapshot->columns++];
+    double *values = snapshot->memory + *used;
+    *column = (struct snapshot_column){
+        .components = components, .vector = vector, .whole = whole, .values = values};
+    snprintf(column->name, sizeof column->name, "%.*s", (int)strcspn(name, "["), name);
+    *used += (size_t)components * snapshot->count;
+    return values;
+}
+
+static void copy_axes(struct snapshot *snapshot, const struct particles *particles,
+                      const char *name, double *const *axes, size_t *used) {
+    double *to = add_column(snapshot, name, snapshot->box.dimensions, true, false, used);
+    for (int d = 0; d < snapshot->box.dimensions; d++, to += snapshot->count)
+        for (size_t k = 0; k < snapshot->count; k++)
+            to[particles->id[k]] = axes[d][k];
+}
+
+/// Positions in the box, and how many boxes away from it their particles are.
+static void copy_places(struct snapshot *snapshot, const struct particles *particles,
+                        size_t *used) {
+    const int dimensions = snapshot->box.dimensions;
+    double *position = add_column(snapshot, "position", dimensions, true, false, used);
+    double *image = add_column(snapshot, "image", dimensions, true, true, used);
+    for (int d = 0; d < dimensions; d++)
+        for (size_t k = 0; k < snapshot->count; k++) {
+            const double length = snapshot->box.length[d], x = particles->position[d][k];
+            const double boxes = floor(x / length), inside = x - boxes * length;
+            const size_t place = (size_t)d * snapshot->count + particles->id[k];
+            position[place] = inside < length ? inside : 0;
+            image[place] = particles->image[d][k] + boxes + (inside < length ? 0 : 1);
+        }
+}
+
+static void copy_attribute(struct snapshot *snapshot, const struct particles *particles,
+                           const struct particles_attribute *attribute, size_t *used) {
+    double *to = add_column(snapshot, attribute->name, attribute->components,
+                            attribute->components == snapshot->box.dimensions,
+                            attribute->type == PARTICLES_WORD, used);
+    for (int c = 0; c < attribute->components; c++, to += snapshot->count)
+        for (size_t k = 0; k < snapshot->count; k++) {
+            const void *value = attribute->value[c];
+            to[particles->id[k]] = attribute->type == PARTICLES_DOUBLE ? ((const double *)value)[k]
+                                   : attribute->type == PARTICLES_FLOAT
+                                       ? (double)((const float *)value)[k]
+                                       : (double)((const uint32_t *)value)[k];
+        }
+}
+
+enum status mf_snapshot_take(struct snapshot *snapshot, const struct particles *particles,
+                             const struct composition *composition, uint64_t step, double time) {
+    size_t components = 4 * (size_t)particles->box.dimensions, used = 0;
+    *snapshot = (struct snapshot){.count = particles->count,
+                                  .box = particles->box,
+                                  .composition = composition,
+                                  .step = step,
+                                  .time = time};
+    for (int k = 0; k < particles->attributes; k++)
+        components += (size_t)particles->attribute[k].components;
+    snapshot->memory = mf_memory_zeroed(components * particles->count, sizeof(double));
+    if (snapshot->memory == NULL)
+        return STATUS_NO_MEMORY;
+    copy_places(snapshot, particles, &used);
+    copy_axes(snapshot, particles, "velocity", particles->velocity, &used);
+    copy_axes(snapshot, particles, "force", particles->force, &used);
+    for (int k = 0; k < particles->attributes; k++)
+        copy_attribute(snapshot, particles, &particles->attribute[k], &used);
+    return STATUS_OK;
+}
+
+void mf_snapshot_clear(struct snapshot *snapshot) {
+    mf_memory_free(snapshot->memory);
+    *snapshot = (struct snapshot){0};
+}
+
+// Names -------------------------------------------------------------------------------------------
+
+void mf_snapshot_component_name(const struct snapshot_column *column, int component,
+                                char name[SNAPSHOT_NAME_SIZE]) {
+    if (strcmp(column->name, "position") == 0)
+        snprintf(name, SNAPSHOT_NAME_SIZE, "%c", "xyz"[component]);
+    else if (column->components == 1)
+        snprintf(name, SNAPSHOT_NAME_SIZE, "%s", column->name);
+    else if (column->vector)
+        snprintf(name, SNAPSHOT_NAME_SIZE, "%s_%c", column->name, "xyz"[component]);
+    else
+        snprintf(name, SNAPSHOT_NAME_SIZE, "%s_%d", column->name, component);
+}
+
+const char *mf_snapshot_type_name(const struct composition *composition, int type) {
+    return composition_is_mixed(composition) ? composition->name[type] : "A";
+}
+
+bool mf_snapshot_is_file(const char *name) {
+    char pattern[64];
+    for (size_t k = 0; mf_snapshot_formats[k]; k++) {
+        const struct snapshot_format *format = mf_snapshot_formats[k];
+        snprintf(pattern, sizeof pattern, format->appended ? "trajectory.%s" : "step_[0-9]*.%s",
+                 format->suffix);
+        if (fnmatch(pattern, name, 0) == 0)
+            return true;
+    }
+    return false;
+}
+
+// Writing -----------------------------------------------------------------------------------------
+
+static enum status write_whole(const struct snapshot *snapshot,
+                               const struct snapshot_format *format, const char *path) {
+    struct output output;
+    TRY(mf_output_open(&output, path));
+    format->print(snapshot, output.stream);
+    return mf_output_commit(&output);
+}
+
+/// Print behind the first *size bytes of a file, all of which is on the disk at the end.
+static int append(const struct snapshot *snapshot, const struct snapshot_format *format, int file,
+                  int64_t *size) {
+    if (ftruncate(file, *size) != 0)
+        return errno;
+    FILE *stream = fdopen(dup(file), "ab");
+    if (stream == NULL)
+        return errno;
+    format->print(snapshot, stream);
+    errno = 0;
+    int error = fflush(stream) != 0 || ferror(stream) ? (errno ? errno : EIO) : 0;
+    if (error == 0 && fsync(file) != 0 && errno != EINVAL && errno != ENOSYS)
+        error = errno;
+    const int64_t end = ftello(stream);
+    fclose(stream);
+    if (error == 0)
+        *size = end;
+    else if (ftruncate(file, *size) != 0) // what was there before is what counts
+        return errno;
+    return error;
+}
+
+static enum status write_appended(const struct snapshot *snapshot,
+                                  const struct snapshot_format *format, const char *path,
+                                  int64_t *size) {
+    const int file = open(path, O_WRONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
+    const int error = file < 0 ? errno : append(snapshot, format, file, size);
+    if (file >= 0)
+        close(file);
+    if (error == 0)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_IO, "cannot write %s: %s", path, strerror(error));
+}
+
+enum status mf_snapshot_write(const struct snapshot *snapshot, const struct snapshot_format *format,
+                              const char *folder, int64_t *size) {
+    char path[OUTPUT_PATH_SIZE];
+    TRY(mf_output_make_folder(folder));
+    if (format->appended) {
+        snprintf(path, sizeof path, "%.*s/trajectory.%s", OUTPUT_PATH_SIZE - 64, folder,
+                 format->suffix);
+        return write_appended(snapshot, format, path, size);
+    }
+    snprintf(path, sizeof path, "%.*s/step_%09llu.%s", OUTPUT_PATH_SIZE - 64, folder,
+             (unsigned long long)snapshot->step, format->suffix);
+    return write_whole(snapshot, format, path);
+}

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file One configuration of a simulation as a file, for programs that show or analyse it.
+///
+/// To add a format, write a file with its record and put it into mf_snapshot_formats.
+#pragma once
+
+#include "base/status.h"
+#include "system/composition.h"
+#include "system/particles.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+
+/// Numbers of each particle: a scalar, or a vector with a component for each axis.
+struct snapshot_column {
+    char name[48];
+    int components;
+    bool vector;          ///< components belong to the axes
+    bool whole;           ///< integers
+    const double *values; ///< shape [components, count], by particle id
+};
+
+/// Position, velocity, force and image, and the attributes.
+enum { SNAPSHOT_MOST_COLUMNS = 5 + PARTICLES_MOST_ATTRIBUTES };
+
+struct snapshot {
+    size_t count;
+    struct box box;
+    const struct composition *composition; ///< borrowed
+    uint64_t step;
+    double time; ///< [τ]
+    /// position [λ] in the box, velocity [λ/τ], force [k_B T_0/λ], image [boxes crossed], then all
+    /// attributes by their names.
+    struct snapshot_column column[SNAPSHOT_MOST_COLUMNS];
+    int columns;
+    double *memory;
+};
+
+/// Copy the present state of the particles, in the order of their ids. Fails: NO_MEMORY.
+enum status mf_snapshot_take(struct snapshot *snapshot, const struct particles *particles,
+                             const struct composition *composition, uint64_t step,
+                             double time) MUST_USE;
+void mf_snapshot_clear(struct snapshot *snapshot);
+
+/// Name of a component of a column: "velocity_x", "orientation"; those of positions are x, y, z.
+#define SNAPSHOT_FOLDER "snapshots" ///< in that of a run
+enum { SNAPSHOT_NAME_SIZE = 64 };
+void mf_snapshot_component_name(const struct snapshot_column *column, int component,
+                                char name[SNAPSHOT_NAME_SIZE]);
+
+/// What a type of beads is called: "A" where there is one without a name.
+const char *mf_snapshot_type_name(const struct composition *composition, int type);
+
+struct snapshot_format {
+    const char *name;   ///< as a scene names it
+    const char *suffix; ///< of its files
+    bool appended;      ///< all snapshots go into one file
+    void (*print)(const struct snapshot *snapshot, FILE *stream);
+};
+
+extern const struct snapshot_format mf_snapshot_vtp, mf_snapshot_json, mf_snapshot_extxyz;
+
+/// All formats, NULL-terminated, and their names.
+extern const struct snapshot_format *const mf_snapshot_formats[];
+extern const char *const mf_snapshot_format_names[];
+
+/// Write a snapshot into `folder`: step_000001000.vtp, which appears whole or not at all, or a
+/// frame behind the first `size` bytes of trajectory.extxyz. Those are all that is kept of it, so
+/// that a run that goes on from an earlier step leaves the file of one that was not interrupted.
+/// @param[in,out] size  of the file of all snapshots [bytes]; others leave it alone
+/// Fails: IO; the file is then as it was. Tested: test_snapshot, cli/test_snapshots.
+enum status mf_snapshot_write(const struct snapshot *snapshot, const struct snapshot_format *format,
+                              const char *folder, int64_t *size) MUST_USE;
+
+/// Whether a file has the name of a snapshot.
+bool mf_snapshot_is_file(const char *name);

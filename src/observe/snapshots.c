@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Snapshots of a simulation: files while it runs, at steps of their own. A run that was resumed
+// leaves the files of one that was not.
+#include "base/memory.h"
+#include "io/snapshot.h"
+#include "observe/measure.h"
+
+struct settings {
+    int64_t every;
+    int formats; ///< a bit each
+};
+
+struct state {
+    struct settings settings;
+    struct observable_results results;
+    int64_t begin, steps; ///< of the measurement
+    int64_t taken;
+    int64_t size; ///< of the file of all snapshots [bytes]
+};
+
+static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+                         const struct measure_plan *plan) {
+    struct state *s = state;
+    (void)simulation;
+    *s = (struct state){.settings = *(const struct settings *)settings,
+                        .begin = plan->equilibration,
+                        .steps = plan->samples * plan->every};
+    return STATUS_OK;
+}
+
+static void clear(void *state) {
+    *(struct state *)state = (struct state){0};
+}
+
+static void open_folder(void *state, const struct observable_results *results) {
+    ((struct state *)state)->results = *results;
+}
+
+static int64_t due(const void *state) {
+    const struct state *s = state;
+    const int64_t next = s->taken * s->settings.every;
+    return next > s->steps ? INT64_MAX : s->begin + next;
+}
+
+static enum status write_formats(struct state *s, const struct snapshot *snapshot) {
+    char folder[OUTPUT_PATH_SIZE];
+    mf_observable_file(&s->results, SNAPSHOT_FOLDER, folder);
+    for (int k = 0; mf_snapshot_formats[k]; k++)
+        if (s->settings.formats >> k & 1)
+            TRY(mf_snapshot_write(snapshot, mf_snapshot_formats[k], folder, &s->size));
+    return STATUS_OK;
+}
+
+static enum status sample(void *state, struct simulation *simulation) {
+    struct state *s = state;
+    struct snapshot snapshot;
+    const double time = (double)simulation->step * simulation->setup.time_step;
+    TRY(mf_snapshot_take(&snapshot, &simulation->particles, &simulation->setup.composition,
+                         simulation->step, time));
+    const enum status status = write_formats(s, &snapshot);
+    mf_snapshot_clear(&snapshot);
+    s->taken++;
+    return status;
+}
+
+static size_t spans(void *state, struct memory_span *spans) {
+    struct state *s = state;
+    spans[0] = (struct memory_span){&s->taken, sizeof s->taken};
+    spans[1] = (struct memory_span){&s->size, sizeof s->size};
+    return 2;
+}
+
+static void put(const void *state, const struct observable_results *results,
+                struct json_writer *writer) {
+    (void)results;
+    mf_json_put_number(writer, "snapshots", (double)((const struct state *)state)->taken);
+}
+
+/// Nanoseconds of a particle in a snapshot and format.
+static const double write_cost = 1500;
+
+static void explain(const void *settings, const struct simulation_setup *setup, double every,
+                    struct stages *stages) {
+    const struct settings *s = settings;
+    int formats = 0;
+    (void)setup, (void)every;
+    for (int k = 0; mf_snapshot_formats[k]; k++)
+        formats += s->formats >> k & 1;
+    mf_stages_add(stages, "snapshots", true, write_cost * formats / (double)s->every,
+                  "%d formats, one step in %lld", formats, (long long)s->every);
+}
+
+static const struct field fields[] = {
+    {"every", FIELD_INTEGER, offsetof(struct settings, every), .required = true, .minimum = 1,
+     .maximum = 1e9, .unit = "steps",
+     .help = "between snapshots; the first is at the first step "
+             "after the equilibration"},
+    {"formats", FIELD_CHOICES, offsetof(struct settings, formats), .initial = 1,
+     .choices = mf_snapshot_format_names, .unit = "",
+     .help = "files that ParaView opens, lists of numbers with which a scene can begin, one "
+             "extended XYZ file"},
+    FIELD_END,
+};
+
+const struct observable mf_snapshots = {
+    .name = "snapshots",
+    .summary = "positions, velocities, forces and attributes of all particles, as files",
+    .fields = fields,
+    .settings_size = sizeof(struct settings),
+    .state_size = sizeof(struct state),
+    .begin = begin,
+    .clear = clear,
+    .open = open_folder,
+    .due = due,
+    .sample = sample,
+    .spans = spans,
+    .put = put,
+    .explain = explain,
+    .stage = "snapshots",
+};

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Snapshots of three particles whose numbers are known, read back by other means than they were
+// written with.
+#include "io/snapshot.h"
+#include "shared/is_close.h"
+#include "shared/temporary_folder.h"
+#include "shared/testing.h"
+
+#include <stdlib.h>
+
+enum { COUNT = 3 };
+static const struct composition mixture = {.types = 2, .count = {2, 1}, .name = {"A", "Big"}};
+
+/// Particle k of the arrays has the id (k + 1) mod 3; the second is outside of the box.
+static void make(struct particles *particles) {
+    const struct box box = {2, {4, 8, 1}};
+    int number;
+    assert_ok(mf_particles_init(particles, &box, COUNT));
+    assert_ok(mf_particles_add_attribute(particles,
+                                         &(struct particles_attribute){.name = "radius[lambda]",
+                                                                       .type = PARTICLES_DOUBLE,
+                                                                       .components = 1},
+                                         &number));
+    for (int k = 0; k < COUNT; k++) {
+        particles->id[k] = (uint32_t)(k + 1) % COUNT;
+        for (int d = 0; d < 2; d++) {
+            particles->position[d][k] = 1.1 + k + 10 * (k == 1);
+            particles->velocity[d][k] = 100 + 10 * d + k;
+            particles->force[d][k] = -1.0 / (3 + k + d);
+        }
+        ((double *)particles->attribute[number].value[0])[k] = 0.5 * k;
+    }
+    particles->image[0][1] = 7;
+}
+
+static char *write_one(void **state, const struct snapshot_format *format, const char *name) {
+    struct temporary_folder *folder = *state;
+    struct particles particles;
+    struct snapshot snapshot;
+    int64_t size = 0;
+    make(&particles);
+    assert_ok(mf_snapshot_take(&snapshot, &particles, &mixture, 20, 0.5));
+    assert_ok(mf_snapshot_write(&snapshot, format, folder->path, &size));
+    mf_snapshot_clear(&snapshot);
+    mf_particles_clear(&particles);
+    return temporary_folder_read(temporary_folder_file(folder, name));
+}
+
+static void test_extxyz_has_a_line_for_each_particle_by_id(void **state) {
+    char *text = write_one(state, &mf_snapshot_extxyz, "trajectory.extxyz");
+    assert_string_equal(
+        text, "3\n"
+              "Lattice=\"4 0 0 0 8 0 0 0 1\" pbc=\"T T F\" Step=20 Time=0.5 "
+              "Properties=species:S:1:pos:R:3:image:I:3:velo:R:3:forces:R:3:radius:R:1:id:I:1\n"
+              "A 3.1 3.1 0 0 0 0 102 112 0 -0.2 -0.1666666667 0 1 0\n"
+              "A 1.1 1.1 0 0 0 0 100 110 0 -0.3333333333 -0.25 0 0 1\n"
+              "Big 0.1 4.1 0 10 1 0 101 111 0 -0.25 -0.2 0 0.5 2\n");
+    free(text);
+}
+
+static void test_json_has_all_digits_of_each_column(void **state) {
+    char *text = write_one(state, &mf_snapshot_json, "step_000000020.json");
+    assert_contains(text, "\"step\": 20,\n  \"time\": 0.5,\n  \"count\": 3,\n  \"box\": [4, 8],");
+    assert_contains(text, "\"type\": [\"A\", \"A\", \"Big\"]");
+    assert_contains(text, "\"x\": [3.1, 1.1, 0.0999999999999996");
+    assert_contains(text, "\"image_x\": [0, 0, 10]");
+    assert_contains(text, "\"force_x\": [-0.2, -0.3333333333333333");
+    assert_contains(text, "\"radius\": [1, 0, 0.5]");
+    free(text);
+}
+
+/// The bytes behind the first > after a text, out of base64.
+static void decode(const char *text, const char *after, unsigned char *bytes, size_t size) {
+    static const char letters[] =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const char *at = strchr(strstr(text, after), '>') + 1;
+    for (size_t k = 0; k < size; at += 4) {
+        uint32_t word = 0;
+        for (int n = 0; n < 4; n++)
+            word = word << 6 | (at[n] == '=' ? 0 : (uint32_t)(strchr(letters, at[n]) - letters));
+        for (int n = 2; n >= 0 && k < size; n--)
+            bytes[k++] = (unsigned char)(word >> 8 * n);
+    }
+}
+
+static void test_vtp_holds_the_bits_of_vectors_with_three_components(void **state) {
+    char *text = write_one(state, &mf_snapshot_vtp, "step_000000020.vtp");
+    struct {
+        uint64_t size;
+        double value[3 * COUNT];
+    } force;
+    struct {
+        uint64_t size;
+        int64_t value[COUNT];
+    } type;
+    decode(text, "Name=\"force\"", (unsigned char *)&force, sizeof force);
+    decode(text, "Name=\"type\"", (unsigned char *)&type, sizeof type);
+    assert_int_equal(force.size, sizeof force.value);
+    assert_int_equal(type.size, sizeof type.value);
+    for (int k = 0; k < COUNT; k++) {
+        const int id = (k + 1) % COUNT;
+        assert_int_equal(type.value[id], id == 2);
+        for (int d = 0; d < 3; d++)
+            assert_identical(force.value[3 * id + d], d < 2 ? -1.0 / (3 + k + d) : 0);
+    }
+    assert_contains(text, "NumberOfPoints=\"3\"");
+    assert_contains(text, "</VTKFile>\n");
+    free(text);
+}
+
+/// A frame goes behind what counts, and what a killed run left behind that is gone.
+static void test_extxyz_is_continued_behind_the_bytes_that_count(void **state) {
+    struct temporary_folder *folder = *state;
+    struct particles particles;
+    struct snapshot snapshot;
+    make(&particles);
+    assert_ok(mf_snapshot_take(&snapshot, &particles, &mixture, 20, 0.5));
+    int64_t size = 0;
+    assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_extxyz, folder->path, &size));
+    const int64_t first = size;
+    assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_extxyz, folder->path, &size));
+    assert_int_equal(size, 2 * first);
+    assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_extxyz, folder->path, &size));
+    size = first; // of a checkpoint after the first
+    assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_extxyz, folder->path, &size));
+    char *text = temporary_folder_read(temporary_folder_file(folder, "trajectory.extxyz"));
+    assert_int_equal(strlen(text), 2 * first);
+    assert_memory_equal(text, text + first, (size_t)first);
+    free(text);
+    mf_snapshot_clear(&snapshot);
+    mf_particles_clear(&particles);
+}
+
+static void test_names_of_snapshots_are_known(void **state) {
+    (void)state;
+    assert_true(mf_snapshot_is_file("step_000000100.vtp"));
+    assert_true(mf_snapshot_is_file("step_12345678901.json"));
+    assert_true(mf_snapshot_is_file("trajectory.extxyz"));
+    assert_false(mf_snapshot_is_file("step_one.vtp"));
+    assert_false(mf_snapshot_is_file("step_000000100.png"));
+    assert_false(mf_snapshot_is_file("notes.extxyz"));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_extxyz_has_a_line_for_each_particle_by_id,
+                                        temporary_folder_create, temporary_folder_remove),
+        cmocka_unit_test_setup_teardown(test_json_has_all_digits_of_each_column,
+                                        temporary_folder_create, temporary_folder_remove),
+        cmocka_unit_test_setup_teardown(test_vtp_holds_the_bits_of_vectors_with_three_components,
+                                        temporary_folder_create, temporary_folder_remove),
+        cmocka_unit_test_setup_teardown(test_extxyz_is_continued_behind_the_bytes_that_count,
+                                        temporary_folder_create, temporary_folder_remove),
+        cmocka_unit_test(test_names_of_snapshots_are_known),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
