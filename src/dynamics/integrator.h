@@ -57,7 +57,8 @@ enum { INTEGRATOR_SPANS = 8 };
     EACH(mf_aboba)                                                                                 \
     EACH(mf_aboba_implicit)                                                                        \
     EACH(mf_lowe_andersen)                                                                         \
-    EACH(mf_brownian)
+    EACH(mf_brownian)                                                                              \
+    EACH(mf_event_driven)
 
 #define INTEGRATOR_DECLARE(record) extern const struct integrator record;
 INTEGRATORS(INTEGRATOR_DECLARE)

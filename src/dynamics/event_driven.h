@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Hard discs and spheres as an integrator: what others may know of its state.
+#pragma once
+
+#include "dynamics/hard_gas.h"
+#include "dynamics/simulation.h"
+
+struct event_driven_parameters {
+    int walls;      ///< bit d: axis d has reflecting walls
+    int velocities; ///< enum event_driven_velocities
+};
+
+/// How velocities are drawn at the start, all with the temperature of the scene.
+enum event_driven_velocities {
+    EVENT_DRIVEN_NORMAL,
+    EVENT_DRIVEN_UNIFORM, ///< each component from −a to a
+    EVENT_DRIVEN_EQUAL,   ///< each component −a or a
+};
+
+/// What a simulation with this integrator keeps.
+struct event_driven {
+    struct hard_gas gas;
+    double seconds;      ///< spent on events, by this process
+    uint64_t collisions; ///< in them
+};
+
+/// The state of a simulation; NULL with another integrator.
+const struct event_driven *mf_event_driven_state(const struct simulation *simulation);
