@@ -2,7 +2,6 @@
 #include "dynamics/event_driven.h"
 
 #include "base/clock.h"
-#include "base/rng.h"
 #include "dynamics/hard_start.h"
 
 static const struct event_driven_parameters *parameters_of(const struct simulation *simulation) {
@@ -33,27 +32,17 @@ static enum status check(const struct simulation_setup *setup, int walls) {
     return STATUS_OK;
 }
 
-/// A component in −1 … 1, or −1 or 1.
-static double draw(enum event_driven_velocities kind, uint32_t word) {
-    if (kind == EVENT_DRIVEN_UNIFORM)
-        return 2 * mf_rng_uniform(word, 0) - 1;
-    return word >> 31 ? 1 : -1;
+/// What all particles have that the scene says nothing of.
+static const double usual_radius = 0.5, usual_mass = 1;
+
+static void fill(double *to, const double *from, double otherwise, size_t count) {
+    for (size_t k = 0; k < count; k++)
+        to[k] = from ? from[k] : otherwise;
 }
 
-/// Draw velocities, unless they are normal and there, take off their mean if nothing else holds the
-/// momentum, and give them the temperature of the scene exactly, since they keep it.
-static void draw_velocities(struct simulation *simulation) {
-    const struct event_driven_parameters *parameters = parameters_of(simulation);
-    const enum event_driven_velocities kind = (enum event_driven_velocities)parameters->velocities;
-    struct particles *particles = &simulation->particles;
-    for (size_t k = 0; k < particles->count && kind != EVENT_DRIVEN_NORMAL; k++) {
-        const struct rng_block block =
-            mf_rng_philox(simulation->setup.seed, RNG_VELOCITIES, particles->id[k], 1, 0);
-        for (int d = 0; d < particles->box.dimensions; d++)
-            particles->velocity[d][k] = draw(kind, block.word[d]);
-    }
-    mf_particles_remove_momentum(particles);
-    const double scale = sqrt(simulation->setup.temperature / mf_particles_temperature(particles));
+/// They keep the temperature that they begin with, which is therefore exactly that of the scene.
+static void scale_velocities(struct particles *particles, double temperature) {
+    const double scale = sqrt(temperature / mf_particles_temperature(particles));
     for (int d = 0; d < particles->box.dimensions; d++)
         for (size_t k = 0; k < particles->count; k++)
             particles->velocity[d][k] *= scale;
@@ -68,14 +57,13 @@ static enum status begin(struct simulation *simulation) {
     CHECK(check(&simulation->setup, walls));
     NEW_ARRAY(radius, particles->count);
     NEW_ARRAY(mass, particles->count);
-    for (size_t k = 0; k < particles->count; k++) {
-        radius[k] = 0.5;
-        mass[k] = 1;
-    }
-    if (simulation->setup.placement.kind != PLACEMENT_FILE)
+    fill(radius, mf_particles_numbers(particles, "radius"), usual_radius, particles->count);
+    fill(mass, particles_masses(particles), usual_mass, particles->count);
+    if (simulation->setup.placement.kind != PLACEMENT_FILE) {
         CHECK(mf_hard_start_part(particles, radius, walls));
+        scale_velocities(particles, simulation->setup.temperature);
+    }
     CHECK(mf_hard_start_check(particles, radius, walls));
-    draw_velocities(simulation);
     CHECK(mf_hard_gas_init(&state->gas, particles, radius, mass, walls));
     CHECK(mf_simulation_compute_forces(simulation, 0));
 done:
@@ -114,15 +102,10 @@ static enum status step(struct simulation *simulation) {
 
 /// In the order of the bits of the axes.
 static const char *const walls[] = {"none", "x", "y", "xy", "z", "xz", "yz", "xyz", NULL};
-static const char *const velocities[] = {"normal", "uniform", "equal", NULL};
 
 static const struct field fields[] = {
     {"walls", FIELD_CHOICE, offsetof(struct event_driven_parameters, walls), .choices = walls,
      .unit = "", .help = "axes with reflecting walls at both ends; the others are periodic"},
-    {"velocities", FIELD_CHOICE, offsetof(struct event_driven_parameters, velocities),
-     .choices = velocities, .initial = EVENT_DRIVEN_NORMAL, .unit = "",
-     .help = "at the start, with the temperature of the scene: components normal, uniform, or "
-             "equal but for random signs"},
     FIELD_END,
 };
 
@@ -136,5 +119,7 @@ const struct integrator mf_event_driven = {
     .begin = begin,
     .clear = clear,
     .spans = spans,
+    .masses = true,
+    .events = true,
     .step = step,
 };

@@ -6,15 +6,7 @@
 #include "dynamics/simulation.h"
 
 struct event_driven_parameters {
-    int walls;      ///< bit d: axis d has reflecting walls
-    int velocities; ///< enum event_driven_velocities
-};
-
-/// How velocities are drawn at the start, all with the temperature of the scene.
-enum event_driven_velocities {
-    EVENT_DRIVEN_NORMAL,
-    EVENT_DRIVEN_UNIFORM, ///< each component from −a to a
-    EVENT_DRIVEN_EQUAL,   ///< each component −a or a
+    int walls; ///< bit d: axis d has reflecting walls
 };
 
 /// What a simulation with this integrator keeps.

@@ -56,7 +56,7 @@ static inline double find_contact(const struct forecast *forecast, const struct 
         vv += v * v;
     }
     const double gap = rr - s * s, root = b * b - vv * gap;
-    if (b >= 0 || root < 0)
+    if ((b >= 0) | (root < 0))
         return INFINITY;
     if (gap <= 0)
         return b * b > grazing * grazing * vv * rr ? 0 : INFINITY;
@@ -293,17 +293,22 @@ bool mf_hard_gas_events_run(struct hard_gas *gas, double time, uint64_t most) {
 /// Buckets of the calendar an event.
 static const double buckets_an_event = 1;
 
-void mf_hard_gas_events_begin(struct hard_gas *gas, double rate) {
+static inline double foresee_all(struct hard_gas *gas, const int dimensions) {
     double waits = 0;
+    for (int32_t k = 0; k < gas->count; k++) {
+        foresee_border(gas, k, dimensions);
+        foresee(gas, k, dimensions);
+        waits += isfinite(gas->event[k].time) ? gas->event[k].time : 0;
+    }
+    return waits;
+}
+
+void mf_hard_gas_events_begin(struct hard_gas *gas, double rate) {
     for (int32_t k = 0; k < gas->count; k++) {
         gas->event[k].collision = INFINITY;
         enter(gas, k);
     }
-    for (int32_t k = 0; k < gas->count; k++) {
-        foresee_border(gas, k, gas->dimensions);
-        foresee(gas, k, gas->dimensions);
-        waits += isfinite(gas->event[k].time) ? gas->event[k].time : 0;
-    }
+    const double waits = gas->dimensions == 2 ? foresee_all(gas, 2) : foresee_all(gas, 3);
     if (!(rate > 0))
         rate = waits > 0 ? (double)gas->count * (double)gas->count / waits : 1;
     gas->now.bucket_density = buckets_an_event * rate;
