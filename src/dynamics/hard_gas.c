@@ -15,7 +15,7 @@ static const uint64_t events_an_epoch = 32;
 enum { EVENTS_A_LOOK = 1 << 16 };
 
 /// Bodies in a cell, if they are not larger than that.
-static const double bodies_a_cell = 1;
+static const double bodies_a_cell = 0.5;
 
 /// Cells are numbered by 16 bits along an axis.
 enum { MOST_CELLS = 65535 };
@@ -32,9 +32,7 @@ static void shape_cells(struct hard_gas *gas, const struct box *box, double diam
         gas->cells[d] = (int)fmin(MOST_CELLS, fmax(1, fit));
         gas->length[d] = box->length[d];
         gas->cell_width[d] = box->length[d] / gas->cells[d];
-        const bool wall = gas->walls >> d & 1;
-        gas->period[d] = wall ? 0 : box->length[d];
-        gas->inverse_period[d] = wall ? 0 : 1 / box->length[d];
+        gas->half[d] = gas->walls >> d & 1 ? INFINITY : box->length[d] / 2;
     }
 }
 
@@ -42,19 +40,10 @@ static size_t cell_count(const struct hard_gas *gas) {
     return (size_t)gas->cells[0] * (size_t)gas->cells[1] * (size_t)gas->cells[2];
 }
 
-static enum status check_box(const struct hard_gas *gas, double diameter) {
-    for (int d = 0; d < gas->dimensions; d++)
-        if (gas->length[d] < (gas->walls >> d & 1 ? 1 : 2) * diameter)
-            return mf_status_fail(
-                STATUS_BAD_INPUT, "box: its edge %g is below %s of the largest particle, %g",
-                gas->length[d], gas->walls >> d & 1 ? "the diameter" : "two diameters", diameter);
-    return STATUS_OK;
-}
-
 static enum status allocate(struct hard_gas *gas) {
     enum status status = STATUS_OK;
     const size_t count = (size_t)gas->count;
-    for (gas->buckets = 1; gas->buckets < 2 * count;)
+    for (gas->buckets = 1; gas->buckets < 2 * gas->count;)
         gas->buckets *= 2;
     NEW_ARRAY(gas->body, count);
     NEW_ARRAY(gas->spare_body, count);
@@ -63,7 +52,7 @@ static enum status allocate(struct hard_gas *gas) {
     NEW_ARRAY(gas->event, count);
     NEW_ARRAY(gas->link, count);
     NEW_ARRAY(gas->first, cell_count(gas) + 1);
-    NEW_ARRAY(gas->bucket, gas->buckets);
+    NEW_ARRAY(gas->bucket, (size_t)gas->buckets);
     NEW_ARRAY(gas->place, count);
 done:
     return status;
@@ -135,7 +124,7 @@ static void begin_epoch(struct hard_gas *gas) {
     const double rate = gas->now.time > 0 ? (double)events / gas->now.time : 0;
     synchronise(gas);
     sort(gas);
-    memset(gas->bucket, 0xff, gas->buckets * sizeof *gas->bucket);
+    memset(gas->bucket, 0xff, (size_t)gas->buckets * sizeof *gas->bucket);
     gas->now.bucket = 0;
     gas->now.left = events;
     mf_hard_gas_events_begin(gas, rate);
@@ -151,9 +140,7 @@ enum status mf_hard_gas_init(struct hard_gas *gas, const struct particles *parti
     for (size_t k = 0; k < particles->count; k++)
         largest = fmax(largest, radius[k]);
     shape_cells(gas, &particles->box, 2 * largest);
-    enum status status = check_box(gas, 2 * largest);
-    if (status == STATUS_OK)
-        status = allocate(gas);
+    const enum status status = allocate(gas);
     if (status != STATUS_OK) {
         mf_hard_gas_clear(gas);
         return status;
@@ -211,6 +198,6 @@ size_t mf_hard_gas_spans(struct hard_gas *gas, struct memory_span *spans) {
     spans[3] = (struct memory_span){gas->event, count * sizeof *gas->event};
     spans[4] = (struct memory_span){gas->link, count * sizeof *gas->link};
     spans[5] = (struct memory_span){gas->first, cell_count(gas) * sizeof *gas->first};
-    spans[6] = (struct memory_span){gas->bucket, gas->buckets * sizeof *gas->bucket};
+    spans[6] = (struct memory_span){gas->bucket, (size_t)gas->buckets * sizeof *gas->bucket};
     return HARD_GAS_SPANS;
 }

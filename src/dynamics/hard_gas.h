@@ -64,7 +64,7 @@ struct hard_gas_now {
     double elapsed;        ///< of the epochs before                [τ]
     double time;           ///< of the last event, of this epoch    [τ]
     uint64_t left;         ///< events until the next epoch
-    uint64_t bucket;       ///< of the calendar: none is earlier
+    int64_t bucket;        ///< of the calendar: none is earlier
     double bucket_density; ///< buckets a time                      [1/τ]
 };
 
@@ -72,7 +72,7 @@ struct hard_gas {
     int count, dimensions;
     int walls; ///< bit d: axis d has walls at 0 and at the length of the box
     double length[3], cell_width[3];
-    double period[3], inverse_period[3]; ///< of axes without walls, 0 of those with
+    double half[3]; ///< of the length, beyond which an image is nearer; INFINITY with walls
     int cells[3];
     struct hard_gas_now now;
     struct hard_gas_body *body, *spare_body;    ///< shape [count], in the order of cells at first
@@ -81,7 +81,7 @@ struct hard_gas {
     struct hard_gas_link *link;                 ///< shape [count]
     int32_t *first;                             ///< body of each cell, shape [cells], −1: none
     int32_t *bucket;                            ///< first body of each, shape [buckets], −1: none
-    uint64_t buckets;                           ///< a power of two
+    int64_t buckets;                            ///< a power of two
     uint32_t *place;                            ///< shape [count], for writing
 };
 

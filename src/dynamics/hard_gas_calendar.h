@@ -11,11 +11,10 @@
 
 #include "dynamics/hard_gas.h"
 
-#include <math.h>
-
 /// Number of the bucket of a time, counted from the epoch's begin through all years.
-static inline uint64_t hard_gas_calendar_number(const struct hard_gas *gas, double time) {
-    return (uint64_t)fmin(time * gas->now.bucket_density, 0x1p62); // never: INFINITY
+static inline int64_t hard_gas_calendar_number(const struct hard_gas *gas, double time) {
+    const double number = time * gas->now.bucket_density;
+    return (int64_t)(number < 0x1p62 ? number : 0x1p62); // never: INFINITY
 }
 
 static inline int32_t *hard_gas_calendar_bucket(const struct hard_gas *gas, double time) {
@@ -44,7 +43,7 @@ static inline void hard_gas_calendar_take(struct hard_gas *gas, int32_t body) {
 
 /// The body with the first event before `time`, of two at once that with the smaller number, or −1.
 static inline int32_t hard_gas_calendar_first(struct hard_gas *gas, double time) {
-    const uint64_t last = hard_gas_calendar_number(gas, time);
+    const int64_t last = hard_gas_calendar_number(gas, time);
     for (;; gas->now.bucket++) {
         double earliest = time;
         int32_t body = -1;

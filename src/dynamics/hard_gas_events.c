@@ -3,30 +3,13 @@
 
 #include "dynamics/hard_gas_calendar.h"
 
-/// Cells around a body along an axis, and by how much those beyond the border of the box are to be
-/// shifted to be its neighbours.
-struct reach {
-    int count, cell[3];
-    double shift[3];
-};
+/// fmin and fmax are calls of the library, since they know NaN.
+static inline double earlier(double a, double b) {
+    return a < b ? a : b;
+}
 
-static inline struct reach find_reach(const struct hard_gas *gas, int d, int cell, int low,
-                                      int high) {
-    struct reach reach = {0};
-    for (int step = low; step <= high; step++) {
-        const int n = gas->cells[d];
-        int other = cell + step;
-        double shift = 0;
-        if (other < 0 || other >= n) {
-            if (gas->walls >> d & 1)
-                continue;
-            shift = other < 0 ? -gas->length[d] : gas->length[d];
-            other += other < 0 ? n : -n;
-        }
-        reach.cell[reach.count] = other;
-        reach.shift[reach.count++] = shift;
-    }
-    return reach;
+static inline double later(double a, double b) {
+    return a > b ? a : b;
 }
 
 /// A body as it is now, and what it will meet first.
@@ -38,66 +21,132 @@ struct forecast {
     int32_t partner;
 };
 
+/// Rows of cells around a body along an axis, and where it stands as seen from there: beyond the
+/// border of the box it is shifted.
+struct reach {
+    int count, cell[3];
+    double place[3];
+};
+
+static inline struct reach find_reach(const struct hard_gas *gas, int d, int cell, int low,
+                                      int high, double place) {
+    struct reach reach = {0};
+    for (int step = low; step <= high; step++) {
+        const int n = gas->cells[d];
+        int other = cell + step;
+        double shift = 0;
+        if (other < 0 || other >= n) {
+            if (gas->walls >> d & 1)
+                continue;
+            shift = other < 0 ? gas->length[d] : -gas->length[d];
+            other += other < 0 ? n : -n;
+        }
+        reach.cell[reach.count] = other;
+        reach.place[reach.count++] = place + shift;
+    }
+    return reach;
+}
+
+/// Bodies to look at: the first ones of all cells near by, then the second ones, and so on. Their
+/// number is not known before, and a loop for each cell would be mispredicted each time.
+struct crowd {
+    int count;
+    int32_t body[28];    ///< the last for one that is not counted
+    uint8_t from[28][3]; ///< number of the row along each axis
+};
+
+/// What is needed of those whose paths touch.
+struct meeting {
+    int32_t body;
+    double b, gap, root;
+};
+
 /// An approach slower than this share of the relative velocity is none, if two bodies touch:
 /// rounding of the last collision.
 static const double grazing = 1e-14;
 
-/// Time until a body touches the one of the forecast, r² + 2 b t + v² t² = s²; INFINITY: never.
-/// In the form without cancellation.
-static inline double find_contact(const struct forecast *forecast, const struct hard_gas_body *body,
-                                  const double shift[3], const int dimensions) {
+/// Of r² + 2 b t + v² t² = s²; written behind the meetings that there are, and counted if the two
+/// approach each other and touch.
+static inline int add_meeting(const struct hard_gas *gas, const struct forecast *forecast,
+                              const struct reach reach[3], const uint8_t from[3], int32_t k,
+                              struct meeting *meeting, const int dimensions) {
+    const struct hard_gas_body *body = &gas->body[k];
     const double ago = forecast->now - body->time, s = forecast->radius + body->radius;
     double b = 0, rr = 0, vv = 0;
     for (int d = 0; d < dimensions; d++) {
         const double v = body->velocity[d] - forecast->velocity[d];
-        const double r = body->place[d] + body->velocity[d] * ago + shift[d] - forecast->place[d];
+        const double r = body->place[d] + body->velocity[d] * ago - reach[d].place[from[d]];
         b += r * v;
         rr += r * r;
         vv += v * v;
     }
     const double gap = rr - s * s, root = b * b - vv * gap;
-    if ((b >= 0) | (root < 0))
-        return INFINITY;
-    if (gap <= 0)
-        return b * b > grazing * grazing * vv * rr ? 0 : INFINITY;
-    return gap / (sqrt(root) - b);
+    *meeting = (struct meeting){k, b, gap, root};
+    return (b < 0) & (root >= 0) & ((gap > 0) | (b * b > grazing * grazing * vv * rr));
 }
 
-/// Look at the bodies of a cell. One that turns before they could meet will look by itself.
-static inline void look_into(const struct hard_gas *gas, struct forecast *forecast, size_t cell,
-                             const double shift[3], const int dimensions) {
-    for (int32_t k = gas->first[cell]; k >= 0; k = gas->link[k].next) {
-        if (k == forecast->body)
-            continue;
-        const double time =
-            forecast->now + find_contact(forecast, &gas->body[k], shift, dimensions);
-        if (time < forecast->time && time < gas->event[k].collision) {
-            forecast->time = time;
-            forecast->partner = k;
-        }
+/// Take the meeting if it is the first, t = gap/(sqrt(root) − b), which cancels nothing. A body
+/// that turns before will look by itself.
+static inline void take_earlier(const struct hard_gas *gas, struct forecast *forecast,
+                                const struct meeting *meeting) {
+    const double wait = meeting->gap > 0 ? meeting->gap / (sqrt(meeting->root) - meeting->b) : 0;
+    const double time = forecast->now + wait;
+    if (time < forecast->time && time < gas->event[meeting->body].collision) {
+        forecast->time = time;
+        forecast->partner = meeting->body;
     }
+}
+
+static inline void look_at(const struct hard_gas *gas, struct forecast *forecast,
+                           const struct reach reach[3], struct crowd *crowd, const int dimensions) {
+    while (crowd->count > 0) {
+        struct meeting meeting[28];
+        int meetings = 0, left = 0;
+        for (int n = 0; n < crowd->count; n++) {
+            const int32_t k = crowd->body[n];
+            meetings += add_meeting(gas, forecast, reach, crowd->from[n], k, &meeting[meetings],
+                                    dimensions);
+            crowd->body[left] = gas->link[k].next;
+            for (int d = 0; d < dimensions; d++)
+                crowd->from[left][d] = crowd->from[n][d];
+            left += crowd->body[left] >= 0;
+        }
+        for (int n = 0; n < meetings; n++)
+            take_earlier(gas, forecast, &meeting[n]);
+        crowd->count = left;
+    }
+}
+
+static inline void add_cell(const struct hard_gas *gas, struct crowd *crowd, size_t cell, int x,
+                            int y, int z) {
+    crowd->body[crowd->count] = gas->first[cell];
+    crowd->from[crowd->count][0] = (uint8_t)x;
+    crowd->from[crowd->count][1] = (uint8_t)y;
+    crowd->from[crowd->count][2] = (uint8_t)z;
+    crowd->count += gas->first[cell] >= 0;
 }
 
 /// Look around: into all cells near by, or into the new ones at `side` of an axis.
 static inline void look_around(const struct hard_gas *gas, struct forecast *forecast, int axis,
                                int side, const int dimensions) {
     const uint16_t *cell = gas->event[forecast->body].cell;
-    struct reach reach[3];
+    struct reach reach[3] = {{.count = 1}, {.count = 1}, {.count = 1}};
+    struct crowd crowd;
+    crowd.count = 0;
     for (int d = 0; d < dimensions; d++)
-        reach[d] = find_reach(gas, d, cell[d], d == axis ? side : -1, d == axis ? side : 1);
+        reach[d] = find_reach(gas, d, cell[d], d == axis ? side : -1, d == axis ? side : 1,
+                              forecast->place[d]);
     for (int x = 0; x < reach[0].count; x++)
         for (int y = 0; y < reach[1].count; y++) {
             const size_t row =
                 (size_t)reach[0].cell[x] * (size_t)gas->cells[1] + (size_t)reach[1].cell[y];
-            double shift[3] = {reach[0].shift[x], reach[1].shift[y], 0};
             if (dimensions == 2)
-                look_into(gas, forecast, row, shift, 2);
-            for (int z = 0; dimensions == 3 && z < reach[2].count; z++) {
-                shift[2] = reach[2].shift[z];
-                look_into(gas, forecast, row * (size_t)gas->cells[2] + (size_t)reach[2].cell[z],
-                          shift, 3);
-            }
+                add_cell(gas, &crowd, row, x, y, 0);
+            for (int z = 0; dimensions == 3 && z < reach[2].count; z++)
+                add_cell(gas, &crowd, row * (size_t)gas->cells[2] + (size_t)reach[2].cell[z], x, y,
+                         z);
         }
+    look_at(gas, forecast, reach, &crowd, dimensions);
 }
 
 static inline struct forecast begin_forecast(const struct hard_gas *gas, int32_t k,
@@ -141,7 +190,7 @@ static inline void foresee_border(struct hard_gas *gas, int32_t k, const int dim
             event->axis = (uint8_t)d;
         }
     }
-    event->border = fmax(gas->now.time, body->time + earliest);
+    event->border = later(gas->now.time, body->time + earliest);
 }
 
 /// Foresee all of a body that has turned, or whose partner has; it is not in the calendar.
@@ -150,7 +199,7 @@ static inline void foresee(struct hard_gas *gas, int32_t k, const int dimensions
     struct forecast forecast = begin_forecast(gas, k, dimensions);
     look_around(gas, &forecast, -1, 0, dimensions);
     keep(gas, &forecast);
-    event->time = fmin(event->collision, event->border);
+    event->time = earlier(event->collision, event->border);
 }
 
 static inline void advance(struct hard_gas *gas, int32_t k, const int dimensions) {
@@ -170,7 +219,8 @@ static inline void turn(struct hard_gas *gas, int32_t i, int32_t j, const int di
     double r[3], along = 0, rr = 0;
     for (int d = 0; d < dimensions; d++) {
         const double straight = b->place[d] - a->place[d];
-        r[d] = straight - gas->period[d] * rint(straight * gas->inverse_period[d]);
+        r[d] = straight - (straight > gas->half[d] ? gas->length[d] : 0) +
+               (straight < -gas->half[d] ? gas->length[d] : 0);
         along += r[d] * (b->velocity[d] - a->velocity[d]);
         rr += r[d] * r[d];
     }
@@ -182,7 +232,7 @@ static inline void turn(struct hard_gas *gas, int32_t i, int32_t j, const int di
     struct hard_gas_tally *tally = &gas->now.tally;
     tally->collisions++;
     tally->virial -= share * mass_a * mass_b * rr;
-    tally->overlap = fmax(tally->overlap, 1 - rr / (s * s));
+    tally->overlap = later(tally->overlap, 1 - rr / (s * s));
 }
 
 static inline void collide(struct hard_gas *gas, int32_t i, const int dimensions) {
@@ -255,7 +305,7 @@ static inline void cross(struct hard_gas *gas, int32_t k, const int dimensions) 
     if (forecast.partner >= 0)
         keep(gas, &forecast);
     foresee_border(gas, k, dimensions);
-    event->time = fmin(event->collision, event->border);
+    event->time = earlier(event->collision, event->border);
 }
 
 static inline bool happen(struct hard_gas *gas, double time, uint64_t most, const int dimensions) {
