@@ -28,6 +28,8 @@ struct integrator {
     /// INTEGRATOR_SPANS. NULL: nothing.
     size_t (*spans)(void *state, struct memory_span *spans);
     bool dissipative; ///< understands ω(r)
+    /// Moves hard particles from event to event: there are no forces, and kinetic energy is kept.
+    bool events;
     bool masses;      ///< moves particles of different masses; else a scene with any is refused
     /// What it makes of ω, if it splits friction and noise off the forces; NULL: they are forces.
     const struct friction_method *friction;
@@ -63,7 +65,8 @@ enum { INTEGRATOR_SPANS = 8 };
     EACH(mf_aboba_implicit)                                                                        \
     EACH(mf_lowe_andersen)                                                                         \
     EACH(mf_brownian)                                                                              \
-    EACH(mf_euler_maruyama)
+    EACH(mf_euler_maruyama)                                                                        \
+    EACH(mf_event_driven)
 
 #define INTEGRATOR_DECLARE(record) extern const struct integrator record;
 INTEGRATORS(INTEGRATOR_DECLARE)

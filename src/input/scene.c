@@ -198,7 +198,8 @@ void mf_scene_clear(struct scene *scene) {
 }
 
 const char *mf_scene_warning(const struct scene *scene) {
-    if (simulation_holds_temperature(&scene->setup) || (scene->unknown & SCENE_FITS_OMEGA))
+    if (simulation_holds_temperature(&scene->setup) || scene->setup.integrator->events ||
+        (scene->unknown & SCENE_FITS_OMEGA))
         return NULL;
     return "nothing holds the temperature: without \"dissipative\", friction and noise, a "
            "simulation "

@@ -1,0 +1,409 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What the collisions of hard discs and spheres tell: pressure, rates, free path, speeds.
+///
+/// Between two samples t apart, of N particles with f degrees of freedom (d N, less one for each
+/// axis whose momentum is kept) and k_B T = Σ m v²/f,
+///   Z = p V/(N k_B T) = f/(d N) + Σ r·Δp/(d N k_B T t),
+/// summed over all collisions (D. C. Rapaport, The Art of Molecular Dynamics Simulation, 2nd ed.,
+/// Cambridge 2004, chapter 14), and by the walls Σ 2 m |v| V/(A t N k_B T) with the whole area A of
+/// all of them. Errors are those of the means of the samples, by mf_statistics_correlated_error.
+///
+/// Speeds in units of sqrt(k_B T/m) are held against Maxwell's distribution. Energy and, without
+/// walls, momentum never change, which would make them agree too well: both are replaced by
+/// numbers that are drawn from their canonical distributions, as in observe/maxwell.h.
+/// Tested: test_collisions (unit), test_kinetic_gas (physics, cli).
+#include "base/memory.h"
+#include "base/number_text.h"
+#include "base/rng.h"
+#include "base/statistics.h"
+#include "dynamics/event_driven.h"
+#include "io/data_table.h"
+#include "observe/hard_theory.h"
+#include "observe/maxwell.h"
+#include "observe/measure.h"
+
+#include <math.h>
+
+static const double pi = 3.14159265358979323846;
+
+struct settings {
+    double speed_maximum; ///< of the distribution [sqrt(k_B T/m)]
+    int64_t bins;
+};
+
+#define MEMBER(name) .offset = offsetof(struct settings, name)
+static const struct field fields[] = {
+    {"speed_maximum", FIELD_NUMBER, MEMBER(speed_maximum), .initial = 5,
+     .minimum = FIELD_ABOVE_ZERO, .maximum = 100, .unit = "sqrt(k_B T/m)",
+     .help = "largest speed of the distribution in speeds.tsv"},
+    {"bins", FIELD_INTEGER, MEMBER(bins), .initial = 50, .minimum = 1, .maximum = 10000, .unit = "",
+     .help = "of the distribution of speeds"},
+    FIELD_END,
+};
+
+/// Numbers of a sample: sums and rates since the last.
+enum quantity { FACTOR, WALL_FACTOR, RATE, SPEED, QUANTITIES };
+
+struct collisions {
+    struct settings settings;
+    int64_t first, every; ///< steps
+    size_t planned, samples;
+    bool begun; ///< what was before the first step of sampling is known
+    struct hard_gas_tally last;
+    double *values; ///< shape [QUANTITIES, planned]
+    uint64_t *speeds;
+    struct maxwell maxwell;
+    struct hard_theory theory;
+    bool walls;
+    size_t particles;
+    double seconds;    ///< on events, by this process
+    double collisions; ///< in them
+};
+
+static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+                         const struct measure_plan *plan) {
+    enum status status = STATUS_OK;
+    struct collisions *c = state;
+    const struct event_driven *engine = mf_event_driven_state(simulation);
+    double *radius = NULL, *mass = NULL;
+    if (engine == NULL)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "collisions: only the integrator \"event-driven\" has any");
+    const struct hard_gas *gas = &engine->gas;
+    c->settings = *(const struct settings *)settings;
+    c->first = plan->equilibration;
+    c->every = plan->every;
+    c->planned = (size_t)plan->samples;
+    c->walls = gas->walls != 0;
+    c->particles = (size_t)gas->count;
+    NEW_ARRAY(c->values, QUANTITIES * c->planned);
+    NEW_ARRAY(c->speeds, (size_t)c->settings.bins + 1);
+    CHECK(mf_maxwell_init(&c->maxwell));
+    NEW_ARRAY(radius, c->particles);
+    NEW_ARRAY(mass, c->particles);
+    for (size_t k = 0; k < c->particles; k++) {
+        radius[k] = gas->body[k].radius;
+        mass[k] = gas->label[k].mass;
+    }
+    c->theory = mf_hard_theory(gas->dimensions, mf_box_volume(&simulation->setup.box),
+                               simulation->setup.temperature, radius, mass, c->particles);
+done:
+    mf_memory_free(radius);
+    mf_memory_free(mass);
+    return status;
+}
+
+static void clear(void *state) {
+    struct collisions *c = state;
+    mf_memory_free(c->values);
+    mf_memory_free(c->speeds);
+    mf_maxwell_clear(&c->maxwell);
+    *c = (struct collisions){0};
+}
+
+static int64_t due(const void *state) {
+    const struct collisions *c = state;
+    if (!c->begun)
+        return c->first;
+    return c->samples < c->planned ? c->first + (int64_t)(c->samples + 1) * c->every : INT64_MAX;
+}
+
+// Sampling ----------------------------------------------------------------------------------------
+
+/// Degrees of freedom: momentum is kept along axes without walls.
+static double degrees_of_freedom(const struct hard_gas *gas) {
+    double degrees = (double)gas->dimensions * gas->count;
+    for (int d = 0; d < gas->dimensions; d++)
+        degrees -= gas->walls >> d & 1 ? 0 : 1;
+    return degrees;
+}
+
+/// Σ m v², and the momentum over the mass of all.
+static double kinetic(const struct hard_gas *gas, double drift[3]) {
+    double sum = 0, mass = 0, momentum[3] = {0};
+    for (int k = 0; k < gas->count; k++) {
+        const double m = gas->label[k].mass;
+        mass += m;
+        for (int d = 0; d < gas->dimensions; d++) {
+            const double v = gas->body[k].velocity[d];
+            sum += m * v * v;
+            momentum[d] += m * v;
+        }
+    }
+    for (int d = 0; d < gas->dimensions; d++)
+        drift[d] = momentum[d] / mass;
+    return sum;
+}
+
+static double mean_speed(const struct hard_gas *gas) {
+    double sum = 0;
+    for (int k = 0; k < gas->count; k++) {
+        double square = 0;
+        for (int d = 0; d < gas->dimensions; d++)
+            square += gas->body[k].velocity[d] * gas->body[k].velocity[d];
+        sum += sqrt(square);
+    }
+    return sum / gas->count;
+}
+
+/// Maxwell's distribution function of a speed in units of sqrt(k_B T/m).
+static double maxwell_share(int dimensions, double u) {
+    if (dimensions == 2)
+        return -expm1(-0.5 * u * u);
+    return erf(u * sqrt(0.5)) - sqrt(2 / pi) * u * exp(-0.5 * u * u);
+}
+
+/// A number of the chi-squared distribution from a normal one: E. B. Wilson and M. M. Hilferty,
+/// Proc. Natl. Acad. Sci. 17, 684 (1931); off by less than 1e-3 of its width from 30 degrees on.
+static double chi_squared(double degrees, double normal) {
+    const double ninth = 2 / (9 * degrees);
+    return degrees * pow(1 - ninth + normal * sqrt(ninth), 3);
+}
+
+/// Add all speeds, with energy and drift as in a canonical ensemble at the same temperature.
+static void add_speeds(struct collisions *c, const struct hard_gas *gas, uint64_t seed,
+                       uint64_t step) {
+    double drift[3], normal[4], shift[3] = {0}, mass = 0;
+    const double square = kinetic(gas, drift), degrees = degrees_of_freedom(gas);
+    const double temperature = square / degrees;
+    mf_rng_normal4(
+        mf_rng_philox(seed, RNG_MEAN_VELOCITY, (uint32_t)step, (uint32_t)(step >> 32), 1), normal);
+    const double scale = sqrt(chi_squared(degrees, normal[3]) * temperature / square);
+    for (int k = 0; k < gas->count; k++)
+        mass += gas->label[k].mass;
+    for (int d = 0; d < gas->dimensions; d++)
+        if (!(gas->walls >> d & 1))
+            shift[d] = normal[d] * sqrt(temperature / mass) - scale * drift[d];
+    for (int k = 0; k < gas->count; k++) {
+        double own = 0;
+        for (int d = 0; d < gas->dimensions; d++)
+            own += pow(scale * gas->body[k].velocity[d] + shift[d], 2);
+        const double u = sqrt(own * gas->label[k].mass / temperature);
+        const double share = maxwell_share(gas->dimensions, u);
+        const size_t bin = (size_t)(share * MAXWELL_BINS);
+        const double place = u / c->settings.speed_maximum * (double)c->settings.bins;
+        c->maxwell.counts[bin < MAXWELL_BINS ? bin : MAXWELL_BINS - 1]++;
+        c->speeds[(size_t)fmin(place, (double)c->settings.bins)]++;
+    }
+}
+
+/// Momentum that walls got, over their area and the volume: p V if divided by a time.
+static double wall_sum(const struct hard_gas *gas, const struct hard_gas_tally *last) {
+    double momentum = 0, inverse_length = 0;
+    for (int d = 0; d < gas->dimensions; d++) {
+        if (!(gas->walls >> d & 1))
+            continue;
+        momentum += gas->now.tally.impulse[d] - last->impulse[d];
+        inverse_length += 2 / gas->length[d]; // area over volume
+    }
+    return momentum / inverse_length; // NaN without walls
+}
+
+static enum status sample(void *state, struct simulation *simulation) {
+    struct collisions *c = state;
+    const struct event_driven *engine = mf_event_driven_state(simulation);
+    const struct hard_gas *gas = &engine->gas;
+    const struct hard_gas_tally *now = &gas->now.tally;
+    if (c->begun) {
+        double drift[3];
+        const double time = (double)c->every * simulation->setup.time_step, n = gas->count;
+        const double square = kinetic(gas, drift), degrees = degrees_of_freedom(gas);
+        const double unit = n * square / degrees * time, dimensions = gas->dimensions;
+        double *here = c->values + c->samples;
+        here[FACTOR * c->planned] =
+            degrees / (dimensions * n) + (now->virial - c->last.virial) / (dimensions * unit);
+        here[WALL_FACTOR * c->planned] = wall_sum(gas, &c->last) / unit;
+        here[RATE * c->planned] = 2 * (double)(now->collisions - c->last.collisions) / (n * time);
+        here[SPEED * c->planned] = mean_speed(gas);
+        add_speeds(c, gas, simulation->setup.seed, simulation->step);
+        c->samples++;
+    }
+    c->begun = true;
+    c->last = *now;
+    c->seconds = engine->seconds;
+    c->collisions = (double)engine->collisions;
+    return STATUS_OK;
+}
+
+static size_t spans(void *state, struct memory_span *spans) {
+    struct collisions *c = state;
+    spans[0] = (struct memory_span){&c->samples, sizeof c->samples};
+    spans[1] = (struct memory_span){&c->begun, sizeof c->begun};
+    spans[2] = (struct memory_span){&c->last, sizeof c->last};
+    spans[3] = (struct memory_span){c->values, QUANTITIES * c->planned * sizeof *c->values};
+    spans[4] = (struct memory_span){c->speeds, ((size_t)c->settings.bins + 1) * sizeof *c->speeds};
+    spans[5] = (struct memory_span){c->maxwell.counts, MAXWELL_BINS * sizeof *c->maxwell.counts};
+    return 6;
+}
+
+// Results -----------------------------------------------------------------------------------------
+
+struct result {
+    double mean, error;
+};
+
+static const double *series(const struct collisions *c, enum quantity quantity) {
+    return c->values + (size_t)quantity * c->planned;
+}
+
+static struct result result_of(const struct collisions *c, enum quantity quantity) {
+    struct running_mean mean = {0};
+    for (size_t k = 0; k < c->samples; k++)
+        mf_statistics_add(&mean, series(c, quantity)[k]);
+    struct result result = {mean.mean,
+                            mf_statistics_correlated_error(series(c, quantity), c->samples, 1)};
+    mf_statistics_forget_errors(&result.error, 1);
+    return result;
+}
+
+/// Speed over rate; the rate makes nearly all of its error.
+static struct result free_path(const struct collisions *c) {
+    const struct result rate = result_of(c, RATE), speed = result_of(c, SPEED);
+    const double path = speed.mean / rate.mean;
+    return (struct result){path, path * hypot(rate.error / rate.mean, speed.error / speed.mean)};
+}
+
+static void put_result(struct json_writer *writer, const char *name, struct result result,
+                       double theory) {
+    char key[64];
+    mf_json_put_number(writer, name, result.mean);
+    snprintf(key, sizeof key, "%s_error", name);
+    mf_json_put_number(writer, key, result.error);
+    snprintf(key, sizeof key, "%s_theory", name);
+    mf_json_put_number(writer, key, theory);
+}
+
+static void put(const void *state, const struct observable_results *results,
+                struct json_writer *writer) {
+    const struct collisions *c = state;
+    const struct maxwell_summary maxwell = mf_maxwell_result(&c->maxwell);
+    (void)results;
+    mf_json_put_number(writer, "packing_fraction", c->theory.eta);
+    put_result(writer, "compressibility_factor", result_of(c, FACTOR),
+               c->theory.compressibility_factor);
+    if (c->walls)
+        put_result(writer, "compressibility_factor_walls", result_of(c, WALL_FACTOR),
+                   c->theory.compressibility_factor);
+    put_result(writer, "collision_rate", result_of(c, RATE), c->theory.collision_rate);
+    put_result(writer, "mean_free_path", free_path(c), c->theory.mean_free_path);
+    mf_json_put_number(writer, "speeds_tested", maxwell.numbers);
+    mf_json_put_number(writer, "speeds_kolmogorov_smirnov", maxwell.statistic);
+    mf_json_put_number(writer, "speeds_p_value", maxwell.probability);
+    mf_json_put_number(writer, "collisions", (double)c->last.collisions);
+    mf_json_put_number(writer, "deepest_overlap", c->last.overlap);
+}
+
+static void say(const void *state, char *line, size_t size) {
+    const struct collisions *c = state;
+    const struct result factor = result_of(c, FACTOR);
+    char text[NUMBER_TEXT_SIZE];
+    mf_number_text(factor.mean, factor.error, text);
+    snprintf(line, size, "Z = %s by collisions, theory %.5g; %.3g collisions/s", text,
+             c->theory.compressibility_factor, c->collisions / c->seconds);
+}
+
+/// collisions.tsv: a row for each sample.
+static enum status write_series(const struct collisions *c,
+                                const struct observable_results *results) {
+    enum status status = STATUS_OK;
+    char path[OUTPUT_PATH_SIZE];
+    double *step = NULL, *time = NULL;
+    NEW_ARRAY(step, c->samples);
+    NEW_ARRAY(time, c->samples);
+    for (size_t k = 0; k < c->samples; k++) {
+        step[k] = (double)(c->first + (int64_t)(k + 1) * c->every);
+        time[k] = step[k] * results->setup->time_step;
+    }
+    const struct data_column columns[] = {
+        {"step", step, NULL},
+        {"time[tau]", time, NULL},
+        {"compressibility_factor[1]", series(c, FACTOR), "%.8g"},
+        {"collision_rate[1/tau]", series(c, RATE), "%.8g"},
+        {"mean_speed[lambda/tau]", series(c, SPEED), "%.8g"},
+        {"compressibility_factor_walls[1]", series(c, WALL_FACTOR), "%.8g"}};
+    mf_observable_file(results, "collisions.tsv", path);
+    CHECK(mf_data_table_write(path, NULL, columns, c->walls ? 6 : 5, c->samples));
+done:
+    mf_memory_free(step);
+    mf_memory_free(time);
+    return status;
+}
+
+/// speeds.tsv: the middle of a bin, the density of speeds there with the error of independent
+/// counts, Maxwell's mean density in the bin.
+static enum status write_speeds(const struct collisions *c,
+                                const struct observable_results *results) {
+    enum status status = STATUS_OK;
+    char path[OUTPUT_PATH_SIZE];
+    const size_t bins = (size_t)c->settings.bins;
+    const int dimensions = results->setup->box.dimensions;
+    const double width = c->settings.speed_maximum / (double)bins;
+    const double all = (double)c->samples * (double)c->particles * width;
+    double *values = NULL;
+    NEW_ARRAY(values, 4 * bins);
+    double *speed = values, *density = speed + bins, *error = density + bins,
+           *theory = error + bins;
+    for (size_t k = 0; k < bins; k++) {
+        const double low = (double)k * width, count = (double)c->speeds[k];
+        speed[k] = low + 0.5 * width;
+        density[k] = count / all;
+        error[k] = count > 0 ? sqrt(count) / all : NAN;
+        theory[k] =
+            (maxwell_share(dimensions, low + width) - maxwell_share(dimensions, low)) / width;
+    }
+    const struct data_column columns[] = {{"speed[sqrt(k_B.T/m)]", speed, NULL},
+                                          {"density[1]", density, "%.8g"},
+                                          {"density_error[1]", error, "%.3g"},
+                                          {"maxwell[1]", theory, "%.8g"}};
+    mf_observable_file(results, "speeds.tsv", path);
+    CHECK(mf_data_table_write(path, NULL, columns, 4, bins));
+done:
+    mf_memory_free(values);
+    return status;
+}
+
+/// timing.tsv: of this process alone, after a restart.
+static enum status write(const void *state, const struct observable_results *results) {
+    const struct collisions *c = state;
+    const double rate = c->seconds > 0 ? c->collisions / c->seconds : NAN;
+    const struct data_column columns[] = {{"seconds[s]", &c->seconds, NULL},
+                                          {"collisions", &c->collisions, NULL},
+                                          {"collisions_per_second[1/s]", &rate, "%.6g"}};
+    char path[OUTPUT_PATH_SIZE];
+    TRY(write_series(c, results));
+    TRY(write_speeds(c, results));
+    mf_observable_file(results, "timing.tsv", path);
+    return mf_data_table_write(path, NULL, columns, 3, 1);
+}
+
+/// Nanoseconds of a particle and sample: its speed, and where it stands in the distribution.
+static const double sample_cost = 40;
+
+static void explain(const void *settings, const struct simulation_setup *setup, double every,
+                    struct stages *stages) {
+    (void)settings, (void)setup;
+    mf_stages_add(stages, "collisions", true, sample_cost / every,
+                  "pressure, rates, speeds, one step in %.0f", every);
+}
+
+static const char *const files[] = {"speeds.tsv", "collisions.tsv", "timing.tsv", NULL};
+
+const struct observable mf_collisions = {
+    .name = "collisions",
+    .summary = "of hard particles: pressure, collision rate, mean free path, speeds",
+    .fields = fields,
+    .settings_size = sizeof(struct settings),
+    .state_size = sizeof(struct collisions),
+    .begin = begin,
+    .clear = clear,
+    .due = due,
+    .sample = sample,
+    .spans = spans,
+    .write = write,
+    .put = put,
+    .say = say,
+    .explain = explain,
+    .stage = "collisions",
+    .files = files,
+    .figure = "speeds",
+};
