@@ -42,6 +42,10 @@ struct integrator {
     /// particle id, what their next steps will still share with the last [λ]: displacements between
     /// what is left have no memory. NULL: positions are that already.
     void (*forget)(const struct simulation *simulation, double *positions);
+    /// Particles of its own that it moves beside those of the simulation, of which there may then
+    /// be none, and what one costs a step in nanoseconds, for --explain. NULL: it has none.
+    double (*companions)(const struct simulation_setup *setup);
+    double companion_cost;
     /// Advance by one step, with one call of mf_simulation_compute_forces.
     enum status (*step)(struct simulation *simulation);
 };
@@ -57,7 +61,8 @@ enum { INTEGRATOR_SPANS = 8 };
     EACH(mf_aboba)                                                                                 \
     EACH(mf_aboba_implicit)                                                                        \
     EACH(mf_lowe_andersen)                                                                         \
-    EACH(mf_brownian)
+    EACH(mf_brownian)                                                                              \
+    EACH(mf_collision_dynamics)
 
 #define INTEGRATOR_DECLARE(record) extern const struct integrator record;
 INTEGRATORS(INTEGRATOR_DECLARE)

@@ -121,12 +121,19 @@ enum status mf_simulation_compute_potential(struct simulation *simulation) MUST_
 
 /// Kinetic temperature of the last step [k_B T_0], taken where in the step the integrator keeps it
 /// best, if the step was asked for its sums, and at the end of the step otherwise; NaN without
-/// velocities.
+/// velocities and of fewer than two particles.
 double mf_simulation_temperature(const struct simulation *simulation);
 
 /// Whether the dynamics move without velocities, and so without a kinetic temperature.
 static inline bool simulation_is_overdamped(const struct simulation_setup *setup) {
     return setup->integrator->free_step != NULL;
+}
+
+/// How many particles move in a step, at least 1: the simulation's and its integrator's own.
+static inline double simulation_moved(const struct simulation_setup *setup) {
+    const struct integrator *integrator = setup->integrator;
+    const double own = integrator->companions ? integrator->companions(setup) : 0;
+    return fmax(1, (double)setup->placement.count + own);
 }
 
 /// Whether friction and noise hold the temperature of the setup.
