@@ -90,7 +90,7 @@ static const struct topic fixed_topics[] = {
     {"files",
      "particles",
      "\"particles\" of a scene; a mixture has \"types\": {\"A\": 500, \"B\": 300} for \"count\"",
-     {mf_placement_count_fields, mf_placement_fields}},
+     {mf_placement_count_fields, mf_placement_fields, mf_attributes_fields}},
     {"files", "measure", "\"measure\" of a scene file: when to sample", {mf_measure_plan_fields}},
     {"files", "units", "\"units\" of a scene: physical units for the results", {mf_units_fields}},
     {"files", "core", "\"core\" of a run file: where the target is 0", {mf_fit_core_fields}},

@@ -14,7 +14,7 @@
 enum rng_stream {
     RNG_PAIR_NOISE,    ///< counters: step, smaller id, larger id
     RNG_VELOCITIES,    ///< counters: particle id
-    RNG_PLACEMENT,     ///< counters: particle id, trial
+    RNG_PLACEMENT,     ///< counters: particle id, trial, 0; of an attribute: particle id, number, 1
     RNG_METROPOLIS,    ///< counters: move
     RNG_INITIAL,       ///< first population of an optimiser
     RNG_SELECTION,     ///< optimiser: generation, individual

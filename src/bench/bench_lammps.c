@@ -58,6 +58,8 @@ const char *mf_bench_lammps_objection(const struct scene *scene) {
         return "its integrator is not velocity-verlet";
     if (scene->setup.interactions > 0)
         return "it has interactions beside the pairs";
+    if (scene->setup.attribute[ATTRIBUTES_MASS].ranges > 0)
+        return "its particles have masses of their own";
     if (family != &mf_sampled_family && family != &mf_formula_lennard_jones)
         return "its potential is neither a table nor Lennard-Jones";
     if (scene->setup.box.dimensions != 3)

@@ -148,7 +148,7 @@ static void collide(struct hybrid *hybrid) {
 
 /// Φ + Σ v²/2 [k_B T_0].
 static double hamiltonian(const struct hybrid *hybrid, const struct pair_sums *sums) {
-    return sums->energy + 0.5 * mf_particles_square_velocities(&hybrid->simulation.particles);
+    return sums->energy + mf_particles_kinetic_energy(&hybrid->simulation.particles);
 }
 
 static void remember(struct hybrid *hybrid) {

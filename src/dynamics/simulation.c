@@ -3,8 +3,6 @@
 
 #include "base/clock.h"
 #include "base/interrupt.h"
-#include "base/parallel.h"
-#include "base/simd.h"
 #include "base/visible.h"
 #include "dynamics/relax.h"
 #include "dynamics/unstable.h"
@@ -27,8 +25,10 @@ static enum status place(struct simulation *simulation, const struct simulation_
                    particles->count * sizeof *particles->position[d]);
         break;
     }
+    TRY(mf_attributes_give(particles, setup->attribute, &setup->composition, setup->seed));
     if (start == NULL || start->velocity[0] == NULL) {
-        mf_particles_draw_velocities(particles, setup->temperature, setup->seed);
+        mf_particles_draw_velocities(particles, (enum particles_speeds)setup->placement.speeds,
+                                     setup->temperature, setup->seed);
         return STATUS_OK;
     }
     for (int d = 0; d < setup->box.dimensions; d++)
@@ -37,12 +37,18 @@ static enum status place(struct simulation *simulation, const struct simulation_
     return STATUS_OK;
 }
 
+/// The lightest particles are the fastest, and wear the list out.
+static double lightest(const struct simulation_setup *setup) {
+    const struct attributes_source *mass = &setup->attribute[ATTRIBUTES_MASS];
+    return mass->ranges > 0 ? mf_attributes_span(mass).minimum : 1;
+}
+
 struct skin_scene mf_simulation_skin_scene(const struct simulation_setup *setup, double cutoff) {
     return (struct skin_scene){
         .box = &setup->box,
         .count = (size_t)setup->placement.count,
         .cutoff = cutoff,
-        .temperature = setup->temperature,
+        .temperature = setup->temperature / lightest(setup),
         .time_step = setup->time_step,
         .free_step = simulation_is_overdamped(setup) ? setup->integrator->free_step(setup) : 0};
 }
@@ -159,56 +165,6 @@ void mf_simulation_clear(struct simulation *simulation) {
     mf_friction_clear(&simulation->friction);
 }
 
-SIMD_CLONES static void kick_and_drift(void *context, size_t begin, size_t end) {
-    struct simulation *simulation = context;
-    struct particles *particles = &simulation->particles;
-    const double dt = simulation->setup.time_step;
-    for (int d = 0; d < particles->box.dimensions; d++) {
-        double *restrict x = particles->position[d], *restrict v = particles->velocity[d];
-        const double *restrict force = particles->force[d];
-        for (size_t k = begin; k < end; k++) {
-            v[k] += 0.5 * dt * force[k];
-            x[k] += dt * v[k];
-        }
-    }
-}
-
-void mf_simulation_kick_and_drift(struct simulation *simulation) {
-    const struct particles *particles = &simulation->particles;
-    mf_parallel_for(particles->count, particles->threads, kick_and_drift, simulation);
-}
-
-SIMD_CLONES static void kick(void *context, size_t begin, size_t end) {
-    struct simulation *simulation = context;
-    struct particles *particles = &simulation->particles;
-    const double dt = simulation->setup.time_step;
-    for (int d = 0; d < particles->box.dimensions; d++) {
-        double *restrict v = particles->velocity[d];
-        const double *restrict force = particles->force[d];
-        for (size_t k = begin; k < end; k++)
-            v[k] += 0.5 * dt * force[k];
-    }
-}
-
-void mf_simulation_kick(struct simulation *simulation) {
-    const struct particles *particles = &simulation->particles;
-    mf_parallel_for(particles->count, particles->threads, kick, simulation);
-}
-
-SIMD_CLONES static void drift_half(void *context, size_t begin, size_t end) {
-    struct simulation *simulation = context;
-    struct particles *particles = &simulation->particles;
-    const double dt = simulation->setup.time_step;
-    for (int d = 0; d < particles->box.dimensions; d++)
-        for (size_t k = begin; k < end; k++)
-            particles->position[d][k] += 0.5 * dt * particles->velocity[d][k];
-}
-
-void mf_simulation_drift_half(struct simulation *simulation) {
-    const struct particles *particles = &simulation->particles;
-    mf_parallel_for(particles->count, particles->threads, drift_half, simulation);
-}
-
 void mf_simulation_take_temperature(struct simulation *simulation) {
     if (simulation->wants == PAIR_FORCES_AND_SUMS)
         simulation->temperature = mf_particles_temperature(&simulation->particles);
@@ -221,8 +177,8 @@ double mf_simulation_temperature(const struct simulation *simulation) {
                                              : mf_particles_temperature(&simulation->particles);
 }
 
-/// The mean square of a velocity along an axis beyond which a simulation is unstable: so many times
-/// that of the temperature, or of a free particle's steps.
+/// The mean m v² along an axis beyond which a simulation is unstable: so many times that of the
+/// temperature, or v² of a free particle's steps.
 static double largest_square(const struct simulation_setup *setup) {
     const double thermal = simulation_is_overdamped(setup)
                                ? pow(setup->integrator->free_step(setup) / setup->time_step, 2)
@@ -344,13 +300,13 @@ enum status mf_simulation_forces_beside(const struct simulation *simulation,
                                                 .wants = PAIR_FORCES});
 }
 
-/// Σ v² tells at once of NaN, overflow and a runaway temperature; what drifts as a whole is asked
+/// Σ m v² tells at once of NaN, overflow and a runaway temperature; what drifts as a whole is asked
 /// for its velocities relative to the mean.
 static enum status watch(const struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
     const double degrees = particles->box.dimensions * fmax(1, (double)particles->count - 1);
     const double most = largest_square(&simulation->setup);
-    if (mf_particles_square_velocities(particles) / degrees <= most)
+    if (2 * mf_particles_kinetic_energy(particles) / degrees <= most)
         return STATUS_OK;
     const double square = mf_particles_temperature(particles);
     return square <= most ? STATUS_OK : fail_unstable(simulation, square);

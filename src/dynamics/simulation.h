@@ -8,6 +8,7 @@
 #include "dynamics/skin.h"
 #include "forces/interaction.h"
 #include "forces/pair.h"
+#include "system/attributes.h"
 #include "system/neighbours.h"
 #include "system/placement.h"
 
@@ -18,10 +19,11 @@ struct simulation_setup {
     struct box box;
     struct placement placement;
     struct composition composition; ///< types of its beads; all zero: they are alike
-    double temperature;             ///< of the start and of the noise              [k_B T_0]
-    double time_step;               ///< Δt                                         [τ]
-    double skin;                    ///< of the neighbour list; 0: the code chooses [λ]
-    double temperature_limit;       ///< above limit × temperature: UNSTABLE
+    struct attributes_source attribute[ATTRIBUTES_NAMES]; ///< that the particles are given
+    double temperature;       ///< of the start and of the noise              [k_B T_0]
+    double time_step;         ///< Δt                                         [τ]
+    double skin;              ///< of the neighbour list; 0: the code chooses [λ]
+    double temperature_limit; ///< above limit × temperature: UNSTABLE
     const struct integrator *integrator;
     const void *integrator_parameters; ///< its struct, or NULL: the defaults; borrowed
     /// What acts beside the pairs; its parameters are borrowed.
@@ -99,10 +101,10 @@ enum status mf_simulation_forces_beside(const struct simulation *simulation,
 enum status mf_simulation_run(struct simulation *simulation, uint64_t steps) MUST_USE;
 
 /// @name For integrators
-/// v += ½ Δt F, then x += Δt v.
+/// v += ½ Δt F/m, then x += Δt v.
 void mf_simulation_kick_and_drift(struct simulation *simulation);
 
-/// v += ½ Δt F.
+/// v += ½ Δt F/m.
 void mf_simulation_kick(struct simulation *simulation);
 
 /// x += ½ Δt v.

@@ -15,6 +15,6 @@ const struct integrator mf_velocity_verlet = {
     .summary =
         "NVE, the default without friction; W. C. Swope et al., J. Chem. Phys. 76, 637 (1982)",
     .fields = fields,
-    .dissipative = false,
+    .masses = true,
     .step = step,
 };

@@ -123,6 +123,8 @@ static void list(struct entries *entries, const struct scene *scene) {
     }
     add(entries, "particles.", mf_placement_count_fields, places, &nowhere, NULL);
     add(entries, "particles.", mf_placement_fields, places, &nowhere, NULL);
+    add(entries, "particles.", mf_attributes_fields, "it is not the same for all particles",
+        &nowhere, NULL);
     add(entries, "units.", mf_units_fields, converts, &nowhere, NULL);
 }
 

@@ -4,7 +4,7 @@
 #include "base/digest.h"
 #include "base/memory.h"
 #include "base/names.h"
-#include "io/data_table.h"
+#include "input/scene_particles.h"
 
 #include <math.h>
 
@@ -111,125 +111,18 @@ static enum status read_dynamics(struct scene *scene, struct json_object *object
     if (dissipative && !integrator->dissipative)
         mf_json_fault(object, "dynamics",
                       "%s knows no friction; use \"aboba\" with \"dissipative\"", integrator->name);
+    if (scene->setup.attribute[ATTRIBUTES_MASS].ranges > 0 && !integrator->masses)
+        mf_json_fault(object, "particles.mass", "%s moves particles of mass 1 only",
+                      integrator->name);
     return STATUS_OK;
-}
-
-/// Coordinates may be unwrapped, but so far outside they are in other units, as nm and pm.
-static const double most_boxes = 100;
-
-/// Whether all coordinates of a file are within most_boxes of the box; tells of the first that is
-/// not.
-static bool are_near(const struct scene *scene, const struct data_table *table,
-                     struct json_object *particles) {
-    const struct box *box = &scene->setup.box;
-    for (size_t k = 0; k < table->rows; k++)
-        for (int d = 0; d < box->dimensions; d++) {
-            const double x = table->values[k * table->columns + (size_t)d];
-            if (fabs(x) <= most_boxes * box->length[d])
-                continue;
-            mf_json_fault(
-                particles, "file",
-                "%s:%zu: the coordinate %g is more than %g boxes of %g away; are the units "
-                "those of \"box\"?",
-                scene->setup.placement.file, table->line[k], x, most_boxes, box->length[d]);
-            return false;
-        }
-    return true;
-}
-
-/// Columns x, y (, z) and, if there are as many again, the velocities.
-static enum status read_positions(struct scene *scene, struct json_object *particles) {
-    const struct placement *placement = &scene->setup.placement;
-    const size_t dimensions = (size_t)scene->setup.box.dimensions;
-    struct data_table table = {0};
-    enum status status = mf_data_table_read(&table, placement->file, dimensions);
-    if (status != STATUS_OK) {
-        mf_json_fault(particles, "file", "%s", mf_status_message());
-        return status == STATUS_NO_MEMORY ? status : STATUS_OK;
-    }
-    if (table.rows != (size_t)placement->count ||
-        (table.columns != dimensions && table.columns != 2 * dimensions)) {
-        mf_json_fault(particles, "file", "%s: %zu rows of %zu numbers, not %lld of %zu or %zu",
-                      placement->file, table.rows, table.columns, (long long)placement->count,
-                      dimensions, 2 * dimensions);
-        goto done;
-    }
-    if (!are_near(scene, &table, particles))
-        goto done;
-    NEW_ARRAY(scene->start_values, table.rows * table.columns);
-    for (size_t column = 0; column < table.columns; column++) {
-        double *values = scene->start_values + column * table.rows;
-        for (size_t k = 0; k < table.rows; k++)
-            values[k] = table.values[k * table.columns + column];
-        if (column < dimensions)
-            scene->start.position[column] = values;
-        else
-            scene->start.velocity[column - dimensions] = values;
-    }
-done:
-    mf_data_table_clear(&table);
-    return status;
-}
-
-static void read_count(struct scene *scene, struct json_object *particles) {
-    mf_json_fields(particles, mf_placement_count_fields, &scene->setup.placement);
-    scene->setup.composition = mf_composition_of_one(scene->setup.placement.count);
-}
-
-/// One type of a mixture and how many beads there are of it, after those that were read before.
-static void read_type(struct scene *scene, struct json_object *types, const char *name) {
-    struct composition *composition = &scene->setup.composition;
-    struct field fields[] = {mf_placement_count_fields[0], FIELD_END};
-    int64_t *count = &composition->count[composition->types];
-    fields[0].name = name;
-    fields[0].offset = 0;
-    mf_json_fields(types, fields, count);
-    scene->setup.placement.count += *count;
-    if (!mf_composition_is_name(name))
-        mf_json_fault(types, name, "a type is called by up to %d letters, digits and _",
-                      COMPOSITION_NAME_SIZE - 1);
-    snprintf(composition->name[composition->types++], COMPOSITION_NAME_SIZE, "%s", name);
-}
-
-/// "types": {"A": 500, "B": 300} in the place of "count".
-static void read_types(struct scene *scene, struct json_object *particles) {
-    struct json_object types = mf_json_child(particles, "types", true);
-    const size_t faults = mf_json_fault_count(types.document);
-    size_t n = 0;
-    for (const char *name; (name = mf_json_key(&types, n)); n++)
-        if (n < COMPOSITION_MOST_TYPES)
-            read_type(scene, &types, name);
-    if (types.item && (n < 2 || n > COMPOSITION_MOST_TYPES))
-        mf_json_fault(particles, "types",
-                      "a mixture has 2 to %d types, not %zu; \"count\" is for one",
-                      COMPOSITION_MOST_TYPES, n);
-    if (types.item == NULL || mf_json_fault_count(types.document) > faults)
-        scene->setup.composition.types = 0; // not known
-}
-
-static enum status read_particles(struct scene *scene, struct json_object *object) {
-    struct json_object particles = mf_json_child(object, "particles", true);
-    struct placement *placement = &scene->setup.placement;
-    if (mf_json_has(&particles, "types"))
-        read_types(scene, &particles);
-    else
-        read_count(scene, &particles);
-    mf_json_fields(&particles, mf_placement_fields, placement);
-    if (particles.item == NULL)
-        return STATUS_OK;
-    mf_json_finish(&particles);
-    if (placement->kind != PLACEMENT_FILE)
-        return STATUS_OK;
-    if (placement->file[0] == '\0') {
-        mf_json_fault(&particles, "file", "is required with \"placement\": \"file\"");
-        return STATUS_OK;
-    }
-    return read_positions(scene, &particles);
 }
 
 double mf_scene_mass_density(const struct scene *scene) {
     const double metres = scene->units.length * 1e-9;
-    const double kilograms = scene->units.mass * (double)scene->setup.placement.count;
+    const struct attributes_range masses =
+        mf_attributes_span(&scene->setup.attribute[ATTRIBUTES_MASS]);
+    const double mean = masses.maximum > 0 ? 0.5 * (masses.minimum + masses.maximum) : 1;
+    const double kilograms = mean * scene->units.mass * (double)scene->setup.placement.count;
     return 1e-3 * kilograms / (mf_box_volume(&scene->setup.box) * pow(metres, 3));
 }
 
@@ -241,7 +134,8 @@ bool mf_scene_is_hot(const struct scene *scene, char line[SCENE_LINE_SIZE]) {
              "temperature: %g in units of k_B T_0, which is 1 as a rule; kelvins belong into "
              "\"units\"",
              scene->setup.temperature);
-    return scene->setup.temperature > hottest && !mf_units_known(&scene->units);
+    return scene->setup.temperature > hottest && !mf_units_known(&scene->units) &&
+           scene->setup.attribute[ATTRIBUTES_MASS].ranges == 0;
 }
 
 /// Masses that are not in kg and temperatures that are in K.
@@ -273,7 +167,7 @@ enum status mf_scene_read(struct scene *scene, struct json_object *object, int u
     *scene = (struct scene){.unknown = unknown};
     mf_units_read(&scene->units, object);
     read_top(scene, object);
-    TRY(read_particles(scene, object));
+    TRY(mf_scene_particles_read(scene, object));
     check_units(scene, object);
     if (unknown == SCENE_FITS_OMEGA) // between what particles, a fit would ask in vain
         mf_json_child(object, "conservative", true);
@@ -312,18 +206,6 @@ const char *mf_scene_warning(const struct scene *scene) {
            "conserves its energy, and its temperature drifts";
 }
 
-static void write_count(const struct simulation_setup *setup, struct json_writer *writer) {
-    const struct composition *composition = &setup->composition;
-    if (!composition_is_mixed(composition)) {
-        mf_json_put_fields(writer, mf_placement_count_fields, &setup->placement);
-        return;
-    }
-    mf_json_begin(writer, "types");
-    for (int type = 0; type < composition->types; type++)
-        mf_json_put_number(writer, composition->name[type], (double)composition->count[type]);
-    mf_json_end(writer);
-}
-
 void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
     const struct simulation_setup *setup = &scene->setup;
     struct top top = {.dimensions = setup->box.dimensions,
@@ -335,10 +217,7 @@ void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
     for (int d = 0; d < setup->box.dimensions; d++)
         top.box[d] = setup->box.length[d];
     mf_json_put_fields(writer, mf_scene_fields, &top);
-    mf_json_begin(writer, "particles");
-    write_count(setup, writer);
-    mf_json_put_fields(writer, mf_placement_fields, &setup->placement);
-    mf_json_end(writer);
+    mf_scene_particles_write(scene, writer);
     if (scene->potential.curves || scene->unknown == SCENE_FITS_OMEGA)
         mf_scene_law_write(&scene->potential, &setup->composition, writer, "conservative");
     if (scene->omega.curves)
@@ -358,9 +237,5 @@ void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
 void mf_scene_digest(const struct scene *scene, uint64_t *digest) {
     mf_scene_law_digest(&scene->potential, digest);
     mf_scene_law_digest(&scene->omega, digest);
-    const size_t count = (size_t)scene->setup.placement.count;
-    for (int d = 0; d < scene->setup.box.dimensions; d++) {
-        mf_digest_add(digest, scene->start.position[d], count * sizeof(double));
-        mf_digest_add(digest, scene->start.velocity[d], count * sizeof(double));
-    }
+    mf_scene_particles_digest(scene, digest);
 }

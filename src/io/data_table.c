@@ -245,12 +245,16 @@ static size_t copy_line(char *text, const struct line *line, const char *begin) 
     return length;
 }
 
-static void read_comments(struct data_table *table, const char *text) {
+static void read_comments(struct data_table *table, const struct demand *demand, const char *text) {
     struct line line = first_line(text);
     char *end = table->comments;
     do {
-        if (is_data(&line))
+        if (is_row(demand, &line))
             return;
+        if (line.begin == demand->names) {
+            copy_line(table->header, &line, first_word(&line));
+            continue;
+        }
         if (!is_comment(&line))
             continue;
         const char *after_mark = first_word(&line) + 1;
@@ -275,7 +279,7 @@ static enum status read_table(struct data_table *table, const char *file, struct
     NEW_ARRAY(table->header, length + 1);
     NEW_ARRAY(table->comments, length + 2);
     CHECK(read_rows(table, file, demand, text));
-    read_comments(table, text);
+    read_comments(table, demand, text);
 done:
     mf_memory_free(text);
     if (status != STATUS_OK)

@@ -19,7 +19,7 @@ struct data_table {
     double *values; ///< shape [rows, columns], row-major
     size_t *line;   ///< shape [rows]: line number in the file, for messages
     char *flags;    ///< shape [rows]: the letter that ends each row; NULL unless asked for
-    char *header;   ///< the last comment line before the data, without `#`; "" if none
+    char *header;   ///< the line of names before the data, or the last comment without `#`; ""
     char *comments; ///< all comment lines before the data, as they stand in the file
 };
 

@@ -54,6 +54,9 @@ struct json_object mf_json_child_of(struct json_object *parent, const char *key,
 /// True if `key` is present, with any value. Counts as asked for.
 bool mf_json_has(struct json_object *object, const char *key);
 
+/// Whether an object stands at `key`. Counts as nothing. Tested: test_json.
+bool mf_json_is_object(const struct json_object *object, const char *key);
+
 /// How many items the array at `key` has; 0 if there is none. Counts as nothing. Tested: test_json.
 int mf_json_count(const struct json_object *object, const char *key);
 

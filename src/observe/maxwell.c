@@ -18,20 +18,19 @@ void mf_maxwell_clear(struct maxwell *maxwell) {
 
 void mf_maxwell_sample(struct maxwell *maxwell, const struct particles *particles,
                        double temperature, uint64_t seed, uint64_t step) {
-    const double count = (double)particles->count;
+    const double *mass = particles_masses(particles);
+    const double spread = sqrt(temperature / mf_particles_total_mass(particles));
     double normal[4];
     mf_rng_normal4(
         mf_rng_philox(seed, RNG_MEAN_VELOCITY, (uint32_t)step, (uint32_t)(step >> 32), 0), normal);
     for (int d = 0; d < particles->box.dimensions; d++) {
         // The order is that of the list, which is the same for any number of threads.
         const double *v = particles->velocity[d];
-        double mean = 0;
-        for (size_t k = 0; k < particles->count; k++)
-            mean += v[k];
-        const double shift = normal[d] * sqrt(temperature / count) - mean / count;
+        const double shift = normal[d] * spread - mf_particles_mean_velocity(particles, d);
         const double scale = -1 / sqrt(2 * temperature);
         for (size_t k = 0; k < particles->count; k++) {
-            const double share = 0.5 * erfc(scale * (v[k] + shift));
+            const double own = mass ? scale * sqrt(mass[k]) : scale;
+            const double share = 0.5 * erfc(own * (v[k] + shift));
             const size_t bin = (size_t)(share * MAXWELL_BINS);
             maxwell->counts[bin < MAXWELL_BINS ? bin : MAXWELL_BINS - 1]++;
         }

@@ -15,13 +15,13 @@ struct maxwell {
 enum status mf_maxwell_init(struct maxwell *maxwell) MUST_USE;
 void mf_maxwell_clear(struct maxwell *maxwell);
 
-/// Add all velocity components of a configuration.
+/// Add all velocity components of a configuration, times the square roots of the masses.
 ///
 /// The total momentum of a simulation is 0, so that its components are not independent: their mean
 /// is known, which narrows the statistic by a finite factor however many particles there are (the
 /// case of H. W. Lilliefors, J. Am. Stat. Assoc. 62, 399 (1967)), and p-values would crowd at 1.
-/// The mean velocity is therefore replaced by one drawn from N(0, T/N): what was canonical with
-/// momentum 0 is then exactly dN independent numbers N(0, T).
+/// The velocity of the centre of mass is therefore replaced by one drawn from N(0, T/Σm): what was
+/// canonical with momentum 0 is then exactly dN independent numbers N(0, T/m).
 /// @param[in] temperature  that was set [k_B T_0]
 /// @param[in] seed, step   of the drawn mean: the same for any order of particles or threads
 void mf_maxwell_sample(struct maxwell *maxwell, const struct particles *particles,

@@ -82,11 +82,16 @@ int64_t mf_motion_due(const struct motion *motion) {
 
 // Sampling ----------------------------------------------------------------------------------------
 
-static void subtract_mean(double *values, size_t count) {
-    double sum = 0;
-    for (size_t k = 0; k < count; k++)
-        sum += values[k];
-    const double mean = sum / (double)count;
+/// Make positions or velocities, by id, those relative to the centre of mass.
+static void subtract_mean(const struct particles *particles, double *values) {
+    const double *mass = particles_masses(particles);
+    const size_t count = particles->count;
+    double sum = 0, all = 0;
+    for (size_t k = 0; k < count; k++) {
+        sum += mass ? mass[k] * values[particles->id[k]] : values[k];
+        all += mass ? mass[k] : 1;
+    }
+    const double mean = sum / all;
     for (size_t k = 0; k < count; k++)
         values[k] -= mean;
 }
@@ -106,8 +111,8 @@ static void gather(struct motion *motion, const struct simulation *simulation) {
             v[id] = particles->velocity[d][k];
         }
         if (motion->flies) {
-            subtract_mean(x, count);
-            subtract_mean(v, count);
+            subtract_mean(particles, x);
+            subtract_mean(particles, v);
         }
     }
     if (integrator->forget)

@@ -70,7 +70,7 @@ size_t mf_motion_spans(struct motion *motion, struct memory_span *spans);
 /// Arrays of lags + 1 numbers, from time 0 on in steps of plan.every · time_step.
 struct motion_curves {
     double *msd, *msd_error;   ///< [λ²]
-    double *vacf, *vacf_error; ///< [λ²/τ²]; d k_B T at time 0
+    double *vacf, *vacf_error; ///< [λ²/τ²]; d k_B T ⟨1/m⟩ at time 0
 };
 
 struct motion_summary {

@@ -2,7 +2,6 @@
 #include "system/particles.h"
 
 #include "base/parallel.h"
-#include "base/rng.h"
 #include "base/simd.h"
 
 #include <stdlib.h>
@@ -116,6 +115,16 @@ enum status mf_particles_add_attribute(struct particles *particles,
             return STATUS_NO_MEMORY;
     }
     return STATUS_OK;
+}
+
+const double *mf_particles_numbers(const struct particles *particles, const char *name) {
+    for (int k = 0; k < particles->attributes; k++) {
+        const struct particles_attribute *attribute = &particles->attribute[k];
+        if (attribute->type == PARTICLES_DOUBLE && attribute->components == 1 &&
+            strcmp(attribute->name, name) == 0)
+            return attribute->value[0];
+    }
+    return NULL;
 }
 
 size_t mf_particles_spans(struct particles *particles, struct memory_span *spans) {
@@ -317,61 +326,6 @@ void mf_particles_permute(struct particles *particles, const uint32_t *order) {
             void **value = &particles->attribute[k].value[c];
             *value = permute(particles, *value, size_of(&particles->attribute[k]), order);
         }
-}
-
-void mf_particles_draw_velocities(struct particles *particles, double temperature, uint64_t seed) {
-    const double scale = sqrt(temperature);
-    for (size_t k = 0; k < particles->count; k++) {
-        double normal[4];
-        mf_rng_normal4(mf_rng_philox(seed, RNG_VELOCITIES, particles->id[k], 0, 0), normal);
-        for (int d = 0; d < particles->box.dimensions; d++)
-            particles->velocity[d][k] = scale * normal[d];
-    }
-    mf_particles_remove_momentum(particles);
-}
-
-void mf_particles_remove_momentum(struct particles *particles) {
-    for (int d = 0; d < particles->box.dimensions; d++) {
-        double *v = particles->velocity[d], sum = 0;
-        for (size_t k = 0; k < particles->count; k++)
-            sum += v[k];
-        const double mean = sum / (double)particles->count;
-        for (size_t k = 0; k < particles->count; k++)
-            v[k] -= mean;
-    }
-}
-
-SIMD_CLONES static double square_velocities(const void *context, size_t begin, size_t end) {
-    const struct particles *particles = context;
-    double sum[8] = {0};
-    for (int d = 0; d < particles->box.dimensions; d++) {
-        const double *v = particles->velocity[d] + begin;
-        const size_t count = end - begin;
-        for (size_t k = 0; k + 8 <= count; k += 8)
-            for (int lane = 0; lane < 8; lane++)
-                sum[lane] += v[k + lane] * v[k + lane];
-        for (size_t k = count / 8 * 8; k < count; k++)
-            sum[0] += v[k] * v[k];
-    }
-    return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
-}
-
-double mf_particles_square_velocities(const struct particles *particles) {
-    return mf_parallel_sum(particles->count, particles->threads, square_velocities, particles);
-}
-
-double mf_particles_temperature(const struct particles *particles) {
-    double squares = 0;
-    for (int d = 0; d < particles->box.dimensions; d++) {
-        const double *v = particles->velocity[d];
-        double mean = 0;
-        for (size_t k = 0; k < particles->count; k++)
-            mean += v[k];
-        mean /= (double)particles->count;
-        for (size_t k = 0; k < particles->count; k++)
-            squares += (v[k] - mean) * (v[k] - mean);
-    }
-    return squares / (particles->box.dimensions * ((double)particles->count - 1));
 }
 
 double mf_particles_largest_force(const struct particles *particles) {

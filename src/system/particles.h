@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file The state of all particles: separate arrays, sorted in space by the neighbour search.
 ///
-/// Masses are 1 [μ]. Particle number k of the arrays changes at every sort; `id` does not. One
-/// table in particles.c says of every array how it is allocated, sorted and saved.
+/// Masses are 1 [μ], unless the particles have the attribute "mass". Particle number k of the
+/// arrays changes at every sort; `id` does not. One table in particles.c says of every array how it
+/// is allocated, sorted and saved.
 #pragma once
 
 #include "base/memory.h"
@@ -39,7 +40,7 @@ struct particle_precise_motion {
 enum { PARTICLES_MOST_ATTRIBUTES = 8, PARTICLES_MOST_COMPONENTS = 4 };
 enum particles_type { PARTICLES_DOUBLE, PARTICLES_FLOAT, PARTICLES_WORD };
 struct particles_attribute {
-    const char *name; ///< unit in brackets, as a table's column
+    const char *name; ///< as a scene and tables have it
     enum particles_type type;
     int components;
     /// Shape [components][count]: double, float or uint32_t. Sorting exchanges the arrays, so take
@@ -85,6 +86,17 @@ enum status mf_particles_add_attribute(struct particles *particles,
                                        const struct particles_attribute *attribute,
                                        int *number) MUST_USE;
 
+/// The numbers of an attribute of one double, by its name: shape [count], good until the next sort.
+/// NULL if the particles have none of that name.
+const double *mf_particles_numbers(const struct particles *particles, const char *name);
+
+/// Masses [μ], shape [count], or NULL: all are 1.
+static inline const double *particles_masses(const struct particles *particles) {
+    return mf_particles_numbers(particles, "mass");
+}
+
+double mf_particles_total_mass(const struct particles *particles);
+
 /// Particles per volume [1/λ^d].
 double mf_particles_density(const struct particles *particles);
 
@@ -109,17 +121,32 @@ void mf_particles_permute(struct particles *particles, const uint32_t *order);
 enum { PARTICLES_SPANS = 13 + PARTICLES_MOST_ATTRIBUTES * PARTICLES_MOST_COMPONENTS };
 size_t mf_particles_spans(struct particles *particles, struct memory_span *spans);
 
-/// Maxwell velocities at `temperature` [k_B T_0] with zero total momentum; the same for the same
-/// seed and ids, whatever the order.
-void mf_particles_draw_velocities(struct particles *particles, double temperature, uint64_t seed);
+/// How the components of the first velocities are distributed.
+enum particles_speeds {
+    PARTICLES_MAXWELL, ///< normal, of variance T/m
+    PARTICLES_NORMAL,  ///< normal, of variance T/⟨m⟩ whatever the mass
+    PARTICLES_UNIFORM, ///< uniform, of that variance
+    PARTICLES_SIGNS    ///< sqrt(T/⟨m⟩) with a random sign
+};
 
-/// Subtract the mean velocity.
+/// Draw velocities at `temperature` [k_B T_0] with zero total momentum; the same for the same seed
+/// and ids, whatever the order. Only Maxwell's are those of equilibrium.
+void mf_particles_draw_velocities(struct particles *particles, enum particles_speeds speeds,
+                                  double temperature, uint64_t seed);
+
+/// Subtract the velocity of the centre of mass.
 void mf_particles_remove_momentum(struct particles *particles);
 
-/// Σ v² of all particles [k_B T_0]; NaN or infinite if anything is.
+/// Velocity of the centre of mass along an axis, Σ m v / Σ m [λ/τ].
+double mf_particles_mean_velocity(const struct particles *particles, int axis);
+
+/// Σ v² of all particles [λ²/τ²]; NaN or infinite if anything is.
 double mf_particles_square_velocities(const struct particles *particles);
 
-/// Kinetic temperature Σ v² / (d (N − 1)) with the momentum of the centre of mass removed
+/// ½ Σ m v² of all particles [k_B T_0]; NaN or infinite if anything is.
+double mf_particles_kinetic_energy(const struct particles *particles);
+
+/// Kinetic temperature Σ m v² / (d (N − 1)) with the motion of the centre of mass removed
 /// [k_B T_0].
 double mf_particles_temperature(const struct particles *particles);
 

@@ -5,6 +5,8 @@
 #include "base/rng.h"
 
 static const char *const kinds[] = {"lattice", "random", "file", NULL};
+static const char *const speeds[] = {"maxwell", "normal", "uniform", "signs",
+                                     NULL}; // enum particles_speeds
 
 #define MEMBER(name) .offset = offsetof(struct placement, name)
 const struct field mf_placement_count_fields[] = {
@@ -23,7 +25,12 @@ const struct field mf_placement_fields[] = {
     {"separation", FIELD_NUMBER, MEMBER(separation), .initial = 0.5, .minimum = 0,
      .maximum = DBL_MAX, .unit = "lambda", .help = "random: least distance of any two"},
     {"file", FIELD_FILE, MEMBER(file), .unit = "",
-     .help = "file: columns x, y (, z) and, if wanted, the velocities"},
+     .help = "file: columns x, y (, z) and, if wanted, the velocities; further ones are called "
+             "mass, radius or stiffness in a line of names above"},
+    {"velocities", FIELD_CHOICE, MEMBER(speeds), .initial = PARTICLES_MAXWELL, .choices = speeds,
+     .unit = "",
+     .help = "the first ones: maxwell is equilibrium; normal, uniform and signs (equal but for the "
+             "sign) have the same spread for all masses"},
     FIELD_END,
 };
 

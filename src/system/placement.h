@@ -13,6 +13,7 @@ struct placement {
     int kind;          ///< enum placement_kind
     double jitter;     ///< lattice: largest shift along an axis, as a fraction of the spacing
     double separation; ///< random: least distance of any two [λ]
+    int speeds;        ///< enum particles_speeds, unless the file has velocities
     char file[FIELD_TEXT_SIZE];
 };
 

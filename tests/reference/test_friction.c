@@ -177,7 +177,7 @@ static void check_pair(const struct integrator *integrator,
         variants_select(&variants[v]);
         kept.law.precision = variants[v].precision;
         const uint64_t step = 7 + (uint64_t)v;
-        mf_particles_draw_velocities(particles, 1, step);
+        mf_particles_draw_velocities(particles, PARTICLES_MAXWELL, 1, step);
         const double u = relative(particles), across = particles->velocity[1][0];
         kept_pairs_momentum(particles, before, &size);
         kept_pairs_keep(&kept, step);

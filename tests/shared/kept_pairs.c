@@ -17,7 +17,7 @@ void kept_pairs_init(struct kept_pairs *kept, const struct box *box, size_t coun
     assert_ok(mf_particles_keep_precise(&kept->particles));
     kept->particles.threads = 1;
     assert_ok(mf_placement_random(&kept->particles, separation, 5));
-    mf_particles_draw_velocities(&kept->particles, kept->law.temperature, 6);
+    mf_particles_draw_velocities(&kept->particles, PARTICLES_MAXWELL, kept->law.temperature, 6);
     assert_ok(mf_neighbours_init(&kept->neighbours, NEIGHBOURS_HALF, box, count,
                                  mf_pair_cutoff(&kept->law), 0.2));
     assert_ok(mf_neighbours_sort_and_build(&kept->neighbours, &kept->particles));

@@ -84,7 +84,7 @@ void pairs_place(struct particles *particles, const struct pairs_system *system)
         mf_placement_lattice(particles, 0.1, 5);
     else
         place_random(particles, system->arrangement == PAIRS_CLUSTERED ? 0.6 : 0, 5);
-    mf_particles_draw_velocities(particles, 1.3, 6);
+    mf_particles_draw_velocities(particles, PARTICLES_MAXWELL, 1.3, 6);
 }
 
 void pairs_make(struct particles *particles, struct neighbours *neighbours,

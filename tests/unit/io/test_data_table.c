@@ -57,6 +57,15 @@ static void test_data_table_read_takes_windows_line_ends_when_present(void **sta
     mf_data_table_clear(&table);
 }
 
+static void test_data_table_read_takes_a_line_of_names_for_the_header(void **state) {
+    struct data_table table;
+    assert_ok(mf_data_table_read(&table, write_text(state, "# a run\nx y mass\n1 2 3\n"), 3));
+    assert_string_equal(table.header, "x y mass");
+    assert_string_equal(table.comments, "# a run\n");
+    assert_int_equal(table.rows, 1);
+    mf_data_table_clear(&table);
+}
+
 static void test_data_table_read_has_an_empty_header_when_there_is_no_comment(void **state) {
     struct data_table table;
     assert_ok(mf_data_table_read(&table, write_text(state, "1\n# late\n2\n"), 1));
@@ -227,6 +236,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         IN_FOLDER(test_data_table_read_finds_rows_when_comments_and_blanks_surround_them),
         IN_FOLDER(test_data_table_read_takes_windows_line_ends_when_present),
+        IN_FOLDER(test_data_table_read_takes_a_line_of_names_for_the_header),
         IN_FOLDER(test_data_table_read_has_an_empty_header_when_there_is_no_comment),
         IN_FOLDER(test_data_table_read_takes_nan_when_it_stands_beyond_the_wanted_columns),
         IN_FOLDER(test_data_table_read_takes_commas_and_semicolons_when_the_first_row_has_them),

@@ -200,6 +200,8 @@ static void test_json_count_is_of_the_items_of_an_array(void **state) {
     assert_int_equal(mf_json_count(&root, "b"), 0);
     assert_int_equal(mf_json_count(&root, "c"), 0);
     assert_int_equal(mf_json_count(&root, "d"), 0);
+    assert_false(mf_json_is_object(&root, "a"));
+    assert_false(mf_json_is_object(&root, "d"));
     assert_ok(mf_json_close(document, STATUS_OK));
 }
 

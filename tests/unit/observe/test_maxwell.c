@@ -33,7 +33,7 @@ static double test_velocities(double drawn_at, double tested_at, uint64_t seed) 
     assert_ok(mf_particles_init(&particles, &cube, PARTICLES));
     assert_ok(mf_maxwell_init(&maxwell));
     for (uint64_t step = 0; step < 3; step++) {
-        mf_particles_draw_velocities(&particles, drawn_at,
+        mf_particles_draw_velocities(&particles, PARTICLES_MAXWELL, drawn_at,
                                      mf_rng_child_seed(seed, RNG_INITIAL, 1, (uint32_t)step));
         mf_maxwell_sample(&maxwell, &particles, tested_at, seed, step);
     }

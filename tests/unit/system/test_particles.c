@@ -205,7 +205,7 @@ static void test_particles_draw_velocities_gives_maxwell_when_many(void **state)
     enum { COUNT = 20000 };
     struct particles particles;
     assert_ok(mf_particles_init(&particles, &three, COUNT));
-    mf_particles_draw_velocities(&particles, 2.5, 11);
+    mf_particles_draw_velocities(&particles, PARTICLES_MAXWELL, 2.5, 11);
     for (int d = 0; d < 3; d++) {
         double sum = 0, squares = 0, fourth = 0;
         for (size_t k = 0; k < COUNT; k++) {
@@ -230,12 +230,12 @@ static void test_particles_draw_velocities_goes_by_id_when_order_differs(void **
     assert_ok(mf_particles_init(&first, &three, 5));
     assert_ok(mf_particles_init(&second, &three, 5));
     mf_particles_permute(&second, order);
-    mf_particles_draw_velocities(&first, 1, 4);
-    mf_particles_draw_velocities(&second, 1, 4);
+    mf_particles_draw_velocities(&first, PARTICLES_MAXWELL, 1, 4);
+    mf_particles_draw_velocities(&second, PARTICLES_MAXWELL, 1, 4);
     for (size_t k = 0; k < 5; k++)
         // Only the mean, summed in another order, differs.
         assert_close(second.velocity[0][k], first.velocity[0][order[k]], 1e-15);
-    mf_particles_draw_velocities(&second, 1, 5);
+    mf_particles_draw_velocities(&second, PARTICLES_MAXWELL, 1, 5);
     assert_true(fabs(second.velocity[0][0] - first.velocity[0][3]) > 1e-3);
     mf_particles_clear(&first);
     mf_particles_clear(&second);

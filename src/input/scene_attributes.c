@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "input/scene_attributes.h"
+
+#include <math.h>
+
+/// A number, or {"minimum": …, "maximum": …}.
+static void read_range(struct json_object *parent, const char *key, const struct field *kind,
+                       struct attributes_range *range) {
+    struct field fields[] = {*kind, *kind, FIELD_END};
+    for (int k = 0; k < 2; k++) {
+        fields[k].required = true;
+        fields[k].initial = 0;
+        fields[k].help = "of a particle";
+    }
+    fields[0].offset = offsetof(struct attributes_range, minimum);
+    fields[1].offset = offsetof(struct attributes_range, maximum);
+    if (!mf_json_is_object(parent, key)) {
+        fields[0].name = key;
+        fields[1] = (struct field)FIELD_END;
+        mf_json_fields(parent, fields, range);
+        range->maximum = range->minimum;
+        return;
+    }
+    struct json_object own = mf_json_child(parent, key, true);
+    fields[0].name = "minimum";
+    fields[1].name = "maximum";
+    const size_t faults = mf_json_fault_count(own.document);
+    mf_json_fields(&own, fields, range);
+    mf_json_finish(&own);
+    if (mf_json_fault_count(own.document) == faults && range->minimum > range->maximum)
+        mf_json_fault(&own, "maximum", "%g is below the minimum of %g", range->maximum,
+                      range->minimum);
+}
+
+/// {"A": …, "B": …}, a range or number for each type.
+static void read_types(struct json_object *particles, const struct field *kind,
+                       const struct composition *composition, struct attributes_source *source) {
+    struct json_object own = mf_json_child(particles, kind->name, true);
+    source->ranges = composition->types;
+    for (int type = 0; type < composition->types; type++)
+        read_range(&own, composition->name[type], kind, &source->range[type]);
+    mf_json_finish(&own);
+}
+
+static bool is_by_type(const struct json_object *particles, const struct field *kind) {
+    struct json_object parent = *particles; // looks, and asks for nothing
+    struct json_object own = mf_json_child(&parent, kind->name, false);
+    return !mf_json_has(&own, "minimum") && !mf_json_has(&own, "maximum");
+}
+
+void mf_scene_attributes_read(struct scene *scene, struct json_object *particles) {
+    const struct composition *composition = &scene->setup.composition;
+    for (int k = 0; k < ATTRIBUTES_NAMES; k++) {
+        const struct field *kind = &mf_attributes_fields[k];
+        struct attributes_source *source = &scene->setup.attribute[k];
+        if (!mf_json_has(particles, kind->name))
+            continue;
+        if (composition_is_mixed(composition) && mf_json_is_object(particles, kind->name) &&
+            is_by_type(particles, kind)) {
+            read_types(particles, kind, composition, source);
+            continue;
+        }
+        source->ranges = 1;
+        read_range(particles, kind->name, kind, &source->range[0]);
+    }
+}
+
+/// The attribute that a column is called by in the line of names, units in brackets aside;
+/// ATTRIBUTES_NAMES if it is none.
+static int attribute_of(const struct data_table *table, size_t column) {
+    static const char gaps[] = " \t,;";
+    const char *name = table->header + strspn(table->header, gaps);
+    while (column-- > 0) {
+        name += strcspn(name, gaps);
+        name += strspn(name, gaps);
+    }
+    const size_t length = strcspn(name, " \t,;[");
+    int k = 0;
+    while (k < ATTRIBUTES_NAMES && (strlen(mf_attributes_fields[k].name) != length ||
+                                    strncmp(mf_attributes_fields[k].name, name, length) != 0))
+        k++;
+    return k;
+}
+
+size_t mf_scene_attributes_first_column(const struct data_table *table) {
+    size_t first = table->columns;
+    while (first > 0 && attribute_of(table, first - 1) != ATTRIBUTES_NAMES)
+        first--;
+    return first;
+}
+
+void mf_scene_attributes_column(struct scene *scene, struct json_object *particles,
+                                const struct data_table *table, size_t column,
+                                const double *values) {
+    const char *file = scene->setup.placement.file;
+    const int number = attribute_of(table, column);
+    const struct field *kind = &mf_attributes_fields[number];
+    struct attributes_source *source = &scene->setup.attribute[number];
+    if (source->ranges > 0)
+        mf_json_fault(particles, kind->name, "stands in %s, too", file);
+    *source = (struct attributes_source){
+        .ranges = 1, .range = {{values[0], values[0]}}, .column = values};
+    for (size_t row = 0; row < table->rows; row++) {
+        char range[64];
+        source->range[0].minimum = fmin(source->range[0].minimum, values[row]);
+        source->range[0].maximum = fmax(source->range[0].maximum, values[row]);
+        if (values[row] >= kind->minimum)
+            continue;
+        mf_fields_range_text(kind, range, sizeof range);
+        mf_json_fault(particles, "file", "%s:%zu: the %s %g is out of range; allowed: %s", file,
+                      table->line[row], kind->name, values[row], range);
+        return;
+    }
+}
+
+static void write_range(struct json_writer *writer, const char *key,
+                        const struct attributes_range *range) {
+    if (range->minimum == range->maximum) {
+        mf_json_put_number(writer, key, range->minimum);
+        return;
+    }
+    mf_json_begin(writer, key);
+    mf_json_put_number(writer, "minimum", range->minimum);
+    mf_json_put_number(writer, "maximum", range->maximum);
+    mf_json_end(writer);
+}
+
+void mf_scene_attributes_write(const struct scene *scene, struct json_writer *writer) {
+    for (int k = 0; k < ATTRIBUTES_NAMES; k++) {
+        const struct attributes_source *source = &scene->setup.attribute[k];
+        const char *name = mf_attributes_fields[k].name;
+        if (source->ranges == 0 || source->column)
+            continue;
+        if (source->ranges == 1) {
+            write_range(writer, name, &source->range[0]);
+            continue;
+        }
+        mf_json_begin(writer, name);
+        for (int type = 0; type < source->ranges; type++)
+            write_range(writer, scene->setup.composition.name[type], &source->range[type]);
+        mf_json_end(writer);
+    }
+}

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "input/scene_particles.h"
+
+#include "base/digest.h"
+#include "base/memory.h"
+#include "input/scene_attributes.h"
+#include "io/data_table.h"
+
+#include <math.h>
+
+/// Coordinates may be unwrapped, but so far outside they are in other units, as nm and pm.
+static const double most_boxes = 100;
+
+/// Whether all coordinates of a file are within most_boxes of the box; tells of the first that is
+/// not.
+static bool are_near(const struct scene *scene, const struct data_table *table,
+                     struct json_object *particles) {
+    const struct box *box = &scene->setup.box;
+    for (size_t k = 0; k < table->rows; k++)
+        for (int d = 0; d < box->dimensions; d++) {
+            const double x = table->values[k * table->columns + (size_t)d];
+            if (fabs(x) <= most_boxes * box->length[d])
+                continue;
+            mf_json_fault(
+                particles, "file",
+                "%s:%zu: the coordinate %g is more than %g boxes of %g away; are the units "
+                "those of \"box\"?",
+                scene->setup.placement.file, table->line[k], x, most_boxes, box->length[d]);
+            return false;
+        }
+    return true;
+}
+
+/// Columns x, y (, z), if there are as many again the velocities, and attributes by their names.
+static enum status read_positions(struct scene *scene, struct json_object *particles) {
+    const struct placement *placement = &scene->setup.placement;
+    const size_t dimensions = (size_t)scene->setup.box.dimensions;
+    struct data_table table = {0};
+    enum status status = mf_data_table_read(&table, placement->file, dimensions);
+    if (status != STATUS_OK) {
+        mf_json_fault(particles, "file", "%s", mf_status_message());
+        return status == STATUS_NO_MEMORY ? status : STATUS_OK;
+    }
+    const size_t motion = mf_scene_attributes_first_column(&table);
+    if (table.rows != (size_t)placement->count ||
+        (motion != dimensions && motion != 2 * dimensions)) {
+        mf_json_fault(particles, "file",
+                      "%s: %zu rows of %zu numbers, not %lld of %zu or %zu; other columns are "
+                      "called mass, radius or stiffness in a line of names",
+                      placement->file, table.rows, motion, (long long)placement->count, dimensions,
+                      2 * dimensions);
+        goto done;
+    }
+    if (!are_near(scene, &table, particles))
+        goto done;
+    NEW_ARRAY(scene->start_values, table.rows * table.columns);
+    for (size_t column = 0; column < table.columns; column++) {
+        double *values = scene->start_values + column * table.rows;
+        for (size_t k = 0; k < table.rows; k++)
+            values[k] = table.values[k * table.columns + column];
+        if (column < dimensions)
+            scene->start.position[column] = values;
+        else if (column < motion)
+            scene->start.velocity[column - dimensions] = values;
+        else
+            mf_scene_attributes_column(scene, particles, &table, column, values);
+    }
+done:
+    mf_data_table_clear(&table);
+    return status;
+}
+
+static void read_count(struct scene *scene, struct json_object *particles) {
+    mf_json_fields(particles, mf_placement_count_fields, &scene->setup.placement);
+    scene->setup.composition = mf_composition_of_one(scene->setup.placement.count);
+}
+
+/// One type of a mixture and how many beads there are of it, after those that were read before.
+static void read_type(struct scene *scene, struct json_object *types, const char *name) {
+    struct composition *composition = &scene->setup.composition;
+    struct field fields[] = {mf_placement_count_fields[0], FIELD_END};
+    int64_t *count = &composition->count[composition->types];
+    fields[0].name = name;
+    fields[0].offset = 0;
+    mf_json_fields(types, fields, count);
+    scene->setup.placement.count += *count;
+    if (!mf_composition_is_name(name))
+        mf_json_fault(types, name, "a type is called by up to %d letters, digits and _",
+                      COMPOSITION_NAME_SIZE - 1);
+    snprintf(composition->name[composition->types++], COMPOSITION_NAME_SIZE, "%s", name);
+}
+
+/// "types": {"A": 500, "B": 300} in the place of "count".
+static void read_types(struct scene *scene, struct json_object *particles) {
+    struct json_object types = mf_json_child(particles, "types", true);
+    const size_t faults = mf_json_fault_count(types.document);
+    size_t n = 0;
+    for (const char *name; (name = mf_json_key(&types, n)); n++)
+        if (n < COMPOSITION_MOST_TYPES)
+            read_type(scene, &types, name);
+    if (types.item && (n < 2 || n > COMPOSITION_MOST_TYPES))
+        mf_json_fault(particles, "types",
+                      "a mixture has 2 to %d types, not %zu; \"count\" is for one",
+                      COMPOSITION_MOST_TYPES, n);
+    if (types.item == NULL || mf_json_fault_count(types.document) > faults)
+        scene->setup.composition.types = 0; // not known
+}
+
+enum status mf_scene_particles_read(struct scene *scene, struct json_object *object) {
+    struct json_object particles = mf_json_child(object, "particles", true);
+    struct placement *placement = &scene->setup.placement;
+    if (mf_json_has(&particles, "types"))
+        read_types(scene, &particles);
+    else
+        read_count(scene, &particles);
+    mf_json_fields(&particles, mf_placement_fields, placement);
+    mf_scene_attributes_read(scene, &particles);
+    if (particles.item == NULL)
+        return STATUS_OK;
+    mf_json_finish(&particles);
+    if (placement->kind != PLACEMENT_FILE)
+        return STATUS_OK;
+    if (placement->file[0] == '\0') {
+        mf_json_fault(&particles, "file", "is required with \"placement\": \"file\"");
+        return STATUS_OK;
+    }
+    return read_positions(scene, &particles);
+}
+
+static void write_count(const struct simulation_setup *setup, struct json_writer *writer) {
+    const struct composition *composition = &setup->composition;
+    if (!composition_is_mixed(composition)) {
+        mf_json_put_fields(writer, mf_placement_count_fields, &setup->placement);
+        return;
+    }
+    mf_json_begin(writer, "types");
+    for (int type = 0; type < composition->types; type++)
+        mf_json_put_number(writer, composition->name[type], (double)composition->count[type]);
+    mf_json_end(writer);
+}
+
+void mf_scene_particles_write(const struct scene *scene, struct json_writer *writer) {
+    mf_json_begin(writer, "particles");
+    write_count(&scene->setup, writer);
+    mf_json_put_fields(writer, mf_placement_fields, &scene->setup.placement);
+    mf_scene_attributes_write(scene, writer);
+    mf_json_end(writer);
+}
+
+void mf_scene_particles_digest(const struct scene *scene, uint64_t *digest) {
+    const size_t bytes = (size_t)scene->setup.placement.count * sizeof(double);
+    for (int d = 0; d < scene->setup.box.dimensions; d++) {
+        mf_digest_add(digest, scene->start.position[d], bytes);
+        mf_digest_add(digest, scene->start.velocity[d], bytes);
+    }
+    for (int k = 0; k < ATTRIBUTES_NAMES; k++)
+        mf_digest_add(digest, scene->setup.attribute[k].column,
+                      scene->setup.attribute[k].column ? bytes : 0);
+}

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "system/attributes.h"
+
+#include "base/rng.h"
+
+const struct field mf_attributes_fields[] = {
+    {"mass", FIELD_NUMBER, .initial = NAN, .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX,
+     .unit = "mass",
+     .help = "of each particle: a number, {\"minimum\": …, \"maximum\": …} for uniform ones, or "
+             "either for each type; 1 without"},
+    {"radius", FIELD_NUMBER, .initial = NAN, .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX,
+     .unit = "lambda", .help = "of each particle, likewise, for what asks for it"},
+    {"stiffness", FIELD_NUMBER, .initial = NAN, .minimum = 0, .maximum = DBL_MAX, .unit = "",
+     .help = "of each particle, likewise, for what asks for it and says its unit"},
+    FIELD_END,
+};
+
+struct attributes_range mf_attributes_span(const struct attributes_source *source) {
+    struct attributes_range span = source->range[0];
+    for (int type = 1; type < source->ranges; type++) {
+        span.minimum = fmin(span.minimum, source->range[type].minimum);
+        span.maximum = fmax(span.maximum, source->range[type].maximum);
+    }
+    return span;
+}
+
+static double number_of(const struct attributes_source *source, enum attributes_name name,
+                        const struct composition *composition, uint32_t id, uint64_t seed) {
+    if (source->column)
+        return source->column[id];
+    const int type = source->ranges > 1 ? mf_composition_type(composition, id) : 0;
+    const struct attributes_range *range = &source->range[type];
+    const struct rng_block block = mf_rng_philox(seed, RNG_PLACEMENT, id, (uint32_t)name, 1);
+    const double share = mf_rng_uniform(block.word[0], block.word[1]);
+    return range->minimum + share * (range->maximum - range->minimum);
+}
+
+enum status mf_attributes_give(struct particles *particles,
+                               const struct attributes_source source[ATTRIBUTES_NAMES],
+                               const struct composition *composition, uint64_t seed) {
+    for (int name = 0; name < ATTRIBUTES_NAMES; name++) {
+        const struct particles_attribute attribute = {
+            .name = mf_attributes_fields[name].name, .type = PARTICLES_DOUBLE, .components = 1};
+        int number;
+        if (source[name].ranges == 0)
+            continue;
+        TRY(mf_particles_add_attribute(particles, &attribute, &number));
+        double *value = particles->attribute[number].value[0];
+        for (size_t k = 0; k < particles->count; k++)
+            value[k] = number_of(&source[name], (enum attributes_name)name, composition,
+                                 particles->id[k], seed);
+    }
+    return STATUS_OK;
+}
