@@ -15,6 +15,10 @@ static double companions(const struct simulation_setup *setup) {
     return mf_solvent_count(parameters_of(setup), &setup->box);
 }
 
+static bool holds_temperature(const struct simulation_setup *setup) {
+    return parameters_of(setup)->thermostat;
+}
+
 static enum status begin(struct simulation *simulation) {
     const struct simulation_setup *setup = &simulation->setup;
     struct solvent *solvent = simulation->integrator_state;
@@ -42,15 +46,16 @@ static size_t spans(void *state, struct memory_span *spans) {
     return n;
 }
 
-/// v += ½ Δt F/m, and the acceleration of all.
+/// v += ½ Δt (F/m + g).
 static void kick(struct simulation *simulation) {
     const struct solvent *solvent = simulation->integrator_state;
     struct particles *beads = &simulation->particles;
-    const double half = 0.5 * simulation->setup.time_step;
-    for (int d = 0; d < beads->box.dimensions; d++)
-        for (size_t k = 0; k < beads->count; k++)
-            beads->velocity[d][k] +=
-                half * (beads->force[d][k] / 1.0 + solvent->parameters.acceleration[d]);
+    mf_simulation_kick(simulation);
+    for (int d = 0; d < beads->box.dimensions; d++) {
+        const double more = 0.5 * simulation->setup.time_step * solvent->parameters.acceleration[d];
+        for (size_t k = 0; k < beads->count && more != 0; k++)
+            beads->velocity[d][k] += more;
+    }
 }
 
 /// x += Δt v, turned back by walls.
@@ -168,6 +173,10 @@ static const struct field fields[] = {
      .help = "at random before each collision; without it what flows is another fluid"},
     {"walls", FIELD_CHOICE, MEMBER(walls), .choices = walls, .initial = COLLISION_NO_WALLS,
      .unit = "", .help = "plates where y is 0 and at the edge of the box, at rest; fluid sticks"},
+    {"wall_filling", FIELD_NUMBER, MEMBER(wall_filling), .initial = 1.5, .minimum = 0,
+     .maximum = 10, .unit = "particles_per_cell",
+     .help = "up to which virtual particles fill cells that a wall cuts: 1.5 lets the fluid stick, "
+             "1, as is usual, lets it slip by a quarter of a cell"},
     {"acceleration", FIELD_LENGTHS, MEMBER(acceleration), .minimum = -DBL_MAX, .maximum = DBL_MAX,
      .unit = "lambda/tau^2", .help = "of the solvent and the beads, along each axis"},
     {"wave_acceleration", FIELD_NUMBER, MEMBER(wave_acceleration), .initial = 0,
@@ -196,5 +205,7 @@ const struct integrator mf_collision_dynamics = {
     .spans = spans,
     .companions = companions,
     .companion_cost = 12,
+    .masses = true,
+    .holds_temperature = holds_temperature,
     .step = step,
 };

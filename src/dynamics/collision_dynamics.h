@@ -19,6 +19,7 @@ struct collision_dynamics_parameters {
     int thermostat;            ///< 0 or 1: of every cell
     int grid_shift;            ///< 0 or 1
     int walls;                 ///< enum collision_walls
+    double wall_filling;       ///< cells that a wall cuts are filled up to so many times M
     double acceleration[3];    ///< g, of all particles                                   [λ/τ²]
     double wave_acceleration;  ///< A of A sin(2π y/L_y) along x                          [λ/τ²]
     double drift[3];           ///< mean velocity of the solvent at the start              [λ/τ]

@@ -47,6 +47,8 @@ struct integrator {
     /// be none, and what one costs a step in nanoseconds, for --explain. NULL: it has none.
     double (*companions)(const struct simulation_setup *setup);
     double companion_cost;
+    /// Whether it holds the temperature of the setup by itself. NULL: not without ω.
+    bool (*holds_temperature)(const struct simulation_setup *setup);
     /// Advance by one step, with one call of mf_simulation_compute_forces.
     enum status (*step)(struct simulation *simulation);
 };

@@ -138,9 +138,11 @@ static inline double simulation_moved(const struct simulation_setup *setup) {
     return fmax(1, (double)setup->placement.count + own);
 }
 
-/// Whether friction and noise hold the temperature of the setup.
+/// Whether friction and noise, or the integrator itself, hold the temperature of the setup.
 static inline bool simulation_holds_temperature(const struct simulation_setup *setup) {
-    return setup->omega || simulation_is_overdamped(setup);
+    const struct integrator *integrator = setup->integrator;
+    return setup->omega || simulation_is_overdamped(setup) ||
+           (integrator->holds_temperature && integrator->holds_temperature(setup));
 }
 
 /// What the choice of a skin depends on. The integrator's parameters must be given.

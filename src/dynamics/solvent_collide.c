@@ -32,8 +32,8 @@ struct collision {
 };
 
 static double bead_mass(const struct pass *pass, size_t bead) {
-    (void)pass, (void)bead;
-    return 1;
+    const double *mass = particles_masses(pass->beads);
+    return mass ? mass[bead] : 1;
 }
 
 INLINE struct sums add_solvent(const struct solvent *solvent, uint32_t begin, uint32_t end,
@@ -70,12 +70,18 @@ INLINE void add_beads(const struct pass *pass, size_t cell, struct sums *sums,
 }
 
 /// The part of a wall in a cell, at rest on the average: all its virtual particles as one body.
+///
+/// A cell of which a plate leaves the share x, filled up to c M, takes from a shear flow that ends
+/// at y = −b the momentum ρ (1 − ρ_1) x a (x a/2 + b)(1 − x/c), on the average over the shifts
+/// a²/6 − a²/(8 c) + b a (1/2 − 1/(3 c)) times the shear. The bulk hands on a²/12: so c = 1 has
+/// the slip b = a/4, and c = 3/2 none.
 /// @return its mass, 0: none
 INLINE double add_wall(const struct pass *pass, size_t cell, int particles, struct sums *sums,
                        const int dimensions) {
     const struct solvent *solvent = pass->solvent;
+    const struct collision_dynamics_parameters *parameters = &solvent->parameters;
     const double mass =
-        solvent->parameters.mass * (solvent->parameters.particles_per_cell - particles);
+        parameters->mass * (parameters->wall_filling * parameters->particles_per_cell - particles);
     double normal[4];
     if (!(mass > 0))
         return 0;
@@ -235,7 +241,7 @@ INLINE void collide_part(const struct pass *pass, int part, const int dimensions
         const double wall = cut ? add_wall(pass, cell, (int)(end - begin), &sums, dimensions) : 0;
         if (sums.bodies < 2)
             continue;
-        struct collision collision;
+        struct collision collision = {.shift = {0}};
         if (dimensions == 2) {
             if (cell / CELLS_A_BLOCK != known) {
                 known = cell / CELLS_A_BLOCK;

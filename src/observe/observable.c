@@ -2,7 +2,7 @@
 #include "observe/observable.h"
 
 /// Of which nothing else knows.
-extern const struct observable mf_structure_factor;
+extern const struct observable mf_structure_factor, mf_flow_profile, mf_flow_field;
 
 const struct observable *const mf_observables[] = {
     &mf_rdf_observable,
@@ -11,6 +11,7 @@ const struct observable *const mf_observables[] = {
     &mf_thermodynamics_observable,
     &mf_force_covariance_observable,
     &mf_structure_factor,
+    &mf_flow_profile,
     NULL,
 };
 

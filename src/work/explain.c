@@ -117,8 +117,8 @@ void mf_explain_scene(FILE *out, const struct simulation_setup *setup,
         total += stages.stage[k].nanoseconds;
     const double rate = 1e9 / (total * counted(setup));
     const double digits = pow(10, floor(log10(rate)) - 1);
-    fprintf(out, "%lld particles: about %.4g steps/s with one thread of a processor of 2024\n",
-            (long long)setup->placement.count, digits * round(rate / digits));
+    fprintf(out, "%.0f particles: about %.4g steps/s with one thread of a processor of 2024\n",
+            simulation_moved(setup), digits * round(rate / digits));
     for (int k = 0; k < stages.count; k++) {
         const struct stage *stage = &stages.stage[k];
         const double share = 100 * stage->nanoseconds / total;
