@@ -173,9 +173,9 @@ static const struct field fields[] = {
      .help = "at random before each collision; without it what flows is another fluid"},
     {"walls", FIELD_CHOICE, MEMBER(walls), .choices = walls, .initial = COLLISION_NO_WALLS,
      .unit = "", .help = "plates where y is 0 and at the edge of the box, at rest; fluid sticks"},
-    {"wall_filling", FIELD_NUMBER, MEMBER(wall_filling), .initial = 1.5, .minimum = 0,
+    {"wall_filling", FIELD_NUMBER, MEMBER(wall_filling), .initial = 1.4, .minimum = 0,
      .maximum = 10, .unit = "particles_per_cell",
-     .help = "up to which virtual particles fill cells that a wall cuts: 1.5 lets the fluid stick, "
+     .help = "up to which virtual particles fill cells that a wall cuts: 1.4 lets the fluid stick, "
              "1, as is usual, lets it slip by a quarter of a cell"},
     {"acceleration", FIELD_LENGTHS, MEMBER(acceleration), .minimum = -DBL_MAX, .maximum = DBL_MAX,
      .unit = "lambda/tau^2", .help = "of the solvent and the beads, along each axis"},

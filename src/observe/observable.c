@@ -12,6 +12,7 @@ const struct observable *const mf_observables[] = {
     &mf_force_covariance_observable,
     &mf_structure_factor,
     &mf_flow_profile,
+    &mf_flow_field,
     NULL,
 };
 
