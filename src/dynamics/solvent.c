@@ -58,7 +58,7 @@ static enum status check_room(const struct solvent *solvent) {
                                   "dynamics.obstacle_centre[%d]: with %g an obstacle of radius %g "
                                   "is outside the box of %g",
                                   d, centre, radius, box->length[d]);
-        if (!(2 * radius + flight < box->length[d]))
+        if (margin == 0 && !(2 * radius + flight < box->length[d]))
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "dynamics.obstacle_radius: %g leaves less room in the box of %g "
                                   "than the %.3g that a particle flies between two collisions",

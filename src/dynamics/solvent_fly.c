@@ -121,25 +121,36 @@ static void put_outside(const struct solvent *solvent, double position[3]) {
         position[d] += separation[d] * (radius / distance - 1);
 }
 
+/// How long a parabola may be taken for its chord in looking for the obstacle: between them are
+/// less than 1e-4 of its radius.
+static double longest_leg(const struct solvent *solvent, const double g[3]) {
+    const double bend = sqrt(dot(g, g, solvent->box.dimensions)) / 8;
+    const double radius = solvent->parameters.obstacle_radius;
+    return radius > 0 && bend > 0 ? sqrt(1e-4 * radius / bend) : INFINITY;
+}
+
 bool mf_solvent_fly(const struct solvent *solvent, double position[3], double velocity[3],
                     const double g[3], double time, double impulse[3]) {
     enum { MOST_MEETINGS = 100 };
     const int dimensions = solvent->box.dimensions;
-    for (int meeting = 0; meeting < MOST_MEETINGS; meeting++) {
+    const double longest = longest_leg(solvent, g);
+    for (int meetings = 0; meetings < MOST_MEETINGS;) {
+        const double leg = fmin(time, longest);
         const double plate = time_to_plate(solvent, position[1], velocity[1]);
-        const double obstacle = time_to_obstacle(solvent, position, velocity, g, time);
-        const double next = fmin(plate, obstacle);
-        if (!(next < time)) {
-            advance(dimensions, position, velocity, g, time);
-            put_outside(solvent, position);
-            return true;
-        }
+        const double obstacle = time_to_obstacle(solvent, position, velocity, g, leg);
+        const double next = fmin(leg, fmin(plate, obstacle));
         advance(dimensions, position, velocity, g, next);
         time -= next;
-        for (int d = 0; d < dimensions; d++) {
-            if (impulse && obstacle < plate)
-                impulse[d] += 2 * velocity[d];
-            velocity[d] = -velocity[d];
+        if (next < leg) {
+            meetings++;
+            for (int d = 0; d < dimensions; d++) {
+                if (impulse && obstacle < plate)
+                    impulse[d] += 2 * velocity[d];
+                velocity[d] = -velocity[d];
+            }
+        } else if (!(time > 0)) {
+            put_outside(solvent, position);
+            return true;
         }
     }
     return false;

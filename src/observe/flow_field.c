@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-//
-// The flow of the solvent in the plane of x and y, and the drag on the obstacle: the momentum that
-// bounces and virtual particles give it, over time. In three dimensions the plane is a slice, as
-// thick as a bin, through the obstacle's centre. Tested: test_flow,
-// physics/test_collision_dynamics_flow.
+#include "observe/flow_field.h"
+
 #include "base/memory.h"
 #include "base/statistics.h"
 #include "dynamics/solvent.h"
@@ -22,6 +19,7 @@ struct flow_field {
     struct box box;
     size_t bins[2], solvent;
     double width[2], thickness; ///< of a bin; of the slice, 0 in two dimensions
+    double every;               ///< steps between samples
     uint64_t samples, planned;
     double *sums;     ///< shape [bins y, bins x, 3]: Σ 1, Σ v
     double *velocity; ///< shape [planned]: mean velocity of all along x
@@ -57,6 +55,7 @@ static enum status begin(void *state, const void *settings, const struct simulat
     }
     f->thickness = f->box.dimensions == 3 ? f->width[0] : 0;
     f->planned = (uint64_t)plan->samples;
+    f->every = (double)plan->every;
     NEW_ARRAY(f->sums, 3 * f->bins[0] * f->bins[1]);
     NEW_ARRAY(f->velocity, f->planned);
     NEW_ARRAY(f->drag, f->planned);
@@ -98,7 +97,7 @@ static enum status sample(void *state, struct simulation *simulation) {
         sum[1] += vx;
         sum[2] += solvent->velocity[1][k];
     }
-    const double time = (double)f->setup.time_step;
+    const double time = f->every * f->setup.time_step;
     f->velocity[f->samples] = along / (double)solvent->count;
     f->drag[f->samples] = (double)(solvent->given[0] - f->given) * SOLVENT_IMPULSE / time;
     f->given = solvent->given[0];
@@ -196,10 +195,6 @@ done:
     return status;
 }
 
-struct flow_found {
-    double velocity, velocity_error, drag, drag_error, coefficient, reynolds;
-};
-
 /// Mean of a series and its error.
 static double average(const double *values, size_t count, double *error) {
     double sum = 0;
@@ -209,18 +204,17 @@ static double average(const double *values, size_t count, double *error) {
     return count > 0 ? sum / (double)count : NAN;
 }
 
-/// c_D = F/(½ ρ U² A) with A = 2R, πR², Re = 2R U/ν by the viscosity of theory; U is the mean
-/// velocity of the fluid.
-static struct flow_found find(const struct flow_field *f, double every) {
+struct flow_field_summary mf_flow_field_result(const void *state) {
+    const struct flow_field *f = state;
     const double radius = f->parameters.obstacle_radius;
     const double density = f->parameters.mass * f->parameters.particles_per_cell /
                            pow(f->parameters.cell, f->box.dimensions);
     const double area = f->box.dimensions == 2 ? 2 * radius : M_PI * radius * radius;
     const size_t intervals = f->samples > 0 ? (size_t)f->samples - 1 : 0;
-    struct flow_found found;
+    struct flow_field_summary found;
     found.velocity = average(f->velocity, (size_t)f->samples, &found.velocity_error);
-    found.drag = average(f->drag + 1, intervals, &found.drag_error) / every;
-    found.drag_error /= every;
+    found.drag = average(f->drag + 1, intervals, &found.drag_error);
+    found.driving_force = f->parameters.mass * (double)f->solvent * f->parameters.acceleration[0];
     found.coefficient = found.drag / (0.5 * density * found.velocity * found.velocity * area);
     found.reynolds = 2 * radius * fabs(found.velocity) / mf_collision_dynamics_viscosity(&f->setup);
     return found;
@@ -230,15 +224,15 @@ static struct flow_found find(const struct flow_field *f, double every) {
 static void put(const void *state, const struct observable_results *results,
                 struct json_writer *writer) {
     const struct flow_field *f = state;
-    const struct flow_found found = find(f, (double)results->plan->every);
+    const struct flow_field_summary found = mf_flow_field_result(f);
+    (void)results;
     mf_json_begin(writer, "flow_field");
     mf_json_put_number(writer, "mean_velocity", found.velocity);
     mf_json_put_number(writer, "mean_velocity_error", found.velocity_error);
     if (f->parameters.obstacle_radius > 0) {
         mf_json_put_number(writer, "drag", found.drag);
         mf_json_put_number(writer, "drag_error", found.drag_error);
-        mf_json_put_number(writer, "driving_force",
-                           f->parameters.mass * (double)f->solvent * f->parameters.acceleration[0]);
+        mf_json_put_number(writer, "driving_force", found.driving_force);
         mf_json_put_number(writer, "drag_coefficient", found.coefficient);
         mf_json_put_number(writer, "reynolds_number", found.reynolds);
     }

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-//
-// The flow of the solvent along x over y, the viscosity that it tells, and its temperature.
-//
-// What drives it says which curve is fitted, v = A + B s(y), by least squares over the bins, each
-// with the number of its particles and s averaged over it:
-//   plates and an acceleration g:    s = g y (H − y)/2, B = 1/ν, and A the slip at the plates;
-//   a wave of acceleration in a box: s = a sin(k y)/k², k = 2π/L, B = 1/ν.
-// Errors are those of blocks of time. Tested: test_flow, physics/test_collision_dynamics.
+#include "observe/flow_profile.h"
+
 #include "base/memory.h"
 #include "base/number_text.h"
 #include "base/statistics.h"
@@ -168,13 +162,10 @@ static double peak_shape(const struct profile *p) {
                : fabs(p->parameters.wave_acceleration) / (k * k);
 }
 
-struct found {
-    double viscosity, viscosity_error, slip, slip_error, temperature, temperature_error;
-};
-
 /// Of all blocks together, with errors from those of single ones: that of ν is by 1/ν, which is
 /// linear in the velocities.
-static struct found find(const struct profile *p) {
+struct flow_profile_summary mf_flow_profile_result(const void *state) {
+    const struct profile *p = state;
     const size_t blocks = complete_blocks(p);
     const struct line all = fit(p, 0, blocks);
     const double peak = peak_shape(p);
@@ -191,13 +182,13 @@ static struct found find(const struct profile *p) {
     const double error = mf_statistics_correlated_error(slopes, blocks, 1);
     const double base_error = mf_statistics_correlated_error(bases, blocks, 1);
     const double top = peak * fabs(all.slope); // of the velocity
-    return (struct found){.viscosity = 1 / all.slope,
-                          .viscosity_error = error / (all.slope * all.slope),
-                          .slip = all.base / top,
-                          .slip_error = base_error / top,
-                          .temperature = energy / degrees,
-                          .temperature_error =
-                              mf_statistics_correlated_error(temperatures, blocks, 1)};
+    return (struct flow_profile_summary){
+        .viscosity = 1 / all.slope,
+        .viscosity_error = error / (all.slope * all.slope),
+        .slip = all.base / top,
+        .slip_error = base_error / top,
+        .temperature = energy / degrees,
+        .temperature_error = mf_statistics_correlated_error(temperatures, blocks, 1)};
 }
 
 static bool is_driven(const struct profile *p) {
@@ -245,7 +236,7 @@ done:
 static void put(const void *state, const struct observable_results *results,
                 struct json_writer *writer) {
     const struct profile *p = state;
-    struct found found = find(p);
+    struct flow_profile_summary found = mf_flow_profile_result(p);
     (void)results;
     if (is_driven(p)) {
         mf_statistics_forget_errors(&found.viscosity_error, 1);
@@ -263,7 +254,7 @@ static void put(const void *state, const struct observable_results *results,
 
 static void say(const void *state, char *line, size_t size) {
     const struct profile *p = state;
-    const struct found found = find(p);
+    const struct flow_profile_summary found = mf_flow_profile_result(p);
     char viscosity[NUMBER_TEXT_SIZE];
     mf_number_text(found.viscosity, found.viscosity_error, viscosity);
     if (is_driven(p))
@@ -288,7 +279,7 @@ static void explain(const void *settings, const struct simulation_setup *setup, 
 static enum status result(const void *const *states, size_t count,
                           const struct observable_values *values) {
     for (size_t k = 0; k < count; k++) {
-        const struct found found = find(states[k]);
+        const struct flow_profile_summary found = mf_flow_profile_result(states[k]);
         mf_pooled_add(values, &found.viscosity, &found.viscosity_error, count);
     }
     return STATUS_OK;

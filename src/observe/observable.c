@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "observe/observable.h"
 
+#include "observe/flow_field.h"
+#include "observe/flow_profile.h"
+
 /// Of which nothing else knows.
-extern const struct observable mf_structure_factor, mf_flow_profile, mf_flow_field;
+extern const struct observable mf_structure_factor;
 
 const struct observable *const mf_observables[] = {
     &mf_rdf_observable,
