@@ -24,7 +24,8 @@ enum rng_stream {
     RNG_REMEASUREMENT, ///< seeds of fresh measurements in a fit: candidate, number
     RNG_MIXING,        ///< which sites of a lattice get which type
     RNG_COLLISIONS,    ///< with a heat bath; counters: trajectory, particle id
-    RNG_BROWNIAN       ///< kicks of an integrator without velocities; counters: step, particle id
+    RNG_BROWNIAN,      ///< kicks of an integrator without velocities; counters: step, particle id
+    RNG_SOLVENT        ///< of collision dynamics; counters: step, cell or number, what it is for
 };
 
 struct rng_block {

@@ -49,6 +49,12 @@ struct integrator {
     /// what is left have no memory. Likewise from orientations, shape [count], or NULL. NULL:
     /// positions are that already.
     void (*forget)(const struct simulation *simulation, double *positions, double *angles);
+    /// Particles of its own that it moves beside those of the simulation, of which there may then
+    /// be none, and what one costs a step in nanoseconds, for --explain. NULL: it has none.
+    double (*companions)(const struct simulation_setup *setup);
+    double companion_cost;
+    /// Whether it holds the temperature of the setup by itself. NULL: not without ω.
+    bool (*holds_temperature)(const struct simulation_setup *setup);
     /// Advance by one step, with one call of mf_simulation_compute_forces.
     enum status (*step)(struct simulation *simulation);
 };
@@ -66,7 +72,8 @@ enum { INTEGRATOR_SPANS = 8 };
     EACH(mf_lowe_andersen)                                                                         \
     EACH(mf_brownian)                                                                              \
     EACH(mf_euler_maruyama)                                                                        \
-    EACH(mf_event_driven)
+    EACH(mf_event_driven)                                                                          \
+    EACH(mf_collision_dynamics)
 
 #define INTEGRATOR_DECLARE(record) extern const struct integrator record;
 INTEGRATORS(INTEGRATOR_DECLARE)

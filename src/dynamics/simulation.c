@@ -230,7 +230,7 @@ void mf_simulation_take_temperature(struct simulation *simulation) {
 }
 
 double mf_simulation_temperature(const struct simulation *simulation) {
-    if (simulation_is_overdamped(&simulation->setup))
+    if (simulation_is_overdamped(&simulation->setup) || simulation->particles.count < 2)
         return NAN;
     return isfinite(simulation->temperature) ? simulation->temperature
                                              : mf_particles_temperature(&simulation->particles);
@@ -367,7 +367,7 @@ enum status mf_simulation_forces_beside(const struct simulation *simulation,
 /// for its velocities relative to the mean.
 static enum status watch(const struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
-    const double degrees = particles->box.dimensions * ((double)particles->count - 1);
+    const double degrees = particles->box.dimensions * fmax(1, (double)particles->count - 1);
     const double most = largest_square(&simulation->setup);
     if (2 * mf_particles_kinetic_energy(particles) / degrees <= most)
         return STATUS_OK;

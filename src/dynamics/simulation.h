@@ -123,7 +123,7 @@ enum status mf_simulation_compute_potential(struct simulation *simulation) MUST_
 
 /// Kinetic temperature of the last step [k_B T_0], taken where in the step the integrator keeps it
 /// best, if the step was asked for its sums, and at the end of the step otherwise; NaN without
-/// velocities.
+/// velocities and of fewer than two particles.
 double mf_simulation_temperature(const struct simulation *simulation);
 
 /// Whether the dynamics move without velocities, and so without a kinetic temperature.
@@ -147,9 +147,18 @@ const struct interaction *mf_simulation_oriented(const struct simulation_setup *
 /// interaction drives or turns particles on its own.
 bool mf_simulation_is_thermal(const struct simulation_setup *setup);
 
-/// Whether friction and noise hold the temperature of the setup.
+/// How many particles move in a step, at least 1: the simulation's and its integrator's own.
+static inline double simulation_moved(const struct simulation_setup *setup) {
+    const struct integrator *integrator = setup->integrator;
+    const double own = integrator->companions ? integrator->companions(setup) : 0;
+    return fmax(1, (double)setup->placement.count + own);
+}
+
+/// Whether friction and noise, or the integrator itself, hold the temperature of the setup.
 static inline bool simulation_holds_temperature(const struct simulation_setup *setup) {
-    return setup->omega || simulation_is_overdamped(setup);
+    const struct integrator *integrator = setup->integrator;
+    return setup->omega || simulation_is_overdamped(setup) ||
+           (integrator->holds_temperature && integrator->holds_temperature(setup));
 }
 
 /// What the neighbour list of a simulation is complete for [λ]: the largest of the cutoffs of its

@@ -77,6 +77,14 @@ static void read_top(struct scene *scene, struct json_object *object) {
 
 NAMED_RECORD(struct integrator);
 
+static void fault_lonely(const struct scene *scene, struct json_object *object) {
+    struct json_object particles = mf_json_child(object, "particles", false);
+    if (particles.item && mf_json_has(&particles, "count") &&
+        mf_json_fault_count(object->document) == 0)
+        mf_json_fault(&particles, "count", "%lld is out of range; allowed: 2 to 1e+08",
+                      (long long)scene->setup.placement.count);
+}
+
 static enum status read_dynamics(struct scene *scene, struct json_object *object, int unknown) {
     const char **names;
     TRY(mf_names_collect(mf_integrator_list, NULL, &names));
@@ -107,6 +115,8 @@ static enum status read_dynamics(struct scene *scene, struct json_object *object
         mf_json_fault(object, "dynamics",
                       "%s turns no orientations, which \"%s\" is about; use \"%s\"",
                       integrator->name, oriented->name, mf_brownian.name);
+    if (scene->setup.placement.count < 2 && integrator->companions == NULL)
+        fault_lonely(scene, object);
     if (dissipative && !integrator->dissipative)
         mf_json_fault(object, "dynamics",
                       "%s knows no friction; use \"aboba\" with \"dissipative\"", integrator->name);

@@ -81,6 +81,7 @@ static void read_type(struct scene *scene, struct json_object *types, const char
     struct field fields[] = {mf_placement_count_fields[0], FIELD_END};
     int64_t *count = &composition->count[composition->types];
     fields[0].name = name;
+    fields[0].minimum = 2;
     fields[0].offset = 0;
     mf_json_fields(types, fields, count);
     scene->setup.placement.count += *count;

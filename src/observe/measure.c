@@ -36,7 +36,7 @@ enum { STEPS_A_WORD = 1 << 21 };
 static enum status run_until(struct simulation *simulation, int64_t step,
                              const struct measure_plan *plan,
                              const struct measure_listener *listener) {
-    const int64_t piece = 1 + STEPS_A_WORD / (int64_t)simulation->particles.count;
+    const int64_t piece = 1 + STEPS_A_WORD / (int64_t)simulation_moved(&simulation->setup);
     for (int64_t now; (now = (int64_t)simulation->step) < step;) {
         const int64_t steps = step - now <= piece ? step - now : piece;
         TRY(mf_simulation_run(simulation, (uint64_t)steps));

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "observe/observable.h"
 
+#include "observe/flow_field.h"
+#include "observe/flow_profile.h"
+
 /// Of which nothing else knows.
 extern const struct observable mf_structure_factor, mf_snapshots, mf_collisions;
 
@@ -13,6 +16,8 @@ const struct observable *const mf_observables[] = {
     &mf_structure_factor,
     &mf_snapshots,
     &mf_collisions,
+    &mf_flow_profile,
+    &mf_flow_field,
     NULL,
 };
 

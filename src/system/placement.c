@@ -10,8 +10,8 @@ static const char *const speeds[] = {"maxwell", "normal", "uniform", "signs",
 
 #define MEMBER(name) .offset = offsetof(struct placement, name)
 const struct field mf_placement_count_fields[] = {
-    {"count", FIELD_INTEGER, MEMBER(count), .required = true, .minimum = 2, .maximum = 1e8,
-     .unit = "", .help = "number of particles"},
+    {"count", FIELD_INTEGER, MEMBER(count), .required = true, .minimum = 0, .maximum = 1e8,
+     .unit = "", .help = "number of particles, at least 2; 0 or 1 for dynamics with a solvent"},
     FIELD_END,
 };
 
@@ -55,6 +55,8 @@ static void lattice_shape(const struct particles *particles, size_t cells[3]) {
 void mf_placement_lattice(struct particles *particles, double jitter, uint64_t seed) {
     const struct box *box = &particles->box;
     size_t cells[3];
+    if (particles->count == 0)
+        return;
     lattice_shape(particles, cells);
     const size_t sites = cells[0] * cells[1] * cells[2];
     for (size_t k = 0; k < particles->count; k++) {

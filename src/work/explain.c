@@ -85,6 +85,19 @@ static void add_observables(struct stages *stages, const struct simulation_setup
     }
 }
 
+/// Stages count time by the scene's particles; if it has none, by one.
+static double counted(const struct simulation_setup *setup) {
+    return fmax(1, (double)setup->placement.count);
+}
+
+static void add_companions(struct stages *stages, const struct simulation_setup *setup) {
+    const struct integrator *integrator = setup->integrator;
+    const double own = integrator->companions ? integrator->companions(setup) : 0;
+    if (integrator->companions)
+        mf_stages_add(stages, "solvent", true, integrator->companion_cost * own / counted(setup),
+                      "%.0f particles of %s", own, integrator->name);
+}
+
 void mf_explain_scene(FILE *out, const struct simulation_setup *setup,
                       const struct observable_use *uses, int64_t every) {
     struct stages stages = {0};
@@ -92,6 +105,7 @@ void mf_explain_scene(FILE *out, const struct simulation_setup *setup,
     mf_stages_add(&stages, "motion", true, flies ? cost.move : cost.walk,
                   "%s, and a watch over the %s", setup->integrator->name,
                   flies ? "velocities" : "steps");
+    add_companions(&stages, setup);
     add_list(&stages, setup);
     add_forces(&stages, setup);
     add_interactions(&stages, setup);
@@ -101,10 +115,10 @@ void mf_explain_scene(FILE *out, const struct simulation_setup *setup,
     double total = 0;
     for (int k = 0; k < stages.count; k++)
         total += stages.stage[k].nanoseconds;
-    const double rate = 1e9 / (total * (double)setup->placement.count);
+    const double rate = 1e9 / (total * counted(setup));
     const double digits = pow(10, floor(log10(rate)) - 1);
-    fprintf(out, "%lld particles: about %.4g steps/s with one thread of a processor of 2024\n",
-            (long long)setup->placement.count, digits * round(rate / digits));
+    fprintf(out, "%.0f particles: about %.4g steps/s with one thread of a processor of 2024\n",
+            simulation_moved(setup), digits * round(rate / digits));
     for (int k = 0; k < stages.count; k++) {
         const struct stage *stage = &stages.stage[k];
         const double share = 100 * stage->nanoseconds / total;

@@ -31,7 +31,7 @@ struct run {
 enum { PARTICLES_A_THREAD = 500 };
 
 static int find_threads(const struct simulation_setup *setup, int wanted) {
-    const int most = (int)(setup->placement.count / PARTICLES_A_THREAD);
+    const int most = (int)(simulation_moved(setup) / PARTICLES_A_THREAD);
     return most < 1 ? 1 : wanted < most ? wanted : most;
 }
 
@@ -51,7 +51,8 @@ static enum status read_file(struct run *run, const char *file, const struct run
     if (measure.item)
         mf_json_finish(&measure);
     if (status == STATUS_OK)
-        status = mf_simulate_observables_read(&run->observables, &root);
+        status = mf_simulate_observables_read(&run->observables, &root,
+                                              run->scene.setup.placement.count < 2);
     mf_json_finish(&root);
     TRY(mf_json_close(document, status));
     if (options->has_seed)
@@ -105,7 +106,7 @@ static void tell(void *context, const struct simulation *simulation, uint64_t do
     struct run *run = context;
     char text[96];
     snprintf(text, sizeof text, "step %llu", (unsigned long long)done);
-    if (!simulation_is_overdamped(&simulation->setup))
+    if (!simulation_is_overdamped(&simulation->setup) && simulation->particles.count > 1)
         snprintf(text, sizeof text, "step %llu  T %.3f", (unsigned long long)done,
                  mf_particles_temperature(&simulation->particles));
     mf_progress_tell(&run->progress, done, total, "steps", text);

@@ -4,7 +4,7 @@
 #include "io/checkpoint.h"
 
 enum status mf_simulate_observables_read(struct simulate_observables *observables,
-                                         struct json_object *root) {
+                                         struct json_object *root, bool lonely) {
     *observables = (struct simulate_observables){0};
     struct observable_use *use = observables->use;
     for (size_t k = 0; mf_observables[k]; k++) {
@@ -12,8 +12,10 @@ enum status mf_simulate_observables_read(struct simulate_observables *observable
         struct json_object object = {0};
         if (observable->fields)
             object = mf_json_child(root, observable->name, false);
-        if (object.item == NULL && !observable->always)
+        if (object.item == NULL && (!observable->always || lonely))
             continue;
+        if (lonely && !observable->of_solvent)
+            mf_json_fault(root, observable->name, "there are fewer than two particles to measure");
         use->observable = observable;
         if (observable->fields) {
             use->settings = mf_memory_zeroed(1, observable->settings_size);

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Flow of the solvent in the plane: vorticity as colours, and streamlines, on which the stream
+# function is the same.
+# Reads flow_field.tsv: x, y, v_x, v_y, density, vorticity, stream_function.
+
+load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
+
+stats "flow_field.tsv" using 1 name "X" nooutput
+stats "flow_field.tsv" using 2 name "Y" nooutput
+stats "flow_field.tsv" using (abs($6)) name "W" nooutput
+stats "flow_field.tsv" using 7 name "S" nooutput
+nx = int(system("awk '!/^#/ { if (n && $2 != last) { print n; exit } last = $2; n++ }' flow_field.tsv"))
+# A few bins beside the obstacle would take all the colours.
+limit = W_up_quartile + 6 * (W_up_quartile - W_lo_quartile)
+limit = limit > 0 ? limit : 1
+width = X_max + X_min
+height = Y_max + Y_min
+lines = 20
+
+set table $streamlines
+set contour base
+unset surface
+set cntrparam levels incremental S_min, (S_max > S_min ? (S_max - S_min) / lines : 1), S_max
+set cntrparam bspline
+set cntrparam points 4
+splot "< awk -v n=" . nx . " '{ if (!/^#/) { print; if (++k % n == 0) print \"\" } }' flow_field.tsv" \
+    using 1:2:($5 > 0 ? $7 : NaN) with lines
+unset table
+unset contour
+set surface
+
+do for [kind in kinds] {
+    eval open(kind, "flow_field", 900, 860 * height / width + 60)
+    unset grid
+    set size ratio -1
+    set xlabel "{/:Italic x} / {/:Italic λ}"
+    set ylabel "{/:Italic y} / {/:Italic λ}"
+    set cblabel "vorticity / {/:Italic τ}^{-1}"
+    set xrange [0:width]
+    set yrange [0:height]
+    set cbrange [-limit:limit]
+    set palette defined (-1 "#0072b2", 0 "#ffffff", 1 "#d55e00")
+    plot "flow_field.tsv" using 1:2:($5 > 0 ? $6 : NaN) with image, \
+        $streamlines using 1:2 with lines linewidth 1.1 linecolor rgb ink
+    eval close
+}

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dynamics/solvent.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+
+static double free_volume(const struct collision_dynamics_parameters *parameters,
+                          const struct box *box) {
+    const double radius = parameters->obstacle_radius;
+    return mf_box_volume(box) - (radius > 0 ? mf_box_shell_volume(box, 0, radius) : 0);
+}
+
+double mf_solvent_count(const struct collision_dynamics_parameters *parameters,
+                        const struct box *box) {
+    const double cell = pow(parameters->cell, box->dimensions);
+    return fmax(0, rint(parameters->particles_per_cell * free_volume(parameters, box) / cell));
+}
+
+static enum status check_acceleration(const struct solvent *solvent) {
+    const struct collision_dynamics_parameters *parameters = &solvent->parameters;
+    if (parameters->walls != COLLISION_PLATES)
+        return STATUS_OK;
+    if (parameters->acceleration[1] != 0)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "dynamics.acceleration: %g along y would press the solvent against "
+                              "the plates",
+                              parameters->acceleration[1]);
+    if (parameters->wave_acceleration != 0)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "dynamics.wave_acceleration: a wave is for a periodic box, without "
+                              "plates");
+    return STATUS_OK;
+}
+
+/// The farthest that a particle flies in a step, but for one in a million.
+static double longest_flight(const struct solvent *solvent) {
+    static const double deviations = 5;
+    return deviations * solvent->time * sqrt(solvent->temperature / solvent->parameters.mass);
+}
+
+/// Walls and obstacle leave room, and nobody crosses what is between them twice.
+static enum status check_room(const struct solvent *solvent) {
+    const struct collision_dynamics_parameters *parameters = &solvent->parameters;
+    const struct box *box = &solvent->box;
+    const double radius = parameters->obstacle_radius, flight = longest_flight(solvent);
+    const bool plates = parameters->walls == COLLISION_PLATES;
+    if (plates && flight > 2 * box->length[1])
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "dynamics.interval: between two collisions, %g apart in time, a "
+                              "particle flies up to %.3g, and crosses the channel of %g twice",
+                              solvent->time, flight, box->length[1]);
+    for (int d = 0; d < box->dimensions && radius > 0; d++) {
+        const double centre = parameters->obstacle_centre[d];
+        const double margin = plates && d == 1 ? radius : 0;
+        if (!(centre >= margin && centre <= box->length[d] - margin))
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "dynamics.obstacle_centre[%d]: with %g an obstacle of radius %g "
+                                  "is outside the box of %g",
+                                  d, centre, radius, box->length[d]);
+        if (margin == 0 && !(2 * radius + flight < box->length[d]))
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "dynamics.obstacle_radius: %g leaves less room in the box of %g "
+                                  "than the %.3g that a particle flies between two collisions",
+                                  radius, box->length[d], flight);
+    }
+    return check_acceleration(solvent);
+}
+
+static enum status find_cells(struct solvent *solvent) {
+    const struct collision_dynamics_parameters *parameters = &solvent->parameters;
+    double total = 1;
+    for (int d = 0; d < solvent->box.dimensions; d++) {
+        const double cells = solvent->box.length[d] / parameters->cell;
+        if (!(fabs(cells - rint(cells)) <= 1e-9 * cells) || cells < 0.5)
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "dynamics.cell: cells of %g do not divide box[%d] = %g",
+                                  parameters->cell, d, solvent->box.length[d]);
+        total *= rint(cells) + 1;
+        if (total > INT32_MAX)
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "dynamics.cell: cells of %g are too many in this box",
+                                  parameters->cell);
+        solvent->cells[d] = (int)rint(cells) + (d == 1 && parameters->walls == COLLISION_PLATES);
+    }
+    for (int d = solvent->box.dimensions; d < 3; d++)
+        solvent->cells[d] = 1;
+    solvent->cell_total =
+        (size_t)solvent->cells[0] * (size_t)solvent->cells[1] * (size_t)solvent->cells[2];
+    return STATUS_OK;
+}
+
+static enum status allocate(struct solvent *solvent, size_t beads) {
+    enum status status = STATUS_OK;
+    for (int d = 0; d < solvent->box.dimensions; d++) {
+        NEW_ARRAY(solvent->position[d], solvent->count);
+        NEW_ARRAY(solvent->velocity[d], solvent->count);
+        NEW_ARRAY(solvent->spare[d], solvent->count);
+        NEW_ARRAY(solvent->spare[3 + d], solvent->count);
+    }
+    NEW_ARRAY(solvent->cell, solvent->count);
+    NEW_ARRAY(solvent->start, solvent->cell_total + 1);
+    for (int part = 0; part < solvent->parts; part++)
+        NEW_ARRAY(solvent->places[part], solvent->cell_total);
+    if (beads == 0)
+        goto done;
+    NEW_ARRAY(solvent->first_bead, solvent->cell_total);
+    NEW_ARRAY(solvent->next_bead, beads);
+done:
+    return status;
+}
+
+/// Uniform places, drawn anew where the obstacle is.
+static void place(struct solvent *solvent) {
+    const int dimensions = solvent->box.dimensions;
+    for (size_t k = 0; k < solvent->count; k++) {
+        double position[3];
+        uint32_t trial = 0;
+        do {
+            const struct rng_block block =
+                solvent_noise(solvent, trial / 256, k, SOLVENT_PLACE, trial);
+            for (int d = 0; d < dimensions; d++)
+                position[d] = solvent->box.length[d] * mf_rng_uniform(block.word[d], block.word[3]);
+            trial++;
+        } while (!mf_solvent_is_free(solvent, position));
+        for (int d = 0; d < dimensions; d++)
+            solvent->position[d][k] = position[d];
+    }
+}
+
+/// Normal numbers, shifted and scaled to the temperature and the drift exactly.
+static void draw_velocities(struct solvent *solvent) {
+    const int dimensions = solvent->box.dimensions;
+    const double count = (double)solvent->count;
+    double sum[3] = {0}, squares = 0;
+    for (size_t k = 0; k < solvent->count; k++) {
+        double normal[4];
+        mf_rng_normal4(solvent_noise(solvent, 0, k, SOLVENT_VELOCITY, 0), normal);
+        for (int d = 0; d < dimensions; d++) {
+            solvent->velocity[d][k] = normal[d];
+            sum[d] += normal[d];
+            squares += normal[d] * normal[d];
+        }
+    }
+    for (int d = 0; d < dimensions; d++)
+        squares -= sum[d] * sum[d] / count;
+    const double degrees = dimensions * (count - 1);
+    const double scale =
+        squares > 0 ? sqrt(solvent->temperature / solvent->parameters.mass * degrees / squares) : 0;
+    for (int d = 0; d < dimensions; d++)
+        for (size_t k = 0; k < solvent->count; k++)
+            solvent->velocity[d][k] =
+                scale * (solvent->velocity[d][k] - sum[d] / count) + solvent->parameters.drift[d];
+}
+
+enum status mf_solvent_init(struct solvent *solvent, const struct particles *beads, int threads) {
+    const double count = mf_solvent_count(&solvent->parameters, &solvent->box);
+    TRY(find_cells(solvent));
+    TRY(check_room(solvent));
+    if (!(count >= 2 && count < UINT32_MAX))
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "dynamics.particles_per_cell: %g would be %g solvent particles in the "
+            "box",
+            solvent->parameters.particles_per_cell, count);
+    solvent->count = (size_t)count;
+    solvent->parts = threads < SOLVENT_MOST_PARTS ? threads : SOLVENT_MOST_PARTS;
+    TRY(allocate(solvent, beads->count));
+    place(solvent);
+    draw_velocities(solvent);
+    return STATUS_OK;
+}
+
+void mf_solvent_clear(struct solvent *solvent) {
+    for (int d = 0; d < 3; d++) {
+        mf_memory_free(solvent->position[d]);
+        mf_memory_free(solvent->velocity[d]);
+        mf_memory_free(solvent->spare[d]);
+        mf_memory_free(solvent->spare[3 + d]);
+    }
+    for (int part = 0; part < SOLVENT_MOST_PARTS; part++)
+        mf_memory_free(solvent->places[part]);
+    mf_memory_free(solvent->cell);
+    mf_memory_free(solvent->start);
+    mf_memory_free(solvent->first_bead);
+    mf_memory_free(solvent->next_bead);
+    *solvent = (struct solvent){0};
+}

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "observe/flow_field.h"
+
+#include "base/memory.h"
+#include "base/statistics.h"
+#include "dynamics/solvent.h"
+#include "io/data_table.h"
+#include "observe/measure.h"
+
+#include <math.h>
+
+struct settings {
+    double spacing;
+};
+
+struct flow_field {
+    struct simulation_setup setup; ///< with the parameters of the solvent
+    struct collision_dynamics_parameters parameters;
+    struct box box;
+    size_t bins[2], solvent;
+    double width[2], thickness; ///< of a bin; of the slice, 0 in two dimensions
+    double every;               ///< steps between samples
+    uint64_t samples, planned;
+    double *sums;     ///< shape [bins y, bins x, 3]: Σ 1, Σ v
+    double *velocity; ///< shape [planned]: mean velocity of all along x
+    double *drag;     ///< shape [planned]: along x since the last sample; the first is not known
+    int64_t given;    ///< at the last sample, in SOLVENT_IMPULSE
+};
+
+static const struct field fields[] = {
+    {"spacing", FIELD_NUMBER, offsetof(struct settings, spacing), .initial = 1,
+     .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX, .unit = "lambda",
+     .help = "of the points at which the flow is told, nearly: a whole number of them fits"},
+    FIELD_END,
+};
+
+static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+                         const struct measure_plan *plan) {
+    enum status status = STATUS_OK;
+    const struct settings *given = settings;
+    const struct solvent *solvent = mf_collision_dynamics_solvent(simulation);
+    struct flow_field *f = state;
+    if (solvent == NULL)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "flow_field: %s has no solvent; use \"collision-dynamics\"",
+                              simulation->setup.integrator->name);
+    f->setup = simulation->setup;
+    f->parameters = solvent->parameters;
+    f->setup.integrator_parameters = &f->parameters;
+    f->box = solvent->box;
+    f->solvent = solvent->count;
+    for (int d = 0; d < 2; d++) {
+        f->bins[d] = (size_t)fmin(fmax(1, rint(f->box.length[d] / given->spacing)), 1e4);
+        f->width[d] = f->box.length[d] / (double)f->bins[d];
+    }
+    f->thickness = f->box.dimensions == 3 ? f->width[0] : 0;
+    f->planned = (uint64_t)plan->samples;
+    f->every = (double)plan->every;
+    NEW_ARRAY(f->sums, 3 * f->bins[0] * f->bins[1]);
+    NEW_ARRAY(f->velocity, f->planned);
+    NEW_ARRAY(f->drag, f->planned);
+done:
+    return status;
+}
+
+static void clear(void *state) {
+    struct flow_field *f = state;
+    mf_memory_free(f->sums);
+    mf_memory_free(f->velocity);
+    mf_memory_free(f->drag);
+    *f = (struct flow_field){0};
+}
+
+static bool is_in_slice(const struct flow_field *f, double z) {
+    const double centre = f->parameters.obstacle_centre[2];
+    return fabs(box_nearest(z - centre, f->box.length[2])) < 0.5 * f->thickness;
+}
+
+static enum status sample(void *state, struct simulation *simulation) {
+    struct flow_field *f = state;
+    const struct solvent *solvent = mf_collision_dynamics_solvent(simulation);
+    double along = 0;
+    if (f->samples == f->planned)
+        return STATUS_OK;
+    for (size_t k = 0; k < solvent->count; k++) {
+        const double vx = solvent->velocity[0][k];
+        along += vx;
+        if (f->thickness > 0 && !is_in_slice(f, solvent->position[2][k]))
+            continue;
+        size_t bin[2];
+        for (int d = 0; d < 2; d++) {
+            const double place = solvent->position[d][k] / f->width[d];
+            bin[d] = place < (double)f->bins[d] ? (size_t)fmax(0, place) : f->bins[d] - 1;
+        }
+        double *sum = f->sums + 3 * (bin[1] * f->bins[0] + bin[0]);
+        sum[0] += 1;
+        sum[1] += vx;
+        sum[2] += solvent->velocity[1][k];
+    }
+    const double time = f->every * f->setup.time_step;
+    f->velocity[f->samples] = along / (double)solvent->count;
+    f->drag[f->samples] = (double)(solvent->given[0] - f->given) * SOLVENT_IMPULSE / time;
+    f->given = solvent->given[0];
+    f->samples++;
+    return STATUS_OK;
+}
+
+static size_t spans(void *state, struct memory_span *spans) {
+    struct flow_field *f = state;
+    const size_t bytes = f->planned * sizeof(double);
+    spans[0] = (struct memory_span){&f->samples, sizeof f->samples};
+    spans[1] = (struct memory_span){&f->given, sizeof f->given};
+    spans[2] = (struct memory_span){f->sums, 3 * f->bins[0] * f->bins[1] * sizeof *f->sums};
+    spans[3] = (struct memory_span){f->velocity, bytes};
+    spans[4] = (struct memory_span){f->drag, bytes};
+    return 5;
+}
+
+// Results -----------------------------------------------------------------------------------------
+
+struct flow_tables {
+    double *x, *y, *vx, *vy, *density, *vorticity, *stream; ///< shape [bins y, bins x]
+};
+
+static size_t at(const struct flow_field *f, size_t i, size_t j) {
+    return j * f->bins[0] + i;
+}
+
+/// Central differences, one-sided next to plates.
+static double find_vorticity(const struct flow_field *f, const struct flow_tables *t, size_t i,
+                             size_t j) {
+    const size_t nx = f->bins[0], ny = f->bins[1];
+    const bool plates = f->parameters.walls == COLLISION_PLATES;
+    const size_t below = j > 0 ? j - 1 : plates ? 0 : ny - 1;
+    const size_t above = j + 1 < ny ? j + 1 : plates ? ny - 1 : 0;
+    const double rows = plates && (j == 0 || j + 1 == ny) ? 1 : 2;
+    return (t->vy[at(f, (i + 1) % nx, j)] - t->vy[at(f, (i + nx - 1) % nx, j)]) /
+               (2 * f->width[0]) -
+           (t->vx[at(f, i, above)] - t->vx[at(f, i, below)]) / (rows * f->width[1]);
+}
+
+/// Velocities are 0 where nobody is; the stream function ψ, v_x ρ = ∂ψ/∂y, counts flow from y = 0
+/// to the middle of a bin, relative to the mean density.
+static void find_tables(const struct flow_field *f, const struct flow_tables *t) {
+    const double whole = f->thickness > 0 ? f->thickness : 1;
+    const double volume = f->width[0] * f->width[1] * whole * fmax(1, (double)f->samples);
+    const double mean =
+        f->parameters.particles_per_cell / pow(f->parameters.cell, f->box.dimensions);
+    for (size_t i = 0; i < f->bins[0]; i++) {
+        double stream = 0;
+        for (size_t j = 0; j < f->bins[1]; j++) {
+            const size_t n = at(f, i, j);
+            const double *sum = f->sums + 3 * n;
+            const double flow = sum[1] / volume / mean * f->width[1];
+            t->x[n] = ((double)i + 0.5) * f->width[0];
+            t->y[n] = ((double)j + 0.5) * f->width[1];
+            t->vx[n] = sum[0] > 0 ? sum[1] / sum[0] : 0;
+            t->vy[n] = sum[0] > 0 ? sum[2] / sum[0] : 0;
+            t->density[n] = sum[0] / volume;
+            t->stream[n] = stream + 0.5 * flow;
+            stream += flow;
+        }
+    }
+    for (size_t j = 0; j < f->bins[1]; j++)
+        for (size_t i = 0; i < f->bins[0]; i++)
+            t->vorticity[at(f, i, j)] = find_vorticity(f, t, i, j);
+}
+
+static enum status write(const void *state, const struct observable_results *results) {
+    enum status status = STATUS_OK;
+    const struct flow_field *f = state;
+    const size_t rows = f->bins[0] * f->bins[1];
+    double *values = NULL;
+    char path[OUTPUT_PATH_SIZE];
+    NEW_ARRAY(values, 7 * rows);
+    const struct flow_tables t = {values,
+                                  values + rows,
+                                  values + 2 * rows,
+                                  values + 3 * rows,
+                                  values + 4 * rows,
+                                  values + 5 * rows,
+                                  values + 6 * rows};
+    find_tables(f, &t);
+    const struct data_column columns[] = {{"x[lambda]", t.x, NULL},
+                                          {"y[lambda]", t.y, NULL},
+                                          {"v_x[lambda/tau]", t.vx, "%.5g"},
+                                          {"v_y[lambda/tau]", t.vy, "%.5g"},
+                                          {"density[1/lambda^d]", t.density, "%.5g"},
+                                          {"vorticity[1/tau]", t.vorticity, "%.5g"},
+                                          {"stream_function[lambda^2/tau]", t.stream, "%.6g"}};
+    mf_observable_file(results, "flow_field.tsv", path);
+    status = mf_data_table_write(path, NULL, columns, 7, rows);
+done:
+    mf_memory_free(values);
+    return status;
+}
+
+/// Mean of a series and its error.
+static double average(const double *values, size_t count, double *error) {
+    double sum = 0;
+    for (size_t k = 0; k < count; k++)
+        sum += values[k];
+    *error = mf_statistics_correlated_error(values, count, 1);
+    return count > 0 ? sum / (double)count : NAN;
+}
+
+struct flow_field_summary mf_flow_field_result(const void *state) {
+    const struct flow_field *f = state;
+    const double radius = f->parameters.obstacle_radius;
+    const double density = f->parameters.mass * f->parameters.particles_per_cell /
+                           pow(f->parameters.cell, f->box.dimensions);
+    const double area = f->box.dimensions == 2 ? 2 * radius : M_PI * radius * radius;
+    const size_t intervals = f->samples > 0 ? (size_t)f->samples - 1 : 0;
+    struct flow_field_summary found;
+    found.velocity = average(f->velocity, (size_t)f->samples, &found.velocity_error);
+    found.drag = average(f->drag + 1, intervals, &found.drag_error);
+    found.driving_force = f->parameters.mass * (double)f->solvent * f->parameters.acceleration[0];
+    found.coefficient = found.drag / (0.5 * density * found.velocity * found.velocity * area);
+    found.reynolds = 2 * radius * fabs(found.velocity) / mf_collision_dynamics_viscosity(&f->setup);
+    return found;
+}
+
+/// The object "flow_field"; of an obstacle the drag, beside the force on the whole solvent.
+static void put(const void *state, const struct observable_results *results,
+                struct json_writer *writer) {
+    const struct flow_field *f = state;
+    const struct flow_field_summary found = mf_flow_field_result(f);
+    (void)results;
+    mf_json_begin(writer, "flow_field");
+    mf_json_put_number(writer, "mean_velocity", found.velocity);
+    mf_json_put_number(writer, "mean_velocity_error", found.velocity_error);
+    if (f->parameters.obstacle_radius > 0) {
+        mf_json_put_number(writer, "drag", found.drag);
+        mf_json_put_number(writer, "drag_error", found.drag_error);
+        mf_json_put_number(writer, "driving_force", found.driving_force);
+        mf_json_put_number(writer, "drag_coefficient", found.coefficient);
+        mf_json_put_number(writer, "reynolds_number", found.reynolds);
+    }
+    mf_json_end(writer);
+}
+
+/// Nanoseconds of a solvent particle and sample.
+static const double sample_cost = 6;
+
+static void explain(const void *settings, const struct simulation_setup *setup, double every,
+                    struct stages *stages) {
+    (void)settings;
+    mf_stages_add(stages, "flow field", true,
+                  sample_cost * simulation_moved(setup) / fmax(1, (double)setup->placement.count) /
+                      every,
+                  "one step in %.0f", every);
+}
+
+static const char *const files[] = {"flow_field.tsv", NULL};
+
+const struct observable mf_flow_field = {
+    .name = "flow_field",
+    .summary = "flow of the solvent in the plane, and the drag on an obstacle",
+    .of_solvent = true,
+    .fields = fields,
+    .settings_size = sizeof(struct settings),
+    .state_size = sizeof(struct flow_field),
+    .begin = begin,
+    .clear = clear,
+    .sample = sample,
+    .spans = spans,
+    .write = write,
+    .put = put,
+    .explain = explain,
+    .stage = "flow field",
+    .files = files,
+    .figure = "flow_field",
+};

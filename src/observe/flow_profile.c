@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "observe/flow_profile.h"
+
+#include "base/memory.h"
+#include "base/number_text.h"
+#include "base/statistics.h"
+#include "dynamics/solvent.h"
+#include "io/data_table.h"
+#include "observe/measure.h"
+#include "observe/pooled.h"
+
+#include <math.h>
+
+enum { MOST_BLOCKS = 32 };
+
+struct settings {
+    int64_t bins;
+};
+
+/// What is known of one bin.
+struct bin {
+    double count, momentum; ///< Σ 1, Σ v_x
+};
+
+struct profile {
+    struct simulation_setup setup; ///< with the parameters of the solvent
+    struct collision_dynamics_parameters parameters;
+    size_t bins, blocks, each;
+    double height;
+    uint64_t samples;
+    struct bin *sums; ///< shape [blocks, bins]
+    double energy[MOST_BLOCKS], degrees[MOST_BLOCKS];
+    double *now; ///< shape [bins, 4]: Σ 1, Σ v of a sample
+};
+
+static const struct field fields[] = {
+    {"bins", FIELD_INTEGER, offsetof(struct settings, bins), .initial = 0, .minimum = 0,
+     .maximum = 1e5, .unit = "", .help = "along y; 0: as many as cells"},
+    FIELD_END,
+};
+
+static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+                         const struct measure_plan *plan) {
+    enum status status = STATUS_OK;
+    const struct solvent *solvent = mf_collision_dynamics_solvent(simulation);
+    struct profile *p = state;
+    if (solvent == NULL)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "flow_profile: %s has no solvent; use \"collision-dynamics\"",
+                              simulation->setup.integrator->name);
+    const struct settings *given = settings;
+    p->setup = simulation->setup;
+    p->parameters = solvent->parameters;
+    p->setup.integrator_parameters = &p->parameters;
+    p->height = solvent->box.length[1];
+    p->bins = given->bins > 0 ? (size_t)given->bins : (size_t)rint(p->height / p->parameters.cell);
+    p->each = ((size_t)plan->samples + MOST_BLOCKS - 1) / MOST_BLOCKS;
+    p->blocks = (size_t)plan->samples / p->each;
+    NEW_ARRAY(p->sums, p->blocks * p->bins);
+    NEW_ARRAY(p->now, 4 * p->bins);
+done:
+    return status;
+}
+
+static void clear(void *state) {
+    struct profile *p = state;
+    mf_memory_free(p->sums);
+    mf_memory_free(p->now);
+    *p = (struct profile){0};
+}
+
+/// Energy relative to the mean velocity of the particles' own bin: flow is no heat.
+static enum status sample(void *state, struct simulation *simulation) {
+    struct profile *p = state;
+    const struct solvent *solvent = mf_collision_dynamics_solvent(simulation);
+    const double scale = (double)p->bins / p->height;
+    const int dimensions = solvent->box.dimensions;
+    const size_t block = p->samples++ / p->each;
+    double squares = 0;
+    if (block >= p->blocks)
+        return STATUS_OK;
+    memset(p->now, 0, 4 * p->bins * sizeof *p->now);
+    for (size_t k = 0; k < solvent->count; k++) {
+        const double place = solvent->position[1][k] * scale;
+        const size_t bin = place < (double)p->bins ? (size_t)fmax(0, place) : p->bins - 1;
+        double *now = p->now + 4 * bin;
+        now[0] += 1;
+        for (int d = 0; d < dimensions; d++) {
+            const double v = solvent->velocity[d][k];
+            now[1 + d] += v;
+            squares += v * v;
+        }
+    }
+    for (size_t bin = 0; bin < p->bins; bin++) {
+        const double *now = p->now + 4 * bin;
+        if (!(now[0] > 0))
+            continue;
+        p->sums[block * p->bins + bin].count += now[0];
+        p->sums[block * p->bins + bin].momentum += now[1];
+        p->degrees[block] += dimensions * (now[0] - 1);
+        for (int d = 0; d < dimensions; d++)
+            squares -= now[1 + d] * now[1 + d] / now[0];
+    }
+    p->energy[block] += p->parameters.mass * squares;
+    return STATUS_OK;
+}
+
+static size_t spans(void *state, struct memory_span *spans) {
+    struct profile *p = state;
+    spans[0] = (struct memory_span){&p->samples, sizeof p->samples};
+    spans[1] = (struct memory_span){p->sums, p->blocks * p->bins * sizeof *p->sums};
+    spans[2] = (struct memory_span){p->energy, sizeof p->energy};
+    spans[3] = (struct memory_span){p->degrees, sizeof p->degrees};
+    return 4;
+}
+
+// Results -----------------------------------------------------------------------------------------
+
+static size_t complete_blocks(const struct profile *p) {
+    const size_t blocks = p->samples / p->each;
+    return blocks < p->blocks ? blocks : p->blocks;
+}
+
+/// s(y), averaged over a bin; 0 everywhere if nothing drives the flow.
+static double shape(const struct profile *p, size_t bin) {
+    const double width = p->height / (double)p->bins, y = width * ((double)bin + 0.5);
+    const double k = 2 * M_PI / p->height, half = 0.5 * k * width;
+    if (p->parameters.walls == COLLISION_PLATES)
+        return 0.5 * p->parameters.acceleration[0] * (y * (p->height - y) - width * width / 12);
+    return p->parameters.wave_acceleration / (k * k) * sin(k * y) * sin(half) / half;
+}
+
+/// v = A + B s, with the blocks from `first` to before `last`, but for `without`.
+struct line {
+    double base, slope;
+};
+
+static struct line fit(const struct profile *p, size_t first, size_t last) {
+    double n = 0, s = 0, ss = 0, v = 0, vs = 0;
+    for (size_t bin = 0; bin < p->bins; bin++) {
+        struct bin sum = {0};
+        const double x = shape(p, bin);
+        for (size_t block = first; block < last; block++) {
+            sum.count += p->sums[block * p->bins + bin].count;
+            sum.momentum += p->sums[block * p->bins + bin].momentum;
+        }
+        n += sum.count;
+        s += sum.count * x;
+        ss += sum.count * x * x;
+        v += sum.momentum;
+        vs += sum.momentum * x;
+    }
+    const double slope = (n * vs - s * v) / (n * ss - s * s);
+    return (struct line){(v - slope * s) / n, slope};
+}
+
+/// The highest velocity of the flow that s and the viscosity make.
+static double peak_shape(const struct profile *p) {
+    const double k = 2 * M_PI / p->height;
+    return p->parameters.walls == COLLISION_PLATES
+               ? fabs(p->parameters.acceleration[0]) * p->height * p->height / 8
+               : fabs(p->parameters.wave_acceleration) / (k * k);
+}
+
+/// Of all blocks together, with errors from those of single ones: that of ν is by 1/ν, which is
+/// linear in the velocities.
+struct flow_profile_summary mf_flow_profile_result(const void *state) {
+    const struct profile *p = state;
+    const size_t blocks = complete_blocks(p);
+    const struct line all = fit(p, 0, blocks);
+    const double peak = peak_shape(p);
+    double slopes[MOST_BLOCKS], bases[MOST_BLOCKS], temperatures[MOST_BLOCKS];
+    double energy = 0, degrees = 0;
+    for (size_t block = 0; block < blocks; block++) {
+        const struct line one = fit(p, block, block + 1);
+        slopes[block] = one.slope;
+        bases[block] = one.base;
+        temperatures[block] = p->energy[block] / p->degrees[block];
+        energy += p->energy[block];
+        degrees += p->degrees[block];
+    }
+    const double error = mf_statistics_correlated_error(slopes, blocks, 1);
+    const double base_error = mf_statistics_correlated_error(bases, blocks, 1);
+    const double top = peak * fabs(all.slope); // of the velocity
+    return (struct flow_profile_summary){
+        .viscosity = 1 / all.slope,
+        .viscosity_error = error / (all.slope * all.slope),
+        .slip = all.base / top,
+        .slip_error = base_error / top,
+        .temperature = energy / degrees,
+        .temperature_error = mf_statistics_correlated_error(temperatures, blocks, 1)};
+}
+
+static bool is_driven(const struct profile *p) {
+    return peak_shape(p) > 0;
+}
+
+/// flow_profile.tsv: y, v_x with its error, the fitted curve, and how many particles there were.
+static enum status write(const void *state, const struct observable_results *results) {
+    enum status status = STATUS_OK;
+    const struct profile *p = state;
+    const size_t blocks = complete_blocks(p);
+    const struct line line = fit(p, 0, blocks);
+    double *values = NULL;
+    char path[OUTPUT_PATH_SIZE];
+    NEW_ARRAY(values, 5 * p->bins);
+    double *y = values, *v = y + p->bins, *error = v + p->bins, *fitted = error + p->bins,
+           *count = fitted + p->bins;
+    for (size_t bin = 0; bin < p->bins; bin++) {
+        double means[MOST_BLOCKS], momentum = 0;
+        for (size_t block = 0; block < blocks; block++) {
+            const struct bin *sum = &p->sums[block * p->bins + bin];
+            means[block] = sum->momentum / sum->count;
+            momentum += sum->momentum;
+            count[bin] += sum->count;
+        }
+        y[bin] = p->height * ((double)bin + 0.5) / (double)p->bins;
+        v[bin] = momentum / count[bin];
+        error[bin] = mf_statistics_correlated_error(means, blocks, 1);
+        fitted[bin] = is_driven(p) ? line.base + line.slope * shape(p, bin) : NAN;
+        count[bin] /= (double)(blocks * p->each);
+    }
+    mf_statistics_forget_errors(error, p->bins);
+    const struct data_column columns[] = {{"y[lambda]", y, NULL},
+                                          {"v_x[lambda/tau]", v, "%.8g"},
+                                          {"v_x_error[lambda/tau]", error, "%.3g"},
+                                          {"fit[lambda/tau]", fitted, "%.8g"},
+                                          {"particles[1]", count, "%.6g"}};
+    mf_observable_file(results, "flow_profile.tsv", path);
+    status = mf_data_table_write(path, NULL, columns, 5, p->bins);
+done:
+    mf_memory_free(values);
+    return status;
+}
+
+static void put(const void *state, const struct observable_results *results,
+                struct json_writer *writer) {
+    const struct profile *p = state;
+    struct flow_profile_summary found = mf_flow_profile_result(p);
+    (void)results;
+    if (is_driven(p)) {
+        mf_statistics_forget_errors(&found.viscosity_error, 1);
+        mf_json_put_number(writer, "viscosity", found.viscosity);
+        mf_json_put_number(writer, "viscosity_error", found.viscosity_error);
+        mf_json_put_number(writer, "viscosity_theory", mf_collision_dynamics_viscosity(&p->setup));
+    }
+    if (is_driven(p) && p->parameters.walls == COLLISION_PLATES) {
+        mf_json_put_number(writer, "slip", found.slip);
+        mf_json_put_number(writer, "slip_error", found.slip_error);
+    }
+    mf_json_put_number(writer, "solvent_temperature", found.temperature);
+    mf_json_put_number(writer, "solvent_temperature_error", found.temperature_error);
+}
+
+static void say(const void *state, char *line, size_t size) {
+    const struct profile *p = state;
+    const struct flow_profile_summary found = mf_flow_profile_result(p);
+    char viscosity[NUMBER_TEXT_SIZE];
+    mf_number_text(found.viscosity, found.viscosity_error, viscosity);
+    if (is_driven(p))
+        snprintf(line, size, "viscosity %s, by theory %.4g; temperature of the solvent %.4f",
+                 viscosity, mf_collision_dynamics_viscosity(&p->setup), found.temperature);
+    else
+        snprintf(line, size, "temperature of the solvent %.4f", found.temperature);
+}
+
+/// Nanoseconds of a solvent particle and sample.
+static const double sample_cost = 4;
+
+static void explain(const void *settings, const struct simulation_setup *setup, double every,
+                    struct stages *stages) {
+    (void)settings;
+    mf_stages_add(stages, "flow profile", true,
+                  sample_cost * simulation_moved(setup) / fmax(1, (double)setup->placement.count) /
+                      every,
+                  "one step in %.0f", every);
+}
+
+static enum status result(const void *const *states, size_t count,
+                          const struct observable_values *values) {
+    for (size_t k = 0; k < count; k++) {
+        const struct flow_profile_summary found = mf_flow_profile_result(states[k]);
+        mf_pooled_add(values, &found.viscosity, &found.viscosity_error, count);
+    }
+    return STATUS_OK;
+}
+
+static const struct observable_target targets[] = {
+    {.name = "viscosity",
+     .summary = "kinematic viscosity of a solvent that is driven",
+     .form = OBSERVABLE_NUMBER},
+    {.name = NULL}};
+static const char *const files[] = {"flow_profile.tsv", NULL};
+
+const struct observable mf_flow_profile = {
+    .name = "flow_profile",
+    .summary = "velocity of the solvent between plates or in a wave, its viscosity",
+    .of_solvent = true,
+    .fields = fields,
+    .settings_size = sizeof(struct settings),
+    .state_size = sizeof(struct profile),
+    .begin = begin,
+    .clear = clear,
+    .sample = sample,
+    .spans = spans,
+    .write = write,
+    .put = put,
+    .say = say,
+    .explain = explain,
+    .stage = "flow profile",
+    .files = files,
+    .figure = "flow_profile",
+    .targets = targets,
+    .result = result,
+};
