@@ -45,7 +45,8 @@ enum { INTERACTION_SPANS = 4 };
 /// The interactions that a scene can name, in the order in which they act.
 #define INTERACTIONS(EACH)                                                                         \
     EACH(mf_uniform_force)                                                                         \
-    EACH(mf_harmonic_trap)
+    EACH(mf_harmonic_trap)                                                                         \
+    EACH(mf_soft_discs)
 
 #define INTERACTION_DECLARE(record) extern const struct interaction record;
 INTERACTIONS(INTERACTION_DECLARE)
