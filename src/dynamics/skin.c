@@ -34,8 +34,18 @@ static double step_cost(const struct skin_scene *scene, double skin) {
     return listed + (particle_cost + entry_cost * listed) / mf_skin_interval(scene, skin);
 }
 
+/// So far apart may particles drift that were neighbours in memory.
+static const double sorted_spacings = 10;
+
+static double spacing_of(const struct skin_scene *scene) {
+    return pow(mf_box_volume(scene->box) / (double)scene->count, 1.0 / scene->box->dimensions);
+}
+
 double mf_skin_choose(const struct skin_scene *scene) {
     enum { CANDIDATES = 64 };
+    // Without pairs the list only keeps in memory together what is near each other.
+    if (scene->cutoff == 0)
+        return fmin(sorted_spacings * spacing_of(scene), mf_box_shortest(scene->box) / 4);
     // No wider than the cutoff, nor than the nearest images allow.
     const double widest = fmin(scene->cutoff, mf_box_shortest(scene->box) / 2 - scene->cutoff);
     double best = 0;

@@ -55,7 +55,8 @@ enum { INTERACTION_SPANS = 4 };
     EACH(mf_uniform_force)                                                                         \
     EACH(mf_harmonic_trap)                                                                         \
     EACH(mf_self_propulsion)                                                                       \
-    EACH(mf_polar_alignment)
+    EACH(mf_polar_alignment)                                                                       \
+    EACH(mf_soft_discs)
 
 #define INTERACTION_DECLARE(record) extern const struct interaction record;
 INTERACTIONS(INTERACTION_DECLARE)

@@ -21,7 +21,8 @@ static const double most_cells = 4;
 
 static void shape_cells(struct neighbours *neighbours, const struct box *box) {
     const double room = mf_box_volume(box) / (double)neighbours->count; // of a particle
-    const double narrowest = pow(room / most_cells, 1.0 / box->dimensions);
+    const double most = neighbours->range > 0 ? most_cells : 1 / fewest_in_cell;
+    const double narrowest = pow(room / most, 1.0 / box->dimensions);
     double in_cell = pow(neighbours->range, box->dimensions) / room;
     neighbours->cell_total = 1;
     for (int d = 2; d >= 0; d--) {
@@ -62,8 +63,11 @@ static double expect_entries(const struct neighbours *neighbours, const struct b
 enum status mf_neighbours_init(struct neighbours *neighbours, enum neighbours_kind kind,
                                const struct box *box, size_t count, double cutoff, double skin) {
     enum status status = STATUS_OK;
-    *neighbours = (struct neighbours){
-        .kind = kind, .range = cutoff + skin, .skin = skin, .count = count, .cell_total = 1};
+    *neighbours = (struct neighbours){.kind = kind,
+                                      .range = cutoff > 0 ? cutoff + skin : 0,
+                                      .skin = skin,
+                                      .count = count,
+                                      .cell_total = 1};
     if (mf_box_shortest(box) < 2 * cutoff)
         return mf_status_fail(
             STATUS_BAD_INPUT,

@@ -3,7 +3,8 @@
 ///
 /// L. Verlet, Phys. Rev. 159, 98 (1967). The list holds every pair nearer than range = cutoff +
 /// skin at the time it was built, and stays complete for the cutoff until some particle has moved
-/// by half the skin *since the last build* (not since the last step).
+/// by half the skin *since the last build* (not since the last step). With a cutoff of 0 there are
+/// no pairs, and a build only sorts the particles.
 #pragma once
 
 #include "system/particles.h"
@@ -48,7 +49,7 @@ enum { NEIGHBOURS_MOST_PARTS = 64 };
 
 struct neighbours {
     enum neighbours_kind kind;
-    double range;         ///< cutoff + skin [λ]
+    double range;         ///< cutoff + skin [λ]; 0: no pairs
     double skin;          ///< [λ]
     size_t count;         ///< particles
     size_t *start, *stop; ///< shape [count]: neighbours of k are list[start[k] … stop[k])

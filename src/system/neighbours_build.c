@@ -227,6 +227,8 @@ static enum status build_parts(struct neighbours *neighbours, const struct parti
 
 enum status mf_neighbours_build(struct neighbours *neighbours, const struct particles *particles) {
     bool complete;
+    if (neighbours->range == 0)
+        return STATUS_OK;
     mf_neighbours_fill_rows(neighbours, particles);
     TRY(build_parts(neighbours, particles, &complete));
     while (!complete) {

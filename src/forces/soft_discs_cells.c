@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "forces/soft_discs_cells.h"
+
+/// Radii of a class differ by less than this factor.
+static const double class_factor = 2;
+
+/// Discs that a disc should meet in a row of its own class: a few vectors of them.
+static const double met_in_row = 40;
+
+/// Discs of a class for each of its cells.
+static const double in_cell = 2;
+
+static double largest_of(const double *radius, size_t count) {
+    double largest = 0;
+    for (size_t k = 0; k < count; k++)
+        largest = fmax(largest, radius[k]);
+    return largest;
+}
+
+/// The class of a radius: the number of classes that are too small for it.
+static inline int class_of(const struct soft_discs_cells *cells, double radius) {
+    int class = 0;
+    for (int c = 0; c + 1 < cells->classes; c++)
+        class += radius > cells->of[c].largest;
+    return class;
+}
+
+/// Classes from the largest radius down; the first takes all that are smaller still. Each then ends
+/// at the largest radius in it.
+static void choose_classes(struct soft_discs_cells *cells, const double *radius) {
+    const double largest = largest_of(radius, cells->count);
+    double smallest = largest;
+    for (size_t k = 0; k < cells->count; k++)
+        smallest = fmin(smallest, radius[k]);
+    cells->classes = 1 + (int)fmin(SOFT_DISCS_MOST_CLASSES - 1,
+                                   floor(log(largest / smallest) / log(class_factor)));
+    for (int c = 0; c < cells->classes; c++)
+        cells->of[c].largest = largest / pow(class_factor, cells->classes - 1 - c);
+    double found[SOFT_DISCS_MOST_CLASSES] = {0};
+    for (size_t k = 0; k < cells->count; k++) {
+        const int class = class_of(cells, radius[k]);
+        found[class] = fmax(found[class], radius[k]);
+        cells->of[class].count++;
+    }
+    int kept = 0;
+    for (int c = 0; c < cells->classes; c++) {
+        if (cells->of[c].count > 0)
+            cells->of[kept++] =
+                (struct soft_discs_class){.largest = found[c], .count = cells->of[c].count};
+    }
+    cells->classes = kept;
+}
+
+static void choose_cells(struct soft_discs_cells *cells, const struct box *box) {
+    for (int c = 0; c < cells->classes; c++) {
+        struct soft_discs_class *class = &cells->of[c];
+        const double density = (double)class->count / mf_box_volume(box);
+        const double met_each = 4 * class->largest * density; // in a row of height 1
+        const double height = fmax(met_in_row / met_each, 0.5 * class->largest);
+        class->rows = (int)fmax(1, fmin(floor(box->length[0] / height), (double)class->count));
+        const double in_row = (double)class->count / class->rows;
+        class->columns = (int)fmax(1, floor(in_row / in_cell));
+        class->first_cell = cells->cells;
+        cells->cells += (size_t) class->rows * (size_t) class->columns;
+    }
+}
+
+enum status mf_soft_discs_cells_init(struct soft_discs_cells *cells,
+                                     const struct particles *particles, bool precise) {
+    enum status status = STATUS_OK;
+    const size_t count = particles->count, room = count + PARTICLES_PADDING;
+    *cells = (struct soft_discs_cells){.count = count};
+    choose_classes(cells, mf_particles_numbers(particles, "radius"));
+    choose_cells(cells, &particles->box);
+    size_t rows = 0;
+    for (int c = 0; c < cells->classes; c++)
+        rows += (size_t)cells->of[c].rows;
+    NEW_ARRAY(cells->block, count / SOFT_DISCS_BLOCK + rows);
+    NEW_ARRAY(cells->start, cells->cells + 1);
+    NEW_ARRAY(cells->cell, count);
+    NEW_ARRAY(cells->particle, count);
+    NEW_ARRAY(cells->radius, room);
+    NEW_ARRAY(cells->stiffness, room);
+    for (int d = 0; d < 2; d++) {
+        NEW_ARRAY(cells->fraction[d], room);
+        if (precise)
+            NEW_ARRAY(cells->position[d], room);
+    }
+    if (precise) {
+        NEW_ARRAY(cells->precise_radius, room);
+        NEW_ARRAY(cells->precise_stiffness, room);
+    }
+done:
+    return status;
+}
+
+void mf_soft_discs_cells_clear(struct soft_discs_cells *cells) {
+    mf_memory_free(cells->block);
+    mf_memory_free(cells->start);
+    mf_memory_free(cells->cell);
+    mf_memory_free(cells->particle);
+    mf_memory_free(cells->radius);
+    mf_memory_free(cells->stiffness);
+    for (int d = 0; d < 2; d++) {
+        mf_memory_free(cells->fraction[d]);
+        mf_memory_free(cells->position[d]);
+    }
+    mf_memory_free(cells->precise_radius);
+    mf_memory_free(cells->precise_stiffness);
+    *cells = (struct soft_discs_cells){0};
+}
+
+/// The cell of each particle, and how many there are in each, one further.
+static void find_cells(struct soft_discs_cells *cells, const struct particles *particles,
+                       const double *radius) {
+    memset(cells->start, 0, (cells->cells + 1) * sizeof *cells->start);
+    for (size_t k = 0; k < cells->count; k++) {
+        const struct soft_discs_class *class = &cells->of[class_of(cells, radius[k])];
+        const uint64_t row = (uint32_t)particles->fraction[0][k] * (uint64_t) class->rows >> 32;
+        const uint64_t column =
+            (uint32_t)particles->fraction[1][k] * (uint64_t) class->columns >> 32;
+        const size_t cell = class->first_cell + row * (uint64_t) class->columns + column;
+        cells->cell[k] = (uint32_t)cell;
+        cells->start[cell]++;
+    }
+}
+
+/// Ends of the cells, from how many are in each.
+static void sum_up(struct soft_discs_cells *cells) {
+    uint32_t at = 0;
+    for (size_t cell = 0; cell <= cells->cells; cell++) {
+        at += cells->start[cell];
+        cells->start[cell] = at;
+    }
+}
+
+static void find_blocks(struct soft_discs_cells *cells) {
+    cells->blocks = 0;
+    for (int c = 0; c < cells->classes; c++) {
+        const struct soft_discs_class *class = &cells->of[c];
+        const size_t columns = (size_t) class->columns;
+        for (int row = 0; row < class->rows; row++) {
+            const uint32_t *start = cells->start + class->first_cell + (size_t)row * columns;
+            for (uint32_t at = start[0]; at < start[columns]; at += SOFT_DISCS_BLOCK) {
+                const uint32_t left = start[columns] - at;
+                cells->block[cells->blocks++] = (struct soft_discs_block){
+                    at, left < SOFT_DISCS_BLOCK ? left : SOFT_DISCS_BLOCK, row};
+            }
+        }
+    }
+}
+
+void mf_soft_discs_cells_sort(struct soft_discs_cells *cells, const struct particles *particles) {
+    const double *radius = mf_particles_numbers(particles, "radius");
+    const double *stiffness = mf_particles_numbers(particles, "stiffness");
+    find_cells(cells, particles, radius);
+    sum_up(cells);
+    // From the last on, so that an end becomes a beginning and the order is kept.
+    for (size_t k = cells->count; k-- > 0;) {
+        const size_t at = --cells->start[cells->cell[k]];
+        cells->particle[at] = (uint32_t)k;
+        for (int d = 0; d < 2; d++)
+            cells->fraction[d][at] = particles->fraction[d][k];
+        cells->radius[at] = (float)radius[k];
+        cells->stiffness[at] = stiffness ? (float)stiffness[k] : 1;
+        if (cells->precise_radius == NULL)
+            continue;
+        for (int d = 0; d < 2; d++)
+            cells->position[d][at] = particles->position[d][k];
+        cells->precise_radius[at] = radius[k];
+        cells->precise_stiffness[at] = stiffness ? stiffness[k] : 1;
+    }
+    find_blocks(cells);
+}

@@ -1,0 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#define LANES_DOUBLE
+#include "soft_discs_loop.h"
+
+SOFT_DISCS_INSTANCES(mf_soft_discs_portable_double)
