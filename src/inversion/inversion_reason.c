@@ -8,11 +8,43 @@
 /// on, of liquids up to density 0.95; 3 to 9 with potentials that froze them.
 static const double frozen = 4;
 
+/// Why a fit whose g agrees has not converged.
+static void tell_what_is_missing(const struct inversion *inversion,
+                                 char reason[INVERSE_REASON_SIZE]) {
+    const struct inversion_progress *p = &inversion->progress;
+    const struct inversion_parameters *settings = &inversion->settings.common;
+    const struct target_distance *pressure = &p->best[TARGET_PRESSURE];
+    if (targets_ask(&inversion->problem->targets, TARGET_PRESSURE) &&
+        pressure->rms > mf_inverse_noise_margin * pressure->noise)
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "g agrees, but the pressure is %.3g off, with an error of %.2g", pressure->rms,
+                 pressure->noise);
+    else if (isnan(inversion->band.ramp.way))
+        snprintf(
+            reason, INVERSE_REASON_SIZE,
+            "g agrees within %.2g, but its covariances have no inverse, so that the errors of the "
+            "potential are not known: more \"samples\" are needed",
+            p->best_own_noise);
+    else if (p->best_own_noise <= settings->precision)
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "g agrees, but it still asks for another ramp A (1 - r/cutoff), by %.2g k_B T_0 "
+                 "with an error of %.2g, and a pressure by %.2g with one of %.2g: more "
+                 "\"iterations\" are needed, or a \"pressure\"",
+                 inversion->band.ramp.way, inversion->band.ramp.error,
+                 inversion->band.ramp.pressure_way, inversion->band.ramp.pressure_open);
+    else
+        snprintf(
+            reason, INVERSE_REASON_SIZE,
+            "g agrees within a statistical error of %.2g, but \"precision\" asks for %.2g: more "
+            "\"samples\" or \"iterations\" are needed",
+            p->best_own_noise, settings->precision);
+}
+
 /// The first reason that applies.
 void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]) {
     const struct inversion_progress *p = &inversion->progress;
     const struct inversion_parameters *settings = &inversion->settings.common;
-    const struct target_distance *rdf = &p->best[TARGET_RDF], *pressure = &p->best[TARGET_PRESSURE];
+    const struct target_distance *rdf = &p->best[TARGET_RDF];
     const bool stuck = p->damping < mf_inversion_least_damping * settings->damping;
     const bool agrees = rdf->rms <= mf_inverse_noise_margin * rdf->noise;
     const double improved = rdf->rms / p->first_error;
@@ -35,30 +67,8 @@ void mf_inversion_reason_tell(const struct inversion *inversion, char reason[INV
                  "helped: the start is outside the basin of \"%s\"; the method \"auto\" or "
                  "another start may lead there",
                  p->first_error, p->second_error, inversion->method->name);
-    else if (agrees && targets_ask(&inversion->problem->targets, TARGET_PRESSURE) &&
-             pressure->rms > mf_inverse_noise_margin * pressure->noise)
-        snprintf(reason, INVERSE_REASON_SIZE,
-                 "g agrees, but the pressure is %.3g off, with an error of %.2g", pressure->rms,
-                 pressure->noise);
-    else if (agrees && isnan(inversion->band.ramp.way))
-        snprintf(
-            reason, INVERSE_REASON_SIZE,
-            "g agrees within %.2g, but its covariances have no inverse, so that the errors of the "
-            "potential are not known: more \"samples\" are needed",
-            p->best_own_noise);
-    else if (agrees && p->best_own_noise <= settings->precision)
-        snprintf(reason, INVERSE_REASON_SIZE,
-                 "g agrees, but it still asks for another ramp A (1 - r/cutoff), by %.2g k_B T_0 "
-                 "with an error of %.2g, and a pressure by %.2g with one of %.2g: more "
-                 "\"iterations\" are needed, or a \"pressure\"",
-                 inversion->band.ramp.way, inversion->band.ramp.error,
-                 inversion->band.ramp.pressure_way, inversion->band.ramp.pressure_open);
     else if (agrees)
-        snprintf(
-            reason, INVERSE_REASON_SIZE,
-            "g agrees within a statistical error of %.2g, but \"precision\" asks for %.2g: more "
-            "\"samples\" or \"iterations\" are needed",
-            p->best_own_noise, settings->precision);
+        tell_what_is_missing(inversion, reason);
     else if (stuck)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "the step has shrunk to 1/%.0f without progress: the error of g is %.2g, its "
