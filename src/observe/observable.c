@@ -2,7 +2,7 @@
 #include "observe/observable.h"
 
 /// Of which nothing else knows.
-extern const struct observable mf_structure_factor, mf_snapshots;
+extern const struct observable mf_structure_factor, mf_snapshots, mf_polarity_observable;
 
 const struct observable *const mf_observables[] = {
     &mf_rdf_observable,
@@ -12,6 +12,7 @@ const struct observable *const mf_observables[] = {
     &mf_force_covariance_observable,
     &mf_structure_factor,
     &mf_snapshots,
+    &mf_polarity_observable,
     NULL,
 };
 

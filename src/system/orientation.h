@@ -14,6 +14,7 @@
 struct orientation {
     double *angle;       ///< θ, not wrapped
     double *polarity[2]; ///< cos θ, sin θ
+    double *heading[2];  ///< where a particle drives itself: n without noise that outlasts a step
     double *torque;      ///< [k_B T_0]
 };
 
