@@ -3,6 +3,7 @@
 
 /// Of which nothing else knows.
 extern const struct observable mf_structure_factor, mf_snapshots, mf_polarity_observable;
+extern const struct observable mf_clusters, mf_local_density;
 
 const struct observable *const mf_observables[] = {
     &mf_rdf_observable,
@@ -13,6 +14,8 @@ const struct observable *const mf_observables[] = {
     &mf_structure_factor,
     &mf_snapshots,
     &mf_polarity_observable,
+    &mf_clusters,
+    &mf_local_density,
     NULL,
 };
 
