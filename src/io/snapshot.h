@@ -33,7 +33,8 @@ struct snapshot {
     /// attributes by their names.
     struct snapshot_column column[SNAPSHOT_MOST_COLUMNS];
     int columns;
-    double *memory;
+    double *memory; ///< shape [numbers]: all values
+    size_t numbers;
 };
 
 /// Copy the present state of the particles, in the order of their ids. Fails: NO_MEMORY.

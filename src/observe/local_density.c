@@ -3,7 +3,7 @@
 // How dense it is around a place: particles in cells of a grid over the box, as a histogram of
 // their numbers. Where a fluid has come apart into two phases the histogram has two peaks. G. S.
 // Redner, M. F. Hagan and A. Baskaran, Phys. Rev. Lett. 110, 055701 (2013). Tested:
-// test_local_density.
+// test_clusters.
 #include "base/memory.h"
 #include "io/data_table.h"
 #include "observe/measure.h"

@@ -27,5 +27,5 @@ struct polarity_fit {
     double effective_diffusion, effective_diffusion_error;     ///< D_t + v_0²/(2 D_r) [λ²/τ]
 };
 
-/// NaN before two blocks are complete. Tested: test_polarity, physics/test_active.
+/// NaN before two blocks are complete. Tested: physics/test_active.
 struct polarity_fit mf_polarity_fit(const struct polarity *polarity);
