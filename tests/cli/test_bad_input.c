@@ -129,7 +129,7 @@ static const struct fault scene_faults[] = {
     FAULT("orientations in three dimensions", PARTICLES,
           PARTICLES ", \"interactions\": {\"self-propulsion\": {\"force\": 1}}",
           "input.json: interactions.self-propulsion: orientations are of two dimensions, not 3"),
-    FAULT("no noise where there are velocities", PARTICLES, PARTICLES ", \"temperature\": 0",
+    FAULT("no noise where there are velocities", "\"temperature\": 1", "\"temperature\": 0",
           "input.json: temperature: 0 is for dynamics without velocities, as \"brownian\""),
     FAULT("a format that is none", PARTICLES,
           PARTICLES ", \"snapshots\": {\"every\": 10, \"formats\": [\"vtk\"]}",
