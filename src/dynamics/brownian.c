@@ -244,7 +244,7 @@ const struct integrator mf_brownian = {
     .step = step,
 };
 
-const struct integrator mf_euler_maruyama = {
+const struct integrator mf_brownian_euler = {
     .name = "euler-maruyama",
     .summary = "the same dynamics, first order in the time step: what others are compared with; G. "
                "Maruyama, Rend. Circ. Mat. Palermo 4, 48 (1955)",

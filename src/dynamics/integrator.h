@@ -63,7 +63,7 @@ enum { INTEGRATOR_SPANS = 8 };
     EACH(mf_aboba_implicit)                                                                        \
     EACH(mf_lowe_andersen)                                                                         \
     EACH(mf_brownian)                                                                              \
-    EACH(mf_euler_maruyama)
+    EACH(mf_brownian_euler)
 
 #define INTEGRATOR_DECLARE(record) extern const struct integrator record;
 INTEGRATORS(INTEGRATOR_DECLARE)

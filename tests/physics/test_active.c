@@ -38,7 +38,7 @@ static void test_free_particles_walk_by_the_exact_law(void **state) {
     (void)state;
     enum { COUNT = 8000, PIECES = 5 };
     static const struct brownian_parameters parameters = {2, 1.5, 1.2};
-    static const struct integrator *const integrators[] = {&mf_brownian, &mf_euler_maruyama};
+    static const struct integrator *const integrators[] = {&mf_brownian, &mf_brownian_euler};
     for (int n = 0; n < 2; n++) {
         struct fluid fluid;
         struct simulation simulation;
@@ -128,7 +128,7 @@ static void test_euler_maruyama_is_of_first_order_and_brownian_better(void **sta
         struct simulation simulation;
         struct running_mean squares = {0};
         const double time_step = steps[n % 3];
-        make_free(&fluid, COUNT, time_step, n < 3 ? &mf_brownian : &mf_euler_maruyama, &parameters);
+        make_free(&fluid, COUNT, time_step, n < 3 ? &mf_brownian : &mf_brownian_euler, &parameters);
         fluid.setup.temperature = 1;
         fluid.setup.temperature_limit = 100;
         fluid.setup.interaction[0] = (struct interaction_choice){&mf_harmonic_trap, &trap};

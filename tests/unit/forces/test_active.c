@@ -96,7 +96,7 @@ static void test_free_particles_are_pushed_along_their_heading(void **state) {
 
 static void test_active_particles_go_on_with_the_same_bits_when_restarted(void **state) {
     (void)state;
-    static const struct integrator *const integrators[] = {&mf_brownian, &mf_euler_maruyama};
+    static const struct integrator *const integrators[] = {&mf_brownian, &mf_brownian_euler};
     for (int n = 0; n < 2; n++) {
         struct fluid fluid;
         struct simulation whole, pieces;
