@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdio.h>
 
-/// The choices of a set, all of them with −1, one after the other.
-static void join_choices(const struct field *field, int set, const char *between, char *text,
+/// The choices of a set, all of them with ~0, one after the other.
+static void join_choices(const struct field *field, unsigned set, const char *between, char *text,
                          size_t size) {
     size_t used = 0;
     text[0] = '\0';
@@ -34,11 +34,11 @@ void mf_fields_type_text(const struct field *field, char *text, size_t size) {
         snprintf(text, size, "file");
         break;
     case FIELD_CHOICE:
-        join_choices(field, -1, "|", text, size);
+        join_choices(field, ~0u, "|", text, size);
         break;
     case FIELD_CHOICES: {
         const int used = snprintf(text, size, "list of ");
-        join_choices(field, -1, "|", text + used, size - (size_t)used);
+        join_choices(field, ~0u, "|", text + used, size - (size_t)used);
         break;
     }
     }
@@ -50,7 +50,7 @@ void mf_fields_default_text(const struct field *field, char *text, size_t size) 
     else if (field->type == FIELD_CHOICE)
         snprintf(text, size, "%s", field->choices[(int)field->initial]);
     else if (field->type == FIELD_CHOICES)
-        join_choices(field, (int)field->initial, ", ", text, size);
+        join_choices(field, (unsigned)field->initial, ", ", text, size);
     else if (field->type == FIELD_TEXT || field->type == FIELD_FILE || field->type == FIELD_LENGTHS)
         snprintf(text, size, "none");
     else if (isnan(field->initial))

@@ -136,15 +136,18 @@ SIMD_CLONES static void move_block(const struct moved *moved, size_t first, size
                 particles->position[d] + first);
     if (orientation->angle == NULL)
         return;
+    const double turn = free_turn(setup), shared = moved->last[2] ? 0.5 * turn : 0;
     double rate[BLOCK];
     double *restrict angle = orientation->angle + first;
-    double *restrict cosine = orientation->polarity[0] + first;
-    double *restrict sine = orientation->polarity[1] + first;
-    advance(count, time_step, orientation_mobility(setup), free_turn(setup) / time_step,
+    advance(count, time_step, orientation_mobility(setup), turn / time_step,
             orientation->torque + first, noise[2], moved->last[2] ? moved->last[2] + first : NULL,
             rate, angle);
     for (size_t k = 0; k < count; k++)
-        orientation_polarity(angle[k], &cosine[k], &sine[k]);
+        orientation_polarity(angle[k], &orientation->polarity[0][first + k],
+                             &orientation->polarity[1][first + k]);
+    for (size_t k = 0; k < count; k++)
+        orientation_polarity(angle[k] - shared * noise[2][k], &orientation->heading[0][first + k],
+                             &orientation->heading[1][first + k]);
 }
 
 static void move(void *context, size_t begin, size_t end) {
@@ -159,7 +162,8 @@ static void move(void *context, size_t begin, size_t end) {
 
 /// y = x − ½ sqrt(2 D Δt) R with R of the last step, whose increments Δt F/γ + sqrt(2 D Δt) R are
 /// independent: the MSD of free particles is 2 d D t at every lag, that of x lacks half a step. So
-/// it is with orientations.
+/// it is with orientations, and particles drive themselves along the angle without that half: what
+/// they then diffuse is too much by a part (D_r Δt)²/12 alone, and by D_r Δt/2 with it.
 static void forget(const struct simulation *simulation, double *positions, double *angles) {
     const struct particles *particles = &simulation->particles;
     const struct state *state = simulation->integrator_state;
@@ -240,7 +244,7 @@ const struct integrator mf_brownian = {
     .step = step,
 };
 
-const struct integrator mf_euler_maruyama = {
+const struct integrator mf_brownian_euler = {
     .name = "euler-maruyama",
     .summary = "the same dynamics, first order in the time step: what others are compared with; G. "
                "Maruyama, Rend. Circ. Mat. Palermo 4, 48 (1955)",

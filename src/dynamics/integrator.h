@@ -71,7 +71,7 @@ enum { INTEGRATOR_SPANS = 8 };
     EACH(mf_aboba_implicit)                                                                        \
     EACH(mf_lowe_andersen)                                                                         \
     EACH(mf_brownian)                                                                              \
-    EACH(mf_euler_maruyama)                                                                        \
+    EACH(mf_brownian_euler)                                                                        \
     EACH(mf_event_driven)                                                                          \
     EACH(mf_collision_dynamics)
 

@@ -3,7 +3,7 @@
 // Neighbours turn each other into the same direction: the torque on i is −J Σ_j sin(θ_i − θ_j) over
 // all j within the range b, with sin(θ_i − θ_j) = n_j × n_i, so that no angle is computed. F. D. C.
 // Farrell, M. C. Marchetti, D. Marenduzzo and J. Tailleur, Phys. Rev. Lett. 108, 248101 (2012).
-// Tested: test_polar_alignment.
+// Tested: test_active.
 #include "base/parallel.h"
 #include "forces/interaction.h"
 #include "system/orientation.h"

@@ -25,7 +25,7 @@ SIMD_CLONES static void propel(void *context, size_t begin, size_t end) {
     const struct propelled *propelled = context;
     const struct orientation orientation = mf_orientation_of(propelled->particles);
     for (int d = 0; d < 2; d++) {
-        const double *restrict n = orientation.polarity[d];
+        const double *restrict n = orientation.heading[d];
         double *restrict force = propelled->particles->force[d];
         for (size_t k = begin; k < end; k++)
             force[k] += propelled->force * n[k];

@@ -111,7 +111,7 @@ static enum status read_dynamics(struct scene *scene, struct json_object *object
         mf_json_fault(object, "temperature", "0 is for dynamics without velocities, as \"%s\"",
                       mf_brownian.name);
     const struct interaction *oriented = mf_simulation_oriented(&scene->setup);
-    if (oriented && integrator->orientation_mobility == NULL)
+    if (oriented && scene->setup.box.dimensions == 2 && integrator->orientation_mobility == NULL)
         mf_json_fault(object, "dynamics",
                       "%s turns no orientations, which \"%s\" is about; use \"%s\"",
                       integrator->name, oriented->name, mf_brownian.name);

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "input/scene_attributes.h"
 #include "io/data_table.h"
+#include "io/snapshot.h"
 
 #include <math.h>
 
@@ -31,12 +32,19 @@ static bool are_near(const struct scene *scene, const struct data_table *table,
     return true;
 }
 
+/// A table, or a snapshot in JSON with the same columns.
+static enum status read_file(struct data_table *table, const char *file, size_t dimensions) {
+    const char *dot = strrchr(file, '.');
+    return dot && strcmp(dot, ".json") == 0 ? mf_snapshot_read(table, file, (int)dimensions)
+                                            : mf_data_table_read(table, file, dimensions);
+}
+
 /// Columns x, y (, z), if there are as many again the velocities, and attributes by their names.
 static enum status read_positions(struct scene *scene, struct json_object *particles) {
     const struct placement *placement = &scene->setup.placement;
     const size_t dimensions = (size_t)scene->setup.box.dimensions;
     struct data_table table = {0};
-    enum status status = mf_data_table_read(&table, placement->file, dimensions);
+    enum status status = read_file(&table, placement->file, dimensions);
     if (status != STATUS_OK) {
         mf_json_fault(particles, "file", "%s", mf_status_message());
         return status == STATUS_NO_MEMORY ? status : STATUS_OK;
@@ -46,7 +54,7 @@ static enum status read_positions(struct scene *scene, struct json_object *parti
         (motion != dimensions && motion != 2 * dimensions)) {
         mf_json_fault(particles, "file",
                       "%s: %zu rows of %zu numbers, not %lld of %zu or %zu; other columns are "
-                      "called mass, radius or stiffness in a line of names",
+                      "called mass, radius, stiffness or orientation in a line of names",
                       placement->file, table.rows, motion, (long long)placement->count, dimensions,
                       2 * dimensions);
         goto done;

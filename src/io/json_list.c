@@ -37,3 +37,22 @@ bool mf_json_list_choices(struct json_object *object, const struct field *field,
     }
     return true;
 }
+
+bool mf_json_list_numbers(struct json_object *object, const char *key, double *values,
+                          size_t count) {
+    const cJSON *list = cJSON_GetObjectItemCaseSensitive(object->item, key), *element;
+    size_t n = 0;
+    mf_json_has(object, key);
+    if (!cJSON_IsArray(list) || (size_t)mf_json_count(object, key) != count) {
+        mf_json_fault(object, key, "a list of %zu numbers is required", count);
+        return false;
+    }
+    cJSON_ArrayForEach(element, list) {
+        if (!cJSON_IsNumber(element) || !isfinite(element->valuedouble)) {
+            mf_json_fault(object, key, "number %zu of the list is none", n + 1);
+            return false;
+        }
+        values[n++] = element->valuedouble;
+    }
+    return true;
+}

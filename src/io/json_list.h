@@ -7,3 +7,8 @@
 /// A list of at least one choice of a field as a set, a bit each; false and a fault otherwise.
 bool mf_json_list_choices(struct json_object *object, const struct field *field, const void *item,
                           int *chosen);
+
+/// The list of `count` finite numbers at `key`; false and a fault if there is none.
+/// @param[out] values  shape [count]
+bool mf_json_list_numbers(struct json_object *object, const char *key, double *values,
+                          size_t count);

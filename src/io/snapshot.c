@@ -77,7 +77,8 @@ enum status mf_snapshot_take(struct snapshot *snapshot, const struct particles *
                                   .time = time};
     for (int k = 0; k < particles->attributes; k++)
         components += (size_t)particles->attribute[k].components;
-    snapshot->memory = mf_memory_zeroed(components * particles->count, sizeof(double));
+    snapshot->numbers = components * particles->count;
+    snapshot->memory = mf_memory_zeroed(snapshot->numbers, sizeof(double));
     if (snapshot->memory == NULL)
         return STATUS_NO_MEMORY;
     copy_places(snapshot, particles, &used);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "base/status.h"
+#include "io/data_table.h"
 #include "system/composition.h"
 #include "system/particles.h"
 
@@ -33,7 +34,8 @@ struct snapshot {
     /// attributes by their names.
     struct snapshot_column column[SNAPSHOT_MOST_COLUMNS];
     int columns;
-    double *memory;
+    double *memory; ///< shape [numbers]: all values
+    size_t numbers;
 };
 
 /// Copy the present state of the particles, in the order of their ids. Fails: NO_MEMORY.
@@ -71,6 +73,11 @@ extern const char *const mf_snapshot_format_names[];
 /// Fails: IO; the file is then as it was. Tested: test_snapshot, cli/test_snapshots.
 enum status mf_snapshot_write(const struct snapshot *snapshot, const struct snapshot_format *format,
                               const char *folder, int64_t *size) MUST_USE;
+
+/// Read positions, velocities if they are there, and what attributes.h lets a scene give, from a
+/// snapshot in JSON: a table with the columns of a placement file, and their names as its header.
+/// Fails: BAD_INPUT with all faults, IO, NO_MEMORY. Tested: cli/test_snapshots.
+enum status mf_snapshot_read(struct data_table *table, const char *file, int dimensions) MUST_USE;
 
 /// Whether a file has the name of a snapshot.
 bool mf_snapshot_is_file(const char *name);

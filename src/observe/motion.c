@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "base/simd.h"
 #include "base/statistics.h"
+#include "system/orientation.h"
 
 #include <math.h>
 #include <string.h>
@@ -96,6 +97,15 @@ static void subtract_mean(const struct particles *particles, double *values) {
         values[k] -= mean;
 }
 
+/// Orientations by id, in the place of the second component of what will be polarities.
+static double *gather_angles(struct motion *motion, const struct particles *particles) {
+    double *angles = motion->now + 3 * motion->count;
+    const struct orientation orientation = mf_orientation_of(particles);
+    for (size_t k = 0; k < motion->count; k++)
+        angles[particles->id[k]] = orientation.angle[k];
+    return angles;
+}
+
 /// Unwrapped positions and velocities, by id, relative to those of the centre of mass. Without
 /// velocities no momentum is conserved: the centre of mass diffuses, too, and its share stays.
 static void gather(struct motion *motion, const struct simulation *simulation) {
@@ -115,8 +125,11 @@ static void gather(struct motion *motion, const struct simulation *simulation) {
             subtract_mean(particles, v);
         }
     }
+    double *angles = motion->polar ? gather_angles(motion, particles) : NULL;
     if (integrator->forget)
-        integrator->forget(simulation, motion->now, NULL);
+        integrator->forget(simulation, motion->now, angles);
+    for (size_t k = 0; angles && k < count; k++)
+        orientation_polarity(angles[k], angles - count + k, angles + k);
 }
 
 /// Two states of the particles, shape [dimensions, count] each.
@@ -173,8 +186,9 @@ static void correlate(struct motion *motion, size_t origin, int threads) {
     motion->squares[place] +=
         mf_parallel_sum(motion->count, threads, sum_squares, &positions) / count;
     motion->products[place] +=
-        motion->flies ? mf_parallel_sum(motion->count, threads, sum_products, &velocities) / count
-                      : NAN;
+        motion->flies || motion->polar
+            ? mf_parallel_sum(motion->count, threads, sum_products, &velocities) / count
+            : NAN;
 }
 
 void mf_motion_sample(struct motion *motion, const struct simulation *simulation) {
@@ -273,7 +287,7 @@ static double read_second_half(const struct motion *motion, const double *curve,
     return integrate(motion, curve, last / 2, last, 1);
 }
 
-static size_t complete_blocks(const struct motion *motion) {
+size_t mf_motion_blocks(const struct motion *motion) {
     const size_t taken = motion->samples;
     const size_t blocks = taken ? complete_origins(&motion->plan, taken - 1) / motion->each : 0;
     return blocks < motion->blocks ? blocks : motion->blocks;
@@ -284,7 +298,7 @@ static void average(const struct motion *motion, const double *sums,
                     size_t lag, double *mean, double *error) {
     double values[MOST_BLOCKS];
     struct running_mean all = {0};
-    const size_t blocks = complete_blocks(motion), curve = (size_t)motion->plan.lags + 1;
+    const size_t blocks = mf_motion_blocks(motion), curve = (size_t)motion->plan.lags + 1;
     for (size_t b = 0; b < blocks; b++) {
         values[b] = read(motion, sums + b * curve, lag) / (double)motion->each;
         mf_statistics_add(&all, values[b]);
@@ -317,7 +331,7 @@ struct motion_summary mf_motion_result(const struct motion *motion,
     average(motion, motion->squares, read_slope, 0, &s.msd, &s.msd_error);
     average(motion, motion->products, read_integral, 0, &s.green_kubo, &s.green_kubo_error);
     find_systematic(motion, &s);
-    s.blocks = (double)complete_blocks(motion);
+    s.blocks = (double)mf_motion_blocks(motion);
     s.fit_begin = lag_time(motion, fit_first(&motion->plan));
     s.fit_end = lag_time(motion, lags);
     s.maxwell = mf_maxwell_result(&motion->maxwell);

@@ -37,6 +37,7 @@ struct motion {
     size_t count; ///< of particles
     double time_step;
     bool flies;    ///< has velocities, and a momentum that is conserved
+    bool polar;    ///< polarities stand in the place of velocities (observe/polarity.h)
     int64_t begin; ///< step of the first sample
     size_t blocks; ///< of time origins, for the errors
     size_t each;   ///< time origins in a block
@@ -56,6 +57,9 @@ enum status mf_motion_init(struct motion *motion, const struct motion_plan *plan
                            const struct simulation *simulation, int64_t begin,
                            int64_t steps) MUST_USE;
 void mf_motion_clear(struct motion *motion);
+
+/// Blocks of time origins whose windows are complete.
+size_t mf_motion_blocks(const struct motion *motion);
 
 /// The step of the next sample, or INT64_MAX after the last.
 int64_t mf_motion_due(const struct motion *motion);

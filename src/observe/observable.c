@@ -5,7 +5,8 @@
 #include "observe/flow_profile.h"
 
 /// Of which nothing else knows.
-extern const struct observable mf_structure_factor, mf_snapshots, mf_collisions;
+extern const struct observable mf_structure_factor, mf_snapshots, mf_polarity_observable;
+extern const struct observable mf_clusters, mf_local_density, mf_collisions;
 
 const struct observable *const mf_observables[] = {
     &mf_rdf_observable,
@@ -18,6 +19,9 @@ const struct observable *const mf_observables[] = {
     &mf_collisions,
     &mf_flow_profile,
     &mf_flow_field,
+    &mf_polarity_observable,
+    &mf_clusters,
+    &mf_local_density,
     NULL,
 };
 

@@ -3,6 +3,7 @@
 // Snapshots of a simulation: files while it runs, at steps of their own. A run that was resumed
 // leaves the files of one that was not.
 #include "base/memory.h"
+#include "io/data_table.h"
 #include "io/snapshot.h"
 #include "observe/measure.h"
 
@@ -16,21 +17,30 @@ struct state {
     struct observable_results results;
     int64_t begin, steps; ///< of the measurement
     int64_t taken;
-    int64_t size; ///< of the file of all snapshots [bytes]
+    int64_t size;         ///< of the file of all snapshots [bytes]
+    struct snapshot last; ///< or the state before the first
 };
+
+static enum status take(struct state *s, const struct simulation *simulation) {
+    const double time = (double)simulation->step * simulation->setup.time_step;
+    mf_snapshot_clear(&s->last);
+    return mf_snapshot_take(&s->last, &simulation->particles, &simulation->setup.composition,
+                            simulation->step, time);
+}
 
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
     struct state *s = state;
-    (void)simulation;
     *s = (struct state){.settings = *(const struct settings *)settings,
                         .begin = plan->equilibration,
                         .steps = plan->samples * plan->every};
-    return STATUS_OK;
+    return take(s, simulation);
 }
 
 static void clear(void *state) {
-    *(struct state *)state = (struct state){0};
+    struct state *s = state;
+    mf_snapshot_clear(&s->last);
+    *s = (struct state){0};
 }
 
 static void open_folder(void *state, const struct observable_results *results) {
@@ -43,32 +53,66 @@ static int64_t due(const void *state) {
     return next > s->steps ? INT64_MAX : s->begin + next;
 }
 
-static enum status write_formats(struct state *s, const struct snapshot *snapshot) {
+static enum status write_formats(struct state *s) {
     char folder[OUTPUT_PATH_SIZE];
     mf_observable_file(&s->results, SNAPSHOT_FOLDER, folder);
     for (int k = 0; mf_snapshot_formats[k]; k++)
         if (s->settings.formats >> k & 1)
-            TRY(mf_snapshot_write(snapshot, mf_snapshot_formats[k], folder, &s->size));
+            TRY(mf_snapshot_write(&s->last, mf_snapshot_formats[k], folder, &s->size));
     return STATUS_OK;
+}
+
+/// Whether a scene can give particles this column at the start.
+static bool is_given(const struct snapshot_column *column) {
+    for (int k = 0; k < ATTRIBUTES_NAMES; k++)
+        if (strcmp(column->name, mf_attributes_fields[k].name) == 0)
+            return true;
+    return strcmp(column->name, "position") == 0 || strcmp(column->name, "velocity") == 0;
+}
+
+/// configuration.tsv: the last snapshot as a placement file, with which another scene can begin.
+static enum status write(const void *state, const struct observable_results *results) {
+    enum { MOST = 3 * SNAPSHOT_MOST_COLUMNS };
+    static const char *const units[][2] = {{"x", "[lambda]"},
+                                           {"y", "[lambda]"},
+                                           {"z", "[lambda]"},
+                                           {"velocity_x", "[lambda/tau]"},
+                                           {"velocity_y", "[lambda/tau]"},
+                                           {"velocity_z", "[lambda/tau]"}};
+    const struct snapshot *snapshot = &((const struct state *)state)->last;
+    struct data_column columns[MOST];
+    char names[MOST][SNAPSHOT_NAME_SIZE + 16], path[OUTPUT_PATH_SIZE];
+    size_t n = 0;
+    for (int k = 0; k < snapshot->columns; k++)
+        for (int c = 0; c < snapshot->column[k].components && is_given(&snapshot->column[k]); c++) {
+            char name[SNAPSHOT_NAME_SIZE];
+            mf_snapshot_component_name(&snapshot->column[k], c, name);
+            const char *unit = "";
+            for (size_t u = 0; u < sizeof units / sizeof *units; u++)
+                unit = strcmp(units[u][0], name) == 0 ? units[u][1] : unit;
+            snprintf(names[n], sizeof names[n], "%s%s", name, unit);
+            columns[n] = (struct data_column){
+                names[n], snapshot->column[k].values + (size_t)c * snapshot->count, "%.17g"};
+            n++;
+        }
+    mf_observable_file(results, "configuration.tsv", path);
+    return mf_data_table_write(path, NULL, columns, n, snapshot->count);
 }
 
 static enum status sample(void *state, struct simulation *simulation) {
     struct state *s = state;
-    struct snapshot snapshot;
-    const double time = (double)simulation->step * simulation->setup.time_step;
-    TRY(mf_snapshot_take(&snapshot, &simulation->particles, &simulation->setup.composition,
-                         simulation->step, time));
-    const enum status status = write_formats(s, &snapshot);
-    mf_snapshot_clear(&snapshot);
+    TRY(take(s, simulation));
+    TRY(write_formats(s));
     s->taken++;
-    return status;
+    return STATUS_OK;
 }
 
 static size_t spans(void *state, struct memory_span *spans) {
     struct state *s = state;
     spans[0] = (struct memory_span){&s->taken, sizeof s->taken};
     spans[1] = (struct memory_span){&s->size, sizeof s->size};
-    return 2;
+    spans[2] = (struct memory_span){s->last.memory, s->last.numbers * sizeof *s->last.memory};
+    return 3;
 }
 
 static void put(const void *state, const struct observable_results *results,
@@ -103,6 +147,8 @@ static const struct field fields[] = {
     FIELD_END,
 };
 
+static const char *const files[] = {"configuration.tsv", NULL};
+
 const struct observable mf_snapshots = {
     .name = "snapshots",
     .summary = "positions, velocities, forces and attributes of all particles, as files",
@@ -115,7 +161,10 @@ const struct observable mf_snapshots = {
     .due = due,
     .sample = sample,
     .spans = spans,
+    .write = write,
     .put = put,
     .explain = explain,
     .stage = "snapshots",
+    .files = files,
+    .figure = "configuration",
 };

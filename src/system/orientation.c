@@ -14,10 +14,11 @@ enum status mf_orientation_give(struct particles *particles, uint64_t seed) {
     const struct particles_attribute wanted[] = {
         {.name = "orientation", .type = PARTICLES_DOUBLE, .components = 1},
         {.name = "polarity", .type = PARTICLES_DOUBLE, .components = 2},
+        {.name = "heading", .type = PARTICLES_DOUBLE, .components = 2},
         {.name = "torque", .type = PARTICLES_DOUBLE, .components = 1}};
     const bool given = find(particles, "orientation") != NULL;
     int number;
-    for (int k = given; k < 3; k++)
+    for (int k = given; k < 4; k++)
         TRY(mf_particles_add_attribute(particles, &wanted[k], &number));
     const struct orientation orientation = mf_orientation_of(particles);
     for (size_t k = 0; k < particles->count; k++) {
@@ -26,6 +27,8 @@ enum status mf_orientation_give(struct particles *particles, uint64_t seed) {
             orientation.angle[k] = 2 * M_PI * mf_rng_uniform(block.word[0], block.word[1]);
         orientation_polarity(orientation.angle[k], &orientation.polarity[0][k],
                              &orientation.polarity[1][k]);
+        for (int d = 0; d < 2; d++)
+            orientation.heading[d][k] = orientation.polarity[d][k];
     }
     return STATUS_OK;
 }
@@ -36,8 +39,10 @@ struct orientation mf_orientation_of(const struct particles *particles) {
         return (struct orientation){0};
     const struct particles_attribute *angle = find(particles, "orientation");
     const struct particles_attribute *polarity = find(particles, "polarity");
+    const struct particles_attribute *heading = find(particles, "heading");
     return (struct orientation){.angle = angle->value[0],
                                 .polarity = {polarity->value[0], polarity->value[1]},
+                                .heading = {heading->value[0], heading->value[1]},
                                 .torque = torque->value[0]};
 }
 

@@ -2,7 +2,7 @@
 /// @file Orientations of particles in the plane, as attributes of theirs.
 ///
 /// A particle with an orientation θ has a polarity n = (cos θ, sin θ) that goes with it, and a
-/// torque, which interactions add to. Where nobody asks there is nothing. Tested: test_orientation.
+/// torque, which interactions add to. Where nobody asks there is nothing. Tested: test_active.
 #pragma once
 
 #include "system/particles.h"
@@ -14,6 +14,7 @@
 struct orientation {
     double *angle;       ///< θ, not wrapped
     double *polarity[2]; ///< cos θ, sin θ
+    double *heading[2];  ///< where a particle drives itself: n without noise that outlasts a step
     double *torque;      ///< [k_B T_0]
 };
 
@@ -26,7 +27,7 @@ struct orientation mf_orientation_of(const struct particles *particles);
 /// Torques are 0 from now on, if there are any.
 void mf_orientation_clear_torques(const struct particles *particles);
 
-/// cos θ and sin θ within 2e-15, for |θ| < 10⁶, in the lanes of a vector loop.
+/// cos θ and sin θ within 5e-15, for |θ| < 10⁶, in the lanes of a vector loop.
 ///
 /// θ minus the nearest multiple of π, in two parts (W. J. Cody and W. Waite, Software Manual for
 /// the Elementary Functions (1980)), then Taylor's series up to π/2 and the sign of the multiple.

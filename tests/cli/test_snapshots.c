@@ -82,6 +82,72 @@ static void test_new_run_removes_the_snapshots_of_an_earlier_one(void **state) {
     assert_false(temporary_folder_exists("out/snapshots/trajectory.extxyz"));
 }
 
+static const char active[] =
+    "{\"seed\": 5, \"dimensions\": 2, \"box\": [12, 12], \"temperature\": 0, "
+    "\"particles\": {\"count\": 60, \"placement\": \"random\", \"separation\": 1},\n"
+    "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 20, \"cutoff\": 2},\n"
+    "\"interactions\": {\"self-propulsion\": {\"force\": 1}, "
+    "\"polar-alignment\": {\"coupling\": 1, \"range\": 2}},\n"
+    "\"dynamics\": {\"integrator\": \"euler-maruyama\"},\n"
+    "\"snapshots\": {\"every\": 25, \"formats\": [\"json\"]},\n"
+    "\"measure\": {\"equilibration\": 0, \"samples\": 20, \"every\": 10},\n"
+    "\"polarity\": {\"every\": 5, \"lags\": 4}, \"clusters\": {\"distance\": 2},\n"
+    "\"local_density\": {\"cell\": 3}}\n";
+static const char *const active_files[] = {"polarity.tsv",
+                                           "polar_order.tsv",
+                                           "clusters.tsv",
+                                           "local_density.tsv",
+                                           "configuration.tsv",
+                                           "snapshots/step_000000200.json",
+                                           NULL};
+
+/// Both forms of the last configuration begin the same scene.
+static void test_scene_begins_with_a_snapshot(void **state) {
+    static struct run_program_result result;
+    static const char random[] = "\"random\", \"separation\": 1";
+    small_scenes_write(*state, active, NULL, NULL);
+    small_scenes_simulate(&result, "first");
+    small_scenes_write(*state, active, random,
+                       "\"file\", \"file\": \"first/snapshots/step_000000200.json\"");
+    small_scenes_simulate(&result, "second");
+    small_scenes_write(*state, active, random, "\"file\", \"file\": \"first/configuration.tsv\"");
+    small_scenes_simulate(&result, "third");
+    results_assert_same("second", "third", active_files);
+    results_assert_differ("first", "second", "polar_order.tsv");
+    // The first snapshot of the second is the last of the first.
+    small_scenes_write(*state, active, random,
+                       "\"file\", \"file\": \"second/snapshots/step_000000000.json\"");
+    small_scenes_simulate(&result, "fourth");
+    results_assert_same("second", "fourth", active_files);
+}
+
+static void test_interrupted_active_particles_go_on_with_the_same_bits(void **state) {
+    static struct run_program_result result;
+    small_scenes_write(*state, active, "\"samples\": 20", "\"samples\": 400");
+    small_scenes_simulate(&result, "whole");
+    run_program_in_pieces(0, (const char *const[]){"simulate", "scene.json", "-o", "pieces", NULL});
+    results_assert_same("whole", "pieces", active_files);
+}
+
+static void test_broken_snapshot_is_refused_as_a_start(void **state) {
+    static struct run_program_result result;
+    small_scenes_write(*state, active, "\"random\", \"separation\": 1",
+                       "\"file\", \"file\": \"start.json\"");
+    small_inputs_write(*state, "start.json", "{\"particles\": {\"x\": [1, 2], \"y\": [1, null]}}",
+                       NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json");
+    run_program_assert_refused(&result, ".", "null", 1,
+                               (const char *[]){"scene.json: particles.file: start.json: "
+                                                "particles.y: number 2 of the list is none",
+                                                NULL});
+    small_inputs_write(*state, "start.json", "{\"particles\": {\"x\": [1, 2], \"y\": [1]}}", NULL,
+                       NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json");
+    run_program_assert_refused(
+        &result, ".", "short", 1,
+        (const char *[]){"particles.y: a list of 2 numbers is required", NULL});
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_interrupted_run_leaves_the_same_snapshots,
@@ -91,6 +157,12 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_snapshots_change_nothing_else_and_threads_not_them,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_new_run_removes_the_snapshots_of_an_earlier_one,
+                                        small_inputs_enter_without_gnuplot, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_scene_begins_with_a_snapshot,
+                                        small_inputs_enter_without_gnuplot, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_interrupted_active_particles_go_on_with_the_same_bits,
+                                        small_inputs_enter_without_gnuplot, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_broken_snapshot_is_refused_as_a_start,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

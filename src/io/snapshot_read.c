@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/memory.h"
+#include "io/json_list.h"
+#include "io/snapshot.h"
+#include "system/attributes.h"
+
+#include <string.h>
+
+/// Positions, velocities and attributes.
+enum { MOST_COLUMNS = 6 + ATTRIBUTES_NAMES, HEADER_SIZE = 16 * MOST_COLUMNS };
+
+/// Names of the columns that the particles of a snapshot have, in the order of a placement file.
+static size_t list_columns(struct json_object *particles, int dimensions,
+                           const char *names[MOST_COLUMNS]) {
+    static const char *const position[] = {"x", "y", "z"};
+    static const char *const velocity[] = {"velocity_x", "velocity_y", "velocity_z"};
+    size_t count = 0;
+    for (int d = 0; d < dimensions; d++)
+        names[count++] = position[d];
+    for (int d = 0; d < dimensions && mf_json_has(particles, velocity[0]); d++)
+        names[count++] = velocity[d];
+    for (int k = 0; k < ATTRIBUTES_NAMES; k++)
+        if (mf_json_has(particles, mf_attributes_fields[k].name))
+            names[count++] = mf_attributes_fields[k].name;
+    return count;
+}
+
+static enum status read_columns(struct data_table *table, struct json_object *particles,
+                                int dimensions) {
+    enum status status = STATUS_OK;
+    const char *names[MOST_COLUMNS];
+    double *column = NULL;
+    table->columns = list_columns(particles, dimensions, names);
+    table->rows = (size_t)mf_json_count(particles, "x");
+    NEW_ARRAY(table->values, table->rows * table->columns);
+    NEW_ARRAY(table->line, table->rows);
+    NEW_ARRAY(table->header, HEADER_SIZE);
+    NEW_ARRAY(column, table->rows);
+    for (size_t c = 0; c < table->columns; c++) {
+        strcat(strcat(table->header, names[c]), " ");
+        mf_json_list_numbers(particles, names[c], column, table->rows);
+        for (size_t k = 0; k < table->rows; k++)
+            table->values[k * table->columns + c] = column[k];
+    }
+    for (size_t k = 0; k < table->rows; k++)
+        table->line[k] = k + 1;
+done:
+    mf_memory_free(column);
+    return status;
+}
+
+enum status mf_snapshot_read(struct data_table *table, const char *file, int dimensions) {
+    struct json_document *document;
+    *table = (struct data_table){0};
+    TRY(mf_json_open(&document, file));
+    struct json_object root = mf_json_root(document);
+    struct json_object particles = mf_json_child(&root, "particles", true);
+    enum status status = STATUS_OK;
+    if (particles.item && mf_json_count(&particles, "x") == 0)
+        mf_json_fault(&particles, "x", "a list of numbers is required");
+    else if (particles.item)
+        status = read_columns(table, &particles, dimensions);
+    status = mf_json_close(document, status);
+    if (status != STATUS_OK)
+        mf_data_table_clear(table);
+    return status;
+}

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Clusters: particles nearer than a distance to one of them belong to it, by the forest of R. E.
+// Tarjan, J. ACM 22, 215 (1975). Told are the share of particles in clusters of each size, its mean
+// ⟨Σ s²⟩/N, and the share in the largest. Tested: test_clusters.
+#include "base/memory.h"
+#include "base/statistics.h"
+#include "io/data_table.h"
+#include "observe/measure.h"
+
+struct settings {
+    double distance;
+};
+
+struct state {
+    struct settings settings;
+    size_t count, planned, samples;
+    uint32_t *root;  ///< shape [count]: a particle of the same cluster, or itself
+    uint32_t *size;  ///< shape [count]: of the cluster, at its root
+    double *members; ///< shape [count + 1]: particles in clusters of each size, over all samples
+    double *mean;    ///< shape [planned]: Σ s²/N
+    double *largest; ///< shape [planned]: share of all particles
+};
+
+static void clear(void *state) {
+    struct state *s = state;
+    mf_memory_free(s->root);
+    mf_memory_free(s->size);
+    mf_memory_free(s->members);
+    mf_memory_free(s->mean);
+    mf_memory_free(s->largest);
+    *s = (struct state){0};
+}
+
+static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+                         const struct measure_plan *plan) {
+    enum status status = STATUS_OK;
+    struct state *s = state;
+    *s = (struct state){.settings = *(const struct settings *)settings,
+                        .count = simulation->particles.count,
+                        .planned = (size_t)plan->samples};
+    const double range = mf_simulation_range(&simulation->setup);
+    if (s->settings.distance > range * (1 + 1e-9))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "clusters.distance: %g is beyond %g, the range of the interactions, "
+                              "for which pairs are known",
+                              s->settings.distance, range);
+    NEW_ARRAY(s->root, s->count);
+    NEW_ARRAY(s->size, s->count);
+    NEW_ARRAY(s->members, s->count + 1);
+    NEW_ARRAY(s->mean, s->planned);
+    NEW_ARRAY(s->largest, s->planned);
+done:
+    return status;
+}
+
+static uint32_t find_root(uint32_t *root, uint32_t k) {
+    while (root[k] != k) {
+        root[k] = root[root[k]];
+        k = root[k];
+    }
+    return k;
+}
+
+static void join(void *context, const struct neighbours_batch *batch) {
+    struct state *s = context;
+    for (size_t n = 0; n < batch->count; n++) {
+        const uint32_t a = find_root(s->root, batch->id_i[n]);
+        const uint32_t b = find_root(s->root, batch->id_j[n]);
+        const uint32_t low = s->size[a] < s->size[b] ? a : b, high = low == a ? b : a;
+        if (a == b)
+            continue;
+        s->root[low] = high;
+        s->size[high] += s->size[low];
+    }
+}
+
+static enum status sample(void *state, struct simulation *simulation) {
+    struct state *s = state;
+    double squares = 0, largest = 0;
+    if (s->samples == s->planned)
+        return STATUS_OK;
+    for (size_t k = 0; k < s->count; k++) {
+        s->root[k] = (uint32_t)k;
+        s->size[k] = 1;
+    }
+    mf_neighbours_visit_pairs(&simulation->neighbours, &simulation->particles, s->settings.distance,
+                              join, s);
+    for (size_t k = 0; k < s->count; k++) {
+        const double size = s->root[k] == k ? s->size[k] : 0;
+        s->members[(size_t)size] += size;
+        squares += size * size;
+        largest = fmax(largest, size);
+    }
+    s->mean[s->samples] = squares / (double)s->count;
+    s->largest[s->samples++] = largest / (double)s->count;
+    return STATUS_OK;
+}
+
+static size_t spans(void *state, struct memory_span *spans) {
+    struct state *s = state;
+    spans[0] = (struct memory_span){&s->samples, sizeof s->samples};
+    spans[1] = (struct memory_span){s->members, (s->count + 1) * sizeof *s->members};
+    spans[2] = (struct memory_span){s->mean, s->planned * sizeof *s->mean};
+    spans[3] = (struct memory_span){s->largest, s->planned * sizeof *s->largest};
+    return 4;
+}
+
+/// clusters.tsv: sizes that were seen, the share of particles in clusters of each, and how many
+/// clusters there were in a sample.
+static enum status write(const void *state, const struct observable_results *results) {
+    enum status status = STATUS_OK;
+    const struct state *s = state;
+    double *values = NULL;
+    char path[OUTPUT_PATH_SIZE];
+    size_t rows = 0;
+    NEW_ARRAY(values, 3 * (s->count + 1));
+    double *size = values, *share = size + s->count + 1, *number = share + s->count + 1;
+    for (size_t k = 1; k <= s->count; k++) {
+        if (s->members[k] == 0)
+            continue;
+        size[rows] = (double)k;
+        share[rows] = s->members[k] / ((double)s->count * (double)s->samples);
+        number[rows++] = s->members[k] / ((double)k * (double)s->samples);
+    }
+    const struct data_column columns[] = {
+        {"size[1]", size, "%.0f"}, {"share[1]", share, "%.6g"}, {"clusters[1]", number, "%.6g"}};
+    mf_observable_file(results, "clusters.tsv", path);
+    CHECK(mf_data_table_write(path, NULL, columns, 3, rows));
+done:
+    mf_memory_free(values);
+    return status;
+}
+
+static double mean_of(const double *series, size_t samples) {
+    double sum = 0;
+    for (size_t k = 0; k < samples; k++)
+        sum += series[k];
+    return sum / (double)samples;
+}
+
+static void put(const void *state, const struct observable_results *results,
+                struct json_writer *writer) {
+    const struct state *s = state;
+    (void)results;
+    mf_json_put_number(writer, "cluster_size", mean_of(s->mean, s->samples));
+    mf_json_put_number(writer, "cluster_size_error",
+                       mf_statistics_correlated_error(s->mean, s->samples, 1));
+    mf_json_put_number(writer, "largest_cluster", mean_of(s->largest, s->samples));
+    mf_json_put_number(writer, "largest_cluster_error",
+                       mf_statistics_correlated_error(s->largest, s->samples, 1));
+}
+
+/// Nanoseconds of an entry of the list.
+static const double entry_cost = 3;
+
+static void explain(const void *settings, const struct simulation_setup *setup, double every,
+                    struct stages *stages) {
+    const double entries = mf_stages_pairs_within(setup, mf_simulation_range(setup));
+    mf_stages_add(stages, "clusters", true, (10 + entry_cost * entries) / every,
+                  "particles nearer than %.3g, one step in %.0f",
+                  ((const struct settings *)settings)->distance, every);
+}
+
+static const struct field fields[] = {
+    {"distance", FIELD_NUMBER, offsetof(struct settings, distance), .required = true,
+     .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX, .unit = "lambda",
+     .help = "below which two particles are in the same cluster, at most the range of the "
+             "interactions"},
+    FIELD_END,
+};
+static const char *const files[] = {"clusters.tsv", NULL};
+
+const struct observable mf_clusters = {
+    .name = "clusters",
+    .summary = "sizes of clusters of particles that are near each other",
+    .fields = fields,
+    .settings_size = sizeof(struct settings),
+    .state_size = sizeof(struct state),
+    .begin = begin,
+    .clear = clear,
+    .sample = sample,
+    .spans = spans,
+    .write = write,
+    .put = put,
+    .explain = explain,
+    .stage = "clusters",
+    .files = files,
+    .figure = "clusters",
+};

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/memory.h"
+#include "base/number_text.h"
+#include "base/statistics.h"
+#include "io/data_table.h"
+#include "observe/measure.h"
+#include "observe/polarity.h"
+#include "observe/pooled.h"
+#include "system/orientation.h"
+
+// Sampling ----------------------------------------------------------------------------------------
+
+/// Whether nothing but self-propulsion acts.
+static bool is_lone(const struct simulation_setup *setup) {
+    bool lone = setup->potential == NULL;
+    for (int k = 0; k < setup->interactions; k++)
+        lone = lone && setup->interaction[k].kind == &mf_self_propulsion;
+    return lone;
+}
+
+static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+                         const struct measure_plan *plan) {
+    enum status status = STATUS_OK;
+    struct polarity *polarity = state;
+    const int64_t steps = plan->samples * plan->every;
+    if (mf_orientation_of(&simulation->particles).angle == NULL)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "polarity: particles have no orientations; \"self-propulsion\" of "
+                              "\"interactions\" gives them some");
+    CHECK(mf_motion_init(&polarity->motion, settings, simulation, plan->equilibration, steps));
+    polarity->motion.polar = true;
+    polarity->planned = (size_t)(steps / polarity->motion.plan.every) + 1;
+    polarity->lone = is_lone(&simulation->setup);
+    polarity->free = mf_brownian_free(&simulation->setup);
+    NEW_ARRAY(polarity->order, polarity->planned);
+done:
+    return status;
+}
+
+static void clear(void *state) {
+    struct polarity *polarity = state;
+    mf_motion_clear(&polarity->motion);
+    mf_memory_free(polarity->order);
+    *polarity = (struct polarity){0};
+}
+
+static int64_t due(const void *state) {
+    return mf_motion_due(&((const struct polarity *)state)->motion);
+}
+
+/// By ids, so that the sum is the same for any order of the particles.
+static double find_order(const struct motion *motion) {
+    const double *c = motion->now + 2 * motion->count, *s = c + motion->count;
+    double sum[2] = {0};
+    for (size_t k = 0; k < motion->count; k++) {
+        sum[0] += c[k];
+        sum[1] += s[k];
+    }
+    return hypot(sum[0], sum[1]) / (double)motion->count;
+}
+
+static enum status sample(void *state, struct simulation *simulation) {
+    struct polarity *polarity = state;
+    const size_t number = polarity->motion.samples;
+    mf_motion_sample(&polarity->motion, simulation);
+    polarity->order[number] = find_order(&polarity->motion);
+    return STATUS_OK;
+}
+
+static size_t spans(void *state, struct memory_span *spans) {
+    struct polarity *polarity = state;
+    const size_t n = mf_motion_spans(&polarity->motion, spans);
+    spans[n] = (struct memory_span){polarity->order, polarity->planned * sizeof *polarity->order};
+    return n + 1;
+}
+
+// Results -----------------------------------------------------------------------------------------
+
+static double interval(const struct motion *motion) {
+    return (double)motion->plan.every * motion->time_step;
+}
+
+/// polarity.tsv: time, correlation and MSD with their errors, and what they are for a particle
+/// alone if that is known.
+static enum status write_curves(const struct polarity *polarity,
+                                const struct observable_results *results) {
+    enum status status = STATUS_OK;
+    const struct motion *motion = &polarity->motion;
+    const size_t rows = (size_t)motion->plan.lags + 1;
+    double *values = NULL;
+    char path[OUTPUT_PATH_SIZE];
+    NEW_ARRAY(values, 7 * rows);
+    double *time = values + 4 * rows, *exact = time + rows, *exact_msd = exact + rows;
+    const struct motion_curves curves = {values, values + rows, values + 2 * rows,
+                                         values + 3 * rows};
+    mf_motion_result(motion, &curves);
+    mf_statistics_forget_errors(curves.msd_error, rows);
+    mf_statistics_forget_errors(curves.vacf_error, rows);
+    for (size_t k = 0; k < rows; k++) {
+        time[k] = (double)k * interval(motion);
+        exact[k] = exp(-polarity->free.orientation_diffusion * time[k]);
+        exact_msd[k] = mf_brownian_free_msd(&polarity->free, time[k]);
+    }
+    const struct data_column columns[] = {{"time[tau]", time, NULL},
+                                          {"correlation[1]", curves.vacf, "%.8g"},
+                                          {"correlation_error[1]", curves.vacf_error, "%.3g"},
+                                          {"msd[lambda^2]", curves.msd, "%.8g"},
+                                          {"msd_error[lambda^2]", curves.msd_error, "%.3g"},
+                                          {"correlation_theory[1]", exact, "%.8g"},
+                                          {"msd_theory[lambda^2]", exact_msd, "%.8g"}};
+    mf_observable_file(results, "polarity.tsv", path);
+    CHECK(mf_data_table_write(path, NULL, columns, polarity->lone ? 7 : 5, rows));
+done:
+    mf_memory_free(values);
+    return status;
+}
+
+static enum status write(const void *state, const struct observable_results *results) {
+    enum status status = STATUS_OK;
+    const struct polarity *polarity = state;
+    const struct motion *motion = &polarity->motion;
+    double *time = NULL;
+    char path[OUTPUT_PATH_SIZE];
+    NEW_ARRAY(time, motion->samples);
+    for (size_t k = 0; k < motion->samples; k++)
+        time[k] = (double)motion->begin * motion->time_step + (double)k * interval(motion);
+    const struct data_column columns[] = {{"time[tau]", time, NULL},
+                                          {"order[1]", polarity->order, "%.8g"}};
+    mf_observable_file(results, "polar_order.tsv", path);
+    CHECK(mf_data_table_write(path, NULL, columns, 2, motion->samples));
+    CHECK(write_curves(polarity, results));
+done:
+    mf_memory_free(time);
+    return status;
+}
+
+static double mean_order(const struct polarity *polarity, double *error) {
+    const size_t samples = polarity->motion.samples;
+    double sum = 0;
+    for (size_t k = 0; k < samples; k++)
+        sum += polarity->order[k];
+    *error = mf_statistics_correlated_error(polarity->order, samples, 1);
+    return sum / (double)samples;
+}
+
+static void put(const void *state, const struct observable_results *results,
+                struct json_writer *writer) {
+    const struct polarity *polarity = state;
+    const struct polarity_fit fit = mf_polarity_fit(polarity);
+    double error;
+    (void)results;
+    mf_json_put_number(writer, "polar_order", mean_order(polarity, &error));
+    mf_json_put_number(writer, "polar_order_error", error);
+    mf_json_put_number(writer, "polar_order_last", polarity->order[polarity->motion.samples - 1]);
+    mf_json_put_number(writer, "effective_diffusion", fit.effective_diffusion);
+    mf_json_put_number(writer, "effective_diffusion_error", fit.effective_diffusion_error);
+    if (polarity->lone)
+        mf_json_put_number(writer, "effective_diffusion_theory",
+                           mf_brownian_free_long_time(&polarity->free));
+    mf_json_put_number(writer, "msd_speed", fit.speed);
+    mf_json_put_number(writer, "msd_speed_error", fit.speed_error);
+    mf_json_put_number(writer, "msd_orientation_diffusion", fit.orientation_diffusion);
+    mf_json_put_number(writer, "msd_orientation_diffusion_error", fit.orientation_diffusion_error);
+}
+
+static void say(const void *state, char *line, size_t size) {
+    const struct polarity *polarity = state;
+    const struct polarity_fit fit = mf_polarity_fit(polarity);
+    char order[NUMBER_TEXT_SIZE], diffusion[NUMBER_TEXT_SIZE];
+    double error;
+    const double mean = mean_order(polarity, &error);
+    mf_number_text(mean, error, order);
+    mf_number_text(fit.effective_diffusion, fit.effective_diffusion_error, diffusion);
+    snprintf(line, size, "polar order %s, effective diffusion %s", order, diffusion);
+}
+
+/// The correlation on the line between the two nearest lags; NaN beyond the last.
+static double read_at(const struct motion *motion, const double *curve, double time) {
+    const double place = time / interval(motion), rounding = 1e-6;
+    const double last = (double)motion->plan.lags;
+    if (!(place >= -rounding) || place > last + rounding)
+        return NAN;
+    const size_t lag = (size_t)fmin(fmax(place, 0), last - 1);
+    const double part = place - (double)lag;
+    return (1 - part) * curve[lag] + part * curve[lag + 1];
+}
+
+static enum status result(const void *const *states, size_t count,
+                          const struct observable_values *values) {
+    enum status status = STATUS_OK;
+    const size_t times = (size_t)((const struct polarity *)states[0])->motion.plan.lags + 1;
+    double *curve = NULL, *read = NULL;
+    struct pooled_curve *replicas = NULL;
+    NEW_ARRAY(curve, 4 * times);
+    NEW_ARRAY(read, 2 * count * values->count);
+    NEW_ARRAY(replicas, count);
+    const struct motion_curves curves = {curve, curve + times, curve + 2 * times,
+                                         curve + 3 * times};
+    for (size_t k = 0; k < count; k++) {
+        const struct motion *motion = &((const struct polarity *)states[k])->motion;
+        double *value = read + 2 * k * values->count, *error = value + values->count;
+        mf_motion_result(motion, &curves);
+        for (size_t n = 0; n < values->count; n++) {
+            value[n] = read_at(motion, curves.vacf, values->x[n]);
+            error[n] = read_at(motion, curves.vacf_error, values->x[n]);
+        }
+        replicas[k] = (struct pooled_curve){value, error, (double)mf_motion_blocks(motion)};
+    }
+    mf_pooled_join(values, replicas, count);
+done:
+    mf_memory_free(curve);
+    mf_memory_free(read);
+    mf_memory_free(replicas);
+    return status;
+}
+
+// Record ------------------------------------------------------------------------------------------
+
+/// Nanoseconds of a particle and sample, and of each of its time origins.
+static const double gather_cost = 25, correlate_cost = 1.3;
+
+static void explain(const void *settings, const struct simulation_setup *setup,
+                    double samples_every, struct stages *stages) {
+    const struct motion_plan *plan = settings;
+    const double every = (double)plan->every;
+    const double origins = (double)plan->lags / (double)plan->origin_every + 1;
+    (void)setup, (void)samples_every;
+    mf_stages_add(stages, "polarity", true, (gather_cost + correlate_cost * origins) / every,
+                  "%.0f time origins, one step in %.0f", origins, every);
+}
+
+static const struct observable_target targets[] = {
+    {.name = "polarity_correlation",
+     .summary = "<n(t).n(0)>, how long particles keep their direction",
+     .form = OBSERVABLE_CURVE,
+     .argument = "time[tau]",
+     .unit = "1",
+     .has_settings = true},
+    {.name = NULL}};
+static const char *const files[] = {"polarity.tsv", "polar_order.tsv", NULL};
+
+const struct observable mf_polarity_observable = {
+    .name = "polarity",
+    .summary = "directions: their order, how long they are kept, and where to",
+    .fields = mf_motion_plan_fields,
+    .settings_size = sizeof(struct motion_plan),
+    .state_size = sizeof(struct polarity),
+    .begin = begin,
+    .clear = clear,
+    .due = due,
+    .sample = sample,
+    .spans = spans,
+    .write = write,
+    .put = put,
+    .say = say,
+    .explain = explain,
+    .stage = "polarity",
+    .files = files,
+    .figure = "polarity",
+    .targets = targets,
+    .result = result,
+};
