@@ -30,7 +30,9 @@ has_numbers(column) = int(system(sprintf( \
 kinetic = has_numbers(3)
 configurational = has_numbers(6)
 
-left = with_rdf ? 0.61 : 0.16
+# Numbers as 5.82·10⁸ want room.
+largest = high(high(abs(L_min), abs(H_max)), high(high(abs(U_min), abs(U_max)), high(abs(P_min), abs(P_max))))
+left = (with_rdf ? 0.61 : 0.16) + (largest < 1e5 ? 0 : 0.05)
 label = with_rdf ? 0.512 : 0.03
 # The legend of a mixture stands above the curves.
 rows = words(rdfs) < 2 ? 0 : words(rdfs) < 6 ? words(rdfs) : 6

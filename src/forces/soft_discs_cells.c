@@ -2,10 +2,10 @@
 #include "forces/soft_discs_cells.h"
 
 /// Radii of a class differ by less than this factor.
-static const double class_factor = 2;
+static const double class_factor = 3;
 
-/// Discs that a disc should meet in a row of its own class: a few vectors of them.
-static const double met_in_row = 40;
+/// Height of a row in mean distances of the discs of a class.
+static const double row_height = 5;
 
 /// Discs of a class for each of its cells.
 static const double in_cell = 2;
@@ -54,10 +54,9 @@ static void choose_classes(struct soft_discs_cells *cells, const double *radius)
 static void choose_cells(struct soft_discs_cells *cells, const struct box *box) {
     for (int c = 0; c < cells->classes; c++) {
         struct soft_discs_class *class = &cells->of[c];
-        const double density = (double)class->count / mf_box_volume(box);
-        const double met_each = 4 * class->largest * density; // in a row of height 1
-        const double height = fmax(met_in_row / met_each, 0.5 * class->largest);
-        class->rows = (int)fmax(1, fmin(floor(box->length[0] / height), (double)class->count));
+        const double spacing = sqrt(mf_box_volume(box) / (double)class->count);
+        class->rows = (int)fmax(
+            1, fmin(floor(box->length[0] / (row_height * spacing)), (double)class->count));
         const double in_row = (double)class->count / class->rows;
         class->columns = (int)fmax(1, floor(in_row / in_cell));
         class->first_cell = cells->cells;

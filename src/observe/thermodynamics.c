@@ -58,6 +58,8 @@ enum status mf_thermodynamics_sample(struct thermodynamics *thermodynamics,
     here[THERMODYNAMICS_TEMPERATURE * stride] = mf_simulation_temperature(simulation);
     here[THERMODYNAMICS_POTENTIAL_ENERGY * stride] = simulation->sums.energy / count;
     here[THERMODYNAMICS_PRESSURE * stride] = mf_simulation_pressure(simulation);
+    here[THERMODYNAMICS_TOTAL_ENERGY * stride] =
+        (simulation->sums.energy + mf_particles_kinetic_energy(&simulation->particles)) / count;
     if (simulation->law.potential)
         TRY(configurational(simulation, &here[THERMODYNAMICS_FORCE_SQUARES * stride],
                             &here[THERMODYNAMICS_LAPLACIAN * stride]));
@@ -68,6 +70,20 @@ enum status mf_thermodynamics_sample(struct thermodynamics *thermodynamics,
 const double *mf_thermodynamics_series(const struct thermodynamics *thermodynamics,
                                        enum thermodynamics_quantity quantity) {
     return thermodynamics->values + (size_t)quantity * thermodynamics->planned;
+}
+
+double mf_thermodynamics_energy_drift(const struct thermodynamics *thermodynamics) {
+    const double *energy = mf_thermodynamics_series(thermodynamics, THERMODYNAMICS_TOTAL_ENERGY);
+    const double last = (double)thermodynamics->samples - 1;
+    double mean = 0, products = 0, squares = 0;
+    for (size_t k = 0; k < thermodynamics->samples; k++)
+        mean += energy[k] / (last + 1);
+    for (size_t k = 0; k < thermodynamics->samples; k++) {
+        const double time = (double)k - 0.5 * last;
+        products += time * (energy[k] - mean);
+        squares += time * time;
+    }
+    return products / squares * last / fabs(mean);
 }
 
 /// Mean of a quantity over the samples begin … end − 1 of one replica.

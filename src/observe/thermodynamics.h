@@ -11,6 +11,7 @@ enum thermodynamics_quantity {
     THERMODYNAMICS_PRESSURE,         ///< mf_simulation_pressure                  [k_B T_0/λ^d]
     THERMODYNAMICS_FORCE_SQUARES,    ///< Σ|F|² of the potential, numerator of the configurational
     THERMODYNAMICS_LAPLACIAN,        ///< Σ∇²U, its denominator
+    THERMODYNAMICS_TOTAL_ENERGY,     ///< potential and kinetic, of a particle  [k_B T_0]
     THERMODYNAMICS_QUANTITIES
 };
 
@@ -35,6 +36,11 @@ enum status mf_thermodynamics_temperature(const struct simulation *simulation, d
 /// The series of one quantity, shape [samples].
 const double *mf_thermodynamics_series(const struct thermodynamics *thermodynamics,
                                        enum thermodynamics_quantity quantity);
+
+/// Drift of the total energy: the slope of a line through its samples, times the time from the
+/// first to the last, relative to their mean. NaN with fewer than two samples.
+/// Tested: physics/test_soft_discs.
+double mf_thermodynamics_energy_drift(const struct thermodynamics *thermodynamics);
 
 /// Means over all replicas with standard errors that see the correlation of each series, by
 /// mf_statistics_correlated_error.

@@ -119,6 +119,8 @@ void mf_fit_report_say(struct progress *to, const struct fit_file *fit,
     if (isnan(t->temperature)) // no velocities
         mf_progress_say(to, "configurational T = %.4f, pressure %.3f",
                         t->temperature_configurational, t->pressure);
+    else if (isnan(t->temperature_configurational)) // no potential of pairs
+        mf_progress_say(to, "T = %.4f, pressure %.3f", t->temperature, t->pressure);
     else
         mf_progress_say(to, "T = %.4f, configurational %.4f, pressure %.3f", t->temperature,
                         t->temperature_configurational, t->pressure);

@@ -8,6 +8,7 @@
 #include "shared/testing.h"
 
 #include <math.h>
+#include <stdio.h>
 
 enum { COUNT = 81 };
 
@@ -54,6 +55,8 @@ static void test_interaction_forces_are_minus_the_slope_of_their_energy(void **s
         struct fluid fluid;
         struct simulation simulation;
         struct numbers numbers;
+        if (mf_interaction_list[n] == &mf_soft_discs) // in two dimensions: test_soft_discs
+            continue;
         fill(mf_interaction_list[n], &numbers);
         begin(&fluid, &simulation, mf_interaction_list[n], &numbers);
         for (int d = 0; d < 3; d++)
@@ -196,14 +199,16 @@ static void test_pairs_come_first_and_too_many_interactions_are_refused(void **s
     const struct interaction_choice choice = {&growing_push, &growth};
     struct fluid fluid;
     struct simulation simulation;
+    char refusal[64];
+    snprintf(refusal, sizeof refusal, "growing-push: there are %d interactions",
+             SIMULATION_MOST_INTERACTIONS);
     fluid_groot_warren(&fluid, COUNT, 0.01);
     assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
     assert_int_equal(simulation.interactions, 1);
     assert_ptr_equal(simulation.interaction[0].choice.kind, &mf_pairs);
     while (simulation.interactions < SIMULATION_MOST_INTERACTIONS)
         assert_ok(mf_simulation_add_interaction(&simulation, &choice));
-    assert_fails(mf_simulation_add_interaction(&simulation, &choice), STATUS_BAD_INPUT,
-                 "growing-push: there are 6 interactions");
+    assert_fails(mf_simulation_add_interaction(&simulation, &choice), STATUS_BAD_INPUT, refusal);
     mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
 }

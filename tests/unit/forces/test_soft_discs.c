@@ -114,9 +114,82 @@ static void test_soft_discs_forces_are_those_of_a_double_loop(void **state) {
     assert_true(mf_simd_select(before));
 }
 
+static void test_soft_discs_push_each_other_equally_to_rounding(void **state) {
+    (void)state;
+    struct discs discs;
+    struct simulation simulation;
+    make(&discs, 3000, 200, 200, 1, 8);
+    assert_ok(mf_simulation_init(&simulation, &discs.setup, NULL));
+    for (int d = 0; d < 2; d++) {
+        double sum = 0, sizes = 0;
+        for (size_t k = 0; k < simulation.particles.count; k++) {
+            sum += simulation.particles.force[d][k];
+            sizes += fabs(simulation.particles.force[d][k]);
+        }
+        assert_close(sum / sizes, 0, 1e-7);
+    }
+    mf_simulation_clear(&simulation);
+}
+
+static void test_soft_discs_go_on_with_the_same_bits_when_restarted(void **state) {
+    (void)state;
+    struct discs discs;
+    struct simulation whole, halves;
+    make(&discs, 3000, 200, 200, 1, 8);
+    assert_ok(mf_simulation_init(&whole, &discs.setup, NULL));
+    assert_ok(mf_simulation_init(&halves, &discs.setup, NULL));
+    assert_ok(mf_simulation_run(&whole, 300));
+    assert_true(whole.list_builds > 2);
+    assert_ok(mf_simulation_run(&halves, 137));
+    restart_simulation(&halves);
+    assert_ok(mf_simulation_run(&halves, 163));
+    restart_assert_same(&whole, &halves);
+    mf_simulation_clear(&whole);
+    mf_simulation_clear(&halves);
+}
+
+static void test_soft_discs_have_the_same_bits_for_any_threads(void **state) {
+    (void)state;
+    struct discs discs;
+    struct simulation simulation[2];
+    make(&discs, 3000, 200, 200, 1, 8);
+    for (int n = 0; n < 2; n++) {
+        discs.setup.threads = n == 0 ? 1 : 3;
+        assert_ok(mf_simulation_init(&simulation[n], &discs.setup, NULL));
+        assert_ok(mf_simulation_run(&simulation[n], 100));
+        simulation[n].wants = PAIR_FORCES_AND_SUMS;
+        assert_ok(mf_simulation_run(&simulation[n], 1));
+    }
+    restart_assert_same(&simulation[0], &simulation[1]);
+    assert_identical(simulation[0].sums.energy, simulation[1].sums.energy);
+    for (int n = 0; n < 2; n++)
+        mf_simulation_clear(&simulation[n]);
+}
+
+static void test_soft_discs_refuse_what_they_cannot_do(void **state) {
+    (void)state;
+    struct discs discs;
+    struct simulation simulation;
+    make(&discs, 100, 50, 50, 1, 2);
+    discs.setup.attribute[ATTRIBUTES_RADIUS].ranges = 0;
+    assert_fails(mf_simulation_init(&simulation, &discs.setup, NULL), STATUS_BAD_INPUT,
+                 "interactions.soft-discs: wants \"radius\" in \"particles\"");
+    make(&discs, 100, 50, 50, 1, 13);
+    assert_fails(mf_simulation_init(&simulation, &discs.setup, NULL), STATUS_BAD_INPUT,
+                 "interactions.soft-discs: the shortest edge 50 of the box");
+    make(&discs, 100, 50, 50, 1, 2);
+    discs.setup.box = (struct box){3, {50, 50, 50}};
+    assert_fails(mf_simulation_init(&simulation, &discs.setup, NULL), STATUS_BAD_INPUT,
+                 "interactions.soft-discs: discs are in two dimensions, not three");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_soft_discs_forces_are_those_of_a_double_loop),
+        cmocka_unit_test(test_soft_discs_push_each_other_equally_to_rounding),
+        cmocka_unit_test(test_soft_discs_go_on_with_the_same_bits_when_restarted),
+        cmocka_unit_test(test_soft_discs_have_the_same_bits_for_any_threads),
+        cmocka_unit_test(test_soft_discs_refuse_what_they_cannot_do),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
