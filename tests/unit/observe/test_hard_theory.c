@@ -35,6 +35,20 @@ static void test_hard_theory_has_the_virial_coefficients(void **state) {
     }
 }
 
+/// Of discs by the virial series, whose first ten coefficients are N. Clisby and B. M. McCoy's, J.
+/// Stat. Phys. 122, 15 (2006), and go on in steps of 0.94; the rest at η = 0.5 is below 1e-3.
+static void test_hard_theory_of_discs_has_the_sum_of_the_virial_series(void **state) {
+    (void)state;
+    static const double b[] = {1,       2,      3.12802, 4.25785, 5.33690,
+                               6.36303, 7.3521, 8.3191,  9.2722,  10.2163};
+    for (double eta = 0.1; eta < 0.55; eta += 0.2) {
+        double series = 0;
+        for (int n = 0; n < 60; n++)
+            series += (n < 10 ? b[n] : b[9] + 0.94 * (n - 9)) * pow(eta, n);
+        assert_close_relative(alike(2, eta, 1).compressibility_factor, series, 0.001);
+    }
+}
+
 /// Z = 1 + 2^(d − 1) η χ, and the rate tells χ: 2 sqrt(π) ρ σ χ and 4 sqrt(π) ρ σ² χ times
 /// sqrt(k_B T/m).
 static void test_hard_theory_has_one_contact_value_for_pressure_and_rate(void **state) {
@@ -90,6 +104,7 @@ static void test_hard_theory_does_not_know_the_rates_of_too_many_species(void **
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_hard_theory_has_the_virial_coefficients),
+        cmocka_unit_test(test_hard_theory_of_discs_has_the_sum_of_the_virial_series),
         cmocka_unit_test(test_hard_theory_has_one_contact_value_for_pressure_and_rate),
         cmocka_unit_test(test_hard_theory_lets_points_feel_the_free_volume),
         cmocka_unit_test(test_hard_theory_does_not_know_the_rates_of_too_many_species),
