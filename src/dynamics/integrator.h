@@ -30,7 +30,7 @@ struct integrator {
     bool dissipative; ///< understands ω(r)
     /// Moves hard particles from event to event: there are no forces, and kinetic energy is kept.
     bool events;
-    bool masses;      ///< moves particles of different masses; else a scene with any is refused
+    bool masses; ///< moves particles of different masses; else a scene with any is refused
     /// What it makes of ω, if it splits friction and noise off the forces; NULL: they are forces.
     const struct friction_method *friction;
     /// A step begins with the friction of the pairs that the last one kept.
