@@ -10,7 +10,7 @@
 /// the time of that; only results are synchronous.
 ///
 /// Events do not depend on when results are asked for.
-/// Tested: test_hard_gas (reference: all pairs; unit), test_kinetic_gas (physics, cli).
+/// Tested: test_hard_gas (unit), test_hard_gas_all_pairs, test_kinetic_gas (physics, cli).
 #pragma once
 
 #include "base/memory.h"
