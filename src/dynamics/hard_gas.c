@@ -2,6 +2,7 @@
 #include "dynamics/hard_gas.h"
 
 #include "base/interrupt.h"
+#include "dynamics/hard_gas_calendar.h"
 #include "dynamics/hard_gas_events.h"
 
 #include <math.h>
@@ -43,8 +44,6 @@ static size_t cell_count(const struct hard_gas *gas) {
 static enum status allocate(struct hard_gas *gas) {
     enum status status = STATUS_OK;
     const size_t count = (size_t)gas->count;
-    for (gas->buckets = 1; gas->buckets < 2 * gas->count;)
-        gas->buckets *= 2;
     NEW_ARRAY(gas->body, count);
     NEW_ARRAY(gas->spare_body, count);
     NEW_ARRAY(gas->label, count);
@@ -52,8 +51,8 @@ static enum status allocate(struct hard_gas *gas) {
     NEW_ARRAY(gas->event, count);
     NEW_ARRAY(gas->link, count);
     NEW_ARRAY(gas->first, cell_count(gas) + 1);
-    NEW_ARRAY(gas->bucket, (size_t)gas->buckets);
     NEW_ARRAY(gas->place, count);
+    CHECK(mf_hard_gas_calendar_init(gas));
 done:
     return status;
 }
@@ -124,8 +123,6 @@ static void begin_epoch(struct hard_gas *gas) {
     const double rate = gas->now.time > 0 ? (double)events / gas->now.time : 0;
     synchronise(gas);
     sort(gas);
-    memset(gas->bucket, 0xff, (size_t)gas->buckets * sizeof *gas->bucket);
-    gas->now.bucket = 0;
     gas->now.left = events;
     mf_hard_gas_events_begin(gas, rate);
 }
@@ -158,17 +155,21 @@ void mf_hard_gas_clear(struct hard_gas *gas) {
     mf_memory_free(gas->event);
     mf_memory_free(gas->link);
     mf_memory_free(gas->first);
-    mf_memory_free(gas->bucket);
+    mf_hard_gas_calendar_clear(&gas->calendar);
     mf_memory_free(gas->place);
     *gas = (struct hard_gas){0};
 }
 
 enum status mf_hard_gas_run(struct hard_gas *gas, double time, const atomic_bool *cancel) {
+    if (gas->calendar_events != gas->now.events)
+        mf_hard_gas_calendar_fill(gas);
     for (;;) {
         const uint64_t most = gas->now.left < EVENTS_A_LOOK ? gas->now.left : EVENTS_A_LOOK;
         if (mf_interrupt_wanted(cancel))
             return mf_status_fail(STATUS_INTERRUPTED, "interrupted");
-        if (mf_hard_gas_events_run(gas, time - gas->now.elapsed, most))
+        const bool done = mf_hard_gas_events_run(gas, time - gas->now.elapsed, most);
+        gas->calendar_events = gas->now.events;
+        if (done)
             return STATUS_OK;
         if (gas->now.left == 0)
             begin_epoch(gas);
@@ -198,6 +199,5 @@ size_t mf_hard_gas_spans(struct hard_gas *gas, struct memory_span *spans) {
     spans[3] = (struct memory_span){gas->event, count * sizeof *gas->event};
     spans[4] = (struct memory_span){gas->link, count * sizeof *gas->link};
     spans[5] = (struct memory_span){gas->first, cell_count(gas) * sizeof *gas->first};
-    spans[6] = (struct memory_span){gas->bucket, (size_t)gas->buckets * sizeof *gas->bucket};
     return HARD_GAS_SPANS;
 }

@@ -10,7 +10,7 @@
 /// the time of that; only results are synchronous.
 ///
 /// Events do not depend on when results are asked for.
-/// Tested: test_hard_gas (reference: all pairs; unit), test_kinetic_gas (physics, cli).
+/// Tested: test_hard_gas (unit), test_hard_gas_all_pairs, test_kinetic_gas (physics, cli).
 #pragma once
 
 #include "base/memory.h"
@@ -34,9 +34,25 @@ struct hard_gas_event {
     int32_t partner;        ///< body
     uint32_t partner_turns; ///< of the partner, when that was foreseen: if it has more, it is void
     uint32_t turns;         ///< own changes of velocity, modulo 2³²
-    int32_t next, previous; ///< in the bucket of the calendar, −1: none
     uint16_t cell[3];
     uint8_t axis; ///< of the border
+};
+
+/// Of the calendar (hard_gas_calendar.h).
+struct hard_gas_entry {
+    double time;
+    int32_t body;
+    int32_t next, other; ///< in its bucket; in the heap: its branches. −1: none
+};
+
+struct hard_gas_calendar {
+    int64_t buckets; ///< a power of two
+    int32_t *first;  ///< entry of each, shape [buckets], −1: none
+    int32_t entries;
+    struct hard_gas_entry *entry; ///< shape [entries]
+    int32_t unused, heap;         ///< the first of them, −1: none
+    int64_t present;              ///< number of the bucket that the heap is of
+    bool fetches;                 ///< what is needed soon is fetched from memory
 };
 
 struct hard_gas_link {
@@ -64,7 +80,7 @@ struct hard_gas_now {
     double elapsed;        ///< of the epochs before                [τ]
     double time;           ///< of the last event, of this epoch    [τ]
     uint64_t left;         ///< events until the next epoch
-    int64_t bucket;        ///< of the calendar: none is earlier
+    uint64_t events;       ///< since the start
     double bucket_density; ///< buckets a time                      [1/τ]
 };
 
@@ -80,9 +96,10 @@ struct hard_gas {
     struct hard_gas_event *event;               ///< shape [count]
     struct hard_gas_link *link;                 ///< shape [count]
     int32_t *first;                             ///< body of each cell, shape [cells], −1: none
-    int32_t *bucket;                            ///< first body of each, shape [buckets], −1: none
-    int64_t buckets;                            ///< a power of two
-    uint32_t *place;                            ///< shape [count], for writing
+    /// Not saved, but filled anew: it then holds events after `calendar_events` of them.
+    struct hard_gas_calendar calendar;
+    uint64_t calendar_events;
+    uint32_t *place; ///< shape [count], for writing
 };
 
 /// Begin at the positions and velocities of `particles`, no two of which may overlap.
@@ -102,5 +119,5 @@ enum status mf_hard_gas_run(struct hard_gas *gas, double time, const atomic_bool
 void mf_hard_gas_write(const struct hard_gas *gas, double time, struct particles *particles);
 
 /// What a checkpoint must keep.
-enum { HARD_GAS_SPANS = 7 };
+enum { HARD_GAS_SPANS = 6 };
 size_t mf_hard_gas_spans(struct hard_gas *gas, struct memory_span *spans);

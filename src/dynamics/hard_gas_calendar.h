@@ -4,9 +4,11 @@
 ///
 ///   R. Brown, Commun. ACM 31, 1220 (1988); for hard spheres G. Paul, J. Comput. Phys. 221, 615
 ///   (2007).
-/// Every body has one event, which stands in one bucket: a list of one or two. To put one in, to
-/// take one out and to find the first take the same time for any number of bodies. Paul sorts the
-/// events of the present bucket in a tree; lists so short need none.
+/// An entry goes to the front of its bucket, which takes the same time for any number of bodies,
+/// and stays there if the body gets another event before: an entry whose time is not that of its
+/// body's event is void. Only the present bucket is in order: its entries are a skew heap (D. D.
+/// Sleator and R. E. Tarjan, SIAM J. Comput. 15, 52 (1986)) by time and, at the same time, by body,
+/// so that what happens does not depend on what else the calendar holds.
 #pragma once
 
 #include "dynamics/hard_gas.h"
@@ -17,46 +19,104 @@ static inline int64_t hard_gas_calendar_number(const struct hard_gas *gas, doubl
     return (int64_t)(number < 0x1p62 ? number : 0x1p62); // never: INFINITY
 }
 
-static inline int32_t *hard_gas_calendar_bucket(const struct hard_gas *gas, double time) {
-    return &gas->bucket[hard_gas_calendar_number(gas, time) & (gas->buckets - 1)];
+static inline int32_t *hard_gas_calendar_bucket(const struct hard_gas_calendar *calendar,
+                                                int64_t number) {
+    return &calendar->first[number & (calendar->buckets - 1)];
 }
+
+/// Join two heaps: the right branches are merged, and all branches on the way change sides.
+static inline int32_t hard_gas_calendar_merge(struct hard_gas_entry *entry, int32_t a, int32_t b) {
+    int32_t top, *place = &top;
+    while (a >= 0 && b >= 0) {
+        if (entry[b].time < entry[a].time ||
+            (entry[b].time == entry[a].time && entry[b].body < entry[a].body)) {
+            const int32_t c = a;
+            a = b;
+            b = c;
+        }
+        const int32_t right = entry[a].other;
+        *place = a;
+        entry[a].other = entry[a].next;
+        place = &entry[a].next;
+        a = right;
+    }
+    *place = a >= 0 ? a : b;
+    return top;
+}
+
+static inline void hard_gas_calendar_put_entry(struct hard_gas *gas, int32_t body) {
+    struct hard_gas_calendar *calendar = &gas->calendar;
+    const double time = gas->event[body].time;
+    const int64_t number = hard_gas_calendar_number(gas, time);
+    const int32_t k = calendar->unused;
+    struct hard_gas_entry *entry = &calendar->entry[k];
+    calendar->unused = entry->next;
+    *entry = (struct hard_gas_entry){.time = time, .body = body, .next = -1, .other = -1};
+    if (number <= calendar->present) {
+        calendar->heap = hard_gas_calendar_merge(calendar->entry, calendar->heap, k);
+        return;
+    }
+    int32_t *first = hard_gas_calendar_bucket(calendar, number);
+    entry->next = *first;
+    *first = k;
+}
+
+enum status mf_hard_gas_calendar_init(struct hard_gas *gas) MUST_USE;
+void mf_hard_gas_calendar_clear(struct hard_gas_calendar *calendar);
+
+/// Empty the calendar, and put the events of all bodies into it.
+void mf_hard_gas_calendar_fill(struct hard_gas *gas);
+
+/// Who is next stands anywhere in memory, but the calendar knows it before: have it fetched in four
+/// stages, what each leads to some events after it.
+void mf_hard_gas_calendar_fetch(const struct hard_gas *gas);
 
 static inline void hard_gas_calendar_put(struct hard_gas *gas, int32_t body) {
-    struct hard_gas_event *event = &gas->event[body];
-    int32_t *first = hard_gas_calendar_bucket(gas, event->time);
-    event->previous = -1;
-    event->next = *first;
-    if (*first >= 0)
-        gas->event[*first].previous = body;
-    *first = body;
-}
-
-static inline void hard_gas_calendar_take(struct hard_gas *gas, int32_t body) {
-    const struct hard_gas_event *event = &gas->event[body];
-    if (event->next >= 0)
-        gas->event[event->next].previous = event->previous;
-    if (event->previous >= 0)
-        gas->event[event->previous].next = event->next;
+    if (gas->calendar.unused < 0)
+        mf_hard_gas_calendar_fill(gas); // has the new event, too, and no void ones
     else
-        *hard_gas_calendar_bucket(gas, event->time) = event->next;
+        hard_gas_calendar_put_entry(gas, body);
 }
 
-/// The body with the first event before `time`, of two at once that with the smaller number, or −1.
-static inline int32_t hard_gas_calendar_first(struct hard_gas *gas, double time) {
-    const int64_t last = hard_gas_calendar_number(gas, time);
-    for (;; gas->now.bucket++) {
-        double earliest = time;
-        int32_t body = -1;
-        for (int32_t k = gas->bucket[gas->now.bucket & (gas->buckets - 1)]; k >= 0;
-             k = gas->event[k].next) {
-            const double own = gas->event[k].time;
-            if ((own < earliest || (own == earliest && k < body)) &&
-                hard_gas_calendar_number(gas, own) <= gas->now.bucket) {
-                earliest = own;
-                body = k;
-            }
+/// On to the next bucket: what is due goes into the heap.
+static inline void hard_gas_calendar_turn(struct hard_gas *gas) {
+    struct hard_gas_calendar *calendar = &gas->calendar;
+    int32_t *first = hard_gas_calendar_bucket(calendar, ++calendar->present), left = -1;
+    for (int32_t next, k = *first; k >= 0; k = next) {
+        struct hard_gas_entry *entry = &calendar->entry[k];
+        next = entry->next;
+        if (hard_gas_calendar_number(gas, entry->time) <= calendar->present) {
+            entry->next = -1;
+            calendar->heap = hard_gas_calendar_merge(calendar->entry, calendar->heap, k);
+        } else {
+            entry->next = left;
+            left = k;
         }
-        if (body >= 0 || gas->now.bucket >= last)
-            return body;
+    }
+    *first = left;
+}
+
+/// Take out the first event before `time`; returns its body, −1 if there is none.
+static inline int32_t hard_gas_calendar_take(struct hard_gas *gas, double time) {
+    struct hard_gas_calendar *calendar = &gas->calendar;
+    const int64_t last = hard_gas_calendar_number(gas, time);
+    for (;;) {
+        while (calendar->heap >= 0) {
+            const int32_t k = calendar->heap;
+            struct hard_gas_entry *entry = &calendar->entry[k];
+            const bool valid = entry->time == gas->event[entry->body].time;
+            if (valid && entry->time >= time)
+                return -1;
+            calendar->heap = hard_gas_calendar_merge(calendar->entry, entry->next, entry->other);
+            entry->next = calendar->unused;
+            calendar->unused = k;
+            if (valid)
+                return entry->body;
+        }
+        if (calendar->present >= last)
+            return -1;
+        hard_gas_calendar_turn(gas);
+        if (calendar->fetches)
+            mf_hard_gas_calendar_fetch(gas);
     }
 }

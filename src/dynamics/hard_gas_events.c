@@ -238,7 +238,6 @@ static inline void turn(struct hard_gas *gas, int32_t i, int32_t j, const int di
 static inline void collide(struct hard_gas *gas, int32_t i, const int dimensions) {
     const int32_t pair[2] = {i, gas->event[i].partner};
     for (int n = 0; n < 2; n++) {
-        hard_gas_calendar_take(gas, pair[n]);
         advance(gas, pair[n], dimensions);
         gas->event[pair[n]].turns++;
         gas->event[pair[n]].collision = INFINITY;
@@ -310,18 +309,18 @@ static inline void cross(struct hard_gas *gas, int32_t k, const int dimensions) 
 
 static inline bool happen(struct hard_gas *gas, double time, uint64_t most, const int dimensions) {
     for (uint64_t n = 0; n < most; n++) {
-        const int32_t k = hard_gas_calendar_first(gas, time);
+        const int32_t k = hard_gas_calendar_take(gas, time);
         if (k < 0)
             return true;
         const struct hard_gas_event *event = &gas->event[k];
         gas->now.time = event->time;
+        gas->now.events++;
         gas->now.left--;
         if (event->collision < event->border &&
             gas->event[event->partner].turns == event->partner_turns) {
             collide(gas, k, dimensions);
             continue;
         }
-        hard_gas_calendar_take(gas, k);
         if (event->collision < event->border) {
             gas->now.tally.voids++;
             foresee(gas, k, dimensions);
@@ -339,9 +338,6 @@ static inline bool happen(struct hard_gas *gas, double time, uint64_t most, cons
 bool mf_hard_gas_events_run(struct hard_gas *gas, double time, uint64_t most) {
     return gas->dimensions == 2 ? happen(gas, time, most, 2) : happen(gas, time, most, 3);
 }
-
-/// Buckets of the calendar an event.
-static const double buckets_an_event = 1;
 
 static inline double foresee_all(struct hard_gas *gas, const int dimensions) {
     double waits = 0;
@@ -361,7 +357,6 @@ void mf_hard_gas_events_begin(struct hard_gas *gas, double rate) {
     const double waits = gas->dimensions == 2 ? foresee_all(gas, 2) : foresee_all(gas, 3);
     if (!(rate > 0))
         rate = waits > 0 ? (double)gas->count * (double)gas->count / waits : 1;
-    gas->now.bucket_density = buckets_an_event * rate;
-    for (int32_t k = 0; k < gas->count; k++)
-        hard_gas_calendar_put(gas, k);
+    gas->now.bucket_density = rate;
+    mf_hard_gas_calendar_fill(gas);
 }

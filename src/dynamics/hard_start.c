@@ -7,8 +7,8 @@
 /// Distances after a move, in sums of radii: a little more than contact, so that sweeps end.
 static const double moved_to = 1 + 1e-3;
 
-/// A fluid needs dozens of sweeps; one that has not parted after these is jammed.
-enum { MOST_SWEEPS = 20000 };
+/// A fluid needs dozens of sweeps, one near jamming hundreds; what has not parted then has no room.
+enum { MOST_SWEEPS = 5000 };
 
 /// What an overlap may be, in sums of radii: the rounding of coordinates that were written down.
 static const double tolerance = 1e-9;
@@ -155,11 +155,23 @@ static void confine(const struct grid *grid) {
         }
 }
 
+static enum status check_box(const struct grid *grid) {
+    for (int d = 0; d < grid->box->dimensions; d++) {
+        const double length = grid->box->length[d];
+        if (length < (is_walled(grid, d) ? 2 : 4) * grid->largest)
+            return mf_status_fail(
+                STATUS_BAD_INPUT, "box: its edge %g is below %s of the largest particle, %g",
+                length, is_walled(grid, d) ? "the diameter" : "two diameters", 2 * grid->largest);
+    }
+    return STATUS_OK;
+}
+
 enum status mf_hard_start_part(struct particles *particles, const double *radius, int walls) {
     struct grid grid;
     size_t pair[2];
     enum status status = STATUS_OK;
     CHECK(grid_init(&grid, particles, radius, walls));
+    CHECK(check_box(&grid));
     for (int n = 0; n < MOST_SWEEPS; n++) {
         confine(&grid);
         fill(&grid);
@@ -170,17 +182,6 @@ enum status mf_hard_start_part(struct particles *particles, const double *radius
 done:
     grid_clear(&grid);
     return status;
-}
-
-static enum status check_box(const struct grid *grid) {
-    for (int d = 0; d < grid->box->dimensions; d++) {
-        const double length = grid->box->length[d];
-        if (length < (is_walled(grid, d) ? 2 : 4) * grid->largest)
-            return mf_status_fail(
-                STATUS_BAD_INPUT, "box: its edge %g is below %s of the largest particle, %g",
-                length, is_walled(grid, d) ? "the diameter" : "two diameters", 2 * grid->largest);
-    }
-    return STATUS_OK;
 }
 
 static enum status check_walls(const struct grid *grid, const uint32_t *id) {

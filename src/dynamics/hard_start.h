@@ -9,7 +9,8 @@
 /// addition, which ends at η = 0.547 and 0.38; positions are not those of equilibrium.
 /// @param[in] radius  shape [count], as the particles are sorted now  [λ]
 /// @param[in] walls   bit d: axis d has walls at 0 and at the length of the box
-/// Fails: NO_MEMORY. What overlaps still is left: mf_hard_start_check. Tested: test_hard_start.
+/// Fails: NO_MEMORY; BAD_INPUT if the box has no room for the largest. What overlaps still is left
+/// to mf_hard_start_check. Tested: test_hard_gas.
 enum status mf_hard_start_part(struct particles *particles, const double *radius,
                                int walls) MUST_USE;
 

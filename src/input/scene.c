@@ -117,7 +117,11 @@ static enum status read_dynamics(struct scene *scene, struct json_object *object
                       integrator->name, oriented->name, mf_brownian.name);
     if (scene->setup.placement.count < 2 && integrator->companions == NULL)
         fault_lonely(scene, object);
-    if (dissipative && !integrator->dissipative)
+    if (unknown && integrator->events)
+        mf_json_fault(object, "dynamics",
+                      "%s moves hard particles, which have no forces that could be found",
+                      integrator->name);
+    else if (dissipative && !integrator->dissipative)
         mf_json_fault(object, "dynamics",
                       "%s knows no friction; use \"aboba\" with \"dissipative\"", integrator->name);
     if (scene->setup.attribute[ATTRIBUTES_MASS].ranges > 0 && !integrator->masses)

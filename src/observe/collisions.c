@@ -11,7 +11,7 @@
 /// Speeds in units of sqrt(k_B T/m) are held against Maxwell's distribution. Energy and, without
 /// walls, momentum never change, which would make them agree too well: both are replaced by
 /// numbers that are drawn from their canonical distributions, as in observe/maxwell.h.
-/// Tested: test_collisions (unit), test_kinetic_gas (physics, cli).
+/// Tested: test_kinetic_gas (physics, cli).
 #include "base/memory.h"
 #include "base/number_text.h"
 #include "base/rng.h"

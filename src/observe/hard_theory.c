@@ -26,22 +26,35 @@ static struct fluid fluid_of(int dimensions, double volume, double temperature,
     return fluid;
 }
 
+static double contact_of_discs(double eta) {
+    const double room = 1 - eta;
+    return (1 - 7 * eta / 16) / (room * room) - pow(eta, 3) / 128 / pow(room, 4);
+}
+
+/// What Kolafa adds to the contact value of Carnahan and Starling.
+static double kolafa(double eta) {
+    return (eta * eta / 12 - pow(eta, 3) / 6) / pow(1 - eta, 3);
+}
+
 static double compressibility_factor(const struct fluid *fluid) {
     const double *m = fluid->moment, eta = fluid->eta, room = 1 - eta;
-    if (fluid->dimensions == 2)
-        return 1 / room + m[1] * m[1] / m[2] * eta * (1 + eta / 8) / (room * room);
-    const double unit = pi / 6 * fluid->density, xi = unit * m[2];
-    return 1 / room + 3 * unit * m[1] * xi / (unit * room * room) +
-           xi * xi * xi * (3 - eta) / (unit * room * room * room);
+    if (fluid->dimensions == 2) {
+        const double alike = m[1] * m[1] / m[2];
+        return (1 - alike) / room + alike * (1 + 2 * eta * contact_of_discs(eta));
+    }
+    const double unit = pi / 6 * fluid->density, xi = unit * m[2]; // ξ_0 = unit
+    const double alike = pow(m[2], 3) / (m[3] * m[3]);
+    return 1 / room + 3 * m[1] * xi / (room * room) +
+           xi * xi * xi * (3 - eta) / (unit * room * room * room) + alike * 4 * eta * kolafa(eta);
 }
 
 static double contact_value(const struct fluid *fluid, double a, double b) {
-    const double room = 1 - fluid->eta, tau = a * b / (a + b);
+    const double *m = fluid->moment, room = 1 - fluid->eta, tau = a * b / (a + b);
     if (fluid->dimensions == 2)
-        return 1 / room +
-               9.0 / 8 * fluid->eta * fluid->moment[1] / fluid->moment[2] * tau / (room * room);
-    const double xi = pi / 6 * fluid->density * fluid->moment[2] * tau;
-    return 1 / room + 3 * xi / (room * room) + 2 * xi * xi / (room * room * room);
+        return 1 / room + (contact_of_discs(fluid->eta) - 1 / room) * 2 * tau * m[1] / m[2];
+    const double xi = pi / 6 * fluid->density * m[2] * tau;
+    return 1 / room + 3 * xi / (room * room) + 2 * xi * xi / (room * room * room) +
+           kolafa(fluid->eta) * pow(2 * tau * m[2] / m[3], 2);
 }
 
 /// How often one of a species meets any of another, of that density.

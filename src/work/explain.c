@@ -2,20 +2,51 @@
 #include "work/explain.h"
 
 #include "base/simd.h"
+#include "observe/hard_theory.h"
 
 #include <math.h>
 
 /// Nanoseconds, as those of observe/stages.h: of a particle and step, also with noise for each
-/// (`walk`); of a pair in range, whatever is computed of it; `tell`: of its types.
+/// (`walk`); of a collision of hard particles with the crossings on the way to it; of a pair in
+/// range, whatever is computed of it; `tell`: of its types.
 static const struct {
-    double move, walk, pair, conservative, dissipative, kept, tell;
+    double move, walk, collision, pair, conservative, dissipative, kept, tell;
 } cost = {.move = 8,
           .walk = 30,
+          .collision = 600,
           .pair = 0.9,
           .conservative = 0.3,
           .dissipative = 1.3,
           .kept = 3.0,
           .tell = 0.7};
+
+/// From event to event: as many collisions as there are of particles of the mean radius and mass.
+static void add_events(struct stages *stages, const struct simulation_setup *setup) {
+    const struct attributes_range usual[] = {
+        [ATTRIBUTES_MASS] = {1, 1}, [ATTRIBUTES_RADIUS] = {0.5, 0.5}};
+    double mean[2];
+    for (int name = 0; name < 2; name++) {
+        const struct attributes_source *source = &setup->attribute[name];
+        const struct attributes_range range =
+            source->ranges > 0 ? mf_attributes_span(source) : usual[name];
+        mean[name] = 0.5 * (range.minimum + range.maximum);
+    }
+    const double room = mf_box_volume(&setup->box) / (double)setup->placement.count;
+    const double rate = mf_hard_theory(setup->box.dimensions, room, setup->temperature,
+                                       &mean[ATTRIBUTES_RADIUS], &mean[ATTRIBUTES_MASS], 1)
+                            .collision_rate;
+    mf_stages_add(stages, "motion", true,
+                  cost.move + 0.5 * rate * setup->time_step * cost.collision,
+                  "%s, about %.2g collisions of each particle; no list, no forces",
+                  setup->integrator->name, rate * setup->time_step);
+}
+
+static void add_motion(struct stages *stages, const struct simulation_setup *setup) {
+    const bool flies = !simulation_is_overdamped(setup);
+    mf_stages_add(stages, "motion", true, flies ? cost.move : cost.walk,
+                  "%s, and a watch over the %s", setup->integrator->name,
+                  flies ? "velocities" : "steps");
+}
 
 static void add_list(struct stages *stages, const struct simulation_setup *setup) {
     const struct skin_scene scene = mf_simulation_skin_scene(setup);
@@ -101,16 +132,17 @@ static void add_companions(struct stages *stages, const struct simulation_setup 
 void mf_explain_scene(FILE *out, const struct simulation_setup *setup,
                       const struct observable_use *uses, int64_t every) {
     struct stages stages = {0};
-    const bool flies = !simulation_is_overdamped(setup);
-    mf_stages_add(&stages, "motion", true, flies ? cost.move : cost.walk,
-                  "%s, and a watch over the %s", setup->integrator->name,
-                  flies ? "velocities" : "steps");
-    add_companions(&stages, setup);
-    add_list(&stages, setup);
-    add_forces(&stages, setup);
+    if (setup->integrator->events) {
+        add_events(&stages, setup);
+    } else {
+        add_motion(&stages, setup);
+        add_companions(&stages, setup);
+        add_list(&stages, setup);
+        add_forces(&stages, setup);
+    }
     add_interactions(&stages, setup);
     add_observables(&stages, setup, uses, (double)every);
-    if (!simulation_holds_temperature(setup))
+    if (!simulation_holds_temperature(setup) && !setup->integrator->events)
         mf_stages_add(&stages, "thermostat", false, 0, "nothing holds the temperature");
     double total = 0;
     for (int k = 0; k < stages.count; k++)
