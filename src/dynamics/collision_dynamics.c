@@ -205,6 +205,7 @@ const struct integrator mf_collision_dynamics = {
     .spans = spans,
     .companions = companions,
     .companion_cost = 12,
+    .model_time_step = true,
     .masses = true,
     .holds_temperature = holds_temperature,
     .step = step,

@@ -28,7 +28,9 @@ struct integrator {
     /// INTEGRATOR_SPANS. NULL: nothing.
     size_t (*spans)(void *state, struct memory_span *spans);
     bool dissipative; ///< understands ω(r)
-    bool masses;      ///< moves particles of different masses; else a scene with any is refused
+    /// The time step is a property of what is modelled, and no approximation: fits may look for it.
+    bool model_time_step;
+    bool masses; ///< moves particles of different masses; else a scene with any is refused
     /// What it makes of ω, if it splits friction and noise off the forces; NULL: they are forces.
     const struct friction_method *friction;
     /// A step begins with the friction of the pairs that the last one kept.
