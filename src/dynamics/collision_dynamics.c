@@ -19,6 +19,13 @@ static bool holds_temperature(const struct simulation_setup *setup) {
     return parameters_of(setup)->thermostat;
 }
 
+static const char *warning(const struct simulation_setup *setup) {
+    return parameters_of(setup)->particles_per_cell < 3
+               ? "dynamics.particles_per_cell: below 3 many cells have nobody to collide with, and "
+                 "theory is far off"
+               : NULL;
+}
+
 static enum status begin(struct simulation *simulation) {
     const struct simulation_setup *setup = &simulation->setup;
     struct solvent *solvent = simulation->integrator_state;
@@ -214,5 +221,6 @@ const struct integrator mf_collision_dynamics = {
     .model_time_step = true,
     .masses = true,
     .holds_temperature = holds_temperature,
+    .warning = warning,
     .step = step,
 };

@@ -51,6 +51,9 @@ struct integrator {
     double companion_cost;
     /// Whether it holds the temperature of the setup by itself. NULL: not without ω.
     bool (*holds_temperature)(const struct simulation_setup *setup);
+    /// What a person should know of the parameters before a simulation, one line naming the key;
+    /// NULL: nothing.
+    const char *(*warning)(const struct simulation_setup *setup);
     /// Advance by one step, with one call of mf_simulation_compute_forces.
     enum status (*step)(struct simulation *simulation);
 };

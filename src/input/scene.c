@@ -199,6 +199,10 @@ void mf_scene_clear(struct scene *scene) {
 }
 
 const char *mf_scene_warning(const struct scene *scene) {
+    const struct integrator *integrator = scene->setup.integrator;
+    const char *own = integrator->warning ? integrator->warning(&scene->setup) : NULL;
+    if (own)
+        return own;
     if (simulation_holds_temperature(&scene->setup) || (scene->unknown & SCENE_FITS_OMEGA))
         return NULL;
     return "nothing holds the temperature: without \"dissipative\", friction and noise, a "
