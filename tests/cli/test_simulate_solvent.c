@@ -34,7 +34,7 @@ static void test_simulate_measures_a_solvent_without_beads(void **state) {
     assert_true(results_number("out/summary.json", "viscosity_theory") < 1.3);
     assert_true(results_number("out/summary.json", "solvent_temperature") > 0.98);
     assert_true(results_number("out/summary.json", "solvent_temperature") < 1.02);
-    assert_true(results_number("out/summary.json", "drag") > 0);
+    assert_true(results_number("out/summary.json", "flow_field.drag") > 0);
     RUN_PROGRAM(&result, "simulate", "out/used.json", "-o", "again", "--threads", "2");
     run_program_assert_code(&result, 0);
     results_assert_same("out", "again", tables);
