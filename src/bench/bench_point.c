@@ -42,7 +42,8 @@ size_t mf_bench_methods(const struct simulation_setup *setup, struct bench_metho
     size_t count = 0;
     for (size_t k = 0; mf_integrator_list[k] && count + 2 <= BENCH_MOST_METHODS; k++) {
         const struct integrator *integrator = mf_integrator_list[k];
-        if (integrator->dissipative != (setup->omega != NULL) || integrator->free_step)
+        if (integrator->dissipative != (setup->omega != NULL) || integrator->free_step ||
+            integrator->companions)
             continue;
         const bool predicts = integrator == &mf_dpd_verlet;
         for (size_t l = 0; l < (predicts ? sizeof predictions / sizeof *predictions : 1); l++) {
