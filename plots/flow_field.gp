@@ -35,7 +35,7 @@ do for [kind in kinds] {
     set size ratio -1
     set xlabel "{/:Italic x} / {/:Italic λ}"
     set ylabel "{/:Italic y} / {/:Italic λ}"
-    set cblabel "vorticity / {/:Italic τ}^{-1}"
+    set cblabel "vorticity / {/:Italic τ}^{-1}" offset 1.6
     set xrange [0:width]
     set yrange [0:height]
     set cbrange [-limit:limit]

@@ -19,6 +19,13 @@ static bool holds_temperature(const struct simulation_setup *setup) {
     return parameters_of(setup)->thermostat;
 }
 
+static const char *warning(const struct simulation_setup *setup) {
+    return parameters_of(setup)->particles_per_cell < 3
+               ? "dynamics.particles_per_cell: below 3 many cells have nobody to collide with, and "
+                 "theory is far off"
+               : NULL;
+}
+
 static enum status begin(struct simulation *simulation) {
     const struct simulation_setup *setup = &simulation->setup;
     struct solvent *solvent = simulation->integrator_state;
@@ -46,16 +53,22 @@ static size_t spans(void *state, struct memory_span *spans) {
     return n;
 }
 
-/// v += ½ Δt (F/m + g).
+/// v += ½ Δt (F/m + g), with the wave's acceleration.
 static void kick(struct simulation *simulation) {
     const struct solvent *solvent = simulation->integrator_state;
+    const struct collision_dynamics_parameters *parameters = &solvent->parameters;
     struct particles *beads = &simulation->particles;
+    const double half = 0.5 * simulation->setup.time_step;
+    const double wave = half * parameters->wave_acceleration;
+    const double turn = 2 * M_PI / solvent->box.length[1];
     mf_simulation_kick(simulation);
     for (int d = 0; d < beads->box.dimensions; d++) {
-        const double more = 0.5 * simulation->setup.time_step * solvent->parameters.acceleration[d];
+        const double more = half * parameters->acceleration[d];
         for (size_t k = 0; k < beads->count && more != 0; k++)
             beads->velocity[d][k] += more;
     }
+    for (size_t k = 0; k < beads->count && wave != 0; k++)
+        beads->velocity[0][k] += wave * sin(turn * beads->position[1][k]);
 }
 
 /// x += Δt v, turned back by walls.
@@ -181,8 +194,8 @@ static const struct field fields[] = {
      .unit = "lambda/tau^2", .help = "of the solvent and the beads, along each axis"},
     {"wave_acceleration", FIELD_NUMBER, MEMBER(wave_acceleration), .initial = 0,
      .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = "lambda/tau^2",
-     .help = "A of A sin(2 pi y/L_y) along x, in a periodic box: the height of the wave of "
-             "velocity tells the viscosity"},
+     .help = "A of A sin(2 pi y/L_y) along x, of the solvent and the beads, in a periodic box: the "
+             "height of the wave of velocity tells the viscosity"},
     {"drift", FIELD_LENGTHS, MEMBER(drift), .minimum = -DBL_MAX, .maximum = DBL_MAX,
      .unit = "lambda/tau", .help = "mean velocity of the solvent at the start"},
     {"obstacle_centre", FIELD_LENGTHS, MEMBER(obstacle_centre), .minimum = -DBL_MAX,
@@ -205,7 +218,9 @@ const struct integrator mf_collision_dynamics = {
     .spans = spans,
     .companions = companions,
     .companion_cost = 12,
+    .model_time_step = true,
     .masses = true,
     .holds_temperature = holds_temperature,
+    .warning = warning,
     .step = step,
 };

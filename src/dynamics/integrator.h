@@ -30,6 +30,8 @@ struct integrator {
     bool dissipative; ///< understands ω(r)
     /// Moves hard particles from event to event: there are no forces, and kinetic energy is kept.
     bool events;
+    /// The time step is a property of what is modelled, and no approximation: fits may look for it.
+    bool model_time_step;
     bool masses; ///< moves particles of different masses; else a scene with any is refused
     /// What it makes of ω, if it splits friction and noise off the forces; NULL: they are forces.
     const struct friction_method *friction;
@@ -55,6 +57,9 @@ struct integrator {
     double companion_cost;
     /// Whether it holds the temperature of the setup by itself. NULL: not without ω.
     bool (*holds_temperature)(const struct simulation_setup *setup);
+    /// What a person should know of the parameters before a simulation, one line naming the key;
+    /// NULL: nothing.
+    const char *(*warning)(const struct simulation_setup *setup);
     /// Advance by one step, with one call of mf_simulation_compute_forces.
     enum status (*step)(struct simulation *simulation);
 };

@@ -65,7 +65,8 @@ static void add(struct entries *entries, const char *prefix, const struct field 
     }
 }
 
-/// What stands at the top of a scene: of its numbers the temperature alone.
+/// What stands at the top of a scene: of its numbers the temperature, and the time step of dynamics
+/// that have it as a property.
 static void add_top(struct entries *entries, const struct scene *scene) {
     static const struct {
         const char *name, *fixed;
@@ -73,16 +74,21 @@ static void add_top(struct entries *entries, const struct scene *scene) {
                  {"skin", "it changes the speed, not the results"},
                  {"temperature_limit", "it only says when a simulation has failed"}};
     static const size_t count = sizeof fixed / sizeof *fixed;
+    const struct simulation_setup *setup = &scene->setup;
     for (const struct field *field = mf_scene_fields; field->name; field++) {
         struct field one[] = {*field, FIELD_END};
+        const bool is_step = strcmp(field->name, "time_step") == 0;
+        const bool is_free = strcmp(field->name, "temperature") == 0 ||
+                             (is_step && setup->integrator && setup->integrator->model_time_step);
         const struct entry where = {.place = INVERSE_OF_SETUP,
-                                    .offset = offsetof(struct simulation_setup, temperature)};
-        const char *why =
-            strcmp(field->name, "temperature") == 0 ? NULL : "it is no property of the fluid";
-        for (size_t k = 0; k < count; k++)
+                                    .offset = is_step
+                                                  ? offsetof(struct simulation_setup, time_step)
+                                                  : offsetof(struct simulation_setup, temperature)};
+        const char *why = is_free ? NULL : "it is no property of the fluid";
+        for (size_t k = 0; k < count && !is_free; k++)
             why = strcmp(fixed[k].name, field->name) == 0 ? fixed[k].fixed : why;
         one[0].offset = 0;
-        add(entries, "", one, why, &where, &scene->setup.temperature);
+        add(entries, "", one, why, &where, is_step ? &setup->time_step : &setup->temperature);
         if (entries->entry)
             entries->entry[entries->count - 1].field = field;
     }

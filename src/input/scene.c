@@ -212,7 +212,11 @@ void mf_scene_clear(struct scene *scene) {
 }
 
 const char *mf_scene_warning(const struct scene *scene) {
-    if (simulation_holds_temperature(&scene->setup) || scene->setup.integrator->events ||
+    const struct integrator *integrator = scene->setup.integrator;
+    const char *own = integrator->warning ? integrator->warning(&scene->setup) : NULL;
+    if (own)
+        return own;
+    if (simulation_holds_temperature(&scene->setup) || integrator->events ||
         (scene->unknown & SCENE_FITS_OMEGA))
         return NULL;
     return "nothing holds the temperature: without \"dissipative\", friction and noise, a "

@@ -38,8 +38,9 @@ void mf_scene_clear(struct scene *scene);
 /// units.
 double mf_scene_mass_density(const struct scene *scene);
 
-/// What a person should know before the scene is simulated, one line without friction and noise,
-/// when nothing holds the temperature; NULL: nothing.
+/// What a person should know before the scene is simulated, one line: what its integrator says of
+/// its parameters, or, without friction and noise, that nothing holds the temperature; NULL:
+/// nothing.
 const char *mf_scene_warning(const struct scene *scene);
 
 /// Whether the temperature looks like one in kelvins, without units; `line` then says so.

@@ -26,11 +26,16 @@ struct profile {
     struct simulation_setup setup; ///< with the parameters of the solvent
     struct collision_dynamics_parameters parameters;
     size_t bins, blocks, each;
-    double height;
+    double height, interval; ///< interval of time between samples
     uint64_t samples;
     struct bin *sums; ///< shape [blocks, bins]
     double energy[MOST_BLOCKS], degrees[MOST_BLOCKS];
     double *now; ///< shape [bins, 4]: Σ 1, Σ v of a sample
+    /// Across the flow, where a wave does not carry them: places of the beads when the block began,
+    /// shape [axes, beads] by id, and the mean square of their ways over a block, along an axis.
+    size_t beads;
+    double bead_mass; ///< of all; NaN if they differ
+    double *before, square[MOST_BLOCKS];
 };
 
 static const struct field fields[] = {
@@ -38,6 +43,14 @@ static const struct field fields[] = {
      .maximum = 1e5, .unit = "", .help = "along y; 0: as many as cells"},
     FIELD_END,
 };
+
+static double mass_of(const struct particles *beads) {
+    const double *mass = particles_masses(beads);
+    for (size_t k = 1; mass && k < beads->count; k++)
+        if (mass[k] != mass[0])
+            return NAN;
+    return mass && beads->count > 0 ? mass[0] : 1;
+}
 
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
@@ -54,10 +67,14 @@ static enum status begin(void *state, const void *settings, const struct simulat
     p->setup.integrator_parameters = &p->parameters;
     p->height = solvent->box.length[1];
     p->bins = given->bins > 0 ? (size_t)given->bins : (size_t)rint(p->height / p->parameters.cell);
+    p->interval = (double)plan->every * simulation->setup.time_step;
     p->each = ((size_t)plan->samples + MOST_BLOCKS - 1) / MOST_BLOCKS;
     p->blocks = (size_t)plan->samples / p->each;
     NEW_ARRAY(p->sums, p->blocks * p->bins);
     NEW_ARRAY(p->now, 4 * p->bins);
+    p->beads = p->parameters.walls == COLLISION_NO_WALLS ? simulation->particles.count : 0;
+    p->bead_mass = mass_of(&simulation->particles);
+    NEW_ARRAY(p->before, 2 * p->beads);
 done:
     return status;
 }
@@ -66,7 +83,25 @@ static void clear(void *state) {
     struct profile *p = state;
     mf_memory_free(p->sums);
     mf_memory_free(p->now);
+    mf_memory_free(p->before);
     *p = (struct profile){0};
+}
+
+/// The ways of the beads along y and z since their block began, at its last sample.
+static void follow_beads(struct profile *p, const struct particles *beads, size_t block) {
+    const bool begins = (p->samples - 1) % p->each == 0, ends = p->samples % p->each == 0;
+    const int axes = beads->box.dimensions - 1;
+    double sum = 0;
+    for (int d = 1; d <= axes && (begins || ends); d++)
+        for (size_t k = 0; k < p->beads; k++) {
+            const double x = beads->position[d][k] + beads->image[d][k] * beads->box.length[d];
+            double *before = &p->before[(size_t)(d - 1) * p->beads + beads->id[k]];
+            if (begins)
+                *before = x;
+            sum += (x - *before) * (x - *before);
+        }
+    if (ends && p->beads > 0)
+        p->square[block] = sum / (axes * (double)p->beads);
 }
 
 /// Energy relative to the mean velocity of the particles' own bin: flow is no heat.
@@ -79,6 +114,7 @@ static enum status sample(void *state, struct simulation *simulation) {
     double squares = 0;
     if (block >= p->blocks)
         return STATUS_OK;
+    follow_beads(p, &simulation->particles, block);
     memset(p->now, 0, 4 * p->bins * sizeof *p->now);
     for (size_t k = 0; k < solvent->count; k++) {
         const double place = solvent->position[1][k] * scale;
@@ -111,7 +147,9 @@ static size_t spans(void *state, struct memory_span *spans) {
     spans[1] = (struct memory_span){p->sums, p->blocks * p->bins * sizeof *p->sums};
     spans[2] = (struct memory_span){p->energy, sizeof p->energy};
     spans[3] = (struct memory_span){p->degrees, sizeof p->degrees};
-    return 4;
+    spans[4] = (struct memory_span){p->square, sizeof p->square};
+    spans[5] = (struct memory_span){p->before, 2 * p->beads * sizeof *p->before};
+    return 6;
 }
 
 // Results -----------------------------------------------------------------------------------------
@@ -167,10 +205,11 @@ static double peak_shape(const struct profile *p) {
 struct flow_profile_summary mf_flow_profile_result(const void *state) {
     const struct profile *p = state;
     const size_t blocks = complete_blocks(p);
+    const double window = 2 * p->interval * (double)(p->each - 1);
     const struct line all = fit(p, 0, blocks);
     const double peak = peak_shape(p);
     double slopes[MOST_BLOCKS], bases[MOST_BLOCKS], temperatures[MOST_BLOCKS];
-    double energy = 0, degrees = 0;
+    double energy = 0, degrees = 0, squares = 0;
     for (size_t block = 0; block < blocks; block++) {
         const struct line one = fit(p, block, block + 1);
         slopes[block] = one.slope;
@@ -178,13 +217,21 @@ struct flow_profile_summary mf_flow_profile_result(const void *state) {
         temperatures[block] = p->energy[block] / p->degrees[block];
         energy += p->energy[block];
         degrees += p->degrees[block];
+        squares += p->square[block];
     }
+    const double diffusion = squares / ((double)blocks * window);
+    const double diffusion_error = mf_statistics_correlated_error(p->square, blocks, 1) / window;
+    const double schmidt = 1 / (all.slope * diffusion);
     const double error = mf_statistics_correlated_error(slopes, blocks, 1);
     const double base_error = mf_statistics_correlated_error(bases, blocks, 1);
     const double top = peak * fabs(all.slope); // of the velocity
     return (struct flow_profile_summary){
         .viscosity = 1 / all.slope,
         .viscosity_error = error / (all.slope * all.slope),
+        .diffusion = p->beads > 0 ? diffusion : NAN,
+        .diffusion_error = diffusion_error,
+        .schmidt = p->beads > 0 ? schmidt : NAN,
+        .schmidt_error = schmidt * hypot(error / all.slope, diffusion_error / diffusion),
         .slip = all.base / top,
         .slip_error = base_error / top,
         .temperature = energy / degrees,
@@ -248,6 +295,16 @@ static void put(const void *state, const struct observable_results *results,
         mf_json_put_number(writer, "slip", found.slip);
         mf_json_put_number(writer, "slip_error", found.slip_error);
     }
+    if (isfinite(found.diffusion)) {
+        mf_json_put_number(writer, "bead_diffusion", found.diffusion);
+        mf_json_put_number(writer, "bead_diffusion_error", found.diffusion_error);
+        mf_json_put_number(writer, "bead_diffusion_theory",
+                           mf_collision_dynamics_diffusion(&p->setup, p->bead_mass));
+    }
+    if (is_driven(p) && isfinite(found.schmidt)) {
+        mf_json_put_number(writer, "schmidt_number", found.schmidt);
+        mf_json_put_number(writer, "schmidt_number_error", found.schmidt_error);
+    }
     mf_json_put_number(writer, "solvent_temperature", found.temperature);
     mf_json_put_number(writer, "solvent_temperature_error", found.temperature_error);
 }
@@ -280,7 +337,8 @@ static enum status result(const void *const *states, size_t count,
                           const struct observable_values *values) {
     for (size_t k = 0; k < count; k++) {
         const struct flow_profile_summary found = mf_flow_profile_result(states[k]);
-        mf_pooled_add(values, &found.viscosity, &found.viscosity_error, count);
+        mf_pooled_add(&values[0], &found.viscosity, &found.viscosity_error, count);
+        mf_pooled_add(&values[1], &found.schmidt, &found.schmidt_error, count);
     }
     return STATUS_OK;
 }
@@ -288,6 +346,9 @@ static enum status result(const void *const *states, size_t count,
 static const struct observable_target targets[] = {
     {.name = "viscosity",
      .summary = "kinematic viscosity of a solvent that is driven",
+     .form = OBSERVABLE_NUMBER},
+    {.name = "schmidt_number",
+     .summary = "viscosity over the diffusion coefficient of the beads in a wave",
      .form = OBSERVABLE_NUMBER},
     {.name = NULL}};
 static const char *const files[] = {"flow_profile.tsv", NULL};

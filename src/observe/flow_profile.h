@@ -13,6 +13,9 @@
 struct flow_profile_summary {
     double viscosity, viscosity_error; ///< kinematic [λ²/τ]; NaN if nothing drives the flow
     double slip, slip_error;           ///< A in units of the highest velocity that s and B make
+    /// D of the beads along y and z, without plates, from their ways over blocks of time [λ²/τ],
+    /// and the viscosity over it; NaN without beads.
+    double diffusion, diffusion_error, schmidt, schmidt_error;
     /// Of the solvent, relative to the mean velocity of each bin [k_B T_0].
     double temperature, temperature_error;
 };

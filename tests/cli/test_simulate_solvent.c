@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Scenes of collision dynamics from outside: results, the same bits, restarts, what is refused.
+#include "shared/results.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static const char channel[] =
+    "{\"seed\": 2, \"dimensions\": 2, \"box\": [24, 12], \"particles\": {\"count\": 0},\n"
+    "\"time_step\": 0.1, \"dynamics\": {\"integrator\": \"collision-dynamics\",\n"
+    "\"angle\": 130, \"thermostat\": \"yes\", \"walls\": \"plates\",\n"
+    "\"acceleration\": [0.03, 0], \"obstacle_centre\": [8, 6], \"obstacle_radius\": 2},\n"
+    "\"measure\": {\"equilibration\": 200, \"samples\": 100, \"every\": 5},\n"
+    "\"flow_profile\": {}, \"flow_field\": {}}\n";
+
+static const char *const tables[] = {"flow_profile.tsv", "flow_field.tsv", "used.json", NULL};
+
+static void write(struct temporary_folder *folder, const char *from, const char *to) {
+    small_inputs_write(folder, "scene.json", channel, from, to);
+}
+
+static void test_simulate_measures_a_solvent_without_beads(void **state) {
+    static struct run_program_result result;
+    write(*state, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--threads", "1");
+    run_program_assert_code(&result, 0);
+    assert_null(strstr(result.err, "nothing holds"));
+    assert_true(results_number("out/summary.json", "viscosity") > 0);
+    assert_true(results_number("out/summary.json", "viscosity_theory") > 1.2);
+    assert_true(results_number("out/summary.json", "viscosity_theory") < 1.3);
+    assert_true(results_number("out/summary.json", "solvent_temperature") > 0.98);
+    assert_true(results_number("out/summary.json", "solvent_temperature") < 1.02);
+    assert_true(results_number("out/summary.json", "flow_field.drag") > 0);
+    RUN_PROGRAM(&result, "simulate", "out/used.json", "-o", "again", "--threads", "2");
+    run_program_assert_code(&result, 0);
+    results_assert_same("out", "again", tables);
+}
+
+static void test_figures_of_flow_are_drawn(void **state) {
+    static struct run_program_result result;
+    small_inputs_need_gnuplot();
+    write(*state, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    assert_null(strstr(result.err, "no figure"));
+    assert_true(temporary_folder_exists("out/figures/flow_profile.svg"));
+    assert_true(temporary_folder_exists("out/figures/flow_field.png"));
+}
+
+static void test_explain_tells_the_solvents_share(void **state) {
+    static struct run_program_result result;
+    write(*state, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "2754 particles of collision-dynamics");
+}
+
+/// A scene that is refused with one line naming file and key.
+static void assert_refused(void **state, const char *from, const char *to, const char *line) {
+    static struct run_program_result result;
+    write(*state, from, to);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, line);
+}
+
+static void test_simulate_refuses_bad_solvents_by_file_and_key(void **state) {
+    assert_refused(state, "\"angle\": 130", "\"cell\": 0.7",
+                   "scene.json: dynamics.cell: cells of 0.7 do not divide box[0] = 24");
+    assert_refused(state, "\"time_step\": 0.1", "\"time_step\": 5",
+                   "scene.json: dynamics.interval: between two collisions, 5 apart in time");
+    assert_refused(state, "[8, 6]", "[8, 1]",
+                   "scene.json: dynamics.obstacle_centre[1]: with 1 an obstacle of radius 2");
+    assert_refused(state, "\"obstacle_radius\": 2", "\"obstacle_radius\": -2",
+                   "dynamics.obstacle_radius: -2 is out of range; allowed: at least 0");
+    assert_refused(state, "\"flow_field\": {}", "\"motion\": {}",
+                   "scene.json: motion: there are fewer than two particles to measure");
+    assert_refused(state, "\"angle\": 130", "\"mass\": 0", "dynamics.mass");
+}
+
+static void test_simulate_refuses_a_flow_without_solvent(void **state) {
+    assert_refused(
+        state,
+        "\"particles\": {\"count\": 0},\n"
+        "\"time_step\": 0.1, \"dynamics\": {\"integrator\": \"collision-dynamics\",\n"
+        "\"angle\": 130, \"thermostat\": \"yes\", \"walls\": \"plates\",\n"
+        "\"acceleration\": [0.03, 0], \"obstacle_centre\": [8, 6], \"obstacle_radius\": 2},\n",
+        "\"particles\": {\"count\": 10}, \"rdf\": {\"range\": 1},\n",
+        "scene.json: flow_profile: velocity-verlet has no solvent");
+    assert_refused(state,
+                   "\"collision-dynamics\",\n\"angle\": 130, \"thermostat\": \"yes\", "
+                   "\"walls\": \"plates\",\n\"acceleration\": [0.03, 0], "
+                   "\"obstacle_centre\": [8, 6], \"obstacle_radius\": 2}",
+                   "\"velocity-verlet\"}",
+                   "particles.count: 0 is out of range; allowed: 2 to 1e+08");
+}
+
+static void test_simulate_warns_of_few_particles_in_a_cell(void **state) {
+    static struct run_program_result result;
+    write(*state, "\"angle\": 130", "\"angle\": 130, \"particles_per_cell\": 2");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.err, "warning: dynamics.particles_per_cell: below 3");
+}
+
+/// With beads that carry forces, in space, killed and resumed.
+static void test_simulate_goes_on_with_the_same_bits_with_a_solvent(void **state) {
+    static const char beads[] =
+        "{\"seed\": 2, \"box\": [12, 12, 12], \"particles\": {\"count\": 60, \"mass\": 5},\n"
+        "\"time_step\": 0.05, \"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25},\n"
+        "\"dynamics\": {\"integrator\": \"collision-dynamics\", \"interval\": 4,\n"
+        "\"thermostat\": \"yes\", \"wave_acceleration\": 0.1},\n"
+        "\"measure\": {\"equilibration\": 500, \"samples\": 300, \"every\": 20},\n"
+        "\"flow_profile\": {}, \"flow_field\": {\"spacing\": 2}}\n";
+    static struct run_program_result result;
+    small_inputs_write(*state, "scene.json", beads, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "whole");
+    run_program_assert_code(&result, 0);
+    const char *const words[] = {"simulate", "scene.json", "-o", "pieces", NULL};
+    run_program_in_pieces(0, words);
+    results_assert_same("whole", "pieces", tables);
+}
+
+int main(void) {
+#define TEST(name)                                                                                 \
+    cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
+    const struct CMUnitTest tests[] = {
+        TEST(test_simulate_measures_a_solvent_without_beads),
+        cmocka_unit_test_setup_teardown(test_figures_of_flow_are_drawn, small_inputs_enter,
+                                        small_inputs_leave),
+        TEST(test_explain_tells_the_solvents_share),
+        TEST(test_simulate_refuses_bad_solvents_by_file_and_key),
+        TEST(test_simulate_refuses_a_flow_without_solvent),
+        TEST(test_simulate_warns_of_few_particles_in_a_cell),
+        TEST(test_simulate_goes_on_with_the_same_bits_with_a_solvent),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
