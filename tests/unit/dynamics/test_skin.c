@@ -40,8 +40,8 @@ static void test_skin_shrinks_when_particles_fly_farther_in_a_step(void **state)
 static void test_skin_stays_within_the_nearest_images_when_the_box_is_small(void **state) {
     (void)state;
     static const struct box small = {3, {2.1, 2.2, 2.3}}, smallest = {3, {2, 2, 2}};
-    const struct skin_scene tight = {&small, 30, 1, 1, 0.0001, 0},
-                            tightest = {&smallest, 24, 1, 1, 0.0001, 0};
+    const struct skin_scene tight = {&small, 30, 1, 1, 0.0001, 0, 0},
+                            tightest = {&smallest, 24, 1, 1, 0.0001, 0, 0};
     assert_in_range(1000 * mf_skin_choose(&tight), 10, 50);
     assert_close(mf_skin_choose(&tightest), 0, 0);
 }
