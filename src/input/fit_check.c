@@ -6,6 +6,8 @@
 #include "problem/measurement.h"
 #include "problem/unknowns.h"
 
+#include <string.h>
+
 /// Begin one simulation, so that a box too small for the forces or particles without room are found
 /// now and not by the verification after the fit.
 static enum status begin_one(const struct fit_file *fit, const struct inverse_problem *problem) {
@@ -114,7 +116,21 @@ static enum status check_velocities(const struct fit_file *fit, const char *file
                           setup->integrator->name);
 }
 
+/// Targets at times are measured in whole time steps, which an unknown step has not.
+static enum status check_free_step(const struct fit_file *fit, const char *file) {
+    static const enum target_kind timed[] = {TARGET_ETD, TARGET_VACF, TARGET_MSD};
+    for (size_t n = 0; n < fit->problem.numbers; n++)
+        for (size_t k = 0; k < sizeof timed / sizeof *timed; k++)
+            if (strcmp(fit->problem.number[n].name, "time_step") == 0 && fit->files.given[timed[k]])
+                return mf_status_fail(STATUS_BAD_INPUT,
+                                      "%s: unknowns.numbers.time_step: target.%s is measured in "
+                                      "whole time steps",
+                                      file, mf_targets_name(timed[k]));
+    return STATUS_OK;
+}
+
 static enum status check_steps(const struct fit_file *fit, const char *file) {
+    TRY(check_free_step(fit, file));
     enum status status = mf_target_files_check_steps(&fit->files, fit->scene.setup.time_step);
     if (status != STATUS_OK)
         return mf_status_prefix(status, "%s: scene.time_step", file);

@@ -125,6 +125,37 @@ static void test_simulate_goes_on_with_the_same_bits_with_a_solvent(void **state
     results_assert_same("whole", "pieces", tables);
 }
 
+/// From a time step of 0.25, where ν is 0.4 and the Schmidt number below 5, towards those targets.
+/// Targets at times have no such unknown.
+static void test_fit_looks_for_angle_and_time_step(void **state) {
+    static const char run[] =
+        "{\"seed\": 3, \"target\": {\"viscosity\": {\"value\": 0.87, \"error\": 0.05},\n"
+        "\"schmidt_number\": {\"value\": 15, \"error\": 2}},\n"
+        "\"unknowns\": {\"numbers\": {\"dynamics.angle\": {\"minimum\": 80, \"maximum\": 150},\n"
+        "\"time_step\": {\"minimum\": 0.08, \"maximum\": 0.3}}},\n"
+        "\"scene\": {\"box\": [6, 12, 6], \"particles\": {\"count\": 200}, \"time_step\": 0.25,\n"
+        "\"dynamics\": {\"integrator\": \"collision-dynamics\", \"angle\": 90,\n"
+        "\"thermostat\": \"yes\", \"wave_acceleration\": 0.1}},\n"
+        "\"method\": {\"name\": \"gauss-newton\", \"iterations\": 4, \"equilibration\": 100,\n"
+        "\"samples\": 64, \"every\": 5, \"temperature_tolerance\": 1},\n"
+        "\"verification\": {\"replicas\": 2, \"equilibration\": 100, \"samples\": 64, \"every\": "
+        "5}}\n";
+    static struct run_program_result result;
+    small_inputs_write(*state, "run.json", run, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out");
+    assert_true(result.code == 0 || result.code == 1);
+    const double step = results_number("out/summary.json", "parameters.time_step.value");
+    print_message("time step %.3f\n", step);
+    assert_true(step > 0.08 && step < 0.2);
+    small_inputs_write(*state, "vacf.tsv", "0 1\n0.25 0.5\n0.5 0.3\n0.75 0.2\n", NULL, NULL);
+    small_inputs_write(*state, "run.json", run, "\"schmidt_number\":",
+                       "\"vacf\": {\"file\": \"vacf.tsv\"}, \"schmidt_number\":");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "timed");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "run.json: unknowns.numbers.time_step: target.vacf is measured in "
+                                "whole time steps");
+}
+
 int main(void) {
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
@@ -137,6 +168,7 @@ int main(void) {
         TEST(test_simulate_refuses_a_flow_without_solvent),
         TEST(test_simulate_warns_of_few_particles_in_a_cell),
         TEST(test_simulate_goes_on_with_the_same_bits_with_a_solvent),
+        TEST(test_fit_looks_for_angle_and_time_step),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
