@@ -39,7 +39,7 @@ const double *mf_thermodynamics_series(const struct thermodynamics *thermodynami
 
 /// Drift of the total energy: the slope of a line through its samples, times the time from the
 /// first to the last, relative to their mean. NaN with fewer than two samples.
-/// Tested: physics/test_soft_discs.
+/// Tested: test_thermodynamics.
 double mf_thermodynamics_energy_drift(const struct thermodynamics *thermodynamics);
 
 /// Means over all replicas with standard errors that see the correlation of each series, by

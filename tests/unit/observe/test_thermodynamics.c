@@ -128,6 +128,23 @@ static void test_thermodynamics_series_are_kept_when_there_is_room_for_more(void
 /// the share of 2000 has a standard error of 0.5 %. Five of these: one false alarm in 10^6 seeds.
 static const double covered_share = 0.960, covered_band = 0.025;
 
+/// From 90 to 110, by a line, with a swing that no line sees: 20 of 100.
+static void test_thermodynamics_energy_drift_is_that_of_a_line(void **state) {
+    enum { ROWS = 41 };
+    struct thermodynamics thermodynamics;
+    (void)state;
+    assert_ok(mf_thermodynamics_init(&thermodynamics, ROWS));
+    double *energy = thermodynamics.values + THERMODYNAMICS_TOTAL_ENERGY * ROWS;
+    for (int k = 0; k < ROWS; k++)
+        energy[k] = 90 + 0.5 * k + (k % 4 == 2 ? 3 : k % 4 == 0 && k % (ROWS - 1) != 0 ? -3 : 0);
+    const double swing = 3.0 * 10 - 3.0 * 9; // what the swing leaves in the mean
+    thermodynamics.samples = ROWS;
+    assert_close(mf_thermodynamics_energy_drift(&thermodynamics), 20 / (100 + swing / ROWS), 1e-12);
+    thermodynamics.samples = 1;
+    assert_true(isnan(mf_thermodynamics_energy_drift(&thermodynamics)));
+    mf_thermodynamics_clear(&thermodynamics);
+}
+
 static void test_thermodynamics_errors_cover_the_truth_when_samples_are_independent(void **state) {
     (void)state;
     double temperature = 0, energy = 0, pressure = 0, configurational = 0;
@@ -238,6 +255,7 @@ static void test_judge_of_a_fit_sees_a_few_percent_of_the_positions(void **state
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_thermodynamics_sample_is_exact_when_there_are_two_particles),
+        cmocka_unit_test(test_thermodynamics_energy_drift_is_that_of_a_line),
         cmocka_unit_test(
             test_thermodynamics_pressure_takes_the_set_temperature_when_there_is_friction),
         cmocka_unit_test(
