@@ -33,6 +33,7 @@ do for [kind in kinds] {
     eval open(kind, "flow_field", 900, 860 * height / width + 60)
     unset grid
     set size ratio -1
+    set rmargin at screen 0.82
     set xlabel "{/:Italic x} / {/:Italic λ}"
     set ylabel "{/:Italic y} / {/:Italic λ}"
     set cblabel "vorticity / {/:Italic τ}^{-1}" offset 1.6
