@@ -165,7 +165,7 @@ size_t mf_describe_topics(struct topic topics[DESCRIBE_MOST_TOPICS]) {
     for (size_t k = 0; mf_inverse_methods[k]; k++) {
         const struct inverse_method *method = mf_inverse_methods[k];
         topics[n] = (struct topic){"method", method->name, method->summary, {NULL}};
-        for (size_t t = 0; t < 3 && method->tables[t].fields; t++)
+        for (size_t t = 0; t + 1 < DESCRIBE_MOST_TABLES && method->tables[t].fields; t++)
             topics[n].tables[t] = method->tables[t].fields;
         n++;
     }

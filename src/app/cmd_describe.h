@@ -7,12 +7,12 @@
 
 #include <stddef.h>
 
-enum { DESCRIBE_MOST_TOPICS = 64, DESCRIBE_MOST_OBJECTS = 32 };
+enum { DESCRIBE_MOST_TOPICS = 128, DESCRIBE_MOST_OBJECTS = 64, DESCRIBE_MOST_TABLES = 8 };
 
 /// A thing with a name of its own: an object of a file, a law, an integrator, a method.
 struct topic {
     const char *group, *name, *summary;
-    const struct field *tables[4]; ///< NULL-terminated
+    const struct field *tables[DESCRIBE_MOST_TABLES]; ///< NULL-terminated
 };
 
 /// An object inside another, and the topic or group that says what stands in it.

@@ -184,8 +184,6 @@ SIMD_CLONES static double has_moved(const void *context, size_t begin, size_t en
 bool mf_neighbours_are_stale(const struct neighbours *neighbours,
                              const struct particles *particles) {
     const struct watched watched = {neighbours, particles};
-    if (neighbours->range <= 0) // nobody looks
-        return false;
     if (neighbours->skin <= 0)
         return true;
     return mf_parallel_sum(particles->count, particles->threads, has_moved, &watched) > 0;

