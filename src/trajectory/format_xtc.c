@@ -30,53 +30,69 @@ static enum status check_header(const struct trajectory *trajectory, const unsig
     return STATUS_OK;
 }
 
-static enum status fetch(struct trajectory *trajectory, struct trajectory_frame *frame,
-                         bool *more) {
-    struct source *const source = &trajectory->source;
-    struct bytes *const raw = &frame->raw;
-    (void)more;
-    TRY(mf_source_take(source, raw, HEADER));
-    TRY(check_header(trajectory, raw->data));
-    const uint64_t atoms = (uint64_t)binary_int(raw->data + 4, true);
+/// What a frame that is packed says of its coordinates, and which of its bytes they are.
+struct packed {
+    struct xtc_packing packing;
+    size_t begin;
+    uint64_t bytes;
+};
+
+static struct packed read_packed(const unsigned char *raw) {
+    const bool large = binary_int(raw, true) == MAGIC_LARGE;
+    const unsigned char *const numbers = raw + HEADER, *const count = numbers + PACKING;
+    struct packed packed = {
+        .packing = {.atoms = binary_word(raw + 4, true),
+                    .precision = binary_float(numbers, true),
+                    .level = binary_int(numbers + 28, true)},
+        .begin = HEADER + PACKING + (large ? 8 : 4),
+        .bytes = large ? binary_long(count, true) : binary_word(count, true),
+    };
+    for (int d = 0; d < 3; d++) {
+        packed.packing.least[d] = binary_int(numbers + 4 + 4 * d, true);
+        packed.packing.most[d] = binary_int(numbers + 16 + 4 * d, true);
+    }
+    return packed;
+}
+
+/// The atoms promised are checked against the bytes that were there before there is memory for
+/// them.
+static enum status fetch_packed(struct source *source, struct bytes *raw) {
     const bool large = binary_int(raw->data, true) == MAGIC_LARGE;
-    if (atoms <= FEW_ATOMS)
-        return mf_source_take(source, raw, 12 * atoms);
     TRY(mf_source_take(source, raw, PACKING + (large ? 8 : 4)));
-    const unsigned char *const count = raw->data + HEADER + PACKING;
-    const uint64_t bytes = large ? binary_long(count, true) : binary_word(count, true);
-    if (bytes == 0 || bytes > UINT64_MAX - 3)
+    const struct packed packed = read_packed(raw->data);
+    if (packed.bytes == 0 || packed.bytes > INT64_MAX)
         return mf_source_fail_byte(source, "its number of bytes is none");
-    TRY(mf_source_take(source, raw, (bytes + 3) / 4 * 4));
+    TRY(mf_source_take(source, raw, (packed.bytes + 3) / 4 * 4));
+    const char *const fault = mf_xtc_coordinates_check(&packed.packing, packed.bytes);
+    if (fault)
+        return mf_source_fail_byte(source, "%s", fault);
     TRY(mf_source_room(raw, XTC_SLACK));
     memset(raw->data + raw->size, 0, XTC_SLACK);
     return STATUS_OK;
+}
+
+static enum status fetch(struct trajectory *trajectory, struct trajectory_frame *frame,
+                         bool *more) {
+    struct source *const source = &trajectory->source;
+    (void)more;
+    TRY(mf_source_take(source, &frame->raw, HEADER));
+    TRY(check_header(trajectory, frame->raw.data));
+    const uint64_t atoms = binary_word(frame->raw.data + 4, true);
+    return atoms <= FEW_ATOMS ? mf_source_take(source, &frame->raw, 12 * atoms)
+                              : fetch_packed(source, &frame->raw);
 }
 
 static enum status describe(struct trajectory *trajectory, struct trajectory_frame *first) {
     return mf_structure_init(&trajectory->structure, binary_word(first->raw.data + 4, true));
 }
 
-static enum status unpack(struct trajectory_frame *frame, size_t atoms) {
-    const unsigned char *const header = frame->raw.data + HEADER;
-    const bool large = binary_int(frame->raw.data, true) == MAGIC_LARGE;
-    const size_t begin = HEADER + PACKING + (large ? 8 : 4);
-    const unsigned char *const count = header + PACKING;
-    const size_t bytes = large ? binary_long(count, true) : binary_word(count, true);
-    struct xtc_packing packing = {.atoms = atoms,
-                                  .precision = binary_float(header, true),
-                                  .level = binary_int(header + 28, true)};
-    for (int d = 0; d < 3; d++) {
-        packing.least[d] = binary_int(header + 4 + 4 * d, true);
-        packing.most[d] = binary_int(header + 16 + 4 * d, true);
-    }
+static enum status unpack(struct trajectory_frame *frame) {
+    const struct packed packed = read_packed(frame->raw.data);
     size_t damage = 0;
-    const char *fault = mf_xtc_coordinates_check(&packing, bytes);
-    if (fault == NULL) {
-        TRY(mf_frame_reserve(frame, atoms, false));
-        fault = mf_xtc_coordinates_unpack(&packing, frame->raw.data + begin, bytes, frame->position,
-                                          &damage);
-    }
-    return fault ? mf_frame_fail_byte(frame, begin + damage, "%s", fault) : STATUS_OK;
+    TRY(mf_frame_reserve(frame, packed.packing.atoms, false));
+    const char *const fault = mf_xtc_coordinates_unpack(
+        &packed.packing, frame->raw.data + packed.begin, packed.bytes, frame->position, &damage);
+    return fault ? mf_frame_fail_byte(frame, packed.begin + damage, "%s", fault) : STATUS_OK;
 }
 
 static enum status copy_few(struct trajectory_frame *frame, size_t atoms) {
@@ -101,7 +117,7 @@ static enum status decode(const struct trajectory *trajectory, struct trajectory
     for (int k = 0; k < 9; k++)
         box[k / 3][k % 3] = binary_float(header + 16 + 4 * k, true);
     mf_frame_set_box(frame, box);
-    return atoms <= FEW_ATOMS ? copy_few(frame, atoms) : unpack(frame, atoms);
+    return atoms <= FEW_ATOMS ? copy_few(frame, atoms) : unpack(frame);
 }
 
 static const char *const extensions[] = {"xtc", NULL};
