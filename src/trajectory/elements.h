@@ -12,5 +12,5 @@ double mf_elements_mass(const char *symbol);
 /// The element that an atom probably is, from what is known of it: what the file says; the name if
 /// it is a symbol
 /// ("Cl") or that of an ion ("NA" of residue "NA"); chlorine and bromine ("CL1", "BR"); else the
-/// first letter of the name ("HW1", "CA"). NULL if that is no element. Tested: test_elements.
+/// first letter of the name ("HW1", "CA"). NULL if that is no element. Tested: test_structure.
 const char *mf_elements_guess(const struct structure_atom *atom);
