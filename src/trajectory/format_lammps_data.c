@@ -186,7 +186,7 @@ static enum status decode(const struct trajectory *trajectory, struct trajectory
     return frame->has_velocities ? read_velocities(trajectory, frame, &data) : STATUS_OK;
 }
 
-static const char *const extensions[] = {"data", "lmp", NULL};
+static const char *const extensions[] = {"data", NULL};
 
 const struct trajectory_format mf_format_lammps_data = {
     .name = "lammps-data",
