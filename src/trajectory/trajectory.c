@@ -31,7 +31,7 @@ static const char *find_hint(const unsigned char *begin, size_t size) {
         return "it is packed: unpack it with unzstd";
     if (size >= 4 && memcmp(begin, "\x89HDF", 4) == 0)
         return "it is HDF5, which is not read here";
-    return "its begin is that of no format that is read here, nor is its extension";
+    return "neither its first bytes nor its extension are those of a format that is read here";
 }
 
 static enum status find_format(struct trajectory *trajectory) {
