@@ -58,7 +58,7 @@ extern const struct trajectory_format *const mf_trajectory_formats[];
 
 /// What a file may not say itself; all zero says nothing.
 struct trajectory_options {
-    const char *units; ///< one of mf_trajectory_units, or NULL
+    const char *units; ///< one of mf_trajectory_unit_names, or NULL
     double time_step; ///< of the simulation [ps]: gives frames a time that have but a step; 0: none
 };
 
@@ -84,9 +84,9 @@ enum status mf_trajectory_open(struct trajectory *trajectory, const char *file,
 
 void mf_trajectory_close(struct trajectory *trajectory);
 
-/// Read the next frame: fetch and decode. `*more` is false, and the frame as it was, behind the
-/// last one. Fails: BAD_INPUT with frame and byte or line, all frames before having been given; IO;
-/// NO_MEMORY.
+/// Read the next frame: fetch and decode. `*more` is false, and the positions as they were, behind
+/// the last one. Fails: BAD_INPUT with frame and byte or line, all frames before having been given
+/// and none behind to be had; IO; NO_MEMORY.
 enum status mf_trajectory_next(struct trajectory *trajectory, struct trajectory_frame *frame,
                                bool *more) MUST_USE;
 

@@ -227,8 +227,8 @@ static void test_format_is_found_by_content_whatever_the_extension(void **state)
     }
 }
 
-/// Fetched frames may be decoded later, in any order, and skipped.
-static void test_frames_can_be_decoded_apart_from_fetching(void **state) {
+/// Fetched frames may be decoded later, by threads, with the same bits.
+static void test_frames_can_be_decoded_by_threads(void **state) {
     struct trajectory trajectory;
     struct trajectory_frame frame[5] = {{0}}, next = {0};
     bool more;
@@ -238,8 +238,11 @@ static void test_frames_can_be_decoded_apart_from_fetching(void **state) {
         assert_ok(mf_trajectory_fetch(&trajectory, &frame[k], &more));
     assert_ok(mf_trajectory_fetch(&trajectory, &next, &more));
     assert_false(more);
-    for (int k = 4; k >= 0; k--)
-        assert_ok(mf_trajectory_decode(&trajectory, &frame[k]));
+    int failures = 0;
+#pragma omp parallel for num_threads(5) reduction(+ : failures)
+    for (int k = 0; k < 5; k++)
+        failures += mf_trajectory_decode(&trajectory, &frame[k]) != STATUS_OK;
+    assert_int_equal(failures, 0);
     mf_trajectory_close(&trajectory);
     assert_ok(mf_trajectory_open(&trajectory, xtc, &(struct trajectory_options){0}));
     for (int k = 0; k < 5; k++) {
@@ -248,6 +251,21 @@ static void test_frames_can_be_decoded_apart_from_fetching(void **state) {
         mf_frame_clear(&frame[k]);
     }
     mf_frame_clear(&next);
+    mf_trajectory_close(&trajectory);
+}
+
+/// What is fetched and not decoded is passed over, damaged or not.
+static void test_frames_can_be_skipped(void **state) {
+    struct trajectory trajectory;
+    struct trajectory_frame frame = {0};
+    bool more;
+    (void)state;
+    assert_ok(mf_trajectory_open(&trajectory, xtc, &(struct trajectory_options){0}));
+    for (int k = 0; k < 4; k++)
+        assert_ok(mf_trajectory_fetch(&trajectory, &frame, &more));
+    assert_ok(mf_trajectory_next(&trajectory, &frame, &more));
+    assert_true(more && frame.number == 4 && frame.step == 40);
+    mf_frame_clear(&frame);
     mf_trajectory_close(&trajectory);
 }
 
@@ -263,7 +281,8 @@ int main(void) {
         TEST(test_xtc_is_trr_to_its_rounding),
         TEST(test_gro_names_atoms_and_residues),
         TEST(test_format_is_found_by_content_whatever_the_extension),
-        TEST(test_frames_can_be_decoded_apart_from_fetching),
+        TEST(test_frames_can_be_decoded_by_threads),
+        cmocka_unit_test(test_frames_can_be_skipped),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -198,6 +198,26 @@ static const char dump[] =
     "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n"
     "0 1\n0 1\n0 1\nITEM: ATOMS id x y z\n2 1 2 3\n1 4 5 6\n";
 
+/// A box of any three vectors: x = origin + xs a + ys b + zs c, and images are such vectors, too.
+static void test_dump_has_a_box_of_three_vectors(void **state) {
+    struct trajectory_frame frame = {0};
+    bool more;
+    assert_ok(try(state,
+                  "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n1\n"
+                  "ITEM: BOX BOUNDS abc origin pp ff pp\n1 2 0 10\n0 3 1 20\n2 0 4 30\n"
+                  "ITEM: ATOMS xs ys zs iz iy ix\n0.5 0.25 0.5 1 0 -1\n",
+                  "lj"));
+    assert_ok(mf_trajectory_next(&trajectory, &frame, &more));
+    const double wanted[3] = {10 - 0.5 + 1.5 * 2, 20 - 0.5 * 2 + 0.25 * 3, 30 + 0.25 + 1.5 * 4};
+    for (int d = 0; d < 3; d++)
+        assert_true(fabs(frame.position[0][d] - wanted[d]) < 1e-13);
+    assert_true(frame.box[0][1] == 2 && frame.box[2][0] == 2 && frame.box[1][2] == 1);
+    assert_true(frame.periodic[0] && !frame.periodic[1] && frame.periodic[2]);
+    assert_true(frame.step == 7 && isnan(frame.time));
+    mf_frame_clear(&frame);
+    mf_trajectory_close(&trajectory);
+}
+
 static void test_units_must_be_told_unless_the_file_does(void **state) {
     char text[1024];
     assert_int_equal(try(state, dump, NULL), STATUS_BAD_INPUT);
@@ -279,6 +299,7 @@ int main(void) {
         cmocka_unit_test(test_velocities_are_those_of_the_flight),
         cmocka_unit_test(test_data_file_is_the_last_frame),
         TEST(test_data_file_has_any_of_four_styles),
+        TEST(test_dump_has_a_box_of_three_vectors),
         TEST(test_units_must_be_told_unless_the_file_does),
         cmocka_unit_test(test_units_are_those_of_the_manual),
         TEST(test_dump_is_refused_with_its_line),
