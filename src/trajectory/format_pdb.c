@@ -121,6 +121,15 @@ static const char *next_atom(const struct trajectory_frame *frame, const char *l
     return find_atom(frame, mf_frame_next_line(frame, line));
 }
 
+/// Beyond 9999 programs go on in digits of their own, such as "A000": any number that tells
+/// residues apart will do.
+static int64_t number_of_letters(const struct word *word) {
+    int64_t number = 0;
+    for (size_t k = 0; k < word->length; k++)
+        number = 256 * number + (unsigned char)word->begin[k];
+    return number;
+}
+
 /// Chains and insertion codes tell residues of the same number apart.
 static void describe_atom(const char *line, struct structure_atom *atom) {
     const struct word name = mf_words_columns(line, 12, 4), residue = mf_words_columns(line, 17, 4);
@@ -134,7 +143,8 @@ static void describe_atom(const char *line, struct structure_atom *atom) {
         atom->element[1] = (char)tolower((unsigned char)atom->element[1]);
     atom->chain = length > 21 ? line[21] : ' ';
     atom->molecule = length > 26 && line[26] != ' ' ? line[26] : 0;
-    mf_words_integer(&number, &atom->residue_number);
+    if (!mf_words_integer(&number, &atom->residue_number))
+        atom->residue_number = number_of_letters(&number);
 }
 
 static enum status describe(struct trajectory *trajectory, struct trajectory_frame *first) {

@@ -55,6 +55,8 @@ static enum status read_box(struct lammps_dump *dump, const struct trajectory_fr
     const char *flags = words, *at = line;
     double v[3][4] = {{0}};
     struct word word;
+    for (int d = 0; d < 3; d++)
+        dump->periodic[d] = true; // unless a flag says otherwise
     for (int d = 0; mf_words_next(&flags, &word) && d < 3;)
         if (word.length == 2 && strchr("pfsm", word.begin[0]))
             dump->periodic[d++] = word.begin[0] == 'p';

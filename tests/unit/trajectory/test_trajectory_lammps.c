@@ -218,6 +218,21 @@ static void test_dump_has_a_box_of_three_vectors(void **state) {
     mf_trajectory_close(&trajectory);
 }
 
+/// Old versions and other programs do not say what is periodic.
+static void test_dump_is_periodic_when_it_does_not_say(void **state) {
+    struct trajectory_frame frame = {0};
+    bool more;
+    assert_ok(try(state,
+                  "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS\n0 1\n0 2\n"
+                  "-1 3\nITEM: ATOMS x y z\n1 2 3\n",
+                  "lj"));
+    assert_ok(mf_trajectory_next(&trajectory, &frame, &more));
+    assert_true(frame.periodic[0] && frame.periodic[1] && frame.periodic[2]);
+    assert_true(frame.box[2][2] == 4 && !trajectory.structure.has_ids);
+    mf_frame_clear(&frame);
+    mf_trajectory_close(&trajectory);
+}
+
 static void test_units_must_be_told_unless_the_file_does(void **state) {
     char text[1024];
     assert_int_equal(try(state, dump, NULL), STATUS_BAD_INPUT);
@@ -300,6 +315,7 @@ int main(void) {
         cmocka_unit_test(test_data_file_is_the_last_frame),
         TEST(test_data_file_has_any_of_four_styles),
         TEST(test_dump_has_a_box_of_three_vectors),
+        TEST(test_dump_is_periodic_when_it_does_not_say),
         TEST(test_units_must_be_told_unless_the_file_does),
         cmocka_unit_test(test_units_are_those_of_the_manual),
         TEST(test_dump_is_refused_with_its_line),

@@ -155,6 +155,20 @@ static void test_pdb_has_models_and_a_box_that_changes(void **state) {
     close_all();
 }
 
+/// Residues beyond 9999, as some programs number them, are residues of their own.
+static void test_pdb_residues_are_apart_when_their_numbers_are_not_decimal(void **state) {
+    open_text(state, "a.pdb",
+              "ATOM  99999  OW  SOL X9999       0.000   0.000   0.000\n"
+              "ATOM  A0000  OW  SOL XA000       0.000   0.000   0.000\n"
+              "ATOM  A0001  OW  SOL XA001       0.000   0.000   0.000\n"
+              "ATOM  A0002  OW  SOL XA001       0.000   0.000   0.000\n"
+              "ATOM  A0003  OW  SOL XA001A      0.000   0.000   0.000\n",
+              NULL);
+    assert_int_equal(trajectory.structure.atoms, 5);
+    assert_int_equal(trajectory.structure.residues, 4);
+    close_all();
+}
+
 /// A box of three lengths and three angles has them again.
 static void test_box_of_angles_has_these_angles(void **state) {
     const double length[3] = {2, 3, 4}, angle[3] = {70, 80, 110}, flat[3] = {60, 60, 170};
@@ -220,6 +234,7 @@ int main(void) {
         TEST(test_xyz_is_in_angstrom_when_nothing_is_told),
         TEST(test_extended_xyz_has_box_velocities_and_columns),
         TEST(test_pdb_has_models_and_a_box_that_changes),
+        TEST(test_pdb_residues_are_apart_when_their_numbers_are_not_decimal),
         cmocka_unit_test(test_box_of_angles_has_these_angles),
         TEST(test_text_is_refused_with_its_line),
     };
