@@ -129,7 +129,7 @@ asan:
 	$(ASAN) check-all
 
 # Fuzzing. The readers belong to a few layers, which clang builds anew; the rest is as it always is.
-FUZZED  = $(wildcard src/base/*.c src/curves/*.c src/io/*.c src/input/*.c) src/system/composition.c \
+FUZZED  = $(wildcard src/base/*.c src/curves/*.c src/io/*.c src/input/*.c src/trajectory/*.c) src/system/composition.c \
           tests/fuzz/fuzz_readers.c
 READERS = build/fuzz/readers
 MUTATE  = build/fuzz/mutate

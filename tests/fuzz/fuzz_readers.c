@@ -8,6 +8,8 @@
 #include "io/checkpoint.h"
 #include "input/fit_file.h"
 #include "report/result.h"
+#include "trajectory/mapping.h"
+#include "trajectory/trajectory.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -91,6 +93,40 @@ static void read_run(const char *file) {
     mf_fit_file_clear(&fit);
 }
 
+/// All frames, and their beads by residues if there are any.
+static void read_trajectory(const char *file, const char *units) {
+    struct trajectory trajectory;
+    struct trajectory_frame frame = {0}, beads = {0};
+    struct mapping_plan plan;
+    struct mapping mapping;
+    bool more = true;
+    if (mf_trajectory_open(&trajectory, file, &(struct trajectory_options){.units = units}) !=
+        STATUS_OK)
+        return;
+    if (mf_mapping_plan_default(&plan) != STATUS_OK)
+        abort();
+    const bool mapped = mf_mapping_init(&mapping, &plan, &trajectory.structure) == STATUS_OK;
+    while (more && mf_trajectory_next(&trajectory, &frame, &more) == STATUS_OK && more)
+        if (frame.atoms != trajectory.structure.atoms ||
+            (mapped && mf_mapping_apply(&mapping, &frame, &beads) != STATUS_OK))
+            abort();
+    if (mapped)
+        mf_mapping_clear(&mapping);
+    mf_mapping_plan_clear(&plan);
+    mf_frame_clear(&frame);
+    mf_frame_clear(&beads);
+    mf_trajectory_close(&trajectory);
+}
+
+static void read_map(const char *file) {
+    struct mapping_plan plan;
+    if (mf_mapping_plan_read(&plan, file) != STATUS_OK)
+        return;
+    if (plan.entries == 0)
+        abort();
+    mf_mapping_plan_clear(&plan);
+}
+
 /// The file as it is, and with the checksum that its bytes should have: the second gets further.
 static void read_checkpoint(const char *file, const uint8_t *data, size_t size) {
     unsigned char state[3][64] = {{0}};
@@ -143,6 +179,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         read_scene(file);
     else if (kind == 'r')
         read_run(file);
+    else if (kind == 'x')
+        read_trajectory(file, NULL);
+    else if (kind == 'l')
+        read_trajectory(file, "lj");
+    else if (kind == 'm')
+        read_map(file);
     else if (kind == 'c')
         read_checkpoint(file, data, size);
     else if (kind >= '0' && kind <= '5')

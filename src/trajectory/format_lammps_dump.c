@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// LAMMPS's dumps in text: styles atom and custom, with any columns in any order. Atoms are sorted
+// by their ids, since LAMMPS writes them as its processors have them.
+#include "trajectory/lammps_dump.h"
+#include "trajectory/trajectory.h"
+
+#include <string.h>
+
+static bool recognise(const unsigned char *begin, size_t size) {
+    return size >= 6 && memcmp(begin, "ITEM: ", 6) == 0;
+}
+
+/// Lines behind an item but the atoms.
+static uint64_t lines_behind(const char *item) {
+    return strncmp(item, "ITEM: BOX BOUNDS", 16) == 0 ? 3 : 1;
+}
+
+static enum status fetch(struct trajectory *trajectory, struct trajectory_frame *frame,
+                         bool *more) {
+    static const char count[] = "ITEM: NUMBER OF ATOMS", table[] = "ITEM: ATOMS";
+    struct source *const source = &trajectory->source;
+    struct bytes *const raw = &frame->raw;
+    uint64_t atoms = 0;
+    (void)more;
+    for (;;) {
+        const size_t begin = raw->size;
+        TRY(mf_source_lines(source, raw, 1));
+        if (strncmp((const char *)raw->data + begin, "ITEM: ", 6) != 0)
+            return mf_source_fail_line(source, "here should stand an ITEM of a dump");
+        if (strncmp((const char *)raw->data + begin, table, sizeof table - 1) == 0)
+            break;
+        const size_t value = raw->size;
+        TRY(mf_source_lines(source, raw, lines_behind((const char *)raw->data + begin)));
+        if (strncmp((const char *)raw->data + begin, count, sizeof count - 1) == 0)
+            TRY(mf_trajectory_read_count(trajectory, (const char *)raw->data + value, &atoms));
+    }
+    if (atoms == 0)
+        return mf_source_fail_line(source, "the number of atoms should stand before the atoms");
+    return mf_source_lines(source, raw, atoms);
+}
+
+static bool integer_at(const struct lammps_dump *dump, const struct word *word,
+                       enum lammps_column column, int64_t *value) {
+    return dump->column[column] < 0 || mf_words_integer(&word[dump->column[column]], value);
+}
+
+/// The name of an atom is its element, or else the number of its type.
+static enum status describe_atom(const struct lammps_dump *dump,
+                                 const struct trajectory_frame *first, const char *line,
+                                 const struct trajectory_scale *scale,
+                                 struct structure_atom *atom) {
+    struct word word[LAMMPS_MOST_COLUMNS];
+    const int *const column = dump->column;
+    TRY(mf_lammps_dump_split(dump, first, line, word));
+    if (!integer_at(dump, word, LAMMPS_ID, &atom->id) ||
+        !integer_at(dump, word, LAMMPS_TYPE, &atom->type) ||
+        !integer_at(dump, word, LAMMPS_MOLECULE, &atom->molecule))
+        return mf_frame_fail_line(first, line, "id, type and mol should be whole numbers");
+    if (column[LAMMPS_MASS] >= 0 && !mf_words_number(&word[column[LAMMPS_MASS]], &atom->mass))
+        return mf_frame_fail_line(first, line, "the mass should be a number");
+    atom->mass *= scale->mass;
+    const int name = column[LAMMPS_ELEMENT] >= 0 ? column[LAMMPS_ELEMENT] : column[LAMMPS_TYPE];
+    if (name >= 0 && !mf_words_copy(&word[name], atom->name, STRUCTURE_NAME))
+        return mf_frame_fail_line(first, line, "a name of more than %d letters",
+                                  STRUCTURE_NAME - 1);
+    if (column[LAMMPS_ELEMENT] >= 0)
+        memcpy(atom->element, atom->name, sizeof atom->element);
+    return STATUS_OK;
+}
+
+static enum status describe(struct trajectory *trajectory, struct trajectory_frame *first) {
+    struct structure *const structure = &trajectory->structure;
+    struct lammps_dump dump;
+    char units[32];
+    TRY(mf_lammps_dump_read(&dump, first));
+    if (dump.units) {
+        const struct word name = mf_words_columns(dump.units, 0, sizeof units);
+        if (!mf_words_copy(&name, units, sizeof units))
+            return mf_frame_fail_line(first, dump.units, "here should stand the units");
+        TRY(mf_trajectory_found_units(trajectory, units));
+    }
+    TRY(mf_structure_init(structure, dump.atoms));
+    structure->has_ids = dump.column[LAMMPS_ID] >= 0;
+    structure->has_types = dump.column[LAMMPS_TYPE] >= 0;
+    structure->has_molecules = dump.column[LAMMPS_MOLECULE] >= 0;
+    structure->has_elements = dump.column[LAMMPS_ELEMENT] >= 0;
+    structure->has_masses = dump.column[LAMMPS_MASS] >= 0;
+    structure->has_names = structure->has_elements || structure->has_types;
+    const char *line = dump.first;
+    for (size_t k = 0; k < dump.atoms; k++, line = mf_frame_next_line(first, line))
+        TRY(describe_atom(&dump, first, line, &trajectory->scale, &structure->atom[k]));
+    return structure->has_ids ? mf_trajectory_sort(trajectory, first) : STATUS_OK;
+}
+
+/// Which of the columns give positions, those first that know the images.
+static enum status find_positions(const struct lammps_dump *dump,
+                                  const struct trajectory_frame *frame, enum lammps_column *from) {
+    static const enum lammps_column known[] = {LAMMPS_XU, LAMMPS_XSU, LAMMPS_X, LAMMPS_XS};
+    for (int k = 0; k < 4; k++) {
+        const int *const column = &dump->column[known[k]];
+        *from = known[k];
+        if (column[0] >= 0 && column[1] >= 0 && column[2] >= 0)
+            return STATUS_OK;
+    }
+    return mf_frame_fail_line(frame, (const char *)frame->raw.data,
+                              "there are no positions: columns x y z, xs ys zs, xu yu zu or xsu "
+                              "ysu zsu");
+}
+
+static bool has_vector(const struct lammps_dump *dump, enum lammps_column first) {
+    const int *const column = &dump->column[first];
+    return column[0] >= 0 && column[1] >= 0 && column[2] >= 0;
+}
+
+static bool read_vector(const struct lammps_dump *dump, const struct word *word,
+                        enum lammps_column first, double vector[3]) {
+    for (int d = 0; d < 3; d++)
+        if (!mf_words_number(&word[dump->column[first + d]], &vector[d]))
+            return false;
+    return true;
+}
+
+/// vector += Σ_d number[d] box[d]
+static void add_box(const struct lammps_dump *dump, const double number[3], double vector[3]) {
+    for (int d = 0; d < 3; d++)
+        for (int e = 0; e < 3; e++)
+            vector[e] += number[d] * dump->box[d][e];
+}
+
+static bool read_position(const struct lammps_dump *dump, const struct word *word,
+                          enum lammps_column from, double position[3]) {
+    double number[3];
+    if (!read_vector(dump, word, from, number))
+        return false;
+    const bool scaled = from == LAMMPS_XS || from == LAMMPS_XSU;
+    memcpy(position, scaled ? dump->origin : number, sizeof number);
+    if (scaled)
+        add_box(dump, number, position);
+    if ((from == LAMMPS_X || from == LAMMPS_XS) && has_vector(dump, LAMMPS_IX)) {
+        if (!read_vector(dump, word, LAMMPS_IX, number))
+            return false;
+        add_box(dump, number, position);
+    }
+    return true;
+}
+
+/// Where the atom stands among the structure's, each once.
+static enum status find_atom(const struct trajectory *trajectory, struct trajectory_frame *frame,
+                             const struct lammps_dump *dump, const struct word *word,
+                             const char *line, size_t *atom) {
+    int64_t id;
+    if (!trajectory->structure.has_ids)
+        return STATUS_OK;
+    if (dump->column[LAMMPS_ID] < 0 || !mf_words_integer(&word[dump->column[LAMMPS_ID]], &id))
+        return mf_frame_fail_line(frame, line, "here should stand an atom's id");
+    return mf_trajectory_find_atom(trajectory, frame, line, id, atom);
+}
+
+static void scale_vector(double vector[3], double factor) {
+    for (int d = 0; d < 3; d++)
+        vector[d] *= factor;
+}
+
+static enum status read_atoms(const struct trajectory *trajectory, struct trajectory_frame *frame,
+                              const struct lammps_dump *dump) {
+    struct word word[LAMMPS_MOST_COLUMNS];
+    enum lammps_column from;
+    TRY(find_positions(dump, frame, &from));
+    const char *line = dump->first;
+    for (size_t k = 0; k < dump->atoms; k++, line = mf_frame_next_line(frame, line)) {
+        size_t atom = k;
+        TRY(mf_lammps_dump_split(dump, frame, line, word));
+        TRY(find_atom(trajectory, frame, dump, word, line, &atom));
+        double *const position = frame->position[atom];
+        if (!read_position(dump, word, from, position))
+            return mf_frame_fail_line(frame, line, "a coordinate is no finite number");
+        scale_vector(position, trajectory->scale.length);
+        if (!frame->has_velocities)
+            continue;
+        if (!read_vector(dump, word, LAMMPS_VX, frame->velocity[atom]))
+            return mf_frame_fail_line(frame, line, "a velocity is no finite number");
+        scale_vector(frame->velocity[atom], trajectory->scale.speed);
+    }
+    return STATUS_OK;
+}
+
+static enum status decode(const struct trajectory *trajectory, struct trajectory_frame *frame) {
+    struct lammps_dump dump;
+    double box[3][3];
+    TRY(mf_lammps_dump_read(&dump, frame));
+    frame->step = dump.step;
+    frame->time = dump.time * trajectory->scale.time;
+    for (int k = 0; k < 9; k++)
+        box[k / 3][k % 3] = dump.box[k / 3][k % 3] * trajectory->scale.length;
+    mf_frame_set_box(frame, box);
+    for (int d = 0; d < 3; d++)
+        frame->periodic[d] = frame->has_box && dump.periodic[d];
+    TRY(mf_frame_reserve(frame, dump.atoms, has_vector(&dump, LAMMPS_VX)));
+    TRY(mf_trajectory_begin_atoms(trajectory, frame));
+    return read_atoms(trajectory, frame, &dump);
+}
+
+static const char *const extensions[] = {"lammpstrj", "dump", "lammpsdump", NULL};
+
+const struct trajectory_format mf_format_lammps_dump = {
+    .name = "lammps-dump",
+    .extensions = extensions,
+    .summary =
+        "LAMMPS, dump in text, atom or custom: any columns, x xs xu xsu, ix, vx, id type mol "
+        "element mass",
+    .speaks = TRAJECTORY_UNITS_TOLD,
+    .recognise = recognise,
+    .fetch = fetch,
+    .describe = describe,
+    .decode = decode,
+};

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "trajectory/frame.h"
+
+#include "base/memory.h"
+#include "trajectory/words.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static enum status reserve(double (**array)[3], size_t *room, size_t atoms) {
+    if (atoms <= *room)
+        return STATUS_OK;
+    mf_memory_free(*array);
+    *room = 0;
+    *array = mf_memory_uncleared(atoms, sizeof **array);
+    if (*array == NULL)
+        return STATUS_NO_MEMORY;
+    *room = atoms;
+    return STATUS_OK;
+}
+
+enum status mf_frame_reserve(struct trajectory_frame *frame, size_t atoms, bool velocities) {
+    frame->atoms = atoms;
+    frame->has_velocities = velocities;
+    TRY(reserve(&frame->position, &frame->room, atoms));
+    return velocities ? reserve(&frame->velocity, &frame->speed_room, atoms) : STATUS_OK;
+}
+
+void mf_frame_clear(struct trajectory_frame *frame) {
+    mf_memory_free(frame->position);
+    mf_memory_free(frame->velocity);
+    mf_source_free(&frame->raw);
+    mf_source_free(&frame->scratch);
+    *frame = (struct trajectory_frame){0};
+}
+
+static double volume(const double (*box)[3]) {
+    const double *a = box[0], *b = box[1], *c = box[2];
+    return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+           a[2] * (b[0] * c[1] - b[1] * c[0]);
+}
+
+void mf_frame_set_box(struct trajectory_frame *frame, const double box[3][3]) {
+    const double size = fabs(volume(box));
+    frame->has_box = size > 0 && isfinite(size);
+    for (int i = 0; i < 3; i++)
+        for (int d = 0; d < 3; d++)
+            frame->box[i][d] = frame->has_box ? box[i][d] : 0;
+    for (int i = 0; i < 3; i++)
+        frame->periodic[i] = frame->has_box;
+}
+
+/// Exactly 0 for a right angle, so that an orthorhombic box is one.
+static double cosine(double degrees) {
+    return degrees == 90 ? 0 : cos(degrees * (acos(-1) / 180));
+}
+
+bool mf_frame_box_of_angles(struct trajectory_frame *frame, const double length[3],
+                            const double angle[3]) {
+    for (int i = 0; i < 3; i++)
+        if (!(length[i] > 0 && angle[i] > 0 && angle[i] < 180))
+            return false;
+    const double cos_a = cosine(angle[0]), cos_b = cosine(angle[1]), cos_c = cosine(angle[2]);
+    const double sin_c = sqrt(1 - cos_c * cos_c);
+    const double y = (cos_a - cos_b * cos_c) / sin_c, rest = 1 - cos_b * cos_b - y * y;
+    if (!(rest > 0))
+        return false;
+    const double box[3][3] = {
+        {length[0], 0, 0},
+        {length[1] * cos_c, length[1] * sin_c, 0},
+        {length[2] * cos_b, length[2] * y, length[2] * sqrt(rest)},
+    };
+    mf_frame_set_box(frame, box);
+    return frame->has_box;
+}
+
+enum { REASON_SIZE = 1024 };
+
+enum status mf_frame_fail_line(const struct trajectory_frame *frame, const char *at,
+                               const char *format, ...) {
+    char reason[REASON_SIZE];
+    size_t line = frame->first_line + 1;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(reason, sizeof reason, format, arguments);
+    va_end(arguments);
+    for (const char *c = (const char *)frame->raw.data; c < at; c++)
+        line += *c == '\0';
+    return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: frame %zu: %s", frame->file, line,
+                          frame->number, reason);
+}
+
+enum status mf_frame_fail_byte(const struct trajectory_frame *frame, size_t at, const char *format,
+                               ...) {
+    char reason[REASON_SIZE];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(reason, sizeof reason, format, arguments);
+    va_end(arguments);
+    return mf_status_fail(STATUS_BAD_INPUT, "%s: frame %zu, byte %llu: %s", frame->file,
+                          frame->number, (unsigned long long)(frame->first_byte + at), reason);
+}
+
+const char *mf_frame_next_line(const struct trajectory_frame *frame, const char *line) {
+    const char *const end = (const char *)frame->raw.data + frame->raw.size;
+    const char *next = line + strlen(line) + 1;
+    return next < end ? next : NULL;
+}
+
+/// The number behind "t=" or "t= ", where a word begins.
+static bool find_number(const char *title, const char *key, double *value) {
+    const size_t length = strlen(key);
+    for (const char *at = strstr(title, key); at; at = strstr(at + 1, key)) {
+        const char *rest = at + length;
+        if ((at == title || at[-1] == ' ') && mf_words_numbers(&rest, value, 1))
+            return true;
+    }
+    return false;
+}
+
+void mf_frame_read_title(struct trajectory_frame *frame, const char *title) {
+    double value;
+    if (find_number(title, "t=", &value))
+        frame->time = value;
+    if (find_number(title, "step=", &value) && fabs(value) < 9e15)
+        frame->step = (int64_t)value;
+}

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file One frame of a trajectory, whose arrays are used again for the next.
+#pragma once
+
+#include "base/status.h"
+#include "trajectory/source.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/// All zero is a frame that has not been read. Positions are as the file has them: whole molecules
+/// may reach out of the box, and atoms may be in any of its images.
+struct trajectory_frame {
+    size_t number;         ///< in the file, from 0
+    int64_t step;          ///< of the simulation that wrote it; −1: not known
+    double time;           ///< [ps]; NAN: not known
+    bool has_box;          ///< else `box` is 0 and nothing is periodic
+    bool has_velocities;   ///< in this frame
+    bool periodic[3];      ///< along the vectors of the box
+    double box[3][3];      ///< its vectors a, b, c, one a row [nm]
+    size_t atoms;          ///< as the trajectory's structure has
+    double (*position)[3]; ///< shape [atoms, 3] [nm]
+    double (
+        *velocity)[3]; ///< shape [atoms, 3] [nm/ps]; what it holds means nothing without velocities
+    const char *file;  ///< what follows is the readers' own
+    uint64_t first_byte;     ///< of the frame in the file
+    size_t first_line;       ///< lines of the file before the frame
+    struct bytes raw;        ///< the frame as it stands in the file
+    struct bytes scratch;    ///< of a decoder
+    size_t room, speed_room; ///< atoms that the arrays could hold
+};
+
+/// Room for positions, and for velocities if `velocities`, which is what has_velocities becomes.
+/// Fails: NO_MEMORY.
+enum status mf_frame_reserve(struct trajectory_frame *frame, size_t atoms,
+                             bool velocities) MUST_USE;
+
+void mf_frame_clear(struct trajectory_frame *frame);
+
+/// The box with edges of these lengths [nm] and angles [°] α (b, c), β (a, c), γ (a, b): a along x,
+/// b in the plane of x and y. False if there is no such box.
+bool mf_frame_box_of_angles(struct trajectory_frame *frame, const double length[3],
+                            const double angle[3]);
+
+/// A box has a volume, or it is none; what is periodic without one is not.
+void mf_frame_set_box(struct trajectory_frame *frame, const double box[3][3]);
+
+/// BAD_INPUT for a place in a frame of text, whose lines end with NUL: "file:line: frame 3: …".
+enum status mf_frame_fail_line(const struct trajectory_frame *frame, const char *at,
+                               const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+/// BAD_INPUT for a byte of a frame, counted from its first one: "file: frame 3, byte 1234: …".
+enum status mf_frame_fail_byte(const struct trajectory_frame *frame, size_t at, const char *format,
+                               ...) __attribute__((format(printf, 3, 4)));
+
+/// The line after the one that `line` is in; NULL behind the frame's last.
+const char *mf_frame_next_line(const struct trajectory_frame *frame, const char *line);
+
+/// "… t= 0.5 step= 250" of a title [ps]: the words of GROMACS.
+void mf_frame_read_title(struct trajectory_frame *frame, const char *title);

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What a data file of LAMMPS holds and where: manual, command `read_data`.
+#pragma once
+
+#include "base/status.h"
+#include "trajectory/frame.h"
+#include "trajectory/words.h"
+
+enum { LAMMPS_DATA_MOST_TYPES = 1 << 16, LAMMPS_DATA_WORDS = 10 };
+
+/// Where an atom's words stand: behind its id, and before its three images.
+struct lammps_style {
+    const char *name;
+    int molecule, type, charge, position; ///< −1: nowhere
+};
+
+struct lammps_data {
+    size_t atoms, types;
+    double origin[3], box[3][3];
+    bool is_text; ///< has the number of atoms and the bounds of x, in words
+    const char *masses, *atom, *velocities; ///< first lines of the sections; NULL: there is none
+    char style[32];                         ///< comment of the section; "" if it has none
+    char units[32];                         ///< of the title; "" if it has none
+    int64_t step;                           ///< of the title; −1: not said
+};
+
+/// Find everything; lines end with NUL. Fails: BAD_INPUT with the line.
+enum status mf_lammps_data_read(struct lammps_data *data,
+                                const struct trajectory_frame *frame) MUST_USE;
+
+/// Split a line of a section up to its comment; returns how many words it has, all those beyond
+/// LAMMPS_DATA_WORDS being counted and not kept.
+size_t mf_lammps_data_split(const char *line, struct word word[LAMMPS_DATA_WORDS]);
+
+/// The style of the atoms, by its name, or else by how many words an atom has and whether the third
+/// is always a whole number. Fails: BAD_INPUT for a style that is not read.
+enum status mf_lammps_data_style(const struct lammps_data *data,
+                                 const struct trajectory_frame *frame,
+                                 const struct lammps_style **style) MUST_USE;

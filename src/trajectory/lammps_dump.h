@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What stands before the atoms of a frame of a LAMMPS dump: manual, command `dump`.
+#pragma once
+
+#include "base/status.h"
+#include "trajectory/frame.h"
+#include "trajectory/words.h"
+
+/// What a column of atoms may mean to us.
+enum lammps_column {
+    LAMMPS_ID,
+    LAMMPS_TYPE,
+    LAMMPS_MOLECULE,
+    LAMMPS_ELEMENT,
+    LAMMPS_MASS,
+    LAMMPS_X,                   ///< and y, z behind it, as all that follow
+    LAMMPS_XS = LAMMPS_X + 3,   ///< as fractions of the box
+    LAMMPS_XU = LAMMPS_XS + 3,  ///< with images
+    LAMMPS_XSU = LAMMPS_XU + 3, ///< both
+    LAMMPS_IX = LAMMPS_XSU + 3, ///< which image
+    LAMMPS_VX = LAMMPS_IX + 3,
+    LAMMPS_COLUMNS = LAMMPS_VX + 3,
+};
+
+enum { LAMMPS_MOST_COLUMNS = 128 };
+
+struct lammps_dump {
+    size_t atoms, columns;
+    int column[LAMMPS_COLUMNS]; ///< where each stands; −1: nowhere
+    const char *first;          ///< line of the first atom
+    const char *units;          ///< line of their name; NULL: not said
+    int64_t step;
+    double time; ///< in the file's unit; NAN: not said
+    double origin[3], box[3][3];
+    bool periodic[3];
+};
+
+/// Read all before the atoms, which fetching has found complete.
+/// Fails: BAD_INPUT with the line.
+enum status mf_lammps_dump_read(struct lammps_dump *dump,
+                                const struct trajectory_frame *frame) MUST_USE;
+
+/// Split the line of an atom; word[n] is column n. Fails: BAD_INPUT with the line if it has too
+/// few.
+enum status mf_lammps_dump_split(const struct lammps_dump *dump,
+                                 const struct trajectory_frame *frame, const char *line,
+                                 struct word word[LAMMPS_MOST_COLUMNS]) MUST_USE;

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "trajectory/mapping_build.h"
+
+#include "base/memory.h"
+
+#include <string.h>
+
+/// What is known while beads are found.
+struct work {
+    struct mapping *mapping;
+    const struct mapping_plan *plan;
+    const struct structure *structure;
+    size_t residues;
+    size_t *first;  ///< shape [residues + 1]: where a residue begins in `member`
+    size_t *member; ///< shape [atoms]: atoms by residue
+    bool *taken;    ///< shape [atoms]: belongs to a bead
+    size_t used;    ///< atoms that belong to beads
+};
+
+/// Sort the atoms by residue, keeping their order; without residues each is one.
+static enum status sort_residues(struct work *work) {
+    enum status status = STATUS_OK;
+    const struct structure *const structure = work->structure;
+    const bool known = structure->residues > 0;
+    work->residues = known ? structure->residues : structure->atoms;
+    NEW_ARRAY(work->first, work->residues + 2);
+    NEW_ARRAY(work->member, structure->atoms);
+    size_t *const next = work->first + 1;
+    for (size_t k = 0; k < structure->atoms; k++)
+        next[(known ? structure->atom[k].residue : k) + 1]++;
+    for (size_t r = 0; r < work->residues; r++)
+        next[r + 1] += next[r];
+    for (size_t k = 0; k < structure->atoms; k++)
+        work->member[next[known ? structure->atom[k].residue : k]++] = k;
+done:
+    return status;
+}
+
+static enum status fail_atom(const struct work *work, size_t atom, const char *what) {
+    const struct structure_atom *const a = &work->structure->atom[atom];
+    return mf_status_fail(STATUS_BAD_INPUT, "%s: atom %zu, \"%s\" of residue %lld \"%s\", %s",
+                          work->plan->file, atom + 1, a->name, (long long)a->residue_number,
+                          a->residue_name, what);
+}
+
+/// Number of a type, which is new or was there.
+static size_t find_type(struct mapping *mapping, const char *name) {
+    size_t type = 0;
+    while (type < mapping->types && strcmp(mapping->type_name[type], name) != 0)
+        type++;
+    if (type == mapping->types)
+        snprintf(mapping->type_name[mapping->types++], STRUCTURE_NAME, "%.*s", STRUCTURE_NAME - 1,
+                 name);
+    return type;
+}
+
+/// Begin a bead whose atoms follow.
+static enum status begin_bead(struct work *work, const struct mapping_entry *entry, size_t atom) {
+    struct mapping *const mapping = work->mapping;
+    const struct structure_atom *const a = &work->structure->atom[atom];
+    const char *const name = entry->type[0] ? entry->type : a->residue_name;
+    const size_t type = find_type(mapping, name[0] ? name : "A");
+    if (mapping->types > MAPPING_MOST_BEADS)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: more than %d types of beads", work->plan->file,
+                              MAPPING_MOST_BEADS);
+    mapping->bead[mapping->beads++] =
+        (struct mapping_bead){.first = work->used,
+                              .type = type,
+                              .molecule = work->structure->residues ? a->residue : atom};
+    return STATUS_OK;
+}
+
+static enum status add_atom(struct work *work, size_t atom) {
+    struct mapping *const mapping = work->mapping;
+    if (work->taken[atom])
+        return fail_atom(work, atom, "belongs to two beads");
+    work->taken[atom] = true;
+    mapping->atom[work->used++] = atom;
+    mapping->bead[mapping->beads - 1].count++;
+    return STATUS_OK;
+}
+
+static void end_bead(struct work *work, const struct mapping_entry *entry) {
+    const struct mapping_bead *const bead = &work->mapping->bead[work->mapping->beads - 1];
+    for (size_t i = 0; entry->centre == MAPPING_CENTRE_OF_GEOMETRY && i < bead->count; i++)
+        work->mapping->weight[bead->first + i] = 1.0 / (double)bead->count;
+}
+
+static enum status take_range(struct work *work, const struct mapping_entry *entry) {
+    if ((uint64_t)entry->last > work->structure->atoms)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: \"%s\" goes to atom %lld, there are %zu",
+                              work->plan->file, entry->key, (long long)entry->last,
+                              work->structure->atoms);
+    for (int64_t k = entry->first - 1; k < entry->last; k++) {
+        if ((k - entry->first + 1) % entry->size == 0)
+            TRY(begin_bead(work, entry, (size_t)k));
+        TRY(add_atom(work, (size_t)k));
+        if ((k - entry->first + 2) % entry->size == 0)
+            end_bead(work, entry);
+    }
+    return STATUS_OK;
+}
+
+/// Add the atom of that name, which the residue must have once.
+static enum status add_named(struct work *work, size_t residue, const struct word *name) {
+    const struct structure *const structure = work->structure;
+    size_t found = 0, atom = 0;
+    for (size_t i = work->first[residue]; i < work->first[residue + 1]; i++)
+        if (mf_words_same(name, structure->atom[work->member[i]].name)) {
+            atom = work->member[i];
+            found++;
+        }
+    if (found == 1)
+        return add_atom(work, atom);
+    const struct structure_atom *const any = &structure->atom[work->member[work->first[residue]]];
+    return mf_status_fail(
+        STATUS_BAD_INPUT, "%s: residue %lld \"%s\" (atom %zu) has %zu atoms \"%.*s\"",
+        work->plan->file, (long long)any->residue_number, any->residue_name,
+        work->member[work->first[residue]] + 1, found, (int)name->length, name->begin);
+}
+
+static enum status take_residue(struct work *work, const struct mapping_entry *entry,
+                                size_t residue) {
+    const char *names = entry->atoms;
+    struct word name;
+    TRY(begin_bead(work, entry, work->member[work->first[residue]]));
+    if (entry->atoms[0] == '\0')
+        for (size_t i = work->first[residue]; i < work->first[residue + 1]; i++)
+            TRY(add_atom(work, work->member[i]));
+    else
+        while (mf_words_next(&names, &name))
+            TRY(add_named(work, residue, &name));
+    end_bead(work, entry);
+    return STATUS_OK;
+}
+
+/// All residues of a name have as many atoms: another number is a broken file, or another molecule.
+static enum status check_alike(const struct work *work, const struct mapping_entry *entry,
+                               size_t model, size_t residue) {
+    const size_t *const first = work->first;
+    const size_t has = first[residue + 1] - first[residue];
+    const size_t should = first[model + 1] - first[model];
+    const struct structure_atom *const a = &work->structure->atom[work->member[first[residue]]];
+    if (has == should || entry->residue[0] == '\0')
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: residue %lld \"%s\" (atom %zu) has %zu atoms, the first of its name "
+                          "has %zu",
+                          work->plan->file, (long long)a->residue_number, a->residue_name,
+                          work->member[first[residue]] + 1, has, should);
+}
+
+static enum status take_residues(struct work *work, const struct mapping_entry *entry) {
+    size_t model = work->residues;
+    for (size_t r = 0; r < work->residues; r++) {
+        const struct structure_atom *const a = &work->structure->atom[work->member[work->first[r]]];
+        if (entry->residue[0] && strcmp(entry->residue, a->residue_name) != 0)
+            continue;
+        if (model == work->residues)
+            model = r;
+        TRY(check_alike(work, entry, model, r));
+        TRY(take_residue(work, entry, r));
+    }
+    if (model == work->residues)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: \"%s\": there is no residue \"%s\"",
+                              work->plan->file, entry->key, entry->residue);
+    return STATUS_OK;
+}
+
+static enum status find_rest(const struct work *work) {
+    size_t atom = 0;
+    if (work->plan->ignores_rest)
+        return STATUS_OK;
+    while (atom < work->structure->atoms && work->taken[atom])
+        atom++;
+    if (atom == work->structure->atoms)
+        return STATUS_OK;
+    return fail_atom(work, atom, "belongs to no bead; \"rest\": \"ignore\" leaves such atoms out");
+}
+
+enum status mf_mapping_build(struct mapping *mapping, const struct mapping_plan *plan,
+                             const struct structure *structure) {
+    enum status status = STATUS_OK;
+    struct work work = {mapping, plan, structure, 0, NULL, NULL, NULL, 0};
+    const size_t atoms = structure->atoms;
+    NEW_ARRAY(mapping->type_name, MAPPING_MOST_BEADS + 1);
+    NEW_ARRAY(mapping->bead, atoms + 1); // one more: a bead is begun before an atom is found taken
+    NEW_ARRAY(mapping->atom, atoms);
+    NEW_ARRAY(mapping->weight, atoms);
+    NEW_ARRAY(work.taken, atoms);
+    CHECK(sort_residues(&work));
+    for (size_t k = 0; k < plan->entries; k++)
+        CHECK(plan->entry[k].first ? take_range(&work, &plan->entry[k])
+                                   : take_residues(&work, &plan->entry[k]));
+    CHECK(find_rest(&work));
+done:
+    mf_memory_free(work.taken);
+    mf_memory_free(work.first);
+    mf_memory_free(work.member);
+    return status;
+}

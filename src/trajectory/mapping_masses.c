@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "trajectory/mapping_build.h"
+
+#include "trajectory/elements.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+enum status mf_mapping_note(struct mapping *mapping, const char *format, ...) {
+    struct bytes *const notes = &mapping->notes;
+    char line[256];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    const size_t length = strlen(line);
+    TRY(mf_source_room(notes, length + 2));
+    memcpy(notes->data + notes->size, line, length);
+    memcpy(notes->data + notes->size + length, "\n", 2);
+    notes->size += length + 1;
+    return STATUS_OK;
+}
+
+/// Mass of an atom and who says so.
+enum origin { FROM_PLAN, FROM_FILE, FROM_ELEMENT, FROM_NOBODY };
+
+static enum origin find_mass(const struct mapping_plan *plan, const struct structure_atom *atom,
+                             double *mass) {
+    for (size_t k = 0; k < plan->masses; k++)
+        if (strcmp(plan->mass[k].name, atom->name) == 0) {
+            *mass = plan->mass[k].mass;
+            return FROM_PLAN;
+        }
+    *mass = atom->mass;
+    if (atom->mass > 0)
+        return FROM_FILE;
+    const char *const element = mf_elements_guess(atom);
+    *mass = element ? mf_elements_mass(element) : NAN;
+    return element ? FROM_ELEMENT : FROM_NOBODY;
+}
+
+/// What has been guessed once need not be told again: few names make up a liquid.
+enum { MOST_TOLD = 64 };
+struct told {
+    const struct structure_atom *atom[MOST_TOLD];
+    size_t count;
+};
+
+static bool was_told(struct told *told, const struct structure_atom *atom) {
+    for (size_t k = 0; k < told->count; k++)
+        if (strcmp(told->atom[k]->name, atom->name) == 0 &&
+            strcmp(told->atom[k]->residue_name, atom->residue_name) == 0)
+            return true;
+    if (told->count == MOST_TOLD)
+        return true;
+    told->atom[told->count++] = atom;
+    return false;
+}
+
+static enum status note_guess(struct mapping *mapping, struct told *told,
+                              const struct structure_atom *atom, double mass) {
+    if (was_told(told, atom))
+        return STATUS_OK;
+    if (told->count == MOST_TOLD)
+        return mf_mapping_note(mapping, "masses of further names were guessed, too");
+    return mf_mapping_note(mapping, "guessed by its name: \"%s\"%s%s%s is %s, %g u", atom->name,
+                           atom->residue_name[0] ? " of \"" : "", atom->residue_name,
+                           atom->residue_name[0] ? "\"" : "", mf_elements_guess(atom), mass);
+}
+
+/// The mass of a bead, and the weights of its atoms if these are not those of geometry. The weight
+/// of an atom alone is 1, whatever its mass.
+static enum status weigh_bead(struct mapping *mapping, const struct mapping_plan *plan,
+                              const struct structure *structure, struct mapping_bead *bead,
+                              struct told *told) {
+    double *const weight = &mapping->weight[bead->first];
+    const bool by_mass = weight[0] == 0;
+    for (size_t i = 0; i < bead->count; i++) {
+        const size_t k = mapping->atom[bead->first + i];
+        double mass;
+        const enum origin origin = find_mass(plan, &structure->atom[k], &mass);
+        if (origin == FROM_NOBODY && by_mass && bead->count > 1)
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: nobody knows the mass of atom %zu, \"%s\": tell it in "
+                                  "\"masses\" of the map",
+                                  plan->file, k + 1, structure->atom[k].name);
+        if (origin == FROM_ELEMENT)
+            TRY(note_guess(mapping, told, &structure->atom[k], mass));
+        bead->mass += mass;
+        if (by_mass)
+            weight[i] = bead->count > 1 ? mass : 1;
+    }
+    for (size_t i = 0; by_mass && bead->count > 1 && i < bead->count; i++)
+        weight[i] /= bead->mass;
+    return STATUS_OK;
+}
+
+enum status mf_mapping_build_masses(struct mapping *mapping, const struct mapping_plan *plan,
+                                    const struct structure *structure) {
+    struct told told = {.count = 0};
+    for (size_t k = 0; k < mapping->beads; k++)
+        TRY(weigh_bead(mapping, plan, structure, &mapping->bead[k], &told));
+    return STATUS_OK;
+}
+
+enum status mf_mapping_build_notes(struct mapping *mapping) {
+    size_t k = 0;
+    for (size_t type = 0; type < mapping->types; type++) {
+        const size_t begin = k;
+        bool same = true;
+        for (; k < mapping->beads && mapping->bead[k].type == type; k++)
+            same = same && mapping->bead[k].count == mapping->bead[begin].count;
+        TRY(mf_mapping_note(mapping, "%s: %zu beads of %s%zu atoms, the first of %.6g u",
+                            mapping->type_name[type], k - begin, same ? "" : "other than ",
+                            mapping->bead[begin].count, mapping->bead[begin].mass));
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "trajectory/source.h"
+
+#include "base/memory.h"
+#include "io/input.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BUFFER_SIZE = 1 << 18, LONGEST_LINE = 1 << 20, LARGEST_PIECE = 1 << 24 };
+
+enum status mf_source_room(struct bytes *bytes, size_t more) {
+    if (more <= bytes->capacity - bytes->size)
+        return STATUS_OK;
+    const size_t least = bytes->size + more, twice = 2 * bytes->capacity;
+    const size_t capacity = least > twice ? least : twice;
+    unsigned char *data = mf_memory_uncleared(capacity, 1);
+    if (data == NULL)
+        return STATUS_NO_MEMORY;
+    if (bytes->size > 0)
+        memcpy(data, bytes->data, bytes->size);
+    mf_memory_free(bytes->data);
+    bytes->data = data;
+    bytes->capacity = capacity;
+    return STATUS_OK;
+}
+
+void mf_source_free(struct bytes *bytes) {
+    mf_memory_free(bytes->data);
+    *bytes = (struct bytes){0};
+}
+
+enum status mf_source_open(struct source *source, const char *file) {
+    *source = (struct source){.file = file};
+    TRY(mf_input_open(&source->stream, file));
+    setvbuf(source->stream, NULL, _IONBF, 0); // the buffer is our own
+    source->buffer = mf_memory_uncleared(BUFFER_SIZE, 1);
+    if (source->buffer)
+        return STATUS_OK;
+    mf_source_close(source);
+    return STATUS_NO_MEMORY;
+}
+
+void mf_source_close(struct source *source) {
+    if (source->stream)
+        fclose(source->stream);
+    mf_memory_free(source->buffer);
+    *source = (struct source){0};
+}
+
+static enum status check_stream(const struct source *source) {
+    if (ferror(source->stream))
+        return mf_status_fail(STATUS_IO, "%s: frame %zu, byte %llu: %s", source->file,
+                              source->frame, (unsigned long long)source->byte, strerror(errno));
+    return STATUS_OK;
+}
+
+/// Have something in the buffer, unless the file has ended.
+static enum status fill(struct source *source) {
+    if (source->begin < source->end)
+        return STATUS_OK;
+    source->begin = 0;
+    source->end = fread(source->buffer, 1, BUFFER_SIZE, source->stream);
+    return check_stream(source);
+}
+
+enum status mf_source_peek(struct source *source, const unsigned char **begin, size_t *size) {
+    TRY(fill(source));
+    *begin = source->buffer + source->begin;
+    *size = source->end - source->begin;
+    if (*size > SOURCE_PEEK)
+        *size = SOURCE_PEEK;
+    return STATUS_OK;
+}
+
+enum status mf_source_more(struct source *source, bool *more) {
+    TRY(fill(source));
+    *more = source->begin < source->end;
+    return STATUS_OK;
+}
+
+/// Bytes from the buffer first, then from the file past the buffer: at most `count`.
+static size_t take_some(struct source *source, unsigned char *to, size_t count) {
+    size_t taken = source->end - source->begin;
+    if (taken > count)
+        taken = count;
+    if (taken > 0)
+        memcpy(to, source->buffer + source->begin, taken);
+    source->begin += taken;
+    if (taken < count)
+        taken += fread(to + taken, 1, count - taken, source->stream);
+    source->byte += taken;
+    return taken;
+}
+
+enum status mf_source_take(struct source *source, struct bytes *bytes, uint64_t count) {
+    while (count > 0) {
+        const size_t piece = count < LARGEST_PIECE ? (size_t)count : LARGEST_PIECE;
+        TRY(mf_source_room(bytes, piece));
+        const size_t taken = take_some(source, bytes->data + bytes->size, piece);
+        TRY(check_stream(source));
+        bytes->size += taken;
+        count -= taken;
+        if (taken < piece)
+            return mf_source_fail_byte(source,
+                                       "the file ends within the frame, %llu bytes are missing",
+                                       (unsigned long long)count);
+    }
+    return STATUS_OK;
+}
+
+/// Append what of the line is in the buffer; true if its end was among it.
+static enum status take_line_part(struct source *source, struct bytes *bytes, bool *ended) {
+    const unsigned char *begin = source->buffer + source->begin;
+    const size_t available = source->end - source->begin;
+    const unsigned char *end = memchr(begin, '\n', available);
+    const size_t length = end ? (size_t)(end - begin) : available;
+    *ended = end != NULL;
+    TRY(mf_source_room(bytes, length + 1));
+    memcpy(bytes->data + bytes->size, begin, length);
+    bytes->size += length;
+    source->begin += length + *ended;
+    source->byte += length + *ended;
+    return STATUS_OK;
+}
+
+enum status mf_source_line(struct source *source, struct bytes *bytes, bool *there) {
+    const size_t first = bytes->size;
+    bool ended = false;
+    TRY(mf_source_more(source, there));
+    if (!*there)
+        return STATUS_OK;
+    source->line++;
+    for (bool more = true; more && !ended;) {
+        TRY(take_line_part(source, bytes, &ended));
+        if (bytes->size - first > LONGEST_LINE)
+            return mf_source_fail_line(source, "a line of more than %d bytes", LONGEST_LINE);
+        if (!ended)
+            TRY(mf_source_more(source, &more));
+    }
+    source->broken_line = !ended;
+    if (memchr(bytes->data + first, '\0', bytes->size - first))
+        return mf_source_fail_line(source, "a NUL byte: this is no text");
+    if (bytes->size > first && bytes->data[bytes->size - 1] == '\r')
+        bytes->size--;
+    bytes->data[bytes->size++] = '\0';
+    return STATUS_OK;
+}
+
+enum status mf_source_lines(struct source *source, struct bytes *bytes, uint64_t count) {
+    for (uint64_t k = 0; k < count; k++) {
+        bool there;
+        TRY(mf_source_line(source, bytes, &there));
+        if (!there)
+            return mf_source_fail_line(source,
+                                       "the file ends within the frame, %llu lines are missing",
+                                       (unsigned long long)(count - k));
+        if (source->broken_line && source->frame > 0)
+            return mf_source_fail_line(source, "the file ends within this line");
+    }
+    return STATUS_OK;
+}
+
+enum { REASON_SIZE = 1024 };
+
+enum status mf_source_fail_line(const struct source *source, const char *format, ...) {
+    char reason[REASON_SIZE];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(reason, sizeof reason, format, arguments);
+    va_end(arguments);
+    return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: frame %zu: %s", source->file, source->line,
+                          source->frame, reason);
+}
+
+enum status mf_source_fail_byte(const struct source *source, const char *format, ...) {
+    char reason[REASON_SIZE];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(reason, sizeof reason, format, arguments);
+    va_end(arguments);
+    return mf_status_fail(STATUS_BAD_INPUT, "%s: frame %zu, byte %llu: %s", source->file,
+                          source->frame, (unsigned long long)source->byte, reason);
+}

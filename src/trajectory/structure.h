@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What the atoms of a trajectory are, which does not change with time.
+#pragma once
+
+#include "base/status.h"
+#include "trajectory/words.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum { STRUCTURE_NAME = 16 };
+
+/// What a format does not have is 0, "" or NAN.
+struct structure_atom {
+    char name[STRUCTURE_NAME];         ///< "OW"; the number of its type where there are but types
+    char residue_name[STRUCTURE_NAME]; ///< "SOL"
+    char element[STRUCTURE_NAME];      ///< "O", as the file says it
+    char chain;
+    int64_t residue_number; ///< as in the file, where it may begin again
+    int64_t id, molecule, type;
+    double mass;    ///< [u]; NAN if not known
+    size_t residue; ///< 0 … residues − 1
+};
+
+/// What its format, or the file, knows of atoms.
+struct structure {
+    size_t atoms;
+    struct structure_atom *atom; ///< shape [atoms], in the order of every frame's positions
+    bool has_names, has_residues, has_elements, has_molecules, has_types, has_ids, has_masses;
+    size_t residues; ///< 0 if neither residues nor molecules are known
+};
+
+/// `atoms` atoms of which nothing is known. Fails: NO_MEMORY.
+enum status mf_structure_init(struct structure *structure, size_t atoms) MUST_USE;
+
+void mf_structure_clear(struct structure *structure);
+
+/// Sort the atoms by their ids. Fails: BAD_INPUT, without a place, if two have the same.
+enum status mf_structure_sort(struct structure *structure) MUST_USE;
+
+/// Number the residues: runs of atoms with the same number, name, chain and molecule; where there
+/// are no residues, the molecules, wherever their atoms stand in the file. An atom of molecule 0 is
+/// on its own. Fails: NO_MEMORY. Tested: test_structure.
+enum status mf_structure_number_residues(struct structure *structure) MUST_USE;
+
+/// Index of the atom with that id; `structure->atoms` if there is none. Ids grow with the index.
+size_t mf_structure_find(const struct structure *structure, int64_t id);
+
+/// Whether `other`, of a trajectory, can be the same atoms: as many, and no name, residue or id is
+/// another where both know it. Fails: BAD_INPUT, naming both files and the first atom that differs.
+enum status mf_structure_check_same(const struct structure *structure, const char *file,
+                                    const struct structure *other, const char *other_file) MUST_USE;

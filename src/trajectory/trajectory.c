@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "trajectory/trajectory.h"
+
+#include "base/memory.h"
+#include "base/names.h"
+#include "trajectory/words.h"
+
+#include <math.h>
+#include <string.h>
+#include <strings.h>
+
+NAMED_RECORD(struct trajectory_format);
+
+#define TRAJECTORY_LISTED(record) &record,
+const struct trajectory_format *const mf_trajectory_formats[] = {
+    TRAJECTORY_FORMATS(TRAJECTORY_LISTED) NULL};
+
+static bool has_extension(const struct trajectory_format *format, const char *file) {
+    const char *point = strrchr(file, '.');
+    for (size_t k = 0; point && format->extensions[k]; k++)
+        if (strcasecmp(point + 1, format->extensions[k]) == 0)
+            return true;
+    return false;
+}
+
+/// What a packed file or another format begins with, and what is to be done about it.
+static const char *find_hint(const unsigned char *begin, size_t size) {
+    if (size >= 2 && memcmp(begin, "\x1F\x8B", 2) == 0)
+        return "it is packed: unpack it with gunzip";
+    if (size >= 4 && memcmp(begin, "\x28\xB5\x2F\xFD", 4) == 0)
+        return "it is packed: unpack it with unzstd";
+    if (size >= 4 && memcmp(begin, "\x89HDF", 4) == 0)
+        return "it is HDF5, which is not read here";
+    return "neither its first bytes nor its extension are those of a format that is read here";
+}
+
+static enum status find_format(struct trajectory *trajectory) {
+    const unsigned char *begin;
+    size_t size;
+    TRY(mf_source_peek(&trajectory->source, &begin, &size));
+    if (size == 0)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: the file is empty", trajectory->file);
+    const struct trajectory_format *const *formats = mf_trajectory_formats;
+    for (size_t k = 0; formats[k] && trajectory->format == NULL; k++)
+        if (formats[k]->recognise(begin, size))
+            trajectory->format = formats[k];
+    for (size_t k = 0; formats[k] && trajectory->format == NULL; k++)
+        if (has_extension(formats[k], trajectory->file))
+            trajectory->format = formats[k];
+    if (trajectory->format)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT, "%s: is no trajectory: %s", trajectory->file,
+                          find_hint(begin, size));
+}
+
+/// What is told; else Å, fs and u, unless only the file can know.
+static enum status find_units(struct trajectory *trajectory, const char *units) {
+    const struct trajectory_format *const format = trajectory->format;
+    if (units && format->speaks == TRAJECTORY_OWN_UNITS)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: the format \"%s\" has units of its own",
+                              trajectory->file, format->name);
+    if (format->speaks == TRAJECTORY_OWN_UNITS)
+        trajectory->scale = (struct trajectory_scale){1, 1, 1, 1};
+    else if (units || format->speaks == TRAJECTORY_ANGSTROM)
+        return mf_trajectory_units_find(units ? units : "real", &trajectory->scale);
+    return STATUS_OK;
+}
+
+enum status mf_trajectory_found_units(struct trajectory *trajectory, const char *name) {
+    struct trajectory_scale scale;
+    TRY(mf_trajectory_units_find(name, &scale));
+    const bool told = trajectory->scale.length > 0;
+    if (told && memcmp(&scale, &trajectory->scale, sizeof scale) != 0)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: says that its units are \"%s\"",
+                              trajectory->file, name);
+    trajectory->scale = scale;
+    return STATUS_OK;
+}
+
+static enum status check_units(const struct trajectory *trajectory) {
+    if (trajectory->scale.length > 0)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: this file of LAMMPS does not say its units: tell them (real, metal, "
+                          "nano, lj …)",
+                          trajectory->file);
+}
+
+static enum status begin(struct trajectory *trajectory) {
+    const struct trajectory_format *const format = trajectory->format;
+    bool more = true;
+    trajectory->state = mf_memory_zeroed(1, format->state_size);
+    if (trajectory->state == NULL)
+        return STATUS_NO_MEMORY;
+    if (format->open)
+        TRY(format->open(trajectory));
+    TRY(mf_trajectory_fetch(trajectory, &trajectory->first, &more));
+    if (!more)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: the file has no frame", trajectory->file);
+    TRY(format->describe(trajectory, &trajectory->first));
+    TRY(check_units(trajectory));
+    TRY(mf_structure_number_residues(&trajectory->structure));
+    trajectory->waiting = true;
+    return STATUS_OK;
+}
+
+enum status mf_trajectory_open(struct trajectory *trajectory, const char *file,
+                               const struct trajectory_options *options) {
+    enum status status;
+    *trajectory = (struct trajectory){.file = file, .time_step = options->time_step};
+    CHECK(mf_source_open(&trajectory->source, file));
+    CHECK(find_format(trajectory));
+    CHECK(find_units(trajectory, options->units));
+    CHECK(begin(trajectory));
+done:
+    if (status != STATUS_OK)
+        mf_trajectory_close(trajectory);
+    return status;
+}
+
+void mf_trajectory_close(struct trajectory *trajectory) {
+    mf_source_close(&trajectory->source);
+    mf_structure_clear(&trajectory->structure);
+    mf_frame_clear(&trajectory->first);
+    mf_memory_free(trajectory->state);
+    *trajectory = (struct trajectory){0};
+}
+
+/// The frame that opening has taken changes hands; the caller's arrays are kept, and freed later.
+static void give_first(struct trajectory *trajectory, struct trajectory_frame *frame) {
+    const struct trajectory_frame given = trajectory->first;
+    trajectory->first = *frame;
+    *frame = given;
+    trajectory->waiting = false;
+}
+
+enum status mf_trajectory_fetch(struct trajectory *trajectory, struct trajectory_frame *frame,
+                                bool *more) {
+    struct source *const source = &trajectory->source;
+    *more = true;
+    if (trajectory->waiting) {
+        give_first(trajectory, frame);
+        return STATUS_OK;
+    }
+    TRY(mf_source_more(source, more));
+    if (!*more)
+        return STATUS_OK;
+    frame->file = trajectory->file;
+    frame->number = source->frame;
+    frame->first_byte = source->byte;
+    frame->first_line = source->line;
+    frame->raw.size = 0;
+    TRY(trajectory->format->fetch(trajectory, frame, more));
+    source->frame += *more;
+    return STATUS_OK;
+}
+
+enum status mf_trajectory_decode(const struct trajectory *trajectory,
+                                 struct trajectory_frame *frame) {
+    frame->step = -1;
+    frame->time = NAN;
+    TRY(trajectory->format->decode(trajectory, frame));
+    if (isnan(frame->time) && frame->step >= 0 && trajectory->time_step > 0)
+        frame->time = (double)frame->step * trajectory->time_step;
+    return STATUS_OK;
+}
+
+enum status mf_trajectory_next(struct trajectory *trajectory, struct trajectory_frame *frame,
+                               bool *more) {
+    TRY(mf_trajectory_fetch(trajectory, frame, more));
+    return *more ? mf_trajectory_decode(trajectory, frame) : STATUS_OK;
+}
+
+enum status mf_trajectory_sort(struct trajectory *trajectory,
+                               const struct trajectory_frame *first) {
+    const enum status status = mf_structure_sort(&trajectory->structure);
+    if (status != STATUS_OK)
+        return mf_status_prefix(status, "%s:%zu: frame 0", first->file, first->first_line + 1);
+    return STATUS_OK;
+}
+
+enum status mf_trajectory_begin_atoms(const struct trajectory *trajectory,
+                                      struct trajectory_frame *frame) {
+    const size_t atoms = trajectory->structure.atoms;
+    frame->scratch.size = 0;
+    TRY(mf_source_room(&frame->scratch, atoms));
+    memset(frame->scratch.data, 0, atoms);
+    return STATUS_OK;
+}
+
+enum status mf_trajectory_find_atom(const struct trajectory *trajectory,
+                                    struct trajectory_frame *frame, const char *line, int64_t id,
+                                    size_t *atom) {
+    *atom = mf_structure_find(&trajectory->structure, id);
+    if (*atom == trajectory->structure.atoms)
+        return mf_frame_fail_line(frame, line, "the first frame has no atom of id %lld",
+                                  (long long)id);
+    if (frame->scratch.data[*atom])
+        return mf_frame_fail_line(frame, line, "the atom of id %lld stands here twice",
+                                  (long long)id);
+    frame->scratch.data[*atom] = 1;
+    return STATUS_OK;
+}
+
+enum status mf_trajectory_read_count(const struct trajectory *trajectory, const char *line,
+                                     uint64_t *atoms) {
+    const struct source *const source = &trajectory->source;
+    const size_t wanted = trajectory->structure.atoms;
+    struct word word;
+    int64_t count;
+    if (!mf_words_next(&line, &word) || !mf_words_integer(&word, &count) || count < 1)
+        return mf_source_fail_line(source, "here should stand the number of atoms");
+    *atoms = (uint64_t)count;
+    if (source->frame > 0 && *atoms != wanted)
+        return mf_source_fail_line(source, "it has %lld atoms, the first frame %zu",
+                                   (long long)count, wanted);
+    return STATUS_OK;
+}

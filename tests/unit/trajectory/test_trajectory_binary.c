@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Binary files of kinds that are not among the samples, written out here byte by byte: DCD in both
+// orders of bytes, with boxes in degrees and cosines and without; trr in double precision and with
+// frames that have no positions; xtc with 64-bit sizes and with few atoms.
+#include "shared/temporary_folder.h"
+#include "shared/testing.h"
+#include "trajectory/trajectory.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { MOST = 1 << 16, ATOMS = 3, FRAMES = 2 };
+
+static unsigned char file_bytes[MOST];
+static size_t file_size;
+static bool big;
+
+static void put_bytes(const void *bytes, size_t size, bool swapped) {
+    assert_true(file_size + size <= MOST);
+    for (size_t k = 0; k < size; k++)
+        file_bytes[file_size++] = ((const unsigned char *)bytes)[swapped ? size - 1 - k : k];
+}
+
+/// This machine's order is little-endian, as all that the program is built for.
+static void put_int(int32_t value) {
+    put_bytes(&value, sizeof value, big);
+}
+
+static void put_float(double value) {
+    put_bytes(&(float){(float)value}, sizeof(float), big);
+}
+
+static void put_double(double value) {
+    put_bytes(&value, sizeof value, big);
+}
+
+static double coordinate(int frame, int atom, int d) {
+    return 100 * frame + 10 * atom + d + 0.25;
+}
+
+static struct trajectory trajectory;
+static struct trajectory_frame frame;
+
+static enum status try(void **state, const struct trajectory_options *options) {
+    static char file[1024];
+    snprintf(file, sizeof file, "%s",
+             temporary_folder_write(*state, "a.bin", (const char *)file_bytes, file_size));
+    return mf_trajectory_open(&trajectory, file, options);
+}
+
+static void next(bool wanted) {
+    bool more;
+    assert_ok(mf_trajectory_next(&trajectory, &frame, &more));
+    assert_int_equal(more, wanted);
+}
+
+static void close_all(void) {
+    mf_trajectory_close(&trajectory);
+    mf_frame_clear(&frame);
+}
+
+static void assert_positions(int number, double scale) {
+    for (int k = 0; k < ATOMS; k++)
+        for (int d = 0; d < 3; d++)
+            assert_true(frame.position[k][d] == scale * coordinate(number, k, d));
+}
+
+// DCD ---------------------------------------------------------------------------------------------
+
+enum cell { NO_CELL, DEGREES, COSINES };
+
+static void put_dcd(bool big_endian, enum cell cell, int version, int fixed, bool fourth) {
+    file_size = 0;
+    big = big_endian;
+    const int header[20] = {FRAMES,          500,    50, 0, 0, 0, 0, 0, fixed, 0,
+                            cell != NO_CELL, fourth, 0,  0, 0, 0, 0, 0, 0,     version};
+    put_int(84);
+    put_bytes("CORD", 4, false);
+    for (int k = 0; k < 20; k++) {
+        if (k == 9 && version)
+            put_float(0.5);
+        else if (k == 9)
+            put_double(0.5), k++;
+        else
+            put_int(header[k]);
+    }
+    put_int(84);
+    put_int(84);
+    put_int(1);
+    for (int k = 0; k < 80; k++)
+        put_bytes("x", 1, false);
+    put_int(84);
+    put_int(4), put_int(ATOMS), put_int(4);
+    for (int number = 0; number < FRAMES; number++) {
+        const double angle[3] = {60, 90, 120};
+        double v[6] = {20 + number, angle[2], 30, angle[1], angle[0], 40};
+        for (int k = 1; cell == COSINES && k < 5; k += k == 1 ? 2 : 1)
+            v[k] = v[k] == 90 ? 0 : cos(v[k] * acos(-1) / 180);
+        if (cell != NO_CELL) {
+            put_int(48);
+            for (int k = 0; k < 6; k++)
+                put_double(v[k]);
+            put_int(48);
+        }
+        for (int d = 0; d < 3 + fourth; d++) {
+            put_int(4 * ATOMS);
+            for (int k = 0; k < ATOMS; k++)
+                put_float(coordinate(number, k, d));
+            put_int(4 * ATOMS);
+        }
+    }
+}
+
+static double product(int i, int j) {
+    const double *a = frame.box[i], *b = frame.box[j];
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Lengths 2, 3 and 4 nm; α = 60°, β = 90°, γ = 120°.
+static void assert_cell(int number) {
+    const double a = 2 + 0.1 * number;
+    assert_true(frame.has_box);
+    assert_true(fabs(product(0, 0) - a * a) < 1e-12 && fabs(product(1, 1) - 9) < 1e-12);
+    assert_true(fabs(product(2, 2) - 16) < 1e-12 && fabs(product(1, 2) - 6) < 1e-12);
+    assert_true(fabs(product(0, 2)) < 1e-12 && fabs(product(0, 1) + 1.5 * a) < 1e-12);
+}
+
+static void test_dcd_is_read_in_all_its_kinds(void **state) {
+    for (int kind = 0; kind < 2 * 3 * 2; kind++) {
+        const enum cell cell = (enum cell)(kind / 4);
+        put_dcd(kind & 1, cell, 24, 0, kind & 2);
+        assert_ok(try(state, &(struct trajectory_options){0}));
+        assert_string_equal(trajectory.format->name, "dcd");
+        for (int number = 0; number < FRAMES; number++) {
+            next(true);
+            assert_positions(number, 0.1);
+            assert_int_equal(frame.step, 500 + 50 * number);
+            assert_true(fabs(frame.time - frame.step * 0.5 * 0.0488882129) < 1e-12);
+            if (cell == NO_CELL)
+                assert_false(frame.has_box);
+            else
+                assert_cell(number);
+        }
+        next(false);
+        close_all();
+    }
+}
+
+/// X-PLOR's time step is double; a told one comes first; "lj" leaves lengths alone.
+static void test_dcd_has_the_time_and_the_units_that_are_told(void **state) {
+    put_dcd(false, NO_CELL, 0, 0, false);
+    assert_ok(try(state, &(struct trajectory_options){0}));
+    next(true);
+    assert_true(fabs(frame.time - 500 * 0.5 * 0.0488882129) < 1e-12);
+    close_all();
+    assert_ok(try(state, &(struct trajectory_options){.units = "lj", .time_step = 0.01}));
+    next(true);
+    assert_true(fabs(frame.time - 5) < 1e-12);
+    assert_positions(0, 1);
+    close_all();
+}
+
+static void test_dcd_is_refused_when_its_records_do_not_fit(void **state) {
+    put_dcd(true, DEGREES, 24, 2, false);
+    assert_int_equal(try(state, &(struct trajectory_options){0}), STATUS_BAD_INPUT);
+    assert_contains(mf_status_message(), "fixed atoms");
+    put_dcd(true, DEGREES, 24, 0, false);
+    file_bytes[file_size - 1] = 99;
+    assert_ok(try(state, &(struct trajectory_options){0}));
+    bool more;
+    next(true);
+    assert_fails(mf_trajectory_next(&trajectory, &frame, &more), STATUS_BAD_INPUT,
+                 "a.bin: frame 1, byte 428: a record before here is not of the 12 bytes");
+    close_all();
+    file_size = 200;
+    assert_int_equal(try(state, &(struct trajectory_options){0}), STATUS_BAD_INPUT);
+    assert_contains(mf_status_message(), "a.bin: frame 0, byte 200: the file ends within");
+}
+
+// trr ---------------------------------------------------------------------------------------------
+
+static void put_trr(int number, bool positions, bool velocities, bool forces) {
+    const int vectors = ATOMS * 3 * 8;
+    const int size[10] = {
+        0, 0, 72, 72, 0, 0, 0, vectors * positions, vectors * velocities, vectors * forces};
+    big = true;
+    put_int(1993), put_int(13), put_int(12);
+    put_bytes("GMX_trn_file", 12, false);
+    for (int k = 0; k < 10; k++)
+        put_int(size[k]);
+    put_int(ATOMS), put_int(50 * number), put_int(0);
+    put_double(0.1 * number), put_double(0);
+    for (int k = 0; k < 9; k++)
+        put_double(k % 4 == 0 ? 3 : k == 6 ? 1.5 : 0);
+    for (int k = 0; k < 9; k++)
+        put_double(7); // virial
+    for (int part = 0; part < positions + velocities + forces; part++)
+        for (int k = 0; k < ATOMS; k++)
+            for (int d = 0; d < 3; d++)
+                put_double((part ? -1 : 1) * coordinate(number, k, d));
+}
+
+static void test_trr_is_read_in_double_precision(void **state) {
+    file_size = 0;
+    put_trr(0, false, true, true); // passed over, even as the first
+    put_trr(1, true, true, true);
+    put_trr(2, false, true, false);
+    put_trr(3, true, false, true);
+    put_trr(4, false, false, true);
+    assert_ok(try(state, &(struct trajectory_options){0}));
+    next(true);
+    assert_positions(1, 1);
+    assert_true(frame.has_velocities && frame.velocity[2][1] == -coordinate(1, 2, 1));
+    assert_true(frame.step == 50 && frame.time == 0.1 * 1);
+    assert_true(frame.box[0][0] == 3 && frame.box[2][0] == 1.5 && frame.box[0][1] == 0);
+    next(true);
+    assert_positions(3, 1);
+    assert_true(!frame.has_velocities && frame.step == 150);
+    next(false);
+    close_all();
+}
+
+// xtc ---------------------------------------------------------------------------------------------
+
+static void test_xtc_has_few_atoms_unpacked(void **state) {
+    file_size = 0;
+    big = true;
+    for (int number = 0; number < FRAMES; number++) {
+        put_int(1995), put_int(ATOMS), put_int(number), put_float(number);
+        for (int k = 0; k < 9; k++)
+            put_float(k % 4 == 0 ? 5 : 0);
+        put_int(ATOMS);
+        for (int k = 0; k < ATOMS; k++)
+            for (int d = 0; d < 3; d++)
+                put_float(coordinate(number, k, d));
+    }
+    assert_ok(try(state, &(struct trajectory_options){0}));
+    for (int number = 0; number < FRAMES; number++) {
+        next(true);
+        assert_positions(number, 1);
+    }
+    next(false);
+    close_all();
+}
+
+/// The frames of 2023 are those of 1995 with another magic number and eight bytes for the size.
+static void test_xtc_has_64_bit_sizes_since_2023(void **state) {
+    enum { SIZE_AT = 88 };
+    struct trajectory sample;
+    struct trajectory_frame wanted = {0};
+    bool more;
+    FILE *stream = fopen("tests/trajectories/water.xtc", "rb");
+    assert_non_null(stream);
+    const size_t read = fread(file_bytes, 1, 28936, stream);
+    fclose(stream);
+    assert_int_equal(read, 28936);
+    memmove(file_bytes + SIZE_AT + 4, file_bytes + SIZE_AT, read - SIZE_AT);
+    memset(file_bytes + SIZE_AT, 0, 4);
+    memcpy(file_bytes, "\0\0\x07\xE7", 4);
+    file_size = read + 4;
+    assert_ok(try(state, &(struct trajectory_options){0}));
+    next(true);
+    assert_ok(mf_trajectory_open(&sample, "tests/trajectories/water.xtc",
+                                 &(struct trajectory_options){0}));
+    assert_ok(mf_trajectory_next(&sample, &wanted, &more));
+    assert_int_equal(frame.atoms, wanted.atoms);
+    assert_memory_equal(frame.position, wanted.position, wanted.atoms * sizeof *wanted.position);
+    next(false);
+    close_all();
+    mf_frame_clear(&wanted);
+    mf_trajectory_close(&sample);
+}
+
+#define TEST(name)                                                                                 \
+    cmocka_unit_test_setup_teardown(name, temporary_folder_create, temporary_folder_remove)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        TEST(test_dcd_is_read_in_all_its_kinds),
+        TEST(test_dcd_has_the_time_and_the_units_that_are_told),
+        TEST(test_dcd_is_refused_when_its_records_do_not_fit),
+        TEST(test_trr_is_read_in_double_precision),
+        TEST(test_xtc_has_few_atoms_unpacked),
+        TEST(test_xtc_has_64_bit_sizes_since_2023),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
