@@ -20,10 +20,16 @@ static bool holds_temperature(const struct simulation_setup *setup) {
 }
 
 static const char *warning(const struct simulation_setup *setup) {
-    return parameters_of(setup)->particles_per_cell < 3
-               ? "dynamics.particles_per_cell: below 3 many cells have nobody to collide with, and "
-                 "theory is far off"
-               : NULL;
+    const struct collision_dynamics_parameters *parameters = parameters_of(setup);
+    const bool flows = parameters->wave_acceleration != 0 || parameters->acceleration[0] != 0 ||
+                       parameters->acceleration[1] != 0 || parameters->acceleration[2] != 0;
+    if (parameters->particles_per_cell < 3)
+        return "dynamics.particles_per_cell: below 3 many cells have nobody to collide with, and "
+               "theory is far off";
+    if (flows && parameters->walls == COLLISION_PLATES && setup->placement.count > 1)
+        return "the flow carries the beads: their temperature, MSD, VACF and D have it in them; "
+               "\"acceleration\" 0 is without";
+    return NULL;
 }
 
 static enum status begin(struct simulation *simulation) {

@@ -48,6 +48,17 @@ static void scale_velocities(struct particles *particles, double temperature) {
             particles->velocity[d][k] *= scale;
 }
 
+/// What a file puts beyond a wall has been wrapped into the box.
+static enum status check_inside(const struct particles *particles, int walls) {
+    for (int d = 0; d < particles->box.dimensions; d++)
+        for (size_t k = 0; k < particles->count && (walls >> d & 1); k++)
+            if (particles->image[d][k] != 0)
+                return mf_status_fail(STATUS_BAD_INPUT,
+                                      "particles.file: particle %u is beyond a wall along %c",
+                                      particles->id[k], "xyz"[d]);
+    return STATUS_OK;
+}
+
 static enum status begin(struct simulation *simulation) {
     enum status status = STATUS_OK;
     struct event_driven *state = simulation->integrator_state;
@@ -59,10 +70,12 @@ static enum status begin(struct simulation *simulation) {
     NEW_ARRAY(mass, particles->count);
     fill(radius, mf_particles_numbers(particles, "radius"), usual_radius, particles->count);
     fill(mass, particles_masses(particles), usual_mass, particles->count);
-    if (simulation->setup.placement.kind != PLACEMENT_FILE) {
-        CHECK(mf_hard_start_part(particles, radius, walls));
+    if (simulation->velocities_drawn)
         scale_velocities(particles, simulation->setup.temperature);
-    }
+    if (simulation->setup.placement.kind != PLACEMENT_FILE)
+        CHECK(mf_hard_start_part(particles, radius, walls));
+    else
+        CHECK(check_inside(particles, walls));
     CHECK(mf_hard_start_check(particles, radius, walls));
     CHECK(mf_hard_gas_init(&state->gas, particles, radius, mass, walls));
     CHECK(mf_simulation_compute_forces(simulation, 0));

@@ -45,7 +45,8 @@ static enum status place(struct simulation *simulation, const struct simulation_
     }
     TRY(mf_attributes_give(particles, setup->attribute, &setup->composition, setup->seed));
     TRY(give_orientations(simulation));
-    if (start == NULL || start->velocity[0] == NULL) {
+    simulation->velocities_drawn = start == NULL || start->velocity[0] == NULL;
+    if (simulation->velocities_drawn) {
         mf_particles_draw_velocities(particles, (enum particles_speeds)setup->placement.speeds,
                                      setup->temperature, setup->seed);
         return STATUS_OK;

@@ -56,7 +56,7 @@ static enum status check_room(const struct solvent *solvent) {
         if (!(centre >= margin && centre <= box->length[d] - margin))
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "dynamics.obstacle_centre[%d]: with %g an obstacle of radius %g "
-                                  "is outside the box of %g",
+                                  "is outside the box of %g; say where it is",
                                   d, centre, radius, box->length[d]);
         if (margin == 0 && !(2 * radius + flight < box->length[d]))
             return mf_status_fail(STATUS_BAD_INPUT,

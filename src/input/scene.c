@@ -125,8 +125,11 @@ static enum status read_dynamics(struct scene *scene, struct json_object *object
         mf_json_fault(object, "dynamics",
                       "%s knows no friction; use \"aboba\" with \"dissipative\"", integrator->name);
     if (scene->setup.attribute[ATTRIBUTES_MASS].ranges > 0 && !integrator->masses)
-        mf_json_fault(object, "particles.mass", "%s moves particles of mass 1 only",
-                      integrator->name);
+        mf_json_fault(
+            object, "particles.mass",
+            "%s moves particles of mass 1 only; \"velocity-verlet\" moves others, without "
+            "\"dissipative\"",
+            integrator->name);
     return STATUS_OK;
 }
 

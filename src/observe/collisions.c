@@ -270,7 +270,8 @@ static void put_result(struct json_writer *writer, const char *name, struct resu
     snprintf(key, sizeof key, "%s_error", name);
     mf_json_put_number(writer, key, result.error);
     snprintf(key, sizeof key, "%s_theory", name);
-    mf_json_put_number(writer, key, theory);
+    if (!isnan(theory))
+        mf_json_put_number(writer, key, theory);
 }
 
 static void put(const void *state, const struct observable_results *results,
@@ -282,8 +283,7 @@ static void put(const void *state, const struct observable_results *results,
     put_result(writer, "compressibility_factor", result_of(c, FACTOR),
                c->theory.compressibility_factor);
     if (c->walls)
-        put_result(writer, "compressibility_factor_walls", result_of(c, WALL_FACTOR),
-                   c->theory.compressibility_factor);
+        put_result(writer, "compressibility_factor_walls", result_of(c, WALL_FACTOR), NAN);
     put_result(writer, "collision_rate", result_of(c, RATE), c->theory.collision_rate);
     put_result(writer, "mean_free_path", free_path(c), c->theory.mean_free_path);
     mf_json_put_number(writer, "speeds_tested", maxwell.numbers);
@@ -296,10 +296,13 @@ static void put(const void *state, const struct observable_results *results,
 static void say(const void *state, char *line, size_t size) {
     const struct collisions *c = state;
     const struct result factor = result_of(c, FACTOR);
-    char text[NUMBER_TEXT_SIZE];
+    const struct result by_walls = result_of(c, WALL_FACTOR);
+    char text[NUMBER_TEXT_SIZE], walls[NUMBER_TEXT_SIZE];
     mf_number_text(factor.mean, factor.error, text);
-    snprintf(line, size, "Z = %s by collisions, theory %.5g; %.3g collisions/s", text,
-             c->theory.compressibility_factor, c->collisions / c->seconds);
+    mf_number_text(by_walls.mean, by_walls.error, walls);
+    snprintf(line, size, "Z = %s by collisions, theory %.5g without walls%s%s; %.3g collisions/s",
+             text, c->theory.compressibility_factor, c->walls ? "; by the walls " : "",
+             c->walls ? walls : "", c->collisions / c->seconds);
 }
 
 /// collisions.tsv: a row for each sample.

@@ -192,8 +192,10 @@ static struct line fit(const struct profile *p, size_t first, size_t last) {
     return (struct line){(v - slope * s) / n, slope};
 }
 
-/// The highest velocity of the flow that s and the viscosity make.
+/// The highest velocity of the flow that s and the viscosity make; 0 if its shape is not known.
 static double peak_shape(const struct profile *p) {
+    if (p->parameters.obstacle_radius > 0)
+        return 0;
     const double k = 2 * M_PI / p->height;
     return p->parameters.walls == COLLISION_PLATES
                ? fabs(p->parameters.acceleration[0]) * p->height * p->height / 8
@@ -226,7 +228,7 @@ struct flow_profile_summary mf_flow_profile_result(const void *state) {
     const double base_error = mf_statistics_correlated_error(bases, blocks, 1);
     const double top = peak * fabs(all.slope); // of the velocity
     return (struct flow_profile_summary){
-        .viscosity = 1 / all.slope,
+        .viscosity = peak > 0 ? 1 / all.slope : NAN,
         .viscosity_error = error / (all.slope * all.slope),
         .diffusion = p->beads > 0 ? diffusion : NAN,
         .diffusion_error = diffusion_error,
@@ -318,7 +320,25 @@ static void say(const void *state, char *line, size_t size) {
         snprintf(line, size, "viscosity %s, by theory %.4g; temperature of the solvent %.4f",
                  viscosity, mf_collision_dynamics_viscosity(&p->setup), found.temperature);
     else
-        snprintf(line, size, "temperature of the solvent %.4f", found.temperature);
+        snprintf(
+            line, size,
+            "temperature of the solvent %.4f; a viscosity wants plates and an acceleration along "
+            "x, or a wave, and no obstacle",
+            found.temperature);
+}
+
+/// A flow that still grows, or hardly differs from the noise, gives any viscosity.
+static enum status judge(const void *state, const struct simulation_setup *setup) {
+    static const double most = 0.2;
+    const struct flow_profile_summary found = mf_flow_profile_result(state);
+    (void)setup;
+    if (!is_driven(state) || fabs(found.viscosity_error) <= most * fabs(found.viscosity))
+        return STATUS_OK;
+    return mf_status_fail(
+        STATUS_UNSTABLE,
+        "the viscosity is %.2g with an error of %.2g: the flow has not settled, or "
+        "is lost in its noise; take a longer \"equilibration\" or more \"samples\"",
+        found.viscosity, found.viscosity_error);
 }
 
 /// Nanoseconds of a solvent particle and sample.
@@ -367,6 +387,7 @@ const struct observable mf_flow_profile = {
     .write = write,
     .put = put,
     .say = say,
+    .judge = judge,
     .explain = explain,
     .stage = "flow profile",
     .files = files,

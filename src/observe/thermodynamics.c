@@ -172,7 +172,7 @@ enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary
     const struct thermodynamics_summary *s = summary;
     const bool flies = !simulation_is_overdamped(setup);
     const double wanted = simulation_holds_temperature(setup) ? setup->temperature : s->temperature;
-    if (s->blocks < LEAST_BLOCKS || !mf_simulation_is_thermal(setup))
+    if (s->blocks < LEAST_BLOCKS || !mf_simulation_is_thermal(setup) || setup->placement.count < 2)
         return STATUS_OK;
     if ((!flies || agrees(s->temperature, s->temperature_error, wanted)) &&
         (isnan(s->temperature_configurational) ||

@@ -116,6 +116,8 @@ void mf_fit_report_say(struct progress *to, const struct fit_file *fit,
                         v->diffusion_begin, v->diffusion_end);
     }
     const struct thermodynamics_summary *t = &v->thermodynamics;
+    if (isnan(t->temperature) && isnan(t->temperature_configurational)) // no particles
+        return;
     if (isnan(t->temperature)) // no velocities
         mf_progress_say(to, "configurational T = %.4f, pressure %.3f",
                         t->temperature_configurational, t->pressure);

@@ -137,7 +137,8 @@ void mf_explain_scene(FILE *out, const struct simulation_setup *setup,
     } else {
         add_motion(&stages, setup);
         add_companions(&stages, setup);
-        add_list(&stages, setup);
+        if (setup->placement.count > 0)
+            add_list(&stages, setup);
         add_forces(&stages, setup);
     }
     add_interactions(&stages, setup);

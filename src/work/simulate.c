@@ -51,8 +51,7 @@ static enum status read_file(struct run *run, const char *file, const struct run
     if (measure.item)
         mf_json_finish(&measure);
     if (status == STATUS_OK)
-        status = mf_simulate_observables_read(&run->observables, &root,
-                                              run->scene.setup.placement.count < 2);
+        status = mf_simulate_observables_read(&run->observables, &root, &run->scene.setup);
     mf_json_finish(&root);
     TRY(mf_json_close(document, status));
     if (options->has_seed)

@@ -3,8 +3,16 @@
 
 #include "io/checkpoint.h"
 
+/// Whether what is always measured can be: g(r) without a word of it as far as forces reach.
+static bool is_usual(const struct observable *observable, const struct simulation_setup *setup) {
+    return observable->always && setup->placement.count >= 2 &&
+           (observable != &mf_rdf_observable || mf_simulation_range(setup) > 0);
+}
+
 enum status mf_simulate_observables_read(struct simulate_observables *observables,
-                                         struct json_object *root, bool lonely) {
+                                         struct json_object *root,
+                                         const struct simulation_setup *setup) {
+    const bool lonely = setup->placement.count < 2;
     *observables = (struct simulate_observables){0};
     struct observable_use *use = observables->use;
     for (size_t k = 0; mf_observables[k]; k++) {
@@ -12,7 +20,7 @@ enum status mf_simulate_observables_read(struct simulate_observables *observable
         struct json_object object = {0};
         if (observable->fields)
             object = mf_json_child(root, observable->name, false);
-        if (object.item == NULL && (!observable->always || lonely))
+        if (object.item == NULL && !is_usual(observable, setup))
             continue;
         if (lonely && !observable->of_solvent)
             mf_json_fault(root, observable->name, "there are fewer than two particles to measure");

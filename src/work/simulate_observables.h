@@ -13,7 +13,8 @@ struct simulate_observables {
 /// Read the objects of a scene file; faults go to its document. Fails: NO_MEMORY.
 /// @param[in] lonely  whether there are fewer than two particles, of which little can be measured
 enum status mf_simulate_observables_read(struct simulate_observables *observables,
-                                         struct json_object *root, bool lonely) MUST_USE;
+                                         struct json_object *root,
+                                         const struct simulation_setup *setup) MUST_USE;
 void mf_simulate_observables_clear(struct simulate_observables *observables);
 
 /// Write the settings as they were read.
