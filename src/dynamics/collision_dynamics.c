@@ -26,6 +26,10 @@ static const char *warning(const struct simulation_setup *setup) {
     if (parameters->particles_per_cell < 3)
         return "dynamics.particles_per_cell: below 3 many cells have nobody to collide with, and "
                "theory is far off";
+    if (parameters->walls == COLLISION_PLATES && setup->potential)
+        return "forces of pairs know no plates: beads nearer to both plates together than a cutoff "
+               "feel "
+               "each other through them";
     if (flows && parameters->walls == COLLISION_PLATES && setup->placement.count > 1)
         return "the flow carries the beads: their temperature, MSD, VACF and D have it in them; "
                "\"acceleration\" 0 is without";
@@ -80,18 +84,20 @@ static void kick(struct simulation *simulation) {
 /// x += Δt v, turned back by walls.
 static void drift(struct simulation *simulation) {
     static const double none[3] = {0};
-    const struct solvent *solvent = simulation->integrator_state;
+    struct solvent *solvent = simulation->integrator_state;
     struct particles *beads = &simulation->particles;
+    const double *masses = particles_masses(beads);
     for (size_t k = 0; k < beads->count; k++) {
-        double position[3] = {0}, velocity[3] = {0};
+        double position[3] = {0}, velocity[3] = {0}, impulse[3] = {0};
         for (int d = 0; d < beads->box.dimensions; d++) {
             position[d] = beads->position[d][k];
             velocity[d] = beads->velocity[d][k];
         }
-        mf_solvent_fly(solvent, position, velocity, none, simulation->setup.time_step, NULL);
+        mf_solvent_fly(solvent, position, velocity, none, simulation->setup.time_step, impulse);
         for (int d = 0; d < beads->box.dimensions; d++) {
             beads->position[d][k] = position[d];
             beads->velocity[d][k] = velocity[d];
+            solvent->given[d] += llrint((masses ? masses[k] : 1) * impulse[d] / SOLVENT_IMPULSE);
         }
     }
 }

@@ -40,12 +40,23 @@ static void fill(double *to, const double *from, double otherwise, size_t count)
         to[k] = from ? from[k] : otherwise;
 }
 
-/// They keep the temperature that they begin with, which is therefore exactly that of the scene.
-static void scale_velocities(struct particles *particles, double temperature) {
-    const double scale = sqrt(temperature / mf_particles_temperature(particles));
+/// They keep the energy that they begin with, which is therefore exactly that of the scene's
+/// temperature. Momentum, 0 at first, is kept along axes without walls alone.
+static enum status scale_velocities(struct particles *particles, int walls, double temperature) {
+    double degrees = (double)particles->box.dimensions * (double)particles->count;
+    for (int d = 0; d < particles->box.dimensions; d++)
+        degrees -= walls >> d & 1 ? 0 : 1;
+    const double energy = mf_particles_kinetic_energy(particles);
+    if (!(energy > 0))
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "particles.velocities: by chance nobody moves relative to the others; "
+            "another \"seed\" will do");
+    const double scale = sqrt(0.5 * degrees * temperature / energy);
     for (int d = 0; d < particles->box.dimensions; d++)
         for (size_t k = 0; k < particles->count; k++)
             particles->velocity[d][k] *= scale;
+    return STATUS_OK;
 }
 
 /// What a file puts beyond a wall has been wrapped into the box.
@@ -71,7 +82,7 @@ static enum status begin(struct simulation *simulation) {
     fill(radius, mf_particles_numbers(particles, "radius"), usual_radius, particles->count);
     fill(mass, particles_masses(particles), usual_mass, particles->count);
     if (simulation->velocities_drawn)
-        scale_velocities(particles, simulation->setup.temperature);
+        CHECK(scale_velocities(particles, walls, simulation->setup.temperature));
     if (simulation->setup.placement.kind != PLACEMENT_FILE)
         CHECK(mf_hard_start_part(particles, radius, walls));
     else

@@ -36,7 +36,9 @@ static enum status check_acceleration(const struct solvent *solvent) {
 /// The farthest that a particle flies in a step, but for one in a million.
 static double longest_flight(const struct solvent *solvent) {
     static const double deviations = 5;
-    return deviations * solvent->time * sqrt(solvent->temperature / solvent->parameters.mass);
+    const double *drift = solvent->parameters.drift;
+    return solvent->time * (deviations * sqrt(solvent->temperature / solvent->parameters.mass) +
+                            sqrt(drift[0] * drift[0] + drift[1] * drift[1] + drift[2] * drift[2]));
 }
 
 /// Walls and obstacle leave room, and nobody crosses what is between them twice.
@@ -58,11 +60,12 @@ static enum status check_room(const struct solvent *solvent) {
                                   "dynamics.obstacle_centre[%d]: with %g an obstacle of radius %g "
                                   "is outside the box of %g; say where it is",
                                   d, centre, radius, box->length[d]);
-        if (margin == 0 && !(2 * radius + flight < box->length[d]))
+        // Farther away, the nearest image of the obstacle may not be the one that is met.
+        if (margin == 0 && !(radius + flight < 0.5 * box->length[d]))
             return mf_status_fail(STATUS_BAD_INPUT,
-                                  "dynamics.obstacle_radius: %g leaves less room in the box of %g "
-                                  "than the %.3g that a particle flies between two collisions",
-                                  radius, box->length[d], flight);
+                                  "dynamics.obstacle_radius: %g, and the %.3g that a particle "
+                                  "flies between two collisions, are beyond half the box of %g",
+                                  radius, flight, box->length[d]);
     }
     return check_acceleration(solvent);
 }

@@ -104,7 +104,7 @@ void mf_scene_attributes_column(struct scene *scene, struct json_object *particl
         char range[64];
         source->range[0].minimum = fmin(source->range[0].minimum, values[row]);
         source->range[0].maximum = fmax(source->range[0].maximum, values[row]);
-        if (values[row] >= kind->minimum)
+        if (values[row] >= kind->minimum && values[row] <= kind->maximum)
             continue;
         mf_fields_range_text(kind, range, sizeof range);
         mf_json_fault(particles, "file", "%s:%zu: the %s %g is out of range; allowed: %s", file,

@@ -139,16 +139,22 @@ static double mean_of(const double *series, size_t samples) {
     return sum / (double)samples;
 }
 
+static void put_mean(struct json_writer *writer, const char *name, const double *series,
+                     size_t samples) {
+    char key[64];
+    double error = mf_statistics_correlated_error(series, samples, 1);
+    mf_statistics_forget_errors(&error, 1);
+    snprintf(key, sizeof key, "%s_error", name);
+    mf_json_put_number(writer, name, mean_of(series, samples));
+    mf_json_put_number(writer, key, error);
+}
+
 static void put(const void *state, const struct observable_results *results,
                 struct json_writer *writer) {
     const struct state *s = state;
     (void)results;
-    mf_json_put_number(writer, "cluster_size", mean_of(s->mean, s->samples));
-    mf_json_put_number(writer, "cluster_size_error",
-                       mf_statistics_correlated_error(s->mean, s->samples, 1));
-    mf_json_put_number(writer, "largest_cluster", mean_of(s->largest, s->samples));
-    mf_json_put_number(writer, "largest_cluster_error",
-                       mf_statistics_correlated_error(s->largest, s->samples, 1));
+    put_mean(writer, "cluster_size", s->mean, s->samples);
+    put_mean(writer, "largest_cluster", s->largest, s->samples);
 }
 
 /// Nanoseconds of an entry of the list.

@@ -60,6 +60,48 @@ struct collisions {
     double collisions; ///< in them
 };
 
+/// Degrees of freedom: momentum is kept along axes without walls.
+static double degrees_of_freedom(const struct hard_gas *gas) {
+    double degrees = (double)gas->dimensions * gas->count;
+    for (int d = 0; d < gas->dimensions; d++)
+        degrees -= gas->walls >> d & 1 ? 0 : 1;
+    return degrees;
+}
+
+/// Σ m v² relative to the drift, the mean velocity along axes without walls, which stays.
+static double kinetic(const struct hard_gas *gas, double drift[3]) {
+    double sum = 0, mass = 0, momentum[3] = {0};
+    for (int k = 0; k < gas->count; k++) {
+        const double m = gas->label[k].mass;
+        mass += m;
+        for (int d = 0; d < gas->dimensions; d++)
+            momentum[d] += m * gas->body[k].velocity[d];
+    }
+    for (int d = 0; d < gas->dimensions; d++)
+        drift[d] = gas->walls >> d & 1 ? 0 : momentum[d] / mass;
+    for (int k = 0; k < gas->count; k++)
+        for (int d = 0; d < gas->dimensions; d++)
+            sum += gas->label[k].mass * pow(gas->body[k].velocity[d] - drift[d], 2);
+    return sum;
+}
+
+/// Of the gas as it is, which is that of the scene unless a file gives the velocities.
+static double temperature_of(const struct hard_gas *gas) {
+    double drift[3];
+    return kinetic(gas, drift) / degrees_of_freedom(gas);
+}
+
+static double mean_speed(const struct hard_gas *gas, const double drift[3]) {
+    double sum = 0;
+    for (int k = 0; k < gas->count; k++) {
+        double square = 0;
+        for (int d = 0; d < gas->dimensions; d++)
+            square += pow(gas->body[k].velocity[d] - drift[d], 2);
+        sum += sqrt(square);
+    }
+    return sum / gas->count;
+}
+
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
     enum status status = STATUS_OK;
@@ -86,7 +128,7 @@ static enum status begin(void *state, const void *settings, const struct simulat
         mass[k] = gas->label[k].mass;
     }
     c->theory = mf_hard_theory(gas->dimensions, mf_box_volume(&simulation->setup.box),
-                               simulation->setup.temperature, radius, mass, c->particles);
+                               temperature_of(gas), radius, mass, c->particles);
 done:
     mf_memory_free(radius);
     mf_memory_free(mass);
@@ -109,42 +151,6 @@ static int64_t due(const void *state) {
 }
 
 // Sampling ----------------------------------------------------------------------------------------
-
-/// Degrees of freedom: momentum is kept along axes without walls.
-static double degrees_of_freedom(const struct hard_gas *gas) {
-    double degrees = (double)gas->dimensions * gas->count;
-    for (int d = 0; d < gas->dimensions; d++)
-        degrees -= gas->walls >> d & 1 ? 0 : 1;
-    return degrees;
-}
-
-/// Σ m v², and the momentum over the mass of all.
-static double kinetic(const struct hard_gas *gas, double drift[3]) {
-    double sum = 0, mass = 0, momentum[3] = {0};
-    for (int k = 0; k < gas->count; k++) {
-        const double m = gas->label[k].mass;
-        mass += m;
-        for (int d = 0; d < gas->dimensions; d++) {
-            const double v = gas->body[k].velocity[d];
-            sum += m * v * v;
-            momentum[d] += m * v;
-        }
-    }
-    for (int d = 0; d < gas->dimensions; d++)
-        drift[d] = momentum[d] / mass;
-    return sum;
-}
-
-static double mean_speed(const struct hard_gas *gas) {
-    double sum = 0;
-    for (int k = 0; k < gas->count; k++) {
-        double square = 0;
-        for (int d = 0; d < gas->dimensions; d++)
-            square += gas->body[k].velocity[d] * gas->body[k].velocity[d];
-        sum += sqrt(square);
-    }
-    return sum / gas->count;
-}
 
 /// Maxwell's distribution function of a speed in units of sqrt(k_B T/m).
 static double maxwell_share(int dimensions, double u) {
@@ -173,11 +179,11 @@ static void add_speeds(struct collisions *c, const struct hard_gas *gas, uint64_
         mass += gas->label[k].mass;
     for (int d = 0; d < gas->dimensions; d++)
         if (!(gas->walls >> d & 1))
-            shift[d] = normal[d] * sqrt(temperature / mass) - scale * drift[d];
+            shift[d] = normal[d] * sqrt(temperature / mass);
     for (int k = 0; k < gas->count; k++) {
         double own = 0;
         for (int d = 0; d < gas->dimensions; d++)
-            own += pow(scale * gas->body[k].velocity[d] + shift[d], 2);
+            own += pow(scale * (gas->body[k].velocity[d] - drift[d]) + shift[d], 2);
         const double u = sqrt(own * gas->label[k].mass / temperature);
         const double share = maxwell_share(gas->dimensions, u);
         const size_t bin = (size_t)(share * MAXWELL_BINS);
@@ -214,7 +220,7 @@ static enum status sample(void *state, struct simulation *simulation) {
             degrees / (dimensions * n) + (now->virial - c->last.virial) / (dimensions * unit);
         here[WALL_FACTOR * c->planned] = wall_sum(gas, &c->last) / unit;
         here[RATE * c->planned] = 2 * (double)(now->collisions - c->last.collisions) / (n * time);
-        here[SPEED * c->planned] = mean_speed(gas);
+        here[SPEED * c->planned] = mean_speed(gas, drift);
         add_speeds(c, gas, simulation->setup.seed, simulation->step);
         c->samples++;
     }

@@ -17,7 +17,8 @@ struct flow_field {
     struct simulation_setup setup; ///< with the parameters of the solvent
     struct collision_dynamics_parameters parameters;
     struct box box;
-    size_t bins[2], solvent;
+    size_t bins[2];
+    double mass;                ///< of the solvent and its beads
     double width[2], thickness; ///< of a bin; of the slice, 0 in two dimensions
     double every;               ///< steps between samples
     uint64_t samples, planned;
@@ -34,6 +35,15 @@ static const struct field fields[] = {
     FIELD_END,
 };
 
+/// Of all beads.
+static double mass_of(const struct particles *beads) {
+    const double *masses = particles_masses(beads);
+    double sum = 0;
+    for (size_t k = 0; k < beads->count; k++)
+        sum += masses ? masses[k] : 1;
+    return sum;
+}
+
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
     enum status status = STATUS_OK;
@@ -48,7 +58,7 @@ static enum status begin(void *state, const void *settings, const struct simulat
     f->parameters = solvent->parameters;
     f->setup.integrator_parameters = &f->parameters;
     f->box = solvent->box;
-    f->solvent = solvent->count;
+    f->mass = f->parameters.mass * (double)solvent->count + mass_of(&simulation->particles);
     for (int d = 0; d < 2; d++) {
         f->bins[d] = (size_t)fmin(fmax(1, rint(f->box.length[d] / given->spacing)), 1e4);
         f->width[d] = f->box.length[d] / (double)f->bins[d];
@@ -201,6 +211,7 @@ static double average(const double *values, size_t count, double *error) {
     for (size_t k = 0; k < count; k++)
         sum += values[k];
     *error = mf_statistics_correlated_error(values, count, 1);
+    mf_statistics_forget_errors(error, 1);
     return count > 0 ? sum / (double)count : NAN;
 }
 
@@ -214,7 +225,7 @@ struct flow_field_summary mf_flow_field_result(const void *state) {
     struct flow_field_summary found;
     found.velocity = average(f->velocity, (size_t)f->samples, &found.velocity_error);
     found.drag = average(f->drag + 1, intervals, &found.drag_error);
-    found.driving_force = f->parameters.mass * (double)f->solvent * f->parameters.acceleration[0];
+    found.driving_force = f->mass * f->parameters.acceleration[0];
     found.coefficient = found.drag / (0.5 * density * found.velocity * found.velocity * area);
     found.reynolds = 2 * radius * fabs(found.velocity) / mf_collision_dynamics_viscosity(&f->setup);
     return found;
@@ -227,8 +238,10 @@ static void put(const void *state, const struct observable_results *results,
     const struct flow_field_summary found = mf_flow_field_result(f);
     (void)results;
     mf_json_begin(writer, "flow_field");
-    mf_json_put_number(writer, "mean_velocity", found.velocity);
-    mf_json_put_number(writer, "mean_velocity_error", found.velocity_error);
+    if (f->parameters.wave_acceleration == 0) { // whose noise lets the whole solvent wander
+        mf_json_put_number(writer, "mean_velocity", found.velocity);
+        mf_json_put_number(writer, "mean_velocity_error", found.velocity_error);
+    }
     if (f->parameters.obstacle_radius > 0) {
         mf_json_put_number(writer, "drag", found.drag);
         mf_json_put_number(writer, "drag_error", found.drag_error);

@@ -52,6 +52,14 @@ static double mass_of(const struct particles *beads) {
     return mass && beads->count > 0 ? mass[0] : 1;
 }
 
+/// Whether nothing carries the beads along the axes across the flow, on which their D is measured.
+static bool beads_diffuse_alone(const struct collision_dynamics_parameters *parameters) {
+    bool alone = parameters->walls == COLLISION_NO_WALLS;
+    for (int d = 1; d < 3; d++)
+        alone = alone && parameters->acceleration[d] == 0 && parameters->drift[d] == 0;
+    return alone;
+}
+
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
     enum status status = STATUS_OK;
@@ -72,7 +80,7 @@ static enum status begin(void *state, const void *settings, const struct simulat
     p->blocks = (size_t)plan->samples / p->each;
     NEW_ARRAY(p->sums, p->blocks * p->bins);
     NEW_ARRAY(p->now, 4 * p->bins);
-    p->beads = p->parameters.walls == COLLISION_NO_WALLS ? simulation->particles.count : 0;
+    p->beads = beads_diffuse_alone(&p->parameters) ? simulation->particles.count : 0;
     p->bead_mass = mass_of(&simulation->particles);
     NEW_ARRAY(p->before, 2 * p->beads);
 done:
@@ -226,7 +234,7 @@ struct flow_profile_summary mf_flow_profile_result(const void *state) {
     const double schmidt = 1 / (all.slope * diffusion);
     const double error = mf_statistics_correlated_error(slopes, blocks, 1);
     const double base_error = mf_statistics_correlated_error(bases, blocks, 1);
-    const double top = peak * fabs(all.slope); // of the velocity
+    const double top = copysign(peak, p->parameters.acceleration[0]) * all.slope; // of the velocity
     return (struct flow_profile_summary){
         .viscosity = peak > 0 ? 1 / all.slope : NAN,
         .viscosity_error = error / (all.slope * all.slope),
@@ -235,7 +243,7 @@ struct flow_profile_summary mf_flow_profile_result(const void *state) {
         .schmidt = p->beads > 0 ? schmidt : NAN,
         .schmidt_error = schmidt * hypot(error / all.slope, diffusion_error / diffusion),
         .slip = all.base / top,
-        .slip_error = base_error / top,
+        .slip_error = base_error / fabs(top),
         .temperature = energy / degrees,
         .temperature_error = mf_statistics_correlated_error(temperatures, blocks, 1)};
 }
@@ -291,22 +299,27 @@ static void put(const void *state, const struct observable_results *results,
         mf_statistics_forget_errors(&found.viscosity_error, 1);
         mf_json_put_number(writer, "viscosity", found.viscosity);
         mf_json_put_number(writer, "viscosity_error", found.viscosity_error);
-        mf_json_put_number(writer, "viscosity_theory", mf_collision_dynamics_viscosity(&p->setup));
+        if (p->parameters.grid_shift)
+            mf_json_put_number(writer, "viscosity_theory",
+                               mf_collision_dynamics_viscosity(&p->setup));
     }
     if (is_driven(p) && p->parameters.walls == COLLISION_PLATES) {
+        mf_statistics_forget_errors(&found.slip_error, 1);
         mf_json_put_number(writer, "slip", found.slip);
         mf_json_put_number(writer, "slip_error", found.slip_error);
     }
     if (isfinite(found.diffusion)) {
         mf_json_put_number(writer, "bead_diffusion", found.diffusion);
         mf_json_put_number(writer, "bead_diffusion_error", found.diffusion_error);
-        mf_json_put_number(writer, "bead_diffusion_theory",
-                           mf_collision_dynamics_diffusion(&p->setup, p->bead_mass));
+        if (p->setup.potential == NULL && p->setup.interactions == 0)
+            mf_json_put_number(writer, "bead_diffusion_theory",
+                               mf_collision_dynamics_diffusion(&p->setup, p->bead_mass));
     }
     if (is_driven(p) && isfinite(found.schmidt)) {
         mf_json_put_number(writer, "schmidt_number", found.schmidt);
         mf_json_put_number(writer, "schmidt_number_error", found.schmidt_error);
     }
+    mf_statistics_forget_errors(&found.temperature_error, 1);
     mf_json_put_number(writer, "solvent_temperature", found.temperature);
     mf_json_put_number(writer, "solvent_temperature_error", found.temperature_error);
 }

@@ -32,6 +32,11 @@ static size_t complete_origins(const struct motion_plan *plan, size_t last) {
     return last < lags ? 0 : (last - lags) / (size_t)plan->origin_every + 1;
 }
 
+/// Without velocities, and for beads in a solvent, the momentum of the particles is not conserved.
+static bool keeps_momentum(const struct simulation_setup *setup) {
+    return !simulation_is_overdamped(setup) && setup->integrator->companions == NULL;
+}
+
 enum status mf_motion_init(struct motion *motion, const struct motion_plan *plan,
                            const struct simulation *simulation, int64_t begin, int64_t steps) {
     enum status status = STATUS_OK;
@@ -40,6 +45,7 @@ enum status mf_motion_init(struct motion *motion, const struct motion_plan *plan
                               .count = simulation->particles.count,
                               .time_step = simulation->setup.time_step,
                               .flies = !simulation_is_overdamped(&simulation->setup),
+                              .together = keeps_momentum(&simulation->setup),
                               .begin = begin,
                               .slots = (size_t)(plan->lags / plan->origin_every + 1)};
     const size_t origins = complete_origins(plan, (size_t)(steps / plan->every));
@@ -106,8 +112,8 @@ static double *gather_angles(struct motion *motion, const struct particles *part
     return angles;
 }
 
-/// Unwrapped positions and velocities, by id, relative to those of the centre of mass. Without
-/// velocities no momentum is conserved: the centre of mass diffuses, too, and its share stays.
+/// Unwrapped positions and velocities, by id, relative to those of the centre of mass where
+/// momentum is conserved. Where it is not, the centre of mass diffuses, too, and its share stays.
 static void gather(struct motion *motion, const struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
     const struct integrator *integrator = simulation->setup.integrator;
@@ -120,7 +126,7 @@ static void gather(struct motion *motion, const struct simulation *simulation) {
             x[id] = particles->position[d][k] + particles->image[d][k] * particles->box.length[d];
             v[id] = particles->velocity[d][k];
         }
-        if (motion->flies) {
+        if (motion->together) {
             subtract_mean(particles, x);
             subtract_mean(particles, v);
         }

@@ -36,7 +36,8 @@ struct motion {
     int dimensions;
     size_t count; ///< of particles
     double time_step;
-    bool flies;    ///< has velocities, and a momentum that is conserved
+    bool flies;    ///< has velocities
+    bool together; ///< momentum is conserved: displacements are relative to the centre of mass
     bool polar;    ///< polarities stand in the place of velocities (observe/polarity.h)
     int64_t begin; ///< step of the first sample
     size_t blocks; ///< of time origins, for the errors

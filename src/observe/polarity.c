@@ -67,6 +67,9 @@ static struct law fit_law(const struct displacements *curve) {
         else
             left = a;
     }
+    // At an end of the range the curve says no more than that D_r is beyond it.
+    if (!(log(best.turning) > low && log(best.turning) < high))
+        best = (struct law){.diffusion = NAN, .square_speed = NAN, .turning = NAN};
     return best;
 }
 
@@ -85,7 +88,7 @@ static void take_curve(const struct motion *motion, size_t blocks, size_t withou
 }
 
 static void find_numbers(const struct law *law, double number[3]) {
-    number[0] = sqrt(fmax(0, law->square_speed));
+    number[0] = isnan(law->turning) ? NAN : sqrt(fmax(0, law->square_speed));
     number[1] = law->turning;
     number[2] = law->diffusion + law->square_speed / (2 * law->turning);
 }

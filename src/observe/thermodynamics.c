@@ -171,11 +171,13 @@ enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary
                                     const struct simulation_setup *setup) {
     const struct thermodynamics_summary *s = summary;
     const bool flies = !simulation_is_overdamped(setup);
+    // Walls and obstacles of a solvent push beads by no force that the positions would tell of.
+    const bool positions = !isnan(s->temperature_configurational) && !setup->integrator->companions;
     const double wanted = simulation_holds_temperature(setup) ? setup->temperature : s->temperature;
     if (s->blocks < LEAST_BLOCKS || !mf_simulation_is_thermal(setup) || setup->placement.count < 2)
         return STATUS_OK;
     if ((!flies || agrees(s->temperature, s->temperature_error, wanted)) &&
-        (isnan(s->temperature_configurational) ||
+        (!positions ||
          (agrees(s->temperature_configurational, s->temperature_configurational_error, wanted) &&
           (flies || !is_absurd(s->temperature_configurational, wanted)))))
         return STATUS_OK;

@@ -103,7 +103,7 @@ static void put(const void *state, const struct observable_results *results,
     put_error(writer, "potential_energy_error", &s, s.potential_energy_error);
     mf_json_put_number(writer, "pressure", s.pressure);
     put_error(writer, "pressure_error", &s, s.pressure_error);
-    if (!simulation_holds_temperature(results->setup))
+    if (!simulation_holds_temperature(results->setup) && !results->setup->integrator->companions)
         mf_json_put_number(writer, "energy_drift", mf_thermodynamics_energy_drift(state));
     mf_units_put(results->units, writer, s.potential_energy, s.pressure);
 }

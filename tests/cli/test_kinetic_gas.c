@@ -2,12 +2,14 @@
 //
 // Hard discs and spheres from outside: what a scene gives, bits through restarts and threads, and
 // what is refused.
+#include "base/rng.h"
 #include "shared/is_close.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
 
+#include <math.h>
 #include <stdio.h>
 
 static const char scene[] =
@@ -130,6 +132,70 @@ static void test_kinetic_gas_refuses_with_file_and_key(void **state) {
     }
 }
 
+/// A square lattice of 36 discs in a box of 12, whose velocities are normal but for a drift.
+static void write_discs(struct temporary_folder *folder, double drift) {
+    static char text[8192];
+    int length = 0;
+    for (uint32_t k = 0; k < 36; k++) {
+        double normal[4];
+        mf_rng_normal4(mf_rng_philox(7, RNG_VELOCITIES, k, 0, 0), normal);
+        length += snprintf(text + length, sizeof text - (size_t)length, "%g %g %.17g %.17g\n",
+                           1 + 2.0 * (k % 6), 1 + 2.0 * (k / 6), normal[0] + drift, normal[1]);
+    }
+    write_text(folder, "discs.txt", text);
+}
+
+#define DISCS(walls)                                                                               \
+    "{\"dimensions\": 2, \"box\": [12, 12], \"time_step\": 0.2,\n"                                 \
+    "\"particles\": {\"count\": 36, \"placement\": \"file\", \"file\": \"discs.txt\", "            \
+    "\"radius\": "                                                                                 \
+    "0.7},\n"                                                                                      \
+    "\"dynamics\": {\"integrator\": \"event-driven\", \"walls\": \"" walls "\"},\n"                \
+    "\"collisions\": {}, \"measure\": {\"equilibration\": 1, \"samples\": 10, \"every\": 1}}\n"
+
+/// What all particles have in common is no heat, no pressure and no speed of theirs.
+static void test_kinetic_gas_is_the_same_when_it_drifts(void **state) {
+    static const char *const same[] = {
+        "compressibility_factor", "collision_rate", "collision_rate_theory",
+        "mean_free_path",         "temperature",    "pressure"};
+    static struct run_program_result result;
+    write_text(*state, "scene.json", DISCS("none"));
+    for (int drift = 0; drift < 2; drift++) {
+        write_discs(*state, 5 * drift);
+        RUN_PROGRAM(&result, "simulate", "scene.json", "-o", drift ? "drifts" : "rests");
+        run_program_assert_code(&result, 0);
+    }
+    for (size_t k = 0; k < sizeof same / sizeof *same; k++)
+        assert_close(results_number("drifts/summary.json", same[k]),
+                     results_number("rests/summary.json", same[k]), 1e-6);
+    // Theory is for the temperature of these velocities, not for that of the scene.
+    const double temperature = results_number("rests/summary.json", "temperature");
+    assert_true(fabs(temperature - 1) > 0.02);
+}
+
+/// Positions alone: velocities are drawn, and have the temperature of the scene exactly, which is
+/// Σ m v²/(d N) where walls keep no momentum.
+static void test_kinetic_gas_from_places_has_the_temperature_of_the_scene(void **state) {
+    static struct run_program_result result;
+    static char text[4096];
+    int length = 0;
+    for (int k = 0; k < 36; k++)
+        length += snprintf(text + length, sizeof text - (size_t)length, "%g %g\n",
+                           1 + 2.0 * (k % 6), 1 + 2.0 * (k / 6));
+    write_text(*state, "discs.txt", text);
+    write_text(*state, "scene.json", DISCS("none"));
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    assert_close(results_number("out/summary.json", "temperature"), 1, 1e-12);
+    char outside[sizeof text + 1];
+    snprintf(outside, sizeof outside, "-%s", text); // the first disc is at −1
+    write_text(*state, "outside.txt", outside);
+    small_inputs_write(*state, "scene.json", DISCS("xy"), "discs.txt", "outside.txt");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "none");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "beyond a wall");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_kinetic_gas_goes_on_with_the_same_bits,
@@ -138,6 +204,11 @@ int main(void) {
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_kinetic_gas_explains_and_describes_itself,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_kinetic_gas_is_the_same_when_it_drifts,
+                                        small_inputs_enter_without_gnuplot, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(
+            test_kinetic_gas_from_places_has_the_temperature_of_the_scene,
+            small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_kinetic_gas_refuses_with_file_and_key,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
     };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Scenes of collision dynamics from outside: results, the same bits, restarts, what is refused.
+#include "shared/is_close.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
@@ -54,6 +55,26 @@ static void test_a_flow_tells_its_viscosity_and_whether_it_has_settled(void **st
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "early");
     run_program_assert_code(&result, 0);
     assert_contains(result.err, "has not settled");
+}
+
+/// Beads in a solvent do not keep their momentum: what they do together is their motion, too.
+static void test_beads_that_drift_with_the_solvent_move(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(
+        *state, "scene.json",
+        "{\"dimensions\": 2, \"box\": [20, 20], \"particles\": {\"count\": 4}, \"time_step\": "
+        "0.1,\n"
+        "\"dynamics\": {\"integrator\": \"collision-dynamics\", \"drift\": [3, 0]},\n"
+        "\"motion\": {\"every\": 5, \"lags\": 10}, \"flow_profile\": {},\n"
+        "\"measure\": {\"equilibration\": 200, \"samples\": 40, \"every\": 5}}\n",
+        NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    // MSD = (3 t)² and its slope over 4 at t of 2.5 to 5: 2 · 9 · 3.75/4
+    assert_close(results_number("out/summary.json", "motion.diffusion_msd"), 16.9, 4);
+    // … but not across the drift, where beads diffuse.
+    assert_true(results_number("out/summary.json", "bead_diffusion") < 0.5);
+    assert_null(strstr(result.err, "by the positions"));
 }
 
 static void test_figures_of_flow_are_drawn(void **state) {
@@ -177,6 +198,7 @@ int main(void) {
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
     const struct CMUnitTest tests[] = {
         TEST(test_simulate_measures_a_solvent_without_beads),
+        TEST(test_beads_that_drift_with_the_solvent_move),
         TEST(test_a_flow_tells_its_viscosity_and_whether_it_has_settled),
         cmocka_unit_test_setup_teardown(test_figures_of_flow_are_drawn, small_inputs_enter,
                                         small_inputs_leave),
