@@ -202,7 +202,7 @@ static struct collision_dynamics_parameters with_walls(int thermostat) {
     struct collision_dynamics_parameters parameters = plain;
     parameters.walls = COLLISION_PLATES;
     parameters.acceleration[0] = 0.02;
-    parameters.obstacle_radius = 1.3;
+    parameters.obstacle_radius = 1.1;
     parameters.obstacle_centre[0] = 0.4; // across the periodic boundary
     parameters.obstacle_centre[1] = 3.1;
     parameters.obstacle_centre[2] = 2;
@@ -219,7 +219,7 @@ static void test_particles_stay_outside_walls_and_obstacle(void **state) {
         struct simulation simulation;
         assert_ok(mf_simulation_init(&simulation, &setup, NULL));
         const struct solvent *solvent = mf_collision_dynamics_solvent(&simulation);
-        const double obstacle = dimensions == 2 ? M_PI * 1.69 : 4 * M_PI / 3 * 1.3 * 1.69;
+        const double obstacle = dimensions == 2 ? M_PI * 1.21 : 4 * M_PI / 3 * 1.1 * 1.21;
         const double room = 48 * (dimensions == 3 ? 5 : 1) - obstacle;
         assert_int_equal(solvent->count, (size_t)rint(6 * room));
         for (int step = 0; step < 100; step++) {
@@ -233,7 +233,7 @@ static void test_particles_stay_outside_walls_and_obstacle(void **state) {
                     assert_true(x >= -1e-12 && x <= length);
                     square += pow(d == 1 ? away : away - length * rint(away / length), 2);
                 }
-                assert_true(sqrt(square) >= 1.3 - 1e-9);
+                assert_true(sqrt(square) >= 1.1 - 1e-9);
             }
         }
         assert_true(solvent->given[0] != 0);
@@ -347,7 +347,7 @@ static void test_solvent_refuses_what_has_no_sense(void **state) {
     parameters = with_walls(0);
     parameters.obstacle_radius = 4;
     parameters.walls = COLLISION_NO_WALLS;
-    assert_refused(&parameters, 0.1, "dynamics.obstacle_radius: 4 leaves less room");
+    assert_refused(&parameters, 0.1, "dynamics.obstacle_radius: 4, and the");
     parameters = with_walls(0);
     parameters.obstacle_radius = 0;
     assert_refused(&parameters, 3, "crosses the channel of 6 twice");
