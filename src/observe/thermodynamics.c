@@ -174,7 +174,7 @@ enum status mf_thermodynamics_judge(const struct thermodynamics_summary *summary
     // Walls and obstacles of a solvent push beads by no force that the positions would tell of.
     const bool positions = !isnan(s->temperature_configurational) && !setup->integrator->companions;
     const double wanted = simulation_holds_temperature(setup) ? setup->temperature : s->temperature;
-    const bool nobody = flies && isnan(s->temperature); // fewer than two particles
+    const bool nobody = setup->integrator->companions && isnan(s->temperature); // a solvent alone
     if (s->blocks < LEAST_BLOCKS || nobody || !mf_simulation_is_thermal(setup))
         return STATUS_OK;
     if ((!flies || agrees(s->temperature, s->temperature_error, wanted)) &&
