@@ -225,7 +225,7 @@ static enum status choose_friction(struct choice *c) {
 
 /// `auto`, as exact as the target is, in a system that is large enough for the range.
 static enum status choose_method(struct choice *c) {
-    static const double least_precision = 0.001, most_precision = 0.004;
+    static const double least_precision = 0.0015, most_precision = 0.004;
     static const double least = 700, margin = 2.1;
     const double particles =
         fmin(c->count, ceil(fmax(least, c->density * pow(margin * c->range, c->dimensions))));

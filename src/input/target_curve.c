@@ -6,6 +6,7 @@
 #include "io/data_table.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #define CURVE(name) .offset = offsetof(struct target_curve_parameters, name)
 #define COLUMN .maximum = 1000, .unit = ""
@@ -13,18 +14,19 @@
     {"value_column",                                                                               \
      FIELD_INTEGER,                                                                                \
      CURVE(value_column),                                                                          \
-     .initial = 2,                                                                                 \
-     .minimum = 1,                                                                                 \
+     .initial = 0,                                                                                 \
+     .minimum = 0,                                                                                 \
      COLUMN,                                                                                       \
-     .help = "number of the column with the values"},                                              \
+     .help =                                                                                       \
+         "number of the column with the values; 0: the one that is called as the target, else 2"}, \
         {"error_column",                                                                           \
          FIELD_INTEGER,                                                                            \
          CURVE(error_column),                                                                      \
          .initial = -1,                                                                            \
          .minimum = -1,                                                                            \
          COLUMN,                                                                                   \
-         .help = "number of the column with their standard errors; 0: none; -1: 3 if there are "   \
-                 "so many columns, else none"},                                                    \
+         .help = "number of the column with their standard errors; 0: none; -1: the one that is "  \
+                 "called as the target with \"_error\", else 3 if there are so many columns"},     \
         FIELD_END
 
 const struct field mf_target_curve_time_fields[] = {
@@ -96,29 +98,45 @@ static enum status check_points(struct target_curve *curve, enum observable_form
     return check_times(curve, table);
 }
 
-static enum status load(struct target_curve *curve, enum observable_form form,
+/// Columns that the file does not number are found by their names, as in tables that `mesofit
+/// simulate` writes.
+static enum status read_table(const struct target_curve_parameters *p, const char *name,
+                              struct data_table *table, int64_t *value, int64_t *error) {
+    enum { USUAL = 2 };
+    char error_name[64];
+    const int64_t least = p->value_column > 0 ? p->value_column : USUAL;
+    TRY(mf_data_table_read(table, p->file, (size_t)(p->x_column > least ? p->x_column : least)));
+    snprintf(error_name, sizeof error_name, "%s_error", name);
+    const int64_t named = (int64_t)mf_data_table_find(table, name),
+                  error_named = (int64_t)mf_data_table_find(table, error_name);
+    *value = p->value_column > 0 ? p->value_column : named > 0 ? named : USUAL;
+    const bool by_name = p->error_column < 0 && error_named > 0;
+    return mf_target_rdf_error_column(by_name ? error_named : p->error_column, p->x_column, *value,
+                                      table, p->file, error);
+}
+
+static enum status load(struct target_curve *curve, enum observable_form form, const char *name,
                         struct data_table *table) {
     enum status status = STATUS_OK;
     const struct target_curve_parameters *p = &curve->parameters;
-    const int64_t least = p->x_column > p->value_column ? p->x_column : p->value_column;
-    int64_t error_column;
-    CHECK(mf_data_table_read(table, p->file, (size_t)least));
-    CHECK(mf_target_rdf_error_column(p->error_column, p->x_column, p->value_column, table, p->file,
-                                     &error_column));
+    int64_t value_column, error_column;
+    CHECK(read_table(p, name, table, &value_column, &error_column));
     CHECK(check_points(curve, form, table));
     NEW_ARRAY(curve->x, table->rows);
     NEW_ARRAY(curve->value, table->rows);
     NEW_ARRAY(curve->error, table->rows);
     for (size_t k = 0; k < table->rows; k++) {
         curve->x[k] = cell(table, k, p->x_column);
-        curve->value[k] = cell(table, k, p->value_column);
+        curve->value[k] = cell(table, k, value_column);
         curve->error[k] = error_column ? cell(table, k, error_column) : 0;
-        if (!(curve->error[k] >= 0)) {
-            status =
-                mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %lld: %g is not a standard error",
-                               p->file, table->line[k], (long long)error_column, curve->error[k]);
-            goto done;
-        }
+        const bool known = isfinite(curve->value[k]);
+        if (known && curve->error[k] >= 0)
+            continue;
+        status = mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %lld: %g is not a %s", p->file,
+                                table->line[k], (long long)(known ? error_column : value_column),
+                                known ? curve->error[k] : curve->value[k],
+                                known ? "standard error" : "finite number");
+        goto done;
     }
     curve->points = table->rows;
 done:
@@ -126,14 +144,14 @@ done:
 }
 
 enum status mf_target_curve_read(struct target_curve *curve, enum observable_form form,
-                                 struct json_object *object) {
+                                 const char *name, struct json_object *object) {
     const size_t faults = mf_json_fault_count(object->document);
     mf_json_fields(object, mf_target_curve_fields_of(form), &curve->parameters);
     mf_json_finish(object);
     if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
     struct data_table table = {0};
-    const enum status status = load(curve, form, &table);
+    const enum status status = load(curve, form, name, &table);
     mf_data_table_clear(&table);
     if (status == STATUS_NO_MEMORY)
         return status;

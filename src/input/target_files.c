@@ -121,7 +121,7 @@ static enum status read_kind(struct target_files *files, int number, struct json
     if (number == TARGET_ETD)
         return mf_target_etd_read(&files->etd, object);
     if (form != OBSERVABLE_NUMBER)
-        return mf_target_curve_read(&files->curve[number], form, object);
+        return mf_target_curve_read(&files->curve[number], form, kind.target->name, object);
     if (number == TARGET_DIFFUSION)
         mf_json_fields(object, mf_target_curve_diffusion_fields, &files->number[number]);
     mf_json_fields(object, mf_target_curve_number_fields, &files->number[number]);
