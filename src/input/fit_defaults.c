@@ -52,10 +52,12 @@ static bool lacks(const struct json_object *root, const char *path, const char *
     return !mf_json_has(&object, key);
 }
 
-/// A writer inside the objects of a path.
-static struct json_writer *writer_at(const char *path) {
+/// A writer inside the objects of a path, in units of the file, NULL where it has none.
+static struct json_writer *writer_at(const char *path, const struct units *units) {
     char name[JSON_PATH_SIZE], *rest;
     struct json_writer *writer = mf_json_writer_create();
+    if (writer && units)
+        mf_json_writer_speak(writer, units);
     snprintf(name, sizeof name, "%s", path);
     for (char *key = strtok_r(name, ".", &rest); writer && key; key = strtok_r(NULL, ".", &rest))
         mf_json_begin(writer, key);
@@ -70,16 +72,17 @@ static enum status put_in(struct json_writer *writer, const struct json_object *
 
 static enum status give_text(const struct json_object *root, const char *path, const char *key,
                              const char *text) {
-    struct json_writer *writer = writer_at(path);
+    struct json_writer *writer = writer_at(path, NULL);
     if (writer)
         mf_json_put_text(writer, key, text);
     return put_in(writer, root);
 }
 
-/// A number or whole number of a field table, in its type.
-static enum status give(const struct json_object *root, const char *path,
-                        const struct field *fields, const char *key, double value) {
-    struct json_writer *writer = writer_at(path);
+/// A number or whole number of a field table, in its type, from a reduced one.
+static enum status give_number(const struct json_object *root, const struct units *units,
+                               const char *path, const struct field *fields, const char *key,
+                               double value) {
+    struct json_writer *writer = writer_at(path, units);
     struct field own[2] = {{.name = key}, FIELD_END};
     while (strcmp(fields->name, key) != 0)
         fields++;
@@ -92,6 +95,13 @@ static enum status give(const struct json_object *root, const char *path,
     return put_in(writer, root);
 }
 
+static enum status give(const struct choice *c, const char *path, const struct field *fields,
+                        const char *key, double value) {
+    const struct units *units = &c->read->scene.units;
+    return give_number(c->root, units->system == UNITS_REDUCED ? NULL : units, path, fields, key,
+                       value);
+}
+
 bool mf_fit_defaults_wanted(const struct json_object *root) {
     return root->item && lacks(root, "", "method");
 }
@@ -101,7 +111,8 @@ enum status mf_fit_defaults_make_readable(struct json_object *root) {
     TRY(give_text(root, "method", "name", mf_automatic.name));
     if (lacks(root, "scene", "density") || !lacks(root, "scene.particles", "types"))
         return STATUS_OK;
-    return give(root, "scene.particles", mf_placement_count_fields, "count", ANY_COUNT);
+    return give_number(root, NULL, "scene.particles", mf_placement_count_fields, "count",
+                       ANY_COUNT);
 }
 
 // The choices -------------------------------------------------------------------------------------
@@ -125,7 +136,7 @@ static enum status choose_cutoff(struct choice *c) {
     const struct composition *composition = &c->read->scene.setup.composition;
     const char *key;
     if (!composition_is_mixed(composition) && lacks(c->root, "target.rdf", "cutoff")) {
-        TRY(give(c->root, "target.rdf", mf_target_rdf_fields, "cutoff", cutoff));
+        TRY(give(c, "target.rdf", mf_target_rdf_fields, "cutoff", cutoff));
         c->range = cutoff;
     }
     for (size_t n = 0; composition_is_mixed(composition) && (key = mf_json_key(&rdf, n)); n++) {
@@ -133,7 +144,7 @@ static enum status choose_cutoff(struct choice *c) {
         snprintf(path, sizeof path, "target.rdf.%.64s", key);
         if (mf_composition_find_pair(composition, key) < 0 || !lacks(c->root, path, "cutoff"))
             continue;
-        TRY(give(c->root, path, mf_target_rdf_fields, "cutoff", cutoff));
+        TRY(give(c, path, mf_target_rdf_fields, "cutoff", cutoff));
         c->range = cutoff;
     }
     if (c->range == cutoff)
@@ -153,7 +164,7 @@ static enum status choose_count(struct choice *c) {
     say(c, "%.0f particles: %s", c->count,
         c->count > least ? "the box is 2.2 times as wide as the range of the targets"
                          : "enough for the statistics, and the box is wider than twice the range");
-    return give(c->root, "scene.particles", mf_placement_count_fields, "count", c->count);
+    return give(c, "scene.particles", mf_placement_count_fields, "count", c->count);
 }
 
 /// The next lower of 1, 1.2, 1.5, 2, … times a power of 10.
@@ -198,7 +209,7 @@ static enum status choose_time_step(struct choice *c) {
     else
         say(c, "time step %.4g: beads move a fiftieth of the way to their neighbours in it",
             c->time_step);
-    return give(c->root, "scene", mf_scene_fields, "time_step", c->time_step);
+    return give(c, "scene", mf_scene_fields, "time_step", c->time_step);
 }
 
 /// Friction between neighbours that takes a bead's velocity in the time in which it would reach
@@ -219,8 +230,8 @@ static enum status choose_friction(struct choice *c) {
         "its velocity in %.2g tau",
         sigma, cutoff, 1 / (rate * sigma * sigma));
     TRY(give_text(c->root, "scene.dissipative", "law", mf_formula_power_omega.name));
-    TRY(give(c->root, "scene.dissipative", fields, "sigma", sigma));
-    return give(c->root, "scene.dissipative", fields, "cutoff", cutoff);
+    TRY(give(c, "scene.dissipative", fields, "sigma", sigma));
+    return give(c, "scene.dissipative", fields, "cutoff", cutoff);
 }
 
 /// `auto`, as exact as the target is, in a system that is large enough for the range.
@@ -235,8 +246,8 @@ static enum status choose_method(struct choice *c) {
         "%.2g, as the target is (%.2g)",
         mf_automatic.name, particles, c->precision, c->scales.noise);
     TRY(give_text(c->root, "method", "name", mf_automatic.name));
-    TRY(give(c->root, "method", mf_inversion_fields, "particles", particles));
-    return give(c->root, "method", mf_inversion_fields, "precision", c->precision);
+    TRY(give(c, "method", mf_inversion_fields, "particles", particles));
+    return give(c, "method", mf_inversion_fields, "precision", c->precision);
 }
 
 /// rms of the errors of g that one sample leaves, if pairs are independent.
@@ -279,10 +290,10 @@ static enum status choose_verification(struct choice *c) {
             "verification: %d simulations of %.0f samples, so that the difference of g is known "
             "within a tenth of it",
             REPLICAS, samples);
-    TRY(give(c->root, path, mf_verify_fields, "replicas", REPLICAS));
-    TRY(give(c->root, path, mf_verify_fields, "equilibration", begin));
-    TRY(give(c->root, path, mf_verify_fields, "every", every));
-    return give(c->root, path, mf_verify_fields, "samples", samples);
+    TRY(give(c, path, mf_verify_fields, "replicas", REPLICAS));
+    TRY(give(c, path, mf_verify_fields, "equilibration", begin));
+    TRY(give(c, path, mf_verify_fields, "every", every));
+    return give(c, path, mf_verify_fields, "samples", samples);
 }
 
 enum status mf_fit_defaults_choose(const struct fit_file *read, struct json_object *root,
