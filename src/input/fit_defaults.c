@@ -23,6 +23,7 @@ struct choice {
     double count;     ///< beads of a simulation
     double time_step; ///< [τ]
     double precision; ///< of the method, of g
+    bool finds[UNKNOWNS];
 };
 
 __attribute__((format(printf, 2, 3))) static void say(struct choice *c, const char *format, ...) {
@@ -102,6 +103,19 @@ static enum status give(const struct choice *c, const char *path, const struct f
                        value);
 }
 
+static enum status give_empty(const struct json_object *root, const char *path) {
+    return put_in(writer_at(path, NULL), root);
+}
+
+/// ω = σ (1 − r/cutoff).
+static enum status give_power(const struct choice *c, const char *path, double sigma,
+                              double cutoff) {
+    const struct curve_family *family = &mf_formula_power_omega;
+    TRY(give_text(c->root, path, "law", family->name));
+    TRY(give(c, path, family->fields, "sigma", sigma));
+    return give(c, path, family->fields, "cutoff", cutoff);
+}
+
 bool mf_fit_defaults_wanted(const struct json_object *root) {
     return root->item && lacks(root, "", "method");
 }
@@ -161,9 +175,12 @@ static enum status choose_count(struct choice *c) {
     const double range = fmax(c->range, c->read->files.etd.grid.r_maximum);
     const double needed = c->density * pow(margin * range, c->dimensions);
     c->count = ceil(fmax(least, needed));
-    say(c, "%.0f particles: %s", c->count,
+    say(c, "%.0f particles: %s%s", c->count,
         c->count > least ? "the box is 2.2 times as wide as the range of the targets"
-                         : "enough for the statistics, and the box is wider than twice the range");
+                         : "enough for the statistics, and the box is wider than twice the range",
+        c->read->files.rdf[0].parameters.particles > 0
+            ? ""
+            : "; g(r) is taken for that of as many, since its \"particles\" are not said");
     return give(c, "scene.particles", mf_placement_count_fields, "count", c->count);
 }
 
@@ -212,42 +229,127 @@ static enum status choose_time_step(struct choice *c) {
     return give(c, "scene", mf_scene_fields, "time_step", c->time_step);
 }
 
+/// Whether something is to be fitted that friction decides.
+static bool fits_motion(const struct target_files *files) {
+    bool fits = false;
+    for (int kind = TARGET_ETD; kind <= TARGET_DIFFUSION; kind++)
+        fits = fits || (files->given[kind] && files->use[kind].fitted);
+    return fits;
+}
+
+/// The potential, and ω if what is to be fitted moves and no friction is given.
+static enum status choose_unknowns(struct choice *c) {
+    static const char *const path = "unknowns";
+    const bool moves = fits_motion(&c->read->files) && lacks(c->root, "scene", "dissipative") &&
+                       lacks(c->root, "scene", "conservative");
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        c->finds[kind] = c->read->unknown[kind].wanted;
+    if (!lacks(c->root, "", path) || !moves)
+        return STATUS_OK;
+    c->finds[UNKNOWN_OMEGA] = true;
+    say(c, "unknowns: the potential and, since targets that move are to be fitted, omega");
+    TRY(give_empty(c->root, "unknowns.potential"));
+    return give_empty(c->root, "unknowns.omega");
+}
+
+/// ω as a spline from where pairs begin to the end of the second shell, up to several times the
+/// friction that would be chosen of its own.
+static enum status choose_omega(struct choice *c) {
+    static const char *const path = "unknowns.omega";
+    static const double shells = 2, beyond_etd = 1.3, most = 4;
+    enum { COEFFICIENTS = 8 };
+    if (!c->finds[UNKNOWN_OMEGA] || !lacks(c->root, path, "cutoff") ||
+        !lacks(c->root, path, "maximum"))
+        return STATUS_OK;
+    const double cutoff = fmin(
+        c->range, fmax(shells * c->scales.shell, beyond_etd * c->read->files.etd.grid.r_maximum));
+    const double rate = mf_fit_scales_friction(&c->read->files, c->density, c->dimensions, cutoff);
+    const double sigma = sqrt(1 / (rate * c->crossing));
+    say(c, "omega: %d coefficients from 0 to %.3g, between r = %.3g and %.3g, the second shell",
+        COEFFICIENTS, most * sigma, c->scales.core, cutoff);
+    TRY(give(c, path, mf_inverse_omega_fields, "cutoff", cutoff));
+    TRY(give(c, path, mf_inverse_omega_fields, "inner_cutoff", c->scales.core));
+    TRY(give(c, path, mf_inverse_omega_fields, "maximum", most * sigma));
+    TRY(give(c, path, mf_inverse_omega_fields, "coefficients", COEFFICIENTS));
+    TRY(give_text(c->root, path, "curve", "bspline"));
+    return give_power(c, "unknowns.omega.start", sigma, cutoff);
+}
+
 /// Friction between neighbours that takes a bead's velocity in the time in which it would reach
 /// them: it holds the temperature against what the integrator heats, and leaves g(r) as it is.
 static enum status choose_friction(struct choice *c) {
     static const double strongest = 0.1;
     const struct simulation_setup *setup = &c->read->scene.setup;
-    if (!lacks(c->root, "scene", "dissipative") || !lacks(c->root, "scene", "dynamics") ||
-        setup->attribute[ATTRIBUTES_MASS].ranges > 0)
+    if (c->finds[UNKNOWN_OMEGA] || !lacks(c->root, "scene", "dissipative") ||
+        !lacks(c->root, "scene", "dynamics") || setup->attribute[ATTRIBUTES_MASS].ranges > 0)
         return STATUS_OK;
     const double cutoff = c->scales.shell;
     const double rate = mf_fit_scales_friction(&c->read->files, c->density, c->dimensions, cutoff);
     // In a gas collisions are rare, and no pair may lose more than a tenth of its velocity a step.
     const double sigma = sqrt(fmin(1 / (rate * c->crossing), strongest / c->time_step));
-    const struct field *fields = mf_formula_power_omega.fields;
     say(c,
         "friction omega = %.3g (1 - r/%.3g): up to the end of the first shell, and a bead forgets "
         "its velocity in %.2g tau",
         sigma, cutoff, 1 / (rate * sigma * sigma));
-    TRY(give_text(c->root, "scene.dissipative", "law", mf_formula_power_omega.name));
-    TRY(give(c, "scene.dissipative", fields, "sigma", sigma));
-    return give(c, "scene.dissipative", fields, "cutoff", cutoff);
+    return give_power(c, "scene.dissipative", sigma, cutoff);
 }
 
-/// `auto`, as exact as the target is, in a system that is large enough for the range.
-static enum status choose_method(struct choice *c) {
+/// As exact as the target is, in a system that is large enough for the range.
+static double choose_particles(struct choice *c) {
     static const double least_precision = 0.0015, most_precision = 0.004;
     static const double least = 700, margin = 2.1;
-    const double particles =
-        fmin(c->count, ceil(fmax(least, c->density * pow(margin * c->range, c->dimensions))));
     c->precision = fmin(most_precision, fmax(least_precision, c->scales.noise));
-    say(c,
-        "method \"%s\": it finds a potential from g(r); %.0f particles, until g is known within "
-        "%.2g, as the target is (%.2g)",
-        mf_automatic.name, particles, c->precision, c->scales.noise);
-    TRY(give_text(c->root, "method", "name", mf_automatic.name));
-    TRY(give(c, "method", mf_inversion_fields, "particles", particles));
-    return give(c, "method", mf_inversion_fields, "precision", c->precision);
+    return fmin(c->count, ceil(fmax(least, c->density * pow(margin * c->range, c->dimensions))));
+}
+
+/// How candidates for ω are simulated: from the last configuration, as long as their targets look.
+static enum status choose_rounds(struct choice *c, const struct field *fields) {
+    static const double equilibration = 0.7, apart = 0.1, windows = 1.5, least = 40;
+    enum target_kind longest;
+    const double every = fmax(1, round(apart * c->crossing / c->time_step));
+    const double window =
+        (double)mf_measurement_window(&c->read->problem.compared, c->time_step, &longest);
+    TRY(give(c, "method", fields, "equilibration",
+             fmax(50, ceil(equilibration * c->crossing / c->time_step))));
+    TRY(give(c, "method", fields, "every", every));
+    TRY(give(c, "method", fields, "samples", fmax(least, ceil(windows * window / every))));
+    TRY(give(c, "method", fields, "precision", 0.1));
+    TRY(give(c, "method", fields, "temperature_tolerance", 0.3));
+    return give_text(c->root, "method", "warm_start", "yes");
+}
+
+/// The table of a method that has a field of that name.
+static const struct field *fields_with(const struct inverse_method *method, const char *name) {
+    for (const struct inverse_table *table = method->tables; table->fields; table++)
+        for (const struct field *field = table->fields; field->name; field++)
+            if (strcmp(field->name, name) == 0)
+                return table->fields;
+    return NULL;
+}
+
+static enum status choose_method(struct choice *c) {
+    const struct inverse_method *method = !c->finds[UNKNOWN_OMEGA]      ? &mf_automatic
+                                          : c->finds[UNKNOWN_POTENTIAL] ? &mf_successive
+                                                                        : &mf_gauss_newton;
+    const bool both = method == &mf_successive;
+    const double particles = choose_particles(c);
+    TRY(give_text(c->root, "method", "name", method->name));
+    if (c->finds[UNKNOWN_POTENTIAL]) {
+        const char *of[2] = {both ? "potential_particles" : "particles",
+                             both ? "potential_precision" : "precision"};
+        say(c,
+            "method \"%s\": it finds the potential from g(r) by the samples of %.0f particles, "
+            "until "
+            "these are known within %.2g; the target is within %.2g",
+            method->name, particles, c->precision, c->scales.noise);
+        TRY(give(c, "method", fields_with(method, of[0]), of[0], particles));
+        TRY(give(c, "method", fields_with(method, of[1]), of[1], c->precision));
+    }
+    if (!c->finds[UNKNOWN_OMEGA])
+        return STATUS_OK;
+    say(c, "method \"%s\": it finds omega from simulations as long as the targets look",
+        method->name);
+    return choose_rounds(c, fields_with(method, "equilibration"));
 }
 
 /// rms of the errors of g that one sample leaves, if pairs are independent.
@@ -299,8 +401,8 @@ static enum status choose_verification(struct choice *c) {
 enum status mf_fit_defaults_choose(const struct fit_file *read, struct json_object *root,
                                    struct fit_choices *choices) {
     static enum status (*const steps[])(struct choice *) = {
-        choose_cutoff,   choose_count,  choose_time_step,
-        choose_friction, choose_method, choose_verification,
+        choose_cutoff, choose_count,    choose_time_step, choose_unknowns,
+        choose_omega,  choose_friction, choose_method,    choose_verification,
     };
     const struct simulation_setup *setup = &read->scene.setup;
     struct choice c = {.read = read,

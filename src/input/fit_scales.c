@@ -88,6 +88,15 @@ static void find_curvature(const struct view *view, size_t half, double *largest
     }
 }
 
+/// Lower edge of the first bin with pairs.
+static double find_core(const struct view *view) {
+    static const double rare = 0.02;
+    size_t k = 0;
+    while (k + 1 < view->bins->count && view->g[k] < rare)
+        k++;
+    return mf_rdf_bins_edge(view->bins, k);
+}
+
 /// Upper edge of the last bin about which g differs from its tail by more than noise.
 static double find_seen(const struct view *view) {
     enum { HALF = 2 };
@@ -119,7 +128,8 @@ static double find_noise(const struct target_files *files) {
 struct fit_scales mf_fit_scales_find(const struct target_files *files, double density,
                                      double temperature, int dimensions) {
     enum { NARROWEST = 2, WIDEST = 8 };
-    struct fit_scales scales = {.neighbour = INFINITY,
+    struct fit_scales scales = {.core = INFINITY,
+                                .neighbour = INFINITY,
                                 .noise = find_noise(files),
                                 .range = mf_rdf_bins_range(&files->rdf[0].bins)};
     const double spacing = pow(density, -1.0 / dimensions);
@@ -133,6 +143,7 @@ struct fit_scales mf_fit_scales_find(const struct target_files *files, double de
             scales.curvature = temperature * curvature;
             scales.curvature_at = at;
         }
+        scales.core = fmin(scales.core, find_core(&view));
         scales.neighbour = fmin(scales.neighbour, neighbour);
         scales.shell = fmax(scales.shell, find_shell(&view, neighbour));
         scales.seen = fmax(scales.seen, find_seen(&view));

@@ -6,6 +6,7 @@
 #include "input/target_files.h"
 
 struct fit_scales {
+    double core;         ///< pairs hardly come nearer, of any type [λ]
     double neighbour;    ///< distance of the first neighbours, the least of all pair types [λ]
     double shell;        ///< where the widest first shell of neighbours ends [λ]
     double curvature;    ///< largest of −k_B T (ln g)'' where pairs come near [k_B T_0/λ²]
