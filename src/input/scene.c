@@ -143,7 +143,10 @@ static enum status read_dynamics(struct scene *scene, struct json_object *object
     else if (dissipative && !integrator->dissipative)
         mf_json_fault(object, "dynamics",
                       "%s knows no friction; use \"aboba\" with \"dissipative\"", integrator->name);
-    if (scene->setup.attribute[ATTRIBUTES_MASS].ranges > 0 && !integrator->masses)
+    struct attributes_source *mass = &scene->setup.attribute[ATTRIBUTES_MASS];
+    if (mass->ranges > 0 && !integrator->masses && attributes_are(mass, 1))
+        mass->ranges = 0; // they are the unit
+    else if (mass->ranges > 0 && !integrator->masses)
         mf_json_fault(
             object, "particles.mass",
             "%s moves particles of mass 1 only; \"velocity-verlet\" moves others, without "
