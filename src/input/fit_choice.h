@@ -17,6 +17,7 @@ struct fit_choice {
     struct fit_scales scales;
     int dimensions;
     double density;
+    double mass;          ///< the least of any bead
     double crossing;      ///< time in which a bead moves as far as its neighbours are [τ]
     double range;         ///< of g(r) as it will be used [λ]
     double count;         ///< beads of a simulation

@@ -5,11 +5,10 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 bool mf_fit_defaults_wanted(const struct json_object *root) {
-    return root->item && mf_fit_choice_lacks(root, "", "method") &&
-           (!mf_fit_choice_lacks(root, "target", "rdf") ||
-            !mf_fit_choice_lacks(root, "scene", "conservative"));
+    return root->item && mf_fit_choice_lacks(root, "", "method");
 }
 
 enum status mf_fit_defaults_make_readable(struct json_object *root) {
@@ -26,42 +25,49 @@ enum status mf_fit_defaults_make_readable(struct json_object *root) {
 
 // The choices -------------------------------------------------------------------------------------
 
-/// Where g is seen to differ from 1, and within half of a box that is given.
+/// Centre of the last bin that is used: where g is seen to differ from 1, and all of the bin within
+/// half of a box that is given and not much too small.
+static double find_cutoff(const struct fit_choice *c, const char **why) {
+    static const double beyond = 1.1, least_of_box = 0.8;
+    const double whole = c->scales.range - 0.5 * c->rdf->bins.width;
+    double cutoff = fmin(whole, fmax(beyond * c->scales.seen, 2 * c->scales.neighbour));
+    *why = "beyond, g - 1 is within its noise";
+    if (mf_fit_choice_lacks(c->root, "scene", "box"))
+        return cutoff;
+    const double half = 0.5 * mf_box_shortest(&c->read->scene.setup.box),
+                 last = floor((half - c->rdf->bins.low) / c->rdf->bins.width + 1e-9),
+                 within = c->rdf->bins.low + (last - 0.5) * c->rdf->bins.width;
+    if (within >= cutoff || within < least_of_box * cutoff)
+        return cutoff;
+    *why = "half of the box";
+    return within;
+}
+
+/// For g(r), of a mixture for that of each pair type.
 static enum status choose_cutoff(struct fit_choice *c) {
-    static const double beyond = 1.1, worth = 0.9, least_of_box = 0.8;
-    const double half = mf_fit_choice_lacks(c->root, "scene", "box")
-                            ? INFINITY
-                            : 0.5 * mf_box_shortest(&c->read->scene.setup.box);
-    c->range = c->scales.range;
-    if (!c->finds[UNKNOWN_POTENTIAL])
-        return STATUS_OK;
-    double cutoff = fmax(beyond * c->scales.seen, 2 * c->scales.neighbour);
-    const char *why = "beyond, g - 1 is within its noise";
-    if (cutoff > half && half > least_of_box * c->scales.range) {
-        cutoff = half;
-        why = "half of the box";
-    }
-    if (cutoff >= worth * c->scales.range && !(cutoff == half && cutoff < c->scales.range))
-        return STATUS_OK;
+    static const double worth = 0.9;
+    const struct composition *composition = c->rdf->composition;
+    const char *why, *key;
+    char text[FIT_CHOICE_TEXT_SIZE];
+    const double cutoff = find_cutoff(c, &why);
+    const bool forced = strcmp(why, "half of the box") == 0;
     struct json_object rdf = mf_fit_choice_object(c->root, "target.rdf");
-    const struct composition *composition = &c->read->scene.setup.composition;
-    const char *key;
-    if (!composition_is_mixed(composition) &&
-        mf_fit_choice_lacks(c->root, "target.rdf", "cutoff")) {
-        TRY(mf_fit_choice_give(c, "target.rdf", mf_target_rdf_fields, "cutoff", cutoff));
-        c->range = cutoff;
-    }
-    for (size_t n = 0; composition_is_mixed(composition) && (key = mf_json_key(&rdf, n)); n++) {
-        char path[JSON_PATH_SIZE];
-        snprintf(path, sizeof path, "target.rdf.%.64s", key);
-        if (mf_composition_find_pair(composition, key) < 0 ||
-            !mf_fit_choice_lacks(c->root, path, "cutoff"))
+    c->range = c->scales.range;
+    if (!c->finds[UNKNOWN_POTENTIAL] || (cutoff > worth * c->range && !forced))
+        return STATUS_OK;
+    for (size_t n = 0; (key = mf_json_key(&rdf, n)); n++) {
+        char path[JSON_PATH_SIZE] = "target.rdf";
+        if (composition_is_mixed(composition) && mf_composition_find_pair(composition, key) < 0)
+            continue;
+        if (composition_is_mixed(composition))
+            snprintf(path, sizeof path, "target.rdf.%.64s", key);
+        if (!mf_fit_choice_lacks(c->root, path, "cutoff"))
             continue;
         TRY(mf_fit_choice_give(c, path, mf_target_rdf_fields, "cutoff", cutoff));
-        c->range = cutoff;
+        c->range = cutoff + 0.5 * c->rdf->bins.width;
+        rdf = mf_fit_choice_object(c->root, "target.rdf");
     }
-    char text[FIT_CHOICE_TEXT_SIZE];
-    if (c->range == cutoff)
+    if (c->range < c->scales.range)
         mf_fit_choice_say(c, "cutoff %s: %s", mf_fit_choice_text(c, "lambda", cutoff, text), why);
     return STATUS_OK;
 }
@@ -114,7 +120,7 @@ static double fit_interval(const struct fit_choice *c, double time_step) {
 static enum status choose_time_step(struct fit_choice *c) {
     static const double allowed = 0.01, way = 0.02;
     const double free = way * c->crossing;
-    const double bound = sqrt(4 * allowed / (2 * c->scales.curvature));
+    const double bound = sqrt(4 * allowed * c->mass / (2 * c->scales.curvature));
     if (!mf_fit_choice_lacks(c->root, "scene", "time_step")) {
         c->time_step = c->read->scene.setup.time_step;
         return STATUS_OK;
@@ -221,6 +227,7 @@ enum status mf_fit_defaults_choose(const struct fit_file *read, struct json_obje
         choose_omega,    choose_friction, mf_fit_defaults_method, mf_fit_defaults_verification,
     };
     const struct simulation_setup *setup = &read->scene.setup;
+    const struct attributes_range masses = mf_attributes_span(&setup->attribute[ATTRIBUTES_MASS]);
     enum status status = STATUS_OK;
     struct fit_scales_rdf rdf = {0};
     struct fit_choice c = {.read = read,
@@ -230,9 +237,12 @@ enum status mf_fit_defaults_choose(const struct fit_file *read, struct json_obje
                            .dimensions = setup->box.dimensions,
                            .count = (double)setup->placement.count};
     CHECK(mf_fit_scales_rdf_init(&rdf, &read->files, &read->scene));
+    if (rdf.bins.count == 0) // there is nothing to choose by, and the method is missing
+        goto done;
     c.density = rdf.density;
     c.scales = mf_fit_scales_find(&rdf, setup->temperature);
-    c.crossing = c.scales.neighbour / sqrt(setup->temperature);
+    c.mass = masses.maximum > 0 ? masses.minimum : 1;
+    c.crossing = c.scales.neighbour * sqrt(c.mass / setup->temperature);
     for (size_t k = 0; k < sizeof steps / sizeof *steps; k++)
         CHECK(steps[k](&c));
 done:

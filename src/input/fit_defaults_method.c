@@ -10,18 +10,20 @@
 /// As exact as the target is, in a system that is large enough for the range.
 static double choose_particles(struct fit_choice *c) {
     static const double least_precision = 0.0015, most_precision = 0.004;
-    static const double least = 700, margin = 2.1;
+    static const double least = 700, margin = 2.15, distortion = 0.05;
     c->precision = fmin(most_precision, fmax(least_precision, c->scales.noise));
-    return fmin(c->count, ceil(fmax(least, c->density * pow(margin * c->range, c->dimensions))));
+    const double wanted = ceil(fmax(least, c->density * pow(margin * c->range, c->dimensions)));
+    return (double)mf_composition_least_particles(c->rdf->composition, (int64_t)wanted, distortion);
 }
 
 /// How candidates for ω are simulated: from the last configuration, as long as their targets look.
 static enum status choose_rounds(struct fit_choice *c, const struct field *fields) {
     static const double equilibration = 0.7, apart = 0.1, windows = 1.5, least = 40;
     enum target_kind longest;
-    const double every = fmax(1, round(apart * c->crossing / c->time_step));
     const double window =
         (double)mf_measurement_window(&c->read->problem.compared, c->time_step, &longest);
+    const double free = round(apart * c->crossing / c->time_step);
+    const double every = fmax(1, fmin(free, window > 0 ? floor(windows * window / least) : free));
     TRY(mf_fit_choice_give(c, "method", fields, "equilibration",
                            fmax(50, ceil(equilibration * c->crossing / c->time_step))));
     TRY(mf_fit_choice_give(c, "method", fields, "every", every));
