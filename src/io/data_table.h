@@ -41,6 +41,11 @@ void mf_data_table_clear(struct data_table *table);
 enum status mf_data_table_check_increasing(const struct data_table *table, const char *file,
                                            size_t column, double least) MUST_USE;
 
+/// Number, from 1, of the column that the line of names calls `name`, units in brackets aside; 0 if
+/// there is none, or if that line has not as many names as there are columns. Tested:
+/// test_data_table.
+size_t mf_data_table_find(const struct data_table *table, const char *name);
+
 /// Make numbers of the reduced `unit` of a column: they are in the unit in brackets behind its
 /// name, or else in those of the file that names the table. Nothing changes for a reduced file.
 /// Fails: BAD_INPUT if the name has no such unit. Tested: test_data_table_units.

@@ -260,7 +260,8 @@ struct inverse_method {
     OPTIMISERS(EACH##_MATCHING)                                                                    \
     EACH(gauss_newton)                                                                             \
     EACH(pareto)                                                                                   \
-    EACH(formulas)
+    EACH(formulas)                                                                                 \
+    EACH(successive)
 
 #define INVERSE_DECLARE(name) extern const struct inverse_method mf_##name;
 #define INVERSE_DECLARE_MATCHING(record, name, summary)                                            \

@@ -155,6 +155,8 @@ static enum status tell_targets(struct run *run) {
     }
     if (warning)
         mf_progress_say(&run->progress, "mesofit: warning: scene: %s", warning);
+    for (size_t k = 0; k < run->fit.choices.count; k++)
+        mf_progress_say(&run->progress, "chosen: %s", run->fit.choices.line[k]);
     if (etd->left_out > 0)
         mf_progress_say(&run->progress,
                         "target.etd: %zu of %zu cells of the target are not known and left out",

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "input/fit_defaults.h"
+
+#include "input/fit_choice.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+bool mf_fit_defaults_wanted(const struct json_object *root) {
+    return root->item && mf_fit_choice_lacks(root, "", "method");
+}
+
+enum status mf_fit_defaults_make_readable(struct json_object *root) {
+    enum { ANY_COUNT = 1000 };
+    TRY(mf_fit_choice_give_text(root, "method", "name", mf_automatic.name));
+    if (mf_fit_choice_lacks(root, "scene", "density") ||
+        !mf_fit_choice_lacks(root, "scene.particles", "types"))
+        return STATUS_OK;
+    const struct fit_file reduced = {0};
+    const struct fit_choice choice = {.read = &reduced, .root = root};
+    return mf_fit_choice_give(&choice, "scene.particles", mf_placement_count_fields, "count",
+                              ANY_COUNT);
+}
+
+// The choices -------------------------------------------------------------------------------------
+
+/// Centre of the last bin that is used: where g is seen to differ from 1, and all of the bin within
+/// half of a box that is given and not much too small.
+static double find_cutoff(const struct fit_choice *c, const char **why) {
+    static const double beyond = 1.1, least_of_box = 0.8;
+    const double whole = c->scales.range - 0.5 * c->rdf->bins.width;
+    double cutoff = fmin(whole, fmax(beyond * c->scales.seen, 2 * c->scales.neighbour));
+    *why = "beyond, g - 1 is within its noise";
+    if (mf_fit_choice_lacks(c->root, "scene", "box"))
+        return cutoff;
+    const double half = 0.5 * mf_box_shortest(&c->read->scene.setup.box),
+                 last = floor((half - c->rdf->bins.low) / c->rdf->bins.width + 1e-9),
+                 within = c->rdf->bins.low + (last - 0.5) * c->rdf->bins.width;
+    if (within >= cutoff || within < least_of_box * cutoff)
+        return cutoff;
+    *why = "half of the box";
+    return within;
+}
+
+/// For g(r), of a mixture for that of each pair type.
+static enum status choose_cutoff(struct fit_choice *c) {
+    static const double worth = 0.9;
+    const struct composition *composition = c->rdf->composition;
+    const char *why, *key;
+    char text[FIT_CHOICE_TEXT_SIZE];
+    const double cutoff = find_cutoff(c, &why);
+    const bool forced = strcmp(why, "half of the box") == 0;
+    struct json_object rdf = mf_fit_choice_object(c->root, "target.rdf");
+    c->range = c->scales.range;
+    if (!c->finds[UNKNOWN_POTENTIAL] || (cutoff > worth * c->range && !forced))
+        return STATUS_OK;
+    for (size_t n = 0; (key = mf_json_key(&rdf, n)); n++) {
+        char path[JSON_PATH_SIZE] = "target.rdf";
+        if (composition_is_mixed(composition) && mf_composition_find_pair(composition, key) < 0)
+            continue;
+        if (composition_is_mixed(composition))
+            snprintf(path, sizeof path, "target.rdf.%.64s", key);
+        if (!mf_fit_choice_lacks(c->root, path, "cutoff"))
+            continue;
+        TRY(mf_fit_choice_give(c, path, mf_target_rdf_fields, "cutoff", cutoff));
+        c->range = cutoff + 0.5 * c->rdf->bins.width;
+        rdf = mf_fit_choice_object(c->root, "target.rdf");
+    }
+    if (c->range < c->scales.range)
+        mf_fit_choice_say(c, "cutoff %s: %s", mf_fit_choice_text(c, "lambda", cutoff, text), why);
+    return STATUS_OK;
+}
+
+/// A box that is somewhat wider than twice what is looked at, with a thousand beads at least.
+static enum status choose_count(struct fit_choice *c) {
+    static const double least = 1000, margin = 2.2;
+    if (mf_fit_choice_lacks(c->root, "scene", "density") ||
+        !mf_fit_choice_lacks(c->root, "scene.particles", "count") ||
+        !mf_fit_choice_lacks(c->root, "scene.particles", "types"))
+        return STATUS_OK;
+    const double range = fmax(c->range, c->read->files.etd.grid.r_maximum);
+    const double needed = c->density * pow(margin * range, c->dimensions);
+    c->count = ceil(fmax(least, needed));
+    mf_fit_choice_say(
+        c, "%.0f particles: %s%s", c->count,
+        c->count > least ? "the box is 2.2 times as wide as the range of the targets"
+                         : "enough for the statistics, and the box is wider than twice the range",
+        c->read->files.rdf[0].parameters.particles > 0
+            ? ""
+            : "; g(r) is taken for that of as many, since its \"particles\" are not said");
+    return mf_fit_choice_give(c, "scene.particles", mf_placement_count_fields, "count", c->count);
+}
+
+/// The next lower of 1, 1.2, 1.5, 2, … times a power of 10.
+static double round_down(double value) {
+    static const double steps[] = {1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8};
+    const double power = pow(10, floor(log10(value) + 1e-9));
+    double rounded = power;
+    for (size_t k = 0; k < sizeof steps / sizeof *steps; k++)
+        if (steps[k] * power <= value * (1 + 1e-9))
+            rounded = steps[k] * power;
+    return rounded;
+}
+
+/// A whole fraction of the interval of targets at times, if there are any.
+static double fit_interval(const struct fit_choice *c, double time_step) {
+    const struct target_files *files = &c->read->files;
+    const double interval = files->given[TARGET_ETD]    ? files->etd.interval
+                            : files->given[TARGET_VACF] ? files->curve[TARGET_VACF].interval
+                            : files->given[TARGET_MSD]  ? files->curve[TARGET_MSD].interval
+                                                        : 0;
+    return interval > 0 ? interval / ceil(interval / time_step - 1e-9) : round_down(time_step);
+}
+
+/// Integrators of Verlet's kind give an oscillator of angular frequency Ω the configurational
+/// temperature T/(1 − (Ω Δt)²/4). Two beads oscillate with Ω² = 2 Φ''/m, and Φ is at most as steep
+/// as −k_B T ln g where pairs come near. What flies free moves a fiftieth of the way to its
+/// neighbours.
+static enum status choose_time_step(struct fit_choice *c) {
+    static const double allowed = 0.01, way = 0.02;
+    const double free = way * c->crossing;
+    const double bound = sqrt(4 * allowed * c->mass / (2 * c->scales.curvature));
+    if (!mf_fit_choice_lacks(c->root, "scene", "time_step")) {
+        c->time_step = c->read->scene.setup.time_step;
+        return STATUS_OK;
+    }
+    c->time_step = fit_interval(c, fmin(free, bound));
+    char step[FIT_CHOICE_TEXT_SIZE], curvature[FIT_CHOICE_TEXT_SIZE], at[FIT_CHOICE_TEXT_SIZE];
+    mf_fit_choice_text(c, "tau", c->time_step, step);
+    mf_fit_choice_text(c, "k_B T_0/lambda^2", c->scales.curvature, curvature);
+    mf_fit_choice_text(c, "lambda", c->scales.curvature_at, at);
+    if (bound < free)
+        mf_fit_choice_say(c,
+                          "time step %s: the curvature of -k_B T ln g is up to %s, at %s, and the "
+                          "configurational temperature is to be right within 1 %%",
+                          step, curvature, at);
+    else
+        mf_fit_choice_say(c, "time step %s: beads move a fiftieth of the way to their neighbours",
+                          step);
+    return mf_fit_choice_give(c, "scene", mf_scene_fields, "time_step", c->time_step);
+}
+
+/// Whether something is to be fitted that friction decides.
+static bool fits_motion(const struct target_files *files) {
+    bool fits = false;
+    for (int kind = TARGET_ETD; kind <= TARGET_DIFFUSION; kind++)
+        fits = fits || (files->given[kind] && files->use[kind].fitted);
+    return fits;
+}
+
+/// The potential, and ω if what is to be fitted moves and no friction is given.
+static enum status choose_unknowns(struct fit_choice *c) {
+    static const char *const path = "unknowns";
+    const bool moves = fits_motion(&c->read->files) &&
+                       mf_fit_choice_lacks(c->root, "scene", "dissipative") &&
+                       mf_fit_choice_lacks(c->root, "scene", "conservative");
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        c->finds[kind] = c->read->unknown[kind].wanted;
+    if (!mf_fit_choice_lacks(c->root, "", path) || !moves)
+        return STATUS_OK;
+    c->finds[UNKNOWN_OMEGA] = true;
+    mf_fit_choice_say(
+        c, "unknowns: the potential and, since targets that move are to be fitted, omega");
+    TRY(mf_fit_choice_give_empty(c->root, "unknowns.potential"));
+    return mf_fit_choice_give_empty(c->root, "unknowns.omega");
+}
+
+/// σ of ω = σ (1 − r/cutoff) with which a bead loses its velocity in the time in which it would
+/// reach its neighbours. In a gas collisions are rare, and no pair may lose more than a tenth of
+/// its velocity a step.
+static double moderate_friction(const struct fit_choice *c, double cutoff) {
+    static const double strongest = 0.1;
+    const double rate = mf_fit_scales_friction(c->rdf, cutoff);
+    return sqrt(fmin(1 / (rate * c->crossing), strongest / c->time_step));
+}
+
+/// ω as a spline from where pairs begin to the end of the second shell, up to several times the
+/// friction that would be chosen of its own.
+static enum status choose_omega(struct fit_choice *c) {
+    static const char *const path = "unknowns.omega";
+    static const double shells = 2, beyond_etd = 1.3, most = 8;
+    enum { COEFFICIENTS = 8 };
+    if (!c->finds[UNKNOWN_OMEGA] || !mf_fit_choice_lacks(c->root, path, "cutoff") ||
+        !mf_fit_choice_lacks(c->root, path, "maximum"))
+        return STATUS_OK;
+    const double cutoff = fmin(
+        c->range, fmax(shells * c->scales.shell, beyond_etd * c->read->files.etd.grid.r_maximum));
+    const double sigma = moderate_friction(c, cutoff);
+    char largest[FIT_CHOICE_TEXT_SIZE], from[FIT_CHOICE_TEXT_SIZE], to[FIT_CHOICE_TEXT_SIZE];
+    mf_fit_choice_say(c, "omega: %d coefficients from 0 to %s, between r = %s and %s, %s",
+                      COEFFICIENTS, mf_fit_choice_text(c, "sqrt(mu/tau)", most * sigma, largest),
+                      mf_fit_choice_text(c, "lambda", c->scales.core, from),
+                      mf_fit_choice_text(c, "lambda", cutoff, to),
+                      "about the end of the second shell");
+    TRY(mf_fit_choice_give(c, path, mf_inverse_omega_fields, "cutoff", cutoff));
+    TRY(mf_fit_choice_give(c, path, mf_inverse_omega_fields, "inner_cutoff", c->scales.core));
+    TRY(mf_fit_choice_give(c, path, mf_inverse_omega_fields, "maximum", most * sigma));
+    TRY(mf_fit_choice_give(c, path, mf_inverse_omega_fields, "coefficients", COEFFICIENTS));
+    TRY(mf_fit_choice_give_text(c->root, path, "curve", "bspline"));
+    return mf_fit_choice_give_omega(c, "unknowns.omega.start", sigma, cutoff);
+}
+
+/// It holds the temperature against what the integrator heats, and leaves g(r) as it is.
+static enum status choose_friction(struct fit_choice *c) {
+    const struct simulation_setup *setup = &c->read->scene.setup;
+    if (c->finds[UNKNOWN_OMEGA] || !mf_fit_choice_lacks(c->root, "scene", "dissipative") ||
+        !mf_fit_choice_lacks(c->root, "scene", "dynamics") ||
+        !attributes_are(&setup->attribute[ATTRIBUTES_MASS], 1))
+        return STATUS_OK;
+    const double cutoff = c->scales.shell, sigma = moderate_friction(c, cutoff);
+    const double time = 1 / (mf_fit_scales_friction(c->rdf, cutoff) * sigma * sigma);
+    char size[FIT_CHOICE_TEXT_SIZE], end[FIT_CHOICE_TEXT_SIZE], memory[FIT_CHOICE_TEXT_SIZE];
+    mf_fit_choice_say(c,
+                      "friction omega = %s times 1 - r/(%s): up to the end of the first shell, and "
+                      "a bead forgets its velocity in %s",
+                      mf_fit_choice_text(c, "sqrt(mu/tau)", sigma, size),
+                      mf_fit_choice_text(c, "lambda", cutoff, end),
+                      mf_fit_choice_text(c, "tau", time, memory));
+    return mf_fit_choice_give_omega(c, "scene.dissipative", sigma, cutoff);
+}
+
+enum status mf_fit_defaults_choose(const struct fit_file *read, struct json_object *root,
+                                   struct fit_choices *choices) {
+    static enum status (*const steps[])(struct fit_choice *) = {
+        choose_unknowns, choose_cutoff,   choose_count,           choose_time_step,
+        choose_omega,    choose_friction, mf_fit_defaults_method, mf_fit_defaults_verification,
+    };
+    const struct simulation_setup *setup = &read->scene.setup;
+    const struct attributes_range masses = mf_attributes_span(&setup->attribute[ATTRIBUTES_MASS]);
+    enum status status = STATUS_OK;
+    struct fit_scales_rdf rdf = {0};
+    struct fit_choice c = {.read = read,
+                           .root = root,
+                           .said = choices,
+                           .rdf = &rdf,
+                           .dimensions = setup->box.dimensions,
+                           .count = (double)setup->placement.count};
+    CHECK(mf_fit_scales_rdf_init(&rdf, &read->files, &read->scene));
+    if (rdf.bins.count == 0) // there is nothing to choose by, and the method is missing
+        goto done;
+    c.density = rdf.density;
+    c.scales = mf_fit_scales_find(&rdf, setup->temperature);
+    c.mass = masses.maximum > 0 ? masses.minimum : 1;
+    c.crossing = c.scales.neighbour * sqrt(c.mass / setup->temperature);
+    for (size_t k = 0; k < sizeof steps / sizeof *steps; k++)
+        CHECK(steps[k](&c));
+done:
+    mf_fit_scales_rdf_clear(&rdf);
+    return status;
+}
