@@ -231,12 +231,12 @@ enum status mf_rdf_sample(struct rdf *rdf, const struct particles *particles,
     return STATUS_OK;
 }
 
-void mf_rdf_add(struct rdf *rdf, const uint64_t *counts, const double *weight) {
+void mf_rdf_add(struct rdf *rdf, const uint64_t *counts, size_t stride, const double *weight) {
     const size_t bins = rdf->bins.count;
     double *histogram = next_block(rdf);
     for (size_t pair = 0; pair < rdf->pairs; pair++)
-        for (size_t k = pair * bins; k < (pair + 1) * bins; k++)
-            histogram[k] += (double)counts[k] * weight[pair];
+        for (size_t k = 0; k < bins; k++)
+            histogram[pair * bins + k] += weight[pair] * (double)counts[pair * stride + k];
 }
 
 size_t mf_rdf_spans(struct rdf *rdf, struct memory_span *spans) {

@@ -80,9 +80,9 @@ void mf_rdf_clear(struct rdf *rdf);
 /// Add a configuration of which others have counted the pairs: counts[p, k] weight[p], where a
 /// weight is 1 unless the volume is another than that of `box` (V/V_box, so that g is that of
 /// ⟨V S⟩), or some pairs are left out (all pairs over those that were looked at).
-/// @param[in] counts  shape [pairs, bins.count]
+/// @param[in] counts  shape [pairs, stride], of which the first bins.count of a row are read
 /// @param[in] weight  shape [pairs]
-void mf_rdf_add(struct rdf *rdf, const uint64_t *counts, const double *weight);
+void mf_rdf_add(struct rdf *rdf, const uint64_t *counts, size_t stride, const double *weight);
 
 /// What a force pass is to count for the next sample, cleared: for pair_law.histogram. NULL if the
 /// range exceeds that of the forces; then mf_rdf_sample makes a list of its own.
