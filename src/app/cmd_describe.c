@@ -86,7 +86,7 @@ static const struct topic fixed_topics[] = {
     {"files",
      "scene",
      "the top of a scene file, and \"scene\" of a run file, which has no title and seed",
-     {mf_heading_fields, mf_scene_fields}},
+     {mf_heading_fields, mf_scene_fields, mf_scene_density_fields}},
     {"files",
      "particles",
      "\"particles\" of a scene; a mixture has \"types\": {\"A\": 500, \"B\": 300} for \"count\"",

@@ -5,6 +5,7 @@
 #include "base/names.h"
 #include "input/fit_base.h"
 #include "input/fit_check.h"
+#include "input/fit_defaults.h"
 
 #include <math.h>
 #include <string.h>
@@ -210,6 +211,8 @@ static enum status read_root(struct fit_file *fit, struct json_object *root) {
 
 static void state_problem(struct fit_file *fit, const struct run_options *options) {
     struct inverse_problem *problem = &fit->problem;
+    if (options->has_seed)
+        fit->heading.seed = options->seed;
     *problem = (struct inverse_problem){
         .scene = fit->scene.setup,
         .core_threshold = fit->core.threshold,
@@ -233,21 +236,39 @@ static void state_problem(struct fit_file *fit, const struct run_options *option
                             &problem->targets, &problem->compared);
 }
 
-enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
-                              const struct run_options *options) {
-    *fit = (struct fit_file){0};
+/// Read the file, with choices for what it leaves out if there is a `plain` reading of it; else
+/// made readable if it needs choices, and `wanted` says so.
+static enum status read_document(struct fit_file *fit, const char *file,
+                                 const struct fit_file *plain, bool *wanted) {
     struct json_document *document;
     TRY(mf_json_open(&document, file));
     struct json_object root = mf_json_root(document);
     enum status status = mf_heading_check_run(&root, file);
+    *wanted = mf_fit_defaults_wanted(&root);
+    if (status == STATUS_OK && *wanted)
+        status = plain ? mf_fit_defaults_choose(plain, &root, &fit->choices)
+                       : mf_fit_defaults_make_readable(&root);
     if (status == STATUS_OK)
         status = mf_json_collect_files(document, &fit->inputs);
     if (status == STATUS_OK)
         status = read_root(fit, &root);
-    TRY(mf_json_close(document, status));
-    if (options->has_seed)
-        fit->heading.seed = options->seed;
+    return mf_json_close(document, status);
+}
+
+enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
+                              const struct run_options *options) {
+    bool wanted;
+    *fit = (struct fit_file){0};
+    TRY(read_document(fit, file, NULL, &wanted));
     state_problem(fit, options);
+    if (wanted) {
+        struct fit_file plain = *fit;
+        *fit = (struct fit_file){0};
+        const enum status status = read_document(fit, file, &plain, &wanted);
+        mf_fit_file_clear(&plain);
+        TRY(status);
+        state_problem(fit, options);
+    }
     return STATUS_OK;
 }
 

@@ -25,9 +25,17 @@ struct fit_unknown {
     double *base;           ///< of struct unknown
 };
 
+/// What the program chose because the file did not say it, a line each with its reason.
+enum { FIT_MOST_CHOICES = 12, FIT_CHOICE_SIZE = 256 };
+struct fit_choices {
+    size_t count;
+    char line[FIT_MOST_CHOICES][FIT_CHOICE_SIZE];
+};
+
 /// Owns everything that the problem borrows.
 struct fit_file {
     struct heading heading;
+    struct fit_choices choices;
     struct target_files files;
     struct scene scene;
     struct fit_unknown unknown[UNKNOWNS];

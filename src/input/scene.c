@@ -25,8 +25,8 @@ static const char *const precisions[] = {"mixed", "double", NULL}; // enum pair_
 const struct field mf_scene_fields[] = {
     {"dimensions", FIELD_INTEGER, MEMBER(dimensions), .initial = 3, .minimum = 2, .maximum = 3,
      .unit = "", .help = "of space"},
-    {"box", FIELD_LENGTHS, MEMBER(box), .required = true, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = LARGEST_BOX, .unit = "lambda", .help = "edges of the periodic box"},
+    {"box", FIELD_LENGTHS, MEMBER(box), .minimum = FIELD_ABOVE_ZERO, .maximum = LARGEST_BOX,
+     .unit = "lambda", .help = "edges of the periodic box, unless \"density\" is given"},
     {"temperature", FIELD_NUMBER, MEMBER(temperature), .initial = 1, .minimum = 0,
      .maximum = DBL_MAX, .unit = "T_0",
      .help = "of the first velocities and of the noise; 0 for dynamics without velocities alone"},
@@ -44,6 +44,28 @@ const struct field mf_scene_fields[] = {
      .help = "of the arithmetic of a pair; positions, velocities and sums are in double always"},
     FIELD_END,
 };
+
+const struct field mf_scene_density_fields[] = {
+    {"density", FIELD_NUMBER, .offset = offsetof(struct scene, density), .initial = 0,
+     .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX, .unit = "1/lambda^d",
+     .help = "beads in a unit of volume, of all types: in the place of \"box\" it makes one with "
+             "edges that are alike"},
+    FIELD_END,
+};
+
+/// A box, or the density that makes it once the beads are counted.
+static void check_box(struct scene *scene, struct json_object *object, const struct top *top) {
+    const bool has_box = mf_json_has(object, "box");
+    mf_json_fields(object, mf_scene_density_fields, scene);
+    if (has_box == mf_json_has(object, "density"))
+        mf_json_fault(object, has_box ? "density" : "box", "%s",
+                      has_box ? "\"box\" is given, and says it already"
+                              : "missing: it or \"density\" is required");
+    if (top->box[0] > 0 && (top->box[2] > 0) != (top->dimensions == 3))
+        mf_json_fault(object, "box",
+                      "has %d edges, but the scene has %d dimensions; \"dimensions\" says how many",
+                      top->box[2] > 0 ? 3 : 2, (int)top->dimensions);
+}
 
 static void check_omega(const struct scene *scene, struct json_object *object) {
     const struct table *table = &scene->omega.table;
@@ -63,10 +85,7 @@ static void read_top(struct scene *scene, struct json_object *object) {
     setup->box.dimensions = (int)top.dimensions;
     for (int d = 0; d < 3; d++)
         setup->box.length[d] = d < top.dimensions ? top.box[d] : 1;
-    if (top.box[0] > 0 && (top.box[2] > 0) != (top.dimensions == 3))
-        mf_json_fault(object, "box",
-                      "has %d edges, but the scene has %d dimensions; \"dimensions\" says how many",
-                      top.box[2] > 0 ? 3 : 2, (int)top.dimensions);
+    check_box(scene, object, &top);
     setup->temperature = top.temperature;
     setup->time_step = top.time_step;
     setup->skin = top.skin;

@@ -20,13 +20,14 @@ struct scene {
     struct scene_interactions interactions;
     struct units units;
     struct simulation_start start; ///< arrays of a placement file
+    double density;                ///< in the place of a box; 0: there is one [1/λ^d]
     int unknown;                   ///< as it was read
     double *start_values;
     void *integrator_parameters;
 };
 
 /// Fields of the scene itself, for `mesofit describe`.
-extern const struct field mf_scene_fields[];
+extern const struct field mf_scene_fields[], mf_scene_density_fields[];
 
 /// Read the objects of a scene from `object`, but for what `unknown`, a sum of scene_unknown, says.
 /// With units, a mass density or a temperature that no matter has is a fault.

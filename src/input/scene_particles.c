@@ -115,6 +115,14 @@ static void read_types(struct scene *scene, struct json_object *particles) {
         scene->setup.composition.types = 0; // not known
 }
 
+/// The box that a density asks for.
+static void make_box(struct scene *scene) {
+    struct box *box = &scene->setup.box;
+    const double volume = (double)scene->setup.placement.count / scene->density;
+    for (int d = 0; d < box->dimensions && scene->density > 0 && volume > 0; d++)
+        box->length[d] = pow(volume, 1.0 / box->dimensions);
+}
+
 enum status mf_scene_particles_read(struct scene *scene, struct json_object *object) {
     struct json_object particles = mf_json_child(object, "particles", true);
     struct placement *placement = &scene->setup.placement;
@@ -122,6 +130,7 @@ enum status mf_scene_particles_read(struct scene *scene, struct json_object *obj
         read_types(scene, &particles);
     else
         read_count(scene, &particles);
+    make_box(scene);
     mf_json_fields(&particles, mf_placement_fields, placement);
     mf_scene_attributes_read(scene, &particles);
     if (particles.item == NULL)

@@ -14,6 +14,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
+struct json_object;
 struct json_writer;
 
 struct json_writer *mf_json_writer_create(void);      ///< NULL if there is no memory
@@ -38,6 +39,12 @@ void mf_json_put_numbers(struct json_writer *writer, const char *key, const doub
 /// from any folder.
 void mf_json_put_fields(struct json_writer *writer, const struct field *fields,
                         const void *parameters);
+
+/// Add to an object of a document that is being read what the tree has and the object has not, at
+/// all depths; what the object has stays. Before its keys are read. Fails: NO_MEMORY; IO as
+/// mf_json_write. Tested: test_json.
+enum status mf_json_write_into(const struct json_writer *writer,
+                               const struct json_object *object) MUST_USE;
 
 /// Write the tree to `file`, whole or not at all (output.h).
 enum status mf_json_write(const struct json_writer *writer, const char *file) MUST_USE;

@@ -150,6 +150,8 @@ static enum status tell_targets(struct run *run) {
     const char *warning = mf_scene_warning(&run->fit.scene);
     if (warning)
         mf_progress_say(&run->progress, "mesofit: warning: scene: %s", warning);
+    for (size_t k = 0; k < run->fit.choices.count; k++)
+        mf_progress_say(&run->progress, "chosen: %s", run->fit.choices.line[k]);
     if (etd->left_out > 0)
         mf_progress_say(&run->progress,
                         "target.etd: %zu of %zu cells of the target are not known and left out",

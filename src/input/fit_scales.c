@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "input/fit_scales.h"
+
+#include <math.h>
+
+/// g of one pair type.
+struct view {
+    const struct rdf_bins *bins;
+    const double *g, *error; ///< shape [bins->count]
+    double tail;             ///< mean over the last quarter
+};
+
+static struct view view_of(const struct target_files *files, size_t pair) {
+    const struct rdf_bins *bins = &files->rdf[0].bins;
+    return (struct view){bins, files->rdf_g + pair * bins->count,
+                         files->rdf_error + pair * bins->count, files->rdf[pair].tail.mean};
+}
+
+static size_t highest_bin(const struct view *view) {
+    size_t highest = 0;
+    for (size_t k = 0; k < view->bins->count; k++)
+        if (view->g[k] > view->g[highest])
+            highest = k;
+    return highest;
+}
+
+/// A maximum of g that is no more than noise says nothing.
+static double find_neighbour(const struct view *view, double spacing) {
+    static const double least_peak = 0.05, standard_errors = 4;
+    const size_t k = highest_bin(view);
+    const double peak = view->g[k] - view->tail;
+    return peak > fmax(least_peak, standard_errors * view->error[k])
+               ? mf_rdf_bins_centre(view->bins, k)
+               : spacing;
+}
+
+/// The first minimum behind the neighbours; without one, half as far again as they are.
+static double find_shell(const struct view *view, double neighbour) {
+    static const double without = 1.5, least = 1.2, most = 2;
+    const struct rdf_bins *bins = view->bins;
+    size_t k = highest_bin(view), lowest;
+    while (k < bins->count && view->g[k] >= 1)
+        k++;
+    for (lowest = k; k < bins->count && view->g[k] < 1; k++)
+        if (view->g[k] < view->g[lowest])
+            lowest = k;
+    const double shell = mf_rdf_bins_centre(bins, lowest);
+    return k < bins->count && shell > least * neighbour && shell < most * neighbour
+               ? shell
+               : without * neighbour;
+}
+
+/// Curvature of the parabola through ln g at 2 half + 1 bins about k, by least squares, and its
+/// standard error; false if some of them have no pairs.
+static bool fit_parabola(const struct view *view, size_t k, size_t half, double *curvature,
+                         double *error) {
+    // With x = −half … half and P = x² − mean of x²: curvature = 2 Σ P ln g/Σ P x².
+    double mean = 0, sum = 0, norm = 0, variance = 0;
+    const double points = 2 * (double)half + 1, h = view->bins->width;
+    for (size_t j = 0; j <= 2 * half; j++)
+        mean += pow((double)j - (double)half, 2) / points;
+    for (size_t j = 0; j <= 2 * half; j++) {
+        const double square = pow((double)j - (double)half, 2), weight = square - mean;
+        const double g = view->g[k - half + j];
+        if (!(g > 0))
+            return false;
+        sum += weight * log(g);
+        norm += weight * square;
+        variance += pow(weight * view->error[k - half + j] / g, 2);
+    }
+    *curvature = 2 * sum / (norm * h * h);
+    *error = 2 * sqrt(variance) / (norm * h * h);
+    return true;
+}
+
+/// The largest −(ln g)'' up to the neighbours, where g is not so small that pairs hardly get there.
+static void find_curvature(const struct view *view, size_t half, double *largest, double *at) {
+    static const double rare = 0.02, known = 0.25;
+    const size_t last = highest_bin(view);
+    for (size_t k = half; k <= last && k + half < view->bins->count; k++) {
+        double curvature, error;
+        if (view->g[k] < rare * view->g[last] || !fit_parabola(view, k, half, &curvature, &error))
+            continue;
+        if (-curvature > *largest && error < known * -curvature) {
+            *largest = -curvature;
+            *at = mf_rdf_bins_centre(view->bins, k);
+        }
+    }
+}
+
+/// Upper edge of the last bin about which g differs from its tail by more than noise.
+static double find_seen(const struct view *view) {
+    enum { HALF = 2 };
+    static const double standard_errors = 3, least = 0.002;
+    const struct rdf_bins *bins = view->bins;
+    for (size_t k = bins->count; k-- > 0;) {
+        double sum = 0, variance = 0, count = 0;
+        for (size_t j = k < HALF ? 0 : k - HALF; j <= k + HALF && j < bins->count; j++) {
+            sum += view->g[j] - view->tail;
+            variance += view->error[j] * view->error[j];
+            count++;
+        }
+        if (fabs(sum) > fmax(least * count, standard_errors * sqrt(variance)))
+            return mf_rdf_bins_edge(bins, k + 1);
+    }
+    return 0;
+}
+
+static double find_noise(const struct target_files *files) {
+    const size_t values = files->pairs * files->rdf[0].bins.count;
+    double squares = 0, count = 0;
+    for (size_t k = 0; k < values; k++) {
+        squares += files->rdf_error[k] * files->rdf_error[k];
+        count += files->rdf_g[k] > 0;
+    }
+    return count > 0 ? sqrt(squares / count) : 0;
+}
+
+struct fit_scales mf_fit_scales_find(const struct target_files *files, double density,
+                                     double temperature, int dimensions) {
+    enum { NARROWEST = 2, WIDEST = 8 };
+    struct fit_scales scales = {.neighbour = INFINITY,
+                                .noise = find_noise(files),
+                                .range = mf_rdf_bins_range(&files->rdf[0].bins)};
+    const double spacing = pow(density, -1.0 / dimensions);
+    for (size_t pair = 0; pair < files->pairs; pair++) {
+        const struct view view = view_of(files, pair);
+        const double neighbour = find_neighbour(&view, spacing);
+        double curvature = 0, at = 0;
+        for (size_t half = NARROWEST; half <= WIDEST && curvature == 0; half++)
+            find_curvature(&view, half, &curvature, &at);
+        if (temperature * curvature > scales.curvature) {
+            scales.curvature = temperature * curvature;
+            scales.curvature_at = at;
+        }
+        scales.neighbour = fmin(scales.neighbour, neighbour);
+        scales.shell = fmax(scales.shell, find_shell(&view, neighbour));
+        scales.seen = fmax(scales.seen, find_seen(&view));
+    }
+    scales.shell = fmin(scales.shell, scales.range);
+    return scales;
+}
+
+double mf_fit_scales_friction(const struct target_files *files, double density, int dimensions,
+                              double cutoff) {
+    const struct rdf_bins *bins = &files->rdf[0].bins;
+    const struct composition *composition = &files->composition;
+    const double count = (double)mf_composition_particles(composition);
+    const struct box space = {.dimensions = dimensions};
+    double sum = 0;
+    for (size_t pair = 0; pair < files->pairs; pair++) {
+        int type[2];
+        mf_composition_pair_types(composition, (int)pair, type);
+        const double share = (type[0] == type[1] ? 1 : 2) * (double)composition->count[type[0]] *
+                             (double)composition->count[type[1]] / (count * count);
+        for (size_t k = 0; k < bins->count && mf_rdf_bins_centre(bins, k) < cutoff; k++)
+            sum += share * files->rdf_g[pair * bins->count + k] *
+                   pow(1 - mf_rdf_bins_centre(bins, k) / cutoff, 2) *
+                   mf_box_shell_volume(&space, mf_rdf_bins_edge(bins, k),
+                                       mf_rdf_bins_edge(bins, k + 1));
+    }
+    return density * sum / dimensions;
+}

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The scales of a liquid as its g(r) tells them, for what a run file leaves out: where the
+/// neighbours are, how steep the flank of g is, how far g is known to differ from 1.
+#pragma once
+
+#include "input/target_files.h"
+
+struct fit_scales {
+    double neighbour;    ///< distance of the first neighbours, the least of all pair types [λ]
+    double shell;        ///< where the widest first shell of neighbours ends [λ]
+    double curvature;    ///< largest of −k_B T (ln g)'' where pairs come near [k_B T_0/λ²]
+    double curvature_at; ///< [λ]
+    double noise;        ///< standard error of g, rms over the bins with pairs
+    double seen;         ///< g differs from its tail by more than its noise up to here [λ]
+    double range;        ///< upper edge of the last bin [λ]
+};
+
+/// Of targets with a g(r) that was read, at the density and temperature of a scene. The curvature
+/// is that of parabolas through ln g at five points or, where these are too noisy, at more; 0 if
+/// none tells it. Threads: any. Tested: test_fit_scales.
+struct fit_scales mf_fit_scales_find(const struct target_files *files, double density,
+                                     double temperature, int dimensions);
+
+/// Mean friction of a bead by its neighbours if ω = (1 − r/cutoff) of each pair:
+/// (ρ/d) Σ x_a x_b ∫ g_ab ω² dV, the rate at which its velocity is lost [1/τ for σ = 1].
+double mf_fit_scales_friction(const struct target_files *files, double density, int dimensions,
+                              double cutoff);
