@@ -192,3 +192,10 @@ enum status mf_measured_add(struct measured *measured, const struct trajectory_f
 struct box mf_measured_box(const struct measured *measured) {
     return cube_of(mf_series_mean(&measured->volume));
 }
+
+struct units mf_measured_units(int system) {
+    return (struct units){.length = 1,
+                          .temperature = 1e3 / (UNITS_BOLTZMANN * UNITS_AVOGADRO),
+                          .mass = UNITS_ATOMIC_MASS,
+                          .system = system};
+}

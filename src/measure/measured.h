@@ -48,5 +48,8 @@ enum status mf_measured_add(struct measured *measured, const struct trajectory_f
 
 void mf_measured_clear(struct measured *measured);
 
+/// The units of all that is measured, to be written in those of a system (enum units_system).
+struct units mf_measured_units(int system);
+
 /// Cube of the mean volume.
 struct box mf_measured_box(const struct measured *measured);
