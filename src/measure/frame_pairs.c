@@ -15,7 +15,8 @@ void mf_frame_pairs_clear(struct frame_pairs *pairs) {
     mf_memory_free(pairs->type);
     mf_memory_free(pairs->molecule);
     mf_memory_free(pairs->counts);
-    mf_memory_free(pairs->near);
+    mf_memory_free(pairs->first);
+    mf_memory_free(pairs->second);
     *pairs = (struct frame_pairs){0};
 }
 
@@ -170,15 +171,21 @@ enum status mf_frame_pairs_count(struct frame_pairs *pairs, const struct frame_p
     return STATUS_OK;
 }
 
+static enum status grow_array(uint32_t **array, size_t count, size_t room) {
+    uint32_t *larger = mf_memory_uncleared(room, sizeof *larger);
+    if (larger == NULL)
+        return STATUS_NO_MEMORY;
+    if (count > 0)
+        memcpy(larger, *array, count * sizeof *larger);
+    mf_memory_free(*array);
+    *array = larger;
+    return STATUS_OK;
+}
+
 static enum status grow(struct frame_pairs *pairs) {
     const size_t room = pairs->near_room ? 2 * pairs->near_room : 4096;
-    uint32_t(*near)[2] = mf_memory_uncleared(room, sizeof *near);
-    if (near == NULL)
-        return STATUS_NO_MEMORY;
-    if (pairs->near_count > 0)
-        memcpy(near, pairs->near, pairs->near_count * sizeof *near);
-    mf_memory_free(pairs->near);
-    pairs->near = near;
+    TRY(grow_array(&pairs->first, pairs->near_count, room));
+    TRY(grow_array(&pairs->second, pairs->near_count, room));
     pairs->near_room = room;
     return STATUS_OK;
 }
@@ -191,9 +198,8 @@ static void keep(struct work *work, size_t i, size_t j) {
         work->status = grow(pairs);
     if (work->status != STATUS_OK)
         return;
-    uint32_t *pair = pairs->near[pairs->near_count++];
-    pair[0] = pairs->grid.bead[i];
-    pair[1] = pairs->grid.bead[j];
+    pairs->first[pairs->near_count] = pairs->grid.bead[i];
+    pairs->second[pairs->near_count++] = pairs->grid.bead[j];
 }
 
 static void keep_row(void *context, size_t i, struct frame_row row) {

@@ -17,10 +17,10 @@ struct frame_pairs_plan {
 /// Memory of one thread, used again for every frame; all zero is none.
 struct frame_pairs {
     struct frame_grid grid;
-    int32_t *type;       ///< shape [beads], in the order of cells: of a mixture
-    uint32_t *molecule;  ///< likewise, if there are such pairs
-    uint64_t *counts;    ///< shape [pair types, bins + 1]; the last bin is of what is left out
-    uint32_t (*near)[2]; ///< shape [near_count]: pairs of beads
+    int32_t *type;            ///< shape [beads], in the order of cells: of a mixture
+    uint32_t *molecule;       ///< likewise, if there are such pairs
+    uint64_t *counts;         ///< shape [pair types, bins + 1]; the last bin is of what is left out
+    uint32_t *first, *second; ///< shape [near_count]: beads of pairs that are near
     size_t near_count, near_room;
 };
 
@@ -33,7 +33,8 @@ void mf_frame_pairs_clear(struct frame_pairs *pairs);
 enum status mf_frame_pairs_count(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
                                  const struct frame_box *box, int32_t *const place[3]) MUST_USE;
 
-/// Find the pairs nearer than `range`, of whatever types, into pairs->near. Fails: NO_MEMORY.
+/// Find the pairs nearer than `range`, of whatever types, into pairs->first and
+/// second. Fails: NO_MEMORY.
 enum status mf_frame_pairs_find(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
                                 double range, const struct frame_box *box,
                                 int32_t *const place[3]) MUST_USE;

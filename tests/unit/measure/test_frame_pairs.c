@@ -222,7 +222,7 @@ static void test_frame_pairs_near_are_those_counted_when_listed(void **state) {
         size_t found = 0;
         assert_ok(mf_frame_pairs_find(&pairs, &s->plan, s->plan.range, &s->box, s->place));
         for (size_t n = 0; n < pairs.near_count; n++)
-            assert_true(find_distance(s, pairs.near[n][0], pairs.near[n][1]) < s->plan.range);
+            assert_true(find_distance(s, pairs.first[n], pairs.second[n]) < s->plan.range);
         for (size_t i = 0; i < s->frame.atoms; i++)
             for (size_t j = 0; j < i; j++)
                 found += find_distance(s, i, j) < s->plan.range;
