@@ -14,6 +14,10 @@ enum {
     EVERY,
     RANGE,
     BINS,
+    WINDOW,
+    ESCAPE,
+    VELOCITIES,
+    STATIC,
     TEMPERATURE,
     UNITS,
     ALLOW_TRUNCATED,
@@ -29,6 +33,12 @@ static const struct command_option options[] = {
     [EVERY] = {"--every", "T", "take frames so far apart [ps]"},
     [RANGE] = {"--range", "R", "of g(r) [nm]; else most of half the box"},
     [BINS] = {"--bins", "N", "of g(r); else 0.01 nm wide"},
+    [WINDOW] = {"--window", "T",
+                "of MSD, VACF, escape times [ps]; else a tenth, 100 frames at most"},
+    [ESCAPE] = {"--escape", "R", "where a pair has escaped [nm]; else 1.6 density^(-1/3)"},
+    [VELOCITIES] = {"--velocities", "file|differences|none",
+                    "of the VACF; else the file's, if any"},
+    [STATIC] = {"--static", NULL, "g(r) alone, of frames in any interval"},
     [TEMPERATURE] = {"--temperature", "T", "of the target [K]; else that of the velocities"},
     [UNITS] = {"--units", "nm-ps|angstrom-fs", "of what is written (nm-ps)"},
     [ALLOW_TRUNCATED] = {"--allow-truncated", NULL, "use a damaged file up to the damage"},
@@ -63,15 +73,17 @@ static enum status read_bins(const char *text, int64_t *bins) {
     return STATUS_OK;
 }
 
-static enum status read_units(const char *text, int *system) {
-    *system = UNITS_NM_PS;
+/// One of the names of a list, the first of which is what is not told.
+static enum status read_choice(const struct command_line *line, int option,
+                               const char *const *names, int *choice) {
+    const char *const text = line->own[option];
     if (text == NULL)
         return STATUS_OK;
-    while (mf_units_systems[*system] && strcmp(text, mf_units_systems[*system]) != 0)
-        ++*system;
-    return mf_units_systems[*system]
-               ? STATUS_OK
-               : mf_status_fail(STATUS_BAD_INPUT, "--units takes nm-ps or angstrom-fs");
+    for (*choice = 1; names[*choice]; ++*choice)
+        if (strcmp(text, names[*choice]) == 0)
+            return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT, "%s takes %s", options[option].name,
+                          options[option].value);
 }
 
 static enum status read_request(const struct command_line *line, struct measure_request *request) {
@@ -81,10 +93,14 @@ static enum status read_request(const struct command_line *line, struct measure_
     TRY(read_number(line, END, any, &frames->end));
     TRY(read_number(line, EVERY, above_zero, &frames->every));
     TRY(read_number(line, RANGE, above_zero, &request->measured.range));
+    TRY(read_number(line, WINDOW, above_zero, &request->measured.motion.window));
+    TRY(read_number(line, ESCAPE, above_zero, &request->measured.motion.escape));
     TRY(read_number(line, TEMPERATURE, above_zero, &request->temperature));
     TRY(read_number(line, FILE_TIME_STEP, above_zero, &frames->options.time_step));
     TRY(read_bins(line->own[BINS], &request->measured.bins));
-    return read_units(line->own[UNITS], &request->system);
+    TRY(read_choice(line, VELOCITIES, mf_measured_velocities,
+                    &request->measured.motion.velocities));
+    return read_choice(line, UNITS, mf_units_systems, &request->system);
 }
 
 static enum status run(const struct command_line *line) {
@@ -98,8 +114,11 @@ static enum status run(const struct command_line *line) {
                    .end = NAN,
                    .allow_truncated = line->own[ALLOW_TRUNCATED] != NULL,
                    .threads = line->options.threads},
-        .measured = {.threads = line->options.threads},
+        .measured = {.motion = {.leave_out = line->own[STATIC] != NULL,
+                                .threads = line->options.threads},
+                     .threads = line->options.threads},
         .temperature = NAN,
+        .system = UNITS_NM_PS,
     };
     TRY(read_request(line, &request));
     return mf_measure_run(&request, &line->options);

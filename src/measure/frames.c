@@ -77,6 +77,7 @@ enum status mf_frames_open(struct frames *frames, const struct frames_plan *plan
             frames->source[k].bytes = (uint64_t)is.st_size;
     }
     CHECK(open_file(frames));
+    frames->first_bytes = frames->trajectory.source.byte;
 done:
     if (status != STATUS_OK)
         mf_frames_close(frames);
@@ -104,14 +105,28 @@ void mf_frames_bytes(const struct frames *frames, uint64_t *done, uint64_t *tota
     }
 }
 
+size_t mf_frames_expected(const struct frames *frames) {
+    const struct frames_plan *const plan = &frames->plan;
+    uint64_t done, total;
+    mf_frames_bytes(frames, &done, &total);
+    if (frames->time.count < 2 || total == 0)
+        return 0;
+    const double begin = frames->time.value[0], interval = frames->time.value[1] - begin;
+    const double all = (double)total / (double)frames->first_bytes;
+    double last = begin + (all - 1) * interval;
+    if (plan->end < last)
+        last = plan->end;
+    return (size_t)fmax(1, (last - begin) / fmax(interval, plan->every) + 1);
+}
+
 // Batches -----------------------------------------------------------------------------------------
 
 /// What a batch has of the file that is read.
 struct batch {
     struct frames *frames;
-    bool *decoded; ///< shape [slots]
-    size_t fetched;
-    bool over; ///< the file has no further frame, or is damaged
+    bool *decoded;         ///< shape [slots]
+    size_t first, fetched; ///< frames first … fetched − 1 are new
+    bool over;             ///< the file has no further frame, or is damaged
 };
 
 /// A file that breaks off is over, if that is allowed: the failure becomes a note.
@@ -145,19 +160,20 @@ static enum status fetch(struct batch *batch) {
 static enum status decode_one(void *context, size_t task, void *result) {
     const struct batch *const batch = context;
     (void)result;
-    TRY(mf_trajectory_decode(&batch->frames->trajectory, &batch->frames->frame[task]));
-    batch->decoded[task] = true;
+    const size_t k = batch->first + task;
+    TRY(mf_trajectory_decode(&batch->frames->trajectory, &batch->frames->frame[k]));
+    batch->decoded[k] = true;
     return STATUS_OK;
 }
 
 /// Decode all that was fetched; what is behind a damaged frame is lost.
 static enum status decode(struct batch *batch) {
-    const struct parallel_tasks tasks = {.count = batch->fetched,
+    const struct parallel_tasks tasks = {.count = batch->fetched - batch->first,
                                          .threads = batch->frames->plan.threads,
                                          .run = decode_one,
                                          .context = batch};
     TRY(forgive(batch, mf_parallel_try(&tasks)));
-    size_t good = 0;
+    size_t good = batch->first;
     while (good < batch->fetched && batch->decoded[good])
         good++;
     batch->fetched = good;
@@ -242,8 +258,7 @@ static void swap(struct trajectory_frame *a, struct trajectory_frame *b) {
 static enum status choose(struct batch *batch, size_t *count) {
     struct frames *const frames = batch->frames;
     struct frames_source *const source = &frames->source[frames->at];
-    *count = 0;
-    for (size_t k = 0; k < batch->fetched && !frames->ended; k++) {
+    for (size_t k = batch->first; k < batch->fetched && !frames->ended; k++) {
         bool use;
         TRY(judge(frames, &frames->frame[k], &use));
         if (!use)
@@ -275,12 +290,12 @@ enum status mf_frames_next(struct frames *frames, size_t *count) {
     struct batch batch = {.frames = frames};
     *count = 0;
     NEW_ARRAY(batch.decoded, frames->slots);
-    while (*count == 0 && !frames->ended) {
+    while (*count < frames->slots / 2 && !frames->ended) {
         if (mf_interrupt_requested()) {
             status = mf_status_fail(STATUS_INTERRUPTED, "interrupted");
             goto done;
         }
-        batch.fetched = 0;
+        batch.first = batch.fetched = *count;
         batch.over = false;
         memset(batch.decoded, 0, frames->slots * sizeof *batch.decoded);
         CHECK(read_batch(&batch, count));

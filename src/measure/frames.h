@@ -40,7 +40,8 @@ struct frames {
     struct trajectory_frame *frame; ///< shape [slots]: a batch, those to be used first
     struct series time;             ///< of all frames in order, so far
     size_t used;
-    struct bytes notes; ///< lines for a person: what was left out and why; a text
+    uint64_t first_bytes; ///< up to the end of the first frame
+    struct bytes notes;   ///< lines for a person: what was left out and why; a text
 };
 
 /// Open the first file. @param[in] structure  NULL: that of the first file
@@ -50,10 +51,14 @@ enum status mf_frames_open(struct frames *frames, const struct frames_plan *plan
                            const struct structure *structure, const char *structure_file) MUST_USE;
 
 /// Read the next frames to be used into frames->frame[0 … *count − 1], in order; *count is 0 behind
-/// the last. They are the same however many threads there are, but for how many come at a time.
-/// Fails: BAD_INPUT for a damaged frame, unless that is allowed, for frames out of order or without
-/// a time that is asked for; IO; NO_MEMORY; INTERRUPTED.
+/// the last, and at least 2 before. They are the same however many threads there are, but for how
+/// many come at a time. Fails: BAD_INPUT for a damaged frame, unless that is allowed, for frames
+/// out of order or without a time that is asked for; IO; NO_MEMORY; INTERRUPTED.
 enum status mf_frames_next(struct frames *frames, size_t *count) MUST_USE;
+
+/// How many frames there will be to be used, if all are as long as the first and as far apart as
+/// the first two that were seen; 0: not known.
+size_t mf_frames_expected(const struct frames *frames);
 
 /// Bytes of the files, and those taken so far.
 void mf_frames_bytes(const struct frames *frames, uint64_t *done, uint64_t *total);

@@ -124,6 +124,7 @@ void mf_measured_clear(struct measured *measured) {
     clear_slots(measured);
     mf_memory_free(measured->molecule);
     mf_rdf_clear(&measured->rdf.counted);
+    mf_measured_motion_clear(&measured->motion);
     mf_series_clear(&measured->volume);
     *measured = (struct measured){0};
 }
@@ -150,6 +151,17 @@ struct batch {
     const struct trajectory_frame *frame;
 };
 
+/// Count pairs, and find those that escape times ask for.
+static enum status find_pairs(const struct measured *measured, size_t frame,
+                              struct measured_slot *slot) {
+    const double near = mf_measured_motion_pairs_range(&measured->motion, frame);
+    if (near > 0) {
+        TRY(mf_frame_box_check_range(&slot->box, &slot->beads, near, "the range of escape times"));
+        TRY(mf_frame_pairs_find(&slot->pairs, &measured->pairs, near, &slot->box, slot->place));
+    }
+    return mf_frame_pairs_count(&slot->pairs, &measured->pairs, &slot->box, slot->place);
+}
+
 static enum status look_at(void *context, size_t task, void *result) {
     const struct batch *const batch = context;
     struct measured *const measured = batch->measured;
@@ -160,7 +172,7 @@ static enum status look_at(void *context, size_t task, void *result) {
     TRY(mf_frame_box_check_range(&slot->box, &slot->beads, measured->pairs.range,
                                  "the range of g(r)"));
     mf_frame_box_places(&slot->box, &slot->beads, slot->place);
-    return mf_frame_pairs_count(&slot->pairs, &measured->pairs, &slot->box, slot->place);
+    return find_pairs(measured, measured->frames + task, slot);
 }
 
 static void add_pairs(struct measured *measured, const struct measured_slot *slot) {
@@ -174,7 +186,16 @@ static void add_pairs(struct measured *measured, const struct measured_slot *slo
 static enum status add_one(struct measured *measured, const struct measured_slot *slot) {
     add_pairs(measured, slot);
     measured->frames++;
+    TRY(mf_measured_motion_add(&measured->motion, &slot->beads, &slot->box, slot->place,
+                               &slot->pairs));
     return mf_series_add(&measured->volume, slot->box.volume);
+}
+
+static enum status begin_motion(struct measured *measured, const struct trajectory_frame *first) {
+    struct frame_box box;
+    TRY(mf_frame_box_find(&box, first));
+    return mf_measured_motion_begin(&measured->motion, &measured->plan.motion, measured->mapping,
+                                    first, &box);
 }
 
 enum status mf_measured_add(struct measured *measured, const struct trajectory_frame *frames,
@@ -183,6 +204,8 @@ enum status mf_measured_add(struct measured *measured, const struct trajectory_f
     const struct parallel_tasks tasks = {
         .count = count, .threads = measured->plan.threads, .run = look_at, .context = &batch};
     TRY(make_slots(measured, count));
+    if (measured->frames == 0 && count > 1)
+        TRY(begin_motion(measured, frames));
     TRY(mf_parallel_try(&tasks));
     for (size_t k = 0; k < count; k++)
         TRY(add_one(measured, &measured->slot[k]));

@@ -7,13 +7,14 @@
 #pragma once
 
 #include "measure/frame_pairs.h"
-#include "measure/series.h"
+#include "measure/measured_motion.h"
 #include "observe/rdf_observable.h"
 #include "trajectory/mapping.h"
 
 struct measured_plan {
     double range; ///< of g(r) [nm]
     int64_t bins; ///< of it
+    struct measured_motion_plan motion;
     int threads;
 };
 
@@ -31,6 +32,7 @@ struct measured {
     } * slot; ///< one for each frame of a batch
     size_t slots;
     struct rdf_observed rdf;
+    struct measured_motion motion;
     size_t frames;
     struct series volume; ///< [nm³]
 };
@@ -41,14 +43,15 @@ enum status mf_measured_begin(struct measured *measured, const struct measured_p
                               const struct mapping *mapping,
                               const struct trajectory_frame *first) MUST_USE;
 
-/// Add frames in their order; the same bits for any number of threads, and however many come at a
-/// time. Fails: BAD_INPUT, naming the frame; NO_MEMORY. Tested: test_measured.
+/// Add frames in their order, the first two together; the same bits for any number of threads, and
+/// however many come at a time. Fails: BAD_INPUT, naming the frame; NO_MEMORY. Tested:
+/// test_measured.
 enum status mf_measured_add(struct measured *measured, const struct trajectory_frame *frames,
                             size_t count) MUST_USE;
 
 void mf_measured_clear(struct measured *measured);
 
-/// The units of all that is measured, to be written in those of a system (enum units_system).
+/// The units of all that is measured, for results in those of `system`.
 struct units mf_measured_units(int system);
 
 /// Cube of the mean volume.

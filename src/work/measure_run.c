@@ -70,6 +70,12 @@ static void tell(struct run *run) {
                      "frames", text);
 }
 
+static enum status begin_measuring(struct run *run) {
+    struct measured_plan plan = run->request->measured;
+    plan.motion.expected = mf_frames_expected(&run->frames);
+    return mf_measured_begin(&run->measured, &plan, &run->mapping, run->frames.frame);
+}
+
 static enum status read_frames(struct run *run) {
     size_t count;
     for (;;) {
@@ -77,8 +83,7 @@ static enum status read_frames(struct run *run) {
         if (count == 0)
             break;
         if (run->measured.mapping == NULL)
-            TRY(mf_measured_begin(&run->measured, &run->request->measured, &run->mapping,
-                                  run->frames.frame));
+            TRY(begin_measuring(run));
         TRY(mf_measured_add(&run->measured, run->frames.frame, count));
         tell(run);
     }
@@ -89,6 +94,7 @@ static enum status read_frames(struct run *run) {
 }
 
 static enum status write_results(struct run *run, bool interrupted) {
+    mf_measured_motion_end(&run->measured.motion);
     const struct measure_result result = {.request = run->request,
                                           .frames = &run->frames,
                                           .mapping = &run->mapping,
