@@ -59,7 +59,7 @@ static double soft_repulsion_cutoff(const void *parameters) {
 
 #define SOFT(member) .offset = offsetof(struct formula_soft_repulsion_parameters, member)
 static const struct field soft_repulsion_fields[] = {
-    {"a", FIELD_NUMBER, SOFT(a), .initial = 25, ANY_NUMBER, .unit = "k_B T_0 / lambda",
+    {"a", FIELD_NUMBER, SOFT(a), .initial = 25, ANY_NUMBER, .unit = "k_B T_0/lambda",
      .help = "largest force"},
     {"cutoff", FIELD_NUMBER, SOFT(cutoff), .initial = 1, POSITIVE, .unit = "lambda",
      .help = "distance beyond which the force is 0"},
@@ -130,7 +130,7 @@ static enum status power_omega_check(void *parameters) {
 #define OMEGA(member) .offset = offsetof(struct formula_power_omega_parameters, member)
 static const struct field power_omega_fields[] = {
     {"sigma", FIELD_NUMBER, OMEGA(sigma), .initial = 2.1213203435596424, AT_LEAST_ZERO,
-     .unit = "sqrt(mass/time)",
+     .unit = "sqrt(mu/tau)",
      .help = "omega extrapolated to r = 0; sigma^2 is Groot and "
              "Warren's gamma"},
     {"exponent", FIELD_NUMBER, OMEGA(exponent), .initial = 1, POSITIVE, .unit = "",

@@ -219,10 +219,10 @@ double mf_brownian_free_long_time(const struct brownian_free *free) {
 #define MEMBER(name) .offset = offsetof(struct brownian_parameters, name)
 static const struct field fields[] = {
     {"friction", FIELD_NUMBER, MEMBER(friction), .initial = 1, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = DBL_MAX, .unit = "mass/tau",
+     .maximum = DBL_MAX, .unit = "mu/tau",
      .help = "gamma of each particle; alone it diffuses with D = T/gamma"},
     {"orientation_friction", FIELD_NUMBER, MEMBER(orientation_friction), .initial = 1,
-     .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX, .unit = "mass lambda^2/tau",
+     .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX, .unit = "mu lambda^2/tau",
      .help = "gamma_r of the orientation, if particles have one"},
     {"orientation_temperature", FIELD_NUMBER, MEMBER(orientation_temperature), .initial = 1,
      .minimum = 0, .maximum = DBL_MAX, .unit = "T_0",

@@ -186,7 +186,7 @@ static const struct field fields[] = {
      .minimum = FIELD_ABOVE_ZERO, .maximum = 1e6, .unit = "",
      .help = "M, solvent particles of a cell on the average"},
     {"mass", FIELD_NUMBER, MEMBER(mass), .initial = 1, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = DBL_MAX, .unit = "mass", .help = "m of a solvent particle"},
+     .maximum = DBL_MAX, .unit = "mu", .help = "m of a solvent particle"},
     {"angle", FIELD_NUMBER, MEMBER(angle), .initial = 130, .minimum = FIELD_ABOVE_ZERO,
      .maximum = 180, .unit = "degrees", .help = "alpha, by which relative velocities turn"},
     {"interval", FIELD_INTEGER, MEMBER(interval), .initial = 1, .minimum = 1, .maximum = 1e9,

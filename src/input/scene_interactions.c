@@ -61,7 +61,7 @@ static void put_field(const struct field *field, const char *parameters, int dim
         return;
     }
     memcpy(vector, parameters + field->offset, sizeof vector);
-    mf_json_put_numbers(writer, field->name, vector, (size_t)dimensions);
+    mf_json_put_quantities(writer, field->name, field->unit, vector, (size_t)dimensions);
 }
 
 void mf_scene_interactions_write(const struct scene_interactions *interactions,

@@ -46,9 +46,9 @@ const struct field mf_target_curve_fields[] = {
 #define NUMBER(name) .offset = offsetof(struct target_number, name)
 const struct field mf_target_curve_number_fields[] = {
     {"value", FIELD_NUMBER, NUMBER(value), .required = true, .minimum = -DBL_MAX,
-     .maximum = DBL_MAX, .unit = "reduced", .help = "measured"},
+     .maximum = DBL_MAX, .unit = "its own", .help = "measured"},
     {"error", FIELD_NUMBER, NUMBER(error), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "reduced", .help = "its standard error"},
+     .unit = "its own", .help = "its standard error"},
     FIELD_END,
 };
 

@@ -11,6 +11,7 @@
 #pragma once
 
 #include "base/status.h"
+#include "io/units_scale.h"
 
 #include <stddef.h>
 
@@ -40,6 +41,12 @@ void mf_data_table_clear(struct data_table *table);
 enum status mf_data_table_check_increasing(const struct data_table *table, const char *file,
                                            size_t column, double least) MUST_USE;
 
+/// Make numbers of the reduced `unit` of a column: they are in the unit in brackets behind its
+/// name, or else in those of the file that names the table. Nothing changes for a reduced file.
+/// Fails: BAD_INPUT if the name has no such unit. Tested: test_data_table_units.
+enum status mf_data_table_convert(struct data_table *table, const char *file, size_t column,
+                                  const char *unit, const struct units *units) MUST_USE;
+
 /// One column to be written.
 struct data_column {
     const char *name; ///< with unit, such as "r[lambda]"
@@ -51,3 +58,10 @@ struct data_column {
 enum status mf_data_table_write(const char *file, const char *comment,
                                 const struct data_column *columns, size_t column_count,
                                 size_t rows) MUST_USE;
+
+/// Write columns of reduced units in spoken ones: by the unit in brackets behind its name each is
+/// converted and called anew, "r[lambda]" as "r[nm]"; columns of other units stay. Tested:
+/// test_data_table_units.
+enum status mf_data_table_write_in(const char *file, const struct units *units, const char *comment,
+                                   const struct data_column *columns, size_t column_count,
+                                   size_t rows) MUST_USE;

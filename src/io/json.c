@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/json.h"
 
-#include "base/faults.h"
 #include "base/memory.h"
 #include "base/nearest.h"
 #include "base/visible.h"
+#include "io/json_document.h"
 #include "io/json_item.h"
-#include "io/json_list.h"
 #include "io/json_syntax.h"
 #include "io/output.h"
 #include "io/text_file.h"
@@ -19,14 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LINE_SIZE = 4096 };
-
-struct json_document {
-    cJSON *root;
-    char *file;
-    struct input_files *inputs; ///< files that it names, or NULL: nobody wants to know
-    struct faults faults;
-};
+enum { LINE_SIZE = JSON_LINE_SIZE };
 
 // Faults ------------------------------------------------------------------------------------------
 
@@ -50,8 +42,8 @@ void mf_json_fault(struct json_object *object, const char *key, const char *form
     mf_faults_add(&object->document->faults, visible);
 }
 
-static void fault_wrong_type(struct json_object *object, const char *key, const char *expected,
-                             const cJSON *item) {
+void mf_json_fault_type(struct json_object *object, const char *key, const char *expected,
+                        const void *item) {
     char found[64];
     mf_json_item_describe(item, found, sizeof found);
     mf_json_fault(object, key, "expected %s, found %s", expected, found);
@@ -131,10 +123,18 @@ enum status mf_json_collect_files(struct json_document *document, struct input_f
     return mf_input_files_add(inputs, document->file);
 }
 
+void mf_json_speak(struct json_document *document, const struct units *units) {
+    document->units = *units;
+}
+
+const struct units *mf_json_units(const struct json_object *object) {
+    return &object->document->units;
+}
+
 struct json_object mf_json_root(struct json_document *document) {
     struct json_object root = view(document, document->root);
     if (!cJSON_IsObject(document->root)) {
-        fault_wrong_type(&root, NULL, "an object", document->root);
+        mf_json_fault_type(&root, NULL, "an object", document->root);
         root.item = NULL;
     }
     return root;
@@ -147,8 +147,7 @@ static bool was_asked(const struct json_object *object, const char *key) {
     return false;
 }
 
-/// Remember that the reader knows `key`, and find it.
-static const cJSON *ask(struct json_object *object, const char *key) {
+const void *mf_json_ask(struct json_object *object, const char *key) {
     if (!was_asked(object, key)) {
         if (object->asked_count < JSON_MAX_KEYS)
             object->asked[object->asked_count++] = key;
@@ -172,7 +171,7 @@ struct json_object mf_json_child(struct json_object *parent, const char *key, bo
 
 struct json_object mf_json_child_of(struct json_object *parent, const char *key, bool required,
                                     const char *chief) {
-    const cJSON *item = ask(parent, key);
+    const cJSON *item = mf_json_ask(parent, key);
     struct json_object child = view(parent->document, NULL);
     join_path(child.path, sizeof child.path, parent->path, key);
     if (cJSON_IsObject(item))
@@ -185,7 +184,7 @@ struct json_object mf_json_child_of(struct json_object *parent, const char *key,
 }
 
 bool mf_json_has(struct json_object *object, const char *key) {
-    return ask(object, key) != NULL;
+    return mf_json_ask(object, key) != NULL;
 }
 
 bool mf_json_is_object(const struct json_object *object, const char *key) {
@@ -199,7 +198,7 @@ int mf_json_count(const struct json_object *object, const char *key) {
 
 void mf_json_renamed(struct json_object *object, const char *old, const char *today) {
     // Only then: the name is not to be proposed as the nearest one.
-    if (cJSON_GetObjectItemCaseSensitive(object->item, old) && ask(object, old))
+    if (cJSON_GetObjectItemCaseSensitive(object->item, old) && mf_json_ask(object, old))
         mf_json_fault(object, old, "is called \"%s\" now", today);
 }
 
@@ -214,7 +213,7 @@ const char *mf_json_key(const struct json_object *object, size_t n) {
 
 void mf_json_refuse(struct json_object *object, const char *key, const char *reason) {
     // Only then: the key is not to be proposed as one that is known.
-    if (cJSON_GetObjectItemCaseSensitive(object->item, key) && ask(object, key))
+    if (cJSON_GetObjectItemCaseSensitive(object->item, key) && mf_json_ask(object, key))
         mf_json_fault(object, key, "unknown key: %s", reason);
 }
 
@@ -252,198 +251,4 @@ enum status mf_json_close(struct json_document *document, enum status status) {
         status = mf_faults_status(&document->faults);
     free_document(document);
     return status;
-}
-
-// Values ------------------------------------------------------------------------------------------
-
-static const char *const expected_name[] = {
-    [FIELD_NUMBER] = "a number",     [FIELD_INTEGER] = "a whole number",
-    [FIELD_SEED] = "a whole number", [FIELD_LENGTHS] = "an array of 2 or 3 numbers",
-    [FIELD_TEXT] = "a text",         [FIELD_FILE] = "a text with the name of a file",
-    [FIELD_CHOICE] = "a text",       [FIELD_CHOICES] = "a list of texts",
-};
-
-/// A finite number, or false and a fault.
-static bool read_finite(struct json_object *object, const char *key, const char *expected,
-                        const cJSON *item, double *value) {
-    if (!cJSON_IsNumber(item)) {
-        fault_wrong_type(object, key, expected, item);
-        return false;
-    }
-    if (!isfinite(item->valuedouble)) {
-        mf_json_fault(object, key, "the number is too large; the largest is %.3g", DBL_MAX);
-        return false;
-    }
-    *value = item->valuedouble;
-    return true;
-}
-
-/// A finite whole number whose digits survived, or false and a fault.
-static bool read_whole(struct json_object *object, const char *key, const cJSON *item,
-                       double *value) {
-    if (!read_finite(object, key, "a whole number", item, value))
-        return false;
-    if (*value != floor(*value)) {
-        fault_wrong_type(object, key, "a whole number", item);
-        return false;
-    }
-    if (fabs(*value) >= FIELD_LARGEST_INTEGER) {
-        mf_json_fault(object, key,
-                      "%.0f is out of range: whole numbers of 2^53 (%.0f) and beyond lose digits",
-                      *value, FIELD_LARGEST_INTEGER);
-        return false;
-    }
-    return true;
-}
-
-static bool is_in_range(struct json_object *object, const char *key, const struct field *field,
-                        double value) {
-    if (value >= field->minimum && value <= field->maximum)
-        return true;
-    char range[64];
-    mf_fields_range_text(field, range, sizeof range);
-    mf_json_fault(object, key, "%.15g is out of range; allowed: %s%s%s", value, range,
-                  field->unit && field->unit[0] ? " " : "", field->unit ? field->unit : "");
-    return false;
-}
-
-static void read_lengths(struct json_object *object, const struct field *field, const cJSON *item,
-                         char *member) {
-    double lengths[3] = {0};
-    const int count = mf_json_count(object, field->name);
-    if (count < 2 || count > 3) {
-        if (cJSON_IsArray(item))
-            mf_json_fault(object, field->name, "expected 2 or 3 numbers, found %d", count);
-        else
-            fault_wrong_type(object, field->name, expected_name[FIELD_LENGTHS], item);
-        return;
-    }
-    bool good = true;
-    for (int k = 0; k < count; k++) {
-        char key[JSON_PATH_SIZE];
-        snprintf(key, sizeof key, "%s[%d]", field->name, k);
-        good &= read_finite(object, key, "a number", cJSON_GetArrayItem(item, k), &lengths[k]) &&
-                is_in_range(object, key, field, lengths[k]);
-    }
-    if (good)
-        memcpy(member, lengths, sizeof lengths);
-}
-
-/// A text that is not empty, or NULL and a fault.
-static const char *read_text(struct json_object *object, const char *key, const char *expected,
-                             const cJSON *item) {
-    if (!cJSON_IsString(item))
-        fault_wrong_type(object, key, expected, item);
-    else if (item->valuestring[0] == '\0')
-        mf_json_fault(object, key, "the text is empty");
-    else
-        return item->valuestring;
-    return NULL;
-}
-
-static void read_text_field(struct json_object *object, const struct field *field,
-                            const cJSON *item, char *member) {
-    const char *text = read_text(object, field->name, expected_name[field->type], item);
-    if (text == NULL)
-        return;
-    const char *file = object->document->file, *slash = strrchr(file, '/');
-    const bool joined = field->type == FIELD_FILE && text[0] != '/' && slash;
-    const size_t folder = joined ? (size_t)(slash + 1 - file) : 0;
-    if (folder + strlen(text) >= FIELD_TEXT_SIZE) {
-        mf_json_fault(object, field->name, "the text is longer than %d bytes", FIELD_TEXT_SIZE - 1);
-        return;
-    }
-    memcpy(member, file, folder);
-    strcpy(member + folder, text);
-    if (field->type == FIELD_FILE && object->document->inputs &&
-        mf_input_files_add(object->document->inputs, member) != STATUS_OK)
-        mf_json_fault(object, field->name, "%s", mf_status_message());
-}
-
-static void read_field(struct json_object *object, const struct field *field, const cJSON *item,
-                       char *member) {
-    const char *key = field->name;
-    double value;
-    int chosen;
-    switch (field->type) {
-    case FIELD_NUMBER:
-        if (read_finite(object, key, expected_name[FIELD_NUMBER], item, &value) &&
-            is_in_range(object, key, field, value))
-            memcpy(member, &value, sizeof value);
-        break;
-    case FIELD_INTEGER:
-        if (read_whole(object, key, item, &value) && is_in_range(object, key, field, value))
-            memcpy(member, &(int64_t){(int64_t)value}, sizeof(int64_t));
-        break;
-    case FIELD_SEED:
-        if (!read_whole(object, key, item, &value))
-            break;
-        if (value < 0)
-            mf_json_fault(object, key, "%.0f is out of range; allowed: at least 0", value);
-        else
-            memcpy(member, &(uint64_t){(uint64_t)value}, sizeof(uint64_t));
-        break;
-    case FIELD_LENGTHS:
-        read_lengths(object, field, item, member);
-        break;
-    case FIELD_TEXT:
-    case FIELD_FILE:
-        read_text_field(object, field, item, member);
-        break;
-    case FIELD_CHOICE:
-        if (mf_json_choice(object, key, field->choices, NULL))
-            memcpy(member, &(int){mf_fields_choice_index(field, item->valuestring)}, sizeof(int));
-        break;
-    case FIELD_CHOICES:
-        if (mf_json_list_choices(object, field, item, &chosen))
-            memcpy(member, &chosen, sizeof chosen);
-        break;
-    }
-}
-
-void mf_json_fields(struct json_object *object, const struct field *fields, void *parameters) {
-    mf_fields_set_defaults(fields, parameters);
-    for (const struct field *field = fields; field->name; field++) {
-        const cJSON *item = ask(object, field->name);
-        // A number that is not known is written as null.
-        if (cJSON_IsNull(item) && field->type == FIELD_NUMBER && isnan(field->initial))
-            continue;
-        if (item)
-            read_field(object, field, item, (char *)parameters + field->offset);
-        else if (field->required && object->item)
-            mf_json_fault(object, field->name, "missing: %s is required (%s)",
-                          expected_name[field->type], field->help ? field->help : field->name);
-    }
-}
-
-static void fault_missing_choice(struct json_object *object, const char *key,
-                                 const char *const *known) {
-    char hint[LINE_SIZE / 4] = "";
-    size_t count = 0;
-    while (known && known[count])
-        count++;
-    mf_nearest_hint("", known, count, hint, sizeof hint);
-    mf_json_fault(object, key, "missing: a text is required%s%s", known ? "; " : "",
-                  known ? hint : "");
-}
-
-const char *mf_json_choice(struct json_object *object, const char *key, const char *const *known,
-                           const char *fallback) {
-    const cJSON *item = ask(object, key);
-    if (item == NULL) {
-        if (fallback == NULL && object->item)
-            fault_missing_choice(object, key, known);
-        return fallback;
-    }
-    const char *text = read_text(object, key, "a text", item);
-    if (text == NULL || known == NULL)
-        return text;
-    size_t count = 0;
-    for (; known[count]; count++)
-        if (strcmp(known[count], text) == 0)
-            return text;
-    char hint[LINE_SIZE / 4];
-    mf_nearest_hint(text, known, count, hint, sizeof hint);
-    mf_json_fault(object, key, "\"%.60s\" is unknown; %s", text, hint);
-    return NULL;
 }

@@ -11,6 +11,7 @@
 #include "base/fields.h"
 #include "base/status.h"
 #include "io/input.h"
+#include "io/units_scale.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -38,6 +39,13 @@ enum status mf_json_open(struct json_document **document, const char *file) MUST
 /// Both live as long as the document. Fails: NO_MEMORY. Tested: test_json.
 enum status mf_json_collect_files(struct json_document *document,
                                   struct input_files *inputs) MUST_USE;
+
+/// Say in which units the numbers of the document are, which is reduced until then. Tested:
+/// test_units.
+void mf_json_speak(struct json_document *document, const struct units *units);
+
+/// In which units the numbers of the object are.
+const struct units *mf_json_units(const struct json_object *object);
 
 /// View of the document's root, which must be an object.
 struct json_object mf_json_root(struct json_document *document);
@@ -70,10 +78,16 @@ void mf_json_renamed(struct json_object *object, const char *old, const char *to
 /// Refuse a key that has no place here, if it is present, with the reason. Tested: test_json.
 void mf_json_refuse(struct json_object *object, const char *key, const char *reason);
 
-/// Read the members described by `fields` into `parameters`, defaults where absent.
-/// FIELD_FILE values are joined to the folder of the document's file unless absolute. An absent
-/// object gives the defaults and no faults: that it is missing was mf_json_child's to say. null, as
-/// mf_json_put_number writes what is not known, is allowed for numbers whose default is NAN.
+/// The number, or the list of up to `most` numbers, at `key` as they stand there; 0 if there are
+/// none. Counts as nothing, and faults are left to the reader. Tested: test_units.
+int mf_json_numbers(const struct json_object *object, const char *key, double *values, int most);
+
+/// Read the members described by `fields` into `parameters`, defaults where absent. Numbers of the
+/// document's units become numbers of the fields' (mf_units_factor); defaults and ranges are those
+/// of the fields, and messages speak as the document does. FIELD_FILE values are joined to the
+/// folder of the document's file unless absolute. An absent object gives the defaults and no
+/// faults: that it is missing was mf_json_child's to say. null, as mf_json_put_number writes what
+/// is not known, is allowed for numbers whose default is NAN.
 void mf_json_fields(struct json_object *object, const struct field *fields, void *parameters);
 
 /// Read a required text such as the name of a law: NULL (and a fault) if absent or not a text.

@@ -19,7 +19,8 @@ enum { DEEPEST_OBJECT = 16 };
 struct json_writer {
     cJSON *object[DEEPEST_OBJECT]; ///< the root and the objects entered; NULL where that failed
     int depth;
-    char problem[256]; ///< the first one; "" while all is well
+    struct units units; ///< in which its numbers are told
+    char problem[256];  ///< the first one; "" while all is well
 };
 
 static struct json_writer *create(cJSON *root) {
@@ -114,6 +115,15 @@ void mf_json_put_number(struct json_writer *writer, const char *key, double valu
     put(writer, key, create_number(value));
 }
 
+void mf_json_writer_speak(struct json_writer *writer, const struct units *units) {
+    writer->units = *units;
+}
+
+void mf_json_put_quantity(struct json_writer *writer, const char *key, const char *unit,
+                          double value) {
+    mf_json_put_number(writer, key, mf_units_spoken(value, mf_units_factor(&writer->units, unit)));
+}
+
 void mf_json_put_integer(struct json_writer *writer, const char *key, int64_t value) {
     char text[32];
     snprintf(text, sizeof text, "%" PRId64, value);
@@ -132,9 +142,15 @@ void mf_json_put_text(struct json_writer *writer, const char *key, const char *v
 
 void mf_json_put_numbers(struct json_writer *writer, const char *key, const double *values,
                          size_t count) {
+    mf_json_put_quantities(writer, key, "", values, count);
+}
+
+void mf_json_put_quantities(struct json_writer *writer, const char *key, const char *unit,
+                            const double *values, size_t count) {
+    const double factor = mf_units_factor(&writer->units, unit);
     cJSON *array = cJSON_CreateArray();
     for (size_t k = 0; array && k < count; k++) {
-        cJSON *item = create_number(values[k]);
+        cJSON *item = create_number(mf_units_spoken(values[k], factor));
         if (!cJSON_AddItemToArray(array, item))
             note_problem(writer, key, "does not fit into the memory");
     }
@@ -169,10 +185,11 @@ static void put_field(struct json_writer *writer, const struct field *field, con
     int64_t integer;
     uint64_t seed;
     int choice;
+    const char *unit = field->unit ? field->unit : "";
     switch (field->type) {
     case FIELD_NUMBER:
         memcpy(number, member, sizeof *number);
-        mf_json_put_number(writer, field->name, number[0]);
+        mf_json_put_quantity(writer, field->name, unit, number[0]);
         break;
     case FIELD_INTEGER:
         memcpy(&integer, member, sizeof integer);
@@ -185,7 +202,7 @@ static void put_field(struct json_writer *writer, const struct field *field, con
     case FIELD_LENGTHS:
         memcpy(number, member, sizeof number);
         if (field->required || number[0] != 0 || number[1] != 0 || number[2] != 0)
-            mf_json_put_numbers(writer, field->name, number, number[2] != 0 ? 3 : 2);
+            mf_json_put_quantities(writer, field->name, unit, number, number[2] != 0 ? 3 : 2);
         break;
     case FIELD_TEXT:
         if (member[0])

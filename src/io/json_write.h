@@ -9,6 +9,7 @@
 
 #include "base/fields.h"
 #include "base/status.h"
+#include "io/units_scale.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -25,12 +26,20 @@ void mf_json_writer_free(struct json_writer *writer);
 void mf_json_begin(struct json_writer *writer, const char *key);
 void mf_json_end(struct json_writer *writer);
 
+/// Say in which units quantities and fields are to be written, which is reduced until then.
+void mf_json_writer_speak(struct json_writer *writer, const struct units *units);
+
 void mf_json_put_number(struct json_writer *writer, const char *key, double value);
+/// A number of a reduced unit, as of a field table. Tested: test_units.
+void mf_json_put_quantity(struct json_writer *writer, const char *key, const char *unit,
+                          double value);
 /// All digits are written, but mf_json_fields refuses 2^53 and beyond.
 void mf_json_put_integer(struct json_writer *writer, const char *key, int64_t value);
 void mf_json_put_text(struct json_writer *writer, const char *key, const char *value);
 void mf_json_put_numbers(struct json_writer *writer, const char *key, const double *values,
                          size_t count);
+void mf_json_put_quantities(struct json_writer *writer, const char *key, const char *unit,
+                            const double *values, size_t count);
 
 /// Write every member that `fields` describes; FIELD_TEXT and FIELD_FILE that are empty, and
 /// FIELD_LENGTHS that are all 0 and not required, are left out. Reading the result back gives the

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/units.h"
 
-#include "base/memory.h"
-
 #include <math.h>
 
 #define MEMBER(name) .offset = offsetof(struct units, name)
@@ -17,54 +15,208 @@ const struct field mf_units_fields[] = {
     FIELD_END,
 };
 
+/// What a file in physical units says of its scale, in them.
+struct system {
+    int kind; ///< enum units_system, less one
+    double length, temperature, mass;
+};
+
+#define SYSTEM(name) .offset = offsetof(struct system, name)
+#define SCALE .initial = NAN, .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX
+const struct field mf_units_system_fields[] = {
+    {"system", FIELD_CHOICE, SYSTEM(kind), .choices = mf_units_systems + 1, .unit = "",
+     .help = "of all numbers of the file, its tables and its results: nm, ps, u, kJ/mol, K, bar; "
+             "or angstrom, fs, g/mol, kcal/mol, K, atm"},
+    {"length", FIELD_NUMBER, SYSTEM(length), SCALE, .unit = "nm or angstrom",
+     .help = "lambda; without it lambda^3, in two dimensions lambda^2, holds three beads"},
+    {"temperature", FIELD_NUMBER, SYSTEM(temperature), SCALE, .unit = "K",
+     .help = "T_0; without it that of the scene"},
+    {"mass", FIELD_NUMBER, SYSTEM(mass), SCALE, .unit = "u",
+     .help = "mu; without it the mean mass of the scene's beads, or 1 if it says none"},
+    FIELD_END,
+};
+
+/// u per kg, and units of length per nm.
+static const double masses = 1 / UNITS_ATOMIC_MASS;
+static double lengths(int system) {
+    return system == UNITS_ANGSTROM_FS ? 10 : 1;
+}
+
+static bool can_be_held(const struct units *units) {
+    return isnormal(mf_units_time_ps(units)) && isnormal(mf_units_energy_kj_per_mol(units)) &&
+           isnormal(mf_units_pressure_bar(units)) && isnormal(mf_units_diffusion_cm2_per_s(units));
+}
+
+static void fault_unholdable(struct json_object *object) {
+    mf_json_fault(object, "units",
+                  "no numbers can hold the units of time, energy, pressure and diffusion that "
+                  "these make");
+}
+
+// The scale that follows from a scene -------------------------------------------------------------
+
+/// How many beads there are, and their mean mass if the scene says it, else 0, of one type or of
+/// all; `count` is 0 if a fault will tell why it is not known.
+static double find_beads(struct json_object scene, double *mean_mass) {
+    struct json_object particles = mf_json_child(&scene, "particles", false);
+    struct json_object types = mf_json_child(&particles, "types", false);
+    struct json_object mass = mf_json_child(&particles, "mass", false);
+    double count = 0, sum = 0, number, range[2];
+    const char *type;
+    *mean_mass = 0;
+    for (size_t n = 0; (type = mf_json_key(&types, n)); n++) {
+        struct json_object own = mf_json_child(&mass, type, false);
+        if (mf_json_numbers(&types, type, &number, 1) != 1)
+            continue;
+        count += number;
+        if (mf_json_numbers(&mass, type, range, 1) == 1)
+            sum += number * range[0];
+        else if (mf_json_numbers(&own, "minimum", &range[0], 1) +
+                     mf_json_numbers(&own, "maximum", &range[1], 1) ==
+                 2)
+            sum += 0.5 * number * (range[0] + range[1]);
+    }
+    mf_json_numbers(&particles, "count", &count, 1);
+    if (mf_json_numbers(&particles, "mass", range, 1) == 1)
+        *mean_mass = range[0];
+    else if (mf_json_numbers(&mass, "minimum", &range[0], 1) +
+                 mf_json_numbers(&mass, "maximum", &range[1], 1) ==
+             2)
+        *mean_mass = 0.5 * (range[0] + range[1]);
+    else if (count > 0)
+        *mean_mass = sum / count;
+    return count;
+}
+
+/// The edge of a cube, or square, that holds three of the beads; 1 if a fault will tell why not.
+static double find_length(const struct json_object *scene, double beads) {
+    double box[3], volume = 1;
+    const int edges = mf_json_numbers(scene, "box", box, 3);
+    for (int d = 0; d < edges; d++)
+        volume *= box[d];
+    return edges >= 2 && beads > 0 && volume > 0 ? pow(3 * volume / beads, 1.0 / edges) : 1;
+}
+
+/// Fill in what the file does not say.
+static void complete(struct system *system, struct json_object *scene) {
+    double mean_mass;
+    const double beads = find_beads(*scene, &mean_mass);
+    if (isnan(system->length))
+        system->length = find_length(scene, beads);
+    if (isnan(system->mass))
+        system->mass = mean_mass > 0 ? mean_mass : 1;
+    if (!isnan(system->temperature))
+        return;
+    const bool is_number =
+        mf_json_numbers(scene, "temperature", &system->temperature, 1) == 1 && scene->item;
+    if (!is_number || !(system->temperature > 0)) {
+        if (scene->item)
+            mf_json_fault(scene, "temperature",
+                          is_number ? "0 K makes no unit of energy; \"temperature\" of \"units\" "
+                                      "gives another"
+                                    : "missing: a number is required (K)");
+        system->temperature = 300;
+    }
+}
+
+/// "units": "nm-ps", or an object with "system"; false if the file is reduced.
+static bool read_system(struct system *system, struct json_object *root) {
+    if (mf_json_is_object(root, "units")) {
+        struct json_object object = mf_json_child(root, "units", false);
+        struct json_object looked = object;
+        if (!mf_json_has(&looked, "system"))
+            return false;
+        mf_json_fields(&object, mf_units_system_fields, system);
+        mf_json_finish(&object);
+        return true;
+    }
+    mf_fields_set_defaults(mf_units_system_fields, system);
+    const char *name = mf_json_choice(root, "units", mf_units_systems, mf_units_systems[0]);
+    system->kind = name ? mf_fields_choice_index(mf_units_system_fields, name) : -1;
+    return system->kind >= 0;
+}
+
+void mf_units_speak(struct json_object *root, struct json_object *scene) {
+    struct system system;
+    double box[3];
+    if (!read_system(&system, root)) {
+        if (root->item != scene->item && mf_json_is_object(root, "units"))
+            mf_json_fault(root, "units",
+                          "\"system\" is missing; without it, it stands in "
+                          "\"scene\"");
+        return;
+    }
+    const size_t faults = mf_json_fault_count(root->document);
+    const bool chosen = isnan(system.length);
+    complete(&system, scene);
+    const struct units units = {.length = system.length / lengths(system.kind + 1),
+                                .temperature = system.temperature,
+                                .mass = system.mass / masses,
+                                .system = system.kind + 1,
+                                .chosen = chosen,
+                                .dimensions = mf_json_numbers(scene, "box", box, 3) == 2 ? 2 : 3};
+    if (mf_json_fault_count(root->document) == faults && !can_be_held(&units))
+        fault_unholdable(root);
+    mf_json_speak(root->document, &units);
+}
+
+// The units of a scene ----------------------------------------------------------------------------
+
 void mf_units_read(struct units *units, struct json_object *scene) {
+    *units = *mf_json_units(scene);
+    const bool is_root = scene->path[0] == '\0';
+    if (units->system != UNITS_REDUCED || (is_root && !mf_json_is_object(scene, "units"))) {
+        if (!is_root)
+            mf_json_refuse(scene, "units", "the file's stand at its top");
+        return;
+    }
     struct json_object object = mf_json_child(scene, "units", false);
     const size_t faults = mf_json_fault_count(object.document);
     mf_json_fields(&object, mf_units_fields, units);
     if (object.item == NULL)
         return;
     mf_json_finish(&object);
-    const double derived[] = {mf_units_time_ps(units), mf_units_energy_kj_per_mol(units),
-                              mf_units_pressure_bar(units), mf_units_diffusion_cm2_per_s(units)};
+    if (mf_json_fault_count(object.document) == faults && !can_be_held(units))
+        fault_unholdable(scene);
+}
+
+// Written -----------------------------------------------------------------------------------------
+
+static void put_scale(const struct units *units, struct json_writer *writer) {
+    mf_json_put_text(writer, "system", mf_units_systems[units->system]);
+    mf_json_put_number(writer, "length", mf_units_spoken(units->length, lengths(units->system)));
+    mf_json_put_number(writer, "temperature", units->temperature);
+    mf_json_put_number(writer, "mass", mf_units_spoken(units->mass, masses));
+}
+
+void mf_units_write(const struct units *units, struct json_writer *writer) {
+    if (units->system == UNITS_REDUCED)
+        return;
+    mf_json_writer_speak(writer, units);
+    mf_json_begin(writer, "units");
+    put_scale(units, writer);
+    mf_json_end(writer);
+}
+
+void mf_units_write_summary(const struct units *units, struct json_writer *writer) {
+    static const char *const derived[][2] = {{"time", "tau"},
+                                             {"energy", "k_B T_0"},
+                                             {"pressure", "k_B T_0/lambda^d"},
+                                             {"friction", "mu/tau"},
+                                             {"diffusion", "lambda^2/tau"}};
+    if (units->system == UNITS_REDUCED)
+        return;
+    mf_json_writer_speak(writer, units);
+    mf_json_begin(writer, "units");
+    put_scale(units, writer);
     for (size_t k = 0; k < sizeof derived / sizeof *derived; k++)
-        if (mf_json_fault_count(object.document) == faults && !isnormal(derived[k]))
-            mf_json_fault(scene, "units",
-                          "no numbers can hold the units of time, energy, pressure and "
-                          "diffusion that these make");
-}
-
-bool mf_units_known(const struct units *units) {
-    return units->length > 0;
-}
-
-double mf_units_energy_kj_per_mol(const struct units *units) {
-    return UNITS_BOLTZMANN * units->temperature * UNITS_AVOGADRO * 1e-3;
-}
-
-double mf_units_time_ps(const struct units *units) {
-    const double metres = units->length * 1e-9;
-    return metres * sqrt(units->mass / (UNITS_BOLTZMANN * units->temperature)) * 1e12;
-}
-
-double mf_units_pressure_bar(const struct units *units) {
-    return UNITS_BOLTZMANN * units->temperature / pow(units->length * 1e-9, 3) * 1e-5;
-}
-
-double mf_units_diffusion_cm2_per_s(const struct units *units) {
-    const double centimetres = units->length * 1e-7;
-    return centimetres * centimetres / (mf_units_time_ps(units) * 1e-12);
-}
-
-double *mf_units_column(const double *values, size_t count, double factor) {
-    double *column = mf_memory_zeroed(count, sizeof *column);
-    for (size_t k = 0; column && k < count; k++)
-        column[k] = factor * values[k];
-    return column;
+        mf_json_put_quantity(writer, derived[k][0], derived[k][1], 1);
+    mf_json_end(writer);
 }
 
 void mf_units_put(const struct units *units, struct json_writer *writer, double energy,
                   double pressure) {
-    if (!mf_units_known(units))
+    if (!mf_units_beside(units))
         return;
     mf_json_begin(writer, "physical");
     mf_json_put_number(writer, "length_unit_nm", units->length);

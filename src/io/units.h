@@ -1,37 +1,42 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Physical units of a scene: what λ, k_B T_0 and μ are.
+/// @file "units" of scene and run files, read and written.
+///
+///   "units": "nm-ps"                                                the program chooses the scale
+///   "units": {"system": "nm-ps", "length": 0.465, …}                it is given, in part or whole
+///   "units": {"length": 0.465, "temperature": 298, "mass": 3e-26}   the file is reduced: results
+///                                                                   in nm and ps stand beside
 #pragma once
 
 #include "base/fields.h"
 #include "io/json.h"
 #include "io/json_write.h"
+#include "io/units_scale.h"
 
-/// Boltzmann's and Avogadro's constants (exact, SI 2019).
-#define UNITS_BOLTZMANN 1.380649e-23
-#define UNITS_AVOGADRO 6.02214076e23
+/// The scale of a reduced scene, in nm, K and kg; and that of a file in physical units.
+extern const struct field mf_units_fields[], mf_units_system_fields[];
 
-struct units {
-    double length;      ///< λ [nm]; 0 if the scene has no physical units
-    double temperature; ///< T_0 [K]
-    double mass;        ///< μ [kg]
-};
+/// Let the document speak in the "units" at the top of its file, before anything else is read.
+/// @param[in] scene  the file's scene, or the root itself in a scene file
+///
+/// What the file does not say of the scale follows from the scene: T_0 is its temperature, μ the
+/// mean mass of its beads, 1 u if it says none, and λ is such that λ³, in two dimensions λ², holds
+/// three beads. Faults: a temperature that is missing or 0; units whose time, energy, pressure or
+/// diffusion no number can hold. Tested: test_units.
+void mf_units_speak(struct json_object *root, struct json_object *scene);
 
-extern const struct field mf_units_fields[];
-
-/// Read "units" of a scene; units whose time, energy, pressure or diffusion no number can hold are
-/// a fault. Tested: test_units.
+/// The units of a scene: those in which its document speaks, or "units" of a reduced one; units
+/// whose time, energy, pressure or diffusion no number can hold are a fault. Tested: test_units.
 void mf_units_read(struct units *units, struct json_object *scene);
 
-bool mf_units_known(const struct units *units);
-double mf_units_energy_kj_per_mol(const struct units *units);   ///< k_B T_0 [kJ/mol]
-double mf_units_time_ps(const struct units *units);             ///< λ sqrt(μ / k_B T_0) [ps]
-double mf_units_pressure_bar(const struct units *units);        ///< k_B T_0 / λ³ [bar]
-double mf_units_diffusion_cm2_per_s(const struct units *units); ///< λ²/τ [cm²/s]
+/// Write "units" at the top of a file in physical units, and let the writer speak in them from now
+/// on; nothing in a reduced file. Reading it gives the same bits.
+void mf_units_write(const struct units *units, struct json_writer *writer);
 
-/// A column of a table in another unit: factor · values; the caller frees it. NULL: no memory.
-double *mf_units_column(const double *values, size_t count, double factor);
+/// The same for a summary, with the other units that follow.
+void mf_units_write_summary(const struct units *units, struct json_writer *writer);
 
-/// Add an object "physical" with the units and the given results in them; nothing if not known.
+/// Add an object "physical" with the units and the given results in them to a reduced summary;
+/// nothing if not known.
 /// @param[in] energy    of a particle [k_B T_0]
 /// @param[in] pressure  [k_B T_0/λ³]
 void mf_units_put(const struct units *units, struct json_writer *writer, double energy,

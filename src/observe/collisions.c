@@ -34,7 +34,7 @@ struct settings {
 #define MEMBER(name) .offset = offsetof(struct settings, name)
 static const struct field fields[] = {
     {"speed_maximum", FIELD_NUMBER, MEMBER(speed_maximum), .initial = 5,
-     .minimum = FIELD_ABOVE_ZERO, .maximum = 100, .unit = "sqrt(k_B T/m)",
+     .minimum = FIELD_ABOVE_ZERO, .maximum = 100, .unit = "thermal speeds",
      .help = "largest speed of the distribution in speeds.tsv"},
     {"bins", FIELD_INTEGER, MEMBER(bins), .initial = 50, .minimum = 1, .maximum = 10000, .unit = "",
      .help = "of the distribution of speeds"},

@@ -5,7 +5,7 @@
 
 const struct field mf_attributes_fields[] = {
     {"mass", FIELD_NUMBER, .initial = NAN, .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX,
-     .unit = "mass",
+     .unit = "mu",
      .help = "of each particle: a number, {\"minimum\": …, \"maximum\": …} for uniform ones, or "
              "either for each type; 1 without"},
     {"radius", FIELD_NUMBER, .initial = NAN, .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX,

@@ -5,6 +5,9 @@
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
 
+#include <stdio.h>
+#include <stdlib.h>
+
 /// SPC water, one bead a molecule.
 static const struct units water = {.length = 0.465, .temperature = 298, .mass = 2.992e-26};
 
@@ -90,6 +93,120 @@ static void test_units_read_refuses_when_no_number_can_hold_what_follows(void **
     assert_false(mf_units_known(&units));
 }
 
+/// The 15 digits in which a file says a number.
+static const char *number(double value) {
+    static char text[32];
+    snprintf(text, sizeof text, "%.15g", value);
+    return text;
+}
+
+// What engines and tables of constants say of their units, and not this program.
+static const struct units argon = {
+    .length = 0.34, .temperature = 120, .mass = 39.948 * UNITS_ATOMIC_MASS, .system = UNITS_NM_PS};
+
+/// k_B = 0.0083144626 kJ/mol/K (GROMACS's manual) and 0.0019872043 kcal/mol/K; 1 kJ/mol/nm^3 is
+/// 16.6054 bar (GROMACS); "real" of LAMMPS: mvv2e = 48.88821291^2, the kcal/mol of
+/// 1 g/mol (angstrom/fs)^2, and nktv2p = 68568.415, the atm of 1 kcal/mol/angstrom^3.
+static void test_units_factor_is_that_of_engines(void **state) {
+    (void)state;
+    struct units units = argon;
+    assert_close_relative(mf_units_factor(&units, "k_B T_0"), 120 * 0.0083144626, 1e-8);
+    assert_close_relative(mf_units_factor(&units, "k_B.T_0/lambda^d"),
+                          mf_units_factor(&units, "k_B T_0/lambda^2") / 0.34 * 16.6054, 1e-5);
+    // Of argon, tau = 2.15 ps with its Lennard-Jones parameters (M. P. Allen, D. J. Tildesley).
+    assert_close_relative(mf_units_factor(&units, "tau"), 2.15, 3e-3);
+    assert_close_relative(mf_units_factor(&units, "mu/tau"), 39.948 / 2.15, 3e-3);
+    assert_close_relative(mf_units_factor(&units, "T_0"), 120, 0);
+    const double velocity = mf_units_factor(&units, "lambda/tau");
+    assert_close_relative(39.948 * velocity * velocity, mf_units_factor(&units, "k_B T_0"), 1e-12);
+    units.system = UNITS_ANGSTROM_FS;
+    const double energy = mf_units_factor(&units, "k_BT_0");
+    assert_close_relative(mf_units_factor(&units, "lambda"), 3.4, 1e-15);
+    assert_close_relative(energy, 120 * 0.0019872043, 1e-7);
+    const double faster = mf_units_factor(&units, "lambda/tau");
+    assert_close_relative(39.948 * faster * faster * 48.88821291 * 48.88821291, energy, 1e-6);
+    assert_close_relative(mf_units_factor(&units, "k_B T_0/lambda^3"),
+                          energy / (3.4 * 3.4 * 3.4) * 68568.415, 1e-6);
+}
+
+static void test_units_factor_is_1_for_what_no_scene_sets(void **state) {
+    (void)state;
+    struct units reduced = argon;
+    reduced.system = UNITS_REDUCED;
+    assert_close(mf_units_factor(&reduced, "lambda"), 1, 0);
+    assert_close(mf_units_factor(NULL, "lambda"), 1, 0);
+    static const char *const as_they_are[] = {"",  "1",  "steps",  "degrees",
+                                              "K", "nm", "parsec", "1/s"};
+    char name[UNITS_NAME_SIZE];
+    for (size_t k = 0; k < sizeof as_they_are / sizeof *as_they_are; k++) {
+        assert_close(mf_units_factor(&argon, as_they_are[k]), 1, 0);
+        assert_string_equal(mf_units_name(&argon, as_they_are[k], name), as_they_are[k]);
+    }
+}
+
+static void test_units_name_is_what_a_person_would_write(void **state) {
+    (void)state;
+    static const char *const names[][3] = {
+        {"lambda", "nm", "angstrom"},
+        {"1/lambda", "1/nm", "1/angstrom"},
+        {"1/lambda^d", "1/nm^3", "1/angstrom^3"},
+        {"k_B T_0", "kJ/mol", "kcal/mol"},
+        {"k_B.T_0/lambda", "kJ/mol/nm", "kcal/mol/angstrom"},
+        {"k_B T_0/lambda^d", "bar", "atm"},
+        {"T_0", "K", "K"},
+        {"sqrt(mu/tau)", "sqrt(u/ps)", "sqrt(g/mol/fs)"},
+        {"lambda^2/tau^2", "nm^2/ps^2", "angstrom^2/fs^2"},
+        {"k_B.T_0.mu/tau", "kJ/mol.u/ps", "kcal/mol.g/mol/fs"},
+        {"lambda/mu", "nm/u", "angstrom/(g/mol)"},
+    };
+    struct units other = argon;
+    char name[UNITS_NAME_SIZE];
+    other.system = UNITS_ANGSTROM_FS;
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        assert_string_equal(mf_units_name(&argon, names[k][0], name), names[k][1]);
+        assert_string_equal(mf_units_name(&other, names[k][0], name), names[k][2]);
+    }
+    other = argon;
+    other.dimensions = 2;
+    assert_string_equal(mf_units_name(&other, "k_B T_0/lambda^d", name), "kJ/mol/nm^2");
+}
+
+/// A spoken name, read again as the unit of a heading, is one over the factor.
+static void test_units_from_takes_back_what_name_gives(void **state) {
+    (void)state;
+    static const char *const reduced[] = {"lambda",           "tau",           "mu/tau",
+                                          "k_B T_0/lambda^d", "T_0",           "sqrt(mu/tau)",
+                                          "1/lambda^d",       "k_B.T_0.mu/tau"};
+    struct units units = argon;
+    char name[UNITS_NAME_SIZE];
+    double factor;
+    for (int system = UNITS_NM_PS; system <= UNITS_ANGSTROM_FS; system++)
+        for (size_t k = 0; k < sizeof reduced / sizeof *reduced; k++) {
+            units.system = system;
+            mf_units_name(&units, reduced[k], name);
+            assert_ok(mf_units_from(&units, name, reduced[k], &factor));
+            assert_close_relative(factor * mf_units_factor(&units, reduced[k]), 1, 1e-9);
+        }
+    assert_ok(mf_units_from(&units, "angstrom", "lambda", &factor));
+    assert_close_relative(factor, 1 / 3.4, 1e-12);
+    assert_fails(mf_units_from(&units, "ps", "lambda", &factor), STATUS_BAD_INPUT,
+                 "\"ps\" is no unit of");
+    assert_fails(mf_units_from(&units, "parsec", "lambda", &factor), STATUS_BAD_INPUT,
+                 "no unit that");
+}
+
+/// Whatever number a file says is written again, as short as it was, and reads to the same bits.
+static void test_units_spoken_is_what_was_read(void **state) {
+    (void)state;
+    const double factors[] = {0.465, 1.2540123, 2.4777, 39.948, 1.0 / 3};
+    for (size_t f = 0; f < sizeof factors / sizeof *factors; f++)
+        for (int k = 1; k < 2000; k++) {
+            const double said = strtod(number(k * 0.001), NULL), read = said / factors[f];
+            assert_close(mf_units_spoken(read, factors[f]), said, 0);
+            assert_close(mf_units_spoken(read, factors[f]) / factors[f], read, 0);
+        }
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, temporary_folder_create, temporary_folder_remove)
 
@@ -97,6 +214,11 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_units_of_water_are_those_of_the_literature),
         cmocka_unit_test(test_units_scale_as_their_formulas),
+        cmocka_unit_test(test_units_factor_is_that_of_engines),
+        cmocka_unit_test(test_units_factor_is_1_for_what_no_scene_sets),
+        cmocka_unit_test(test_units_name_is_what_a_person_would_write),
+        cmocka_unit_test(test_units_from_takes_back_what_name_gives),
+        cmocka_unit_test(test_units_spoken_is_what_was_read),
         TEST(test_units_read_refuses_when_no_number_can_hold_what_follows),
         TEST(test_units_put_writes_results_in_physical_units),
         TEST(test_units_put_writes_nothing_when_there_are_none),

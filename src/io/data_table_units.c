@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/memory.h"
+#include "io/data_table.h"
+#include "io/units_text.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { NAME_SIZE = 256 };
+static const char gaps[] = " \t,;";
+
+/// Step over a word of the line of names, and over "[nm]" behind it.
+static const char *behind_word(const char *word) {
+    word += strcspn(word, gaps);
+    const char *next = word + strspn(word, " \t");
+    return *next == '[' ? next + strcspn(next, gaps) : word;
+}
+
+/// The unit of a column by the line of names; false if that has none, or is of other columns.
+static bool heading_unit(const struct data_table *table, size_t column, char unit[NAME_SIZE]) {
+    const char *word = table->header + strspn(table->header, gaps), *found = NULL;
+    size_t words = 0, length = 0;
+    while (*word) {
+        const char *end = behind_word(word);
+        if (words++ == column) {
+            snprintf(unit, NAME_SIZE, "%.*s", (int)(end - word), word);
+            found = mf_units_text_in_brackets(unit, &length);
+        }
+        word = end + strspn(end, gaps);
+    }
+    if (words != table->columns || found == NULL)
+        return false;
+    memmove(unit, found, length);
+    unit[length] = '\0';
+    return true;
+}
+
+enum status mf_data_table_convert(struct data_table *table, const char *file, size_t column,
+                                  const char *unit, const struct units *units) {
+    char given[NAME_SIZE];
+    double factor = 1;
+    if (units->system == UNITS_REDUCED)
+        return STATUS_OK;
+    const bool named = heading_unit(table, column, given);
+    const enum status status = named ? mf_units_from(units, given, unit, &factor) : STATUS_OK;
+    if (status != STATUS_OK)
+        return mf_status_prefix(status, "%s: column %zu", file, column + 1);
+    for (size_t row = 0; row < table->rows; row++) {
+        double *value = &table->values[row * table->columns + column];
+        // As numbers of the file itself are converted, to the same bits.
+        *value = named ? *value * factor : *value / mf_units_factor(units, unit);
+    }
+    return STATUS_OK;
+}
+
+/// Formats with a fixed number of decimals are for one unit.
+static const char *format_of(const struct data_column *column) {
+    const size_t length = column->format ? strlen(column->format) : 0;
+    return length > 0 && column->format[length - 1] == 'f' ? NULL : column->format;
+}
+
+/// What a heading is called in spoken units, and the factor of its numbers.
+static double translate(const struct units *units, const char *heading, char name[NAME_SIZE]) {
+    char unit[UNITS_NAME_SIZE], spoken[UNITS_NAME_SIZE];
+    size_t length;
+    const char *found = mf_units_text_in_brackets(heading, &length);
+    snprintf(name, NAME_SIZE, "%s", heading);
+    if (found == NULL || length >= sizeof unit)
+        return 1;
+    snprintf(unit, sizeof unit, "%.*s", (int)length, found);
+    const double factor = mf_units_factor(units, unit);
+    snprintf(name, NAME_SIZE, "%.*s%s]", (int)(found - heading), heading,
+             mf_units_name(units, unit, spoken));
+    return factor;
+}
+
+enum status mf_data_table_write_in(const char *file, const struct units *units, const char *comment,
+                                   const struct data_column *columns, size_t column_count,
+                                   size_t rows) {
+    enum status status = STATUS_OK;
+    struct data_column *told = NULL;
+    double *values = NULL;
+    char(*names)[NAME_SIZE] = NULL;
+    if (units->system == UNITS_REDUCED)
+        return mf_data_table_write(file, comment, columns, column_count, rows);
+    NEW_ARRAY(told, column_count);
+    NEW_ARRAY(names, column_count);
+    NEW_ARRAY(values, column_count * rows + 1);
+    for (size_t c = 0; c < column_count; c++) {
+        const double factor = translate(units, columns[c].name, names[c]);
+        told[c] = (struct data_column){names[c], columns[c].values, columns[c].format};
+        if (factor == 1)
+            continue;
+        for (size_t k = 0; k < rows; k++)
+            values[c * rows + k] = mf_units_spoken(columns[c].values[k], factor);
+        told[c].values = values + c * rows;
+        told[c].format = format_of(&columns[c]);
+    }
+    status = mf_data_table_write(file, comment, told, column_count, rows);
+done:
+    mf_memory_free(told);
+    mf_memory_free(names);
+    mf_memory_free(values);
+    return status;
+}

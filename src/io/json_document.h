@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What json.c and json_fields.c share of a document. Items are those of cJSON.
+#pragma once
+
+#include "base/faults.h"
+#include "io/json.h"
+
+#include <cJSON.h>
+
+enum { JSON_LINE_SIZE = 4096 };
+
+struct json_document {
+    cJSON *root;
+    char *file;
+    struct input_files *inputs; ///< files that it names, or NULL: nobody wants to know
+    struct units units;         ///< in which its numbers are
+    struct faults faults;
+};
+
+/// Remember that the reader knows `key`, and find it.
+const void *mf_json_ask(struct json_object *object, const char *key);
+
+/// Record that another type was expected at `key`.
+void mf_json_fault_type(struct json_object *object, const char *key, const char *expected,
+                        const void *item);

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/nearest.h"
+#include "io/json_document.h"
+#include "io/json_item.h"
+#include "io/json_list.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char *const expected_name[] = {
+    [FIELD_NUMBER] = "a number",     [FIELD_INTEGER] = "a whole number",
+    [FIELD_SEED] = "a whole number", [FIELD_LENGTHS] = "an array of 2 or 3 numbers",
+    [FIELD_TEXT] = "a text",         [FIELD_FILE] = "a text with the name of a file",
+    [FIELD_CHOICE] = "a text",       [FIELD_CHOICES] = "a list of texts",
+};
+
+/// A finite number, or false and a fault.
+static bool read_finite(struct json_object *object, const char *key, const char *expected,
+                        const cJSON *item, double *value) {
+    if (!cJSON_IsNumber(item)) {
+        mf_json_fault_type(object, key, expected, item);
+        return false;
+    }
+    if (!isfinite(item->valuedouble)) {
+        mf_json_fault(object, key, "the number is too large; the largest is %.3g", DBL_MAX);
+        return false;
+    }
+    *value = item->valuedouble;
+    return true;
+}
+
+/// How many of the document's units one of the field's is.
+static double factor_of(const struct json_object *object, const struct field *field) {
+    return mf_units_factor(&object->document->units, field->unit ? field->unit : "");
+}
+
+/// A finite whole number whose digits survived, or false and a fault.
+static bool read_whole(struct json_object *object, const char *key, const cJSON *item,
+                       double *value) {
+    if (!read_finite(object, key, "a whole number", item, value))
+        return false;
+    if (*value != floor(*value)) {
+        mf_json_fault_type(object, key, "a whole number", item);
+        return false;
+    }
+    if (fabs(*value) >= FIELD_LARGEST_INTEGER) {
+        mf_json_fault(object, key,
+                      "%.0f is out of range: whole numbers of 2^53 (%.0f) and beyond lose digits",
+                      *value, FIELD_LARGEST_INTEGER);
+        return false;
+    }
+    return true;
+}
+
+/// The range of a field in the document's units, for messages.
+static void range_text(const struct json_object *object, const struct field *field, char *text,
+                       size_t size) {
+    const double factor = factor_of(object, field);
+    struct field spoken = *field;
+    char range[64], name[UNITS_NAME_SIZE];
+    // The ends of all numbers stay: they stand for words.
+    if (fabs(field->minimum) < DBL_MAX && field->minimum > FIELD_ABOVE_ZERO)
+        spoken.minimum *= factor;
+    if (field->maximum < DBL_MAX)
+        spoken.maximum *= factor;
+    mf_fields_range_text(&spoken, range, sizeof range);
+    mf_units_name(&object->document->units, field->unit ? field->unit : "", name);
+    snprintf(text, size, "%s%s%s", range, name[0] ? " " : "", name);
+}
+
+static bool is_in_range(struct json_object *object, const char *key, const struct field *field,
+                        double value) {
+    if (value >= field->minimum && value <= field->maximum)
+        return true;
+    char range[64 + UNITS_NAME_SIZE];
+    range_text(object, field, range, sizeof range);
+    mf_json_fault(object, key, "%.15g is out of range; allowed: %s",
+                  value * factor_of(object, field), range);
+    return false;
+}
+
+/// A number in the document's units, as one in the field's.
+static bool read_quantity(struct json_object *object, const char *key, const struct field *field,
+                          const char *expected, const cJSON *item, double *value) {
+    if (!read_finite(object, key, expected, item, value))
+        return false;
+    *value /= factor_of(object, field);
+    if (!isfinite(*value)) {
+        mf_json_fault(object, key, "the number is too large for the units of the file");
+        return false;
+    }
+    return is_in_range(object, key, field, *value);
+}
+
+static void read_lengths(struct json_object *object, const struct field *field, const cJSON *item,
+                         char *member) {
+    double lengths[3] = {0};
+    const int count = mf_json_count(object, field->name);
+    if (count < 2 || count > 3) {
+        if (cJSON_IsArray(item))
+            mf_json_fault(object, field->name, "expected 2 or 3 numbers, found %d", count);
+        else
+            mf_json_fault_type(object, field->name, expected_name[FIELD_LENGTHS], item);
+        return;
+    }
+    bool good = true;
+    for (int k = 0; k < count; k++) {
+        char key[JSON_PATH_SIZE];
+        snprintf(key, sizeof key, "%s[%d]", field->name, k);
+        good &=
+            read_quantity(object, key, field, "a number", cJSON_GetArrayItem(item, k), &lengths[k]);
+    }
+    if (good)
+        memcpy(member, lengths, sizeof lengths);
+}
+
+/// A text that is not empty, or NULL and a fault.
+static const char *read_text(struct json_object *object, const char *key, const char *expected,
+                             const cJSON *item) {
+    if (!cJSON_IsString(item))
+        mf_json_fault_type(object, key, expected, item);
+    else if (item->valuestring[0] == '\0')
+        mf_json_fault(object, key, "the text is empty");
+    else
+        return item->valuestring;
+    return NULL;
+}
+
+static void read_text_field(struct json_object *object, const struct field *field,
+                            const cJSON *item, char *member) {
+    const char *text = read_text(object, field->name, expected_name[field->type], item);
+    if (text == NULL)
+        return;
+    const char *file = object->document->file, *slash = strrchr(file, '/');
+    const bool joined = field->type == FIELD_FILE && text[0] != '/' && slash;
+    const size_t folder = joined ? (size_t)(slash + 1 - file) : 0;
+    if (folder + strlen(text) >= FIELD_TEXT_SIZE) {
+        mf_json_fault(object, field->name, "the text is longer than %d bytes", FIELD_TEXT_SIZE - 1);
+        return;
+    }
+    memcpy(member, file, folder);
+    strcpy(member + folder, text);
+    if (field->type == FIELD_FILE && object->document->inputs &&
+        mf_input_files_add(object->document->inputs, member) != STATUS_OK)
+        mf_json_fault(object, field->name, "%s", mf_status_message());
+}
+
+static void read_field(struct json_object *object, const struct field *field, const cJSON *item,
+                       char *member) {
+    const char *key = field->name;
+    double value;
+    int chosen;
+    switch (field->type) {
+    case FIELD_NUMBER:
+        if (read_quantity(object, key, field, expected_name[FIELD_NUMBER], item, &value))
+            memcpy(member, &value, sizeof value);
+        break;
+    case FIELD_INTEGER:
+        if (read_whole(object, key, item, &value) && is_in_range(object, key, field, value))
+            memcpy(member, &(int64_t){(int64_t)value}, sizeof(int64_t));
+        break;
+    case FIELD_SEED:
+        if (!read_whole(object, key, item, &value))
+            break;
+        if (value < 0)
+            mf_json_fault(object, key, "%.0f is out of range; allowed: at least 0", value);
+        else
+            memcpy(member, &(uint64_t){(uint64_t)value}, sizeof(uint64_t));
+        break;
+    case FIELD_LENGTHS:
+        read_lengths(object, field, item, member);
+        break;
+    case FIELD_TEXT:
+    case FIELD_FILE:
+        read_text_field(object, field, item, member);
+        break;
+    case FIELD_CHOICE:
+        if (mf_json_choice(object, key, field->choices, NULL))
+            memcpy(member, &(int){mf_fields_choice_index(field, item->valuestring)}, sizeof(int));
+        break;
+    case FIELD_CHOICES:
+        if (mf_json_list_choices(object, field, item, &chosen))
+            memcpy(member, &chosen, sizeof chosen);
+        break;
+    }
+}
+
+void mf_json_fields(struct json_object *object, const struct field *fields, void *parameters) {
+    mf_fields_set_defaults(fields, parameters);
+    for (const struct field *field = fields; field->name; field++) {
+        const cJSON *item = mf_json_ask(object, field->name);
+        // A number that is not known is written as null.
+        if (cJSON_IsNull(item) && field->type == FIELD_NUMBER && isnan(field->initial))
+            continue;
+        if (item)
+            read_field(object, field, item, (char *)parameters + field->offset);
+        else if (field->required && object->item)
+            mf_json_fault(object, field->name, "missing: %s is required (%s)",
+                          expected_name[field->type], field->help ? field->help : field->name);
+    }
+}
+
+static void fault_missing_choice(struct json_object *object, const char *key,
+                                 const char *const *known) {
+    char hint[JSON_LINE_SIZE / 4] = "";
+    size_t count = 0;
+    while (known && known[count])
+        count++;
+    mf_nearest_hint("", known, count, hint, sizeof hint);
+    mf_json_fault(object, key, "missing: a text is required%s%s", known ? "; " : "",
+                  known ? hint : "");
+}
+
+const char *mf_json_choice(struct json_object *object, const char *key, const char *const *known,
+                           const char *fallback) {
+    const cJSON *item = mf_json_ask(object, key);
+    if (item == NULL) {
+        if (fallback == NULL && object->item)
+            fault_missing_choice(object, key, known);
+        return fallback;
+    }
+    const char *text = read_text(object, key, "a text", item);
+    if (text == NULL || known == NULL)
+        return text;
+    size_t count = 0;
+    for (; known[count]; count++)
+        if (strcmp(known[count], text) == 0)
+            return text;
+    char hint[JSON_LINE_SIZE / 4];
+    mf_nearest_hint(text, known, count, hint, sizeof hint);
+    mf_json_fault(object, key, "\"%.60s\" is unknown; %s", text, hint);
+    return NULL;
+}
+
+int mf_json_numbers(const struct json_object *object, const char *key, double *values, int most) {
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(object->item, key), *element;
+    int count = 0;
+    if (cJSON_IsNumber(item) && isfinite(item->valuedouble)) {
+        values[0] = item->valuedouble;
+        return 1;
+    }
+    if (!cJSON_IsArray(item) || cJSON_GetArraySize(item) > most)
+        return 0;
+    cJSON_ArrayForEach(element, item) {
+        if (!cJSON_IsNumber(element) || !isfinite(element->valuedouble))
+            return 0;
+        values[count++] = element->valuedouble;
+    }
+    return count;
+}
