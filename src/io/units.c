@@ -163,8 +163,10 @@ void mf_units_speak(struct json_object *root, struct json_object *scene) {
 // The units of a scene ----------------------------------------------------------------------------
 
 void mf_units_read(struct units *units, struct json_object *scene) {
-    *units = *mf_json_units(scene);
     const bool is_root = scene->path[0] == '\0';
+    if (is_root)
+        mf_units_speak(scene, scene);
+    *units = *mf_json_units(scene);
     if (units->system != UNITS_REDUCED || (is_root && !mf_json_is_object(scene, "units"))) {
         if (!is_root)
             mf_json_refuse(scene, "units", "the file's stand at its top");

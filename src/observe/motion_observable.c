@@ -184,7 +184,7 @@ static const struct observable_target targets[] = {
      .form = OBSERVABLE_CURVE_OF_TIME,
      .argument = "time[tau]",
      .unit = "lambda^2"},
-    {.name = "diffusion", .summary = "D", .form = OBSERVABLE_NUMBER},
+    {.name = "diffusion", .summary = "D", .form = OBSERVABLE_NUMBER, .unit = "lambda^2/tau"},
     {.name = NULL}};
 
 static const char *const files[] = {"motion.tsv", NULL};

@@ -43,7 +43,7 @@ struct observable_target {
     const char *name;    ///< in run files and tables; NULL ends a list
     const char *summary; ///< for `mesofit describe`
     enum observable_form form;
-    const char *argument, *unit; ///< of a curve: "q[1/lambda]", "1"
+    const char *argument, *unit; ///< of a curve: "q[1/lambda]", "1"; of a number the unit alone
     bool has_settings; ///< the observable's, in its object of a run file, beside the values
 };
 

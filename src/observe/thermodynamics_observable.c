@@ -133,7 +133,8 @@ static enum status result(const void *const *states, size_t count,
 }
 
 static const struct observable_target targets[] = {
-    {.name = "pressure", .summary = "P", .form = OBSERVABLE_NUMBER}, {.name = NULL}};
+    {.name = "pressure", .summary = "P", .form = OBSERVABLE_NUMBER, .unit = "k_B T_0/lambda^d"},
+    {.name = NULL}};
 
 static const char *const files[] = {"thermodynamics.tsv", NULL};
 

@@ -67,6 +67,7 @@ static enum status write_used(struct run *run, bool resume) {
     char path[OUTPUT_PATH_SIZE];
     struct json_writer *writer = mf_json_writer_create();
     mf_json_put_fields(writer, mf_heading_fields, &run->heading);
+    mf_units_write(&run->scene.units, writer);
     mf_scene_write(&run->scene, writer);
     mf_json_begin(writer, "measure");
     mf_json_put_fields(writer, mf_measure_plan_fields, &run->plan);
