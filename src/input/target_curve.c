@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #define CURVE(name) .offset = offsetof(struct target_curve_parameters, name)
 #define COLUMN .maximum = 1000, .unit = ""
