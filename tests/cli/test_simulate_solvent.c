@@ -20,6 +20,13 @@ static const char channel[] =
 
 static const char *const tables[] = {"flow_profile.tsv", "flow_field.tsv", "used.json", NULL};
 
+#define SNAPSHOTS                                                                                  \
+    "\"snapshots\": {\"every\": 500, \"formats\": [\"vtp\", \"json\", \"extxyz\"], \"solvent\": "  \
+    "\"yes\"},\n"
+static const char *const snapshots[] = {"snapshots/step_000000500.vtp",
+                                        "snapshots/step_000000500.json",
+                                        "snapshots/trajectory.extxyz", "configuration.tsv", NULL};
+
 static void write(struct temporary_folder *folder, const char *from, const char *to) {
     small_inputs_write(folder, "scene.json", channel, from, to);
 }
@@ -37,6 +44,24 @@ static void test_simulate_measures_a_solvent_without_beads(void **state) {
     RUN_PROGRAM(&result, "simulate", "out/used.json", "-o", "again", "--threads", "2");
     run_program_assert_code(&result, 0);
     results_assert_same("out", "again", tables);
+}
+
+static void test_snapshots_show_the_solvent_where_it_is_wanted(void **state) {
+    static struct run_program_result result;
+    write(*state, "\"measure\": {\"equilibration\": 200,",
+          SNAPSHOTS "\"measure\": {\"equilibration\": 500,");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--threads", "1");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "threads", "--threads", "2");
+    run_program_assert_code(&result, 0);
+    results_assert_same("out", "threads", snapshots);
+    char *frames = temporary_folder_read("out/snapshots/trajectory.extxyz");
+    assert_true(strncmp(frames, "2754\nLattice=", 13) == 0);
+    free(frames);
+    write(*state, "\"measure\"", "\"snapshots\": {\"every\": 500}, \"measure\"");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "scene.json: snapshots: nobody to show; \"solvent\": \"yes\"");
 }
 
 static void test_a_flow_tells_its_viscosity_and_whether_it_has_settled(void **state) {
@@ -120,6 +145,7 @@ static void test_simulate_refuses_bad_solvents_by_file_and_key(void **state) {
 }
 
 static void test_simulate_refuses_a_flow_without_solvent(void **state) {
+    static struct run_program_result result;
     assert_refused(
         state,
         "\"particles\": {\"count\": 0},\n"
@@ -128,6 +154,14 @@ static void test_simulate_refuses_a_flow_without_solvent(void **state) {
         "\"acceleration\": [0.03, 0], \"obstacle_centre\": [8, 6], \"obstacle_radius\": 2},\n",
         "\"particles\": {\"count\": 10}, \"rdf\": {\"range\": 1},\n",
         "scene.json: flow_profile: velocity-verlet has no solvent");
+    small_inputs_write(*state, "scene.json",
+                       "{\"box\": [6, 6, 6], \"particles\": {\"count\": 10}, \"rdf\": {\"range\": "
+                       "1},\n\"dynamics\": {\"integrator\": \"velocity-verlet\"}, "
+                       "\"time_step\": 0.01,\n" SNAPSHOTS "\"measure\": {\"samples\": 2}}\n",
+                       NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "scene.json: snapshots.solvent: velocity-verlet has no solvent");
     assert_refused(state,
                    "\"collision-dynamics\",\n\"angle\": 130, \"thermostat\": \"yes\", "
                    "\"walls\": \"plates\",\n\"acceleration\": [0.03, 0], "
@@ -151,7 +185,7 @@ static void test_simulate_goes_on_with_the_same_bits_with_a_solvent(void **state
         "\"time_step\": 0.05, \"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25},\n"
         "\"dynamics\": {\"integrator\": \"collision-dynamics\", \"interval\": 4,\n"
         "\"thermostat\": \"yes\", \"wave_acceleration\": 0.1},\n"
-        "\"measure\": {\"equilibration\": 500, \"samples\": 300, \"every\": 20},\n"
+        "\"measure\": {\"equilibration\": 500, \"samples\": 300, \"every\": 20},\n" SNAPSHOTS
         "\"flow_profile\": {}, \"flow_field\": {\"spacing\": 2}}\n";
     static struct run_program_result result;
     small_inputs_write(*state, "scene.json", beads, NULL, NULL);
@@ -160,6 +194,7 @@ static void test_simulate_goes_on_with_the_same_bits_with_a_solvent(void **state
     const char *const words[] = {"simulate", "scene.json", "-o", "pieces", NULL};
     run_program_in_pieces(0, words);
     results_assert_same("whole", "pieces", tables);
+    results_assert_same("whole", "pieces", snapshots);
 }
 
 /// From a time step of 0.25, where ν is 0.4 and the Schmidt number below 5, towards those targets.
@@ -205,6 +240,7 @@ int main(void) {
         TEST(test_explain_tells_the_solvents_share),
         TEST(test_simulate_refuses_bad_solvents_by_file_and_key),
         TEST(test_simulate_refuses_a_flow_without_solvent),
+        TEST(test_snapshots_show_the_solvent_where_it_is_wanted),
         TEST(test_simulate_warns_of_few_particles_in_a_cell),
         TEST(test_simulate_goes_on_with_the_same_bits_with_a_solvent),
         TEST(test_fit_looks_for_angle_and_time_step),
