@@ -93,8 +93,10 @@ enum status mf_snapshot_write(const struct snapshot *snapshot, const struct snap
 
 /// Read positions, velocities if they are there, and what attributes.h lets a scene give, from a
 /// snapshot in JSON: a table with the columns of a placement file, and their names as its header.
+/// What is mixed has its particles' types, if it tells them, in the order of the composition.
 /// Fails: BAD_INPUT with all faults, IO, NO_MEMORY. Tested: cli/test_snapshots.
-enum status mf_snapshot_read(struct data_table *table, const char *file, int dimensions) MUST_USE;
+enum status mf_snapshot_read(struct data_table *table, const char *file, int dimensions,
+                             const struct composition *composition) MUST_USE;
 
 /// Whether a file has the name of a snapshot.
 bool mf_snapshot_is_file(const char *name);

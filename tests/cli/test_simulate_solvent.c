@@ -25,7 +25,7 @@ static const char *const tables[] = {"flow_profile.tsv", "flow_field.tsv", "used
     "\"yes\"},\n"
 static const char *const snapshots[] = {"snapshots/step_000000500.vtp",
                                         "snapshots/step_000000500.json",
-                                        "snapshots/trajectory.extxyz", "configuration.tsv", NULL};
+                                        "snapshots/trajectory.extxyz", NULL};
 
 static void write(struct temporary_folder *folder, const char *from, const char *to) {
     small_inputs_write(folder, "scene.json", channel, from, to);
@@ -131,6 +131,8 @@ static void assert_refused(void **state, const char *from, const char *to, const
 }
 
 static void test_simulate_refuses_bad_solvents_by_file_and_key(void **state) {
+    assert_refused(state, "\"thermostat\": \"yes\"", "\"thermostat\": true",
+                   "scene.json: dynamics.thermostat: \"true\" is unknown; known: no, yes");
     assert_refused(state, "\"angle\": 130", "\"cell\": 0.7",
                    "scene.json: dynamics.cell: cells of 0.7 do not divide box[0] = 24");
     assert_refused(state, "\"time_step\": 0.1", "\"time_step\": 5",
@@ -176,6 +178,62 @@ static void test_simulate_warns_of_few_particles_in_a_cell(void **state) {
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
     run_program_assert_code(&result, 0);
     assert_contains(result.err, "warning: dynamics.particles_per_cell: below 3");
+}
+
+/// A lattice knows of no obstacle: the beads inside begin elsewhere; those of a file do not.
+static void test_beads_begin_outside_the_obstacle(void **state) {
+    static struct run_program_result result;
+    static const char beads[] =
+        "{\"dimensions\": 2, \"box\": [10, 10], \"particles\": {\"count\": 100}, "
+        "\"time_step\": 0.1,\n\"dynamics\": {\"integrator\": \"collision-dynamics\", "
+        "\"walls\": \"plates\",\n\"obstacle_centre\": [5, 5], \"obstacle_radius\": 2},\n"
+        "\"measure\": {\"equilibration\": 0, \"samples\": 2, \"every\": 20},\n"
+        "\"snapshots\": {\"every\": 20, \"formats\": [\"json\"]}, \"flow_field\": {}}\n";
+    small_inputs_write(*state, "scene.json", beads, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    FILE *table = fopen("out/configuration.tsv", "r");
+    assert_non_null(table);
+    char line[512];
+    size_t rows = 0;
+    for (double x, y; fgets(line, sizeof line, table);)
+        if (sscanf(line, "%lf %lf", &x, &y) == 2) {
+            assert_true((x - 5) * (x - 5) + (y - 5) * (y - 5) >= 4 * (1 - 1e-9));
+            rows++;
+        }
+    fclose(table);
+    assert_int_equal(rows, 100);
+#define FROM_FILE "{\"count\": 2, \"placement\": \"file\", \"file\": \"beads.tsv\"}"
+    small_inputs_write(*state, "scene.json", beads, "{\"count\": 100}", FROM_FILE);
+    small_inputs_write(*state, "beads.tsv", "1 1\n4 5.5\n", NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err,
+                    "scene.json: particles.file: particle 1 begins inside the obstacle");
+    small_inputs_write(*state, "beads.tsv", "1 -1\n1 2\n", NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "scene.json: particles.file: particle 0 begins beyond a plate");
+}
+
+static void test_simulate_warns_of_what_plates_and_flows_do_to_beads(void **state) {
+    static struct run_program_result result;
+    static const char beads[] =
+        "{\"dimensions\": 2, \"box\": [10, 10], \"particles\": {\"count\": 10}, "
+        "\"time_step\": 0.05,\n\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 5},\n"
+        "\"dynamics\": {\"integrator\": \"collision-dynamics\", \"walls\": \"plates\"},\n"
+        "\"measure\": {\"equilibration\": 0, \"samples\": 2, \"every\": 1}}\n";
+    small_inputs_write(*state, "scene.json", beads, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    assert_contains(result.err, "warning: dynamics.walls: forces of pairs know no plates");
+    small_inputs_write(*state, "scene.json", beads, "\"walls\": \"plates\"",
+                       "\"wave_acceleration\": 0.1");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    assert_contains(result.err, "warning: dynamics: the flow carries the beads");
+    small_inputs_write(*state, "scene.json", beads, "\"walls\": \"plates\"",
+                       "\"acceleration\": [0.1, 0]");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    assert_null(strstr(result.err, "flow carries")); // all fall alike
 }
 
 /// With beads that carry forces, in space, killed and resumed.
@@ -241,6 +299,8 @@ int main(void) {
         TEST(test_simulate_refuses_bad_solvents_by_file_and_key),
         TEST(test_simulate_refuses_a_flow_without_solvent),
         TEST(test_snapshots_show_the_solvent_where_it_is_wanted),
+        TEST(test_beads_begin_outside_the_obstacle),
+        TEST(test_simulate_warns_of_what_plates_and_flows_do_to_beads),
         TEST(test_simulate_warns_of_few_particles_in_a_cell),
         TEST(test_simulate_goes_on_with_the_same_bits_with_a_solvent),
         TEST(test_fit_looks_for_angle_and_time_step),
