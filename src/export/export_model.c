@@ -352,7 +352,8 @@ static enum status find_start(struct export_model *model) {
     if (status != STATUS_OK)
         status = mf_status_prefix(status, "%s", model->folder);
     CHECK(status);
-    CHECK(mf_snapshot_take(&snapshot, &simulation.particles, &model->setup.composition, 0, 0));
+    CHECK(mf_snapshot_take(&snapshot, &simulation.particles, &model->setup.composition, NULL, 0,
+                           0));
     CHECK(keep_state(model, &snapshot));
 done:
     mf_snapshot_clear(&snapshot);
@@ -388,7 +389,7 @@ static void name_types(struct export_model *model) {
     model->types = composition_is_mixed(composition) ? composition->types : 1;
     for (int type = 0; type < model->types; type++)
         snprintf(model->name[type], sizeof model->name[type], "%s",
-                 mf_snapshot_type_name(composition, type));
+                 composition_is_mixed(composition) ? composition->name[type] : "A");
 }
 
 enum status mf_export_model_read(struct export_model *model, const char *folder) {

@@ -105,6 +105,22 @@ static void fault_lonely(const struct scene *scene, struct json_object *object) 
                       (long long)scene->setup.placement.count);
 }
 
+/// Orientations are of the plane, and of those whom somebody turns; a file may bring them along.
+static void check_orientation(const struct scene *scene, struct json_object *object) {
+    const struct attributes_source *source = &scene->setup.attribute[ATTRIBUTES_ORIENTATION];
+    const struct integrator *integrator = scene->setup.integrator;
+    if (source->ranges == 0)
+        return;
+    if (scene->setup.box.dimensions != 2)
+        mf_json_fault(object, "particles.orientation",
+                      "orientations are of two dimensions, not %d; leave it out",
+                      scene->setup.box.dimensions);
+    else if (integrator->orientation_mobility == NULL && source->column == NULL)
+        mf_json_fault(object, "particles.orientation",
+                      "%s turns no orientations; leave it out, or use \"%s\"", integrator->name,
+                      mf_brownian.name);
+}
+
 static enum status read_dynamics(struct scene *scene, struct json_object *object, int unknown) {
     const char **names;
     TRY(mf_names_collect(mf_integrator_list, NULL, &names));
@@ -144,6 +160,7 @@ static enum status read_dynamics(struct scene *scene, struct json_object *object
     else if (dissipative && !integrator->dissipative)
         mf_json_fault(object, "dynamics",
                       "%s knows no friction; use \"aboba\" with \"dissipative\"", integrator->name);
+    check_orientation(scene, object);
     struct attributes_source *mass = &scene->setup.attribute[ATTRIBUTES_MASS];
     if (mass->ranges > 0 && !integrator->masses && attributes_are(mass, 1))
         mass->ranges = 0; // they are the unit
