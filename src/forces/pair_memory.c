@@ -52,13 +52,22 @@ static enum status init_mode(struct pair_memory *memory, int m) {
     return tabulate(&memory->mode[m].half, mode->omega, half_angle, dt / sqrt(mode->time));
 }
 
+/// The largest distance at which anything acts on a pair type.
+static double range_of(const struct pair_memory_law *law, int pair) {
+    double range = law->transverse ? table_cutoff(law->transverse, pair) : 0;
+    for (int m = 0; m < law->modes; m++)
+        range = fmax(range, table_cutoff(law->mode[m].omega, pair));
+    return range;
+}
+
 enum status mf_pair_memory_init(struct pair_memory *memory, const struct pair_memory_law *law,
                                 const struct pair_memory_scene *scene) {
     *memory = (struct pair_memory){.law = *law,
                                    .scene = *scene,
-                                   .range = mf_pair_memory_range(law),
                                    .builds = UINT64_MAX};
     mf_normal_table_init(&memory->normal);
+    for (int pair = 0; pair < mf_composition_pairs(&scene->composition); pair++)
+        memory->range[pair] = range_of(law, pair);
     for (int m = 0; m < law->modes; m++)
         TRY(init_mode(memory, m));
     return law->transverse
@@ -73,6 +82,7 @@ static void free_pairs(struct pair_memory *memory) {
     mf_memory_free(memory->second);
     mf_memory_free(memory->low);
     mf_memory_free(memory->high);
+    mf_memory_free(memory->kind);
     for (int k = 0; k < memory->variables; k++)
         mf_memory_free(memory->value[k]);
 }
@@ -90,6 +100,7 @@ static enum status allocate(struct pair_memory *memory, size_t count) {
     enum status status = STATUS_OK;
     memory->first = memory->second = NULL;
     memory->low = memory->high = NULL;
+    memory->kind = NULL;
     memory->capacity = count;
     for (int k = 0; k < memory->variables; k++)
         memory->value[k] = NULL;
@@ -97,6 +108,7 @@ static enum status allocate(struct pair_memory *memory, size_t count) {
     NEW_ARRAY(memory->second, count);
     NEW_ARRAY(memory->low, count);
     NEW_ARRAY(memory->high, count);
+    NEW_ARRAY(memory->kind, count);
     for (int k = 0; k < memory->variables; k++)
         NEW_ARRAY(memory->value[k], count);
 done:
@@ -158,34 +170,43 @@ static void carry(struct pair_memory *memory, size_t n, const struct lookup *loo
         memory->value[k][n] = old->value[k][found];
 }
 
-/// Squared distance from the fractions of the box [λ²].
-static double square_of(const struct particles *particles, size_t i, size_t j) {
+/// Squared distance when the list was built [λ²]: a restart finds the same pairs.
+static double square_of(const struct neighbours *neighbours, const struct box *box, size_t i,
+                        size_t j) {
     double square = 0;
-    for (int d = 0; d < particles->box.dimensions; d++) {
+    for (int d = 0; d < box->dimensions; d++) {
         const double dx =
-            0x1p-32 * particles->box.length[d] *
-            box_fraction_difference(particles->fraction[d][i], particles->fraction[d][j]);
+            box_nearest(neighbours->built[d][i] - neighbours->built[d][j], box->length[d]);
         square += dx * dx;
     }
     return square;
 }
 
-/// Pairs that may come into the range before the list is built anew. With nowhere to put them they
-/// are counted.
+static int kind_of(const struct composition *composition, uint32_t i, uint32_t j) {
+    return composition_is_mixed(composition) ? mf_composition_pair_of_ids(composition, i, j) : 0;
+}
+
+/// Pairs that may come into their range before the list is built anew. With nowhere to put them
+/// they are counted.
 static size_t collect_part(struct pair_memory *memory, const struct particles *particles,
                            const struct neighbours *neighbours, int p, size_t n, bool put) {
     const struct neighbours_part *part = &neighbours->part[p];
-    const double far = memory->range + neighbours->skin;
     for (size_t k = part->begin; k < part->end; k++) {
         const int32_t i = neighbours->owner[k / NEIGHBOURS_ROW], j = neighbours->list[k];
-        if (i == j || square_of(particles, (size_t)i, (size_t)j) >= far * far)
+        if (i == j)
+            continue;
+        const uint32_t a = particles->id[i], b = particles->id[j];
+        const int kind = kind_of(&memory->scene.composition, a, b);
+        const double far = memory->range[kind] + neighbours->skin;
+        if (memory->range[kind] == 0 ||
+            square_of(neighbours, &particles->box, (size_t)i, (size_t)j) >= far * far)
             continue;
         if (put) {
-            const uint32_t a = particles->id[i], b = particles->id[j];
             memory->first[n] = i;
             memory->second[n] = j;
             memory->low[n] = a < b ? a : b;
             memory->high[n] = a < b ? b : a;
+            memory->kind[n] = kind;
         }
         n++;
     }

@@ -59,8 +59,8 @@ struct pair_memory_scene {
 struct pair_memory {
     struct pair_memory_law law;
     struct pair_memory_scene scene;
-    double range;
-    int variables; ///< of a pair
+    double range[TABLE_MOST_CURVES]; ///< of each pair type; 0: nothing acts
+    int variables;                   ///< of a pair
     struct {
         double (*half)[2]; ///< tan of half the angle of the rotation: rows of the table of ω
         int first;         ///< of its variables
@@ -75,6 +75,7 @@ struct pair_memory {
     int parts;
     int32_t *first, *second; ///< shape [capacity]: particles
     uint32_t *low, *high;    ///< shape [capacity]: their ids
+    int32_t *kind;           ///< shape [capacity]: their pair types
     /// Shape [variables][capacity] [sqrt(k_B T_0)]; NaN: the pair is out of range.
     double *value[PAIR_MEMORY_MOST_VARIABLES];
 };

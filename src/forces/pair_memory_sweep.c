@@ -19,7 +19,7 @@ struct columns {
     double square[BLOCK], separation[3][BLOCK];
     double r[BLOCK];
     float direction[BLOCK][4]; ///< e, from second to first; the last is 0
-    int32_t kind[BLOCK];       ///< pair type
+    int32_t kind[BLOCK];
     uint32_t word[WORDS][BLOCK];
     double cosine[PAIR_MEMORY_MOST_MODES][BLOCK], sine[PAIR_MEMORY_MOST_MODES][BLOCK];
     double damping[BLOCK], kick[BLOCK][4]; ///< of what is across
@@ -50,10 +50,12 @@ static inline void measure(struct columns *columns, struct pair_memory *memory,
             square[n] += separation[d][n] * separation[d][n];
         }
     }
-    const double most = memory->range * memory->range;
     int near = 0;
     for (int n = 0; n < count; n++) {
+        const int32_t kind = memory->kind[begin + (size_t)n];
+        const double most = memory->range[kind] * memory->range[kind];
         columns->pair[near] = begin + (size_t)n;
+        columns->kind[near] = kind;
         columns->square[near] = square[n];
         for (int d = 0; d < 3; d++)
             columns->separation[d][near] = separation[d][n];
@@ -64,20 +66,13 @@ static inline void measure(struct columns *columns, struct pair_memory *memory,
     columns->count = near;
 }
 
-static inline void find_directions(struct columns *columns, const struct pair_memory *memory) {
+static inline void find_directions(struct columns *columns) {
     for (int n = 0; n < columns->count; n++) {
         const double r = sqrt(columns->square[n]), inverse = 1 / r;
         columns->r[n] = r;
         for (int d = 0; d < 3; d++)
             columns->direction[n][d] = (float)(columns->separation[d][n] * inverse);
         columns->direction[n][3] = 0;
-    }
-    for (int n = 0; n < columns->count; n++) {
-        const size_t p = columns->pair[n];
-        columns->kind[n] = composition_is_mixed(&memory->scene.composition)
-                               ? mf_composition_pair_of_ids(&memory->scene.composition,
-                                                            memory->low[p], memory->high[p])
-                               : 0;
     }
 }
 
@@ -210,7 +205,7 @@ SIMD_CLONES static void sweep_block(struct pair_memory *memory, const struct par
                                     uint64_t step, size_t begin, int count, lanes_double4 *v) {
     struct columns columns;
     measure(&columns, memory, particles, begin, count);
-    find_directions(&columns, memory);
+    find_directions(&columns);
     if (memory->variables > 0)
         greet(&columns, memory, step);
     for (int m = 0; m < memory->law.modes; m++) {
