@@ -9,7 +9,7 @@ extern const struct field mf_numbers_fields[];
 
 /// What is made for values: tables of laws, and parameters of the integrator and the interactions.
 struct numbers_own {
-    struct table table[UNKNOWNS];
+    struct table table[INVERSE_LAWS];
     void *dynamics, *interaction[INTERACTION_MOST];
 };
 
