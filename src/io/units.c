@@ -173,7 +173,7 @@ void mf_units_read(struct units *units, struct json_object *scene) {
     if (is_root)
         mf_units_speak(scene, scene);
     *units = *mf_json_units(scene);
-    if (units->system != UNITS_REDUCED || (is_root && !mf_json_is_object(scene, "units"))) {
+    if (mf_units_speaks(units) || (is_root && !mf_json_is_object(scene, "units"))) {
         if (!is_root)
             mf_json_refuse(scene, "units", "the file's stand at its top");
         return;
@@ -198,7 +198,7 @@ static void put_scale(const struct units *units, struct json_writer *writer) {
 }
 
 void mf_units_write(const struct units *units, struct json_writer *writer) {
-    if (units->system == UNITS_REDUCED)
+    if (!mf_units_speaks(units))
         return;
     mf_json_writer_speak(writer, units);
     mf_json_begin(writer, "units");
@@ -212,7 +212,7 @@ void mf_units_write_summary(const struct units *units, struct json_writer *write
                                              {"pressure", "k_B T_0/lambda^d"},
                                              {"friction", "mu/tau"},
                                              {"diffusion", "lambda^2/tau"}};
-    if (units->system == UNITS_REDUCED)
+    if (!mf_units_speaks(units))
         return;
     mf_json_writer_speak(writer, units);
     mf_json_begin(writer, "units");

@@ -159,7 +159,7 @@ void mf_explain_scene(FILE *out, const struct simulation_setup *setup, const str
     double total = 0;
     char scale[UNITS_LINE_SIZE];
     mf_units_tell(units, scale);
-    if (units->system != UNITS_REDUCED)
+    if (mf_units_speaks(units))
         fprintf(out, "%s\n", scale);
     for (int k = 0; k < stages.count; k++)
         total += stages.stage[k].nanoseconds;

@@ -148,7 +148,7 @@ static void say_line(void *progress, const char *line) {
 static enum status tell_targets(struct run *run) {
     const struct target_etd *etd = &run->fit.files.etd;
     const char *warning = mf_scene_warning(&run->fit.scene);
-    if (run->fit.scene.units.system != UNITS_REDUCED) {
+    if (mf_units_speaks(&run->fit.scene.units)) {
         char scale[UNITS_LINE_SIZE];
         mf_units_tell(&run->fit.scene.units, scale);
         mf_progress_say(&run->progress, "%s", scale);

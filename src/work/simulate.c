@@ -109,7 +109,7 @@ static void tell(void *context, const struct simulation *simulation, uint64_t do
     snprintf(text, sizeof text, "step %llu", (unsigned long long)done);
     if (!simulation_is_overdamped(&simulation->setup) && simulation->particles.count > 1)
         snprintf(text, sizeof text, "step %llu  T %.*f%s", (unsigned long long)done,
-                 units->system == UNITS_REDUCED ? 3 : 1,
+                 !mf_units_speaks(units) ? 3 : 1,
                  mf_particles_temperature(&simulation->particles) * mf_units_factor(units, "T_0"),
                  mf_units_suffix(units, "T_0", unit));
     mf_progress_tell(&run->progress, done, total, "steps", text);
@@ -167,7 +167,7 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
 static void warn(struct run *run) {
     const char *warning = mf_scene_warning(&run->scene);
     char line[SCENE_LINE_SIZE], scale[UNITS_LINE_SIZE];
-    if (run->scene.units.system != UNITS_REDUCED) {
+    if (mf_units_speaks(&run->scene.units)) {
         mf_units_tell(&run->scene.units, scale);
         mf_progress_say(&run->progress, "%s", scale);
     }
