@@ -142,7 +142,7 @@ log_axis(axis, a, b) = sprintf("set logscale %s; set %srange [%g:%g]; ", axis, a
 log_range(axis, a, b) = a > b ? log_axis(axis, 0.1, 1) : log_axis(axis, a / 1.4, b * 1.4)
 
 # k_B T_0 in the units of column 2 of a potential's table, by the temperature at the top of used.json.
-energy_of(file) = real(system("awk -F '\t' '/^#/ && NF > 1 { print ($2 ~ /kcal/ ? 0.0019872 : $2 ~ /kJ/ ? 0.0083145 : 0); exit }'" . \
+energy_of(file) = real("0" . system("awk -F '\t' '/^#/ && NF > 1 { print ($2 ~ /kcal/ ? 0.0019872 : $2 ~ /kJ/ ? 0.0083145 : 0); exit }'" . \
     from(file)))
 kelvins = !has("used.json") ? 300 : real("0" . system("awk -F '[:,]' '/\"temperature\":/ { print $2; exit }' used.json"))
 thermal_energy(file) = energy_of(file) > 0 ? energy_of(file) * high(1, kelvins) : 1
