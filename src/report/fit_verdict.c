@@ -36,7 +36,7 @@ bool mf_fit_verdict_contradicts(const struct verification *verification, bool pr
     if (pressure_is_fitted && pressure->rms > noise_margin * pressure->noise) {
         snprintf(
             reason, INVERSE_REASON_SIZE,
-            "the verification's pressure, %.4g%s, is off by %.2g (%.2g by statistics): its time "
+            "the verification's pressure, %.4g%.16s, is off by %.2g (%.2g by statistics): its time "
             "step may be too long",
             bar * found->pressure, unit, bar * pressure->rms, bar * pressure->noise);
         return true;
@@ -45,7 +45,7 @@ bool mf_fit_verdict_contradicts(const struct verification *verification, bool pr
         return false;
     snprintf(reason, INVERSE_REASON_SIZE,
              "the fit's samples agree with g(r), its verification is off by %.2g (%.2g by "
-             "statistics) at T = %.3g%s, pressure %.3g%s: %s",
+             "statistics) at T = %.3g%.8s, pressure %.3g%.16s: %s",
              rdf->rms, rdf->noise,
              mf_units_factor(units, "T_0") * (isnan(found->temperature)
                                                   ? found->temperature_configurational
