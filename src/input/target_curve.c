@@ -5,7 +5,10 @@
 #include "input/target_rdf.h"
 #include "io/data_table.h"
 
+#include "io/units_text.h"
+
 #include <math.h>
+#include <string.h>
 
 #define CURVE(name) .offset = offsetof(struct target_curve_parameters, name)
 #define COLUMN .maximum = 1000, .unit = ""
@@ -44,7 +47,7 @@ const struct field mf_target_curve_fields[] = {
 };
 
 #define NUMBER(name) .offset = offsetof(struct target_number, name)
-const struct field mf_target_curve_number_fields[] = {
+const struct field mf_target_curve_number_fields[TARGET_NUMBER_FIELDS] = {
     {"value", FIELD_NUMBER, NUMBER(value), .required = true, .minimum = -DBL_MAX,
      .maximum = DBL_MAX, .unit = "its own", .help = "measured"},
     {"error", FIELD_NUMBER, NUMBER(error), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
@@ -60,6 +63,12 @@ const struct field mf_target_curve_diffusion_fields[] = {
          "\"vacf\", \"msd\" or \"etd\" if they are given, else 1.6"},
     FIELD_END,
 };
+
+void mf_target_curve_number_fields_of(const char *unit, struct field fields[TARGET_NUMBER_FIELDS]) {
+    memcpy(fields, mf_target_curve_number_fields, sizeof mf_target_curve_number_fields);
+    for (int k = 0; fields[k].name; k++)
+        fields[k].unit = unit;
+}
 
 const struct field *mf_target_curve_fields_of(enum observable_form form) {
     return form == OBSERVABLE_CURVE ? mf_target_curve_fields : mf_target_curve_time_fields;
@@ -96,8 +105,23 @@ static enum status check_points(struct target_curve *curve, enum observable_form
     return check_times(curve, table);
 }
 
-static enum status load(struct target_curve *curve, enum observable_form form,
-                        struct data_table *table) {
+/// The columns that are read, in reduced units.
+static enum status convert(const struct target_curve_parameters *p,
+                           const struct observable_target *about, int64_t error_column,
+                           const struct units *units, struct data_table *table) {
+    char argument[UNITS_NAME_SIZE];
+    size_t length;
+    const char *unit = mf_units_text_in_brackets(about->argument, &length);
+    snprintf(argument, sizeof argument, "%.*s", (int)length, unit);
+    TRY(mf_data_table_convert(table, p->file, (size_t)p->x_column - 1, argument, units));
+    TRY(mf_data_table_convert(table, p->file, (size_t)p->value_column - 1, about->unit, units));
+    return error_column > 0
+               ? mf_data_table_convert(table, p->file, (size_t)error_column - 1, about->unit, units)
+               : STATUS_OK;
+}
+
+static enum status load(struct target_curve *curve, const struct observable_target *about,
+                        const struct units *units, struct data_table *table) {
     enum status status = STATUS_OK;
     const struct target_curve_parameters *p = &curve->parameters;
     const int64_t least = p->x_column > p->value_column ? p->x_column : p->value_column;
@@ -105,7 +129,8 @@ static enum status load(struct target_curve *curve, enum observable_form form,
     CHECK(mf_data_table_read(table, p->file, (size_t)least));
     CHECK(mf_target_rdf_error_column(p->error_column, p->x_column, p->value_column, table, p->file,
                                      &error_column));
-    CHECK(check_points(curve, form, table));
+    CHECK(convert(p, about, error_column, units, table));
+    CHECK(check_points(curve, about->form, table));
     NEW_ARRAY(curve->x, table->rows);
     NEW_ARRAY(curve->value, table->rows);
     NEW_ARRAY(curve->error, table->rows);
@@ -125,15 +150,15 @@ done:
     return status;
 }
 
-enum status mf_target_curve_read(struct target_curve *curve, enum observable_form form,
+enum status mf_target_curve_read(struct target_curve *curve, const struct observable_target *about,
                                  struct json_object *object) {
     const size_t faults = mf_json_fault_count(object->document);
-    mf_json_fields(object, mf_target_curve_fields_of(form), &curve->parameters);
+    mf_json_fields(object, mf_target_curve_fields_of(about->form), &curve->parameters);
     mf_json_finish(object);
     if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
     struct data_table table = {0};
-    const enum status status = load(curve, form, &table);
+    const enum status status = load(curve, about, mf_json_units(object), &table);
     mf_data_table_clear(&table);
     if (status == STATUS_NO_MEMORY)
         return status;

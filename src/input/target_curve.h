@@ -26,7 +26,7 @@ const struct field *mf_target_curve_fields_of(enum observable_form form);
 /// Read the members of {"file": …}: x grows from row to row; times begin at 0 and are equally
 /// spaced to the digits of the file. Faults (shape, times, negative errors, …) go to the document
 /// and leave the target empty. Fails: NO_MEMORY. Tested: test_target_files.
-enum status mf_target_curve_read(struct target_curve *curve, enum observable_form form,
+enum status mf_target_curve_read(struct target_curve *curve, const struct observable_target *about,
                                  struct json_object *object) MUST_USE;
 void mf_target_curve_clear(struct target_curve *curve);
 
@@ -40,4 +40,9 @@ struct target_number {
     double window; ///< of D: the slope of the MSD over its second half; 0: of other targets [τ]
 };
 
-extern const struct field mf_target_curve_number_fields[], mf_target_curve_diffusion_fields[];
+enum { TARGET_NUMBER_FIELDS = 3 };
+extern const struct field mf_target_curve_number_fields[TARGET_NUMBER_FIELDS];
+extern const struct field mf_target_curve_diffusion_fields[];
+
+/// Those of value and error, with the unit of the observable.
+void mf_target_curve_number_fields_of(const char *unit, struct field fields[TARGET_NUMBER_FIELDS]);
