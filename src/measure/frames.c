@@ -215,7 +215,7 @@ static enum status find_order(struct frames *frames, const struct trajectory_fra
         return mf_series_add(&frames->time, frame->time);
     if (!was_seen(frames, frame->time))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: frame %zu is out of order: its time, %.9g ps, comes after %.9g "
+                              "%s: frame %zu is out of order: its time, %.7g ps, comes after %.7g "
                               "ps",
                               frame->file, frame->number, frame->time, last);
     frames->source[frames->at].doubled++;

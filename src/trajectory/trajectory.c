@@ -81,7 +81,7 @@ static enum status check_units(const struct trajectory *trajectory) {
     if (trajectory->scale.length > 0)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
-                          "%s: this file of LAMMPS does not say its units: tell them (real, metal, "
+                          "%s: this file of LAMMPS does not say its units: tell them by --file-units (real, metal, "
                           "nano, lj …)",
                           trajectory->file);
 }
