@@ -119,67 +119,6 @@ size_t mf_frames_expected(const struct frames *frames) {
     return (size_t)fmax(1, (last - begin) / fmax(interval, plan->every) + 1);
 }
 
-// Batches -----------------------------------------------------------------------------------------
-
-/// What a batch has of the file that is read.
-struct batch {
-    struct frames *frames;
-    bool *decoded;         ///< shape [slots]
-    size_t first, fetched; ///< frames first … fetched − 1 are new
-    bool over;             ///< the file has no further frame, or is damaged
-};
-
-/// A file that breaks off is over, if that is allowed: the failure becomes a note.
-static enum status forgive(struct batch *batch, enum status status) {
-    struct frames *const frames = batch->frames;
-    if (status != STATUS_BAD_INPUT || !frames->plan.allow_truncated)
-        return status;
-    batch->over = true;
-    return note(frames, "%s; what is before it is used", mf_status_message());
-}
-
-static enum status fetch(struct batch *batch) {
-    struct frames *const frames = batch->frames;
-    struct frames_source *const source = &frames->source[frames->at];
-    while (batch->fetched < frames->slots && !batch->over) {
-        struct trajectory_frame *const frame = &frames->frame[batch->fetched];
-        bool more = true;
-        const enum status status = mf_trajectory_fetch(&frames->trajectory, frame, &more);
-        if (status != STATUS_OK)
-            return forgive(batch, status);
-        batch->over = !more;
-        if (!more)
-            break;
-        mf_digest_add(&source->digest, frame->raw.data, frame->raw.size);
-        source->read++;
-        batch->fetched++;
-    }
-    return STATUS_OK;
-}
-
-static enum status decode_one(void *context, size_t task, void *result) {
-    const struct batch *const batch = context;
-    (void)result;
-    const size_t k = batch->first + task;
-    TRY(mf_trajectory_decode(&batch->frames->trajectory, &batch->frames->frame[k]));
-    batch->decoded[k] = true;
-    return STATUS_OK;
-}
-
-/// Decode all that was fetched; what is behind a damaged frame is lost.
-static enum status decode(struct batch *batch) {
-    const struct parallel_tasks tasks = {.count = batch->fetched - batch->first,
-                                         .threads = batch->frames->plan.threads,
-                                         .run = decode_one,
-                                         .context = batch};
-    TRY(forgive(batch, mf_parallel_try(&tasks)));
-    size_t good = batch->first;
-    while (good < batch->fetched && batch->decoded[good])
-        good++;
-    batch->fetched = good;
-    return STATUS_OK;
-}
-
 // Which are used ----------------------------------------------------------------------------------
 
 /// Whether a frame of this time has been.
@@ -215,7 +154,7 @@ static enum status find_order(struct frames *frames, const struct trajectory_fra
         return mf_series_add(&frames->time, frame->time);
     if (!was_seen(frames, frame->time))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: frame %zu is out of order: its time, %.9g ps, comes after %.9g "
+                              "%s: frame %zu is out of order: its time, %.7g ps, comes after %.7g "
                               "ps",
                               frame->file, frame->number, frame->time, last);
     frames->source[frames->at].doubled++;
@@ -238,13 +177,80 @@ static enum status judge(struct frames *frames, const struct trajectory_frame *f
     if (isnan(time))
         return check_known(frames, frame);
     *use = !(time < plan->begin - time_tolerance(time));
-    frames->ended = time > plan->end + time_tolerance(time);
+    frames->ended = frames->ended || time > plan->end + time_tolerance(time);
     if (frames->ended || !*use) {
         *use = false;
         return STATUS_OK;
     }
     TRY(find_order(frames, frame, use));
     *use = *use && is_wanted(frames, time);
+    return STATUS_OK;
+}
+
+// Batches -----------------------------------------------------------------------------------------
+
+/// What a batch has of the file that is read.
+struct batch {
+    struct frames *frames;
+    bool *decoded;         ///< shape [slots]
+    size_t first, fetched; ///< frames first … fetched − 1 are new
+    bool judged;           ///< only those to be used were kept, by times that took no decoding
+    bool over;             ///< the file has no further frame, or is damaged
+};
+
+/// A file that breaks off is over, if that is allowed: the failure becomes a note.
+static enum status forgive(struct batch *batch, enum status status) {
+    struct frames *const frames = batch->frames;
+    if (status != STATUS_BAD_INPUT || !frames->plan.allow_truncated)
+        return status;
+    batch->over = true;
+    return note(frames, "%s; what is before it is used", mf_status_message());
+}
+
+static enum status fetch(struct batch *batch) {
+    struct frames *const frames = batch->frames;
+    struct frames_source *const source = &frames->source[frames->at];
+    while (batch->fetched < frames->slots && !batch->over && !frames->ended &&
+           !mf_interrupt_requested()) {
+        struct trajectory_frame *const frame = &frames->frame[batch->fetched];
+        bool more = true;
+        const enum status status = mf_trajectory_fetch(&frames->trajectory, frame, &more);
+        if (status != STATUS_OK)
+            return forgive(batch, status);
+        batch->over = !more;
+        if (!more)
+            break;
+        mf_digest_add(&source->digest, frame->raw.data, frame->raw.size);
+        source->read++;
+        batch->judged = mf_trajectory_peek(&frames->trajectory, frame);
+        bool use = true;
+        if (batch->judged)
+            TRY(judge(frames, frame, &use));
+        batch->fetched += use;
+    }
+    return STATUS_OK;
+}
+
+static enum status decode_one(void *context, size_t task, void *result) {
+    const struct batch *const batch = context;
+    (void)result;
+    const size_t k = batch->first + task;
+    TRY(mf_trajectory_decode(&batch->frames->trajectory, &batch->frames->frame[k]));
+    batch->decoded[k] = true;
+    return STATUS_OK;
+}
+
+/// Decode all that was fetched; what is behind a damaged frame is lost.
+static enum status decode(struct batch *batch) {
+    const struct parallel_tasks tasks = {.count = batch->fetched - batch->first,
+                                         .threads = batch->frames->plan.threads,
+                                         .run = decode_one,
+                                         .context = batch};
+    TRY(forgive(batch, mf_parallel_try(&tasks)));
+    size_t good = batch->first;
+    while (good < batch->fetched && batch->decoded[good])
+        good++;
+    batch->fetched = good;
     return STATUS_OK;
 }
 
@@ -258,9 +264,10 @@ static void swap(struct trajectory_frame *a, struct trajectory_frame *b) {
 static enum status choose(struct batch *batch, size_t *count) {
     struct frames *const frames = batch->frames;
     struct frames_source *const source = &frames->source[frames->at];
-    for (size_t k = batch->first; k < batch->fetched && !frames->ended; k++) {
-        bool use;
-        TRY(judge(frames, &frames->frame[k], &use));
+    for (size_t k = batch->first; k < batch->fetched; k++) {
+        bool use = batch->judged;
+        if (!batch->judged)
+            TRY(judge(frames, &frames->frame[k], &use));
         if (!use)
             continue;
         if (*count != k)

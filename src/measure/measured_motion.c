@@ -148,7 +148,7 @@ static enum status check_frame(const struct measured_motion *motion,
         interval_tolerance * motion->interval + 4 * (double)FLT_EPSILON * fabs(beads->time);
     if (motion->frames > 0 && !(fabs(gone - motion->interval) <= tolerance))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: frame %zu, at %.9g ps, comes %.6g ps after the one before, not "
+                              "%s: frame %zu, at %.7g ps, comes %.6g ps after the one before, not "
                               "%.6g: motion needs equal intervals; --every takes frames so far "
                               "apart, --static measures what needs no times",
                               beads->file, beads->number, beads->time, gone, motion->interval);

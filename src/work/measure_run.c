@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "work/measure_run.h"
 
+#include "base/number_text.h"
+#include "io/units.h"
 #include "report/progress.h"
 #include "work/measure_output.h"
 
@@ -93,6 +95,56 @@ static enum status read_frames(struct run *run) {
                           run->request->frames.file[0]);
 }
 
+/// How far beads go, and what is to be known of it: a periodic box slows D.
+static void say_diffusion(struct run *run, const struct units *units) {
+    const struct measured_motion *const motion = &run->measured.motion;
+    const struct motion_summary s = mf_motion_result(&motion->motion, NULL);
+    const double cm2 = mf_units_diffusion_cm2_per_s(units) * 1e5;
+    char diffusion[NUMBER_TEXT_SIZE];
+    mf_number_text(cm2 * s.msd, cm2 * s.msd_error, diffusion);
+    mf_progress_say(&run->progress,
+                    "D = %s 1e-5 cm^2/s by the MSD from %.4g to %.4g ps, as it is in this box: a "
+                    "larger one has more, by 2.84 k_B T/(6 pi eta L) of a cube",
+                    diffusion, s.fit_begin, s.fit_end);
+    if (motion->path.differences)
+        mf_progress_say(&run->progress,
+                        "mesofit: warning: the VACF is of differences of positions over %.4g ps: "
+                        "it is lower at short times, its integral is right",
+                        2 * motion->interval);
+}
+
+static void say_motion(struct run *run, const struct units *units) {
+    const struct measured_motion *const motion = &run->measured.motion;
+    if (!motion->begun && !motion->plan.leave_out)
+        mf_progress_say(&run->progress, "mesofit: warning: no motion, no escape times: %s",
+                        run->measured.frames < 2 ? "there is one frame"
+                                                 : "frames have no times (--file-time-step)");
+    if (!motion->begun)
+        return;
+    if (mf_motion_blocks(&motion->motion) == 0)
+        mf_progress_say(&run->progress,
+                        "mesofit: warning: no motion, no escape times: %zu frames are no window "
+                        "of %lld intervals (--window)",
+                        motion->frames, (long long)motion->motion.plan.lags);
+    else
+        say_diffusion(run, units);
+    if (!motion->has_vacf && motion->plan.velocities == MEASURED_VELOCITIES_USUAL)
+        mf_progress_say(&run->progress, "no VACF: there are no velocities (--velocities "
+                                        "differences makes them of positions)");
+}
+
+/// What a person is to know.
+static void say_results(struct run *run, const struct units *units) {
+    const struct measured *const measured = &run->measured;
+    mf_progress_say(&run->progress, "g(r) to %.4g nm in %lld bins%s", measured->plan.range,
+                    (long long)measured->plan.bins,
+                    measured->pairs.molecule ? ", without pairs of one molecule or residue" : "");
+    say_motion(run, units);
+    if (isnan(run->request->temperature) && measured->motion.temperature.count == 0)
+        mf_progress_say(&run->progress, "no temperature is known: tell it by --temperature, or in "
+                                        "\"scene\" of target.json");
+}
+
 static enum status write_results(struct run *run, bool interrupted) {
     mf_measured_motion_end(&run->measured.motion);
     const struct measure_result result = {.request = run->request,
@@ -107,6 +159,7 @@ static enum status write_results(struct run *run, bool interrupted) {
     TRY(mf_measure_output_write(&result));
     mf_run_folder_draw(&run->folder);
     say_lines(&run->progress, &run->frames.notes);
+    say_results(run, &result.units);
     mf_progress_say(&run->progress, "%zu frames of %zu beads in %.3g s; results in %s",
                     run->measured.frames, run->mapping.beads, result.seconds, run->folder.path);
     return STATUS_OK;

@@ -158,6 +158,9 @@ static void test_measured_msd_is_ballistic_when_beads_fly_through_a_box(void **s
     }
     const struct measured_plan plan = make_plan(0.8, 10, 0.5 * LAGS);
     measure(film, &plan, 8, &measured);
+    // 90 origins, two frames apart, in blocks that were joined once: 64 would be too few.
+    assert_int_equal(measured.motion.motion.each, 2);
+    assert_int_equal(mf_motion_blocks(&measured.motion.motion), 45);
     double curve[4][LAGS + 1];
     mf_motion_result(&measured.motion.motion,
                      &(struct motion_curves){curve[0], curve[1], curve[2], curve[3]});
