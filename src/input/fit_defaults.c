@@ -179,7 +179,7 @@ static double moderate_friction(const struct fit_choice *c, double cutoff) {
 /// friction that would be chosen of its own.
 static enum status choose_omega(struct fit_choice *c) {
     static const char *const path = "unknowns.omega";
-    static const double shells = 2, beyond_etd = 1.3, most = 8;
+    static const double shells = 2, beyond_etd = 1.3, most = 6;
     enum { COEFFICIENTS = 8 };
     if (!c->finds[UNKNOWN_OMEGA] || !mf_fit_choice_lacks(c->root, path, "cutoff") ||
         !mf_fit_choice_lacks(c->root, path, "maximum"))
