@@ -33,6 +33,11 @@ enum status mf_curve_create(struct curve *curve, const struct curve_family *fami
     return STATUS_OK;
 }
 
+void mf_curve_scale(const struct curve *curve, double length, double unit) {
+    if (curve->family->scale)
+        curve->family->scale(curve->parameters, length, unit);
+}
+
 enum status mf_curve_check(const struct curve *curve) {
     return curve->family->check ? curve->family->check(curve->parameters) : STATUS_OK;
 }

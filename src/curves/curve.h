@@ -19,6 +19,9 @@ struct curve_family {
     /// Refuse what is in range each and not together, and make what `value` needs besides, as of a
     /// formula that is text; NULL: neither.
     enum status (*check)(void *parameters);
+    /// Told before `check` in which units a formula is written: its r is r times `length`, its
+    /// value that of the curve times `unit`; NULL: the parameters are all there is.
+    void (*scale)(void *parameters, double length, double unit);
     void (*clear)(void *parameters); ///< frees what the parameters own; NULL if nothing
 };
 
@@ -39,6 +42,10 @@ const struct curve_family *mf_curve_find(const struct curve_family *const *list,
 
 /// Start a curve with the family's default parameters.
 enum status mf_curve_create(struct curve *curve, const struct curve_family *family) MUST_USE;
+
+/// Say in which units what the family's fields cannot convert is written: lengths and values of it
+/// are `length` λ^-1 and `unit` times those of the curve. Tested: test_units_files.
+void mf_curve_scale(const struct curve *curve, double length, double unit);
 
 /// Whether the parameters go together: to be asked after they were set, and before any value.
 /// Fails: BAD_INPUT. Tested: test_curves.

@@ -10,30 +10,49 @@ static double cutoff(const void *parameters) {
     return ((const struct expression_parameters *)parameters)->cutoff;
 }
 
+static double length_of(const struct expression_parameters *p) {
+    return p->length > 0 ? p->length : 1;
+}
+
+/// Value of the formula at r, and, unless it is NULL, its slope.
+static double formula(const struct expression_parameters *p, double r, double *slope) {
+    const double unit = p->unit > 0 ? p->unit : 1, length = length_of(p);
+    const double value = mf_expression_value(&p->expression, length * r, slope) / unit;
+    if (slope)
+        *slope *= length / unit;
+    return value;
+}
+
+static void scale(void *parameters, double length, double unit) {
+    struct expression_parameters *p = parameters;
+    p->length = length;
+    p->unit = unit;
+}
+
 /// The formula is finite from the inner cutoff to the cutoff, in each interval of a table.
 static enum status check_range(const struct expression_parameters *p, const char *advice) {
     double where;
-    if (p->inner_cutoff >= p->cutoff)
+    const double low = length_of(p) * p->inner_cutoff, high = length_of(p) * p->cutoff;
+    if (low >= high)
         return mf_status_fail(STATUS_BAD_INPUT, "the inner_cutoff %g is not below the cutoff %g",
-                              p->inner_cutoff, p->cutoff);
-    if (mf_expression_is_finite(&p->expression, p->inner_cutoff, p->cutoff, TABLE_INTERVALS,
-                                &where))
+                              low, high);
+    if (mf_expression_is_finite(&p->expression, low, high, TABLE_INTERVALS, &where))
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
                           "the formula \"%s\" divides by 0, or is no number, near r = %.4g%s",
-                          p->formula, where, where == p->inner_cutoff ? advice : "");
+                          p->formula, where, where == low ? advice : "");
 }
 
 static enum status check_potential(void *parameters) {
     struct expression_parameters *p = parameters;
     TRY(mf_expression_parse(&p->expression, p->formula));
     TRY(check_range(p, ": below \"inner_cutoff\" the potential would be a straight line"));
-    p->shift = mf_expression_value(&p->expression, p->cutoff, NULL);
-    p->inner_value = mf_expression_value(&p->expression, p->inner_cutoff, &p->inner_slope);
+    p->shift = formula(p, p->cutoff, NULL);
+    p->inner_value = formula(p, p->inner_cutoff, &p->inner_slope);
     if (!isfinite(p->inner_value) || !isfinite(p->inner_slope) || !isfinite(p->shift))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "the formula \"%s\" has no finite value and slope at r = %.4g",
-                              p->formula, p->inner_cutoff);
+                              p->formula, length_of(p) * p->inner_cutoff);
     return STATUS_OK;
 }
 
@@ -43,10 +62,10 @@ static enum status check_omega(void *parameters) {
     TRY(check_range(p, ": below \"inner_cutoff\" omega would be 0"));
     for (int k = 0; k < TABLE_INTERVALS; k++) {
         const double r = p->inner_cutoff + (p->cutoff - p->inner_cutoff) * k / TABLE_INTERVALS;
-        if (mf_expression_value(&p->expression, r, NULL) < 0)
+        if (formula(p, r, NULL) < 0)
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "the formula \"%s\" is negative at r = %.4g: omega is not",
-                                  p->formula, r);
+                                  p->formula, length_of(p) * r);
     }
     return STATUS_OK;
 }
@@ -57,13 +76,13 @@ static double potential_value(const void *parameters, double r) {
         return 0;
     if (r < p->inner_cutoff)
         return p->inner_value - p->shift + p->inner_slope * (r - p->inner_cutoff);
-    return mf_expression_value(&p->expression, r, NULL) - p->shift;
+    return formula(p, r, NULL) - p->shift;
 }
 
 static double omega_value(const void *parameters, double r) {
     const struct expression_parameters *p = parameters;
     const bool inside = r > p->inner_cutoff || (r == 0 && p->inner_cutoff == 0);
-    return inside && r < p->cutoff ? mf_expression_value(&p->expression, r, NULL) : 0;
+    return inside && r < p->cutoff ? formula(p, r, NULL) : 0;
 }
 
 #define MEMBER(name) .offset = offsetof(struct expression_parameters, name)
@@ -74,7 +93,8 @@ static double omega_value(const void *parameters, double r) {
          MEMBER(formula),                                                                          \
          .required = true,                                                                         \
          .unit = "",                                                                               \
-         .help = "of the distance r: numbers, + - * / ^ and exp, such as 4*(1/r^12 - 1/r^6)"},     \
+         .help = "of the distance r: numbers, + - * / ^ and exp, such as 4*(1/r^12 - 1/r^6); "     \
+                 "r and value in the units of the file"},                                          \
             {"inner_cutoff", FIELD_NUMBER,       MEMBER(inner_cutoff), .initial = 0,               \
              .minimum = 0,   .maximum = DBL_MAX, .unit = "lambda",     .help = inner_help},        \
             {"cutoff",                                                                             \
@@ -103,6 +123,7 @@ const struct curve_family mf_expression_potential = {
     .value = potential_value,
     .cutoff = cutoff,
     .check = check_potential,
+    .scale = scale,
 };
 
 const struct curve_family mf_expression_omega = {
@@ -113,4 +134,5 @@ const struct curve_family mf_expression_omega = {
     .value = omega_value,
     .cutoff = cutoff,
     .check = check_omega,
+    .scale = scale,
 };

@@ -15,6 +15,9 @@ extern const struct curve_family mf_expression_omega;
 struct expression_parameters {
     char formula[FIELD_TEXT_SIZE];
     double inner_cutoff, cutoff;
+    /// In which units it is written: its r is r times `length`, and its value the curve's times
+    /// `unit`; 0: 1.
+    double length, unit;
     /// The formula once it was read (mf_curve_check).
     struct expression expression;
     double shift, inner_value, inner_slope; ///< of it at the cutoffs

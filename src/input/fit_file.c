@@ -78,10 +78,11 @@ static void read_fixed(struct unknown_parameters *p, struct json_object *object)
         mf_json_fault(object, "fixed",
                       "with all of its parameters fixed nothing is left to be found");
     const double inner = p->fixed[INVERSE_INNER_CUTOFF];
+    const double length = mf_json_factor(object, "lambda");
     if (inner < p->inner_cutoff || inner >= p->cutoff)
         mf_json_fault(&fixed, "inner_cutoff",
-                      "%g is not between the friction weight's cutoffs, %g and %g", inner,
-                      p->inner_cutoff, p->cutoff);
+                      "%g is not between the friction weight's cutoffs, %g and %g", length * inner,
+                      length * p->inner_cutoff, length * p->cutoff);
 }
 
 /// Coefficients of a formula are its parameters that are not fixed.
@@ -105,6 +106,9 @@ static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind k
         kind == UNKNOWN_POTENTIAL ? mf_curve_potentials : mf_curve_omegas;
     mf_json_fields(object, unknown_fields(kind), &unknown->parameters);
     struct unknown_parameters *p = &unknown->parameters;
+    const double length = mf_json_factor(object, "lambda");
+    const double unit =
+        mf_json_factor(object, kind == UNKNOWN_POTENTIAL ? "k_B T_0" : "sqrt(mu/tau)");
     mf_fields_set_defaults(mf_inverse_fixed_fields, p->fixed);
     if (kind == UNKNOWN_OMEGA)
         read_fixed(p, object);
@@ -119,10 +123,11 @@ static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind k
     TRY(mf_scene_law_read(&unknown->start, object, "start", laws, composition, units));
     mf_fit_base_check(unknown, object);
     if (p->maximum <= p->minimum)
-        mf_json_fault(object, "maximum", "%g is not above the minimum %g", p->maximum, p->minimum);
+        mf_json_fault(object, "maximum", "%g is not above the minimum %g", unit * p->maximum,
+                      unit * p->minimum);
     if (kind == UNKNOWN_OMEGA && p->cutoff <= p->inner_cutoff)
-        mf_json_fault(object, "cutoff", "%g is not above the inner cutoff %g", p->cutoff,
-                      p->inner_cutoff);
+        mf_json_fault(object, "cutoff", "%g is not above the inner cutoff %g", length * p->cutoff,
+                      length * p->inner_cutoff);
     TRY(mf_scene_law_read(&unknown->truth, object, "truth", laws, composition, units));
     mf_json_finish(object);
     return STATUS_OK;
@@ -191,6 +196,8 @@ static enum status read_scene(struct fit_file *fit, struct json_object *root) {
 
 static enum status read_root(struct fit_file *fit, struct json_object *root) {
     mf_json_fields(root, mf_heading_fields, &fit->heading);
+    struct json_object scene = mf_json_child(root, "scene", false);
+    mf_units_speak(root, &scene);
     // Before what its units convert.
     TRY(read_scene(fit, root));
     TRY(mf_target_files_read(&fit->files, root, &fit->scene.setup.box,
@@ -298,7 +305,8 @@ static void write_fixed(const struct unknown_parameters *p, struct json_writer *
     mf_json_begin(writer, "fixed");
     for (int k = 0; k < INVERSE_PARAMETERS; k++)
         if (!isnan(p->fixed[k]))
-            mf_json_put_number(writer, mf_inverse_fixed_fields[k].name, p->fixed[k]);
+            mf_json_put_quantity(writer, mf_inverse_fixed_fields[k].name,
+                                 mf_inverse_fixed_fields[k].unit, p->fixed[k]);
     mf_json_end(writer);
 }
 
@@ -322,6 +330,7 @@ static void write_unknowns(const struct fit_file *fit, struct json_writer *write
 enum status mf_fit_file_write(const struct fit_file *fit, const char *path) {
     struct json_writer *writer = mf_json_writer_create();
     mf_json_put_fields(writer, mf_heading_fields, &fit->heading);
+    mf_units_write(&fit->scene.units, writer);
     mf_target_files_write(&fit->files, writer);
     write_unknowns(fit, writer);
     mf_json_begin(writer, "scene");

@@ -168,28 +168,31 @@ static void check_range(struct json_object *object, const struct field *field,
                         const struct inverse_number *number) {
     const double end[] = {number->minimum, number->maximum};
     static const char *const key[] = {"minimum", "maximum"};
-    char allowed[64];
-    mf_fields_range_text(field, allowed, sizeof allowed);
+    char allowed[64 + UNITS_NAME_SIZE];
+    const double factor = mf_json_factor(object, field->unit);
+    mf_json_range_text(object, field, allowed, sizeof allowed);
     for (int k = 0; k < 2; k++)
         if (end[k] < field->minimum || end[k] > field->maximum)
-            mf_json_fault(object, key[k], "%g is not in the range of \"%s\", %s", end[k],
+            mf_json_fault(object, key[k], "%g is not in the range of \"%s\", %s", factor * end[k],
                           number->name, allowed);
     if (number->minimum >= number->maximum)
-        mf_json_fault(object, "maximum", "%g is not above the minimum %g", number->maximum,
-                      number->minimum);
+        mf_json_fault(object, "maximum", "%g is not above the minimum %g", factor * number->maximum,
+                      factor * number->minimum);
     else if (!isfinite(number->maximum - number->minimum))
-        mf_json_fault(object, "maximum", "%g is too far from the minimum %g", number->maximum,
-                      number->minimum);
+        mf_json_fault(object, "maximum", "%g is too far from the minimum %g",
+                      factor * number->maximum, factor * number->minimum);
     else if (number->start < number->minimum || number->start > number->maximum)
         mf_json_fault(object, "start", "%g is not between the minimum %g and the maximum %g",
-                      number->start, number->minimum, number->maximum);
+                      factor * number->start, factor * number->minimum, factor * number->maximum);
 }
 
 static void read_one(struct json_object *numbers, const struct entry *entry,
                      struct inverse_number *number) {
     const size_t faults = mf_json_fault_count(numbers->document);
     struct json_object object = mf_json_child(numbers, entry->path, false);
-    mf_json_fields(&object, mf_numbers_fields, number);
+    struct field fields[NUMBERS_FIELDS];
+    mf_numbers_fields_of(entry->field->unit, fields);
+    mf_json_fields(&object, fields, number);
     mf_json_finish(&object);
     snprintf(number->name, sizeof number->name, "%s", entry->path);
     number->unit = entry->field->unit;
@@ -297,7 +300,9 @@ void mf_fit_numbers_write(const struct inverse_number *number, size_t count,
     mf_json_begin(writer, "numbers");
     for (size_t n = 0; n < count; n++) {
         mf_json_begin(writer, number[n].name);
-        mf_json_put_fields(writer, mf_numbers_fields, &number[n]);
+        struct field fields[NUMBERS_FIELDS];
+        mf_numbers_fields_of(number[n].unit, fields);
+        mf_json_put_fields(writer, fields, &number[n]);
         mf_json_end(writer);
     }
     mf_json_end(writer);

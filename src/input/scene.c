@@ -73,7 +73,8 @@ static void check_omega(const struct scene *scene, struct json_object *object) {
         if (table->coefficient[2 * row] < 0) {
             const int pair = row / (TABLE_INTERVALS + 1), k = row % (TABLE_INTERVALS + 1);
             mf_json_fault(object, "dissipative", "omega is negative at r = %g",
-                          k / mf_table_inverse_spacing(table, pair));
+                          mf_json_factor(object, "lambda") * k /
+                              mf_table_inverse_spacing(table, pair));
             return;
         }
 }
@@ -184,14 +185,22 @@ static void check_units(const struct scene *scene, struct json_object *object) {
     const double mass = scene->units.mass;
     if (!mf_units_known(&scene->units) || mf_json_fault_count(object->document) > 0)
         return;
-    struct json_object units = mf_json_child(object, "units", false);
-    if (setup->temperature > hottest)
+    const bool reduced = scene->units.system == UNITS_REDUCED;
+    struct json_object units = {0};
+    if (reduced)
+        units = mf_json_child(object, "units", false);
+    if (reduced && setup->temperature > hottest)
         mf_json_fault(object, "temperature",
                       "%g is in units of T_0, %g K in \"units\": it would be %g K; 1 is T_0",
                       setup->temperature, scene->units.temperature,
                       setup->temperature * scene->units.temperature);
     const double density = setup->box.dimensions == 3 ? mf_scene_mass_density(scene) : 0;
-    if (density > densest && mass >= 1)
+    if (density > densest && !reduced)
+        mf_json_fault(object, "box",
+                      "%g u a bead make %.3g g/cm^3: the mass, the box or the number of particles "
+                      "is wrong",
+                      mass / UNITS_ATOMIC_MASS, density);
+    else if (density > densest && mass >= 1)
         mf_json_fault(&units, "mass", "it is in kg: %g u would be %.6g", mass, mass * atomic_mass);
     else if (density > densest)
         mf_json_fault(
@@ -270,7 +279,7 @@ void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
     mf_json_put_text(writer, "integrator", setup->integrator->name);
     mf_json_put_fields(writer, setup->integrator->fields, setup->integrator_parameters);
     mf_json_end(writer);
-    if (mf_units_known(&scene->units)) {
+    if (mf_units_beside(&scene->units)) {
         mf_json_begin(writer, "units");
         mf_json_put_fields(writer, mf_units_fields, &scene->units);
         mf_json_end(writer);

@@ -28,8 +28,9 @@ static void read_range(struct json_object *parent, const char *key, const struct
     mf_json_fields(&own, fields, range);
     mf_json_finish(&own);
     if (mf_json_fault_count(own.document) == faults && range->minimum > range->maximum)
-        mf_json_fault(&own, "maximum", "%g is below the minimum of %g", range->maximum,
-                      range->minimum);
+        mf_json_fault(&own, "maximum", "%g is below the minimum of %g",
+                      range->maximum * mf_json_factor(&own, kind->unit),
+                      range->minimum * mf_json_factor(&own, kind->unit));
 }
 
 /// {"A": …, "B": …}, a range or number for each type.
@@ -48,6 +49,14 @@ static bool is_by_type(const struct json_object *particles, const struct field *
     return !mf_json_has(&own, "minimum") && !mf_json_has(&own, "maximum");
 }
 
+/// In physical units the mass of a bead is a matter of μ: where all have that, none has its own.
+static void forget_common_mass(struct attributes_source *mass) {
+    static const double rounding = 1e-12;
+    const struct attributes_range span = mf_attributes_span(mass);
+    if (fabs(span.minimum - 1) < rounding && fabs(span.maximum - 1) < rounding)
+        *mass = (struct attributes_source){0};
+}
+
 void mf_scene_attributes_read(struct scene *scene, struct json_object *particles) {
     const struct composition *composition = &scene->setup.composition;
     for (int k = 0; k < ATTRIBUTES_NAMES; k++) {
@@ -63,6 +72,8 @@ void mf_scene_attributes_read(struct scene *scene, struct json_object *particles
         source->ranges = 1;
         read_range(particles, kind->name, kind, &source->range[0]);
     }
+    if (mf_json_units(particles)->system != UNITS_REDUCED)
+        forget_common_mass(&scene->setup.attribute[ATTRIBUTES_MASS]);
 }
 
 /// The attribute that a column is called by in the line of names, units in brackets aside;
@@ -80,6 +91,12 @@ static int attribute_of(const struct data_table *table, size_t column) {
                                     strncmp(mf_attributes_fields[k].name, name, length) != 0))
         k++;
     return k;
+}
+
+enum status mf_scene_attributes_convert(struct data_table *table, const char *file, size_t column,
+                                        const struct units *units) {
+    const int number = attribute_of(table, column);
+    return mf_data_table_convert(table, file, column, mf_attributes_fields[number].unit, units);
 }
 
 size_t mf_scene_attributes_first_column(const struct data_table *table) {
@@ -101,43 +118,44 @@ void mf_scene_attributes_column(struct scene *scene, struct json_object *particl
     *source = (struct attributes_source){
         .ranges = 1, .range = {{values[0], values[0]}}, .column = values};
     for (size_t row = 0; row < table->rows; row++) {
-        char range[64];
+        char range[64 + UNITS_NAME_SIZE];
         source->range[0].minimum = fmin(source->range[0].minimum, values[row]);
         source->range[0].maximum = fmax(source->range[0].maximum, values[row]);
         if (values[row] >= kind->minimum && values[row] <= kind->maximum)
             continue;
-        mf_fields_range_text(kind, range, sizeof range);
+        mf_json_range_text(particles, kind, range, sizeof range);
         mf_json_fault(particles, "file", "%s:%zu: the %s %g is out of range; allowed: %s", file,
-                      table->line[row], kind->name, values[row], range);
+                      table->line[row], kind->name,
+                      values[row] * mf_json_factor(particles, kind->unit), range);
         return;
     }
 }
 
-static void write_range(struct json_writer *writer, const char *key,
+static void write_range(struct json_writer *writer, const char *key, const char *unit,
                         const struct attributes_range *range) {
     if (range->minimum == range->maximum) {
-        mf_json_put_number(writer, key, range->minimum);
+        mf_json_put_quantity(writer, key, unit, range->minimum);
         return;
     }
     mf_json_begin(writer, key);
-    mf_json_put_number(writer, "minimum", range->minimum);
-    mf_json_put_number(writer, "maximum", range->maximum);
+    mf_json_put_quantity(writer, "minimum", unit, range->minimum);
+    mf_json_put_quantity(writer, "maximum", unit, range->maximum);
     mf_json_end(writer);
 }
 
 void mf_scene_attributes_write(const struct scene *scene, struct json_writer *writer) {
     for (int k = 0; k < ATTRIBUTES_NAMES; k++) {
         const struct attributes_source *source = &scene->setup.attribute[k];
-        const char *name = mf_attributes_fields[k].name;
+        const char *name = mf_attributes_fields[k].name, *unit = mf_attributes_fields[k].unit;
         if (source->ranges == 0 || source->column)
             continue;
         if (source->ranges == 1) {
-            write_range(writer, name, &source->range[0]);
+            write_range(writer, name, unit, &source->range[0]);
             continue;
         }
         mf_json_begin(writer, name);
         for (int type = 0; type < source->ranges; type++)
-            write_range(writer, scene->setup.composition.name[type], &source->range[type]);
+            write_range(writer, scene->setup.composition.name[type], unit, &source->range[type]);
         mf_json_end(writer);
     }
 }

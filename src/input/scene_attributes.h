@@ -13,6 +13,10 @@ void mf_scene_attributes_read(struct scene *scene, struct json_object *particles
 /// that are called by an attribute in the line of names.
 size_t mf_scene_attributes_first_column(const struct data_table *table);
 
+/// Make the numbers of such a column reduced. Fails: BAD_INPUT.
+enum status mf_scene_attributes_convert(struct data_table *table, const char *file, size_t column,
+                                        const struct units *units) MUST_USE;
+
 /// Take such a column; `values`, shape [rows], are its numbers and live as long as the scene.
 /// Faults go to the document.
 void mf_scene_attributes_column(struct scene *scene, struct json_object *particles,

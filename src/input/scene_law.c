@@ -13,10 +13,13 @@
 // One curve ---------------------------------------------------------------------------------------
 
 /// The first two columns of a file as points. Faults go to the document and leave `count` 0.
-static enum status read_columns(const char *file, double **r, double **value, size_t *count) {
+static enum status read_columns(const char *file, const char *unit, const struct units *units,
+                                double **r, double **value, size_t *count) {
     struct data_table table = {0};
     enum status status = STATUS_OK;
     CHECK(mf_data_table_read(&table, file, 2));
+    CHECK(mf_data_table_convert(&table, file, 0, "lambda", units));
+    CHECK(mf_data_table_convert(&table, file, 1, unit, units));
     CHECK(mf_data_table_check_increasing(&table, file, 0, 0));
     NEW_ARRAY(*r, table.rows);
     NEW_ARRAY(*value, table.rows);
@@ -54,7 +57,7 @@ done:
 }
 
 /// Points of a table file for a curve of the law "table".
-static enum status load_points(struct curve *curve, struct json_object *object,
+static enum status load_points(struct curve *curve, const char *unit, struct json_object *object,
                                const struct units *units) {
     struct sampled_parameters *parameters = curve->parameters;
     double *r = NULL, *value = NULL;
@@ -66,7 +69,7 @@ static enum status load_points(struct curve *curve, struct json_object *object,
     }
     status = parameters->format == SAMPLED_VOTCA
                  ? read_votca(parameters->file, units, &r, &value, &count)
-                 : read_columns(parameters->file, &r, &value, &count);
+                 : read_columns(parameters->file, unit, units, &r, &value, &count);
     if (status != STATUS_OK)
         mf_json_fault(object, "file", "%s", mf_status_message());
     else if (mf_sampled_set_points(curve, r, value, count) != STATUS_OK)
@@ -87,6 +90,7 @@ static bool is_usable(const struct curve *curve) {
 enum status mf_scene_read_curve(struct curve *curve, struct json_object *parent, const char *key,
                                 const struct curve_family *const *list, const struct units *units) {
     const char **names;
+    const char *unit = list == mf_curve_potentials ? "k_B T_0" : "sqrt(mu/tau)";
     struct json_object object = mf_json_child_of(parent, key, false, "law");
     if (object.item == NULL)
         return STATUS_OK;
@@ -99,7 +103,8 @@ enum status mf_scene_read_curve(struct curve *curve, struct json_object *parent,
         TRY(mf_curve_create(curve, family));
         mf_json_fields(&object, family->fields, curve->parameters);
         if (family == &mf_sampled_family && mf_json_fault_count(object.document) == faults)
-            TRY(load_points(curve, &object, units));
+            TRY(load_points(curve, unit, &object, units));
+        mf_curve_scale(curve, mf_units_factor(units, "lambda"), mf_units_factor(units, unit));
         if (mf_json_fault_count(object.document) == faults && mf_curve_check(curve) != STATUS_OK)
             mf_json_fault(&object, NULL, "%s", mf_status_message());
         if (!is_usable(curve))

@@ -17,6 +17,7 @@ static const double most_boxes = 100;
 static bool are_near(const struct scene *scene, const struct data_table *table,
                      struct json_object *particles) {
     const struct box *box = &scene->setup.box;
+    const double length = mf_json_factor(particles, "lambda");
     for (size_t k = 0; k < table->rows; k++)
         for (int d = 0; d < box->dimensions; d++) {
             const double x = table->values[k * table->columns + (size_t)d];
@@ -26,7 +27,8 @@ static bool are_near(const struct scene *scene, const struct data_table *table,
                 particles, "file",
                 "%s:%zu: the coordinate %g is more than %g boxes of %g away; are the units "
                 "those of \"box\"?",
-                scene->setup.placement.file, table->line[k], x, most_boxes, box->length[d]);
+                scene->setup.placement.file, table->line[k], x * length, most_boxes,
+                box->length[d] * length);
             return false;
         }
     return true;
@@ -37,6 +39,18 @@ static enum status read_file(struct data_table *table, const char *file, size_t 
     const char *dot = strrchr(file, '.');
     return dot && strcmp(dot, ".json") == 0 ? mf_snapshot_read(table, file, (int)dimensions)
                                             : mf_data_table_read(table, file, dimensions);
+}
+
+/// Make the columns reduced: `dimensions` of places, as far as `motion` of velocities, the rest of
+/// attributes.
+static enum status convert(struct data_table *table, const char *file, size_t dimensions,
+                           size_t motion, const struct units *units) {
+    for (size_t column = 0; column < motion; column++)
+        TRY(mf_data_table_convert(table, file, column,
+                                  column < dimensions ? "lambda" : "lambda/tau", units));
+    for (size_t column = motion; column < table->columns; column++)
+        TRY(mf_scene_attributes_convert(table, file, column, units));
+    return STATUS_OK;
 }
 
 /// Columns x, y (, z), if there are as many again the velocities, and attributes by their names.
@@ -57,6 +71,11 @@ static enum status read_positions(struct scene *scene, struct json_object *parti
                       "called mass, radius, stiffness or orientation in a line of names",
                       placement->file, table.rows, motion, (long long)placement->count, dimensions,
                       2 * dimensions);
+        goto done;
+    }
+    if (convert(&table, placement->file, dimensions, motion, mf_json_units(particles)) !=
+        STATUS_OK) {
+        mf_json_fault(particles, "file", "%s", mf_status_message());
         goto done;
     }
     if (!are_near(scene, &table, particles))

@@ -5,8 +5,11 @@
 #include "input/target_rdf.h"
 #include "io/data_table.h"
 
+#include "io/units_text.h"
+
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #define CURVE(name) .offset = offsetof(struct target_curve_parameters, name)
 #define COLUMN .maximum = 1000, .unit = ""
@@ -46,7 +49,7 @@ const struct field mf_target_curve_fields[] = {
 };
 
 #define NUMBER(name) .offset = offsetof(struct target_number, name)
-const struct field mf_target_curve_number_fields[] = {
+const struct field mf_target_curve_number_fields[TARGET_NUMBER_FIELDS] = {
     {"value", FIELD_NUMBER, NUMBER(value), .required = true, .minimum = -DBL_MAX,
      .maximum = DBL_MAX, .unit = "its own", .help = "measured"},
     {"error", FIELD_NUMBER, NUMBER(error), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
@@ -62,6 +65,12 @@ const struct field mf_target_curve_diffusion_fields[] = {
          "\"vacf\", \"msd\" or \"etd\" if they are given, else 1.6"},
     FIELD_END,
 };
+
+void mf_target_curve_number_fields_of(const char *unit, struct field fields[TARGET_NUMBER_FIELDS]) {
+    memcpy(fields, mf_target_curve_number_fields, sizeof mf_target_curve_number_fields);
+    for (int k = 0; fields[k].name; k++)
+        fields[k].unit = unit;
+}
 
 const struct field *mf_target_curve_fields_of(enum observable_form form) {
     return form == OBSERVABLE_CURVE ? mf_target_curve_fields : mf_target_curve_time_fields;
@@ -115,13 +124,30 @@ static enum status read_table(const struct target_curve_parameters *p, const cha
                                       table, p->file, error);
 }
 
-static enum status load(struct target_curve *curve, enum observable_form form, const char *name,
-                        struct data_table *table) {
+/// The columns that are read, in reduced units.
+static enum status convert(const struct target_curve_parameters *p,
+                           const struct observable_target *about, int64_t value_column,
+                           int64_t error_column, const struct units *units,
+                           struct data_table *table) {
+    char argument[UNITS_NAME_SIZE];
+    size_t length;
+    const char *unit = mf_units_text_in_brackets(about->argument, &length);
+    snprintf(argument, sizeof argument, "%.*s", (int)length, unit);
+    TRY(mf_data_table_convert(table, p->file, (size_t)p->x_column - 1, argument, units));
+    TRY(mf_data_table_convert(table, p->file, (size_t)value_column - 1, about->unit, units));
+    return error_column > 0
+               ? mf_data_table_convert(table, p->file, (size_t)error_column - 1, about->unit, units)
+               : STATUS_OK;
+}
+
+static enum status load(struct target_curve *curve, const struct observable_target *about,
+                        const struct units *units, struct data_table *table) {
     enum status status = STATUS_OK;
     const struct target_curve_parameters *p = &curve->parameters;
     int64_t value_column, error_column;
-    CHECK(read_table(p, name, table, &value_column, &error_column));
-    CHECK(check_points(curve, form, table));
+    CHECK(read_table(p, about->name, table, &value_column, &error_column));
+    CHECK(convert(p, about, value_column, error_column, units, table));
+    CHECK(check_points(curve, about->form, table));
     NEW_ARRAY(curve->x, table->rows);
     NEW_ARRAY(curve->value, table->rows);
     NEW_ARRAY(curve->error, table->rows);
@@ -143,15 +169,15 @@ done:
     return status;
 }
 
-enum status mf_target_curve_read(struct target_curve *curve, enum observable_form form,
-                                 const char *name, struct json_object *object) {
+enum status mf_target_curve_read(struct target_curve *curve, const struct observable_target *about,
+                                 struct json_object *object) {
     const size_t faults = mf_json_fault_count(object->document);
-    mf_json_fields(object, mf_target_curve_fields_of(form), &curve->parameters);
+    mf_json_fields(object, mf_target_curve_fields_of(about->form), &curve->parameters);
     mf_json_finish(object);
     if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
     struct data_table table = {0};
-    const enum status status = load(curve, form, name, &table);
+    const enum status status = load(curve, about, mf_json_units(object), &table);
     mf_data_table_clear(&table);
     if (status == STATUS_NO_MEMORY)
         return status;

@@ -28,8 +28,8 @@ const struct field *mf_target_curve_fields_of(enum observable_form form);
 /// spaced to the digits of the file. Faults (shape, times, negative errors, …) go to the document
 /// and leave the target empty. Columns may be found by the target's name. Fails: NO_MEMORY. Tested:
 /// test_target_files.
-enum status mf_target_curve_read(struct target_curve *curve, enum observable_form form,
-                                 const char *name, struct json_object *object) MUST_USE;
+enum status mf_target_curve_read(struct target_curve *curve, const struct observable_target *about,
+                                 struct json_object *object) MUST_USE;
 void mf_target_curve_clear(struct target_curve *curve);
 
 /// BAD_INPUT with the time steps that would do if the interval is not a whole number of steps.
@@ -42,4 +42,9 @@ struct target_number {
     double window; ///< of D: the slope of the MSD over its second half; 0: of other targets [τ]
 };
 
-extern const struct field mf_target_curve_number_fields[], mf_target_curve_diffusion_fields[];
+enum { TARGET_NUMBER_FIELDS = 3 };
+extern const struct field mf_target_curve_number_fields[TARGET_NUMBER_FIELDS];
+extern const struct field mf_target_curve_diffusion_fields[];
+
+/// Those of value and error, with the unit of the observable.
+void mf_target_curve_number_fields_of(const char *unit, struct field fields[TARGET_NUMBER_FIELDS]);

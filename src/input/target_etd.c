@@ -79,9 +79,11 @@ static enum status find_interval(const struct data_table *table, const char *fil
 
 /// Read a matrix and check its numbers: those of E are probabilities, errors are not negative.
 static enum status read_table(struct data_table *table, const char *file,
-                              const struct target_etd_parameters *p, double largest) {
+                              const struct target_etd_parameters *p, const struct units *units,
+                              double largest) {
     const size_t before = (size_t)p->first_column - 1;
     TRY(mf_data_table_read(table, file, before));
+    TRY(mf_data_table_convert(table, file, (size_t)p->time_column - 1, "tau", units));
     if (table->columns == before)
         return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: %zu columns, at least %zu are needed",
                               file, table->line[0], before, before + 1);
@@ -147,8 +149,9 @@ done:
     return status;
 }
 
-/// Bins by the names of the first and the last column, "E(r0=…)".
-static enum status find_bins(struct target_etd_parameters *p, const struct data_table *table) {
+/// Bins by the names of the first and the last column, "E(r0=…)", in the file's unit of length.
+static enum status find_bins(struct target_etd_parameters *p, const struct data_table *table,
+                             const struct units *units) {
     static const char mark[] = "r0=";
     const size_t bins = table->columns - (size_t)p->first_column + 1;
     double first = NAN, last = NAN;
@@ -163,24 +166,25 @@ static enum status find_bins(struct target_etd_parameters *p, const struct data_
                               "%s: r_maximum: missing, and the %zu columns are not called "
                               "\"E(r0=…)\" with growing r0",
                               p->file, bins);
-    const double width = (last - first) / (double)(bins - 1);
-    p->r_minimum = fmax(0, first - 0.5 * width);
-    p->r_maximum = last + 0.5 * width;
+    const double factor = mf_units_factor(units, "lambda");
+    const double width = (last - first) / (double)(bins - 1) / factor;
+    p->r_minimum = fmax(0, first / factor - 0.5 * width);
+    p->r_maximum = last / factor + 0.5 * width;
     return STATUS_OK;
 }
 
-static enum status load(struct target_etd *target, struct data_table *table,
-                        struct data_table *errors) {
+static enum status load(struct target_etd *target, const struct units *units,
+                        struct data_table *table, struct data_table *errors) {
     struct target_etd_parameters *p = &target->parameters;
     TRY(check_columns(p));
-    TRY(read_table(table, p->file, p, 1));
+    TRY(read_table(table, p->file, p, units, 1));
     if (p->r_maximum == 0)
-        TRY(find_bins(p, table));
+        TRY(find_bins(p, table, units));
     TRY(check_range(p));
     TRY(find_interval(table, p->file, p, &target->interval));
     TRY(check_beginning(table, p));
     if (p->error_file[0]) {
-        TRY(read_table(errors, p->error_file, p, INFINITY));
+        TRY(read_table(errors, p->error_file, p, units, INFINITY));
         TRY(check_same(table, errors, target));
     }
     return take_values(target, table, errors);
@@ -194,7 +198,7 @@ enum status mf_target_etd_read(struct target_etd *target, struct json_object *ob
     if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
     struct data_table table = {0}, errors = {0};
-    const enum status status = load(target, &table, &errors);
+    const enum status status = load(target, mf_json_units(object), &table, &errors);
     mf_data_table_clear(&table);
     mf_data_table_clear(&errors);
     if (status == STATUS_OK)

@@ -121,10 +121,12 @@ static enum status read_kind(struct target_files *files, int number, struct json
     if (number == TARGET_ETD)
         return mf_target_etd_read(&files->etd, object);
     if (form != OBSERVABLE_NUMBER)
-        return mf_target_curve_read(&files->curve[number], form, kind.target->name, object);
+        return mf_target_curve_read(&files->curve[number], kind.target, object);
     if (number == TARGET_DIFFUSION)
         mf_json_fields(object, mf_target_curve_diffusion_fields, &files->number[number]);
-    mf_json_fields(object, mf_target_curve_number_fields, &files->number[number]);
+    struct field fields[TARGET_NUMBER_FIELDS];
+    mf_target_curve_number_fields_of(kind.target->unit, fields);
+    mf_json_fields(object, fields, &files->number[number]);
     mf_json_finish(object);
     return STATUS_OK;
 }
@@ -199,6 +201,13 @@ static void write_rdf(const struct target_files *files, struct json_writer *writ
     }
 }
 
+static void write_number(const struct target_number *number, const char *unit,
+                         struct json_writer *writer) {
+    struct field fields[TARGET_NUMBER_FIELDS];
+    mf_target_curve_number_fields_of(unit, fields);
+    mf_json_put_fields(writer, fields, number);
+}
+
 static void write_kind(const struct target_files *files, int number, struct json_writer *writer) {
     const struct observable_kind kind = mf_observable_kind(number);
     const enum observable_form form = kind.target->form;
@@ -209,7 +218,7 @@ static void write_kind(const struct target_files *files, int number, struct json
     else if (number == TARGET_ETD)
         mf_json_put_fields(writer, mf_target_etd_fields, &files->etd.parameters);
     else if (form == OBSERVABLE_NUMBER)
-        mf_json_put_fields(writer, mf_target_curve_number_fields, &files->number[number]);
+        write_number(&files->number[number], kind.target->unit, writer);
     else
         mf_json_put_fields(writer, mf_target_curve_fields_of(form),
                            &files->curve[number].parameters);

@@ -115,8 +115,8 @@ static enum status check_errors(const struct target_rdf_parameters *p,
     return STATUS_OK;
 }
 
-static enum status read_columns(const struct target_rdf_parameters *p, struct target_rows *rows,
-                                bool *has_errors) {
+static enum status read_columns(const struct target_rdf_parameters *p, const struct units *units,
+                                struct target_rows *rows, bool *has_errors) {
     enum status status = STATUS_OK;
     struct data_table table = {0};
     int64_t error_column;
@@ -124,6 +124,7 @@ static enum status read_columns(const struct target_rdf_parameters *p, struct ta
                              (size_t)(p->r_column > p->g_column ? p->r_column : p->g_column)));
     CHECK(mf_target_rdf_error_column(p->error_column, p->r_column, p->g_column, &table, p->file,
                                      &error_column));
+    CHECK(mf_data_table_convert(&table, p->file, (size_t)p->r_column - 1, "lambda", units));
     CHECK(mf_data_table_check_increasing(&table, p->file, (size_t)p->r_column - 1, 0));
     CHECK(mf_target_rows_allocate(rows, table.rows));
     for (size_t k = 0; k < table.rows; k++) {
@@ -273,7 +274,7 @@ static enum status load(struct target_rdf *target, const struct units *units, in
     struct rdf_bins bins;
     bool has_errors = false;
     CHECK(p->format == TARGET_RDF_VOTCA ? read_votca(p, units, &rows, &has_errors)
-                                        : read_columns(p, &rows, &has_errors));
+                                        : read_columns(p, units, &rows, &has_errors));
     leave_out_half_bin(&rows);
     target->tail = mf_target_rows_tail(&rows);
     cut(p, &rows);

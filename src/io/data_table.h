@@ -64,6 +64,10 @@ enum status mf_data_table_write(const char *file, const char *comment,
                                 const struct data_column *columns, size_t column_count,
                                 size_t rows) MUST_USE;
 
+/// Call a column `name`, whose numbers are of the reduced `unit`: a reduced table leaves that out.
+void mf_data_table_name(const struct units *units, const char *name, const char *unit,
+                        char *heading, size_t size);
+
 /// Write columns of reduced units in spoken ones: by the unit in brackets behind its name each is
 /// converted and called anew, "r[lambda]" as "r[nm]"; columns of other units stay. Tested:
 /// test_data_table_units.

@@ -74,6 +74,14 @@ static double translate(const struct units *units, const char *heading, char nam
     return factor;
 }
 
+void mf_data_table_name(const struct units *units, const char *name, const char *unit,
+                        char *heading, size_t size) {
+    if (units->system == UNITS_REDUCED)
+        snprintf(heading, size, "%s", name);
+    else
+        snprintf(heading, size, "%s[%s]", name, unit);
+}
+
 enum status mf_data_table_write_in(const char *file, const struct units *units, const char *comment,
                                    const struct data_column *columns, size_t column_count,
                                    size_t rows) {

@@ -96,6 +96,13 @@ void mf_json_fields(struct json_object *object, const struct field *fields, void
 const char *mf_json_choice(struct json_object *object, const char *key, const char *const *known,
                            const char *fallback);
 
+/// How many of the document's units a reduced `unit` is, for messages: mf_units_factor.
+double mf_json_factor(const struct json_object *object, const char *unit);
+
+/// The allowed range of a field in the document's units, "above 0 nm", for messages.
+void mf_json_range_text(const struct json_object *object, const struct field *field, char *text,
+                        size_t size);
+
 /// Record a fault of the object's own making; `key` may be NULL. The message is printed as
 /// "file: path.key: message".
 void mf_json_fault(struct json_object *object, const char *key, const char *format, ...)

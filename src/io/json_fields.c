@@ -32,7 +32,11 @@ static bool read_finite(struct json_object *object, const char *key, const char 
 
 /// How many of the document's units one of the field's is.
 static double factor_of(const struct json_object *object, const struct field *field) {
-    return mf_units_factor(&object->document->units, field->unit ? field->unit : "");
+    return mf_json_factor(object, field->unit ? field->unit : "");
+}
+
+double mf_json_factor(const struct json_object *object, const char *unit) {
+    return mf_units_factor(&object->document->units, unit);
 }
 
 /// A finite whole number whose digits survived, or false and a fault.
@@ -53,9 +57,8 @@ static bool read_whole(struct json_object *object, const char *key, const cJSON 
     return true;
 }
 
-/// The range of a field in the document's units, for messages.
-static void range_text(const struct json_object *object, const struct field *field, char *text,
-                       size_t size) {
+void mf_json_range_text(const struct json_object *object, const struct field *field, char *text,
+                        size_t size) {
     const double factor = factor_of(object, field);
     struct field spoken = *field;
     char range[64], name[UNITS_NAME_SIZE];
@@ -74,7 +77,7 @@ static bool is_in_range(struct json_object *object, const char *key, const struc
     if (value >= field->minimum && value <= field->maximum)
         return true;
     char range[64 + UNITS_NAME_SIZE];
-    range_text(object, field, range, sizeof range);
+    mf_json_range_text(object, field, range, sizeof range);
     mf_json_fault(object, key, "%.15g is out of range; allowed: %s",
                   value * factor_of(object, field), range);
     return false;

@@ -24,8 +24,9 @@ extern const struct field mf_units_fields[], mf_units_system_fields[];
 /// diffusion no number can hold. Tested: test_units.
 void mf_units_speak(struct json_object *root, struct json_object *scene);
 
-/// The units of a scene: those in which its document speaks, or "units" of a reduced one; units
-/// whose time, energy, pressure or diffusion no number can hold are a fault. Tested: test_units.
+/// The units of a scene: those in which its document speaks, as mf_units_speak finds them if the
+/// scene is all of the file, or "units" of a reduced one. Units whose time, energy, pressure or
+/// diffusion no number can hold are a fault. Tested: test_units.
 void mf_units_read(struct units *units, struct json_object *scene);
 
 /// Write "units" at the top of a file in physical units, and let the writer speak in them from now

@@ -153,6 +153,16 @@ const char *mf_units_name(const struct units *units, const char *unit, char *nam
     return name;
 }
 
+const char *mf_units_suffix(const struct units *units, const char *unit, char *name) {
+    name[0] = name[1] = '\0';
+    if (units->system == UNITS_REDUCED)
+        return name;
+    char text[UNITS_NAME_SIZE];
+    mf_units_name(units, unit, text);
+    snprintf(name, UNITS_NAME_SIZE, "%s%.120s", text[0] ? " " : "", text);
+    return name;
+}
+
 double mf_units_spoken(double reduced, double factor) {
     const double near = reduced * factor;
     char text[32];
@@ -216,6 +226,15 @@ enum status mf_units_from(const struct units *units, const char *from, const cha
         }
     *factor = given.factor / wanted.factor;
     return STATUS_OK;
+}
+
+enum status mf_units_mark(const struct units *units, enum status status) {
+    char message[1024], line[UNITS_LINE_SIZE];
+    if (status == STATUS_OK || units->system == UNITS_REDUCED)
+        return status;
+    mf_units_tell(units, line);
+    snprintf(message, sizeof message, "%s", mf_status_message());
+    return mf_status_fail(status, "%s (numbers in units of %s)", message, strchr(line, ' ') + 1);
 }
 
 void mf_units_tell(const struct units *units, char line[UNITS_LINE_SIZE]) {

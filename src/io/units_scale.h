@@ -59,6 +59,14 @@ double mf_units_factor(const struct units *units, const char *unit);
 /// Returns `name`.
 const char *mf_units_name(const struct units *units, const char *unit, char *name);
 
+/// " nm", the name of a unit behind a number of a message, or "" in reduced units, which are left
+/// out.
+const char *mf_units_suffix(const struct units *units, const char *unit, char *name);
+
+/// The engine speaks in reduced units: add the scale to the message of the calling thread if the
+/// file does not, and return `status` unchanged.
+enum status mf_units_mark(const struct units *units, enum status status);
+
 /// The number that a file says for `reduced`: factor · reduced, or, where rounding allows it, the
 /// number nearest to that which reads back to the same bits, 15 digits or fewer if they do.
 double mf_units_spoken(double reduced, double factor);

@@ -43,7 +43,7 @@ struct observable_target {
     const char *name;    ///< in run files and tables; NULL ends a list
     const char *summary; ///< for `mesofit describe`
     enum observable_form form;
-    const char *argument, *unit; ///< of a curve: "q[1/lambda]", "1"
+    const char *argument, *unit; ///< of a curve: "q[1/lambda]", "1"; of a number the unit alone
     bool has_settings; ///< the observable's, in its object of a run file, beside the values
 };
 
@@ -94,7 +94,8 @@ struct observable {
     void (*put)(const void *state, const struct observable_results *results,
                 struct json_writer *writer);
     /// A line for the person.
-    void (*say)(const void *state, char *line, size_t size);
+    void (*say)(const void *state, const struct observable_results *results, char *line,
+                size_t size);
     /// Whether its results can be trusted; the message is a warning if not.
     enum status (*judge)(const void *state, const struct simulation_setup *setup);
 

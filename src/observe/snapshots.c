@@ -96,7 +96,7 @@ static enum status write(const void *state, const struct observable_results *res
             n++;
         }
     mf_observable_file(results, "configuration.tsv", path);
-    return mf_data_table_write(path, NULL, columns, n, snapshot->count);
+    return mf_data_table_write_in(path, results->units, NULL, columns, n, snapshot->count);
 }
 
 static enum status sample(void *state, struct simulation *simulation) {

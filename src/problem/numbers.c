@@ -7,7 +7,7 @@
 #include <string.h>
 
 #define MEMBER(name) .offset = offsetof(struct inverse_number, name)
-const struct field mf_numbers_fields[] = {
+const struct field mf_numbers_fields[NUMBERS_FIELDS] = {
     {"minimum", FIELD_NUMBER, MEMBER(minimum), .required = true, .minimum = -DBL_MAX,
      .maximum = DBL_MAX, .unit = "", .help = "least value, in the unit of the number"},
     {"maximum", FIELD_NUMBER, MEMBER(maximum), .required = true, .minimum = -DBL_MAX,
@@ -18,6 +18,12 @@ const struct field mf_numbers_fields[] = {
              "range"},
     FIELD_END,
 };
+
+void mf_numbers_fields_of(const char *unit, struct field fields[NUMBERS_FIELDS]) {
+    memcpy(fields, mf_numbers_fields, sizeof mf_numbers_fields);
+    for (int k = 0; fields[k].name; k++)
+        fields[k].unit = unit;
+}
 
 /// The curves of a law with these values, one table for all of them.
 static enum status tabulate(const struct inverse_problem *problem, enum unknown_kind kind,

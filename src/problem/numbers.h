@@ -5,7 +5,11 @@
 #include "problem/inverse.h"
 
 /// What a run file says of one: struct inverse_number.
-extern const struct field mf_numbers_fields[];
+enum { NUMBERS_FIELDS = 4 };
+extern const struct field mf_numbers_fields[NUMBERS_FIELDS];
+
+/// Those of a number of this unit.
+void mf_numbers_fields_of(const char *unit, struct field fields[NUMBERS_FIELDS]);
 
 /// What is made for values: tables of laws, and parameters of the integrator and the interactions.
 struct numbers_own {
