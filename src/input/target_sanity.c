@@ -64,17 +64,26 @@ static struct view view_of(const struct target_files *files, const struct scene 
     return view;
 }
 
+/// What lengths are told in.
+static const char *unit_of(const struct view *view, double *length) {
+    const struct units *units = &view->scene->units;
+    static const char *const names[] = {"nm", "nm", "angstrom"};
+    *length = mf_units_beside(units) ? units->length : mf_units_factor(units, "lambda");
+    return mf_units_known(units) ? names[units->system] : "lambda";
+}
+
 /// "14.66 nm^-3 = 0.780 g/cm^3", or in λ without units.
 static void print_density(const struct view *view, char *text, size_t size) {
     const struct units *units = &view->scene->units;
     const int dimensions = view->scene->setup.box.dimensions;
-    if (!mf_units_known(units))
-        snprintf(text, size, "%.4g lambda^-%d", view->density, dimensions);
-    else if (dimensions == 2)
-        snprintf(text, size, "%.4g nm^-2", view->density / pow(units->length, 2));
-    else
-        snprintf(text, size, "%.4g nm^-3 = %.3g g/cm^3", view->density / pow(units->length, 3),
+    double length;
+    const char *unit = unit_of(view, &length);
+    const double density = view->density / pow(length, dimensions);
+    if (mf_units_known(units) && dimensions == 3)
+        snprintf(text, size, "%.4g %s^-3 = %.3g g/cm^3", density, unit,
                  mf_scene_mass_density(view->scene));
+    else
+        snprintf(text, size, "%.4g %s^-%d", density, unit, dimensions);
 }
 
 /// ∫ (g − 1) d³r of the pairs of two types.
@@ -138,16 +147,18 @@ static enum status check_packing(const struct view *view, const char *file) {
     const double apart = view->g[0] <= empty ? edge_below(view, empty) : 0;
     const double filled =
         (double)view->like / mf_box_volume(box) * pow(apart, (double)box->dimensions);
-    char density[80];
+    const struct units *units = &view->scene->units;
+    char density[80], unit[UNITS_NAME_SIZE];
     if (filled <= closest)
         return STATUS_OK;
     print_density(view, density, sizeof density);
     return mf_status_fail(
         STATUS_BAD_INPUT,
-        "%s: target.%s: it has no pairs nearer than %.3g lambda, and the scene a "
+        "%s: target.%s: it has no pairs nearer than %.3g %s, and the scene a "
         "density of %s: rho d^%d = %.3g, while the closest packing has %.3g; is the "
         "unit of length, scene.box or the number of particles wrong?",
-        file, view->name, apart, density, box->dimensions, filled, closest);
+        file, view->name, apart * mf_units_factor(units, "lambda"),
+        mf_units_name(units, "lambda", unit), density, box->dimensions, filled, closest);
 }
 
 /// Bins from one range of an integral to the next shorter one: some fifty ranges are enough.
@@ -247,13 +258,6 @@ static size_t highest_bin(const struct view *view) {
     return highest;
 }
 
-/// What lengths are told in.
-static const char *unit_of(const struct view *view, double *length) {
-    const struct units *units = &view->scene->units;
-    *length = mf_units_known(units) ? units->length : 1;
-    return mf_units_known(units) ? "nm" : "lambda";
-}
-
 /// "target rdf: g from 0.005 to 0.995 nm, peak 2.79 at 0.275 nm, tail 0.998(6); density …".
 static void tell_view(const struct view *view, const struct target_sanity_listener *listener) {
     const struct rdf_bins *bins = view->bins;
@@ -335,7 +339,8 @@ static void warn_of_density(const struct view *view,
     const double neighbours = neighbours_in_layers(view);
     const double core = view->g[0] <= 0.5 ? edge_below(view, 0.5) : INFINITY;
     const double filled = view->density * pow(core, view->scene->setup.box.dimensions);
-    char density[80];
+    const struct units *units = &view->scene->units;
+    char density[80], unit[UNITS_NAME_SIZE];
     print_density(view, density, sizeof density);
     if (neighbours < few_neighbours)
         say(listener,
@@ -348,8 +353,9 @@ static void warn_of_density(const struct view *view,
         say(listener,
             "mesofit: warning: target.%s: a dilute gas: the density of the scene is %s, and the "
             "beads "
-            "are %.3g lambda wide",
-            view->name, density, core);
+            "are %.3g %s wide",
+            view->name, density, core * mf_units_factor(units, "lambda"),
+            mf_units_name(units, "lambda", unit));
 }
 
 static void tell_normalisation(const struct normalisation *n,

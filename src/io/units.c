@@ -55,17 +55,23 @@ static void fault_unholdable(struct json_object *object) {
 
 // The scale that follows from a scene -------------------------------------------------------------
 
+/// An object if one stands there: what else does is the reader's to say.
+static struct json_object look(const struct json_object *parent, const char *key) {
+    struct json_object looked = *parent;
+    return mf_json_is_object(parent, key) ? mf_json_child(&looked, key, false)
+                                          : (struct json_object){.document = parent->document};
+}
+
 /// How many beads there are, and their mean mass if the scene says it, else 0, of one type or of
 /// all; `count` is 0 if a fault will tell why it is not known.
-static double find_beads(struct json_object scene, double *mean_mass) {
-    struct json_object particles = mf_json_child(&scene, "particles", false);
-    struct json_object types = mf_json_child(&particles, "types", false);
-    struct json_object mass = mf_json_child(&particles, "mass", false);
+static double find_beads(const struct json_object *scene, double *mean_mass) {
+    const struct json_object particles = look(scene, "particles");
+    const struct json_object types = look(&particles, "types"), mass = look(&particles, "mass");
     double count = 0, sum = 0, number, range[2];
     const char *type;
     *mean_mass = 0;
     for (size_t n = 0; (type = mf_json_key(&types, n)); n++) {
-        struct json_object own = mf_json_child(&mass, type, false);
+        const struct json_object own = look(&mass, type);
         if (mf_json_numbers(&types, type, &number, 1) != 1)
             continue;
         count += number;
@@ -100,7 +106,7 @@ static double find_length(const struct json_object *scene, double beads) {
 /// Fill in what the file does not say.
 static void complete(struct system *system, struct json_object *scene) {
     double mean_mass;
-    const double beads = find_beads(*scene, &mean_mass);
+    const double beads = find_beads(scene, &mean_mass);
     if (isnan(system->length))
         system->length = find_length(scene, beads);
     if (isnan(system->mass))
@@ -122,10 +128,10 @@ static void complete(struct system *system, struct json_object *scene) {
 /// "units": "nm-ps", or an object with "system"; false if the file is reduced.
 static bool read_system(struct system *system, struct json_object *root) {
     if (mf_json_is_object(root, "units")) {
-        struct json_object object = mf_json_child(root, "units", false);
-        struct json_object looked = object;
+        struct json_object looked = look(root, "units");
         if (!mf_json_has(&looked, "system"))
             return false;
+        struct json_object object = mf_json_child(root, "units", false);
         mf_json_fields(&object, mf_units_system_fields, system);
         mf_json_finish(&object);
         return true;
@@ -167,7 +173,7 @@ void mf_units_read(struct units *units, struct json_object *scene) {
     if (is_root)
         mf_units_speak(scene, scene);
     *units = *mf_json_units(scene);
-    if (units->system != UNITS_REDUCED || (is_root && !mf_json_is_object(scene, "units"))) {
+    if (mf_units_speaks(units) || (is_root && !mf_json_is_object(scene, "units"))) {
         if (!is_root)
             mf_json_refuse(scene, "units", "the file's stand at its top");
         return;
@@ -192,7 +198,7 @@ static void put_scale(const struct units *units, struct json_writer *writer) {
 }
 
 void mf_units_write(const struct units *units, struct json_writer *writer) {
-    if (units->system == UNITS_REDUCED)
+    if (!mf_units_speaks(units))
         return;
     mf_json_writer_speak(writer, units);
     mf_json_begin(writer, "units");
@@ -206,7 +212,7 @@ void mf_units_write_summary(const struct units *units, struct json_writer *write
                                              {"pressure", "k_B T_0/lambda^d"},
                                              {"friction", "mu/tau"},
                                              {"diffusion", "lambda^2/tau"}};
-    if (units->system == UNITS_REDUCED)
+    if (!mf_units_speaks(units))
         return;
     mf_json_writer_speak(writer, units);
     mf_json_begin(writer, "units");

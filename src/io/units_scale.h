@@ -36,6 +36,9 @@ struct units {
     bool chosen;        ///< λ by the program: no other file can know it
 };
 
+/// Whether files and results speak other units than the reduced ones. NULL: they do not.
+bool mf_units_speaks(const struct units *units);
+
 /// Names of the systems as files have them: "reduced", "nm-ps", "angstrom-fs"; NULL-terminated.
 extern const char *const mf_units_systems[];
 
@@ -58,6 +61,14 @@ double mf_units_factor(const struct units *units, const char *unit);
 /// @param[out] name  shape [UNITS_NAME_SIZE]
 /// Returns `name`.
 const char *mf_units_name(const struct units *units, const char *unit, char *name);
+
+/// " nm", the name of a unit behind a number of a message, or "" in reduced units, which are left
+/// out.
+const char *mf_units_suffix(const struct units *units, const char *unit, char *name);
+
+/// The engine speaks in reduced units: add the scale to the message of the calling thread if the
+/// file does not, and return `status` unchanged.
+enum status mf_units_mark(const struct units *units, enum status status);
 
 /// The number that a file says for `reduced`: factor · reduced, or, where rounding allows it, the
 /// number nearest to that which reads back to the same bits, 15 digits or fewer if they do.

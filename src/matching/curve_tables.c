@@ -11,24 +11,29 @@
 static enum status write_curve(const struct parametrisation *parametrisation,
                                enum unknown_kind kind, size_t curve,
                                const struct curve_tables_member *member, size_t members,
-                               const char *comment, const char *path) {
+                               const char *comment, const struct units *units, const char *path) {
     enum status status = STATUS_OK;
     const struct unknowns *unknowns = &parametrisation->unknowns;
     const size_t points = mf_unknowns_points(unknowns, kind);
     const size_t each = mf_unknowns_points_each(unknowns, kind), first = curve * each;
     struct data_column *column = NULL;
     double *values = NULL;
+    char(*names)[CURVE_TABLES_NAME_SIZE + 24] = NULL;
     NEW_ARRAY(column, members + 1);
+    NEW_ARRAY(names, members);
     NEW_ARRAY(values, (members + 1) * points);
     column[0] = (struct data_column){"r[lambda]", mf_unknowns_r(unknowns, kind) + first, NULL};
     for (size_t k = 0; k < members; k++) {
         double *value = values + k * points;
         mf_parametrisation_curve(parametrisation, kind, member[k].variables, value);
-        column[k + 1] = (struct data_column){member[k].name, value + first, "%.8g"};
+        mf_data_table_name(units, member[k].name, mf_unknowns_unit(kind), names[k],
+                           sizeof names[k]);
+        column[k + 1] = (struct data_column){names[k], value + first, "%.8g"};
     }
-    CHECK(mf_data_table_write(path, comment, column, members + 1, each));
+    CHECK(mf_data_table_write_in(path, units, comment, column, members + 1, each));
 done:
     mf_memory_free(column);
+    mf_memory_free(names);
     mf_memory_free(values);
     return status;
 }
@@ -46,7 +51,8 @@ enum status mf_curve_tables_write(const struct parametrisation *parametrisation,
             mf_unknowns_curve_name(unknowns, kind, curve, name);
             snprintf(file, sizeof file, "%s_%s.tsv", prefix, name);
             folder->file(folder->context, file, path);
-            TRY(write_curve(parametrisation, kind, curve, member, members, comment, path));
+            TRY(write_curve(parametrisation, kind, curve, member, members, comment, folder->units,
+                            path));
         }
     return STATUS_OK;
 }

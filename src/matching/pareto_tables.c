@@ -102,7 +102,7 @@ static enum status write_front(const struct pareto_state *state,
     }
     fill_front(state, lines, rows, value);
     folder->file(folder->context, "pareto.tsv", path);
-    CHECK(mf_data_table_write(path, NULL, column, most, rows));
+    CHECK(mf_data_table_write_in(path, folder->units, NULL, column, most, rows));
 done:
     mf_memory_free(column);
     mf_memory_free(memory);
@@ -130,7 +130,7 @@ static enum status write_log(const struct pareto_state *state,
             value[k] = state->log[k * width + c];
     }
     folder->file(folder->context, "pareto_history.tsv", path);
-    CHECK(mf_data_table_write(path, NULL, column, width, rows));
+    CHECK(mf_data_table_write_in(path, folder->units, NULL, column, width, rows));
 done:
     mf_memory_free(memory);
     return status;

@@ -126,7 +126,7 @@ static enum status write(const void *state, const struct observable_results *res
     const struct data_column columns[] = {
         {"size[1]", size, "%.0f"}, {"share[1]", share, "%.6g"}, {"clusters[1]", number, "%.6g"}};
     mf_observable_file(results, "clusters.tsv", path);
-    CHECK(mf_data_table_write(path, NULL, columns, 3, rows));
+    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, 3, rows));
 done:
     mf_memory_free(values);
     return status;
@@ -162,10 +162,12 @@ static const double entry_cost = 3;
 
 static void explain(const void *settings, const struct simulation_setup *setup, double every,
                     struct stages *stages) {
+    char text[STAGES_LENGTH_SIZE];
     const double entries = mf_stages_pairs_within(setup, mf_simulation_range(setup));
     mf_stages_add(stages, "clusters", true, (10 + entry_cost * entries) / every,
-                  "particles nearer than %.3g, one step in %.0f",
-                  ((const struct settings *)settings)->distance, every);
+                  "particles nearer than %s, one step in %.0f",
+                  mf_stages_length(stages, ((const struct settings *)settings)->distance, 3, text),
+                  every);
 }
 
 static const struct field fields[] = {

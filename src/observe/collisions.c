@@ -269,15 +269,15 @@ static struct result free_path(const struct collisions *c) {
     return (struct result){path, path * hypot(rate.error / rate.mean, speed.error / speed.mean)};
 }
 
-static void put_result(struct json_writer *writer, const char *name, struct result result,
-                       double theory) {
+static void put_result(struct json_writer *writer, const char *name, const char *unit,
+                       struct result result, double theory) {
     char key[64];
-    mf_json_put_number(writer, name, result.mean);
+    mf_json_put_quantity(writer, name, unit, result.mean);
     snprintf(key, sizeof key, "%s_error", name);
-    mf_json_put_number(writer, key, result.error);
+    mf_json_put_quantity(writer, key, unit, result.error);
     snprintf(key, sizeof key, "%s_theory", name);
     if (!isnan(theory))
-        mf_json_put_number(writer, key, theory);
+        mf_json_put_quantity(writer, key, unit, theory);
 }
 
 static void put(const void *state, const struct observable_results *results,
@@ -286,20 +286,22 @@ static void put(const void *state, const struct observable_results *results,
     const struct maxwell_summary maxwell = mf_maxwell_result(&c->maxwell);
     (void)results;
     mf_json_put_number(writer, "packing_fraction", c->theory.eta);
-    put_result(writer, "compressibility_factor", result_of(c, FACTOR),
+    put_result(writer, "compressibility_factor", "", result_of(c, FACTOR),
                c->theory.compressibility_factor);
     if (c->walls)
-        put_result(writer, "compressibility_factor_walls", result_of(c, WALL_FACTOR), NAN);
-    put_result(writer, "collision_rate", result_of(c, RATE), c->theory.collision_rate);
-    put_result(writer, "mean_free_path", free_path(c), c->theory.mean_free_path);
+        put_result(writer, "compressibility_factor_walls", "", result_of(c, WALL_FACTOR), NAN);
+    put_result(writer, "collision_rate", "1/tau", result_of(c, RATE), c->theory.collision_rate);
+    put_result(writer, "mean_free_path", "lambda", free_path(c), c->theory.mean_free_path);
     mf_json_put_number(writer, "speeds_tested", maxwell.numbers);
     mf_json_put_number(writer, "speeds_kolmogorov_smirnov", maxwell.statistic);
     mf_json_put_number(writer, "speeds_p_value", maxwell.probability);
     mf_json_put_number(writer, "collisions", (double)c->last.collisions);
-    mf_json_put_number(writer, "deepest_overlap", c->last.overlap);
+    mf_json_put_quantity(writer, "deepest_overlap", "lambda", c->last.overlap);
 }
 
-static void say(const void *state, char *line, size_t size) {
+static void say(const void *state, const struct observable_results *results, char *line,
+                size_t size) {
+    (void)results;
     const struct collisions *c = state;
     const struct result factor = result_of(c, FACTOR);
     const struct result by_walls = result_of(c, WALL_FACTOR);
@@ -331,7 +333,8 @@ static enum status write_series(const struct collisions *c,
         {"mean_speed[lambda/tau]", series(c, SPEED), "%.8g"},
         {"compressibility_factor_walls[1]", series(c, WALL_FACTOR), "%.8g"}};
     mf_observable_file(results, "collisions.tsv", path);
-    CHECK(mf_data_table_write(path, NULL, columns, c->walls ? 6 : 5, c->samples));
+    CHECK(
+        mf_data_table_write_in(path, results->units, NULL, columns, c->walls ? 6 : 5, c->samples));
 done:
     mf_memory_free(step);
     mf_memory_free(time);
@@ -365,7 +368,7 @@ static enum status write_speeds(const struct collisions *c,
                                           {"density_error[1]", error, "%.3g"},
                                           {"maxwell[1]", theory, "%.8g"}};
     mf_observable_file(results, "speeds.tsv", path);
-    CHECK(mf_data_table_write(path, NULL, columns, 4, bins));
+    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, 4, bins));
 done:
     mf_memory_free(values);
     return status;
@@ -382,7 +385,7 @@ static enum status write(const void *state, const struct observable_results *res
     TRY(write_series(c, results));
     TRY(write_speeds(c, results));
     mf_observable_file(results, "timing.tsv", path);
-    return mf_data_table_write(path, NULL, columns, 3, 1);
+    return mf_data_table_write_in(path, results->units, NULL, columns, 3, 1);
 }
 
 /// Nanoseconds of a particle and sample: its speed, and where it stands in the distribution.

@@ -50,6 +50,7 @@ static enum status write_matrix(const struct etd *etd, const struct observable_r
                                 const char *format) {
     enum status status = STATUS_OK;
     const size_t times = (size_t)etd->grid.times, bins = (size_t)etd->grid.bins;
+    const double length = mf_units_factor(results->units, "lambda");
     double *columns = NULL;
     struct data_column *column = NULL;
     char(*name)[48] = NULL;
@@ -60,13 +61,13 @@ static enum status write_matrix(const struct etd *etd, const struct observable_r
     for (size_t k = 0; k <= bins; k++) {
         column[k] = (struct data_column){name[k], columns + k * times, k ? format : NULL};
         snprintf(name[k], sizeof *name, k ? "%s(r0=%.6g)[1]" : "time[tau]", what,
-                 k ? centre(&etd->grid, k - 1) : 0);
+                 k ? length * centre(&etd->grid, k - 1) : 0);
         for (size_t t = 0; t < times; t++)
             columns[k * times + t] =
                 k ? values[t * bins + k - 1] : (double)t * interval(etd, results);
     }
     mf_observable_file(results, file, path);
-    status = mf_data_table_write(path, NULL, column, bins + 1, times);
+    status = mf_data_table_write_in(path, results->units, NULL, column, bins + 1, times);
 done:
     mf_memory_free(columns);
     mf_memory_free(column);
@@ -88,7 +89,7 @@ static enum status write_bins(const struct etd *etd, const struct observable_res
     }
     const struct data_column columns[] = {{"r0[lambda]", r, NULL}, {"pairs[1]", n, "%.0f"}};
     mf_observable_file(results, "etd_bins.tsv", path);
-    status = mf_data_table_write(path, NULL, columns, 2, bins);
+    status = mf_data_table_write_in(path, results->units, NULL, columns, 2, bins);
 done:
     mf_memory_free(r);
     mf_memory_free(n);
@@ -126,7 +127,7 @@ static void put(const void *state, const struct observable_results *results,
     mf_json_begin(writer, "etd");
     mf_json_put_integer(writer, "origins", (int64_t)etd->origins);
     mf_json_put_integer(writer, "pairs", (int64_t)pairs);
-    mf_json_put_number(writer, "interval", interval(etd, results));
+    mf_json_put_quantity(writer, "interval", "tau", interval(etd, results));
     mf_json_end(writer);
 }
 
@@ -139,13 +140,14 @@ static void explain(const void *settings, const struct simulation_setup *setup,
     const struct etd_settings *s = settings;
     const double every = (double)s->plan.every, origin_every = (double)s->plan.origin_every;
     const double r = s->grid.r_maximum;
+    char text[STAGES_LENGTH_SIZE];
     const double pairs = mf_stages_pairs_within(setup, r);
     const double listed = mf_stages_pairs_within(setup, fmax(r, mf_stages_cutoff(setup)));
     const double origin = (begin_cost * pairs + mf_stages_cost.go_through * listed) / origin_every;
     mf_stages_add(stages, "escape times", true,
                   (gather_cost + follow_cost * pairs + origin) / every,
-                  "%.0f pairs a particle within %g, one step in %.0f; an origin in %.0f", pairs, r,
-                  every, origin_every * every);
+                  "%.0f pairs a particle within %s, one step in %.0f; an origin in %.0f", pairs,
+                  mf_stages_length(stages, r, 6, text), every, origin_every * every);
 }
 
 /// Values have the shape [times, bins] of the grid.

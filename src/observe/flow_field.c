@@ -199,7 +199,7 @@ static enum status write(const void *state, const struct observable_results *res
                                           {"vorticity[1/tau]", t.vorticity, "%.5g"},
                                           {"stream_function[lambda^2/tau]", t.stream, "%.6g"}};
     mf_observable_file(results, "flow_field.tsv", path);
-    status = mf_data_table_write(path, NULL, columns, 7, rows);
+    status = mf_data_table_write_in(path, results->units, NULL, columns, 7, rows);
 done:
     mf_memory_free(values);
     return status;
@@ -239,13 +239,13 @@ static void put(const void *state, const struct observable_results *results,
     (void)results;
     mf_json_begin(writer, "flow_field");
     if (f->parameters.wave_acceleration == 0) { // whose noise lets the whole solvent wander
-        mf_json_put_number(writer, "mean_velocity", found.velocity);
-        mf_json_put_number(writer, "mean_velocity_error", found.velocity_error);
+        mf_json_put_quantity(writer, "mean_velocity", "lambda/tau", found.velocity);
+        mf_json_put_quantity(writer, "mean_velocity_error", "lambda/tau", found.velocity_error);
     }
     if (f->parameters.obstacle_radius > 0) {
-        mf_json_put_number(writer, "drag", found.drag);
-        mf_json_put_number(writer, "drag_error", found.drag_error);
-        mf_json_put_number(writer, "driving_force", found.driving_force);
+        mf_json_put_quantity(writer, "drag", "k_B T_0/lambda", found.drag);
+        mf_json_put_quantity(writer, "drag_error", "k_B T_0/lambda", found.drag_error);
+        mf_json_put_quantity(writer, "driving_force", "k_B T_0/lambda", found.driving_force);
         mf_json_put_number(writer, "drag_coefficient", found.coefficient);
         mf_json_put_number(writer, "reynolds_number", found.reynolds);
     }

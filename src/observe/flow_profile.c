@@ -284,7 +284,7 @@ static enum status write(const void *state, const struct observable_results *res
                                           {"fit[lambda/tau]", fitted, "%.8g"},
                                           {"particles[1]", count, "%.6g"}};
     mf_observable_file(results, "flow_profile.tsv", path);
-    status = mf_data_table_write(path, NULL, columns, 5, p->bins);
+    status = mf_data_table_write_in(path, results->units, NULL, columns, 5, p->bins);
 done:
     mf_memory_free(values);
     return status;
@@ -297,11 +297,11 @@ static void put(const void *state, const struct observable_results *results,
     (void)results;
     if (is_driven(p)) {
         mf_statistics_forget_errors(&found.viscosity_error, 1);
-        mf_json_put_number(writer, "viscosity", found.viscosity);
-        mf_json_put_number(writer, "viscosity_error", found.viscosity_error);
+        mf_json_put_quantity(writer, "viscosity", "lambda^2/tau", found.viscosity);
+        mf_json_put_quantity(writer, "viscosity_error", "lambda^2/tau", found.viscosity_error);
         if (p->parameters.grid_shift)
-            mf_json_put_number(writer, "viscosity_theory",
-                               mf_collision_dynamics_viscosity(&p->setup));
+            mf_json_put_quantity(writer, "viscosity_theory", "lambda^2/tau",
+                                 mf_collision_dynamics_viscosity(&p->setup));
     }
     if (is_driven(p) && p->parameters.walls == COLLISION_PLATES) {
         mf_statistics_forget_errors(&found.slip_error, 1);
@@ -309,35 +309,41 @@ static void put(const void *state, const struct observable_results *results,
         mf_json_put_number(writer, "slip_error", found.slip_error);
     }
     if (isfinite(found.diffusion)) {
-        mf_json_put_number(writer, "bead_diffusion", found.diffusion);
-        mf_json_put_number(writer, "bead_diffusion_error", found.diffusion_error);
+        mf_json_put_quantity(writer, "bead_diffusion", "lambda^2/tau", found.diffusion);
+        mf_json_put_quantity(writer, "bead_diffusion_error", "lambda^2/tau", found.diffusion_error);
         if (p->setup.potential == NULL && p->setup.interactions == 0)
-            mf_json_put_number(writer, "bead_diffusion_theory",
-                               mf_collision_dynamics_diffusion(&p->setup, p->bead_mass));
+            mf_json_put_quantity(writer, "bead_diffusion_theory", "lambda^2/tau",
+                                 mf_collision_dynamics_diffusion(&p->setup, p->bead_mass));
     }
     if (is_driven(p) && isfinite(found.schmidt)) {
         mf_json_put_number(writer, "schmidt_number", found.schmidt);
         mf_json_put_number(writer, "schmidt_number_error", found.schmidt_error);
     }
     mf_statistics_forget_errors(&found.temperature_error, 1);
-    mf_json_put_number(writer, "solvent_temperature", found.temperature);
-    mf_json_put_number(writer, "solvent_temperature_error", found.temperature_error);
+    mf_json_put_quantity(writer, "solvent_temperature", "T_0", found.temperature);
+    mf_json_put_quantity(writer, "solvent_temperature_error", "T_0", found.temperature_error);
 }
 
-static void say(const void *state, char *line, size_t size) {
+static void say(const void *state, const struct observable_results *results, char *line,
+                size_t size) {
     const struct profile *p = state;
     const struct flow_profile_summary found = mf_flow_profile_result(p);
-    char viscosity[NUMBER_TEXT_SIZE];
-    mf_number_text(found.viscosity, found.viscosity_error, viscosity);
+    const struct units *units = results->units;
+    const double factor = mf_units_factor(units, "lambda^2/tau");
+    const double temperature = found.temperature * mf_units_factor(units, "T_0");
+    char viscosity[NUMBER_TEXT_SIZE], unit[UNITS_NAME_SIZE], kelvin[UNITS_NAME_SIZE];
+    mf_number_text(factor * found.viscosity, factor * found.viscosity_error, viscosity);
+    mf_units_suffix(units, "T_0", kelvin);
     if (is_driven(p))
-        snprintf(line, size, "viscosity %s, by theory %.4g; temperature of the solvent %.4f",
-                 viscosity, mf_collision_dynamics_viscosity(&p->setup), found.temperature);
+        snprintf(line, size, "viscosity %s%s, by theory %.4g; temperature of the solvent %.4f%s",
+                 viscosity, mf_units_suffix(units, "lambda^2/tau", unit),
+                 factor * mf_collision_dynamics_viscosity(&p->setup), temperature, kelvin);
     else
         snprintf(
             line, size,
-            "temperature of the solvent %.4f; a viscosity wants plates and an acceleration along "
+            "temperature of the solvent %.4f%s; a viscosity wants plates and an acceleration along "
             "x, or a wave, and no obstacle",
-            found.temperature);
+            temperature, kelvin);
 }
 
 /// A flow that still grows, or hardly differs from the noise, gives any viscosity.

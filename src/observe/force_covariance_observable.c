@@ -38,7 +38,7 @@ static enum status write(const void *state, const struct observable_results *res
                                           {"kappa[k_B.T_0.mu/tau]", kappa, "%.8g"},
                                           {"kappa_error[k_B.T_0.mu/tau]", error, "%.3g"}};
     mf_observable_file(results, "force_covariance.tsv", path);
-    status = mf_data_table_write(path, NULL, columns, 3, bins);
+    status = mf_data_table_write_in(path, results->units, NULL, columns, 3, bins);
 done:
     mf_memory_free(values);
     return status;

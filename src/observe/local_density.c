@@ -115,7 +115,8 @@ static enum status write(const void *state, const struct observable_results *res
                                           {"share[1]", share, "%.6g"},
                                           {"packing[1]", packing, "%.6g"}};
     mf_observable_file(results, "local_density.tsv", path);
-    CHECK(mf_data_table_write(path, NULL, columns, s->settings.diameter > 0 ? 4 : 3, rows));
+    CHECK(mf_data_table_write_in(path, results->units, NULL, columns,
+                                 s->settings.diameter > 0 ? 4 : 3, rows));
 done:
     mf_memory_free(values);
     return status;
@@ -123,9 +124,11 @@ done:
 
 static void explain(const void *settings, const struct simulation_setup *setup, double every,
                     struct stages *stages) {
+    char text[STAGES_LENGTH_SIZE];
     (void)setup;
-    mf_stages_add(stages, "local density", true, 10 / every, "cells of %.3g, one step in %.0f",
-                  ((const struct settings *)settings)->cell, every);
+    mf_stages_add(stages, "local density", true, 10 / every, "cells of %s, one step in %.0f",
+                  mf_stages_length(stages, ((const struct settings *)settings)->cell, 3, text),
+                  every);
 }
 
 #define MEMBER(name) .offset = offsetof(struct settings, name)

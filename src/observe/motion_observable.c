@@ -36,7 +36,7 @@ static enum status write(const void *state, const struct observable_results *res
     const struct motion *motion = state;
     const struct units *units = results->units;
     const size_t rows = (size_t)motion->plan.lags + 1;
-    const bool known = mf_units_known(units);
+    const bool known = mf_units_beside(units);
     const double ps = known ? mf_units_time_ps(units) : 1, nm2 = units->length * units->length;
     double *time = NULL, *values = NULL, *picoseconds = NULL, *physical = NULL;
     char path[OUTPUT_PATH_SIZE];
@@ -65,7 +65,7 @@ static enum status write(const void *state, const struct observable_results *res
                                           {"vacf[nm^2/ps^2]", physical + 2 * rows, "%.8g"},
                                           {"vacf_error[nm^2/ps^2]", physical + 3 * rows, "%.3g"}};
     mf_observable_file(results, "motion.tsv", path);
-    CHECK(mf_data_table_write(path, NULL, columns, known ? 10 : 5, rows));
+    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, known ? 10 : 5, rows));
 done:
     mf_memory_free(time);
     mf_memory_free(picoseconds);
@@ -82,15 +82,17 @@ static void put(const void *state, const struct observable_results *results,
     struct motion_summary s = mf_motion_result(state, NULL);
     mf_json_begin(writer, "motion");
     mf_statistics_forget_errors(&s.msd_error, 1);
-    if (mf_motion_judge(&s) != STATUS_OK)
+    if (mf_units_mark(units, mf_motion_judge(&s)) != STATUS_OK)
         mf_json_put_text(writer, "warning", mf_status_message());
-    mf_json_put_number(writer, "diffusion_msd", s.msd);
-    mf_json_put_number(writer, "diffusion_msd_error", s.msd_error);
-    mf_json_put_number(writer, "diffusion_green_kubo", s.green_kubo);
+    mf_json_put_quantity(writer, "diffusion_msd", "lambda^2/tau", s.msd);
+    mf_json_put_quantity(writer, "diffusion_msd_error", "lambda^2/tau", s.msd_error);
+    mf_json_put_quantity(writer, "diffusion_green_kubo", "lambda^2/tau", s.green_kubo);
     const double error = mf_motion_green_kubo_uncertainty(&s);
-    mf_json_put_number(writer, "diffusion_green_kubo_error", error);
-    mf_json_put_number(writer, "diffusion_green_kubo_sampling", s.green_kubo_sampling);
-    mf_json_put_number(writer, "diffusion_green_kubo_truncation", s.green_kubo_truncation);
+    mf_json_put_quantity(writer, "diffusion_green_kubo_error", "lambda^2/tau", error);
+    mf_json_put_quantity(writer, "diffusion_green_kubo_sampling", "lambda^2/tau",
+                         s.green_kubo_sampling);
+    mf_json_put_quantity(writer, "diffusion_green_kubo_truncation", "lambda^2/tau",
+                         s.green_kubo_truncation);
     if (mf_units_known(units)) {
         const double unit = mf_units_diffusion_cm2_per_s(units);
         mf_json_put_number(writer, "diffusion_msd_cm2_per_s", s.msd * unit);
@@ -98,8 +100,8 @@ static void put(const void *state, const struct observable_results *results,
         mf_json_put_number(writer, "diffusion_green_kubo_cm2_per_s", s.green_kubo * unit);
         mf_json_put_number(writer, "diffusion_green_kubo_error_cm2_per_s", error * unit);
     }
-    mf_json_put_number(writer, "fit_begin", s.fit_begin);
-    mf_json_put_number(writer, "fit_end", s.fit_end);
+    mf_json_put_quantity(writer, "fit_begin", "tau", s.fit_begin);
+    mf_json_put_quantity(writer, "fit_end", "tau", s.fit_end);
     if (s.maxwell.numbers > 0) {
         mf_json_put_number(writer, "velocities_tested", s.maxwell.numbers);
         mf_json_put_number(writer, "velocities_kolmogorov_smirnov", s.maxwell.statistic);
@@ -109,15 +111,22 @@ static void put(const void *state, const struct observable_results *results,
 }
 
 /// Both diffusion coefficients; without velocities there is one.
-static void say(const void *state, char *line, size_t size) {
+static void say(const void *state, const struct observable_results *results, char *line,
+                size_t size) {
     const struct motion *motion = state;
     char msd[NUMBER_TEXT_SIZE], green_kubo[NUMBER_TEXT_SIZE];
     const struct motion_summary s = mf_motion_result(motion, NULL);
-    mf_number_text(s.msd, s.msd_error, msd);
-    mf_number_text(s.green_kubo, mf_motion_green_kubo_uncertainty(&s), green_kubo);
-    snprintf(line, size, "D = %s by the MSD from %.4g to %.4g tau%s%s%s", msd, s.fit_begin,
-             s.fit_end, motion->flies ? ", " : "", motion->flies ? green_kubo : "",
-             motion->flies ? " by Green and Kubo" : "");
+    const struct units *units = results->units;
+    const double factor = mf_units_factor(units, "lambda^2/tau");
+    const double time = mf_units_factor(units, "tau");
+    char unit[UNITS_NAME_SIZE], time_unit[UNITS_NAME_SIZE];
+    mf_number_text(factor * s.msd, factor * s.msd_error, msd);
+    mf_number_text(factor * s.green_kubo, factor * mf_motion_green_kubo_uncertainty(&s),
+                   green_kubo);
+    snprintf(line, size, "D = %s%s by the MSD from %.4g to %.4g %s%s%s%s", msd,
+             mf_units_suffix(units, "lambda^2/tau", unit), time * s.fit_begin, time * s.fit_end,
+             mf_units_name(units, "tau", time_unit), motion->flies ? ", " : "",
+             motion->flies ? green_kubo : "", motion->flies ? " by Green and Kubo" : "");
 }
 
 static enum status judge(const void *state, const struct simulation_setup *setup) {

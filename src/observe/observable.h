@@ -94,7 +94,8 @@ struct observable {
     void (*put)(const void *state, const struct observable_results *results,
                 struct json_writer *writer);
     /// A line for the person.
-    void (*say)(const void *state, char *line, size_t size);
+    void (*say)(const void *state, const struct observable_results *results, char *line,
+                size_t size);
     /// Whether its results can be trusted; the message is a warning if not.
     enum status (*judge)(const void *state, const struct simulation_setup *setup);
 

@@ -109,7 +109,8 @@ static enum status write_curves(const struct polarity *polarity,
                                           {"correlation_theory[1]", exact, "%.8g"},
                                           {"msd_theory[lambda^2]", exact_msd, "%.8g"}};
     mf_observable_file(results, "polarity.tsv", path);
-    CHECK(mf_data_table_write(path, NULL, columns, polarity->lone ? 7 : 5, rows));
+    CHECK(
+        mf_data_table_write_in(path, results->units, NULL, columns, polarity->lone ? 7 : 5, rows));
 done:
     mf_memory_free(values);
     return status;
@@ -127,7 +128,7 @@ static enum status write(const void *state, const struct observable_results *res
     const struct data_column columns[] = {{"time[tau]", time, NULL},
                                           {"order[1]", polarity->order, "%.8g"}};
     mf_observable_file(results, "polar_order.tsv", path);
-    CHECK(mf_data_table_write(path, NULL, columns, 2, motion->samples));
+    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, 2, motion->samples));
     CHECK(write_curves(polarity, results));
 done:
     mf_memory_free(time);
@@ -152,26 +153,33 @@ static void put(const void *state, const struct observable_results *results,
     mf_json_put_number(writer, "polar_order", mean_order(polarity, &error));
     mf_json_put_number(writer, "polar_order_error", error);
     mf_json_put_number(writer, "polar_order_last", polarity->order[polarity->motion.samples - 1]);
-    mf_json_put_number(writer, "effective_diffusion", fit.effective_diffusion);
-    mf_json_put_number(writer, "effective_diffusion_error", fit.effective_diffusion_error);
+    mf_json_put_quantity(writer, "effective_diffusion", "lambda^2/tau", fit.effective_diffusion);
+    mf_json_put_quantity(writer, "effective_diffusion_error", "lambda^2/tau",
+                         fit.effective_diffusion_error);
     if (polarity->lone)
-        mf_json_put_number(writer, "effective_diffusion_theory",
-                           mf_brownian_free_long_time(&polarity->free));
-    mf_json_put_number(writer, "msd_speed", fit.speed);
-    mf_json_put_number(writer, "msd_speed_error", fit.speed_error);
-    mf_json_put_number(writer, "msd_orientation_diffusion", fit.orientation_diffusion);
-    mf_json_put_number(writer, "msd_orientation_diffusion_error", fit.orientation_diffusion_error);
+        mf_json_put_quantity(writer, "effective_diffusion_theory", "lambda^2/tau",
+                             mf_brownian_free_long_time(&polarity->free));
+    mf_json_put_quantity(writer, "msd_speed", "lambda/tau", fit.speed);
+    mf_json_put_quantity(writer, "msd_speed_error", "lambda/tau", fit.speed_error);
+    mf_json_put_quantity(writer, "msd_orientation_diffusion", "1/tau", fit.orientation_diffusion);
+    mf_json_put_quantity(writer, "msd_orientation_diffusion_error", "1/tau",
+                         fit.orientation_diffusion_error);
 }
 
-static void say(const void *state, char *line, size_t size) {
+static void say(const void *state, const struct observable_results *results, char *line,
+                size_t size) {
     const struct polarity *polarity = state;
     const struct polarity_fit fit = mf_polarity_fit(polarity);
     char order[NUMBER_TEXT_SIZE], diffusion[NUMBER_TEXT_SIZE];
     double error;
     const double mean = mean_order(polarity, &error);
     mf_number_text(mean, error, order);
-    mf_number_text(fit.effective_diffusion, fit.effective_diffusion_error, diffusion);
-    snprintf(line, size, "polar order %s, effective diffusion %s", order, diffusion);
+    const double factor = mf_units_factor(results->units, "lambda^2/tau");
+    char unit[UNITS_NAME_SIZE];
+    mf_number_text(factor * fit.effective_diffusion, factor * fit.effective_diffusion_error,
+                   diffusion);
+    snprintf(line, size, "polar order %s, effective diffusion %s%s", order, diffusion,
+             mf_units_suffix(results->units, "lambda^2/tau", unit));
 }
 
 /// The correlation on the line between the two nearest lags; NaN beyond the last.

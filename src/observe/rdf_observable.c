@@ -168,10 +168,10 @@ static enum status write(const void *state, const struct observable_results *res
             {"g_error[1]", force ? error : counted_error + first, "%.3g"},
             {"g_histogram[1]", counted + first, "%.8g"},
             {"g_histogram_error[1]", counted_error + first, "%.3g"}};
-        if (mf_units_known(units))
+        if (mf_units_beside(units))
             columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
         mf_rdf_observable_file(results->folder, &rdf->composition, (int)pair, path);
-        CHECK(mf_data_table_write(path, NULL, columns, count, bins->count));
+        CHECK(mf_data_table_write_in(path, results->units, NULL, columns, count, bins->count));
     }
 done:
     mf_memory_free(r);
@@ -189,6 +189,7 @@ static const double count_cost = 1.0, flux_cost = 5;
 static void explain_counting(const struct simulation_setup *setup, double range, double every,
                              struct stages *stages) {
     const double cutoff = mf_stages_cutoff(setup), pairs = mf_stages_pairs_within(setup, cutoff);
+    char text[STAGES_LENGTH_SIZE];
     const double farther = mf_stages_pairs_within(setup, range);
     if (range <= cutoff * (1 + 1e-9))
         mf_stages_add(
@@ -197,8 +198,8 @@ static void explain_counting(const struct simulation_setup *setup, double range,
     else
         mf_stages_add(stages, "g(r)", true,
                       (mf_stages_cost.sort + (mf_stages_cost.build + count_cost) * farther) / every,
-                      "to %.3g, beyond the forces: a list of its own, one step in %.0f", range,
-                      every);
+                      "to %s, beyond the forces: a list of its own, one step in %.0f",
+                      mf_stages_length(stages, range, 3, text), every);
 }
 
 static void explain(const void *settings, const struct simulation_setup *setup, double every,

@@ -18,6 +18,15 @@ void mf_stages_add(struct stages *stages, const char *name, bool on, double nano
     va_end(arguments);
 }
 
+const char *mf_stages_length(const struct stages *stages, double length, int digits,
+                             char text[STAGES_LENGTH_SIZE]) {
+    char unit[UNITS_NAME_SIZE];
+    snprintf(text, STAGES_LENGTH_SIZE, "%.*g%.32s", digits,
+             mf_units_factor(stages->units, "lambda") * length,
+             mf_units_suffix(stages->units, "lambda", unit));
+    return text;
+}
+
 double mf_stages_pairs_within(const struct simulation_setup *setup, double r) {
     const double density = (double)setup->placement.count / mf_box_volume(&setup->box);
     return density * mf_box_shell_volume(&setup->box, 0, r) / 2;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dynamics/simulation.h"
+#include "io/units_scale.h"
 
 #include <stdbool.h>
 
@@ -23,6 +24,7 @@ struct stage {
 };
 
 struct stages {
+    const struct units *units; ///< in which they speak of lengths
     struct stage stage[STAGES_MOST];
     int count;
 };
@@ -31,6 +33,11 @@ struct stages {
 /// STAGES_MOST nothing is added.
 void mf_stages_add(struct stages *stages, const char *name, bool on, double nanoseconds,
                    const char *format, ...) __attribute__((format(printf, 5, 6)));
+
+/// "0.465 nm", a length in %.*g and the units that are spoken, without the name of reduced ones.
+enum { STAGES_LENGTH_SIZE = 64 };
+const char *mf_stages_length(const struct stages *stages, double length, int digits,
+                             char text[STAGES_LENGTH_SIZE]);
 
 /// Pairs of a particle nearer than r in a uniform fluid, each pair once.
 double mf_stages_pairs_within(const struct simulation_setup *setup, double r);

@@ -322,12 +322,12 @@ static enum status write(const void *state, const struct observable_results *res
     }
     columns[n++] = (struct data_column){"vectors[1]", s->members, "%.0f"};
     nanometres = mf_units_column(s->q, s->bins,
-                                 mf_units_known(results->units) ? 1 / results->units->length : 0);
+                                 mf_units_beside(results->units) ? 1 / results->units->length : 0);
     CHECK(nanometres ? STATUS_OK : STATUS_NO_MEMORY);
-    if (mf_units_known(results->units))
+    if (mf_units_beside(results->units))
         columns[n++] = (struct data_column){"q[1/nm]", nanometres, NULL};
     mf_observable_file(results, "structure_factor.tsv", path);
-    CHECK(mf_data_table_write(path, NULL, columns, n, s->bins));
+    CHECK(mf_data_table_write_in(path, results->units, NULL, columns, n, s->bins));
 done:
     mf_memory_free(values);
     mf_memory_free(nanometres);

@@ -48,7 +48,7 @@ static enum status write(const void *state, const struct observable_results *res
                              mf_thermodynamics_series(t, THERMODYNAMICS_LAPLACIAN)[k];
     }
     // bar is a force on an area.
-    const bool known = mf_units_known(units), in_space = results->setup->box.dimensions == 3;
+    const bool known = mf_units_beside(units), in_space = results->setup->box.dimensions == 3;
     physical[0] = mf_units_column(time, t->samples, known ? mf_units_time_ps(units) : 0);
     physical[1] =
         mf_units_column(energy, t->samples, known ? mf_units_energy_kj_per_mol(units) : 0);
@@ -65,7 +65,11 @@ static enum status write(const void *state, const struct observable_results *res
         {"potential_energy[kJ/mol]", physical[1], "%.8g"},
         {"pressure[bar]", physical[2], "%.8g"}};
     mf_observable_file(results, "thermodynamics.tsv", path);
-    CHECK(mf_data_table_write(path, NULL, columns, !known ? 6 : in_space ? 9 : 8, t->samples));
+    CHECK(mf_data_table_write_in(path, results->units, NULL, columns,
+                                 !known     ? 6
+                                 : in_space ? 9
+                                            : 8,
+                                 t->samples));
 done:
     for (int k = 0; k < 3; k++)
         mf_memory_free(physical[k]);
@@ -81,28 +85,29 @@ static enum status judge(const void *state, const struct simulation_setup *setup
 }
 
 /// One sample tells no error: null.
-static void put_error(struct json_writer *writer, const char *name,
+static void put_error(struct json_writer *writer, const char *name, const char *unit,
                       const struct thermodynamics_summary *summary, double error) {
-    mf_json_put_number(writer, name, summary->blocks > 1 ? error : NAN);
+    mf_json_put_quantity(writer, name, unit, summary->blocks > 1 ? error : NAN);
 }
 
 /// Means with errors, and the object "physical" when the units are known.
 static void put(const void *state, const struct observable_results *results,
                 struct json_writer *writer) {
     const struct thermodynamics_summary s = mf_thermodynamics_result(state, 1);
-    if (mf_thermodynamics_judge(&s, results->setup) != STATUS_OK)
+    if (mf_units_mark(results->units, mf_thermodynamics_judge(&s, results->setup)) != STATUS_OK)
         mf_json_put_text(writer, "warning", mf_status_message());
-    mf_json_put_number(writer, "temperature", s.temperature);
-    put_error(writer, "temperature_error", &s, s.temperature_error);
+    mf_json_put_quantity(writer, "temperature", "T_0", s.temperature);
+    put_error(writer, "temperature_error", "T_0", &s, s.temperature_error);
     if (isfinite(s.temperature_configurational)) {
-        mf_json_put_number(writer, "temperature_configurational", s.temperature_configurational);
-        put_error(writer, "temperature_configurational_error", &s,
+        mf_json_put_quantity(writer, "temperature_configurational", "T_0",
+                             s.temperature_configurational);
+        put_error(writer, "temperature_configurational_error", "T_0", &s,
                   s.temperature_configurational_error);
     }
-    mf_json_put_number(writer, "potential_energy", s.potential_energy);
-    put_error(writer, "potential_energy_error", &s, s.potential_energy_error);
-    mf_json_put_number(writer, "pressure", s.pressure);
-    put_error(writer, "pressure_error", &s, s.pressure_error);
+    mf_json_put_quantity(writer, "potential_energy", "k_B T_0", s.potential_energy);
+    put_error(writer, "potential_energy_error", "k_B T_0", &s, s.potential_energy_error);
+    mf_json_put_quantity(writer, "pressure", "k_B T_0/lambda^d", s.pressure);
+    put_error(writer, "pressure_error", "k_B T_0/lambda^d", &s, s.pressure_error);
     if (!simulation_holds_temperature(results->setup) && !results->setup->integrator->companions)
         mf_json_put_number(writer, "energy_drift", mf_thermodynamics_energy_drift(state));
     mf_units_put(results->units, writer, s.potential_energy, s.pressure);

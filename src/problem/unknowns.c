@@ -44,6 +44,10 @@ bool mf_unknowns_fits(const struct unknowns *unknowns, enum unknown_kind kind, s
            !(kind == UNKNOWN_POTENTIAL && mf_potential_grid_in_core(&unknowns->potential, point));
 }
 
+const char *mf_unknowns_unit(enum unknown_kind kind) {
+    return kind == UNKNOWN_POTENTIAL ? "k_B.T_0" : "sqrt(mu/tau)";
+}
+
 void mf_unknowns_curve_name(const struct unknowns *unknowns, enum unknown_kind kind, size_t curve,
                             char name[UNKNOWNS_NAME_SIZE]) {
     char pair[COMPOSITION_PAIR_NAME_SIZE] = "";

@@ -30,6 +30,9 @@ size_t mf_unknowns_curve_count(const struct unknowns *unknowns, enum unknown_kin
 size_t mf_unknowns_points_each(const struct unknowns *unknowns, enum unknown_kind kind);
 bool mf_unknowns_fits(const struct unknowns *unknowns, enum unknown_kind kind, size_t point);
 
+/// Unit of the values, as headings have it.
+const char *mf_unknowns_unit(enum unknown_kind kind);
+
 /// What files call one of them: "potential", or "potential_A-B" in a mixture.
 enum { UNKNOWNS_NAME_SIZE = COMPOSITION_PAIR_NAME_SIZE + 16 };
 void mf_unknowns_curve_name(const struct unknowns *unknowns, enum unknown_kind kind, size_t curve,

@@ -62,12 +62,12 @@ static enum status write_potential(const struct fit_file *fit, const struct unkn
                                                 result->without_ramp + first, "%.3g"};
     if (mf_scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair))
         columns[count++] = (struct data_column){"truth[k_B.T_0]", truth, "%.8g"};
-    if (mf_units_known(units)) {
+    if (mf_units_beside(units)) {
         columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
         columns[count++] = (struct data_column){"phi[kJ/mol]", energy, NULL};
     }
     curve_file(unknowns, UNKNOWN_POTENTIAL, pair, ".tsv", folder, path);
-    CHECK(mf_data_table_write(path, NULL, columns, count, points));
+    CHECK(mf_data_table_write_in(path, &fit->scene.units, NULL, columns, count, points));
     if (mf_units_known(units)) {
         curve_file(unknowns, UNKNOWN_POTENTIAL, pair, ".pot", folder, path);
         CHECK(mf_votca_write(path, nanometres, energy, points, unknowns->potential.core[pair]));
@@ -108,26 +108,28 @@ static enum status write_omega(const struct fit_file *fit, const struct unknowns
     size_t count = 3;
     if (truth_known)
         columns[count++] = (struct data_column){"truth[sqrt(mu/tau)]", truth, "%.8g"};
-    if (mf_units_known(units))
+    if (mf_units_beside(units))
         columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
     mf_run_folder_file(folder, "omega.tsv", path);
     if (truth && nanometres)
-        status = mf_data_table_write(path, NULL, columns, count, OMEGA_POINTS);
+        status =
+            mf_data_table_write_in(path, &fit->scene.units, NULL, columns, count, OMEGA_POINTS);
     mf_memory_free(truth);
     mf_memory_free(nanometres);
     return status;
 }
 
 /// Changes that the data say least of; no table where the method does not tell.
-static enum status write_flat(enum unknown_kind kind, size_t curve, const struct unknowns *unknowns,
-                              const struct fit_result *result, const struct run_folder *folder) {
+static enum status write_flat(const struct fit_file *fit, enum unknown_kind kind, size_t curve,
+                              const struct unknowns *unknowns, const struct fit_result *result,
+                              const struct run_folder *folder) {
     const size_t all = mf_unknowns_points(unknowns, kind);
     const size_t points = all / mf_unknowns_curve_count(unknowns, kind), first = curve * points;
     const double *flat = result->curve_flat[kind];
     char path[OUTPUT_PATH_SIZE];
     if (flat == NULL || isnan(flat[all - 1]))
         return STATUS_OK;
-    const char *unit = kind == UNKNOWN_POTENTIAL ? "k_B.T_0" : "sqrt(mu/tau)";
+    const char *unit = mf_unknowns_unit(kind);
     char names[INVERSE_FLAT][64];
     struct data_column columns[1 + INVERSE_FLAT] = {
         {"r[lambda]", mf_unknowns_r(unknowns, kind) + first, NULL}};
@@ -136,17 +138,18 @@ static enum status write_flat(enum unknown_kind kind, size_t curve, const struct
         columns[n + 1] = (struct data_column){names[n], flat + n * all + first, "%.5g"};
     }
     curve_file(unknowns, kind, curve, "_flat.tsv", folder, path);
-    return mf_data_table_write(path,
-                               "changes of the curve that the data say least of, widest first; one "
-                               "standard error each",
-                               columns, 1 + INVERSE_FLAT, points);
+    return mf_data_table_write_in(
+        path, &fit->scene.units,
+        "changes of the curve that the data say least of, widest first; one "
+        "standard error each",
+        columns, 1 + INVERSE_FLAT, points);
 }
 
 enum status mf_fit_output_curves(const struct fit_file *fit, const struct unknowns *unknowns,
                                  const struct fit_result *result, const struct run_folder *folder) {
     for (int kind = 0; kind < UNKNOWNS; kind++)
         for (size_t n = 0; result->curve[kind] && n < mf_unknowns_curve_count(unknowns, kind); n++)
-            TRY(write_flat(kind, n, unknowns, result, folder));
+            TRY(write_flat(fit, kind, n, unknowns, result, folder));
     if (result->curve[UNKNOWN_POTENTIAL])
         TRY(write_potentials(fit, unknowns, result, folder));
     return result->curve[UNKNOWN_OMEGA] ? write_omega(fit, unknowns, result, folder) : STATUS_OK;
@@ -175,7 +178,8 @@ static enum status write_rdf(const struct fit_file *fit, const struct observed *
         {"result_error[1]", observed->error[TARGET_RDF] + first, "%.3g"},
         {"r[nm]", nanometres, NULL}};
     mf_rdf_observable_file(folder->path, &files->composition, (int)pair, path);
-    CHECK(mf_data_table_write(path, NULL, columns, mf_units_known(units) ? 6 : 5, bins->count));
+    CHECK(mf_data_table_write_in(path, &fit->scene.units, NULL, columns,
+                                 mf_units_beside(units) ? 6 : 5, bins->count));
 done:
     mf_memory_free(r);
     mf_memory_free(nanometres);
@@ -198,7 +202,7 @@ static enum status write_etd(const struct fit_file *fit, const struct observed *
         time[k] = (double)(k / bins) * target->interval;
         r[k] = target->grid.r_minimum + ((double)(k % bins) + 0.5) * width;
     }
-    const bool known = mf_units_known(units);
+    const bool known = mf_units_beside(units);
     picoseconds = mf_units_column(time, cells, known ? mf_units_time_ps(units) : 0);
     nanometres = mf_units_column(r, cells, units->length);
     CHECK(picoseconds && nanometres ? STATUS_OK : STATUS_NO_MEMORY);
@@ -211,7 +215,7 @@ static enum status write_etd(const struct fit_file *fit, const struct observed *
                                           {"time[ps]", picoseconds, "%.6g"},
                                           {"r0[nm]", nanometres, "%.6g"}};
     mf_run_folder_file(folder, "etd_cells.tsv", path);
-    CHECK(mf_data_table_write(path, NULL, columns, known ? 8 : 6, cells));
+    CHECK(mf_data_table_write_in(path, &fit->scene.units, NULL, columns, known ? 8 : 6, cells));
 done:
     mf_memory_free(time);
     mf_memory_free(r);
@@ -229,7 +233,7 @@ struct physical_unit {
 
 static struct physical_unit physical_unit(enum target_kind kind, const struct units *units) {
     const double nm2 = units->length * units->length;
-    if (!mf_units_known(units) || (kind != TARGET_MSD && kind != TARGET_VACF))
+    if (!mf_units_beside(units) || (kind != TARGET_MSD && kind != TARGET_VACF))
         return (struct physical_unit){0};
     if (kind == TARGET_MSD)
         return (struct physical_unit){
@@ -271,7 +275,8 @@ static enum status write_curve(const struct fit_file *fit, enum target_kind kind
     }
     snprintf(name, sizeof name, "%s.tsv", about->name);
     mf_run_folder_file(folder, name, path);
-    CHECK(mf_data_table_write(path, NULL, columns, unit.factor > 0 ? 10 : 5, target->points));
+    CHECK(mf_data_table_write_in(path, &fit->scene.units, NULL, columns, unit.factor > 0 ? 10 : 5,
+                                 target->points));
 done:
     mf_memory_free(x);
     mf_memory_free(picoseconds);

@@ -11,7 +11,7 @@
 static void say_parameters(struct progress *to, const struct fit_file *fit,
                            const struct inverse_parameter *parameter) {
     const struct unknown_parameters *p = &fit->unknown[UNKNOWN_OMEGA].parameters;
-    char line[256];
+    char line[256], name[UNITS_NAME_SIZE];
     int length = snprintf(line, sizeof line, "%s:", mf_inverse_unknown_names[UNKNOWN_OMEGA]);
     if (!fit->unknown[UNKNOWN_OMEGA].wanted || p->shape != INVERSE_CURVE_POWER)
         return;
@@ -23,9 +23,12 @@ static void say_parameters(struct progress *to, const struct fit_file *fit,
             snprintf(mark, sizeof mark, " (fixed)");
         else if (bound)
             snprintf(mark, sizeof mark, " (at its %s)", bound);
-        mf_number_text(parameter[k].value, parameter[k].error, text);
-        length += snprintf(line + length, sizeof line - (size_t)length, "%s %s = %s%s",
-                           k > 0 ? "," : "", mf_inverse_fixed_fields[k].name, text, mark);
+        const char *unit = mf_inverse_fixed_fields[k].unit;
+        const double factor = mf_units_factor(&fit->scene.units, unit);
+        mf_number_text(factor * parameter[k].value, factor * parameter[k].error, text);
+        length += snprintf(line + length, sizeof line - (size_t)length, "%s %s = %s%s%s",
+                           k > 0 ? "," : "", mf_inverse_fixed_fields[k].name, text,
+                           mf_units_suffix(&fit->scene.units, unit, name), mark);
     }
     mf_progress_say(to, "%s", line);
 }
@@ -39,33 +42,43 @@ static void say_numbers(struct progress *to, const struct fit_file *fit,
         const char *bound = mf_numbers_bound(number, found[n].value);
         if (bound)
             snprintf(mark, sizeof mark, " (at its %s)", bound);
-        mf_number_text(found[n].value, found[n].error, text);
+        const double factor = mf_units_factor(&fit->scene.units, number->unit);
+        char unit[UNITS_NAME_SIZE];
+        mf_units_suffix(&fit->scene.units, number->unit, unit);
+        mf_number_text(factor * found[n].value, factor * found[n].error, text);
         if (mf_numbers_undetermined(number, &found[n]))
-            mf_progress_say(to, "%s: undetermined by the targets, anything from %g to %g may be it",
-                            number->name, number->minimum, number->maximum);
+            mf_progress_say(to,
+                            "%s: undetermined by the targets, anything from %g to %g%s may be it",
+                            number->name, factor * number->minimum, factor * number->maximum, unit);
         else
-            mf_progress_say(to, "%s = %s%s%s", number->name, text, mark,
+            mf_progress_say(to, "%s = %s%s%s%s", number->name, text, unit, mark,
                             isnan(found[n].error) ? ", of unknown error" : "");
     }
 }
 
 /// "potential: well -0.354 k_B T_0 at 0.99 lambda (-0.451 at 0.99 at first), changed by 0.05 rms".
-static void say_changes(struct progress *to, const struct unknowns *unknowns,
-                        const struct fit_result *result) {
+static void say_changes(struct progress *to, const struct units *units,
+                        const struct unknowns *unknowns, const struct fit_result *result) {
+    const double energy = mf_units_factor(units, "k_B T_0");
+    const double length = mf_units_factor(units, "lambda");
     mf_progress_say(to, "error of the fit: %.4g at first, %.4g at the end", result->first_error,
                     result->error);
     for (int kind = 0; kind < UNKNOWNS; kind++)
         for (size_t n = 0; result->first[kind] && n < mf_unknowns_curve_count(unknowns, kind);
              n++) {
             char name[UNKNOWNS_NAME_SIZE], well[128] = "";
+            char energies[UNITS_NAME_SIZE], lengths[UNITS_NAME_SIZE], unit[UNITS_NAME_SIZE];
             const struct fit_change change =
                 mf_fit_change_find(unknowns, kind, n, result->first[kind], result->curve[kind]);
             mf_unknowns_curve_name(unknowns, kind, n, name);
             if (kind == UNKNOWN_POTENTIAL && change.well < 0)
-                snprintf(well, sizeof well,
-                         " well %.3f k_B T_0 at %.3g lambda (%.3f at %.3g at first),", change.well,
-                         change.well_at, change.first_well, change.first_well_at);
-            mf_progress_say(to, "%s:%s changed by %.2g rms", name, well, change.rms);
+                snprintf(well, sizeof well, " well %.3f %s at %.3g %s (%.3f at %.3g at first),",
+                         energy * change.well, mf_units_name(units, "k_B T_0", energies),
+                         length * change.well_at, mf_units_name(units, "lambda", lengths),
+                         energy * change.first_well, length * change.first_well_at);
+            mf_progress_say(to, "%s:%s changed by %.2g%s rms", name, well,
+                            change.rms * mf_units_factor(units, mf_unknowns_unit(kind)),
+                            mf_units_suffix(units, mf_unknowns_unit(kind), unit));
         }
 }
 
@@ -86,44 +99,68 @@ static void say_distances(struct progress *to, const struct fit_file *fit,
         char rms[NUMBER_TEXT_SIZE];
         if (!fit->files.given[kind])
             continue;
-        mf_number_text(v->distance[kind].rms, v->distance_error[kind], rms);
+        const char *own = mf_observable_kind(kind).target->unit, *unit = own ? own : "";
+        const double factor = mf_units_factor(&fit->scene.units, unit);
+        char name[UNITS_NAME_SIZE] = "";
+        if (factor != 1)
+            mf_units_suffix(&fit->scene.units, unit, name);
+        mf_number_text(factor * v->distance[kind].rms, factor * v->distance_error[kind], rms);
         const double noises = v->distance[kind].rms / v->distance[kind].noise;
         const size_t known = values_of(&fit->problem.compared.target[kind]);
         char of[96] = "";
         if (v->distance[kind].count < known)
             snprintf(of, sizeof of, ", of %zu of its %zu values: no others were measured",
                      v->distance[kind].count, known);
-        mf_progress_say(to, "verified: rms of %s - target = %s, statistics alone %.2g%s%s",
-                        mf_targets_name(kind), rms, v->distance[kind].noise, of,
+        mf_progress_say(to, "verified: rms of %s - target = %s%s, statistics alone %.2g%s%s",
+                        mf_targets_name(kind), rms, name, factor * v->distance[kind].noise, of,
                         noises > missed ? ": not met, though nothing better was found" : "");
     }
+}
+
+static void say_diffusion(struct progress *to, const struct units *units,
+                          const struct verification *v) {
+    const double factor = mf_units_factor(units, "lambda^2/tau");
+    const double time = mf_units_factor(units, "tau");
+    char diffusion[NUMBER_TEXT_SIZE], unit[UNITS_NAME_SIZE], times[UNITS_NAME_SIZE];
+    mf_number_text(factor * *v->observed.value[TARGET_DIFFUSION],
+                   factor * *v->observed.error[TARGET_DIFFUSION], diffusion);
+    mf_progress_say(to, "D = %s%s, the slope of the MSD from %.4g to %.4g %s", diffusion,
+                    mf_units_suffix(units, "lambda^2/tau", unit), time * v->diffusion_begin,
+                    time * v->diffusion_end, mf_units_name(units, "tau", times));
+}
+
+static void say_thermodynamics(struct progress *to, const struct units *units,
+                               const struct thermodynamics_summary *t) {
+    const double factor = mf_units_factor(units, "T_0");
+    const double kinetic = factor * t->temperature;
+    const double configurational = factor * t->temperature_configurational;
+    char kelvin[UNITS_NAME_SIZE], unit[UNITS_NAME_SIZE], pressure[160];
+    mf_units_suffix(units, "T_0", kelvin);
+    snprintf(pressure, sizeof pressure, "pressure %.3f%s",
+             t->pressure * mf_units_factor(units, "k_B T_0/lambda^d"),
+             mf_units_suffix(units, "k_B T_0/lambda^d", unit));
+    if (isnan(kinetic) && isnan(configurational)) // no particles
+        return;
+    if (isnan(kinetic)) // no velocities
+        mf_progress_say(to, "configurational T = %.4f%s, %s", configurational, kelvin, pressure);
+    else if (isnan(configurational)) // no potential of pairs
+        mf_progress_say(to, "T = %.4f%s, %s", kinetic, kelvin, pressure);
+    else
+        mf_progress_say(to, "T = %.4f%s, configurational %.4f%s, %s", kinetic, kelvin,
+                        configurational, kelvin, pressure);
 }
 
 void mf_fit_report_say(struct progress *to, const struct fit_file *fit,
                        const struct unknowns *unknowns, const struct fit_result *result) {
     const struct verification *v = result->verification;
-    say_changes(to, unknowns, result);
+    const struct units *units = &fit->scene.units;
+    say_changes(to, units, unknowns, result);
     if (result->formula[0])
         mf_progress_say(to, "formula: %s", result->formula);
     say_parameters(to, fit, result->parameter);
     say_numbers(to, fit, result->number);
     say_distances(to, fit, v);
-    if (targets_ask(&fit->problem.compared, TARGET_DIFFUSION)) {
-        char diffusion[NUMBER_TEXT_SIZE];
-        mf_number_text(*v->observed.value[TARGET_DIFFUSION], *v->observed.error[TARGET_DIFFUSION],
-                       diffusion);
-        mf_progress_say(to, "D = %s, the slope of the MSD from %.4g to %.4g tau", diffusion,
-                        v->diffusion_begin, v->diffusion_end);
-    }
-    const struct thermodynamics_summary *t = &v->thermodynamics;
-    if (isnan(t->temperature) && isnan(t->temperature_configurational)) // no particles
-        return;
-    if (isnan(t->temperature)) // no velocities
-        mf_progress_say(to, "configurational T = %.4f, pressure %.3f",
-                        t->temperature_configurational, t->pressure);
-    else if (isnan(t->temperature_configurational)) // no potential of pairs
-        mf_progress_say(to, "T = %.4f, pressure %.3f", t->temperature, t->pressure);
-    else
-        mf_progress_say(to, "T = %.4f, configurational %.4f, pressure %.3f", t->temperature,
-                        t->temperature_configurational, t->pressure);
+    if (targets_ask(&fit->problem.compared, TARGET_DIFFUSION))
+        say_diffusion(to, units, v);
+    say_thermodynamics(to, units, &v->thermodynamics);
 }

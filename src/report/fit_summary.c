@@ -59,6 +59,12 @@ static void put_known(struct json_writer *writer, const char *key, double value)
         mf_json_put_number(writer, key, value);
 }
 
+static void put_quantity(struct json_writer *writer, const char *key, const char *unit,
+                         double value) {
+    if (isfinite(value))
+        mf_json_put_quantity(writer, key, unit, value);
+}
+
 /// One sample tells no error.
 static double known_error(double error) {
     return error > 0 ? error : NAN;
@@ -71,12 +77,13 @@ static void put_distances(struct json_writer *writer, const struct fit_file *fit
     for (int kind = 0; kind < TARGETS; kind++) {
         if (!fit->files.given[kind])
             continue;
+        const char *own = mf_observable_kind(kind).target->unit, *unit = own ? own : "";
         snprintf(key, sizeof key, "%s_rmse", mf_targets_name(kind));
-        put_known(writer, key, v->distance[kind].rms);
+        put_quantity(writer, key, unit, v->distance[kind].rms);
         snprintf(key, sizeof key, "%s_rmse_error", mf_targets_name(kind));
-        put_known(writer, key, v->distance_error[kind]);
+        put_quantity(writer, key, unit, v->distance_error[kind]);
         snprintf(key, sizeof key, "%s_noise", mf_targets_name(kind));
-        mf_json_put_number(writer, key, v->distance[kind].noise);
+        mf_json_put_quantity(writer, key, unit, v->distance[kind].noise);
     }
 }
 
@@ -87,11 +94,11 @@ static void put_diffusion(struct json_writer *writer, const struct fit_file *fit
         return;
     const double value = *v->observed.value[TARGET_DIFFUSION];
     const double error = *v->observed.error[TARGET_DIFFUSION];
-    put_known(writer, "diffusion", value);
+    put_quantity(writer, "diffusion", "lambda^2/tau", value);
     if (error > 0) // one replica of one window has none
-        put_known(writer, "diffusion_error", error);
-    mf_json_put_number(writer, "diffusion_fit_begin", v->diffusion_begin);
-    mf_json_put_number(writer, "diffusion_fit_end", v->diffusion_end);
+        put_quantity(writer, "diffusion_error", "lambda^2/tau", error);
+    mf_json_put_quantity(writer, "diffusion_fit_begin", "tau", v->diffusion_begin);
+    mf_json_put_quantity(writer, "diffusion_fit_end", "tau", v->diffusion_end);
     if (mf_units_known(units)) {
         const double unit = mf_units_diffusion_cm2_per_s(units);
         mf_json_put_number(writer, "diffusion_cm2_per_s", value * unit);
@@ -129,22 +136,22 @@ static void put_flat(struct json_writer *writer, enum unknown_kind kind,
 static void put_ramp(struct json_writer *writer, const struct inverse_ramp *ramp) {
     if (!(ramp->error > 0))
         return;
-    put_known(writer, "ramp_error", ramp->error);
-    put_known(writer, "ramp_pressure", ramp->pressure);
-    put_known(writer, "pressure_left_open", ramp->pressure_open);
+    put_quantity(writer, "ramp_error", "k_B T_0", ramp->error);
+    put_quantity(writer, "ramp_pressure", "1/lambda^d", ramp->pressure);
+    put_quantity(writer, "pressure_left_open", "k_B T_0/lambda^d", ramp->pressure_open);
     put_known(writer, "directions", ramp->directions);
     put_known(writer, "directions_of", ramp->bins);
 }
 
-static void put_parameter(struct json_writer *writer, const char *name,
+static void put_parameter(struct json_writer *writer, const char *name, const char *unit,
                           const struct inverse_parameter *parameter, bool fixed, const char *bound,
                           bool undetermined) {
     mf_json_begin(writer, name);
-    put_known(writer, "value", parameter->value);
+    put_quantity(writer, "value", unit, parameter->value);
     if (fixed)
         mf_json_put_text(writer, "fixed", "yes");
     else
-        put_known(writer, "error", parameter->error);
+        put_quantity(writer, "error", unit, parameter->error);
     if (bound)
         mf_json_put_text(writer, "bound", bound);
     if (undetermined)
@@ -164,13 +171,13 @@ static void put_parameters(struct json_writer *writer, const struct fit_file *fi
     if (formula)
         mf_json_begin(writer, mf_inverse_unknown_names[UNKNOWN_OMEGA]);
     for (int k = 0; formula && k < INVERSE_PARAMETERS; k++)
-        put_parameter(writer, mf_inverse_fixed_fields[k].name, &result->parameter[k],
-                      !isnan(p->fixed[k]),
+        put_parameter(writer, mf_inverse_fixed_fields[k].name, mf_inverse_fixed_fields[k].unit,
+                      &result->parameter[k], !isnan(p->fixed[k]),
                       mf_parametrisation_parameter_bound(p, k, result->parameter[k].value), false);
     if (formula)
         mf_json_end(writer);
     for (size_t n = 0; n < fit->numbers; n++)
-        put_parameter(writer, fit->number[n].name, &result->number[n], false,
+        put_parameter(writer, fit->number[n].name, fit->number[n].unit, &result->number[n], false,
                       mf_numbers_bound(&fit->number[n], result->number[n].value),
                       mf_numbers_undetermined(&fit->number[n], &result->number[n]));
     mf_json_end(writer);
@@ -190,12 +197,12 @@ static void put_start(struct json_writer *writer, const struct unknowns *unknown
                 mf_fit_change_find(unknowns, kind, n, result->first[kind], result->curve[kind]);
             mf_unknowns_curve_name(unknowns, kind, n, name);
             mf_json_begin(writer, name);
-            put_known(writer, "change", change.rms);
+            put_quantity(writer, "change", mf_unknowns_unit(kind), change.rms);
             if (kind == UNKNOWN_POTENTIAL) {
-                put_known(writer, "well", change.first_well);
-                put_known(writer, "well_at", change.first_well_at);
-                put_known(writer, "well_now", change.well);
-                put_known(writer, "well_now_at", change.well_at);
+                put_quantity(writer, "well", "k_B T_0", change.first_well);
+                put_quantity(writer, "well_at", "lambda", change.first_well_at);
+                put_quantity(writer, "well_now", "k_B T_0", change.well);
+                put_quantity(writer, "well_now_at", "lambda", change.well_at);
             }
             mf_json_end(writer);
         }
@@ -212,7 +219,7 @@ static void put_potential_truth(struct json_writer *writer, const struct fit_fil
     mf_composition_pair_name(&fit->scene.setup.composition, (int)pair, kind);
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         snprintf(key, sizeof key, "%s%s%s", names[k], kind[0] ? "_" : "", kind);
-        put_known(writer, key, values[k]);
+        put_quantity(writer, key, mf_unknowns_unit(UNKNOWN_POTENTIAL), values[k]);
     }
 }
 
@@ -250,10 +257,10 @@ static void put_kirkwood_buff(struct json_writer *writer, const struct fit_file 
         mf_kirkwood_buff_integrate(bins, fit->files.rdf_g, fit->files.rdf_error, box, count);
     const struct kirkwood_buff found = mf_kirkwood_buff_integrate(
         bins, v->observed.value[TARGET_RDF], v->observed.error[TARGET_RDF], box, count);
-    put_known(writer, "target_kirkwood_buff", target.integral);
-    put_known(writer, "target_kirkwood_buff_error", target.integral_error);
-    put_known(writer, "kirkwood_buff", found.integral);
-    put_known(writer, "kirkwood_buff_error", known_error(found.integral_error));
+    put_quantity(writer, "target_kirkwood_buff", "lambda^d", target.integral);
+    put_quantity(writer, "target_kirkwood_buff_error", "lambda^d", target.integral_error);
+    put_quantity(writer, "kirkwood_buff", "lambda^d", found.integral);
+    put_quantity(writer, "kirkwood_buff_error", "lambda^d", known_error(found.integral_error));
     put_known(writer, "target_compressibility", target.compressibility);
     put_known(writer, "target_compressibility_error", target.compressibility_error);
     put_known(writer, "compressibility", found.compressibility);
@@ -268,15 +275,17 @@ static void put_verification(struct json_writer *writer, const struct fit_file *
     put_distances(writer, fit, v);
     put_diffusion(writer, fit, v);
     put_kirkwood_buff(writer, fit, v);
-    mf_json_put_number(writer, "temperature", t->temperature);
-    mf_json_put_number(writer, "temperature_error", known_error(t->temperature_error));
-    put_known(writer, "temperature_configurational", t->temperature_configurational);
-    put_known(writer, "temperature_configurational_error",
-              known_error(t->temperature_configurational_error));
-    mf_json_put_number(writer, "potential_energy", t->potential_energy);
-    mf_json_put_number(writer, "potential_energy_error", known_error(t->potential_energy_error));
-    mf_json_put_number(writer, "pressure", t->pressure);
-    mf_json_put_number(writer, "pressure_error", known_error(t->pressure_error));
+    mf_json_put_quantity(writer, "temperature", "T_0", t->temperature);
+    mf_json_put_quantity(writer, "temperature_error", "T_0", known_error(t->temperature_error));
+    put_quantity(writer, "temperature_configurational", "T_0", t->temperature_configurational);
+    put_quantity(writer, "temperature_configurational_error", "T_0",
+                 known_error(t->temperature_configurational_error));
+    mf_json_put_quantity(writer, "potential_energy", "k_B T_0", t->potential_energy);
+    mf_json_put_quantity(writer, "potential_energy_error", "k_B T_0",
+                         known_error(t->potential_energy_error));
+    mf_json_put_quantity(writer, "pressure", "k_B T_0/lambda^d", t->pressure);
+    mf_json_put_quantity(writer, "pressure_error", "k_B T_0/lambda^d",
+                         known_error(t->pressure_error));
     mf_json_put_number(writer, "verification_steps", (double)v->engine_steps);
     mf_units_put(&fit->scene.units, writer, t->potential_energy, t->pressure);
 }
@@ -286,6 +295,7 @@ enum status mf_fit_output_summary(const struct fit_file *fit, const struct unkno
                                   const struct run_folder *folder) {
     struct json_writer *writer = mf_json_writer_create();
     char path[OUTPUT_PATH_SIZE];
+    mf_units_write_summary(&fit->scene.units, writer);
     mf_json_put_text(writer, "status",
                      result->status != STATUS_OK ? mf_status_name(result->status)
                      : result->settled           ? "converged"

@@ -64,9 +64,10 @@ void mf_history_add(struct history *history, const struct inverse_step *step, do
 }
 
 /// Write a row-major table of `rows` by `columns` numbers, transposed into columns.
-static enum status write_transposed(const char *path, const double *values, size_t rows,
-                                    size_t columns, const struct data_column *first,
-                                    size_t first_count, const char *const *names) {
+static enum status write_transposed(const char *path, const struct units *units,
+                                    const double *values, size_t rows, size_t columns,
+                                    const struct data_column *first, size_t first_count,
+                                    const char *const *names) {
     enum status status = STATUS_OK;
     double *transposed = NULL;
     struct data_column *column = NULL;
@@ -79,7 +80,7 @@ static enum status write_transposed(const char *path, const double *values, size
             transposed[c * rows + k] = values[k * columns + c];
         column[first_count + c] = (struct data_column){names[c], transposed + c * rows, NULL};
     }
-    CHECK(mf_data_table_write(path, NULL, column, first_count + columns, rows));
+    CHECK(mf_data_table_write_in(path, units, NULL, column, first_count + columns, rows));
 done:
     mf_memory_free(transposed);
     mf_memory_free(column);
@@ -87,15 +88,21 @@ done:
 }
 
 static enum status write_history(const struct history *history, const struct inverse_method *method,
-                                 const struct run_folder *folder) {
+                                 const struct units *units, const struct run_folder *folder) {
     const char *names[MOST_COLUMNS] = {"iteration", "evaluations", "engine_steps", "error[1]",
                                        "noise[1]"};
-    char path[OUTPUT_PATH_SIZE];
-    for (size_t k = 0; k < history->extra; k++)
+    char path[OUTPUT_PATH_SIZE], headings[INVERSE_EXTRA][48];
+    for (size_t k = 0; k < history->extra; k++) {
         names[COMMON + k] = method->columns[k];
+        if (strncmp(method->columns[k], "pressure", strlen("pressure")) != 0)
+            continue;
+        mf_data_table_name(units, method->columns[k], "k_B.T_0/lambda^d", headings[k],
+                           sizeof headings[k]);
+        names[COMMON + k] = headings[k];
+    }
     mf_run_folder_file(folder, "history.tsv", path);
-    return write_transposed(path, history->rows, history->iterations, COMMON + history->extra, NULL,
-                            0, names);
+    return write_transposed(path, units, history->rows, history->iterations,
+                            COMMON + history->extra, NULL, 0, names);
 }
 
 static enum status write_timing(const struct history *history, const struct run_folder *folder) {
@@ -122,7 +129,8 @@ static void column_unit(const char *unit, char text[32]) {
 }
 
 /// Numbers of the scene: value and standard error of each.
-static enum status write_numbers(const struct history *history, const struct run_folder *folder) {
+static enum status write_numbers(const struct history *history, const struct units *units,
+                                 const struct run_folder *folder) {
     enum { NAME_SIZE = INVERSE_NUMBER_NAME_SIZE + 40 };
     const struct inverse_problem *problem = history->problem;
     char names[2 * INVERSE_MOST_NUMBERS][NAME_SIZE], path[OUTPUT_PATH_SIZE];
@@ -140,7 +148,7 @@ static enum status write_numbers(const struct history *history, const struct run
         name[n] = names[n];
     }
     mf_run_folder_file(folder, "numbers_history.tsv", path);
-    CHECK(write_transposed(path, history->numbers, history->iterations, 2 * problem->numbers,
+    CHECK(write_transposed(path, units, history->numbers, history->iterations, 2 * problem->numbers,
                            &(struct data_column){"iteration", iteration, NULL}, 1, name));
 done:
     mf_memory_free(iteration);
@@ -149,9 +157,9 @@ done:
 
 /// A curve of an unknown: one column an iteration, named by its number.
 static enum status write_curve(const struct history *history, const struct unknowns *unknowns,
-                               enum unknown_kind kind, size_t curve,
+                               enum unknown_kind kind, size_t curve, const struct units *units,
                                const struct run_folder *folder) {
-    enum { NAME_SIZE = 24 };
+    enum { NAME_SIZE = 48 };
     enum status status = STATUS_OK;
     const size_t points = history->points[kind] / mf_unknowns_curve_count(unknowns, kind);
     struct data_column *columns = NULL;
@@ -162,7 +170,10 @@ static enum status write_curve(const struct history *history, const struct unkno
     columns[0] =
         (struct data_column){"r[lambda]", mf_unknowns_r(unknowns, kind) + curve * points, NULL};
     for (size_t k = 0; k < history->iterations; k++) {
-        snprintf(names + k * NAME_SIZE, NAME_SIZE, "%zu", k);
+        char iteration[24];
+        snprintf(iteration, sizeof iteration, "%zu", k);
+        mf_data_table_name(units, iteration, mf_unknowns_unit(kind), names + k * NAME_SIZE,
+                           NAME_SIZE);
         columns[k + 1] = (struct data_column){
             names + k * NAME_SIZE,
             history->curve[kind] + k * history->points[kind] + curve * points, "%.6g"};
@@ -170,7 +181,7 @@ static enum status write_curve(const struct history *history, const struct unkno
     mf_unknowns_curve_name(unknowns, kind, curve, name);
     snprintf(file, sizeof file, "%s_history.tsv", name);
     mf_run_folder_file(folder, file, path);
-    CHECK(mf_data_table_write(path, NULL, columns, history->iterations + 1, points));
+    CHECK(mf_data_table_write_in(path, units, NULL, columns, history->iterations + 1, points));
 done:
     mf_memory_free(columns);
     mf_memory_free(names);
@@ -178,15 +189,16 @@ done:
 }
 
 enum status mf_history_write(const struct history *history, const struct inverse_method *method,
-                             const struct unknowns *unknowns, const struct run_folder *folder) {
-    TRY(write_history(history, method, folder));
+                             const struct unknowns *unknowns, const struct units *units,
+                             const struct run_folder *folder) {
+    TRY(write_history(history, method, units, folder));
     TRY(write_timing(history, folder));
     if (history->problem->numbers > 0)
-        TRY(write_numbers(history, folder));
+        TRY(write_numbers(history, units, folder));
     for (int kind = 0; kind < UNKNOWNS; kind++)
         for (size_t curve = 0;
              history->points[kind] > 0 && curve < mf_unknowns_curve_count(unknowns, kind); curve++)
-            TRY(write_curve(history, unknowns, kind, curve, folder));
+            TRY(write_curve(history, unknowns, kind, curve, units, folder));
     return STATUS_OK;
 }
 

@@ -32,9 +32,9 @@ void mf_history_clear(struct history *history);
 /// Append an iteration.
 void mf_history_add(struct history *history, const struct inverse_step *step, double seconds);
 
-/// Write the tables.
+/// Write the tables in these units.
 enum status mf_history_write(const struct history *history, const struct inverse_method *method,
-                             const struct unknowns *unknowns,
+                             const struct unknowns *unknowns, const struct units *units,
                              const struct run_folder *folder) MUST_USE;
 
 /// Pieces for a checkpoint.

@@ -48,8 +48,16 @@ static void add_motion(struct stages *stages, const struct simulation_setup *set
                   flies ? "velocities" : "steps");
 }
 
+/// λ in the units that are spoken, and what stands behind a length.
+static double length_of(const struct stages *stages, char unit[UNITS_NAME_SIZE]) {
+    mf_units_suffix(stages->units, "lambda", unit);
+    return mf_units_factor(stages->units, "lambda");
+}
+
 static void add_list(struct stages *stages, const struct simulation_setup *setup) {
     const struct skin_scene scene = mf_simulation_skin_scene(setup);
+    char unit[UNITS_NAME_SIZE];
+    const double length = length_of(stages, unit);
     const double cutoff = scene.cutoff;
     const bool given = setup->skin > 0;
     const double skin = given ? setup->skin : mf_skin_choose(&scene);
@@ -57,7 +65,7 @@ static void add_list(struct stages *stages, const struct simulation_setup *setup
     const double entries = mf_stages_pairs_within(setup, cutoff + skin);
     mf_stages_add(stages, "list building", true,
                   (mf_stages_cost.sort + mf_stages_cost.build * entries) / interval,
-                  "every %.1f steps: skin %.2f %s", interval, skin,
+                  "every %.1f steps: skin %.2f%s %s", interval, length * skin, unit,
                   given ? "from the scene" : "chosen by time step, temperature and cost");
     mf_stages_add(stages, "going through the list", true, mf_stages_cost.go_through * entries,
                   "%.0f entries a particle, of which %.0f in range", entries,
@@ -65,6 +73,8 @@ static void add_list(struct stages *stages, const struct simulation_setup *setup
 }
 
 static void add_forces(struct stages *stages, const struct simulation_setup *setup) {
+    char unit[UNITS_NAME_SIZE];
+    const double length = length_of(stages, unit);
     const double cutoff = mf_stages_cutoff(setup), pairs = mf_stages_pairs_within(setup, cutoff);
     mf_stages_add(stages, "distances and forces on particles", true, cost.pair * pairs,
                   "%s, %s precision", mf_simd_name(),
@@ -76,7 +86,7 @@ static void add_forces(struct stages *stages, const struct simulation_setup *set
                       mf_composition_pairs(&setup->composition));
     if (setup->potential)
         mf_stages_add(stages, "conservative force", true, cost.conservative * pairs,
-                      "a potential with cutoff %.3g", cutoff);
+                      "a potential with cutoff %.3g%s", length * cutoff, unit);
     else
         mf_stages_add(stages, "conservative force", false, 0, "no potential");
     const bool dissipative = setup->omega != NULL;
@@ -84,11 +94,12 @@ static void add_forces(struct stages *stages, const struct simulation_setup *set
     const double near_pairs = mf_stages_pairs_within(setup, fmin(reach, cutoff));
     if (dissipative && setup->integrator->friction)
         mf_stages_add(stages, "friction and noise", true, cost.kept * near_pairs,
-                      "a friction weight with cutoff %.3g; its pairs are kept for %s", reach,
-                      setup->integrator->name);
+                      "a friction weight with cutoff %.3g%s; its pairs are kept for %s",
+                      length * reach, unit, setup->integrator->name);
     else if (dissipative)
         mf_stages_add(stages, "friction and noise", true, cost.dissipative * near_pairs,
-                      "a friction weight with cutoff %.3g; farther pairs skip it", reach);
+                      "a friction weight with cutoff %.3g%s; farther pairs skip it", length * reach,
+                      unit);
     else
         mf_stages_add(stages, "friction and noise", false, 0,
                       "no friction of pairs: no velocities are read, no random numbers drawn for "
@@ -129,9 +140,9 @@ static void add_companions(struct stages *stages, const struct simulation_setup 
                       "%.0f particles of %s", own, integrator->name);
 }
 
-void mf_explain_scene(FILE *out, const struct simulation_setup *setup,
+void mf_explain_scene(FILE *out, const struct simulation_setup *setup, const struct units *units,
                       const struct observable_use *uses, int64_t every) {
-    struct stages stages = {0};
+    struct stages stages = {.units = units};
     if (setup->integrator->events) {
         add_events(&stages, setup);
     } else {
@@ -146,6 +157,10 @@ void mf_explain_scene(FILE *out, const struct simulation_setup *setup,
     if (!simulation_holds_temperature(setup) && !setup->integrator->events)
         mf_stages_add(&stages, "thermostat", false, 0, "nothing holds the temperature");
     double total = 0;
+    char scale[UNITS_LINE_SIZE];
+    mf_units_tell(units, scale);
+    if (mf_units_speaks(units))
+        fprintf(out, "%s\n", scale);
     for (int k = 0; k < stages.count; k++)
         total += stages.stage[k].nanoseconds;
     const double rate = 1e9 / (total * counted(setup));

@@ -10,5 +10,5 @@
 /// measured on one processor: shares are good to some percent of the whole.
 /// @param[in] uses   what is measured, with its settings, ended by one without an observable
 /// @param[in] every  steps between samples
-void mf_explain_scene(FILE *out, const struct simulation_setup *setup,
+void mf_explain_scene(FILE *out, const struct simulation_setup *setup, const struct units *units,
                       const struct observable_use *uses, int64_t every);

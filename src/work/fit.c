@@ -148,6 +148,11 @@ static void say_line(void *progress, const char *line) {
 static enum status tell_targets(struct run *run) {
     const struct target_etd *etd = &run->fit.files.etd;
     const char *warning = mf_scene_warning(&run->fit.scene);
+    if (mf_units_speaks(&run->fit.scene.units)) {
+        char scale[UNITS_LINE_SIZE];
+        mf_units_tell(&run->fit.scene.units, scale);
+        mf_progress_say(&run->progress, "%s", scale);
+    }
     if (warning)
         mf_progress_say(&run->progress, "mesofit: warning: scene: %s", warning);
     if (etd->left_out > 0)
@@ -164,7 +169,7 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
     TRY(mf_target_files_normalise(&run->fit.files, &run->fit.scene.setup.box));
     const enum status status = create(run);
     if (status != STATUS_OK)
-        return mf_status_prefix(status, "%s", file);
+        return mf_status_prefix(mf_units_mark(&run->fit.scene.units, status), "%s", file);
     TRY(write_used(run, options->resume));
     // Saved now, so that a run interrupted in its first iteration can be resumed like any other.
     TRY(options->resume ? load(run) : save(run));
@@ -267,11 +272,12 @@ static enum status record(struct run *run, const struct inverse_step *step) {
     snprintf(run->standing.formula, sizeof run->standing.formula, "%s",
              step->formula ? step->formula : "");
     mf_history_add(&run->history, step, run->standing.seconds);
-    TRY(mf_history_write(&run->history, run->fit.method, &run->unknowns, &run->folder));
+    TRY(mf_history_write(&run->history, run->fit.method, &run->unknowns, &run->fit.scene.units,
+                         &run->folder));
     const struct fit_result result = result_so_far(run, STATUS_UNCONVERGED);
     TRY(mf_fit_output_curves(&run->fit, &run->unknowns, &result, &run->folder));
     if (run->fit.method->write) {
-        const struct inverse_folder own = {own_file, &run->folder};
+        const struct inverse_folder own = {own_file, &run->folder, &run->fit.scene.units};
         TRY(run->fit.method->write(run->state, &own));
     }
     mf_progress_say(&run->progress, "iteration %u  error %.4f  noise %.4f  %.1f s", step->iteration,
@@ -310,6 +316,7 @@ static void tell_unconverged(const struct run *run) {
                        "not one simulation of the fit succeeded; the failures are counted in "
                        "%s/history.tsv",
                        folder);
+    mf_units_mark(&run->fit.scene.units, STATUS_UNCONVERGED);
 }
 
 /// A result whose verification blows up leaves a summary that says so.

@@ -7,11 +7,12 @@
 #include "input/fit_file.h"
 
 static enum status print_simulation(const struct measurement_setup *measured,
-                                    const struct simulation_setup *setup) {
+                                    const struct simulation_setup *setup,
+                                    const struct units *units) {
     struct observable_use uses[OBSERVABLES_MOST + 1] = {0};
     const enum status status = mf_measurement_list(measured, setup->time_step, uses);
     if (status == STATUS_OK)
-        mf_explain_scene(stdout, setup, uses, measured->plan.every);
+        mf_explain_scene(stdout, setup, units, uses, measured->plan.every);
     mf_measurement_list_clear(uses);
     return status;
 }
@@ -28,7 +29,7 @@ static enum status print_simulations(const struct fit_file *fit, const struct un
                                                      .plan.every = sampling.every,
                                                      .force_estimator = sampling.rdf_force};
         printf("An evaluation of the method \"%s\", one a thread:\n", fit->method->name);
-        TRY(print_simulation(&evaluation, &setup));
+        TRY(print_simulation(&evaluation, &setup, &fit->scene.units));
     } else {
         printf("The method \"%s\" samples by a Monte Carlo of its own, not by the dynamics of the "
                "scene.\n",
@@ -39,15 +40,18 @@ static enum status print_simulations(const struct fit_file *fit, const struct un
     const struct measurement_setup replica = {
         .targets = &problem->compared, .plan = fit->verification.plan, .thermodynamics = true};
     printf("A replica of the verification, one a thread:\n");
-    return print_simulation(&replica, &setup);
+    return print_simulation(&replica, &setup, &fit->scene.units);
 }
 
 static void print_numbers(const struct fit_file *fit) {
     for (size_t n = 0; n < fit->numbers; n++) {
         const struct inverse_number *number = &fit->number[n];
+        const double factor = mf_units_factor(&fit->scene.units, number->unit);
+        char unit[UNITS_NAME_SIZE];
+        mf_units_name(&fit->scene.units, number->unit, unit);
         printf("%s is to be found from %g to %g%s%s, beginning with %g.\n", number->name,
-               number->minimum, number->maximum, number->unit[0] ? " " : "", number->unit,
-               number->start);
+               factor * number->minimum, factor * number->maximum, unit[0] ? " " : "", unit,
+               factor * number->start);
     }
 }
 

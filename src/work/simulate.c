@@ -104,11 +104,14 @@ static enum status load(struct run *run) {
 static void tell(void *context, const struct simulation *simulation, uint64_t done,
                  uint64_t total) {
     struct run *run = context;
-    char text[96];
+    const struct units *units = &run->scene.units;
+    char text[96], unit[UNITS_NAME_SIZE];
     snprintf(text, sizeof text, "step %llu", (unsigned long long)done);
     if (!simulation_is_overdamped(&simulation->setup) && simulation->particles.count > 1)
-        snprintf(text, sizeof text, "step %llu  T %.3f", (unsigned long long)done,
-                 mf_particles_temperature(&simulation->particles));
+        snprintf(text, sizeof text, "step %llu  T %.*f%s", (unsigned long long)done,
+                 !mf_units_speaks(units) ? 3 : 1,
+                 mf_particles_temperature(&simulation->particles) * mf_units_factor(units, "T_0"),
+                 mf_units_suffix(units, "T_0", unit));
     mf_progress_tell(&run->progress, done, total, "steps", text);
     if (mf_progress_seconds(&run->progress) - run->last_checkpoint > checkpoint_interval &&
         save(run) != STATUS_OK)
@@ -126,6 +129,7 @@ static enum status write_summary(const struct run *run, double seconds) {
     const struct observable_results results = results_of(run);
     struct json_writer *writer = mf_json_writer_create();
     char path[OUTPUT_PATH_SIZE];
+    mf_units_write_summary(&run->scene.units, writer);
     mf_json_put_text(writer, "status", mf_status_name(STATUS_OK));
     mf_json_put_text(writer, "method", "simulate");
     mf_json_put_number(writer, "seconds", seconds);
@@ -145,7 +149,9 @@ static enum status begin_measuring(struct run *run, const char *file) {
     enum status status = mf_simulation_init(&run->simulation, &run->scene.setup, &run->scene.start);
     if (status == STATUS_OK)
         status = mf_simulate_observables_begin(&run->observables, &run->simulation, &run->plan);
-    return status == STATUS_OK ? status : mf_status_prefix(status, "%s", file);
+    return status == STATUS_OK
+               ? status
+               : mf_status_prefix(mf_units_mark(&run->scene.units, status), "%s", file);
 }
 
 /// What an earlier run left is touched once this one can begin.
@@ -160,7 +166,11 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
 
 static void warn(struct run *run) {
     const char *warning = mf_scene_warning(&run->scene);
-    char line[SCENE_LINE_SIZE];
+    char line[SCENE_LINE_SIZE], scale[UNITS_LINE_SIZE];
+    if (mf_units_speaks(&run->scene.units)) {
+        mf_units_tell(&run->scene.units, scale);
+        mf_progress_say(&run->progress, "%s", scale);
+    }
     if (warning)
         mf_progress_say(&run->progress, "mesofit: warning: %s", warning);
     if (mf_scene_is_hot(&run->scene, line))
@@ -186,7 +196,7 @@ static enum status write_results(struct run *run) {
     mf_run_folder_file(&run->folder, "checkpoint.bin", path); // nothing is left to go on with
     remove(path);
     mf_run_folder_draw(&run->folder);
-    mf_simulate_observables_say(&run->observables, &run->simulation.setup, &run->progress);
+    mf_simulate_observables_say(&run->observables, &results, &run->progress);
     mf_progress_say(&run->progress, "%llu steps in %.3g s; results in %s",
                     (unsigned long long)run->simulation.step, seconds, run->folder.path);
     return STATUS_OK;
@@ -209,7 +219,7 @@ enum status mf_simulate_file(const char *file, const struct run_options *options
     NEW_ARRAY(run, 1);
     run->progress = mf_progress_begin(options->quiet);
     CHECK(prepare(run, file, options));
-    status = carry_out(run);
+    status = mf_units_mark(&run->scene.units, carry_out(run));
     if (status == STATUS_INTERRUPTED) {
         CHECK(save(run));
         status = mf_status_fail(STATUS_INTERRUPTED, "interrupted at step %llu; go on with --resume",
@@ -229,7 +239,8 @@ enum status mf_simulate_explain(const char *file, const struct run_options *opti
     CHECK(read_file(run, file, options));
     // All that a run refuses before its first step.
     CHECK(begin_measuring(run, file));
-    mf_explain_scene(stdout, &run->scene.setup, run->observables.use, run->plan.every);
+    mf_explain_scene(stdout, &run->scene.setup, &run->scene.units, run->observables.use,
+                     run->plan.every);
 done:
     clear(run);
     return status;

@@ -121,14 +121,16 @@ void mf_simulate_observables_put(const struct simulate_observables *observables,
 }
 
 void mf_simulate_observables_say(const struct simulate_observables *observables,
-                                 const struct simulation_setup *setup, struct progress *to) {
+                                 const struct observable_results *results, struct progress *to) {
     for (const struct observable_use *use = observables->use; use->observable; use++) {
         char line[256];
         if (use->observable->say) {
-            use->observable->say(use->state, line, sizeof line);
+            use->observable->say(use->state, results, line, sizeof line);
             mf_progress_say(to, "%s", line);
         }
-        if (use->observable->judge && use->observable->judge(use->state, setup) != STATUS_OK)
+        const enum status status =
+            use->observable->judge ? use->observable->judge(use->state, results->setup) : STATUS_OK;
+        if (mf_units_mark(results->units, status) != STATUS_OK)
             mf_progress_say(to, "mesofit: warning: %s", mf_status_message());
     }
 }

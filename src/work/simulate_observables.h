@@ -52,4 +52,4 @@ void mf_simulate_observables_put(const struct simulate_observables *observables,
 
 /// Say what a person is to know, and what is not to be trusted.
 void mf_simulate_observables_say(const struct simulate_observables *observables,
-                                 const struct simulation_setup *setup, struct progress *to);
+                                 const struct observable_results *results, struct progress *to);
