@@ -35,8 +35,14 @@ static enum status take_column(const struct data_table *table, const char *file,
     const long place = find_column(table->header, column->name, unit, sizeof unit);
     if (place < 0 && column->required)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: no column called %s", file, column->name);
-    if (place >= 0 && mf_units_from(units, unit, column->unit, &factor) != STATUS_OK)
-        return mf_status_prefix(STATUS_BAD_INPUT, "%s: %s", file, column->name);
+    if (place >= 0 && strcmp(unit, column->unit) != 0) {
+        if (!mf_units_known(units))
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: %s is in \"%s\", but used.json has no units", file,
+                                  column->name, unit);
+        if (mf_units_from(units, unit, column->unit, &factor) != STATUS_OK)
+            return mf_status_prefix(STATUS_BAD_INPUT, "%s: %s", file, column->name);
+    }
     for (size_t k = 0; k < table->rows; k++)
         values[k] = place < 0 ? NAN : factor * table->values[k * table->columns + (size_t)place];
     return STATUS_OK;

@@ -311,44 +311,38 @@ static enum status read_start(struct export_model *model, struct export_columns 
     return STATUS_OK;
 }
 
-static const double *column_of(const struct snapshot *snapshot, const char *name) {
-    for (int k = 0; k < snapshot->columns; k++)
-        if (strcmp(snapshot->column[k].name, name) == 0)
-            return snapshot->column[k].values;
-    return NULL;
+static int type_of(const struct export_model *model, uint32_t id) {
+    return model->types > 1 ? mf_composition_type(&model->setup.composition, id) : 0;
 }
 
 /// Masses, which are alike within a type.
-static enum status keep_masses(struct export_model *model, const double *mass) {
-    const struct composition *composition = &model->setup.composition;
+static enum status keep_masses(struct export_model *model, const struct particles *particles) {
+    const double *mass = particles_masses(particles);
     for (int type = 0; type < model->types; type++)
         model->mass[type] = 1;
     for (size_t k = 0; mass && k < model->count; k++)
-        model->mass[model->types > 1 ? mf_composition_type(composition, (uint32_t)k) : 0] = mass[k];
+        model->mass[type_of(model, particles->id[k])] = mass[k];
     for (size_t k = 0; mass && k < model->count; k++)
-        if (mass[k] !=
-            model->mass[model->types > 1 ? mf_composition_type(composition, (uint32_t)k) : 0])
+        if (mass[k] != model->mass[type_of(model, particles->id[k])])
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "%s: cannot be exported: masses differ within a type",
                                   model->folder);
     return STATUS_OK;
 }
 
-static enum status keep_state(struct export_model *model, const struct snapshot *snapshot) {
+/// Positions and velocities by id.
+static enum status keep_state(struct export_model *model, const struct particles *particles) {
     enum status status = STATUS_OK;
-    const double *position = column_of(snapshot, "position");
-    const double *velocity = column_of(snapshot, "velocity");
-    model->count = snapshot->count;
+    model->count = particles->count;
     for (int d = 0; d < 3; d++) {
         NEW_ARRAY(model->position[d], model->count);
         NEW_ARRAY(model->velocity[d], model->count);
-        if (d >= model->setup.box.dimensions)
-            continue;
-        const size_t bytes = model->count * sizeof(double), first = (size_t)d * model->count;
-        memcpy(model->position[d], position + first, bytes);
-        memcpy(model->velocity[d], velocity + first, bytes);
+        for (size_t k = 0; d < model->setup.box.dimensions && k < model->count; k++) {
+            model->position[d][particles->id[k]] = particles->position[d][k];
+            model->velocity[d][particles->id[k]] = particles->velocity[d][k];
+        }
     }
-    CHECK(keep_masses(model, column_of(snapshot, "mass")));
+    CHECK(keep_masses(model, particles));
 done:
     return status;
 }
@@ -359,16 +353,13 @@ static enum status find_start(struct export_model *model) {
     struct simulation_start start;
     struct simulation simulation = {0};
     struct export_columns columns = {0};
-    struct snapshot snapshot = {0};
     CHECK(read_start(model, &columns, &start));
     status = mf_simulation_init(&simulation, &model->setup, &start);
     if (status != STATUS_OK)
         status = mf_status_prefix(status, "%s", model->folder);
     CHECK(status);
-    CHECK(mf_snapshot_take(&snapshot, &simulation.particles, &model->setup.composition, 0, 0));
-    CHECK(keep_state(model, &snapshot));
+    CHECK(keep_state(model, &simulation.particles));
 done:
-    mf_snapshot_clear(&snapshot);
     mf_simulation_clear(&simulation);
     mf_export_columns_clear(&columns);
     return status;

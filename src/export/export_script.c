@@ -12,16 +12,16 @@ struct printed {
 static void print_start(const struct export_job *job, double shift, FILE *stream) {
     const struct export_model *model = job->model;
     const double velocity = export_units_velocity(&job->units);
-    fprintf(stream, "# type, position[%s], velocity[%s/%s]\n", job->units.length_name,
-            job->units.length_name, job->units.time_name);
+    fprintf(stream, "# type\tx[%s]\ty\tz\tvelocity_x[%s/%s]\tvelocity_y\tvelocity_z\n",
+            job->units.length_name, job->units.length_name, job->units.time_name);
     for (size_t k = 0; k < model->count; k++) {
         fprintf(stream, "%d", mf_export_type(model, k));
         for (int d = 0; d < 3; d++)
-            fprintf(stream, " %.12g",
+            fprintf(stream, "\t%.12g",
                     (mf_export_place(model, d, k) - shift * model->setup.box.length[d]) *
                         job->units.length);
         for (int d = 0; d < 3; d++)
-            fprintf(stream, " %.12g", model->velocity[d][k] * velocity);
+            fprintf(stream, "\t%.12g", model->velocity[d][k] * velocity);
         fprintf(stream, "\n");
     }
 }
