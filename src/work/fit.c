@@ -313,8 +313,8 @@ static void tell_unconverged(const struct run *run) {
                        "not one simulation of the fit succeeded; the failures are counted in "
                        "%s/history.tsv",
                        folder);
-    // What the verification says of it speaks as the file does.
-    if (!run->doubted)
+    // What the verification says of it speaks as the file does, and most reasons of no units.
+    if (!run->doubted && (strstr(reason, "pressure") || strstr(reason, "k_B T_0")))
         mf_units_mark(&run->fit.scene.units, STATUS_UNCONVERGED);
 }
 
