@@ -176,8 +176,11 @@ static void convert(struct compared *fit, const struct units *to) {
     struct result_summary *summary = &fit->result.summary;
     for (const struct field *field = mf_result_summary_fields; field->name; field++)
         if (field->type == FIELD_NUMBER) {
-            double *value = (double *)((char *)summary + field->offset);
-            *value *= size_of(&summary->units, field->unit) / size_of(to, field->unit);
+            char *member = (char *)summary + field->offset;
+            double value;
+            memcpy(&value, member, sizeof value);
+            value *= size_of(&summary->units, field->unit) / size_of(to, field->unit);
+            memcpy(member, &value, sizeof value);
         }
     for (size_t k = 0; k < sizeof blocks / sizeof blocks[0]; k++)
         convert_table((struct result_table *)((char *)&fit->result + blocks[k].table),
