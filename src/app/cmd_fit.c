@@ -1,25 +1,98 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command.h"
+#include "io/output.h"
+#include "io/text_file.h"
 #include "work/fit.h"
 
-enum { EXPLAIN };
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { EXPLAIN, TARGET, DENSITY, TEMPERATURE };
 
 static const struct command_option options[] = {
     [EXPLAIN] = {"--explain", NULL, "print what a step will pay for and why; run nothing"},
+    [TARGET] = {"--target", "DIR", "fit DIR/target.json, or with the next two DIR/rdf.tsv alone"},
+    [DENSITY] = {"--density", "NUMBER", "beads in a unit of volume, where there is no target.json"},
+    [TEMPERATURE] = {"--temperature", "NUMBER", "likewise; without it 1"},
     {NULL, NULL, NULL},
 };
 
+static enum status run_file(const char *file, const struct command_line *line) {
+    return line->own[EXPLAIN] ? mf_fit_explain(file, &line->options)
+                              : mf_fit_run(file, &line->options);
+}
+
+static enum status parse_positive(const char *option, const char *text, double *value) {
+    char *end;
+    *value = strtod(text, &end);
+    if (end == text || *end != '\0' || !(*value > 0) || isinf(*value))
+        return mf_status_fail(STATUS_BAD_INPUT, "%s takes a number above 0", option);
+    return STATUS_OK;
+}
+
+/// A run file that nobody wrote: g(r) of the folder, density and temperature.
+static enum status run_rdf(const char *file, const char *rdf, const struct command_line *line) {
+    double density = 0, temperature = 1;
+    char text[256];
+    if (access(rdf, R_OK) != 0)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "--target: there is no %s, and no rdf.tsv beside it with which "
+                              "--density would do",
+                              file);
+    if (line->own[DENSITY] == NULL)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "--target: there is no %s: it would say density and temperature, as "
+                              "--density and --temperature do",
+                              file);
+    TRY(parse_positive("--density", line->own[DENSITY], &density));
+    if (line->own[TEMPERATURE])
+        TRY(parse_positive("--temperature", line->own[TEMPERATURE], &temperature));
+    snprintf(text, sizeof text,
+             "{\"target\": {\"rdf\": {\"file\": \"rdf.tsv\"}}, "
+             "\"scene\": {\"density\": %.17g, \"temperature\": %.17g}}",
+             density, temperature);
+    const struct text_lent lent = {file, text};
+    mf_text_file_lend(&lent, 1);
+    const enum status status = run_file(file, line);
+    mf_text_file_lend(NULL, 0);
+    return status;
+}
+
+static enum status run_target(const char *folder, const struct command_line *line) {
+    char file[OUTPUT_PATH_SIZE], rdf[OUTPUT_PATH_SIZE];
+    size_t length = strlen(folder);
+    while (length > 1 && folder[length - 1] == '/')
+        length--;
+    if (length + sizeof "/target.json" > sizeof file)
+        return mf_status_fail(STATUS_BAD_INPUT, "--target: the path is too long");
+    snprintf(file, sizeof file, "%.*s/target.json", (int)length, folder);
+    snprintf(rdf, sizeof rdf, "%.*s/rdf.tsv", (int)length, folder);
+    if (access(file, F_OK) != 0)
+        return run_rdf(file, rdf, line);
+    if (line->own[DENSITY] || line->own[TEMPERATURE])
+        return mf_status_fail(STATUS_BAD_INPUT, "%s says density and temperature", file);
+    return run_file(file, line);
+}
+
 static enum status run(const struct command_line *line) {
-    if (line->own[EXPLAIN])
-        return mf_fit_explain(line->files[0], &line->options);
-    return mf_fit_run(line->files[0], &line->options);
+    const char *folder = line->own[TARGET];
+    if ((folder != NULL) == (line->file_count > 0))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "usage: mesofit fit RUN.json, or mesofit fit --target DIR");
+    if (folder)
+        return run_target(folder, line);
+    if (line->own[DENSITY] || line->own[TEMPERATURE])
+        return mf_status_fail(STATUS_BAD_INPUT, "--density and --temperature are for --target DIR");
+    return run_file(line->files[0], line);
 }
 
 const struct command cmd_fit = {
     .name = "fit",
-    .usage = "RUN.json",
+    .usage = "RUN.json | --target DIR",
     .summary = "find the potential that reproduces a target",
-    .least_files = 1,
+    .least_files = 0,
     .most_files = 1,
     .options = options,
     .run = run,

@@ -35,8 +35,8 @@ struct command {
     enum status (*run)(const struct command_line *line);
 };
 
-extern const struct command cmd_simulate, cmd_fit, cmd_plot, cmd_compare, cmd_describe, cmd_bench,
-    cmd_measure;
+extern const struct command cmd_measure, cmd_fit, cmd_export, cmd_simulate, cmd_plot, cmd_compare,
+    cmd_describe, cmd_bench;
 
 /// All subcommands, in the order of --help, up to NULL.
 extern const struct command *const mf_command_list[];

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "input/fit_scales.h"
 
+#include "base/memory.h"
+
 #include <math.h>
 
 /// g of one pair type.
@@ -10,10 +12,16 @@ struct view {
     double tail;             ///< mean over the last quarter
 };
 
-static struct view view_of(const struct target_files *files, size_t pair) {
-    const struct rdf_bins *bins = &files->rdf[0].bins;
-    return (struct view){bins, files->rdf_g + pair * bins->count,
-                         files->rdf_error + pair * bins->count, files->rdf[pair].tail.mean};
+static size_t pairs_of(const struct fit_scales_rdf *rdf) {
+    return (size_t)mf_composition_pairs(rdf->composition);
+}
+
+static struct view view_of(const struct fit_scales_rdf *rdf, size_t pair) {
+    const size_t bins = rdf->bins.count, first = 3 * bins / 4;
+    struct view view = {&rdf->bins, rdf->g + pair * bins, rdf->error + pair * bins, 0};
+    for (size_t k = first; k < bins; k++)
+        view.tail += view.g[k] / (double)(bins - first);
+    return view;
 }
 
 static size_t highest_bin(const struct view *view) {
@@ -88,6 +96,15 @@ static void find_curvature(const struct view *view, size_t half, double *largest
     }
 }
 
+/// Lower edge of the first bin with pairs.
+static double find_core(const struct view *view) {
+    static const double rare = 0.02;
+    size_t k = 0;
+    while (k + 1 < view->bins->count && view->g[k] < rare)
+        k++;
+    return mf_rdf_bins_edge(view->bins, k);
+}
+
 /// Upper edge of the last bin about which g differs from its tail by more than noise.
 static double find_seen(const struct view *view) {
     enum { HALF = 2 };
@@ -106,25 +123,25 @@ static double find_seen(const struct view *view) {
     return 0;
 }
 
-static double find_noise(const struct target_files *files) {
-    const size_t values = files->pairs * files->rdf[0].bins.count;
+static double find_noise(const struct fit_scales_rdf *rdf) {
+    const size_t values = pairs_of(rdf) * rdf->bins.count;
     double squares = 0, count = 0;
     for (size_t k = 0; k < values; k++) {
-        squares += files->rdf_error[k] * files->rdf_error[k];
-        count += files->rdf_g[k] > 0;
+        squares += rdf->error[k] * rdf->error[k];
+        count += rdf->g[k] > 0;
     }
     return count > 0 ? sqrt(squares / count) : 0;
 }
 
-struct fit_scales mf_fit_scales_find(const struct target_files *files, double density,
-                                     double temperature, int dimensions) {
+struct fit_scales mf_fit_scales_find(const struct fit_scales_rdf *rdf, double temperature) {
     enum { NARROWEST = 2, WIDEST = 8 };
-    struct fit_scales scales = {.neighbour = INFINITY,
-                                .noise = find_noise(files),
-                                .range = mf_rdf_bins_range(&files->rdf[0].bins)};
-    const double spacing = pow(density, -1.0 / dimensions);
-    for (size_t pair = 0; pair < files->pairs; pair++) {
-        const struct view view = view_of(files, pair);
+    struct fit_scales scales = {.core = INFINITY,
+                                .neighbour = INFINITY,
+                                .noise = find_noise(rdf),
+                                .range = mf_rdf_bins_range(&rdf->bins)};
+    const double spacing = pow(rdf->density, -1.0 / rdf->dimensions);
+    for (size_t pair = 0; pair < pairs_of(rdf); pair++) {
+        const struct view view = view_of(rdf, pair);
         const double neighbour = find_neighbour(&view, spacing);
         double curvature = 0, at = 0;
         for (size_t half = NARROWEST; half <= WIDEST && curvature == 0; half++)
@@ -133,6 +150,7 @@ struct fit_scales mf_fit_scales_find(const struct target_files *files, double de
             scales.curvature = temperature * curvature;
             scales.curvature_at = at;
         }
+        scales.core = fmin(scales.core, find_core(&view));
         scales.neighbour = fmin(scales.neighbour, neighbour);
         scales.shell = fmax(scales.shell, find_shell(&view, neighbour));
         scales.seen = fmax(scales.seen, find_seen(&view));
@@ -141,23 +159,68 @@ struct fit_scales mf_fit_scales_find(const struct target_files *files, double de
     return scales;
 }
 
-double mf_fit_scales_friction(const struct target_files *files, double density, int dimensions,
-                              double cutoff) {
-    const struct rdf_bins *bins = &files->rdf[0].bins;
-    const struct composition *composition = &files->composition;
+double mf_fit_scales_friction(const struct fit_scales_rdf *rdf, double cutoff) {
+    const struct rdf_bins *bins = &rdf->bins;
+    const struct composition *composition = rdf->composition;
     const double count = (double)mf_composition_particles(composition);
-    const struct box space = {.dimensions = dimensions};
+    const struct box space = {.dimensions = rdf->dimensions};
     double sum = 0;
-    for (size_t pair = 0; pair < files->pairs; pair++) {
+    for (size_t pair = 0; pair < pairs_of(rdf); pair++) {
         int type[2];
         mf_composition_pair_types(composition, (int)pair, type);
         const double share = (type[0] == type[1] ? 1 : 2) * (double)composition->count[type[0]] *
                              (double)composition->count[type[1]] / (count * count);
         for (size_t k = 0; k < bins->count && mf_rdf_bins_centre(bins, k) < cutoff; k++)
-            sum += share * files->rdf_g[pair * bins->count + k] *
+            sum += share * rdf->g[pair * bins->count + k] *
                    pow(1 - mf_rdf_bins_centre(bins, k) / cutoff, 2) *
                    mf_box_shell_volume(&space, mf_rdf_bins_edge(bins, k),
                                        mf_rdf_bins_edge(bins, k + 1));
     }
-    return density * sum / dimensions;
+    return rdf->density * sum / rdf->dimensions;
+}
+
+// g(r) --------------------------------------------------------------------------------------------
+
+/// That of a gas.
+static enum status make_rdf(struct fit_scales_rdf *rdf, const struct scene *scene) {
+    enum { BINS = 200 };
+    static const double known = 0.001;
+    enum status status = STATUS_OK;
+    const size_t pairs = pairs_of(rdf);
+    double range = 0;
+    for (size_t pair = 0; pair < pairs; pair++)
+        range = fmax(range, mf_curve_cutoff(mf_scene_law_curve(&scene->potential, (int)pair)));
+    rdf->bins = (struct rdf_bins){.width = range / BINS, .count = BINS};
+    NEW_ARRAY(rdf->own, 2 * pairs * BINS);
+    for (size_t n = 0; n < pairs * BINS; n++) {
+        const struct curve *phi = mf_scene_law_curve(&scene->potential, (int)(n / BINS));
+        const double r = mf_rdf_bins_centre(&rdf->bins, n % BINS);
+        rdf->own[n] = exp(-mf_curve_value(phi, r) / scene->setup.temperature);
+        rdf->own[pairs * BINS + n] = known;
+    }
+    rdf->g = rdf->own;
+    rdf->error = rdf->own + pairs * BINS;
+done:
+    return status;
+}
+
+enum status mf_fit_scales_rdf_init(struct fit_scales_rdf *rdf, const struct target_files *files,
+                                   const struct scene *scene) {
+    const struct simulation_setup *setup = &scene->setup;
+    *rdf = (struct fit_scales_rdf){.composition = &setup->composition,
+                                   .dimensions = setup->box.dimensions,
+                                   .density =
+                                       (double)setup->placement.count / mf_box_volume(&setup->box)};
+    if (files->given[TARGET_RDF]) {
+        rdf->bins = files->rdf[0].bins;
+        rdf->g = files->rdf_g;
+        rdf->error = files->rdf_error;
+    }
+    return files->given[TARGET_RDF] || scene->potential.curves == 0 ? STATUS_OK
+                                                                    : make_rdf(rdf, scene);
+}
+
+void mf_fit_scales_rdf_clear(struct fit_scales_rdf *rdf) {
+    mf_memory_free(rdf->own);
+    *rdf = (struct fit_scales_rdf){0};
 }

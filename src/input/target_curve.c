@@ -8,6 +8,7 @@
 #include "io/units_text.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #define CURVE(name) .offset = offsetof(struct target_curve_parameters, name)
@@ -16,18 +17,19 @@
     {"value_column",                                                                               \
      FIELD_INTEGER,                                                                                \
      CURVE(value_column),                                                                          \
-     .initial = 2,                                                                                 \
-     .minimum = 1,                                                                                 \
+     .initial = 0,                                                                                 \
+     .minimum = 0,                                                                                 \
      COLUMN,                                                                                       \
-     .help = "number of the column with the values"},                                              \
+     .help =                                                                                       \
+         "number of the column with the values; 0: the one that is called as the target, else 2"}, \
         {"error_column",                                                                           \
          FIELD_INTEGER,                                                                            \
          CURVE(error_column),                                                                      \
          .initial = -1,                                                                            \
          .minimum = -1,                                                                            \
          COLUMN,                                                                                   \
-         .help = "number of the column with their standard errors; 0: none; -1: 3 if there are "   \
-                 "so many columns, else none"},                                                    \
+         .help = "number of the column with their standard errors; 0: none; -1: the one that is "  \
+                 "called as the target with \"_error\", else 3 if there are so many columns"},     \
         FIELD_END
 
 const struct field mf_target_curve_time_fields[] = {
@@ -105,16 +107,34 @@ static enum status check_points(struct target_curve *curve, enum observable_form
     return check_times(curve, table);
 }
 
+/// Columns that the file does not number are found by their names, as in tables that `mesofit
+/// simulate` writes.
+static enum status read_table(const struct target_curve_parameters *p, const char *name,
+                              struct data_table *table, int64_t *value, int64_t *error) {
+    enum { USUAL = 2 };
+    char error_name[64];
+    const int64_t least = p->value_column > 0 ? p->value_column : USUAL;
+    TRY(mf_data_table_read(table, p->file, (size_t)(p->x_column > least ? p->x_column : least)));
+    snprintf(error_name, sizeof error_name, "%s_error", name);
+    const int64_t named = (int64_t)mf_data_table_find(table, name),
+                  error_named = (int64_t)mf_data_table_find(table, error_name);
+    *value = p->value_column > 0 ? p->value_column : named > 0 ? named : USUAL;
+    const bool by_name = p->error_column < 0 && error_named > 0;
+    return mf_target_rdf_error_column(by_name ? error_named : p->error_column, p->x_column, *value,
+                                      table, p->file, error);
+}
+
 /// The columns that are read, in reduced units.
 static enum status convert(const struct target_curve_parameters *p,
-                           const struct observable_target *about, int64_t error_column,
-                           const struct units *units, struct data_table *table) {
+                           const struct observable_target *about, int64_t value_column,
+                           int64_t error_column, const struct units *units,
+                           struct data_table *table) {
     char argument[UNITS_NAME_SIZE];
     size_t length;
     const char *unit = mf_units_text_in_brackets(about->argument, &length);
     snprintf(argument, sizeof argument, "%.*s", (int)length, unit);
     TRY(mf_data_table_convert(table, p->file, (size_t)p->x_column - 1, argument, units));
-    TRY(mf_data_table_convert(table, p->file, (size_t)p->value_column - 1, about->unit, units));
+    TRY(mf_data_table_convert(table, p->file, (size_t)value_column - 1, about->unit, units));
     return error_column > 0
                ? mf_data_table_convert(table, p->file, (size_t)error_column - 1, about->unit, units)
                : STATUS_OK;
@@ -124,26 +144,25 @@ static enum status load(struct target_curve *curve, const struct observable_targ
                         const struct units *units, struct data_table *table) {
     enum status status = STATUS_OK;
     const struct target_curve_parameters *p = &curve->parameters;
-    const int64_t least = p->x_column > p->value_column ? p->x_column : p->value_column;
-    int64_t error_column;
-    CHECK(mf_data_table_read(table, p->file, (size_t)least));
-    CHECK(mf_target_rdf_error_column(p->error_column, p->x_column, p->value_column, table, p->file,
-                                     &error_column));
-    CHECK(convert(p, about, error_column, units, table));
+    int64_t value_column, error_column;
+    CHECK(read_table(p, about->name, table, &value_column, &error_column));
+    CHECK(convert(p, about, value_column, error_column, units, table));
     CHECK(check_points(curve, about->form, table));
     NEW_ARRAY(curve->x, table->rows);
     NEW_ARRAY(curve->value, table->rows);
     NEW_ARRAY(curve->error, table->rows);
     for (size_t k = 0; k < table->rows; k++) {
         curve->x[k] = cell(table, k, p->x_column);
-        curve->value[k] = cell(table, k, p->value_column);
+        curve->value[k] = cell(table, k, value_column);
         curve->error[k] = error_column ? cell(table, k, error_column) : 0;
-        if (!(curve->error[k] >= 0)) {
-            status =
-                mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %lld: %g is not a standard error",
-                               p->file, table->line[k], (long long)error_column, curve->error[k]);
-            goto done;
-        }
+        const bool known = isfinite(curve->value[k]);
+        if (known && curve->error[k] >= 0)
+            continue;
+        status = mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %lld: %g is not a %s", p->file,
+                                table->line[k], (long long)(known ? error_column : value_column),
+                                known ? curve->error[k] : curve->value[k],
+                                known ? "standard error" : "finite number");
+        goto done;
     }
     curve->points = table->rows;
 done:

@@ -10,7 +10,8 @@ struct target_curve {
     struct target_curve_parameters {
         char file[FIELD_TEXT_SIZE];
         int64_t x_column, value_column,
-            error_column; ///< from 1; error_column 0: none, −1: 3 or none
+            error_column; ///< from 1; value_column 0, error_column −1: by name; error_column 0:
+                          ///< none
     } parameters;
     size_t points;             ///< 0: not given
     double interval;           ///< between times [τ]; 0: of a curve that is no function of time
@@ -25,7 +26,8 @@ const struct field *mf_target_curve_fields_of(enum observable_form form);
 
 /// Read the members of {"file": …}: x grows from row to row; times begin at 0 and are equally
 /// spaced to the digits of the file. Faults (shape, times, negative errors, …) go to the document
-/// and leave the target empty. Fails: NO_MEMORY. Tested: test_target_files.
+/// and leave the target empty. Columns may be found by the target's name. Fails: NO_MEMORY. Tested:
+/// test_target_files.
 enum status mf_target_curve_read(struct target_curve *curve, const struct observable_target *about,
                                  struct json_object *object) MUST_USE;
 void mf_target_curve_clear(struct target_curve *curve);

@@ -5,6 +5,8 @@
 #include "io/data_table.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 #define MEMBER(name) .offset = offsetof(struct target_etd_parameters, name)
 #define COLUMN .maximum = 1000, .unit = ""
@@ -19,9 +21,10 @@ const struct field mf_target_etd_fields[] = {
      .help = "number of the column with the first bin, after that of the times; all others follow"},
     {"r_minimum", FIELD_NUMBER, MEMBER(r_minimum), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "lambda", .help = "where the first bin begins"},
-    {"r_maximum", FIELD_NUMBER, MEMBER(r_maximum), .required = true, .minimum = FIELD_ABOVE_ZERO,
-     .maximum = DBL_MAX, .unit = "lambda",
-     .help = "where the last one ends, and where a pair has escaped"},
+    {"r_maximum", FIELD_NUMBER, MEMBER(r_maximum), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
+     .unit = "lambda",
+     .help = "where the last one ends, and where a pair has escaped; 0: both by the names of the "
+             "columns, \"E(r0=0.51)\", which tell the middle of each bin"},
     FIELD_END,
 };
 
@@ -39,10 +42,14 @@ static double time_of(const struct data_table *table, const struct target_etd_pa
     return table->values[row * table->columns + (size_t)p->time_column - 1];
 }
 
-static enum status check_parameters(const struct target_etd_parameters *p) {
+static enum status check_columns(const struct target_etd_parameters *p) {
     if (p->time_column >= p->first_column)
         return mf_status_fail(STATUS_BAD_INPUT, "first_column %lld is not behind time_column %lld",
                               (long long)p->first_column, (long long)p->time_column);
+    return STATUS_OK;
+}
+
+static enum status check_range(const struct target_etd_parameters *p) {
     if (!(p->r_maximum > p->r_minimum))
         return mf_status_fail(STATUS_BAD_INPUT, "r_maximum %g is not above r_minimum %g",
                               p->r_maximum, p->r_minimum);
@@ -142,11 +149,38 @@ done:
     return status;
 }
 
+/// Bins by the names of the first and the last column, "E(r0=…)".
+static enum status find_bins(struct target_etd_parameters *p, const struct data_table *table,
+                             const struct units *units) {
+    static const char mark[] = "r0=";
+    const size_t bins = table->columns - (size_t)p->first_column + 1;
+    double first = NAN, last = NAN;
+    size_t names = 0;
+    for (const char *at = table->header; (at = strstr(at, mark)); names++) {
+        at += strlen(mark);
+        last = strtod(at, NULL);
+        first = names == 0 ? last : first;
+    }
+    if (names != bins || bins < 2 || !(last > first))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: r_maximum: missing, and the %zu columns are not called "
+                              "\"E(r0=…)\" with growing r0",
+                              p->file, bins);
+    const double length = mf_units_factor(units, "lambda");
+    const double width = (last - first) / (double)(bins - 1);
+    p->r_minimum = fmax(0, first - 0.5 * width) / length;
+    p->r_maximum = (last + 0.5 * width) / length;
+    return STATUS_OK;
+}
+
 static enum status load(struct target_etd *target, const struct units *units,
                         struct data_table *table, struct data_table *errors) {
-    const struct target_etd_parameters *p = &target->parameters;
-    TRY(check_parameters(p));
+    struct target_etd_parameters *p = &target->parameters;
+    TRY(check_columns(p));
     TRY(read_table(table, p->file, p, units, 1));
+    if (p->r_maximum == 0)
+        TRY(find_bins(p, table, units));
+    TRY(check_range(p));
     TRY(find_interval(table, p->file, p, &target->interval));
     TRY(check_beginning(table, p));
     if (p->error_file[0]) {

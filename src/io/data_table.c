@@ -305,6 +305,20 @@ void mf_data_table_clear(struct data_table *table) {
     *table = (struct data_table){0};
 }
 
+size_t mf_data_table_find(const struct data_table *table, const char *name) {
+    static const char gaps[] = " \t,;";
+    size_t names = 0, found = 0;
+    for (const char *word = table->header + strspn(table->header, gaps); *word;) {
+        const size_t length = strcspn(word, " \t,;[");
+        names++;
+        if (found == 0 && strlen(name) == length && strncmp(word, name, length) == 0)
+            found = names;
+        word += strcspn(word, gaps);
+        word += strspn(word, gaps);
+    }
+    return names == table->columns ? found : 0;
+}
+
 enum status mf_data_table_check_increasing(const struct data_table *table, const char *file,
                                            size_t column, double least) {
     if (column >= table->columns)

@@ -41,6 +41,11 @@ void mf_data_table_clear(struct data_table *table);
 enum status mf_data_table_check_increasing(const struct data_table *table, const char *file,
                                            size_t column, double least) MUST_USE;
 
+/// Number, from 1, of the column that the line of names calls `name`, units in brackets aside; 0 if
+/// there is none, or if that line has not as many names as there are columns. Tested:
+/// test_data_table.
+size_t mf_data_table_find(const struct data_table *table, const char *name);
+
 /// Make numbers of the reduced `unit` of a column: they are in the unit in brackets behind its
 /// name, or else in those of the file that names the table. Nothing changes for a reduced file.
 /// Fails: BAD_INPUT if the name has no such unit. Tested: test_data_table_units.
@@ -62,6 +67,11 @@ enum status mf_data_table_write(const char *file, const char *comment,
 /// Call a column `name`, whose numbers are of the reduced `unit`: a reduced table leaves that out.
 void mf_data_table_name(const struct units *units, const char *name, const char *unit,
                         char *heading, size_t size);
+
+/// What a heading, "r[lambda]", is called in the units that are spoken, "r[nm]"; returns the factor
+/// of its numbers.
+double mf_data_table_translate(const struct units *units, const char *heading, char *name,
+                               size_t size);
 
 /// Write columns of reduced units in spoken ones: by the unit in brackets behind its name each is
 /// converted and called anew, "r[lambda]" as "r[nm]"; columns of other units stay. Tested:

@@ -94,10 +94,19 @@ static double find_beads(const struct json_object *scene, double *mean_mass) {
     return count;
 }
 
+/// Of space, by what the scene says first.
+static int find_dimensions(const struct json_object *scene) {
+    double dimensions = 3, box[3];
+    mf_json_numbers(scene, "dimensions", &dimensions, 1);
+    return dimensions == 2 || mf_json_numbers(scene, "box", box, 3) == 2 ? 2 : 3;
+}
+
 /// The edge of a cube, or square, that holds three of the beads; 1 if a fault will tell why not.
 static double find_length(const struct json_object *scene, double beads) {
-    double box[3], volume = 1;
+    double box[3], volume = 1, density;
     const int edges = mf_json_numbers(scene, "box", box, 3);
+    if (mf_json_numbers(scene, "density", &density, 1) == 1 && density > 0)
+        return pow(3 / density, 1.0 / find_dimensions(scene));
     for (int d = 0; d < edges; d++)
         volume *= box[d];
     return edges >= 2 && beads > 0 && volume > 0 ? pow(3 * volume / beads, 1.0 / edges) : 1;
@@ -144,7 +153,6 @@ static bool read_system(struct system *system, struct json_object *root) {
 
 void mf_units_speak(struct json_object *root, struct json_object *scene) {
     struct system system;
-    double box[3];
     if (!read_system(&system, root)) {
         if (root->item != scene->item && mf_json_is_object(root, "units"))
             mf_json_fault(root, "units",
@@ -160,7 +168,7 @@ void mf_units_speak(struct json_object *root, struct json_object *scene) {
                                 .mass = system.mass / masses,
                                 .system = system.kind + 1,
                                 .chosen = chosen,
-                                .dimensions = mf_json_numbers(scene, "box", box, 3) == 2 ? 2 : 3};
+                                .dimensions = find_dimensions(scene)};
     if (mf_json_fault_count(root->document) == faults && !can_be_held(&units))
         fault_unholdable(root);
     mf_json_speak(root->document, &units);
@@ -173,7 +181,7 @@ void mf_units_read(struct units *units, struct json_object *scene) {
     if (is_root)
         mf_units_speak(scene, scene);
     *units = *mf_json_units(scene);
-    if (units->system != UNITS_REDUCED || (is_root && !mf_json_is_object(scene, "units"))) {
+    if (mf_units_speaks(units) || (is_root && !mf_json_is_object(scene, "units"))) {
         if (!is_root)
             mf_json_refuse(scene, "units", "the file's stand at its top");
         return;
@@ -198,7 +206,7 @@ static void put_scale(const struct units *units, struct json_writer *writer) {
 }
 
 void mf_units_write(const struct units *units, struct json_writer *writer) {
-    if (units->system == UNITS_REDUCED)
+    if (!mf_units_speaks(units))
         return;
     mf_json_writer_speak(writer, units);
     mf_json_begin(writer, "units");
@@ -212,7 +220,7 @@ void mf_units_write_summary(const struct units *units, struct json_writer *write
                                              {"pressure", "k_B T_0/lambda^d"},
                                              {"friction", "mu/tau"},
                                              {"diffusion", "lambda^2/tau"}};
-    if (units->system == UNITS_REDUCED)
+    if (!mf_units_speaks(units))
         return;
     mf_json_writer_speak(writer, units);
     mf_json_begin(writer, "units");

@@ -12,8 +12,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/// Frames of a batch for each thread: enough that none waits long for the others.
-enum { FRAMES_A_THREAD = 4 };
+/// Frames of a batch for each thread, and at least: a batch is called for when half of it is there,
+/// and the first has two frames.
+enum { FRAMES_A_THREAD = 2, LEAST_SLOTS = 4 };
 
 /// Times are written in single precision: two that differ by so much may be the same [ps].
 static double time_tolerance(double time) {
@@ -68,6 +69,7 @@ enum status mf_frames_open(struct frames *frames, const struct frames_plan *plan
                               .structure = structure,
                               .structure_file = structure_file,
                               .slots = (size_t)(FRAMES_A_THREAD * plan->threads)};
+    frames->slots = frames->slots < LEAST_SLOTS ? LEAST_SLOTS : frames->slots;
     NEW_ARRAY(frames->source, plan->files);
     NEW_ARRAY(frames->frame, frames->slots);
     for (size_t k = 0; k < plan->files; k++) {
@@ -198,9 +200,12 @@ struct batch {
     bool over;             ///< the file has no further frame, or is damaged
 };
 
-/// A file that breaks off is over, if that is allowed: the failure becomes a note.
+/// A file that breaks off is over, if that is allowed: the failure becomes a note. A pipe that was
+/// waited for ends with the wish to stop.
 static enum status forgive(struct batch *batch, enum status status) {
     struct frames *const frames = batch->frames;
+    if (status == STATUS_IO && mf_interrupt_requested())
+        return mf_status_fail(STATUS_INTERRUPTED, "interrupted");
     if (status != STATUS_BAD_INPUT || !frames->plan.allow_truncated)
         return status;
     batch->over = true;

@@ -9,6 +9,8 @@
 #include "system/composition.h"
 #include "system/particles.h"
 
+#include <math.h>
+
 enum attributes_name {
     ATTRIBUTES_MASS,
     ATTRIBUTES_RADIUS,
@@ -34,6 +36,14 @@ extern const struct field mf_attributes_fields[];
 
 /// Smallest and largest number that an attribute can have, over all types.
 struct attributes_range mf_attributes_span(const struct attributes_source *source);
+
+/// Whether all numbers of an attribute are `value`, but for rounding, or the scene has none.
+static inline bool attributes_are(const struct attributes_source *source, double value) {
+    const double rounding = 1e-12 * fabs(value);
+    const struct attributes_range span = mf_attributes_span(source);
+    return source->ranges == 0 ||
+           (fabs(span.minimum - value) <= rounding && fabs(span.maximum - value) <= rounding);
+}
 
 /// Give the particles all attributes that have a source: numbers that depend on seed and id alone.
 /// Fails: NO_MEMORY; BAD_INPUT as mf_particles_add_attribute. Tested: test_masses.

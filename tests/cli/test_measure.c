@@ -22,14 +22,23 @@ static char xtc[PATH], trr[PATH], gro[PATH], wrapped[PATH], dump[PATH];
 static const char map[] = "{\"beads\": {\"W\": {\"residue\": \"SOL\"}},"
                           " \"masses\": {\"OW\": 15.9994, \"HW1\": 1.008, \"HW2\": 1.008}}";
 
-static int enter(void **state) {
+static void find_files(void) {
     const char *const folder = run_program_sources();
     snprintf(xtc, PATH, "%s/tests/trajectories/water.xtc", folder);
     snprintf(trr, PATH, "%s/tests/trajectories/water.trr", folder);
     snprintf(gro, PATH, "%s/tests/trajectories/water.gro", folder);
     snprintf(wrapped, PATH, "%s/tests/trajectories/water-atoms-wrapped.xtc", folder);
     snprintf(dump, PATH, "%s/tests/trajectories/lammps-plain.dump", folder);
+}
+
+static int enter(void **state) {
+    find_files();
     return small_inputs_enter_without_gnuplot(state);
+}
+
+static int enter_with_shell(void **state) {
+    find_files();
+    return small_inputs_enter(state);
 }
 
 #define MEASURE(...)                                                                               \
@@ -141,6 +150,23 @@ static void test_measure_uses_what_is_whole_when_a_file_breaks_off(void **state)
     assert_contains(result.err, "broken.xtc: frame 4, byte");
     MEASURE("four.xtc", "-s", gro, "-o", "four", "--quiet");
     results_assert_same("broken", "four", (const char *const[]){"rdf.tsv", NULL});
+}
+
+/// A simulation that still writes: all frames that are there, and then the wish to stop.
+static void test_measure_writes_what_it_has_when_it_is_stopped(void **state) {
+    char line[3 * PATH];
+    (void)state;
+    snprintf(line, sizeof line, "mkfifo pipe && { (cat %s; sleep 6) > pipe & }", xtc);
+    assert_int_equal(system(line), 0);
+    const struct run_program_how how = {.interrupt_after = 2};
+    run_program(&result, &how,
+                (const char *const[]){"measure", "pipe", "-s", gro, "-o", "stopped", "--threads",
+                                      "1", "--static", NULL});
+    run_program_assert_code(&result, 130);
+    assert_contains(result.err, "mesofit: interrupted after 4 frames");
+    results_assert_text("stopped/summary.json", "status", "interrupted");
+    assert_close(results_number("stopped/summary.json", "frames"), 4, 0);
+    assert_true(temporary_folder_exists("stopped/target.json"));
 }
 
 static void test_measure_speaks_angstrom_when_asked(void **state) {
@@ -266,6 +292,8 @@ int main(void) {
         TEST(test_measure_writes_the_same_bytes_when_threads_differ),
         TEST(test_measure_joins_files_when_a_run_was_restarted),
         TEST(test_measure_uses_what_is_whole_when_a_file_breaks_off),
+        cmocka_unit_test_setup_teardown(test_measure_writes_what_it_has_when_it_is_stopped,
+                                        enter_with_shell, small_inputs_leave),
         TEST(test_measure_speaks_angstrom_when_asked),
         TEST(test_measure_tells_types_apart_when_the_map_does),
         TEST(test_measure_refuses_what_does_not_fit_in_a_line),

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// How long, how exactly and by what method a fit works that its run file leaves to the program.
+#include "input/fit_choice.h"
+#include "inversion/inversion.h"
+
+#include <math.h>
+#include <string.h>
+
+/// As exact as the target is, in a system that is large enough for the range.
+static double choose_particles(struct fit_choice *c) {
+    static const double least_precision = 0.0015, most_precision = 0.004;
+    static const double least = 700, margin = 2.15, distortion = 0.05;
+    c->precision = fmin(most_precision, fmax(least_precision, c->scales.noise));
+    const double wanted = ceil(fmax(least, c->density * pow(margin * c->range, c->dimensions)));
+    return (double)mf_composition_least_particles(c->rdf->composition, (int64_t)wanted, distortion);
+}
+
+/// How candidates for ω are simulated: from the last configuration, as long as their targets look.
+static enum status choose_rounds(struct fit_choice *c, const struct field *fields) {
+    static const double equilibration = 0.7, apart = 0.1, windows = 1.5, least = 40;
+    enum target_kind longest;
+    const double window =
+        (double)mf_measurement_window(&c->read->problem.compared, c->time_step, &longest);
+    const double free = round(apart * c->crossing / c->time_step);
+    const double every = fmax(1, fmin(free, window > 0 ? floor(windows * window / least) : free));
+    TRY(mf_fit_choice_give(c, "method", fields, "equilibration",
+                           fmax(50, ceil(equilibration * c->crossing / c->time_step))));
+    TRY(mf_fit_choice_give(c, "method", fields, "every", every));
+    TRY(mf_fit_choice_give(c, "method", fields, "samples",
+                           fmax(least, ceil(windows * window / every))));
+    TRY(mf_fit_choice_give(c, "method", fields, "precision", 0.1));
+    TRY(mf_fit_choice_give(c, "method", fields, "temperature_tolerance", 0.3));
+    return mf_fit_choice_give_text(c->root, "method", "warm_start", "yes");
+}
+
+/// The table of a method that has a field of that name.
+static const struct field *fields_with(const struct inverse_method *method, const char *name) {
+    for (const struct inverse_table *table = method->tables; table->fields; table++)
+        for (const struct field *field = table->fields; field->name; field++)
+            if (strcmp(field->name, name) == 0)
+                return table->fields;
+    return NULL;
+}
+
+enum status mf_fit_defaults_method(struct fit_choice *c) {
+    const bool simulates = c->finds[UNKNOWN_OMEGA] || c->read->numbers > 0;
+    const bool both = simulates && c->finds[UNKNOWN_POTENTIAL] && c->read->numbers == 0;
+    const struct inverse_method *method = both        ? &mf_successive
+                                          : simulates ? &mf_gauss_newton
+                                                      : &mf_automatic;
+    const double particles = choose_particles(c);
+    TRY(mf_fit_choice_give_text(c->root, "method", "name", method->name));
+    if (both || !simulates) {
+        const char *of[2] = {both ? "potential_particles" : "particles",
+                             both ? "potential_precision" : "precision"};
+        mf_fit_choice_say(
+            c,
+            "method \"%s\": it finds the potential from g(r) by samples of %.0f particles, until "
+            "their g is known within %.2g; the target's is within %.2g",
+            method->name, particles, c->precision, c->scales.noise);
+        TRY(mf_fit_choice_give(c, "method", fields_with(method, of[0]), of[0], particles));
+        TRY(mf_fit_choice_give(c, "method", fields_with(method, of[1]), of[1], c->precision));
+    }
+    if (!simulates)
+        return STATUS_OK;
+    mf_fit_choice_say(c, "method \"%s\": it finds %s from simulations as long as the targets look",
+                      method->name, c->finds[UNKNOWN_OMEGA] ? "omega" : "what is unknown");
+    return choose_rounds(c, fields_with(method, "equilibration"));
+}
+
+/// rms of the errors of g that one sample leaves, if pairs are independent.
+static double noise_of_sample(const struct fit_choice *c) {
+    const struct rdf_bins *bins = &c->rdf->bins;
+    const struct composition *composition = c->rdf->composition;
+    const struct box *box = &c->read->scene.setup.box;
+    const double larger = c->count / (double)mf_composition_particles(composition);
+    double squares = 0, count = 0;
+    for (int pair = 0; pair < mf_composition_pairs(composition); pair++)
+        for (size_t k = 0; k < bins->count && mf_rdf_bins_edge(bins, k) < c->range; k++) {
+            const double ideal = larger * mf_rdf_ideal_pairs_of(bins, k, box, composition, pair);
+            const double g = c->rdf->g[(size_t)pair * bins->count + k];
+            squares += ideal > 0 ? g / ideal : 0;
+            count++;
+        }
+    return sqrt(squares / count);
+}
+
+/// How many samples of each replica make the noise of g so small that the rms of g − g* is known
+/// within a tenth: half of what the errors of target and method make.
+static double samples_for_rdf(const struct fit_choice *c, double replicas) {
+    static const double part = 0.5, inefficiency = 2;
+    const double wanted = part * hypot(c->scales.noise, c->precision);
+    return inefficiency * pow(noise_of_sample(c) / wanted, 2) / replicas;
+}
+
+enum status mf_fit_defaults_verification(struct fit_choice *c) {
+    static const double apart = 0.1, equilibration = 10, least = 50, windows = 20;
+    static const double most_moves = 3e8;
+    enum { REPLICAS = 4 };
+    const char *path = "verification";
+    enum target_kind longest;
+    const double every = fmax(1, round(apart * c->crossing / c->time_step));
+    const double begin = fmax(1000, ceil(equilibration * c->crossing / c->time_step));
+    const double window =
+        (double)mf_measurement_window(&c->read->problem.compared, c->time_step, &longest);
+    const double can = most_moves / (REPLICAS * c->count * every);
+    const double wanted = fmax(c->read->files.given[TARGET_RDF] ? samples_for_rdf(c, REPLICAS) : 0,
+                               fmax(least, windows * window / every));
+    const double samples = ceil(fmax(fmin(wanted, can), fmax(least, window / every)));
+    const char *why = wanted > samples ? "as many as a few minutes allow"
+                      : c->read->files.given[TARGET_RDF]
+                          ? "so that the difference of g is known within a tenth of it"
+                          : "20 times as long as the targets look";
+    if (mf_fit_choice_lacks(c->root, "", path))
+        mf_fit_choice_say(c, "verification: %d simulations of %.0f samples, %s", REPLICAS, samples,
+                          why);
+    TRY(mf_fit_choice_give(c, path, mf_verify_fields, "replicas", REPLICAS));
+    TRY(mf_fit_choice_give(c, path, mf_verify_fields, "equilibration", begin));
+    TRY(mf_fit_choice_give(c, path, mf_verify_fields, "every", every));
+    return mf_fit_choice_give(c, path, mf_verify_fields, "samples", samples);
+}
