@@ -200,12 +200,9 @@ struct batch {
     bool over;             ///< the file has no further frame, or is damaged
 };
 
-/// A file that breaks off is over, if that is allowed: the failure becomes a note. A pipe that was
-/// waited for ends with the wish to stop.
+/// A file that breaks off is over, if that is allowed: the failure becomes a note.
 static enum status forgive(struct batch *batch, enum status status) {
     struct frames *const frames = batch->frames;
-    if (status == STATUS_IO && mf_interrupt_requested())
-        return mf_status_fail(STATUS_INTERRUPTED, "interrupted");
     if (status != STATUS_BAD_INPUT || !frames->plan.allow_truncated)
         return status;
     batch->over = true;
