@@ -9,20 +9,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/// What a number in `unit` is to be multiplied with to be reduced; NAN: such a unit is not known.
-static double to_reduced(const char *unit, const struct units *units) {
-    static const char *const reduced[] = {
-        "lambda", "k_B.T_0", "k_B.T_0/lambda", "sqrt(mu/tau)", "lambda/tau", "1", ""};
-    for (size_t k = 0; k < sizeof reduced / sizeof *reduced; k++)
-        if (strcmp(unit, reduced[k]) == 0)
-            return 1;
-    if (mf_units_known(units) && strcmp(unit, "nm") == 0)
-        return 1 / units->length;
-    if (mf_units_known(units) && strcmp(unit, "kJ/mol") == 0)
-        return 1 / mf_units_energy_kj_per_mol(units);
-    return NAN;
-}
-
 /// The place of the column called `name` in a heading, and the unit behind it; −1: none.
 static long find_column(const char *header, const char *name, char *unit, size_t size) {
     const size_t length = strlen(name);
@@ -42,36 +28,39 @@ static long find_column(const char *header, const char *name, char *unit, size_t
 
 /// One column into `values`, shape [rows].
 static enum status take_column(const struct data_table *table, const char *file,
-                               const struct units *units, const char *name, bool required,
+                               const struct units *units, const struct export_column *column,
                                double *values) {
-    char unit[64] = "";
-    const long place = find_column(table->header, name, unit, sizeof unit);
-    const double factor = place < 0 ? NAN : to_reduced(unit, units);
-    if (place < 0 && required)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: no column called %s", file, name);
-    if (place >= 0 && isnan(factor))
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: %s has the unit \"%s\", which is not known",
-                              file, name, unit);
+    char unit[UNITS_NAME_SIZE] = "";
+    double factor = 1;
+    const long place = find_column(table->header, column->name, unit, sizeof unit);
+    if (place < 0 && column->required)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: no column called %s", file, column->name);
+    if (place >= 0 && strcmp(unit, column->unit) != 0) {
+        if (!mf_units_known(units))
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: %s is in \"%s\", but used.json has no units", file,
+                                  column->name, unit);
+        if (mf_units_from(units, unit, column->unit, &factor) != STATUS_OK)
+            return mf_status_prefix(STATUS_BAD_INPUT, "%s: %s", file, column->name);
+    }
     for (size_t k = 0; k < table->rows; k++)
         values[k] = place < 0 ? NAN : factor * table->values[k * table->columns + (size_t)place];
     return STATUS_OK;
 }
 
 enum status mf_export_columns_read(struct export_columns *columns, const char *file,
-                                   const struct units *units, const char *const *names,
-                                   size_t required) {
+                                   const struct units *units, const struct export_column *wanted) {
     enum status status = STATUS_OK;
     struct data_table table = {0};
-    size_t count = 0;
+    size_t count = 0, required = 0;
     *columns = (struct export_columns){0};
-    while (names[count])
-        count++;
+    for (; wanted[count].name; count++)
+        required += wanted[count].required;
     CHECK(mf_data_table_read(&table, file, required));
     columns->rows = table.rows;
     NEW_ARRAY(columns->values, count * table.rows);
     for (size_t c = 0; c < count; c++)
-        CHECK(take_column(&table, file, units, names[c], c < required,
-                          columns->values + c * table.rows));
+        CHECK(take_column(&table, file, units, &wanted[c], columns->values + c * table.rows));
 done:
     mf_data_table_clear(&table);
     if (status != STATUS_OK)

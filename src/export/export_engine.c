@@ -165,7 +165,7 @@ static double safe_step(const struct export_model *model) {
 static enum status run(struct export_job *job, bool bands, bool quiet) {
     const struct export_model *model = job->model;
     TRY(check(job, bands));
-    job->units = mf_export_units(job->engine->system, &model->scene.units);
+    job->units = mf_export_units(job->engine->system, &model->scene.units, job->engine->physical);
     job->time_step = safe_step(model);
     TRY(mf_export_grids_make(&job->grids, job->engine->interpolation, model, bands,
                              job->engine->one_cutoff ? model->setup.potential->cutoff : 0));

@@ -30,6 +30,7 @@ struct export_engine {
     const char *title;   ///< as its authors write it
     const char *summary; ///< what is written, one line
     enum export_system system;
+    bool physical; ///< knows no reduced units: these are then nm, kJ/mol and u
     const struct export_interpolation *interpolation;
     const char *commands; ///< that run the folder, a line each
     const char *verified; ///< "run", or what was done instead
@@ -42,7 +43,14 @@ struct export_engine {
 };
 
 /// All engines, in the order in which they are listed.
-#define EXPORT_ENGINES(EACH) EACH(mf_export_lammps)
+#define EXPORT_ENGINES(EACH)                                                                       \
+    EACH(mf_export_lammps)                                                                         \
+    EACH(mf_export_hoomd)                                                                          \
+    EACH(mf_export_espresso)                                                                       \
+    EACH(mf_export_openmm)                                                                         \
+    EACH(mf_export_gromacs)                                                                        \
+    EACH(mf_export_dl_poly)                                                                        \
+    EACH(mf_export_votca)
 
 #define EXPORT_DECLARE(record) extern const struct export_engine record;
 EXPORT_ENGINES(EXPORT_DECLARE)

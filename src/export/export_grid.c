@@ -108,23 +108,25 @@ static void hermite_value(const struct export_grid *grid, double r, double *phi,
     *force = -(slope + f * (2 * c2 + 3 * f * c3)) / h;
 }
 
-/// Newton's and Gregory's formula of three rows: two straight lines and the mean of them.
-static double through_three(const double *y, double f) {
+/// Rows from one spacing on, the last four behind the cutoff.
+static double quadratic_place(const struct export_grid *grid, size_t row) {
+    return grid->last * (double)(row + 1) / (double)(grid->rows - 4);
+}
+
+/// Newton's and Gregory's formula of three rows: the mean of two straight lines.
+static double through_three(const double y[3], double f) {
     const double first = y[0] + (y[1] - y[0]) * f, second = y[1] + (y[2] - y[1]) * (f - 1);
     return first + (second - first) * f * 0.5;
 }
 
 static void quadratic_value(const struct export_grid *grid, double r, double *phi, double *force) {
-    double f, virial[3];
-    size_t k = even_row(grid, r, &f);
-    if (k + 2 >= grid->rows) {
-        f += (double)(k + 3 - grid->rows);
-        k = grid->rows - 3;
-    }
+    const double place = r / grid->last * (double)(grid->rows - 4);
+    const size_t row = place < 1 ? 0 : (size_t)place - 1;
+    double virial[3];
     for (size_t n = 0; n < 3; n++)
-        virial[n] = grid->r[k + n] * grid->force[k + n];
-    *phi = through_three(grid->phi + k, f);
-    *force = through_three(virial, f) / r;
+        virial[n] = grid->r[row + n] * grid->force[row + n];
+    *phi = through_three(grid->phi + row, place - (double)(row + 1));
+    *force = through_three(virial, place - (double)(row + 1)) / r;
 }
 
 const struct export_interpolation mf_export_grid_square = {
@@ -139,21 +141,24 @@ const struct export_interpolation mf_export_grid_spline = {
 const struct export_interpolation mf_export_grid_hermite = {
     "cubic in r by phi and the force at both ends", 0, even_place, NULL, hermite_value};
 const struct export_interpolation mf_export_grid_quadratic = {
-    "quadratic in r of phi and of r force", 0, even_place, NULL, quadratic_value};
+    "quadratic in r of phi and of r force", 0, quadratic_place, NULL, quadratic_value};
 
 static double cutoff_of(const struct table *table, int pair) {
     const double cutoff = table_cutoff(table, pair);
     return cutoff > 0 ? cutoff : table->cutoff;
 }
 
-/// Φ and F; at the cutoff those just before it, as the force may end with a jump.
-static void read_table(const struct table *table, int pair, double r, double *phi, double *force) {
+/// Φ and F of a row. Where the grid ends at the cutoff, rows there and behind it go on straight, as
+/// the force may end with a jump.
+static void read_row(struct export_grid *grid, const struct table *table, int pair, size_t row) {
     static const double rounding = 1e-9;
-    const double cutoff = cutoff_of(table, pair);
+    const double cutoff = cutoff_of(table, pair), r = grid->r[row];
+    const bool ends = fabs(grid->last - cutoff) < rounding * cutoff;
+    const double inside = ends ? fmin(r, cutoff * (1 - rounding)) : r;
     double slope;
-    const double inside = fabs(r - cutoff) < rounding * cutoff ? cutoff * (1 - rounding) : r;
-    mf_table_evaluate_pair(table, pair, inside, phi, &slope, NULL);
-    *force = -slope;
+    mf_table_evaluate_pair(table, pair, inside, &grid->phi[row], &slope, NULL);
+    grid->phi[row] += slope * (r - inside);
+    grid->force[row] = -slope;
 }
 
 enum status mf_export_grid_make(struct export_grid *grid,
@@ -168,7 +173,7 @@ enum status mf_export_grid_make(struct export_grid *grid,
     NEW_ARRAY(grid->force, rows);
     for (size_t k = 0; k < rows; k++) {
         grid->r[k] = interpolation->place(grid, k);
-        read_table(table, pair, grid->r[k], &grid->phi[k], &grid->force[k]);
+        read_row(grid, table, pair, k);
     }
     if (interpolation->prepare)
         CHECK(interpolation->prepare(grid));

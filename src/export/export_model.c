@@ -52,15 +52,15 @@ static enum status check_folder(const struct export_model *model) {
 }
 
 /// The scene of a run file leaves out what was fitted.
-static enum status read_run(struct reading *reading, struct json_object *root) {
+static enum status read_run(struct reading *reading, struct json_object *root,
+                            struct json_object *object) {
     struct scene *scene = &reading->model->scene;
-    struct json_object object = mf_json_child(root, "scene", true);
     struct json_object unknowns = mf_json_child(root, "unknowns", true);
     if (mf_json_is_object(&unknowns, mf_inverse_unknown_names[UNKNOWN_POTENTIAL]))
         reading->unknown |= SCENE_FITS_POTENTIAL;
     if (mf_json_is_object(&unknowns, mf_inverse_unknown_names[UNKNOWN_OMEGA]))
         reading->unknown |= SCENE_FITS_OMEGA;
-    TRY(mf_scene_read(scene, &object, reading->unknown));
+    TRY(mf_scene_read(scene, object, reading->unknown));
     return mf_fit_numbers_read(&unknowns, scene, reading->number, &reading->numbers);
 }
 
@@ -84,8 +84,11 @@ static enum status read_used(struct reading *reading) {
     mf_json_fields(&root, mf_heading_fields, &heading);
     snprintf(model->title, sizeof model->title, "%s", heading.title);
     reading->fit = mf_json_is_object(&root, "scene");
-    const enum status status =
-        reading->fit ? read_run(reading, &root) : mf_scene_read(&model->scene, &root, 0);
+    struct json_object scene = reading->fit ? mf_json_child(&root, "scene", true) : root;
+    mf_units_speak(&root, &scene);
+    const enum status status = reading->fit
+                                   ? read_run(reading, &root, &scene)
+                                   : mf_scene_read(&model->scene, &scene, SCENE_FITS_NOTHING);
     read_time_step(&model->scene.setup, &root);
     TRY(mf_json_close(document, status));
     model->setup = model->scene.setup;
@@ -93,32 +96,34 @@ static enum status read_used(struct reading *reading) {
     return STATUS_OK;
 }
 
-#define NUMBER(key, holder, member)                                                                \
+#define NUMBER(key, member, its_unit)                                                              \
     {                                                                                              \
-        .name = key, .type = FIELD_NUMBER, .offset = offsetof(struct holder, member),              \
-        .initial = NAN, .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = ""                        \
+        .name = key, .type = FIELD_NUMBER, .offset = offsetof(struct export_model, member),        \
+        .initial = NAN, .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = its_unit                  \
     }
 static const struct field summary_fields[] = {
-    NUMBER("temperature", export_model, temperature.value),
-    NUMBER("temperature_error", export_model, temperature.error),
-    NUMBER("temperature_configurational", export_model, configurational),
-    NUMBER("pressure", export_model, pressure.value),
-    NUMBER("pressure_error", export_model, pressure.error),
+    NUMBER("temperature", temperature.value, "T_0"),
+    NUMBER("temperature_error", temperature.error, "T_0"),
+    NUMBER("temperature_configurational", configurational, "T_0"),
+    NUMBER("pressure", pressure.value, "k_B T_0/lambda^d"),
+    NUMBER("pressure_error", pressure.error, "k_B T_0/lambda^d"),
     FIELD_END,
 };
-static const struct field value_fields[] = {NUMBER("value", export_number, value), FIELD_END};
 
 /// "parameters": {"dissipative.sigma": {"value": 3.1, …}, …}: numbers of the scene that were
 /// fitted.
 static void read_numbers(struct reading *reading, struct json_object *root) {
     struct json_object parameters = mf_json_child(root, "parameters", reading->numbers > 0);
     for (size_t n = 0; n < reading->numbers; n++) {
-        struct export_number found = {NAN, NAN};
+        const struct field fields[] = {{.name = "value",
+                                        .type = FIELD_NUMBER,
+                                        .required = true,
+                                        .minimum = -DBL_MAX,
+                                        .maximum = DBL_MAX,
+                                        .unit = reading->number[n].unit},
+                                       FIELD_END};
         struct json_object number = mf_json_child(&parameters, reading->number[n].name, true);
-        mf_json_fields(&number, value_fields, &found);
-        if (number.item && isnan(found.value))
-            mf_json_fault(&number, "value", "is not known");
-        reading->value[n] = found.value;
+        mf_json_fields(&number, fields, &reading->value[n]);
     }
 }
 
@@ -128,6 +133,7 @@ static enum status read_summary(struct reading *reading) {
     struct json_document *document;
     file_of(model, "summary.json", path);
     TRY(mf_json_open(&document, path));
+    mf_json_speak(document, &model->scene.units);
     struct json_object root = mf_json_root(document);
     const char *status = mf_json_choice(&root, "status", NULL, "");
     if (status && reading->fit && strcmp(status, "converged") != 0 && strcmp(status, "ok") != 0)
@@ -192,7 +198,8 @@ static bool has_errors(const struct export_columns *points) {
 
 /// The fitted potentials, "potential.tsv" or "potential_A-B.tsv".
 static enum status read_potentials(struct export_model *model) {
-    static const char *const names[] = {"r", "phi", "phi_error", NULL};
+    static const struct export_column wanted[] = {
+        {"r", "lambda", true}, {"phi", "k_B.T_0", true}, {"phi_error", "k_B.T_0", false}, {0}};
     static const int sign[EXPORT_CURVES] = {0, -1, 1};
     enum status status = STATUS_OK;
     const int pairs = mf_export_model_pairs(model);
@@ -205,7 +212,7 @@ static enum status read_potentials(struct export_model *model) {
         mf_composition_pair_name(&model->setup.composition, pair, of);
         snprintf(name, sizeof name, "potential%s%s.tsv", pairs > 1 ? "_" : "", pairs > 1 ? of : "");
         file_of(model, name, path);
-        CHECK(mf_export_columns_read(&points, path, &model->scene.units, names, 2));
+        CHECK(mf_export_columns_read(&points, path, &model->scene.units, wanted));
         for (int c = 0; c < EXPORT_CURVES && status == STATUS_OK; c++)
             status = make_curve(&points, sign[c], &part[c][pair]);
         model->bands = model->bands && has_errors(&points);
@@ -225,13 +232,14 @@ done:
 
 /// The fitted friction weight, one for all pairs.
 static enum status read_omega(struct export_model *model) {
-    static const char *const names[] = {"r", "omega", NULL};
+    static const struct export_column wanted[] = {
+        {"r", "lambda", true}, {"omega", "sqrt(mu/tau)", true}, {0}};
     enum status status = STATUS_OK;
     struct omega_grid grid;
     struct export_columns points;
     char path[OUTPUT_PATH_SIZE];
     file_of(model, "omega.tsv", path);
-    TRY(mf_export_columns_read(&points, path, &model->scene.units, names, 2));
+    TRY(mf_export_columns_read(&points, path, &model->scene.units, wanted));
     const double *r = points.values, *omega = r + points.rows;
     if (points.rows != OMEGA_POINTS || !(r[0] < r[points.rows - 1]))
         status =
@@ -275,15 +283,20 @@ static enum status find_laws(struct reading *reading) {
 /// another: the columns of configuration.tsv.
 static enum status read_start(struct export_model *model, struct export_columns *columns,
                               struct simulation_start *start) {
-    static const char *const names[] = {"x",          "y",          "z", "velocity_x",
-                                        "velocity_y", "velocity_z", NULL};
+    static const struct export_column wanted[] = {{"x", "lambda", true},
+                                                  {"y", "lambda", true},
+                                                  {"z", "lambda", false},
+                                                  {"velocity_x", "lambda/tau", false},
+                                                  {"velocity_y", "lambda/tau", false},
+                                                  {"velocity_z", "lambda/tau", false},
+                                                  {0}};
     const int dimensions = model->setup.box.dimensions;
     char path[OUTPUT_PATH_SIZE];
     *start = model->scene.start;
     file_of(model, "configuration.tsv", path);
     if (!exists(path))
         return STATUS_OK;
-    TRY(mf_export_columns_read(columns, path, &model->scene.units, names, (size_t)dimensions));
+    TRY(mf_export_columns_read(columns, path, &model->scene.units, wanted));
     if (columns->rows != (size_t)model->setup.placement.count)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: %zu rows, not the %lld particles of used.json",
                               path, columns->rows, (long long)model->setup.placement.count);
@@ -298,44 +311,38 @@ static enum status read_start(struct export_model *model, struct export_columns 
     return STATUS_OK;
 }
 
-static const double *column_of(const struct snapshot *snapshot, const char *name) {
-    for (int k = 0; k < snapshot->columns; k++)
-        if (strcmp(snapshot->column[k].name, name) == 0)
-            return snapshot->column[k].values;
-    return NULL;
+static int type_of(const struct export_model *model, uint32_t id) {
+    return model->types > 1 ? mf_composition_type(&model->setup.composition, id) : 0;
 }
 
 /// Masses, which are alike within a type.
-static enum status keep_masses(struct export_model *model, const double *mass) {
-    const struct composition *composition = &model->setup.composition;
+static enum status keep_masses(struct export_model *model, const struct particles *particles) {
+    const double *mass = particles_masses(particles);
     for (int type = 0; type < model->types; type++)
         model->mass[type] = 1;
     for (size_t k = 0; mass && k < model->count; k++)
-        model->mass[model->types > 1 ? mf_composition_type(composition, (uint32_t)k) : 0] = mass[k];
+        model->mass[type_of(model, particles->id[k])] = mass[k];
     for (size_t k = 0; mass && k < model->count; k++)
-        if (mass[k] !=
-            model->mass[model->types > 1 ? mf_composition_type(composition, (uint32_t)k) : 0])
+        if (mass[k] != model->mass[type_of(model, particles->id[k])])
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "%s: cannot be exported: masses differ within a type",
                                   model->folder);
     return STATUS_OK;
 }
 
-static enum status keep_state(struct export_model *model, const struct snapshot *snapshot) {
+/// Positions and velocities by id.
+static enum status keep_state(struct export_model *model, const struct particles *particles) {
     enum status status = STATUS_OK;
-    const double *position = column_of(snapshot, "position");
-    const double *velocity = column_of(snapshot, "velocity");
-    model->count = snapshot->count;
+    model->count = particles->count;
     for (int d = 0; d < 3; d++) {
         NEW_ARRAY(model->position[d], model->count);
         NEW_ARRAY(model->velocity[d], model->count);
-        if (d >= model->setup.box.dimensions)
-            continue;
-        const size_t bytes = model->count * sizeof(double), first = (size_t)d * model->count;
-        memcpy(model->position[d], position + first, bytes);
-        memcpy(model->velocity[d], velocity + first, bytes);
+        for (size_t k = 0; d < model->setup.box.dimensions && k < model->count; k++) {
+            model->position[d][particles->id[k]] = particles->position[d][k];
+            model->velocity[d][particles->id[k]] = particles->velocity[d][k];
+        }
     }
-    CHECK(keep_masses(model, column_of(snapshot, "mass")));
+    CHECK(keep_masses(model, particles));
 done:
     return status;
 }
@@ -346,17 +353,13 @@ static enum status find_start(struct export_model *model) {
     struct simulation_start start;
     struct simulation simulation = {0};
     struct export_columns columns = {0};
-    struct snapshot snapshot = {0};
     CHECK(read_start(model, &columns, &start));
     status = mf_simulation_init(&simulation, &model->setup, &start);
     if (status != STATUS_OK)
         status = mf_status_prefix(status, "%s", model->folder);
     CHECK(status);
-    CHECK(mf_snapshot_take(&snapshot, &simulation.particles, &model->setup.composition, NULL, 0,
-                           0));
-    CHECK(keep_state(model, &snapshot));
+    CHECK(keep_state(model, &simulation.particles));
 done:
-    mf_snapshot_clear(&snapshot);
     mf_simulation_clear(&simulation);
     mf_export_columns_clear(&columns);
     return status;
@@ -364,7 +367,7 @@ done:
 
 /// The bins of the result's g(r), or a hundred up to the cutoff.
 static enum status find_bins(struct export_model *model) {
-    static const char *const names[] = {"r", NULL};
+    static const struct export_column wanted[] = {{"r", "lambda", true}, {0}};
     char path[OUTPUT_PATH_SIZE];
     model->rdf_bins = 100;
     model->rdf_range = mf_export_model_cutoff(model);
@@ -372,7 +375,7 @@ static enum status find_bins(struct export_model *model) {
     if (!exists(path))
         return STATUS_OK;
     struct export_columns columns;
-    TRY(mf_export_columns_read(&columns, path, &model->scene.units, names, 1));
+    TRY(mf_export_columns_read(&columns, path, &model->scene.units, wanted));
     const double *r = columns.values;
     if (columns.rows > 1) {
         const double width = (r[columns.rows - 1] - r[0]) / (double)(columns.rows - 1);

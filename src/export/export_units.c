@@ -13,7 +13,13 @@ static const struct scale scales[] = {
     [EXPORT_DL_POLY] = {10, 1, 1, 1e-3 / 1.01325, "A", "ps", "kJ/mol", "katm"},
 };
 
-struct export_units mf_export_units(enum export_system system, const struct units *units) {
+struct export_units mf_export_units(enum export_system system, const struct units *units,
+                                    bool physical) {
+    static const struct units pretended = {.length = 1,
+                                           .temperature = 1e3 / (UNITS_BOLTZMANN * UNITS_AVOGADRO),
+                                           .mass = UNITS_ATOMIC_MASS};
+    if (!mf_units_known(units) && physical)
+        units = &pretended;
     if (system == EXPORT_REDUCED || !mf_units_known(units))
         return (struct export_units){
             EXPORT_REDUCED,    1, 1, 1, 1, 1, 1, "lambda", "tau", "k_B T_0", "T_0",

@@ -15,9 +15,11 @@ struct export_units {
     const char *length_name, *time_name, *energy_name, *temperature_name, *pressure_name;
 };
 
-/// The units of a system; reduced ones where the result has no physical units.
+/// The units of a system. Where the result has no physical units, reduced ones, or, for an engine
+/// that knows none, those of λ = 1 nm, μ = 1 u and k_B T_0 = 1 kJ/mol, so that τ = 1 ps.
 /// Tested: test_export_units.
-struct export_units mf_export_units(enum export_system system, const struct units *units);
+struct export_units mf_export_units(enum export_system system, const struct units *units,
+                                    bool physical);
 
 static inline double export_units_force(const struct export_units *units) {
     return units->energy / units->length;

@@ -103,14 +103,17 @@ static double round_down(double value) {
     return rounded;
 }
 
-/// A whole fraction of the interval of targets at times, if there are any.
+/// A whole fraction of the interval of targets at times, if there are any; else round in the units
+/// of the file.
 static double fit_interval(const struct fit_choice *c, double time_step) {
     const struct target_files *files = &c->read->files;
     const double interval = files->given[TARGET_ETD]    ? files->etd.interval
                             : files->given[TARGET_VACF] ? files->curve[TARGET_VACF].interval
                             : files->given[TARGET_MSD]  ? files->curve[TARGET_MSD].interval
                                                         : 0;
-    return interval > 0 ? interval / ceil(interval / time_step - 1e-9) : round_down(time_step);
+    const double unit = mf_units_factor(&c->read->scene.units, "tau");
+    return interval > 0 ? interval / ceil(interval / time_step - 1e-9)
+                        : round_down(time_step * unit) / unit;
 }
 
 /// Integrators of Verlet's kind give an oscillator of angular frequency Ω the configurational
@@ -139,6 +142,18 @@ static enum status choose_time_step(struct fit_choice *c) {
         mf_fit_choice_say(c, "time step %s: beads move a fiftieth of the way to their neighbours",
                           step);
     return mf_fit_choice_give(c, "scene", mf_scene_fields, "time_step", c->time_step);
+}
+
+/// In the core, where no pair is seen, the potential goes on bending up more than it does where
+/// pairs come near, so that none is lost there.
+static enum status choose_core(struct fit_choice *c) {
+    static const double steeper = 1.5, least = 2000;
+    const double temperature = c->read->scene.setup.temperature;
+    const double stiffness =
+        fmax(steeper * c->scales.curvature, least * temperature / pow(c->scales.neighbour, 2));
+    return c->finds[UNKNOWN_POTENTIAL]
+               ? mf_fit_choice_give(c, "core", mf_fit_core_fields, "stiffness", stiffness)
+               : STATUS_OK;
 }
 
 /// Whether something is to be fitted that friction decides.
@@ -179,7 +194,7 @@ static double moderate_friction(const struct fit_choice *c, double cutoff) {
 /// friction that would be chosen of its own.
 static enum status choose_omega(struct fit_choice *c) {
     static const char *const path = "unknowns.omega";
-    static const double shells = 2, beyond_etd = 1.3, most = 8;
+    static const double shells = 2, beyond_etd = 1.3, most = 6;
     enum { COEFFICIENTS = 8 };
     if (!c->finds[UNKNOWN_OMEGA] || !mf_fit_choice_lacks(c->root, path, "cutoff") ||
         !mf_fit_choice_lacks(c->root, path, "maximum"))
@@ -223,8 +238,15 @@ static enum status choose_friction(struct fit_choice *c) {
 enum status mf_fit_defaults_choose(const struct fit_file *read, struct json_object *root,
                                    struct fit_choices *choices) {
     static enum status (*const steps[])(struct fit_choice *) = {
-        choose_unknowns, choose_cutoff,   choose_count,           choose_time_step,
-        choose_omega,    choose_friction, mf_fit_defaults_method, mf_fit_defaults_verification,
+        choose_unknowns,
+        choose_core,
+        choose_cutoff,
+        choose_count,
+        choose_time_step,
+        choose_omega,
+        choose_friction,
+        mf_fit_defaults_method,
+        mf_fit_defaults_verification,
     };
     const struct simulation_setup *setup = &read->scene.setup;
     const struct attributes_range masses = mf_attributes_span(&setup->attribute[ATTRIBUTES_MASS]);

@@ -9,7 +9,7 @@
 
 /// As exact as the target is, in a system that is large enough for the range.
 static double choose_particles(struct fit_choice *c) {
-    static const double least_precision = 0.0015, most_precision = 0.004;
+    static const double least_precision = 0.001, most_precision = 0.004;
     static const double least = 700, margin = 2.15, distortion = 0.05;
     c->precision = fmin(most_precision, fmax(least_precision, c->scales.noise));
     const double wanted = ceil(fmax(least, c->density * pow(margin * c->range, c->dimensions)));

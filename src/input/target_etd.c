@@ -149,7 +149,7 @@ done:
     return status;
 }
 
-/// Bins by the names of the first and the last column, "E(r0=…)".
+/// Bins by the names of the first and the last column, "E(r0=…)", in the file's unit of length.
 static enum status find_bins(struct target_etd_parameters *p, const struct data_table *table,
                              const struct units *units) {
     static const char mark[] = "r0=";
@@ -166,10 +166,10 @@ static enum status find_bins(struct target_etd_parameters *p, const struct data_
                               "%s: r_maximum: missing, and the %zu columns are not called "
                               "\"E(r0=…)\" with growing r0",
                               p->file, bins);
-    const double length = mf_units_factor(units, "lambda");
-    const double width = (last - first) / (double)(bins - 1);
-    p->r_minimum = fmax(0, first - 0.5 * width) / length;
-    p->r_maximum = (last + 0.5 * width) / length;
+    const double factor = mf_units_factor(units, "lambda");
+    const double width = (last - first) / (double)(bins - 1) / factor;
+    p->r_minimum = fmax(0, first / factor - 0.5 * width);
+    p->r_maximum = last / factor + 0.5 * width;
     return STATUS_OK;
 }
 

@@ -51,7 +51,7 @@ void mf_json_put_fields(struct json_writer *writer, const struct field *fields,
 
 /// Add to an object of a document that is being read what the tree has and the object has not, at
 /// all depths; what the object has stays. Before its keys are read. Fails: NO_MEMORY; IO as
-/// mf_json_write. Tested: test_json.
+/// mf_json_write. Tested: test_json_write.
 enum status mf_json_write_into(const struct json_writer *writer,
                                const struct json_object *object) MUST_USE;
 

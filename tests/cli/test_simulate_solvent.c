@@ -102,6 +102,32 @@ static void test_beads_that_drift_with_the_solvent_move(void **state) {
     assert_null(strstr(result.err, "by the positions"));
 }
 
+/// Of two bins between plates the flow is as fast in both; a drag coefficient wants a flow.
+static void test_no_viscosity_and_no_coefficient_where_there_is_none(void **state) {
+    static struct run_program_result result;
+    static const char scene[] =
+        "{\"dimensions\": 2, \"box\": [20, 2], \"particles\": {\"count\": 0}, "
+        "\"time_step\": 0.1,\n\"dynamics\": {\"integrator\": \"collision-dynamics\", "
+        "\"thermostat\": \"yes\", \"walls\": \"plates\",\n\"acceleration\": [1, 0]},\n"
+        "\"measure\": {\"equilibration\": 100, \"samples\": 100, \"every\": 2}, "
+        "\"flow_profile\": {}}\n";
+    small_inputs_write(*state, "scene.json", scene, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "scene.json: flow_profile.bins: 2 along y cannot tell a viscosity");
+    small_inputs_write(*state, "scene.json", scene, "\"flow_profile\": {}",
+                       "\"flow_profile\": {\"bins\": 6}");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    assert_true(results_number("out/summary.json", "viscosity") > 0);
+    write(*state, "\"acceleration\": [0.03, 0], ", "");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "still");
+    run_program_assert_code(&result, 0);
+    char *summary = temporary_folder_read("still/summary.json");
+    assert_contains(summary, "\"drag_coefficient\":\tnull");
+    free(summary);
+}
+
 static void test_figures_of_flow_are_drawn(void **state) {
     static struct run_program_result result;
     small_inputs_need_gnuplot();
@@ -295,6 +321,7 @@ int main(void) {
         TEST(test_a_flow_tells_its_viscosity_and_whether_it_has_settled),
         cmocka_unit_test_setup_teardown(test_figures_of_flow_are_drawn, small_inputs_enter,
                                         small_inputs_leave),
+        TEST(test_no_viscosity_and_no_coefficient_where_there_is_none),
         TEST(test_explain_tells_the_solvents_share),
         TEST(test_simulate_refuses_bad_solvents_by_file_and_key),
         TEST(test_simulate_refuses_a_flow_without_solvent),

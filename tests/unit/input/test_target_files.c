@@ -93,6 +93,27 @@ static void test_targets_read_takes_the_columns_of_a_curve(void **state) {
     mf_target_files_clear(&t);
 }
 
+/// As motion.tsv of `simulate` has them; numbers of columns come first.
+static void test_targets_read_finds_the_columns_of_a_curve_by_their_names(void **state) {
+    struct target_files t;
+    put(state, "motion.tsv",
+        "# time[tau]\tmsd[lambda^2]\tmsd_error[lambda^2]\tvacf[lambda^2/tau^2]\t"
+        "vacf_error[lambda^2/tau^2]\n0 0 0 3 0.1\n0.5 1 0.2 2 0.3\n1 2 0.4 1 0.5\n");
+    assert_ok(read(
+        state, "\"vacf\": {\"file\": \"motion.tsv\"}, \"msd\": {\"file\": \"motion.tsv\"}", &t));
+    assert_close(t.curve[TARGET_VACF].value[1], 2, 0);
+    assert_close(t.curve[TARGET_VACF].error[2], 0.5, 0);
+    assert_close(t.curve[TARGET_MSD].value[1], 1, 0);
+    assert_close(t.curve[TARGET_MSD].error[2], 0.4, 0);
+    mf_target_files_clear(&t);
+    assert_ok(read(state,
+                   "\"vacf\": {\"file\": \"motion.tsv\", \"value_column\": 2, \"error_column\": 0}",
+                   &t));
+    assert_close(t.curve[TARGET_VACF].value[1], 1, 0);
+    assert_close(t.curve[TARGET_VACF].error[1], 0, 0);
+    mf_target_files_clear(&t);
+}
+
 /// The window of motion is that of a curve, else that of the escape times, else its own.
 static void test_targets_sample_motion_as_the_curves_do(void **state) {
     struct target_files t;
@@ -231,6 +252,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_targets_read_takes_all_kinds),
         TEST(test_targets_read_takes_the_columns_of_a_curve),
+        TEST(test_targets_read_finds_the_columns_of_a_curve_by_their_names),
         TEST(test_targets_sample_motion_as_the_curves_do),
         TEST(test_targets_read_refuses_what_is_no_function_of_time),
         TEST(test_targets_read_takes_curves_without_errors),

@@ -229,6 +229,20 @@ static void test_data_table_write_names_the_file_when_it_cannot_be_made(void **s
         STATUS_IO, "no/t.dat: No such file or directory");
 }
 
+/// A comment of as many words as there are columns passes for names, another does not.
+static void test_data_table_find_knows_columns_by_their_names_without_units(void **state) {
+    struct data_table table;
+    assert_ok(mf_data_table_read(
+        &table, write_text(state, "# time[tau]\tmsd[lambda^2]\tmsd_error[lambda^2]\n0 1 2\n"), 2));
+    assert_int_equal(mf_data_table_find(&table, "msd"), 2);
+    assert_int_equal(mf_data_table_find(&table, "msd_error"), 3);
+    assert_int_equal(mf_data_table_find(&table, "ms"), 0);
+    mf_data_table_clear(&table);
+    assert_ok(mf_data_table_read(&table, write_text(state, "# the msd of all\n0 1 2\n"), 2));
+    assert_int_equal(mf_data_table_find(&table, "msd"), 0);
+    mf_data_table_clear(&table);
+}
+
 #define IN_FOLDER(test)                                                                            \
     cmocka_unit_test_setup_teardown(test, temporary_folder_create, temporary_folder_remove)
 
@@ -249,6 +263,7 @@ int main(void) {
         IN_FOLDER(test_data_table_read_refuses_what_has_no_end),
         IN_FOLDER(test_data_table_read_takes_long_files_when_they_outgrow_the_buffer),
         IN_FOLDER(test_data_table_check_increasing_names_the_line_when_a_row_does_not_grow),
+        IN_FOLDER(test_data_table_find_knows_columns_by_their_names_without_units),
         IN_FOLDER(test_data_table_write_prints_comment_header_and_rows_when_asked),
         IN_FOLDER(test_data_table_write_names_the_file_when_it_cannot_be_made),
     };

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "input/fit_defaults.h"
+
+#include "inversion/inversion.h"
+#include "matching/population.h"
+#include "shared/is_close.h"
+#include "shared/temporary_folder.h"
+#include "shared/testing.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const struct run_options options = {.threads = 1};
+
+/// A gas of soft beads, g = exp(−10 exp(−(r/0.5)²)), up to 4.5, whose parabolas are gentle.
+static void write_target(void **state) {
+    char text[8192];
+    int length = snprintf(text, sizeof text, "# r[lambda]\tg[1]\tg_error[1]\n");
+    for (int k = 0; k < 150; k++) {
+        const double r = (k + 0.5) * 0.03;
+        length += snprintf(text + length, sizeof text - (size_t)length, "%.4f %.6f 0.002\n", r,
+                           exp(-10 * exp(-r * r / 0.25)));
+    }
+    temporary_folder_write(*state, "rdf.tsv", text, (size_t)length);
+}
+
+static enum status read_run(void **state, struct fit_file *fit, const char *name,
+                            const char *text) {
+    return mf_fit_file_read(fit, temporary_folder_write(*state, name, text, strlen(text)),
+                            &options);
+}
+
+#define TARGET "{\"target\": {\"rdf\": {\"file\": \"rdf.tsv\"}}, "
+
+static void test_fit_defaults_choose_all_that_target_density_and_temperature_leave(void **state) {
+    struct fit_file fit;
+    write_target(state);
+    assert_ok(read_run(state, &fit, "run.json",
+                       TARGET "\"scene\": {\"density\": 0.3, \"temperature\": 1}}"));
+    const struct simulation_setup *setup = &fit.scene.setup;
+    const struct inversion_settings *settings = fit.method_parameters;
+    const double range = mf_rdf_bins_range(&fit.problem.targets.bins);
+    for (size_t k = 0; k < fit.choices.count; k++)
+        print_message("%s\n", fit.choices.line[k]);
+    assert_in_range(fit.choices.count, 5, FIT_MOST_CHOICES);
+    assert_ptr_equal(fit.method, &mf_automatic);
+    assert_in_range(setup->placement.count, 1000, 1e5);
+    assert_close((double)setup->placement.count / mf_box_volume(&setup->box), 0.3, 1e-9);
+    assert_true(mf_box_shortest(&setup->box) >= 2 * range);
+    // g is 1 within its noise from 1.5 on, where 10 exp(−(r/0.5)²) is 0.001; 3 are two spacings.
+    assert_true(range > 1.3 && range < 3.1);
+    // The largest of −(ln g)'' is 40 (1 − r²/…) at most: 2 · 10/0.25 · 2 e^{−3/2} = 35.7.
+    assert_true(setup->time_step <= sqrt(0.04 / (2 * 30)) && setup->time_step > 0.01);
+    assert_true(fit.scene.omega.curves == 1 && mf_integrator_list[0] != NULL);
+    assert_true(setup->integrator->dissipative);
+    assert_in_range(settings->common.particles, 700, 1e5);
+    assert_close(settings->common.precision, 0.002, 1e-3);
+    assert_in_range(fit.verification.plan.samples, 50, 1e6);
+    mf_fit_file_clear(&fit);
+}
+
+/// What used.json says is what was chosen, so that nothing is left to be chosen again.
+static void test_fit_defaults_stand_in_used_json(void **state) {
+    struct fit_file fit, again;
+    char path[1024];
+    write_target(state);
+    assert_ok(read_run(state, &fit, "run.json", TARGET "\"scene\": {\"density\": 0.3}}"));
+    snprintf(path, sizeof path, "%s", temporary_folder_file(*state, "used.json"));
+    assert_ok(mf_fit_file_write(&fit, path));
+    assert_ok(mf_fit_file_read(&again, path, &options));
+    assert_int_equal(again.choices.count, 0);
+    assert_identical(again.scene.setup.time_step, fit.scene.setup.time_step);
+    assert_identical(again.scene.setup.box.length[0], fit.scene.setup.box.length[0]);
+    assert_int_equal(again.scene.setup.placement.count, fit.scene.setup.placement.count);
+    assert_int_equal(again.problem.targets.bins.count, fit.problem.targets.bins.count);
+    assert_memory_equal(&again.verification, &fit.verification, sizeof fit.verification);
+    assert_memory_equal(again.method_parameters, fit.method_parameters,
+                        sizeof(struct inversion_settings));
+    assert_identical(mf_curve_value(&again.scene.omega.curve[0], 0.5),
+                     mf_curve_value(&fit.scene.omega.curve[0], 0.5));
+    mf_fit_file_clear(&fit);
+    mf_fit_file_clear(&again);
+}
+
+static void test_fit_defaults_leave_what_the_file_says(void **state) {
+    struct fit_file fit;
+    write_target(state);
+    assert_ok(
+        read_run(state, &fit, "run.json",
+                 "{\"target\": {\"rdf\": {\"file\": \"rdf.tsv\", \"cutoff\": 3.5}}, "
+                 "\"scene\": {\"box\": [9, 9, 9], \"particles\": {\"count\": 219}, "
+                 "\"time_step\": 0.011, \"dynamics\": {\"integrator\": \"velocity-verlet\"}}, "
+                 "\"verification\": {\"samples\": 77}}"));
+    assert_identical(fit.scene.setup.time_step, 0.011);
+    assert_identical(fit.scene.setup.box.length[0], 9);
+    assert_int_equal(fit.scene.setup.placement.count, 219);
+    assert_int_equal(fit.verification.plan.samples, 77);
+    assert_int_equal(fit.scene.omega.curves, 0);
+    assert_close(mf_rdf_bins_range(&fit.problem.targets.bins), 3.5, 0.03);
+    mf_fit_file_clear(&fit);
+}
+
+/// A file with a method is read as before there were choices.
+static void test_fit_defaults_choose_nothing_where_there_is_a_method(void **state) {
+    struct fit_file fit;
+    write_target(state);
+    assert_ok(read_run(state, &fit, "run.json",
+                       TARGET
+                       "\"scene\": {\"box\": [9.1, 9.1, 9.1], \"particles\": {\"count\": 226}}, "
+                       "\"method\": {\"name\": \"ibi\"}}"));
+    assert_int_equal(fit.choices.count, 0);
+    assert_identical(fit.scene.setup.time_step, 0.01);
+    assert_int_equal(fit.scene.omega.curves, 0);
+    assert_int_equal(fit.verification.plan.samples, 50);
+    assert_int_equal(fit.problem.targets.bins.count, 150);
+    mf_fit_file_clear(&fit);
+}
+
+/// Half of a box that is given ends g(r), all of the last bin within it.
+static void test_fit_defaults_cut_g_at_half_of_a_box_that_is_given(void **state) {
+    struct fit_file fit;
+    write_target(state);
+    assert_ok(read_run(state, &fit, "run.json",
+                       TARGET
+                       "\"scene\": {\"box\": [5.6, 5.6, 5.6], \"particles\": {\"count\": 53}}}"));
+    const double range = mf_rdf_bins_range(&fit.problem.targets.bins);
+    assert_true(range <= 2.8 && range > 2.7);
+    mf_fit_file_clear(&fit);
+}
+
+/// Escape times ask for ω, too, and for a time step that divides their interval; bins come from the
+/// names of the columns.
+static void test_fit_defaults_find_omega_where_targets_move(void **state) {
+    static const char etd[] = "# time[tau]\tE(r0=0.55)[1]\tE(r0=0.65)[1]\tE(r0=0.75)[1]\n"
+                              "0 1 1 1\n0.07 1 0.9 0.6\n0.14 0.9 0.7 0.4\n0.21 0.8 0.6 0.3\n";
+    struct fit_file fit;
+    write_target(state);
+    temporary_folder_write(*state, "etd.tsv", etd, strlen(etd));
+    assert_ok(read_run(state, &fit, "run.json",
+                       "{\"target\": {\"rdf\": {\"file\": \"rdf.tsv\"}, \"etd\": {\"file\": "
+                       "\"etd.tsv\"}}, \"scene\": {\"density\": 0.3}}"));
+    assert_ptr_equal(fit.method, &mf_successive);
+    assert_true(fit.unknown[UNKNOWN_POTENTIAL].wanted && fit.unknown[UNKNOWN_OMEGA].wanted);
+    const double steps = 0.07 / fit.scene.setup.time_step;
+    assert_close(steps, round(steps), 1e-9);
+    assert_close(fit.files.etd.grid.r_minimum, 0.5, 1e-12);
+    assert_close(fit.files.etd.grid.r_maximum, 0.8, 1e-12);
+    const struct unknown_parameters *omega = &fit.unknown[UNKNOWN_OMEGA].parameters;
+    assert_true(omega->cutoff > 0.8 && omega->maximum > 0);
+    mf_fit_file_clear(&fit);
+}
+
+static void test_fit_defaults_tell_faults_once_and_only_what_is_missing(void **state) {
+    struct fit_file fit;
+    write_target(state);
+    assert_fails(read_run(state, &fit, "a.json", TARGET "\"scene\": {\"temperature\": 1}}"),
+                 STATUS_BAD_INPUT, "scene.box: missing: it or \"density\" is required");
+    mf_fit_file_clear(&fit);
+    assert_fails(read_run(state, &fit, "b.json",
+                          TARGET "\"scene\": {\"density\": 0.3, \"box\": [9, 9, 9]}}"),
+                 STATUS_BAD_INPUT, "scene.density: \"box\" is given, and says it already");
+    mf_fit_file_clear(&fit);
+    assert_fails(read_run(state, &fit, "c.json", TARGET "\"scene\": 5}"), STATUS_BAD_INPUT,
+                 "scene: expected an object, found the number 5");
+    assert_null(strchr(mf_status_message(), '\n'));
+    mf_fit_file_clear(&fit);
+    assert_fails(
+        read_run(state, &fit, "d.json",
+                 "{\"target\": {\"pressure\": {\"value\": 1}}, \"scene\": {\"density\": 1}}"),
+        STATUS_BAD_INPUT, "method: missing");
+    mf_fit_file_clear(&fit);
+}
+
+#define IN_FOLDER(name)                                                                            \
+    cmocka_unit_test_setup_teardown(name, temporary_folder_create, temporary_folder_remove)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        IN_FOLDER(test_fit_defaults_choose_all_that_target_density_and_temperature_leave),
+        IN_FOLDER(test_fit_defaults_stand_in_used_json),
+        IN_FOLDER(test_fit_defaults_leave_what_the_file_says),
+        IN_FOLDER(test_fit_defaults_choose_nothing_where_there_is_a_method),
+        IN_FOLDER(test_fit_defaults_cut_g_at_half_of_a_box_that_is_given),
+        IN_FOLDER(test_fit_defaults_find_omega_where_targets_move),
+        IN_FOLDER(test_fit_defaults_tell_faults_once_and_only_what_is_missing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
