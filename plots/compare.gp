@@ -20,6 +20,8 @@ truth_in(file) = !has(file) ? -1 : int(system("awk -F '\t' 'BEGIN { found = -1 }
     /^# [0-9]+\t/ { block = substr($1, 3) } !/^#/ && found < 0 && $4 ~ /[0-9]/ { found = block } \
     END { print found }'" . from(file)))
 with_rdf = has("rdf_compare.tsv")
+r_axis = r_axis_of(with_rdf ? "rdf_compare.tsv" : has("potential_compare.tsv") ? "potential_compare.tsv" : \
+    has("omega_compare.tsv") ? "omega_compare.tsv" : "compare.tsv")
 with_target = 0
 with_phi = has("potential_compare.tsv")
 with_omega = has("omega_compare.tsv")
@@ -90,7 +92,7 @@ do for [i = 1:count] { eval sprintf("set style line %d %s", i, line_of(i - 1)) }
 # Command for the next panel over r; the last one has the labels.
 next_panel(panel) = sprintf("set tmargin at screen %g; set bmargin at screen %g; ", \
     edge(panel == 1 ? 10 : floor_of(panel - 1) + 25), edge(floor_of(panel))) . \
-    (panel == panels ? "set format x '%h'; set xlabel r_label" : "set format x ''")
+    (panel == panels ? "set format x '%h'; set xlabel r_axis" : "set format x ''")
 
 # Steps are counted in thousands or millions where there are so many.
 thousands = !with_error || S_max < 1e4 ? 0 : S_max < 1e7 ? 3 : 6
@@ -158,7 +160,7 @@ do for [kind in kinds] {
         panel = panel + 1
         eval next_panel(panel)
         set yrange [bottom - 0.1 * (top - bottom):top]
-        eval name_axis(phi_label, 0.012)
+        eval name_axis(axis_of("potential_compare.tsv", "phi", "{/:Italic Φ}({/:Italic r})", phi_label), 0.012)
         plot 0 linewidth 0.8 linecolor rgb ink, \
             for [i = 1:banded] "potential_compare.tsv" index (i - 1) \
                 using 1:(band_low(2, 3)):(band_high(2, 3)) with filledcurves @band \
@@ -170,7 +172,7 @@ do for [kind in kinds] {
         panel = panel + 1
         eval next_panel(panel)
         set yrange [0:V_max > 0 || W_max > 0 ? 1.08 * high(V_max, W_max) : 1]
-        eval name_axis(omega_label, 0.012)
+        eval name_axis(axis_of("omega_compare.tsv", "omega", "{/:Italic ω}({/:Italic r})", omega_label), 0.012)
         plot 0 linewidth 0.8 linecolor rgb ink, \
             for [i = 1:banded] "omega_compare.tsv" index (i - 1) \
                 using 1:(band_low(2, 3)):(band_high(2, 3)) with filledcurves @band \

@@ -18,8 +18,8 @@ do for [kind in kinds] {
     unset grid
     set xrange [0:edge(1)]
     set yrange [0:edge(2)]
-    set xlabel "{/:Italic x} / {/:Italic λ}"
-    set ylabel "{/:Italic y} / {/:Italic λ}"
+    set xlabel axis_of(table, "x", "{/:Italic x}", "{/:Italic x} / {/:Italic λ}")
+    set ylabel axis_of(table, "y", "{/:Italic y}", "{/:Italic y} / {/:Italic λ}")
     set palette model HSV functions gray, 0.75, 0.85
     set cbrange [0:1]
     set cbtics ("0" 0, "{/:Italic π}" 0.5, "2{/:Italic π}" 1)

@@ -34,9 +34,9 @@ do for [kind in kinds] {
     unset grid
     set size ratio -1
     set rmargin at screen 0.82
-    set xlabel "{/:Italic x} / {/:Italic λ}"
-    set ylabel "{/:Italic y} / {/:Italic λ}"
-    set cblabel "vorticity / {/:Italic τ}^{-1}" offset 1.6
+    set xlabel axis_of("flow_field.tsv", "x", "{/:Italic x}", "{/:Italic x} / {/:Italic λ}")
+    set ylabel axis_of("flow_field.tsv", "y", "{/:Italic y}", "{/:Italic y} / {/:Italic λ}")
+    set cblabel axis_of("flow_field.tsv", "vorticity", "vorticity", "vorticity / {/:Italic τ}^{-1}") offset 1.6
     set xrange [0:width]
     set yrange [0:height]
     set cbrange [-limit:limit]

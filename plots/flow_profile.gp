@@ -7,8 +7,8 @@ load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 stats "flow_profile.tsv" using 1 name "Y" nooutput
 do for [kind in kinds] {
     eval open(kind, "flow_profile", 720, 440)
-    set xlabel "{/:Italic y} / {/:Italic λ}"
-    set ylabel "{/:Italic v}_x / ({/:Italic λ}/{/:Italic τ})"
+    set xlabel axis_of("flow_profile.tsv", "y", "{/:Italic y}", "{/:Italic y} / {/:Italic λ}")
+    set ylabel axis_of("flow_profile.tsv", "v_x", "{/:Italic v}_x", "{/:Italic v}_x / ({/:Italic λ}/{/:Italic τ})")
     set xrange [0:Y_max + Y_min]
     set key right top vertical
     plot "flow_profile.tsv" using 1:(band_low(2, 3)):(band_high(2, 3)) \

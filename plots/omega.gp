@@ -38,7 +38,7 @@ do for [kind in kinds] {
     set xrange [0:R_max]
     set yrange [0:top > 0 ? 1.08 * top : 1]
     set xlabel r_axis_of("omega.tsv")
-    eval name_axis(omega_label, 0.024)
+    eval name_axis(axis_of("omega.tsv", "omega", "{/:Italic ω}({/:Italic r})", omega_label), 0.024)
     set key at screen 0.97, screen 0.985 right top vertical maxrows 1
     plot @show_band "omega.tsv" using ($1 * nm):2 with lines title "result" \
             linewidth 2.6 linecolor rgb vermillion @show_truth @show_flat

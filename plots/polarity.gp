@@ -21,7 +21,7 @@ do for [kind in kinds] {
     set bmargin at screen 0.60
     set xrange [0:high(O_max, 1e-9)]
     set yrange [0:1.02]
-    set xlabel t_label
+    set xlabel t_axis_of("polar_order.tsv")
     set ylabel "order |⟨{/:Bold n}⟩|"
     plot "polar_order.tsv" using 1:2 with lines linewidth 1.6 linecolor rgb green
 
@@ -39,7 +39,7 @@ do for [kind in kinds] {
     set rmargin at screen 0.97
     eval log_range("x", E_min, T_max)
     eval log_range("y", L_min, M_max)
-    set ylabel "MSD / {/:Italic λ}^2"
+    set ylabel axis_of("polarity.tsv", "msd", "MSD", "MSD / {/:Italic λ}^2")
     plot "polarity.tsv" every ::1 using 1:(band_low(4, 5)):(band_high(4, 5)) with filledcurves @band linecolor rgb blue, \
         "" every ::1 using 1:4 with lines linewidth 2.2 linecolor rgb blue, \
         "" every ::1 using 1:(exact > 0 ? column(exact + 1) : NaN) with lines @true_line

@@ -71,7 +71,7 @@ do for [kind in kinds] {
     unset xlabel
 
     eval begin_panel(0) . value_range(L_min, H_max)
-    eval name_axis("{/:Italic T} / {/:Italic T}_0", label)
+    eval name_axis(axis_of("thermodynamics.tsv", "temperature", "{/:Italic T}", "{/:Italic T} / {/:Italic T}_0"), label)
     set key on at graph 1, graph 1.22 right top vertical maxrows 1 noautotitle
     plot for [i = 1:kinetic] "thermodynamics.tsv" using (ps * $2):3 with lines title "kinetic" \
             linewidth 1.2 linecolor rgb blue, \

@@ -91,8 +91,22 @@ factor_of(file, name, n) = real(system(sprintf("awk -F '\t' '/^#/ { sub(/^# */, 
     for (k = 1; k <= NF; k++) if ($k == \"%s\") found = k; next } \
     found && $%d + 0 != 0 { factor = $found / $%d } \
     END { printf \"%%.10g\", factor ? factor : 1 }'", name, n, n) . from(file)))
-in_units(file, name, physical, reduced) = \
-    int(system("cat" . from(file) . sprintf(" | grep '^#' | grep -cF '%s' || true", name))) ? physical : reduced
+# Where the first column of that name is itself in another physical unit, as "r[angstrom]", the axis
+# has that one.
+in_units(file, name, physical, reduced) = system(sprintf("awk -F '\t' -v name='%s' -v physical='%s' -v reduced='%s' '\
+    BEGIN { label = reduced; split(name, wanted, \"[\") } \
+    /^#/ { sub(/^# */, \"\"); for (k = 1; k <= NF; k++) { \
+        if ($k == name) { label = physical; exit } \
+        split($k, own, \"[\"); \
+        if (own[1] == wanted[1] && own[2] && !seen++) { spoken = own[2]; sub(/\\]$/, \"\", spoken) } } } \
+    END { if (label == reduced && spoken && spoken !~ /^1$|lambda|tau|k_B|T_0|mu/) { \
+            gsub(/angstrom/, \"Å\", spoken); gsub(/\\./, \" \", spoken); \
+            half = sub(/^sqrt/, \"\", spoken) ? \"^{1/2}\" : \"\"; \
+            if (!half && spoken ~ /\\//) spoken = \"(\" spoken \")\"; \
+            label = physical; sub(/ \\/ .*/, \" / \" spoken half, label) } \
+        print label }'", name, physical, reduced) . from(file))
+# The same of a column that is in physical units only if the file is.
+axis_of(file, name, symbol, reduced) = in_units(file, name . "[]", symbol . " / ", reduced)
 r_axis_of(file) = in_units(file, "r[nm]", "{/:Italic r} / nm", r_label)
 t_axis_of(file) = in_units(file, "time[ps]", "{/:Italic t} / ps", t_label)
 
@@ -128,19 +142,26 @@ log_axis(axis, a, b) = sprintf("set logscale %s; set %srange [%g:%g]; ", axis, a
     log_tics(axis, a, b)
 log_range(axis, a, b) = a > b ? log_axis(axis, 0.1, 1) : log_axis(axis, a / 1.4, b * 1.4)
 
+# k_B T_0 in the units of column 2 of a potential's table, by the temperature at the top of used.json.
+energy_of(file) = real(system("awk -F '\t' '/^#/ && NF > 1 && !k { k = $2 ~ /kcal/ ? 0.0019872 : $2 ~ /kJ/ ? 0.0083145 : 0 } \
+    END { print k + 0 }'" . \
+    from(file)))
+kelvins = !has("used.json") ? 300 : real(system("awk -F '[:,]' '/\"temperature\":/ && !T { T = $2 } END { print T + 0 }' used.json"))
+thermal_energy(file) = energy_of(file) > 0 ? energy_of(file) * high(1, kelvins) : 1
+
 # Where a potential's axes begin and end: "top begin lowest" in the table's own units, of all blocks
 # of a file with r and Φ in columns 1 and 2 and Φ's errors in column `errors`. A soft core, up to
 # 20 k_B T_0, is shown whole. A core that no particle enters would squeeze everything else into a line:
 # it is cut off above the highest barrier behind it, and at three depths of the well; but not so low
 # that less than 85 % of the way from 20 k_B T_0 to the cutoff were to be seen.
-potential_view(file, errors) = system(sprintf("awk -v e=%d -v n=0 '\
+potential_view(file, errors) = system(sprintf("awk -v e=%d -v u=%g -v n=0 '\
     function high(a, b) { return a > b ? a : b } function low(a, b) { return a < b ? a : b } \
     /^#/ || NF < 2 || $2 !~ /[0-9]/ { next } \
     { r[n] = $1 + 0; p[n] = $2 + 0 } \
     n == 0 { end = r[0]; lowest = p[0]; highest = p[0] } \
     n == 0 || r[n] <= r[n - 1] { entered = 0; inside = 0 } \
     { end = high(end, r[n]); lowest = low(lowest, p[n]); highest = high(highest, p[n]) } \
-    p[n] <= 20 { \
+    p[n] <= 20 * u { \
         if (!entered && (!known || r[n] < core)) { core = r[n]; known = 1 } \
         least = entered ? low(least, p[n]) : p[n]; entered = 1; \
         margin = $e ~ /[0-9]/ ? low(1.96 * $e, 0.5 * p[n]) : 0; \
@@ -148,11 +169,11 @@ potential_view(file, errors) = system(sprintf("awk -v e=%d -v n=0 '\
     { n++ } \
     END { \
         top = highest; begin = 0; \
-        if (highest > 20) { \
-            top = high(high(1, 1.1 * barrier), low(4, -3 * lowest)); \
+        if (highest > 20 * u) { \
+            top = high(high(u, 1.1 * barrier), low(4 * u, -3 * lowest)); \
             limit = core + 0.15 * (end - core); \
             for (k = 1; k < n; k++) if (r[k] >= limit && r[k - 1] < limit) top = high(top, p[k]); \
-            top = low(top, 20); begin = end; \
+            top = low(top, 20 * u); begin = end; \
             for (k = 0; k < n; k++) if (p[k] < top) begin = low(begin, r[k]); \
             begin = high(0, begin - 0.05 * (end - begin)) } \
-        print top, begin, lowest }'", errors) . from(file))
+        print top, begin, lowest }'", errors, thermal_energy(file)) . from(file))

@@ -251,8 +251,11 @@ static void print_body(FILE *stream, const struct look *look, const struct topic
                             "chosen by {\"law\": …}; \"dynamics\" are integrators, chosen by "
                             "{\"integrator\": …}; \"method\" are methods, chosen by "
                             "{\"name\": …}. {\"law\": \"none\"} is no law at all. "
-                            "Numbers are in reduced units: energy k_B T_0, length "
-                            "lambda, mass mu, time tau = lambda sqrt(mu/(k_B T_0)).");
+                            "Units are written as reduced ones: energy k_B T_0, length "
+                            "lambda, mass mu, time tau = lambda sqrt(mu/(k_B T_0)). With "
+                            "\"units\" at its top, all numbers of a file are in nm, ps, u, kJ/mol, "
+                            "K and bar, or angstrom, fs, g/mol, kcal/mol, K and atm, of the same "
+                            "kind.");
     print_topics(stream, look, topics, count);
 }
 

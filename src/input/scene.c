@@ -185,7 +185,7 @@ static void check_units(const struct scene *scene, struct json_object *object) {
     const double mass = scene->units.mass;
     if (!mf_units_known(&scene->units) || mf_json_fault_count(object->document) > 0)
         return;
-    const bool reduced = scene->units.system == UNITS_REDUCED;
+    const bool reduced = !mf_units_speaks(&scene->units);
     struct json_object units = {0};
     if (reduced)
         units = mf_json_child(object, "units", false);

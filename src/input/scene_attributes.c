@@ -72,7 +72,7 @@ void mf_scene_attributes_read(struct scene *scene, struct json_object *particles
         source->ranges = 1;
         read_range(particles, kind->name, kind, &source->range[0]);
     }
-    if (mf_json_units(particles)->system != UNITS_REDUCED)
+    if (mf_units_speaks(mf_json_units(particles)))
         forget_common_mass(&scene->setup.attribute[ATTRIBUTES_MASS]);
 }
 

@@ -3,6 +3,7 @@
 #include "io/data_table.h"
 #include "io/units_text.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -39,16 +40,21 @@ enum status mf_data_table_convert(struct data_table *table, const char *file, si
                                   const char *unit, const struct units *units) {
     char given[NAME_SIZE];
     double factor = 1;
-    if (units->system == UNITS_REDUCED)
+    if (!mf_units_speaks(units))
         return STATUS_OK;
     const bool named = heading_unit(table, column, given);
     const enum status status = named ? mf_units_from(units, given, unit, &factor) : STATUS_OK;
     if (status != STATUS_OK)
         return mf_status_prefix(status, "%s: column %zu", file, column + 1);
+    const double spoken = mf_units_factor(units, unit);
     for (size_t row = 0; row < table->rows; row++) {
         double *value = &table->values[row * table->columns + column];
         // As numbers of the file itself are converted, to the same bits.
-        *value = named ? *value * factor : *value / mf_units_factor(units, unit);
+        const double reduced = named ? *value * factor : *value / spoken;
+        if (isinf(reduced))
+            return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: %g is too large", file,
+                                  table->line[row], column + 1, *value);
+        *value = reduced;
     }
     return STATUS_OK;
 }
@@ -59,24 +65,24 @@ static const char *format_of(const struct data_column *column) {
     return length > 0 && column->format[length - 1] == 'f' ? NULL : column->format;
 }
 
-/// What a heading is called in spoken units, and the factor of its numbers.
-static double translate(const struct units *units, const char *heading, char name[NAME_SIZE]) {
+double mf_data_table_translate(const struct units *units, const char *heading, char *name,
+                               size_t size) {
     char unit[UNITS_NAME_SIZE], spoken[UNITS_NAME_SIZE];
     size_t length;
     const char *found = mf_units_text_in_brackets(heading, &length);
-    snprintf(name, NAME_SIZE, "%s", heading);
+    snprintf(name, size, "%s", heading);
     if (found == NULL || length >= sizeof unit)
         return 1;
     snprintf(unit, sizeof unit, "%.*s", (int)length, found);
     const double factor = mf_units_factor(units, unit);
-    snprintf(name, NAME_SIZE, "%.*s%s]", (int)(found - heading), heading,
+    snprintf(name, size, "%.*s%s]", (int)(found - heading), heading,
              mf_units_name(units, unit, spoken));
     return factor;
 }
 
 void mf_data_table_name(const struct units *units, const char *name, const char *unit,
                         char *heading, size_t size) {
-    if (units->system == UNITS_REDUCED)
+    if (!mf_units_speaks(units))
         snprintf(heading, size, "%s", name);
     else
         snprintf(heading, size, "%s[%s]", name, unit);
@@ -89,13 +95,13 @@ enum status mf_data_table_write_in(const char *file, const struct units *units, 
     struct data_column *told = NULL;
     double *values = NULL;
     char(*names)[NAME_SIZE] = NULL;
-    if (units->system == UNITS_REDUCED)
+    if (!mf_units_speaks(units))
         return mf_data_table_write(file, comment, columns, column_count, rows);
     NEW_ARRAY(told, column_count);
     NEW_ARRAY(names, column_count);
     NEW_ARRAY(values, column_count * rows + 1);
     for (size_t c = 0; c < column_count; c++) {
-        const double factor = translate(units, columns[c].name, names[c]);
+        const double factor = mf_data_table_translate(units, columns[c].name, names[c], NAME_SIZE);
         told[c] = (struct data_column){names[c], columns[c].values, columns[c].format};
         if (factor == 1)
             continue;

@@ -44,6 +44,15 @@ enum status mf_snapshot_take(struct snapshot *snapshot, const struct particles *
                              double time) MUST_USE;
 void mf_snapshot_clear(struct snapshot *snapshot);
 
+/// The reduced unit of a column: "lambda" of positions; "" of what the scene does not scale.
+const char *mf_snapshot_unit(const struct snapshot_column *column);
+
+/// A copy of what `from` holds, in the units that are spoken.
+/// @param[in,out] told  zero or an earlier copy, to be cleared
+/// Fails: NO_MEMORY. Tested: cli/test_units.
+enum status mf_snapshot_translate(struct snapshot *told, const struct snapshot *from,
+                                  const struct units *units) MUST_USE;
+
 /// Name of a component of a column: "velocity_x", "orientation"; those of positions are x, y, z.
 #define SNAPSHOT_FOLDER "snapshots" ///< in that of a run
 enum { SNAPSHOT_NAME_SIZE = 64 };

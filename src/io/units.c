@@ -154,7 +154,8 @@ static bool read_system(struct system *system, struct json_object *root) {
 void mf_units_speak(struct json_object *root, struct json_object *scene) {
     struct system system;
     if (!read_system(&system, root)) {
-        if (root->item != scene->item && mf_json_is_object(root, "units"))
+        if (root->item != scene->item && mf_json_is_object(root, "units") &&
+            mf_json_has(root, "units"))
             mf_json_fault(root, "units",
                           "\"system\" is missing; without it, it stands in "
                           "\"scene\"");
@@ -181,7 +182,7 @@ void mf_units_read(struct units *units, struct json_object *scene) {
     if (is_root)
         mf_units_speak(scene, scene);
     *units = *mf_json_units(scene);
-    if (units->system != UNITS_REDUCED || (is_root && !mf_json_is_object(scene, "units"))) {
+    if (mf_units_speaks(units) || (is_root && !mf_json_is_object(scene, "units"))) {
         if (!is_root)
             mf_json_refuse(scene, "units", "the file's stand at its top");
         return;
@@ -206,7 +207,7 @@ static void put_scale(const struct units *units, struct json_writer *writer) {
 }
 
 void mf_units_write(const struct units *units, struct json_writer *writer) {
-    if (units->system == UNITS_REDUCED)
+    if (!mf_units_speaks(units))
         return;
     mf_json_writer_speak(writer, units);
     mf_json_begin(writer, "units");
@@ -220,7 +221,7 @@ void mf_units_write_summary(const struct units *units, struct json_writer *write
                                              {"pressure", "k_B T_0/lambda^d"},
                                              {"friction", "mu/tau"},
                                              {"diffusion", "lambda^2/tau"}};
-    if (units->system == UNITS_REDUCED)
+    if (!mf_units_speaks(units))
         return;
     mf_json_writer_speak(writer, units);
     mf_json_begin(writer, "units");

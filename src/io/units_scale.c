@@ -11,12 +11,16 @@
 
 const char *const mf_units_systems[] = {"reduced", "nm-ps", "angstrom-fs", NULL};
 
+bool mf_units_speaks(const struct units *units) {
+    return units && units->system != UNITS_REDUCED;
+}
+
 bool mf_units_known(const struct units *units) {
     return units->length > 0;
 }
 
 bool mf_units_beside(const struct units *units) {
-    return mf_units_known(units) && units->system == UNITS_REDUCED;
+    return mf_units_known(units) && !mf_units_speaks(units);
 }
 
 double mf_units_energy_kj_per_mol(const struct units *units) {
@@ -72,8 +76,7 @@ static bool find_dimension(const struct units *units, const char *text,
                            struct dimension *dimension) {
     struct units_text unit;
     bool scaled = false;
-    if (units == NULL || units->system == UNITS_REDUCED ||
-        !mf_units_text_parse(&unit, text, units->dimensions))
+    if (!mf_units_speaks(units) || !mf_units_text_parse(&unit, text, units->dimensions))
         return false;
     for (int base = 0; base < UNITS_BASES; base++) {
         if (base >= UNITS_SCALED && unit.exponent[base] != 0)
@@ -155,7 +158,7 @@ const char *mf_units_name(const struct units *units, const char *unit, char *nam
 
 const char *mf_units_suffix(const struct units *units, const char *unit, char *name) {
     name[0] = name[1] = '\0';
-    if (units->system == UNITS_REDUCED)
+    if (!mf_units_speaks(units))
         return name;
     char text[UNITS_NAME_SIZE];
     mf_units_name(units, unit, text);
@@ -230,7 +233,7 @@ enum status mf_units_from(const struct units *units, const char *from, const cha
 
 enum status mf_units_mark(const struct units *units, enum status status) {
     char message[1024], line[UNITS_LINE_SIZE];
-    if (status == STATUS_OK || units->system == UNITS_REDUCED)
+    if (status == STATUS_OK || !mf_units_speaks(units))
         return status;
     mf_units_tell(units, line);
     snprintf(message, sizeof message, "%s", mf_status_message());

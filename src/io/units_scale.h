@@ -36,6 +36,9 @@ struct units {
     bool chosen;        ///< λ by the program: no other file can know it
 };
 
+/// Whether files and results speak other units than the reduced ones. NULL: they do not.
+bool mf_units_speaks(const struct units *units);
+
 /// Names of the systems as files have them: "reduced", "nm-ps", "angstrom-fs"; NULL-terminated.
 extern const char *const mf_units_systems[];
 

@@ -54,12 +54,17 @@ static int64_t due(const void *state) {
 }
 
 static enum status write_formats(struct state *s) {
+    enum status status = STATUS_OK;
     char folder[OUTPUT_PATH_SIZE];
+    struct snapshot told = {0};
     mf_observable_file(&s->results, SNAPSHOT_FOLDER, folder);
+    CHECK(mf_snapshot_translate(&told, &s->last, s->results.units));
     for (int k = 0; mf_snapshot_formats[k]; k++)
         if (s->settings.formats >> k & 1)
-            TRY(mf_snapshot_write(&s->last, mf_snapshot_formats[k], folder, &s->size));
-    return STATUS_OK;
+            CHECK(mf_snapshot_write(&told, mf_snapshot_formats[k], folder, &s->size));
+done:
+    mf_snapshot_clear(&told);
+    return status;
 }
 
 /// Whether a scene can give particles this column at the start.
@@ -73,28 +78,25 @@ static bool is_given(const struct snapshot_column *column) {
 /// configuration.tsv: the last snapshot as a placement file, with which another scene can begin.
 static enum status write(const void *state, const struct observable_results *results) {
     enum { MOST = 3 * SNAPSHOT_MOST_COLUMNS };
-    static const char *const units[][2] = {{"x", "[lambda]"},
-                                           {"y", "[lambda]"},
-                                           {"z", "[lambda]"},
-                                           {"velocity_x", "[lambda/tau]"},
-                                           {"velocity_y", "[lambda/tau]"},
-                                           {"velocity_z", "[lambda/tau]"}};
     const struct snapshot *snapshot = &((const struct state *)state)->last;
     struct data_column columns[MOST];
     char names[MOST][SNAPSHOT_NAME_SIZE + 16], path[OUTPUT_PATH_SIZE];
     size_t n = 0;
-    for (int k = 0; k < snapshot->columns; k++)
+    for (int k = 0; k < snapshot->columns; k++) {
+        const char *unit = mf_snapshot_unit(&snapshot->column[k]);
         for (int c = 0; c < snapshot->column[k].components && is_given(&snapshot->column[k]); c++) {
             char name[SNAPSHOT_NAME_SIZE];
             mf_snapshot_component_name(&snapshot->column[k], c, name);
-            const char *unit = "";
-            for (size_t u = 0; u < sizeof units / sizeof *units; u++)
-                unit = strcmp(units[u][0], name) == 0 ? units[u][1] : unit;
-            snprintf(names[n], sizeof names[n], "%s%s", name, unit);
+            // Attributes are reduced, and say nothing of it.
+            if (snapshot->column[k].components > 1)
+                snprintf(names[n], sizeof names[n], "%s[%s]", name, unit);
+            else
+                mf_data_table_name(results->units, name, unit, names[n], sizeof names[n]);
             columns[n] = (struct data_column){
                 names[n], snapshot->column[k].values + (size_t)c * snapshot->count, "%.17g"};
             n++;
         }
+    }
     mf_observable_file(results, "configuration.tsv", path);
     return mf_data_table_write_in(path, results->units, NULL, columns, n, snapshot->count);
 }

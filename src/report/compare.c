@@ -2,6 +2,7 @@
 #include "report/compare.h"
 
 #include "base/memory.h"
+#include "io/data_table.h"
 #include "io/output.h"
 #include "report/compare_table.h"
 #include "report/figures.h"
@@ -102,6 +103,21 @@ static const struct block blocks[] = {
      offsetof(struct result, course)},
 };
 
+/// The names of the columns, with the units that the folder speaks.
+static void write_header(FILE *stream, const struct block *block,
+                         const struct result_summary *summary) {
+    const struct units units = {.system = summary->system};
+    const char *name = block->header;
+    while (*name) {
+        char reduced[64], spoken[256];
+        const size_t length = strcspn(name, "\t");
+        snprintf(reduced, sizeof reduced, "%.*s", (int)length, name);
+        mf_data_table_translate(&units, reduced, spoken, sizeof spoken);
+        name += length + (name[length] == '\t');
+        fprintf(stream, "%s%c", spoken, *name ? '\t' : '\n');
+    }
+}
+
 static const struct result_table *table_of(const struct compared *fit, const struct block *block) {
     return (const struct result_table *)((const char *)&fit->result + block->table);
 }
@@ -121,8 +137,8 @@ static enum status write_blocks(const char *out, const struct block *block,
                    : mf_status_fail(STATUS_IO, "%s: %s", file, strerror(errno));
     TRY(mf_output_open(&output, file));
     for (size_t k = 0; k < count; k++) {
-        fprintf(output.stream, "%s# %zu\t%s\n# %s\n", k ? "\n\n" : "", k, fits[k].name,
-                block->header);
+        fprintf(output.stream, "%s# %zu\t%s\n# ", k ? "\n\n" : "", k, fits[k].name);
+        write_header(output.stream, block, &fits[k].result.summary);
         write_rows(output.stream, table_of(&fits[k], block), block->columns);
     }
     return mf_output_commit(&output);
@@ -133,6 +149,21 @@ static enum status write_tables(const char *out, const struct compared *fits, si
     TRY(mf_compare_table_write(out, fits, count));
     for (size_t k = 0; k < sizeof blocks / sizeof blocks[0]; k++)
         TRY(write_blocks(out, &blocks[k], fits, count));
+    return STATUS_OK;
+}
+
+/// Numbers of different units do not stand in one table.
+static enum status check_systems(const struct compared *fits, size_t count,
+                                 const char *const *folders) {
+    for (size_t k = 1; k < count; k++) {
+        const int first = fits[0].result.summary.system, other = fits[k].result.summary.system;
+        if (first != other)
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "compare: %s speaks %s units and %s %s ones: one of them has to "
+                                  "be run in the \"units\" of the other",
+                                  folders[0], mf_units_systems[first], folders[k],
+                                  mf_units_systems[other]);
+    }
     return STATUS_OK;
 }
 
@@ -185,6 +216,7 @@ enum status mf_compare_folders(const char *const *folders, size_t count, const c
         CHECK(mf_result_read(&fits[k].result, folders[k]));
         CHECK(find_path(&fits[k], folders[k]));
     }
+    CHECK(check_systems(fits, count, folders));
     CHECK(check_lengths(fits, count, folders));
     if (!quiet)
         warn_of_lengths(fits, count, folders);

@@ -13,7 +13,7 @@ enum {
     PATH_SIZE = OUTPUT_PATH_SIZE + 64,
     CELL_SIZE = 64,    ///< one entry of the printed table
     MOST_NUMBERS = 64, ///< in a summary
-    HEADER_SIZE = 64,  ///< of one column of compare.tsv
+    HEADER_SIZE = 96,  ///< of one column of compare.tsv
 };
 
 // Columns of the printed table --------------------------------------------------------------------
@@ -210,6 +210,7 @@ enum status mf_compare_table_write(const char *out, const struct compared *fits,
     enum status status = STATUS_OK;
     char file[PATH_SIZE], headers[MOST_NUMBERS][HEADER_SIZE], *comment = NULL;
     struct data_column written[MOST_NUMBERS] = {{.name = "index[1]"}};
+    const struct units units = {.system = fits[0].result.summary.system};
     double *values = NULL;
     size_t used = 1;
     NEW_ARRAY(values, MOST_NUMBERS * count);
@@ -219,7 +220,9 @@ enum status mf_compare_table_write(const char *out, const struct compared *fits,
     for (const struct field *field = mf_result_summary_fields; field->name; field++) {
         if (used == MOST_NUMBERS || !fill_numbers(values + used * count, field, fits, count))
             continue;
-        snprintf(headers[used], HEADER_SIZE, "%s[%s]", field->name, field->unit);
+        char reduced[HEADER_SIZE];
+        snprintf(reduced, sizeof reduced, "%s[%s]", field->name, field->unit);
+        mf_data_table_translate(&units, reduced, headers[used], HEADER_SIZE);
         written[used] = (struct data_column){headers[used], values + used * count, "%.16g"};
         used++;
     }

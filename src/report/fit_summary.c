@@ -137,7 +137,7 @@ static void put_ramp(struct json_writer *writer, const struct inverse_ramp *ramp
     if (!(ramp->error > 0))
         return;
     put_quantity(writer, "ramp_error", "k_B T_0", ramp->error);
-    put_quantity(writer, "ramp_pressure", "k_B T_0/lambda^d", ramp->pressure);
+    put_quantity(writer, "ramp_pressure", "1/lambda^d", ramp->pressure);
     put_quantity(writer, "pressure_left_open", "k_B T_0/lambda^d", ramp->pressure_open);
     put_known(writer, "directions", ramp->directions);
     put_known(writer, "directions_of", ramp->bins);

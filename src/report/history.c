@@ -91,9 +91,15 @@ static enum status write_history(const struct history *history, const struct inv
                                  const struct units *units, const struct run_folder *folder) {
     const char *names[MOST_COLUMNS] = {"iteration", "evaluations", "engine_steps", "error[1]",
                                        "noise[1]"};
-    char path[OUTPUT_PATH_SIZE];
-    for (size_t k = 0; k < history->extra; k++)
+    char path[OUTPUT_PATH_SIZE], headings[INVERSE_EXTRA][48];
+    for (size_t k = 0; k < history->extra; k++) {
         names[COMMON + k] = method->columns[k];
+        if (strncmp(method->columns[k], "pressure", strlen("pressure")) != 0)
+            continue;
+        mf_data_table_name(units, method->columns[k], "k_B.T_0/lambda^d", headings[k],
+                           sizeof headings[k]);
+        names[COMMON + k] = headings[k];
+    }
     mf_run_folder_file(folder, "history.tsv", path);
     return write_transposed(path, units, history->rows, history->iterations,
                             COMMON + history->extra, NULL, 0, names);

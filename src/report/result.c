@@ -140,6 +140,16 @@ static void read_length_unit(struct json_object *root, struct result_summary *su
     mf_json_fields(&physical, fields, summary);
 }
 
+/// In which units the folder speaks stands in an object of its own.
+static void read_system(struct json_object *root, struct result_summary *summary) {
+    struct json_object units = mf_json_child(root, "units", false);
+    const char *name =
+        mf_json_choice(&units, "system", mf_units_systems, mf_units_systems[UNITS_REDUCED]);
+    for (int k = 0; name && mf_units_systems[k]; k++)
+        if (strcmp(mf_units_systems[k], name) == 0)
+            summary->system = k;
+}
+
 /// Keys that are not in the table are left alone: a later version may write more.
 static enum status read_summary(struct result_summary *summary, const char *file) {
     struct json_document *document;
@@ -147,6 +157,7 @@ static enum status read_summary(struct result_summary *summary, const char *file
     struct json_object root = mf_json_root(document);
     mf_json_fields(&root, mf_result_summary_fields, summary);
     read_length_unit(&root, summary);
+    read_system(&root, summary);
     read_old_truth(&root, summary);
     if (is_simulation(summary))
         read_simulated_diffusion(&root, summary);

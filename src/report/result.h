@@ -28,6 +28,7 @@ struct result_summary {
     double ramp_error, ramp_pressure, pressure_left_open, directions; ///< of an inversion
     double seed;
     double length_unit_nm; ///< λ
+    int system;            ///< enum units_system: in which all of them are
 };
 
 extern const struct field mf_result_summary_fields[];

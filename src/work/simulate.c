@@ -109,7 +109,7 @@ static void tell(void *context, const struct simulation *simulation, uint64_t do
     snprintf(text, sizeof text, "step %llu", (unsigned long long)done);
     if (!simulation_is_overdamped(&simulation->setup) && simulation->particles.count > 1)
         snprintf(text, sizeof text, "step %llu  T %.*f%s", (unsigned long long)done,
-                 units->system == UNITS_REDUCED ? 3 : 1,
+                 !mf_units_speaks(units) ? 3 : 1,
                  mf_particles_temperature(&simulation->particles) * mf_units_factor(units, "T_0"),
                  mf_units_suffix(units, "T_0", unit));
     mf_progress_tell(&run->progress, done, total, "steps", text);
@@ -166,11 +166,8 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
 
 static void warn(struct run *run) {
     const char *warning = mf_scene_warning(&run->scene);
-    char line[SCENE_LINE_SIZE], scale[UNITS_LINE_SIZE];
-    if (run->scene.units.system != UNITS_REDUCED) {
-        mf_units_tell(&run->scene.units, scale);
-        mf_progress_say(&run->progress, "%s", scale);
-    }
+    char line[SCENE_LINE_SIZE];
+    mf_progress_say_scale(&run->progress, &run->scene.units);
     if (warning)
         mf_progress_say(&run->progress, "mesofit: warning: %s", warning);
     if (mf_scene_is_hot(&run->scene, line))
@@ -239,6 +236,7 @@ enum status mf_simulate_explain(const char *file, const struct run_options *opti
     CHECK(read_file(run, file, options));
     // All that a run refuses before its first step.
     CHECK(begin_measuring(run, file));
+    mf_explain_scale(stdout, &run->scene.units);
     mf_explain_scene(stdout, &run->scene.setup, &run->scene.units, run->observables.use,
                      run->plan.every);
 done:

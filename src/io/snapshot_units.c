@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/memory.h"
+#include "io/snapshot.h"
+#include "system/attributes.h"
+
+#include <string.h>
+
+const char *mf_snapshot_unit(const struct snapshot_column *column) {
+    static const char *const known[][2] = {
+        {"position", "lambda"}, {"velocity", "lambda/tau"}, {"force", "k_B T_0/lambda"}};
+    for (size_t k = 0; k < sizeof known / sizeof *known; k++)
+        if (strcmp(column->name, known[k][0]) == 0)
+            return known[k][1];
+    for (const struct field *field = mf_attributes_fields; field->name; field++)
+        if (strcmp(column->name, field->name) == 0)
+            return field->unit;
+    return "";
+}
+
+enum status mf_snapshot_translate(struct snapshot *told, const struct snapshot *from,
+                                  const struct units *units) {
+    mf_snapshot_clear(told);
+    *told = *from;
+    told->memory = mf_memory_zeroed(from->numbers, sizeof(double));
+    if (told->memory == NULL) {
+        *told = (struct snapshot){0};
+        return STATUS_NO_MEMORY;
+    }
+    told->time = mf_units_spoken(from->time, mf_units_factor(units, "tau"));
+    for (int d = 0; d < from->box.dimensions; d++)
+        told->box.length[d] =
+            mf_units_spoken(from->box.length[d], mf_units_factor(units, "lambda"));
+    for (int n = 0; n < from->columns; n++) {
+        const struct snapshot_column *column = &from->column[n];
+        const double factor = mf_units_factor(units, mf_snapshot_unit(column));
+        const size_t numbers = (size_t)column->components * from->count;
+        double *values = told->memory + (column->values - from->memory);
+        for (size_t k = 0; k < numbers; k++)
+            values[k] = column->values[k] * factor;
+        told->column[n].values = values;
+    }
+    return STATUS_OK;
+}
