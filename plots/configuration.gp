@@ -1,18 +1,60 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Where the particles are in the last snapshot, seen along z; those with an orientation have its colour.
-# Reads configuration.tsv and the box of used.json.
+# Where the particles are in the last snapshot, seen along z: discs of their size, in the colour of
+# their orientation or of their type.
+# Reads configuration.tsv, and of used.json the box, the types, and what the size of those without radii is.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
 table = "configuration.tsv"
+angle = column_of(table, "orientation")
+radius = column_of(table, "radius")
+rows = int(system("grep -cv '^#'" . from(table)))
 edge(n) = real(system(sprintf("awk '/\"box\":/ { gsub(/[^0-9.eE, -]/, \"\"); split($0, e, \",\"); \
     print e[%d] + 0; exit }' used.json", n)))
-angle = column_of(table, "orientation")
-rows = int(system("grep -cv '^#'" . from(table)))
-size = 40.0 / sqrt(rows)
+
+# How many there are of each type, in the order of their rows, and their names: "large 10 small 20".
+types = system("awk '/\"types\":/ { inside = 1; next } inside && /}/ { exit } \
+    inside { gsub(/[\",:]/, \" \"); print }' used.json")
+mixed = words(types) > 0
+
+# Hard particles without radii have 0.5; those that repel each other touch at the cutoff. Others are
+# drawn as large as leaves most of the box free.
+free = 0.35 * (edge(1) * edge(2) * (dimensions == 3 ? edge(3) : 1) / rows)**(1.0 / dimensions)
+usual = real(system(sprintf("awk '/\"conservative\":/ { inside = 1; next } /}/ { inside = 0 } \
+    /\"event-driven\"/ { radius = 0.5 } inside && /\"soft-repulsion\"/ { repels = 1 } \
+    inside && repels && /\"cutoff\":/ { gsub(/[^0-9.eE-]/, \"\", $2); radius = $2 / 2 } \
+    END { print radius ? radius : %g }' used.json", free)))
+
+# x, y, radius, and the orientation as a part of a turn or the number of the type; the highest last.
+discs = sprintf("< awk -v usual=%g -v angle=%d -v radius=%d -v types='%s' '\
+    BEGIN { n = split(types, t, \" \"); for (k = 2; k <= n; k += 2) end[k / 2] = (total += t[k]) } \
+    /^#/ { next } \
+    { row++; while (row > end[type + 1] && type + 1 < n / 2) type++; \
+      turn = angle ? $angle / 6.283185307179586 : 0; \
+      print $1, $2, radius ? $radius : usual, angle ? turn - int(turn) + (turn < int(turn)) : type + 0, $3 + 0 }'", \
+    usual, angle, radius, types) . from(table) . (dimensions == 3 ? " | LC_ALL=C sort -s -g -k 5" : "")
+# Each once more before, white and a little larger, where there are few enough to see it.
+outlined = rows <= 5000 ? discs . " | awk '{ print $0, -1; print $0, 0 }'" : discs . " | awk '{ print $0, 0 }'"
+rim = 0.3
+paint(shade) = angle > 0 ? hsv2rgb(shade, 0.75, 0.85) : int("0x" . substr(colour_of(int(shade)), 2, 7))
+
+# Pixels of the figure, of its margins and of a length of 1; circles as polygons would be large files.
+left = 78
+right = angle > 0 ? 100 : mixed ? 120 : 24
+top = 22
+bottom = 74
+across = 640
+tall = high(180, low(1200, (across - left - right) * edge(2) / edge(1) + top + bottom))
+scale = low((across - left - right) / edge(1), (tall - top - bottom) / edge(2))
+# What pointsize makes a point of so many pixels' radius: measured.
+pointsize_of(kind, pixels) = kind eq "svg" ? pixels / 4.875 : high(0.05, (2 * pixels - 1) / 6)
 
 do for [kind in kinds] {
-    eval open(kind, "configuration", 640, 600)
+    eval open(kind, "configuration", across, tall)
+    set lmargin at screen left / real(across)
+    set rmargin at screen 1 - right / real(across)
+    set bmargin at screen bottom / real(tall)
+    set tmargin at screen 1 - top / real(tall)
     set size ratio -1
     set border 15
     unset grid
@@ -24,12 +66,11 @@ do for [kind in kinds] {
     set cbrange [0:1]
     set cbtics ("0" 0, "{/:Italic π}" 0.5, "2{/:Italic π}" 1)
     set cblabel "orientation"
+    set key on outside right top vertical Left reverse noautotitle
     if (angle > 0) { set colorbox } else { unset colorbox }
-    turns(x) = x / (2 * pi) - floor(x / (2 * pi))
-    if (angle > 0) {
-        plot table using 1:2:(turns(column(angle))) with points pointtype 7 pointsize size linecolor palette
-    } else {
-        plot table using 1:2 with points pointtype 7 pointsize size linecolor rgb blue
-    }
+    plot NaN with points palette, \
+        for [k = 1:words(types) / 2] NaN with points pointtype 7 linecolor rgb colour_of(k - 1) title word(types, 2 * k - 1), \
+        outlined using 1:2:(pointsize_of(kind, $3 * scale - (1 + $6) * rim)):($6 < 0 ? 0xffffff : paint($4)) \
+            with points pointtype 7 pointsize variable linecolor rgb variable
     eval close
 }

@@ -12,6 +12,7 @@ figure = system("printf %s \"$MESOFIT_FIGURE\"")
 y = column_of(table, "result") > 0 ? 4 : 2
 # The name of column n and its unit, "q / lambda^{-1}" for "q[1/lambda]", "S" for "S[1]".
 header(n) = system(sprintf("awk -F '\t' '/^#/ { sub(/^# */, \"\"); h = $%d; ", n) . \
+    "gsub(/\\^2/, \"²\", h); gsub(/\\^3/, \"³\", h); " . \
     "gsub(/[{}_@&~^\\\\]/, \" \", h); sub(/\\[1\\]$/, \"\", h); " . \
     "if (sub(/\\[1\\//, \" / \", h)) sub(/\\]$/, \"^{-1}\", h); sub(/\\[/, \" / \", h); sub(/\\]/, \"\", h); " . \
     "gsub(/lambda/, \"λ\", h); gsub(/tau/, \"τ\", h); print h; exit }'" . from(table))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Flow of the solvent in the plane: vorticity as colours, and streamlines, on which the stream
-# function is the same.
-# Reads flow_field.tsv: x, y, v_x, v_y, density, vorticity, stream_function.
+# function is the same, outside the obstacle.
+# Reads flow_field.tsv: x, y, v_x, v_y, density, vorticity, stream_function; of used.json the obstacle.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
@@ -17,14 +17,26 @@ width = X_max + X_min
 height = Y_max + Y_min
 lines = 20
 
+# Centre and radius of the obstacle; all 0: there is none.
+obstacle = system("awk '/\"obstacle_centre\":/ { sub(/.*:/, \"\"); gsub(/[^0-9.eE, -]/, \"\"); split($0, c, \",\") } \
+    /\"obstacle_radius\":/ { gsub(/[^0-9.eE-]/, \"\", $2); r = $2 } \
+    END { print c[1] + 0, c[2] + 0, r + 0 }' used.json")
+centre_x = real(word(obstacle, 1))
+centre_y = real(word(obstacle, 2))
+radius = real(word(obstacle, 3))
+turn(x) = x - width * floor(x / width + 0.5)
+is_fluid(x, y) = turn(x - centre_x)**2 + (y - centre_y)**2 > radius**2
+
 set table $streamlines
 set contour base
 unset surface
-set cntrparam levels incremental S_min, (S_max > S_min ? (S_max - S_min) / lines : 1), S_max
+# Not at the middle, where flow that an obstacle halves is at rest behind it.
+spacing = S_max > S_min ? (S_max - S_min) / lines : 1
+set cntrparam levels incremental S_min + 0.5 * spacing, spacing, S_max
 set cntrparam bspline
 set cntrparam points 4
 splot "< awk -v n=" . nx . " '{ if (!/^#/) { print; if (++k % n == 0) print \"\" } }' flow_field.tsv" \
-    using 1:2:($5 > 0 ? $7 : NaN) with lines
+    using 1:2:($5 > 0 && is_fluid($1, $2) ? $7 : NaN) with lines
 unset table
 unset contour
 set surface
@@ -42,6 +54,9 @@ do for [kind in kinds] {
     set cbrange [-limit:limit]
     set palette defined (-1 "#0072b2", 0 "#ffffff", 1 "#d55e00")
     plot "flow_field.tsv" using 1:2:($5 > 0 ? $6 : NaN) with image, \
-        $streamlines using 1:2 with lines linewidth 1.1 linecolor rgb ink
+        $streamlines using 1:2 with lines linewidth 1.1 linecolor rgb ink, \
+        for [k = -1:(radius > 0 ? 1 : -2)] [t = 0:2 * pi] "+" \
+            using (centre_x + k * width + radius * cos(t)):(centre_y + radius * sin(t)) \
+            with filledcurves closed fillcolor rgb "#d9d9d9" fillstyle solid border linecolor rgb ink
     eval close
 }

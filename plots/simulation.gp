@@ -86,7 +86,7 @@ do for [kind in kinds] {
 
     eval begin_panel(2) . value_range(P_min, P_max)
     eval name_axis(in_units("thermodynamics.tsv", "pressure[bar]", \
-        "{/:Italic p} / bar", "{/:Italic p λ}^3 / {/:Italic k}_B{/:Italic T}_0"), label)
+        "{/:Italic p} / bar", sprintf("{/:Italic p λ}^%d / {/:Italic k}_B{/:Italic T}_0", dimensions)), label)
     set format x "%h"
     set xlabel t_axis_of("thermodynamics.tsv")
     plot "thermodynamics.tsv" using (ps * $2):(bar * $5) with lines linewidth 1.2 linecolor rgb purple

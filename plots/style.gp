@@ -110,13 +110,16 @@ axis_of(file, name, symbol, reduced) = in_units(file, name . "[]", symbol . " / 
 r_axis_of(file) = in_units(file, "r[nm]", "{/:Italic r} / nm", r_label)
 t_axis_of(file) = in_units(file, "time[ps]", "{/:Italic t} / ps", t_label)
 
+# Dimensions of the scene whose results these are.
+dimensions = has("used.json") && int(system("grep -c '\"dimensions\":.*2' used.json || true")) ? 2 : 3
+
 # What a target is called, and the unit of its error.
 target_label(target) = target eq "rdf" ? "{/:Italic g}" : target eq "etd" ? "{/:Italic E}" : \
     target eq "vacf" ? "VACF" : target eq "msd" ? "MSD" : \
     target eq "diffusion" ? "{/:Italic D}" : target eq "pressure" ? "{/:Italic p}" : target
 target_unit(target) = target eq "vacf" ? " / ({/:Italic λ}^2/{/:Italic τ}^2)" : \
     target eq "msd" ? " / {/:Italic λ}^2" : target eq "diffusion" ? " / ({/:Italic λ}^2/{/:Italic τ})" : \
-    target eq "pressure" ? " / ({/:Italic k}_B{/:Italic T}_0/{/:Italic λ}^3)" : ""
+    target eq "pressure" ? sprintf(" / ({/:Italic k}_B{/:Italic T}_0/{/:Italic λ}^%d)", dimensions) : ""
 rmse_of(target) = "rmse of " . target_label(target) . target_unit(target)
 
 # What the column "error" of a fit is, from the targets that used.json says are fitted.

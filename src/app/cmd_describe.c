@@ -7,6 +7,7 @@
 #include "base/nearest.h"
 #include "input/fit_file.h"
 #include "observe/measure.h"
+#include "trajectory/mapping_plan.h"
 
 #include <string.h>
 
@@ -72,6 +73,11 @@ static const struct inner scene_objects[] = {
     {NULL, NULL, NULL},
 };
 
+static const struct inner map_objects[] = {
+    {"beads", "{\"CH3\": {…}, \"OH\": {…}}: kinds of beads by their names", "bead"},
+    {NULL, NULL, NULL},
+};
+
 /// The objects in what a topic is about.
 static const struct {
     const char *topic;
@@ -79,7 +85,7 @@ static const struct {
 } contents[] = {
     {"run", run_objects},           {"scene", scene_objects},
     {"unknowns", unknowns_objects}, {"potential", potential_objects},
-    {"omega", omega_objects},
+    {"omega", omega_objects},       {"map", map_objects},
 };
 
 static const struct topic fixed_topics[] = {
@@ -106,6 +112,13 @@ static const struct topic fixed_topics[] = {
      "verification",
      "\"verification\" of a run file: independent simulations of the result",
      {mf_verify_fields}},
+    {"files",
+     "map",
+     "the top of a map of atoms to beads, for `mesofit measure --map`; \"masses\": {\"C\": 12.011, "
+     "…} "
+     "tells those of atoms [u] by their names",
+     {mf_mapping_plan_fields}},
+    {"files", "bead", "one of \"beads\" of a map", {mf_mapping_plan_bead_fields}},
     {"target", "target", "\"target\" of a run file", {NULL}},
     {"target",
      "rdf-target",

@@ -6,7 +6,8 @@
 #include <string.h>
 
 const struct command *const mf_command_list[] = {
-    &cmd_simulate, &cmd_fit, &cmd_plot, &cmd_compare, &cmd_describe, &cmd_bench, NULL,
+    &cmd_measure, &cmd_fit,     &cmd_export, &cmd_simulate, &cmd_plot,
+    &cmd_compare, &cmd_describe, &cmd_bench,  NULL,
 };
 
 _Static_assert(sizeof mf_command_list / sizeof *mf_command_list <= COMMAND_MAX_COMMANDS + 1,
@@ -14,8 +15,8 @@ _Static_assert(sizeof mf_command_list / sizeof *mf_command_list <= COMMAND_MAX_C
 
 const struct command_option mf_command_common[] = {
     {"-o", "DIR",
-     "folder for the results (default: \"out\" beside the input file, \"compare\" here for "
-     "compare)"},
+     "folder for the results (default: \"out\" beside the input file; \"target\" here for measure, "
+     "\"compare\" for compare)"},
     {"--threads", "N",
      "threads (default: all processors; bench engine: 1); results do not depend on it"},
     {"--seed", "N", "seed, instead of the file's"},

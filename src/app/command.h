@@ -6,7 +6,7 @@
 
 #include <stddef.h>
 
-enum { COMMAND_MAX_FILES = 64, COMMAND_MAX_OPTIONS = 12, COMMAND_MAX_COMMANDS = 16 };
+enum { COMMAND_MAX_FILES = 64, COMMAND_MAX_OPTIONS = 24, COMMAND_MAX_COMMANDS = 16 };
 
 /// An option of one subcommand. It may take the place of a common one.
 struct command_option {
@@ -35,7 +35,8 @@ struct command {
     enum status (*run)(const struct command_line *line);
 };
 
-extern const struct command cmd_simulate, cmd_fit, cmd_plot, cmd_compare, cmd_describe, cmd_bench;
+extern const struct command cmd_measure, cmd_fit, cmd_export, cmd_simulate, cmd_plot, cmd_compare,
+    cmd_describe, cmd_bench;
 
 /// All subcommands, in the order of --help, up to NULL.
 extern const struct command *const mf_command_list[];

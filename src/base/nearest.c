@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/nearest.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -29,6 +30,19 @@ static size_t edit_distance(const char *a, size_t length_a, const char *b, size_
     return cost[length_a][length_b];
 }
 
+/// Whether two names differ by the order of their letters alone.
+static bool has_same_letters(const char *a, const char *b) {
+    int count[256] = {0};
+    for (; *a; a++)
+        count[(unsigned char)*a]++;
+    for (; *b; b++)
+        count[(unsigned char)*b]--;
+    for (size_t k = 0; k < 256; k++)
+        if (count[k] != 0)
+            return false;
+    return true;
+}
+
 const char *mf_nearest_name(const char *given, const char *const *known, size_t count) {
     const char *nearest = NULL;
     size_t least = LONGEST_NAME;
@@ -40,7 +54,11 @@ const char *mf_nearest_name(const char *given, const char *const *known, size_t 
             continue;
         const size_t distance = edit_distance(given, length, known[k], other);
         const size_t allowed = longer < 6 ? 1 : longer / 3;
-        if (distance <= allowed && distance < least) {
+        // Of two that are as near: "yz" is nearer to "zy" than "y" and "xy" are.
+        const bool better =
+            distance < least || (distance == least && !has_same_letters(given, nearest) &&
+                                 has_same_letters(given, known[k]));
+        if (distance <= allowed && better) {
             least = distance;
             nearest = known[k];
         }

@@ -25,7 +25,8 @@ enum rng_stream {
     RNG_MIXING,        ///< which sites of a lattice get which type
     RNG_COLLISIONS,    ///< with a heat bath; counters: trajectory, particle id
     RNG_BROWNIAN,      ///< kicks of an integrator without velocities; counters: step, particle id
-    RNG_SOLVENT        ///< of collision dynamics; counters: step, cell or number, what it is for
+    RNG_SOLVENT,       ///< of collision dynamics; counters: step, cell or number, what it is for
+    RNG_PAIR_MEMORY    ///< hidden variables of pairs; counters: step, smaller id, larger id
 };
 
 struct rng_block {

@@ -33,12 +33,22 @@ static const struct friction_method midpoint = {.damping = midpoint_damping,
 typedef enum status friction_change(struct simulation *simulation);
 
 static enum status sweep(struct simulation *simulation) {
-    mf_friction_sweep(&simulation->friction, &simulation->particles);
+    struct particles *particles = &simulation->particles;
+    struct pair_memory *memory = &simulation->memory;
+    if (simulation->setup.omega)
+        mf_friction_sweep(&simulation->friction, particles);
+    if (!pair_memory_acts(&simulation->setup.memory))
+        return STATUS_OK;
+    TRY(mf_pair_memory_follow(memory, particles, &simulation->neighbours,
+                              simulation->list_builds));
+    mf_pair_memory_sweep(memory, particles, simulation->step);
     return STATUS_OK;
 }
 
 static enum status solve(struct simulation *simulation) {
     const struct aboba_parameters *parameters = simulation->setup.integrator_parameters;
+    if (simulation->setup.omega == NULL)
+        return STATUS_OK;
     return mf_friction_solve(&simulation->friction, &simulation->particles, parameters->tolerance);
 }
 
@@ -50,8 +60,7 @@ static enum status step_with(struct simulation *simulation, friction_change *cha
     mf_simulation_drift_half(simulation);
     TRY(mf_simulation_compute_forces(simulation, 0));
     mf_simulation_kick(simulation);
-    if (simulation->setup.omega)
-        TRY(change(simulation));
+    TRY(change(simulation));
     mf_simulation_take_temperature(simulation);
     mf_simulation_kick(simulation);
     mf_simulation_drift_half(simulation);
@@ -74,6 +83,7 @@ const struct integrator mf_aboba = {
                "X. Shang, Comput. Phys. Commun. 262, 107834 (2021)",
     .fields = no_fields,
     .dissipative = true,
+    .remembers = true,
     .friction = &exact,
     .forces_midway = true,
     .step = step_exact,

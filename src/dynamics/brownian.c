@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/brownian.h"
 
-#include "base/normal.h"
+#include "base/normal_words.h"
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "base/simd.h"
@@ -17,7 +17,7 @@ struct state {
 
 /// Particles that are moved together, and numbers that one of them draws: for its axes and, in the
 /// place of the third, for its orientation.
-enum { BLOCK = 64, NUMBERS = 3 };
+enum { BLOCK = NORMAL_WORDS, NUMBERS = 3 };
 
 static const struct brownian_parameters *parameters_of(const struct simulation_setup *setup) {
     return setup->integrator_parameters;
@@ -52,9 +52,12 @@ SIMD_CLONES static void draw(const struct simulation *simulation, size_t begin, 
         for (int n = 0; n < NUMBERS; n++)
             word[n][k] = all[n];
     }
-    for (int n = 0; n < NUMBERS; n++)
-        for (size_t k = 0; k < count; k++)
-            noise[n][k] = normal_of_word(&state->normal, word[n][k]);
+    const size_t whole = (count + 3) / 4 * 4;
+    for (int n = 0; n < NUMBERS; n++) {
+        for (size_t k = count; k < whole; k++)
+            word[n][k] = 0;
+        normal_of_words(&state->normal, word[n], whole, noise[n]);
+    }
 }
 
 /// Attributes of the particles that are moved.

@@ -21,18 +21,19 @@ static bool holds_temperature(const struct simulation_setup *setup) {
 
 static const char *warning(const struct simulation_setup *setup) {
     const struct collision_dynamics_parameters *parameters = parameters_of(setup);
-    const bool flows = parameters->wave_acceleration != 0 || parameters->acceleration[0] != 0 ||
-                       parameters->acceleration[1] != 0 || parameters->acceleration[2] != 0;
+    const bool pushed = parameters->acceleration[0] != 0 || parameters->acceleration[1] != 0 ||
+                        parameters->acceleration[2] != 0;
+    const bool held = parameters->walls == COLLISION_PLATES || parameters->obstacle_radius > 0;
+    const bool flows = parameters->wave_acceleration != 0 || (pushed && held);
     if (parameters->particles_per_cell < 3)
         return "dynamics.particles_per_cell: below 3 many cells have nobody to collide with, and "
                "theory is far off";
     if (parameters->walls == COLLISION_PLATES && setup->potential)
-        return "forces of pairs know no plates: beads nearer to both plates together than a cutoff "
-               "feel "
-               "each other through them";
-    if (flows && parameters->walls == COLLISION_PLATES && setup->placement.count > 1)
-        return "the flow carries the beads: their temperature, MSD, VACF and D have it in them; "
-               "\"acceleration\" 0 is without";
+        return "dynamics.walls: forces of pairs know no plates: beads nearer to both plates "
+               "together than a cutoff feel each other through them";
+    if (flows && setup->placement.count > 1)
+        return "dynamics: the flow carries the beads: their temperature, MSD, VACF and D have it "
+               "in them; without accelerations they have not";
     return NULL;
 }
 
@@ -44,7 +45,9 @@ static enum status begin(struct simulation *simulation) {
     solvent->temperature = setup->temperature;
     solvent->time = (double)solvent->parameters.interval * setup->time_step;
     solvent->seed = setup->seed;
-    return mf_solvent_init(solvent, &simulation->particles, simulation->crew.most);
+    TRY(mf_solvent_init(solvent, &simulation->particles, simulation->crew.most));
+    TRY(mf_solvent_part_beads(solvent, &simulation->particles, &setup->placement));
+    return mf_simulation_compute_forces(simulation, 0);
 }
 
 static void clear(void *state) {

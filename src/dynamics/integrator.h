@@ -28,6 +28,7 @@ struct integrator {
     /// INTEGRATOR_SPANS. NULL: nothing.
     size_t (*spans)(void *state, struct memory_span *spans);
     bool dissipative; ///< understands ω(r)
+    bool remembers;   ///< and friction that remembers (forces/pair_memory.h)
     /// Moves hard particles from event to event: there are no forces, and kinetic energy is kept.
     bool events;
     /// The time step is a property of what is modelled, and no approximation: fits may look for it.

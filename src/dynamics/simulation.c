@@ -59,7 +59,7 @@ static enum status place(struct simulation *simulation, const struct simulation_
 
 double mf_simulation_range(const struct simulation_setup *setup) {
     const struct pair_law law = {.potential = setup->potential, .omega = setup->omega};
-    double range = mf_pair_cutoff(&law);
+    double range = fmax(mf_pair_cutoff(&law), mf_pair_memory_range(&setup->memory));
     for (int k = 0; k < setup->interactions; k++) {
         const struct interaction_choice *choice = &setup->interaction[k];
         if (choice->kind->range)
@@ -199,6 +199,11 @@ enum status mf_simulation_init(struct simulation *simulation, const struct simul
     if (setup->omega && setup->integrator->friction)
         CHECK(mf_friction_init(&simulation->friction, setup->omega, setup->time_step,
                                setup->temperature, setup->integrator->friction));
+    if (pair_memory_acts(&setup->memory))
+        CHECK(mf_pair_memory_init(
+            &simulation->memory, &setup->memory,
+            &(struct pair_memory_scene){setup->composition, setup->temperature, setup->time_step,
+                                        setup->seed}));
     CHECK(place(simulation, start));
     CHECK(add_interactions(simulation));
     CHECK(mf_neighbours_sort_and_build(&simulation->neighbours, &simulation->particles));
@@ -223,6 +228,7 @@ void mf_simulation_clear(struct simulation *simulation) {
     mf_particles_clear(&simulation->particles);
     mf_neighbours_clear(&simulation->neighbours);
     mf_friction_clear(&simulation->friction);
+    mf_pair_memory_clear(&simulation->memory);
 }
 
 void mf_simulation_take_temperature(struct simulation *simulation) {
@@ -398,9 +404,11 @@ enum status mf_simulation_run(struct simulation *simulation, uint64_t steps) {
 
 double mf_simulation_pressure(const struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
-    const bool held = simulation->law.omega || simulation_is_overdamped(&simulation->setup);
+    const struct simulation_setup *setup = &simulation->setup;
+    const bool held = setup->omega || pair_memory_acts(&setup->memory) ||
+                      simulation_is_overdamped(setup);
     const double temperature =
-        held ? simulation->setup.temperature : mf_simulation_temperature(simulation);
+        held ? setup->temperature : mf_simulation_temperature(simulation);
     return mf_particles_density(particles) * temperature +
            simulation->sums.virial / (particles->box.dimensions * mf_box_volume(&particles->box));
 }
@@ -409,7 +417,10 @@ size_t mf_simulation_spans(struct simulation *simulation, struct memory_span *sp
     struct particles *particles = &simulation->particles;
     const struct integrator *integrator = simulation->setup.integrator;
     const size_t numbers = particles->count * sizeof(double);
-    size_t n = mf_particles_spans(particles, spans);
+    size_t n = mf_simulation_wants_room(simulation)
+                   ? mf_pair_memory_spans(&simulation->memory, spans)
+                   : 0;
+    n += mf_particles_spans(particles, spans + n);
     for (int d = 0; d < particles->box.dimensions; d++)
         spans[n++] = (struct memory_span){simulation->neighbours.built[d], numbers};
     spans[n++] = (struct memory_span){&simulation->step, sizeof simulation->step};
@@ -422,6 +433,14 @@ size_t mf_simulation_spans(struct simulation *simulation, struct memory_span *sp
             n += use->choice.kind->spans(use->state, spans + n);
     }
     return n;
+}
+
+bool mf_simulation_wants_room(const struct simulation *simulation) {
+    return pair_memory_acts(&simulation->setup.memory);
+}
+
+enum status mf_simulation_make_room(struct simulation *simulation) {
+    return mf_pair_memory_make_room(&simulation->memory);
 }
 
 enum status mf_simulation_restore(struct simulation *simulation) {

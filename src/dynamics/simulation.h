@@ -8,6 +8,7 @@
 #include "dynamics/skin.h"
 #include "forces/interaction.h"
 #include "forces/pair.h"
+#include "forces/pair_memory.h"
 #include "system/attributes.h"
 #include "system/neighbours.h"
 #include "system/placement.h"
@@ -31,6 +32,7 @@ struct simulation_setup {
     int interactions;
     const struct table *potential; ///< Φ(r), one or for each pair type, or NULL; borrowed
     const struct table *omega;     ///< ω(r), the same, or NULL; borrowed
+    struct pair_memory_law memory; ///< friction that remembers, and friction across pairs
     uint64_t seed;
     int precision; ///< enum pair_precision
     /// Set by another thread to stop the simulation, or NULL. Borrowed.
@@ -56,6 +58,7 @@ struct simulation {
     struct pair_law law;
     struct crew crew;            ///< threads of a step
     struct friction friction;    ///< of an integrator that splits it off
+    struct pair_memory memory;   ///< if the setup's acts
     void *integrator_parameters; ///< a copy, which `setup` has for its own
     void *integrator_state;
     struct interaction_use {
@@ -158,7 +161,7 @@ static inline double simulation_moved(const struct simulation_setup *setup) {
 /// Whether friction and noise, or the integrator itself, hold the temperature of the setup.
 static inline bool simulation_holds_temperature(const struct simulation_setup *setup) {
     const struct integrator *integrator = setup->integrator;
-    return setup->omega || simulation_is_overdamped(setup) ||
+    return setup->omega || pair_memory_acts(&setup->memory) || simulation_is_overdamped(setup) ||
            (integrator->holds_temperature && integrator->holds_temperature(setup));
 }
 
@@ -179,9 +182,14 @@ double mf_simulation_pressure(const struct simulation *simulation);
 /// mf_simulation_restore, goes on with the same bits.
 enum {
     SIMULATION_SPANS =
-        PARTICLES_SPANS + 5 + INTEGRATOR_SPANS + SIMULATION_MOST_INTERACTIONS * INTERACTION_SPANS
+        PARTICLES_SPANS + 5 + INTEGRATOR_SPANS + SIMULATION_MOST_INTERACTIONS * INTERACTION_SPANS + PAIR_MEMORY_SPANS
 };
 size_t mf_simulation_spans(struct simulation *simulation, struct memory_span *spans);
+
+/// Whether lengths of the spans depend on the first of them: it is then restored before the others,
+/// alone, and mf_simulation_make_room is called.
+bool mf_simulation_wants_room(const struct simulation *simulation);
+enum status mf_simulation_make_room(struct simulation *simulation) MUST_USE;
 
 /// Rebuild the list as it was when the state was saved. Fails: NO_MEMORY.
 enum status mf_simulation_restore(struct simulation *simulation) MUST_USE;

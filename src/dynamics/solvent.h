@@ -9,6 +9,7 @@
 #include "base/rng.h"
 #include "dynamics/collision_dynamics.h"
 #include "system/particles.h"
+#include "system/placement.h"
 
 #include <stdbool.h>
 
@@ -52,6 +53,13 @@ enum status mf_solvent_init(struct solvent *solvent, const struct particles *bea
                             int threads) MUST_USE;
 void mf_solvent_clear(struct solvent *solvent);
 
+/// Beads that begin inside the obstacle get other places, at random, where no other bead is nearer
+/// than the placement's separation, and in which there is some room.
+/// Fails: BAD_INPUT if they are from a file, which also knows of no place beyond a plate, or if
+/// there is no room. Tested: cli/test_simulate_solvent.
+enum status mf_solvent_part_beads(const struct solvent *solvent, struct particles *beads,
+                                  const struct placement *placement) MUST_USE;
+
 /// Number of solvent particles of a setup: M in each cell's volume of free space.
 double mf_solvent_count(const struct collision_dynamics_parameters *parameters,
                         const struct box *box);
@@ -91,7 +99,8 @@ enum solvent_noise {
     SOLVENT_THERMOSTAT,
     SOLVENT_VIRTUAL,
     SOLVENT_PLACE,
-    SOLVENT_VELOCITY
+    SOLVENT_VELOCITY,
+    SOLVENT_BEAD
 };
 
 static inline struct rng_block solvent_noise(const struct solvent *solvent, uint64_t step,

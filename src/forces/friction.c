@@ -132,14 +132,22 @@ SIMD_CLONES static void sweep_pairs(const float (*direction)[4], const struct fr
         change_pair(direction[k], &pair[k], v);
 }
 
+void mf_friction_load_velocities(struct particles *particles) {
+    mf_parallel_for(particles->count, particles->threads, load_velocities, particles);
+}
+
+void mf_friction_store_velocities(struct particles *particles) {
+    mf_parallel_for(particles->count, particles->threads, store_velocities, particles);
+}
+
 void mf_friction_sweep(const struct friction *friction, struct particles *particles) {
     lanes_double4 *v = (lanes_double4 *)particles->kernel_force;
     const int threads = particles->threads;
-    mf_parallel_for(particles->count, threads, load_velocities, particles);
+    mf_friction_load_velocities(particles);
 #define SWEEP(direction, pair, count) sweep_pairs(direction, pair, count, v)
     FOR_ALL_PARTS(friction, threads, SWEEP)
 #undef SWEEP
-    mf_parallel_for(particles->count, threads, store_velocities, particles);
+    mf_friction_store_velocities(particles);
 }
 
 static inline void apply_pair(const float direction[4], const struct friction_pair *pair,

@@ -67,6 +67,10 @@ enum status mf_friction_reserve(struct friction *friction,
 /// Make room for what is done with all pairs at once, of `count` particles. Fails: NO_MEMORY.
 enum status mf_friction_reserve_work(struct friction *friction, size_t count) MUST_USE;
 
+/// @name For sweeps: the velocities into kernel_force, shape [count, 4], and back.
+void mf_friction_load_velocities(struct particles *particles);
+void mf_friction_store_velocities(struct particles *particles);
+
 /// Change the velocities pair after pair, in an order that depends on the list alone: the same bits
 /// for any number of threads.
 void mf_friction_sweep(const struct friction *friction, struct particles *particles);

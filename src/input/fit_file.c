@@ -229,9 +229,11 @@ static void state_problem(struct fit_file *fit, const struct run_options *option
     };
     problem->numbers = fit->numbers;
     memcpy(problem->number, fit->number, sizeof problem->number);
-    const struct scene_law *law[UNKNOWNS] = {&fit->scene.potential, &fit->scene.omega};
+    for (int place = 0; place < INVERSE_LAWS; place++) {
+        const struct scene_law *law = mf_fit_numbers_law(&fit->scene, place);
+        problem->law[place] = (struct inverse_law){law->curves, law->curve};
+    }
     for (int kind = 0; kind < UNKNOWNS; kind++) {
-        problem->law[kind] = (struct inverse_law){law[kind]->curves, law[kind]->curve};
         const struct fit_unknown *from = &fit->unknown[kind];
         struct unknown *unknown = &problem->unknown[kind];
         unknown->wanted = from->wanted;

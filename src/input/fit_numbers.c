@@ -108,6 +108,44 @@ static void add_law(struct entries *entries, const char *key, const struct scene
     }
 }
 
+static void add_memory(struct entries *entries, const struct scene_memory *memory,
+                       const struct composition *composition) {
+    char key[INVERSE_NUMBER_NAME_SIZE];
+    add_law(entries, "dissipative_transverse", &memory->transverse, INVERSE_OF_TRANSVERSE,
+            composition);
+    for (int m = 0; m < memory->modes; m++) {
+        struct field times[] = {mf_scene_memory_fields[0], mf_scene_memory_fields[1], FIELD_END};
+        const struct pair_memory_mode mode = {.time = memory->mode[m].time,
+                                              .frequency = memory->mode[m].frequency};
+        times[0].offset = offsetof(struct pair_memory_mode, time);
+        times[1].offset = offsetof(struct pair_memory_mode, frequency);
+        snprintf(key, sizeof key, "memory.%s.", memory->name[m]);
+        add(entries, key, times, NULL,
+            &(struct entry){.place = INVERSE_OF_SETUP,
+                            .offset = offsetof(struct simulation_setup, memory.mode) +
+                                      (size_t)m * sizeof mode},
+            &mode);
+        if (entries->entry)
+            for (size_t k = 0; k < 2; k++)
+                entries->entry[entries->count - 2 + k].field = &mf_scene_memory_fields[k];
+        snprintf(key, sizeof key, "memory.%s.omega", memory->name[m]);
+        add_law(entries, key, &memory->omega[m], INVERSE_OF_MEMORY + m, composition);
+    }
+}
+
+const struct scene_law *mf_fit_numbers_law(const struct scene *scene, enum inverse_place place) {
+    switch (place) {
+    case INVERSE_OF_POTENTIAL:
+        return &scene->potential;
+    case INVERSE_OF_OMEGA:
+        return &scene->omega;
+    case INVERSE_OF_TRANSVERSE:
+        return &scene->memory.transverse;
+    default:
+        return &scene->memory.omega[place - INVERSE_OF_MEMORY];
+    }
+}
+
 static void list(struct entries *entries, const struct scene *scene) {
     static const char converts[] = "it converts results, and changes none";
     static const char places[] = "it says how many particles there are, or where they begin";
@@ -118,6 +156,7 @@ static void list(struct entries *entries, const struct scene *scene) {
     add_top(entries, scene);
     add_law(entries, "conservative", &scene->potential, INVERSE_OF_POTENTIAL, &setup->composition);
     add_law(entries, "dissipative", &scene->omega, INVERSE_OF_OMEGA, &setup->composition);
+    add_memory(entries, &scene->memory, &setup->composition);
     if (setup->integrator)
         add(entries, "dynamics.", setup->integrator->fields, NULL, &dynamics,
             setup->integrator_parameters);
@@ -284,8 +323,8 @@ enum status mf_fit_numbers_read(struct json_object *unknowns, const struct scene
     if (*count == 0 && mf_json_fault_count(unknowns->document) == 0)
         mf_json_fault(unknowns, "numbers", "names none");
     if (mf_json_fault_count(unknowns->document) == 0) {
-        CHECK(check_law(&numbers, &scene->potential, INVERSE_OF_POTENTIAL, number, *count));
-        CHECK(check_law(&numbers, &scene->omega, INVERSE_OF_OMEGA, number, *count));
+        for (int place = 0; place < INVERSE_LAWS; place++)
+            CHECK(check_law(&numbers, mf_fit_numbers_law(scene, place), place, number, *count));
     }
     mf_json_finish(&numbers);
 done:

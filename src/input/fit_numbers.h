@@ -14,6 +14,9 @@ enum status mf_fit_numbers_read(struct json_object *unknowns, const struct scene
                                 struct inverse_number number[INVERSE_MOST_NUMBERS],
                                 size_t *count) MUST_USE;
 
+/// A law of the scene by its place.
+const struct scene_law *mf_fit_numbers_law(const struct scene *scene, enum inverse_place place);
+
 /// Write them back, with the values that they begin with.
 void mf_fit_numbers_write(const struct inverse_number *number, size_t count,
                           struct json_writer *writer);

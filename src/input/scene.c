@@ -105,11 +105,28 @@ static void fault_lonely(const struct scene *scene, struct json_object *object) 
                       (long long)scene->setup.placement.count);
 }
 
+/// Orientations are of the plane, and of those whom somebody turns; a file may bring them along.
+static void check_orientation(const struct scene *scene, struct json_object *object) {
+    const struct attributes_source *source = &scene->setup.attribute[ATTRIBUTES_ORIENTATION];
+    const struct integrator *integrator = scene->setup.integrator;
+    if (source->ranges == 0)
+        return;
+    if (scene->setup.box.dimensions != 2)
+        mf_json_fault(object, "particles.orientation",
+                      "orientations are of two dimensions, not %d; leave it out",
+                      scene->setup.box.dimensions);
+    else if (integrator->orientation_mobility == NULL && source->column == NULL)
+        mf_json_fault(object, "particles.orientation",
+                      "%s turns no orientations; leave it out, or use \"%s\"", integrator->name,
+                      mf_brownian.name);
+}
+
 static enum status read_dynamics(struct scene *scene, struct json_object *object, int unknown) {
     const char **names;
     TRY(mf_names_collect(mf_integrator_list, NULL, &names));
     struct json_object dynamics = mf_json_child_of(object, "dynamics", false, "integrator");
-    const bool dissipative = scene->omega.curves > 0 || (unknown & SCENE_FITS_OMEGA);
+    const bool remembers = pair_memory_acts(&scene->setup.memory);
+    const bool dissipative = scene->omega.curves > 0 || (unknown & SCENE_FITS_OMEGA) || remembers;
     const char *name = dissipative ? mf_aboba.name : mf_velocity_verlet.name;
     if (dynamics.item)
         name = mf_json_choice(&dynamics, "integrator", names, name);
@@ -144,6 +161,11 @@ static enum status read_dynamics(struct scene *scene, struct json_object *object
     else if (dissipative && !integrator->dissipative)
         mf_json_fault(object, "dynamics",
                       "%s knows no friction; use \"aboba\" with \"dissipative\"", integrator->name);
+    else if (remembers && !integrator->remembers)
+        mf_json_fault(object, "dynamics",
+                      "%s knows no \"%s\"; use \"aboba\"", integrator->name,
+                      scene->memory.modes > 0 ? "memory" : "dissipative_transverse");
+    check_orientation(scene, object);
     struct attributes_source *mass = &scene->setup.attribute[ATTRIBUTES_MASS];
     if (mass->ranges > 0 && !integrator->masses && attributes_are(mass, 1))
         mass->ranges = 0; // they are the unit
@@ -229,6 +251,8 @@ enum status mf_scene_read(struct scene *scene, struct json_object *object, int u
         TRY(mf_scene_law_tabulate(&scene->omega, mf_table_init_omega));
         check_omega(scene, object);
     }
+    TRY(mf_scene_memory_read(&scene->memory, object, &scene->setup.composition, &scene->units));
+    scene->setup.memory = mf_scene_memory_law(&scene->memory);
     TRY(mf_scene_interactions_read(&scene->interactions, object, &scene->setup));
     TRY(read_dynamics(scene, object, unknown));
     scene->setup.potential = scene->potential.curves ? &scene->potential.table : NULL;
@@ -239,6 +263,7 @@ enum status mf_scene_read(struct scene *scene, struct json_object *object, int u
 void mf_scene_clear(struct scene *scene) {
     mf_scene_law_clear(&scene->potential);
     mf_scene_law_clear(&scene->omega);
+    mf_scene_memory_clear(&scene->memory);
     mf_memory_free(scene->start_values);
     mf_memory_free(scene->integrator_parameters);
     mf_scene_interactions_clear(&scene->interactions);
@@ -274,6 +299,7 @@ void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
         mf_scene_law_write(&scene->potential, &setup->composition, writer, "conservative");
     if (scene->omega.curves)
         mf_scene_law_write(&scene->omega, &setup->composition, writer, "dissipative");
+    mf_scene_memory_write(&scene->memory, &setup->composition, writer);
     mf_scene_interactions_write(&scene->interactions, writer);
     mf_json_begin(writer, "dynamics");
     mf_json_put_text(writer, "integrator", setup->integrator->name);
@@ -289,5 +315,6 @@ void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
 void mf_scene_digest(const struct scene *scene, uint64_t *digest) {
     mf_scene_law_digest(&scene->potential, digest);
     mf_scene_law_digest(&scene->omega, digest);
+    mf_scene_memory_digest(&scene->memory, digest);
     mf_scene_particles_digest(scene, digest);
 }

@@ -5,6 +5,7 @@
 #include "dynamics/simulation.h"
 #include "input/scene_interactions.h"
 #include "input/scene_law.h"
+#include "input/scene_memory.h"
 
 /// What a fit looks for, and the scene therefore does not say.
 enum scene_unknown {
@@ -17,6 +18,7 @@ enum scene_unknown {
 struct scene {
     struct simulation_setup setup;
     struct scene_law potential, omega;
+    struct scene_memory memory;
     struct scene_interactions interactions;
     struct units units;
     struct simulation_start start; ///< arrays of a placement file

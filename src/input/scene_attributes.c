@@ -76,16 +76,31 @@ void mf_scene_attributes_read(struct scene *scene, struct json_object *particles
         forget_common_mass(&scene->setup.attribute[ATTRIBUTES_MASS]);
 }
 
-/// The attribute that a column is called by in the line of names, units in brackets aside;
-/// ATTRIBUTES_NAMES if it is none.
-static int attribute_of(const struct data_table *table, size_t column) {
+/// The name of a column in the line of names, units in brackets aside.
+static const char *name_of(const struct data_table *table, size_t column, size_t *length) {
     static const char gaps[] = " \t,;";
     const char *name = table->header + strspn(table->header, gaps);
     while (column-- > 0) {
         name += strcspn(name, gaps);
         name += strspn(name, gaps);
     }
-    const size_t length = strcspn(name, " \t,;[");
+    *length = strcspn(name, " \t,;[");
+    return name;
+}
+
+bool mf_scene_attributes_column_name(const struct data_table *table, size_t column, char *name,
+                                     size_t size) {
+    size_t length, beyond;
+    const char *begin = name_of(table, column, &length);
+    name_of(table, table->columns, &beyond);
+    snprintf(name, size, "%.*s", (int)fmin((double)length, (double)size), begin);
+    return length > 0 && beyond == 0; // else the line is no list of names
+}
+
+/// The attribute that a column is called by; ATTRIBUTES_NAMES if it is none.
+static int attribute_of(const struct data_table *table, size_t column) {
+    size_t length;
+    const char *name = name_of(table, column, &length);
     int k = 0;
     while (k < ATTRIBUTES_NAMES && (strlen(mf_attributes_fields[k].name) != length ||
                                     strncmp(mf_attributes_fields[k].name, name, length) != 0))

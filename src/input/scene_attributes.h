@@ -17,6 +17,11 @@ size_t mf_scene_attributes_first_column(const struct data_table *table);
 enum status mf_scene_attributes_convert(struct data_table *table, const char *file, size_t column,
                                         const struct units *units) MUST_USE;
 
+/// The name of a column in the line of names; false if that has not as many names as there are
+/// columns.
+bool mf_scene_attributes_column_name(const struct data_table *table, size_t column, char *name,
+                                     size_t size);
+
 /// Take such a column; `values`, shape [rows], are its numbers and live as long as the scene.
 /// Faults go to the document.
 void mf_scene_attributes_column(struct scene *scene, struct json_object *particles,

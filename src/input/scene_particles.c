@@ -35,10 +35,29 @@ static bool are_near(const struct scene *scene, const struct data_table *table,
 }
 
 /// A table, or a snapshot in JSON with the same columns.
-static enum status read_file(struct data_table *table, const char *file, size_t dimensions) {
-    const char *dot = strrchr(file, '.');
-    return dot && strcmp(dot, ".json") == 0 ? mf_snapshot_read(table, file, (int)dimensions)
-                                            : mf_data_table_read(table, file, dimensions);
+static enum status read_file(struct data_table *table, const struct scene *scene) {
+    const char *file = scene->setup.placement.file, *dot = strrchr(file, '.');
+    const int dimensions = scene->setup.box.dimensions;
+    return dot && strcmp(dot, ".json") == 0
+               ? mf_snapshot_read(table, file, dimensions, &scene->setup.composition)
+               : mf_data_table_read(table, file, (size_t)dimensions);
+}
+
+/// Rows or columns that are too many or too few. If the last column that is not an attribute's is
+/// not a velocity's either, it has a name that nobody knows.
+static void fault_shape(const struct scene *scene, struct json_object *particles,
+                        const struct data_table *table, size_t motion) {
+    const struct placement *placement = &scene->setup.placement;
+    const size_t dimensions = (size_t)scene->setup.box.dimensions;
+    char name[32], called[64] = "";
+    if (motion > dimensions && motion != 2 * dimensions &&
+        mf_scene_attributes_column_name(table, motion - 1, name, sizeof name))
+        snprintf(called, sizeof called, ", of which nobody knows \"%s\"", name);
+    mf_json_fault(particles, "file",
+                  "%s: %zu rows of %zu numbers%s, not %lld of %zu or %zu; other columns are "
+                  "called mass, radius, stiffness or orientation in a line of names",
+                  placement->file, table->rows, motion, called, (long long)placement->count,
+                  dimensions, 2 * dimensions);
 }
 
 /// Make the columns reduced: `dimensions` of places, as far as `motion` of velocities, the rest of
@@ -58,7 +77,7 @@ static enum status read_positions(struct scene *scene, struct json_object *parti
     const struct placement *placement = &scene->setup.placement;
     const size_t dimensions = (size_t)scene->setup.box.dimensions;
     struct data_table table = {0};
-    enum status status = read_file(&table, placement->file, dimensions);
+    enum status status = read_file(&table, scene);
     if (status != STATUS_OK) {
         mf_json_fault(particles, "file", "%s", mf_status_message());
         return status == STATUS_NO_MEMORY ? status : STATUS_OK;
@@ -66,11 +85,7 @@ static enum status read_positions(struct scene *scene, struct json_object *parti
     const size_t motion = mf_scene_attributes_first_column(&table);
     if (table.rows != (size_t)placement->count ||
         (motion != dimensions && motion != 2 * dimensions)) {
-        mf_json_fault(particles, "file",
-                      "%s: %zu rows of %zu numbers, not %lld of %zu or %zu; other columns are "
-                      "called mass, radius, stiffness or orientation in a line of names",
-                      placement->file, table.rows, motion, (long long)placement->count, dimensions,
-                      2 * dimensions);
+        fault_shape(scene, particles, &table, motion);
         goto done;
     }
     if (convert(&table, placement->file, dimensions, motion, mf_json_units(particles)) !=

@@ -223,7 +223,8 @@ const char *mf_json_choice(struct json_object *object, const char *key, const ch
             fault_missing_choice(object, key, known);
         return fallback;
     }
-    const char *text = read_text(object, key, "a text", item);
+    const char *flag = cJSON_IsTrue(item) ? "true" : cJSON_IsFalse(item) ? "false" : NULL;
+    const char *text = known && flag ? flag : read_text(object, key, "a text", item);
     if (text == NULL || known == NULL)
         return text;
     size_t count = 0;

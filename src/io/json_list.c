@@ -56,3 +56,18 @@ bool mf_json_list_numbers(struct json_object *object, const char *key, double *v
     }
     return true;
 }
+
+bool mf_json_list_texts(struct json_object *object, const char *key, const char **texts,
+                        size_t count) {
+    const cJSON *list = cJSON_GetObjectItemCaseSensitive(object->item, key), *element;
+    size_t n = 0;
+    mf_json_has(object, key);
+    cJSON_ArrayForEach(element, list) {
+        if (n < count && cJSON_IsString(element))
+            texts[n++] = element->valuestring;
+    }
+    if (n == count && (size_t)mf_json_count(object, key) == count)
+        return true;
+    mf_json_fault(object, key, "a list of %zu texts is required", count);
+    return false;
+}

@@ -12,3 +12,8 @@ bool mf_json_list_choices(struct json_object *object, const struct field *field,
 /// @param[out] values  shape [count]
 bool mf_json_list_numbers(struct json_object *object, const char *key, double *values,
                           size_t count);
+
+/// The list of `count` texts at `key`; false and a fault if there is none.
+/// @param[out] texts  shape [count], borrowed from the document
+bool mf_json_list_texts(struct json_object *object, const char *key, const char **texts,
+                        size_t count);

@@ -32,8 +32,19 @@ static void copy_axes(struct snapshot *snapshot, const struct particles *particl
                       const char *name, double *const *axes, size_t *used) {
     double *to = add_column(snapshot, name, snapshot->box.dimensions, true, false, used);
     for (int d = 0; d < snapshot->box.dimensions; d++, to += snapshot->count)
-        for (size_t k = 0; k < snapshot->count; k++)
+        for (size_t k = 0; k < snapshot->own; k++)
             to[particles->id[k]] = axes[d][k];
+}
+
+/// A coordinate in the box.
+/// @param[out] boxes  how many boxes away from it the coordinate was
+static double wrap(double x, double length, double *boxes) {
+    *boxes = floor(x / length);
+    const double inside = x - *boxes * length;
+    if (inside < length)
+        return inside;
+    *boxes += 1;
+    return 0;
 }
 
 /// Positions in the box, and how many boxes away from it their particles are.
@@ -43,12 +54,11 @@ static void copy_places(struct snapshot *snapshot, const struct particles *parti
     double *position = add_column(snapshot, "position", dimensions, true, false, used);
     double *image = add_column(snapshot, "image", dimensions, true, true, used);
     for (int d = 0; d < dimensions; d++)
-        for (size_t k = 0; k < snapshot->count; k++) {
-            const double length = snapshot->box.length[d], x = particles->position[d][k];
-            const double boxes = floor(x / length), inside = x - boxes * length;
+        for (size_t k = 0; k < snapshot->own; k++) {
             const size_t place = (size_t)d * snapshot->count + particles->id[k];
-            position[place] = inside < length ? inside : 0;
-            image[place] = particles->image[d][k] + boxes + (inside < length ? 0 : 1);
+            double boxes;
+            position[place] = wrap(particles->position[d][k], snapshot->box.length[d], &boxes);
+            image[place] = particles->image[d][k] + boxes;
         }
 }
 
@@ -58,7 +68,7 @@ static void copy_attribute(struct snapshot *snapshot, const struct particles *pa
                             attribute->components == snapshot->box.dimensions,
                             attribute->type == PARTICLES_WORD, used);
     for (int c = 0; c < attribute->components; c++, to += snapshot->count)
-        for (size_t k = 0; k < snapshot->count; k++) {
+        for (size_t k = 0; k < snapshot->own; k++) {
             const void *value = attribute->value[c];
             to[particles->id[k]] = attribute->type == PARTICLES_DOUBLE ? ((const double *)value)[k]
                                    : attribute->type == PARTICLES_FLOAT
@@ -67,17 +77,44 @@ static void copy_attribute(struct snapshot *snapshot, const struct particles *pa
         }
 }
 
+/// Behind the others, into the columns that are about them.
+static void copy_companions(struct snapshot *snapshot,
+                            const struct snapshot_companions *companions) {
+    for (int n = 0; n < snapshot->columns; n++) {
+        struct snapshot_column *column = &snapshot->column[n];
+        double *to = snapshot->memory + (column->values - snapshot->memory) + snapshot->own;
+        const bool position = strcmp(column->name, "position") == 0;
+        const bool velocity = strcmp(column->name, "velocity") == 0;
+        const bool mass = strcmp(column->name, "mass") == 0;
+        column->shared = position || velocity || mass;
+        for (int c = 0; c < column->components; c++, to += snapshot->count)
+            for (size_t k = 0; k < companions->count; k++) {
+                double boxes;
+                if (position)
+                    to[k] = wrap(companions->position[c][k], snapshot->box.length[c], &boxes);
+                else if (velocity)
+                    to[k] = companions->velocity[c][k];
+                else if (mass)
+                    to[k] = companions->mass;
+            }
+    }
+}
+
 enum status mf_snapshot_take(struct snapshot *snapshot, const struct particles *particles,
-                             const struct composition *composition, uint64_t step, double time) {
+                             const struct composition *composition,
+                             const struct snapshot_companions *companions, uint64_t step,
+                             double time) {
     size_t components = 4 * (size_t)particles->box.dimensions, used = 0;
-    *snapshot = (struct snapshot){.count = particles->count,
+    *snapshot = (struct snapshot){.count = particles->count + (companions ? companions->count : 0),
+                                  .own = particles->count,
+                                  .companions = companions ? companions->name : NULL,
                                   .box = particles->box,
                                   .composition = composition,
                                   .step = step,
                                   .time = time};
     for (int k = 0; k < particles->attributes; k++)
         components += (size_t)particles->attribute[k].components;
-    snapshot->numbers = components * particles->count;
+    snapshot->numbers = components * snapshot->count;
     snapshot->memory = mf_memory_zeroed(snapshot->numbers, sizeof(double));
     if (snapshot->memory == NULL)
         return STATUS_NO_MEMORY;
@@ -86,6 +123,8 @@ enum status mf_snapshot_take(struct snapshot *snapshot, const struct particles *
     copy_axes(snapshot, particles, "force", particles->force, &used);
     for (int k = 0; k < particles->attributes; k++)
         copy_attribute(snapshot, particles, &particles->attribute[k], &used);
+    if (companions)
+        copy_companions(snapshot, companions);
     return STATUS_OK;
 }
 
@@ -108,8 +147,19 @@ void mf_snapshot_component_name(const struct snapshot_column *column, int compon
         snprintf(name, SNAPSHOT_NAME_SIZE, "%s_%d", column->name, component);
 }
 
-const char *mf_snapshot_type_name(const struct composition *composition, int type) {
-    return composition_is_mixed(composition) ? composition->name[type] : "A";
+int mf_snapshot_type(const struct snapshot *snapshot, size_t particle) {
+    const struct composition *composition = snapshot->composition;
+    if (particle < snapshot->own)
+        return mf_composition_type(composition, (uint32_t)particle);
+    return composition_is_mixed(composition) ? composition->types : 1;
+}
+
+const char *mf_snapshot_type_name(const struct snapshot *snapshot, size_t particle) {
+    if (particle >= snapshot->own)
+        return snapshot->companions;
+    return composition_is_mixed(snapshot->composition)
+               ? snapshot->composition->name[mf_snapshot_type(snapshot, particle)]
+               : "A";
 }
 
 bool mf_snapshot_is_file(const char *name) {

@@ -18,14 +18,25 @@ struct snapshot_column {
     int components;
     bool vector;          ///< components belong to the axes
     bool whole;           ///< integers
+    bool shared;          ///< companions have it, too
     const double *values; ///< shape [components, count], by particle id
 };
 
 /// Position, velocity, force and image, and the attributes.
 enum { SNAPSHOT_MOST_COLUMNS = 5 + PARTICLES_MOST_ATTRIBUTES };
 
-struct snapshot {
+/// Particles that belong to an integrator, as a solvent does.
+struct snapshot_companions {
+    const char *name; ///< of their type; no longer than the snapshot is
     size_t count;
+    double *const *position, *const *velocity; ///< shape [dimensions][count] [λ], [λ/τ]
+    double mass;                               ///< of each [μ]
+};
+
+struct snapshot {
+    size_t count;           ///< of all particles
+    size_t own;             ///< of those of the scene, which come first
+    const char *companions; ///< type of the others; NULL: there are none
     struct box box;
     const struct composition *composition; ///< borrowed
     uint64_t step;
@@ -38,9 +49,13 @@ struct snapshot {
     size_t numbers;
 };
 
-/// Copy the present state of the particles, in the order of their ids. Fails: NO_MEMORY.
+/// Copy the present state of the particles, in the order of their ids, and behind them that of
+/// companions, as they stand: only places, velocities and masses are not 0 there.
+/// @param[in] companions  or NULL
+/// Fails: NO_MEMORY. Tested: test_snapshot, cli/test_snapshots.
 enum status mf_snapshot_take(struct snapshot *snapshot, const struct particles *particles,
-                             const struct composition *composition, uint64_t step,
+                             const struct composition *composition,
+                             const struct snapshot_companions *companions, uint64_t step,
                              double time) MUST_USE;
 void mf_snapshot_clear(struct snapshot *snapshot);
 
@@ -59,8 +74,10 @@ enum { SNAPSHOT_NAME_SIZE = 64 };
 void mf_snapshot_component_name(const struct snapshot_column *column, int component,
                                 char name[SNAPSHOT_NAME_SIZE]);
 
-/// What a type of beads is called: "A" where there is one without a name.
-const char *mf_snapshot_type_name(const struct composition *composition, int type);
+/// Number of a particle's type, companions' being the last, and what it is called: "A" where the
+/// scene's particles are of one type.
+int mf_snapshot_type(const struct snapshot *snapshot, size_t particle);
+const char *mf_snapshot_type_name(const struct snapshot *snapshot, size_t particle);
 
 struct snapshot_format {
     const char *name;   ///< as a scene names it
@@ -85,8 +102,10 @@ enum status mf_snapshot_write(const struct snapshot *snapshot, const struct snap
 
 /// Read positions, velocities if they are there, and what attributes.h lets a scene give, from a
 /// snapshot in JSON: a table with the columns of a placement file, and their names as its header.
+/// What is mixed has its particles' types, if it tells them, in the order of the composition.
 /// Fails: BAD_INPUT with all faults, IO, NO_MEMORY. Tested: cli/test_snapshots.
-enum status mf_snapshot_read(struct data_table *table, const char *file, int dimensions) MUST_USE;
+enum status mf_snapshot_read(struct data_table *table, const char *file, int dimensions,
+                             const struct composition *composition) MUST_USE;
 
 /// Whether a file has the name of a snapshot.
 bool mf_snapshot_is_file(const char *name);

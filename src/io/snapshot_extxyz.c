@@ -36,8 +36,7 @@ static void print_heading(const struct snapshot *snapshot, FILE *stream) {
 static void print(const struct snapshot *snapshot, FILE *stream) {
     print_heading(snapshot, stream);
     for (size_t k = 0; k < snapshot->count; k++) {
-        const int type = mf_composition_type(snapshot->composition, (uint32_t)k);
-        fputs(mf_snapshot_type_name(snapshot->composition, type), stream);
+        fputs(mf_snapshot_type_name(snapshot, k), stream);
         for (int n = 0; n < snapshot->columns; n++) {
             const struct snapshot_column *column = &snapshot->column[n];
             for (int c = 0; c < width_of(column); c++)

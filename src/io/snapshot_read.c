@@ -49,7 +49,35 @@ done:
     return status;
 }
 
-enum status mf_snapshot_read(struct data_table *table, const char *file, int dimensions) {
+/// Types, which follow from the order of the particles, are those of the scene.
+static enum status check_types(struct json_object *particles,
+                               const struct composition *composition) {
+    enum status status = STATUS_OK;
+    const char **types = NULL;
+    const size_t count = (size_t)mf_json_count(particles, "type");
+    if (!composition_is_mixed(composition) || !mf_json_has(particles, "type") ||
+        count != (size_t)mf_composition_particles(composition))
+        return STATUS_OK;
+    NEW_ARRAY(types, count);
+    if (!mf_json_list_texts(particles, "type", types, count))
+        goto done;
+    for (size_t k = 0; k < count; k++) {
+        const char *name = composition->name[mf_composition_type(composition, (uint32_t)k)];
+        if (strcmp(types[k], name) == 0)
+            continue;
+        mf_json_fault(particles, "type",
+                      "particle %zu is \"%s\" here and \"%s\" in the scene, whose \"types\" must "
+                      "stand in the order of the file",
+                      k, types[k], name);
+        break;
+    }
+done:
+    mf_memory_free(types);
+    return status;
+}
+
+enum status mf_snapshot_read(struct data_table *table, const char *file, int dimensions,
+                             const struct composition *composition) {
     struct json_document *document;
     *table = (struct data_table){0};
     TRY(mf_json_open(&document, file));
@@ -60,6 +88,8 @@ enum status mf_snapshot_read(struct data_table *table, const char *file, int dim
         mf_json_fault(&particles, "x", "a list of numbers is required");
     else if (particles.item)
         status = read_columns(table, &particles, dimensions);
+    if (particles.item && status == STATUS_OK)
+        status = check_types(&particles, composition);
     status = mf_json_close(document, status);
     if (status != STATUS_OK)
         mf_data_table_clear(table);

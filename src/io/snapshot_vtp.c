@@ -74,8 +74,7 @@ static void print_integers(const struct snapshot *snapshot, const char *name, in
                            int64_t step, bool types, FILE *stream) {
     struct base64 base64 = begin_array(stream, "Int64", name, 1, snapshot->count * sizeof(int64_t));
     for (size_t k = 0; k < snapshot->count; k++) {
-        const int64_t value = types ? mf_composition_type(snapshot->composition, (uint32_t)k)
-                                    : base + step * (int64_t)k;
+        const int64_t value = types ? mf_snapshot_type(snapshot, k) : base + step * (int64_t)k;
         put(&base64, &value, sizeof value);
     }
     end_array(&base64);

@@ -2,6 +2,7 @@
 #include "observe/etd.h"
 
 #include "base/simd.h"
+#include "observe/etd_records.h"
 
 #include <math.h>
 #include <string.h>
@@ -30,9 +31,6 @@ static const uint16_t no_bin = UINT16_MAX;
 /// Pairs whose distances are computed together.
 enum { BATCH = 512 };
 
-/// In place of a record.
-static const uint32_t no_record = UINT32_MAX;
-
 static enum status check(const struct etd_grid *grid, const struct box *box) {
     if (!(grid->r_maximum > grid->r_minimum))
         return mf_status_fail(STATUS_BAD_INPUT, "etd: r_maximum %g is not above r_minimum %g",
@@ -45,6 +43,12 @@ static enum status check(const struct etd_grid *grid, const struct box *box) {
     return STATUS_OK;
 }
 
+/// A window is closed before the next is opened.
+static size_t find_slots(const struct etd *etd) {
+    const int64_t window = etd->grid.times - 1, every = etd->plan.origin_every;
+    return (size_t)((window + every - 1) / every);
+}
+
 static enum status count_origins(struct etd *etd, int64_t steps) {
     const int64_t window = etd->grid.times - 1, samples = steps / etd->plan.every;
     if (samples < window)
@@ -54,9 +58,21 @@ static enum status count_origins(struct etd *etd, int64_t steps) {
                               (long long)window, (long long)etd->plan.every, (long long)steps);
     etd->origins = (size_t)((samples - window) / etd->plan.origin_every + 1);
     etd->blocks = etd->origins < ETD_BLOCKS ? etd->origins : ETD_BLOCKS;
-    // A window is closed before the next is opened.
-    etd->slots = (size_t)((window + etd->plan.origin_every - 1) / etd->plan.origin_every);
+    etd->slots = find_slots(etd);
     return STATUS_OK;
+}
+
+static enum status allocate(struct etd *etd, size_t count) {
+    enum status status = STATUS_OK;
+    NEW_ARRAY(etd->began, etd->slots);
+    NEW_ARRAY(etd->open, etd->slots * etd_cells(etd));
+    NEW_ARRAY(etd->counts, etd->blocks * etd_cells(etd));
+    for (int d = 0; d < 3; d++)
+        NEW_ARRAY(etd->place[d], count);
+    NEW_ARRAY(etd->squares, count + BATCH);
+    status = mf_etd_make_room(etd);
+done:
+    return status;
 }
 
 enum status mf_etd_init(struct etd *etd, const struct etd_grid *grid, const struct etd_plan *plan,
@@ -67,15 +83,11 @@ enum status mf_etd_init(struct etd *etd, const struct etd_grid *grid, const stru
     *etd = (struct etd){.grid = *grid, .plan = *plan, .begin = begin};
     CHECK(check(grid, box));
     CHECK(count_origins(etd, steps));
-    NEW_ARRAY(etd->began, etd->slots);
-    NEW_ARRAY(etd->open, etd->slots * etd_cells(etd));
-    NEW_ARRAY(etd->counts, etd->blocks * etd_cells(etd));
+    CHECK(allocate(etd, count));
     for (int d = 0; d < 3; d++) {
-        NEW_ARRAY(etd->place[d], count);
         NEW_ARRAY(etd->listed[d], count);
+        etd->edge[d][d] = d < box->dimensions ? box->length[d] : 0;
     }
-    NEW_ARRAY(etd->squares, count + BATCH);
-    CHECK(mf_etd_make_room(etd));
     CHECK(mf_particles_init(&etd->own_particles, box, count));
     CHECK(mf_neighbours_init(&etd->own_list, NEIGHBOURS_HALF, box, count, grid->r_maximum, 0));
 done:
@@ -84,16 +96,23 @@ done:
     return status;
 }
 
-static void clear_records(struct etd *etd) {
-    mf_memory_free(etd->first);
-    mf_memory_free(etd->second);
-    mf_memory_free(etd->bin);
-    mf_memory_free(etd->bucket);
-    mf_memory_free(etd->next);
+enum status mf_etd_init_endless(struct etd *etd, const struct etd_grid *grid, int64_t origin_every,
+                                size_t count) {
+    *etd = (struct etd){.grid = *grid,
+                        .plan = {.every = 1, .origin_every = origin_every},
+                        .origins = SIZE_MAX,
+                        .each = 1,
+                        .count = count,
+                        .blocks = 2 * (size_t)ETD_BLOCKS};
+    etd->slots = find_slots(etd);
+    const enum status status = allocate(etd, count);
+    if (status != STATUS_OK)
+        mf_etd_clear(etd);
+    return status;
 }
 
 void mf_etd_clear(struct etd *etd) {
-    clear_records(etd);
+    mf_etd_records_clear(etd);
     mf_memory_free(etd->began);
     mf_memory_free(etd->open);
     mf_memory_free(etd->counts);
@@ -113,111 +132,33 @@ int64_t mf_etd_due(const struct etd *etd) {
     return sample > last ? INT64_MAX : etd->begin + sample * etd->plan.every;
 }
 
-// Records -----------------------------------------------------------------------------------------
-
-static uint32_t *find_bucket(const struct etd *etd, uint32_t low, uint32_t high) {
-    // Multiplicative hashing (D. E. Knuth, The Art of Computer Programming, vol. 3, section 6.4).
-    const uint64_t hash = ((uint64_t)low << 32 | high) * 0x9e3779b97f4a7c15u;
-    return &etd->bucket[(hash >> 32) & (etd->buckets - 1)];
-}
-
-static void link_record(struct etd *etd, size_t record) {
-    uint32_t *bucket = find_bucket(etd, etd->first[record], etd->second[record]);
-    etd->next[record] = *bucket;
-    *bucket = (uint32_t)record;
-}
-
-/// Drop the records of escaped pairs, and make the buckets anew.
-static void compact(struct etd *etd) {
-    size_t kept = 0;
-    memset(etd->bucket, 0xff, etd->buckets * sizeof *etd->bucket);
-    for (size_t p = 0; p < etd->state.followed; p++) {
-        if (etd->first[p] == etd->second[p])
-            continue;
-        etd->first[kept] = etd->first[p];
-        etd->second[kept] = etd->second[p];
-        memmove(etd->bin + kept * etd->slots, etd->bin + p * etd->slots,
-                etd->slots * sizeof *etd->bin);
-        link_record(etd, kept++);
-    }
-    etd->state.followed = kept;
-}
-
-/// Move to arrays of twice the room, with two buckets a record.
-static enum status grow(struct etd *etd) {
-    enum status status = STATUS_OK;
-    struct etd larger = *etd;
-    larger.room = etd->room ? 2 * etd->room : 1024;
-    larger.buckets = 2 * larger.room;
-    larger.first = larger.second = larger.bucket = larger.next = NULL;
-    larger.bin = NULL;
-    NEW_ARRAY(larger.first, larger.room);
-    NEW_ARRAY(larger.second, larger.room);
-    NEW_ARRAY(larger.bin, larger.room * larger.slots);
-    NEW_ARRAY(larger.bucket, larger.buckets);
-    NEW_ARRAY(larger.next, larger.room);
-    if (etd->room > 0) {
-        memcpy(larger.first, etd->first, etd->room * sizeof *etd->first);
-        memcpy(larger.second, etd->second, etd->room * sizeof *etd->second);
-        memcpy(larger.bin, etd->bin, etd->room * etd->slots * sizeof *etd->bin);
-        clear_records(etd);
-    }
-    *etd = larger;
-done:
-    if (status != STATUS_OK)
-        clear_records(&larger);
-    return status;
-}
-
-enum status mf_etd_make_room(struct etd *etd) {
-    while (etd->room == 0 || etd->state.followed > etd->room)
-        TRY(grow(etd));
-    return STATUS_OK;
-}
-
-/// The record of a pair that is within r_maximum at an origin, a new one if there is none.
-static enum status find_record(struct etd *etd, uint32_t low, uint32_t high, size_t *record) {
-    for (uint32_t p = *find_bucket(etd, low, high); p != no_record; p = etd->next[p])
-        if (etd->first[p] == low && etd->second[p] == high) {
-            *record = p;
-            return STATUS_OK;
-        }
-    if (etd->state.followed == etd->room) {
-        TRY(grow(etd));
-        compact(etd);
-    }
-    *record = etd->state.followed++;
-    etd->first[*record] = low;
-    etd->second[*record] = high;
-    memset(etd->bin + *record * etd->slots, 0xff, etd->slots * sizeof *etd->bin);
-    link_record(etd, *record);
-    return STATUS_OK;
-}
-
 // Sampling ----------------------------------------------------------------------------------------
 
 /// Squared distances [λ²] from places.
 struct metric {
     const int32_t *place[3];
-    double scale[3]; ///< edges in units of 2⁻³²; 0 for an axis that is not there
-    double limit;    ///< of what has escaped [λ²]
+    double edge[3][3]; ///< vectors of the box in units of 2⁻³²; 0 for an axis that is not there
+    double limit;      ///< of what has escaped [λ²]
 };
 
 static struct metric make_metric(int32_t *const place[3], const struct etd *etd) {
-    const struct box *box = &etd->own_particles.box;
     struct metric metric = {.limit = etd->grid.r_maximum * etd->grid.r_maximum};
     for (int d = 0; d < 3; d++) {
         metric.place[d] = place[d];
-        metric.scale[d] = d < box->dimensions ? box->length[d] * 0x1p-32 : 0;
+        for (int e = 0; e < 3; e++)
+            metric.edge[d][e] = etd->edge[d][e] * 0x1p-32;
     }
     return metric;
 }
 
 static inline double square_distance(const struct metric *metric, size_t a, size_t b) {
-    double square = 0;
-    for (int d = 0; d < 3; d++) {
-        const double x =
-            metric->scale[d] * box_fraction_difference(metric->place[d][a], metric->place[d][b]);
+    double s[3], square = 0;
+    for (int d = 0; d < 3; d++)
+        s[d] = box_fraction_difference(metric->place[d][a], metric->place[d][b]);
+    for (int e = 0; e < 3; e++) {
+        double x = 0;
+        for (int d = e; d < 3; d++)
+            x += s[d] * metric->edge[d][e];
         square += x * x;
     }
     return square;
@@ -271,6 +212,32 @@ static void find_escapes(struct etd *etd) {
     }
 }
 
+/// Make of every two blocks one, of twice the origins.
+static void join_blocks(struct etd *etd) {
+    const size_t cells = etd_cells(etd), half = etd->blocks / 2;
+    for (size_t b = 0; b < half; b++)
+        for (size_t cell = 0; cell < cells; cell++)
+            etd->counts[b * cells + cell] =
+                etd->counts[2 * b * cells + cell] + etd->counts[(2 * b + 1) * cells + cell];
+    memset(etd->counts + half * cells, 0, half * cells * sizeof *etd->counts);
+    etd->each *= 2;
+}
+
+static size_t find_block(struct etd *etd, size_t origin) {
+    if (etd->each == 0)
+        return origin * etd->blocks / etd->origins;
+    if (origin == etd->blocks * etd->each)
+        join_blocks(etd);
+    return origin / etd->each;
+}
+
+size_t mf_etd_complete(const struct etd *etd) {
+    const uint64_t window = (uint64_t)etd->grid.times - 1, every = (uint64_t)etd->plan.origin_every;
+    const uint64_t samples = etd->state.samples;
+    const size_t complete = samples > window ? (size_t)((samples - 1 - window) / every + 1) : 0;
+    return complete < etd->origins ? complete : etd->origins;
+}
+
 /// Add the window that ends with this sample, if one does.
 static void search_window(struct etd *etd) {
     const uint64_t window = (uint64_t)etd->grid.times - 1, every = (uint64_t)etd->plan.origin_every;
@@ -279,7 +246,7 @@ static void search_window(struct etd *etd) {
         return;
     const size_t origin = (sample - window) / every;
     const uint32_t *open = etd->open + origin % etd->slots * etd_cells(etd);
-    uint64_t *counts = etd->counts + origin * etd->blocks / etd->origins * etd_cells(etd);
+    uint64_t *counts = etd->counts + find_block(etd, origin) * etd_cells(etd);
     for (size_t cell = 0; cell < etd_cells(etd); cell++)
         counts[cell] += open[cell];
 }
@@ -287,7 +254,7 @@ static void search_window(struct etd *etd) {
 /// A pair that is within r_maximum at the origin of the window in `slot`.
 static enum status begin_pair(struct etd *etd, size_t slot, uint32_t a, uint32_t b, double square) {
     size_t record;
-    TRY(find_record(etd, a < b ? a : b, a < b ? b : a, &record));
+    TRY(mf_etd_records_find(etd, a < b ? a : b, a < b ? b : a, &record));
     const double r = sqrt(square), low = etd->grid.r_minimum, high = etd->grid.r_maximum;
     if (r < low)
         return STATUS_OK;
@@ -346,17 +313,26 @@ static enum status search_own_list(struct etd *etd, size_t slot,
     return search_list(etd, slot, &etd->own_list, own->id);
 }
 
-static enum status open_window(struct etd *etd, const struct simulation *simulation) {
-    const uint64_t every = (uint64_t)etd->plan.origin_every, sample = etd->state.samples;
-    if (sample % every != 0 || sample / every >= etd->origins)
-        return STATUS_OK;
-    const size_t slot = sample / every % etd->slots;
+bool mf_etd_opens(const struct etd *etd, uint64_t sample) {
+    const uint64_t every = (uint64_t)etd->plan.origin_every;
+    return sample % every == 0 && sample / every < etd->origins;
+}
+
+/// Begin the window of the present sample; its slot.
+static size_t open_window(struct etd *etd) {
+    const uint64_t sample = etd->state.samples;
+    const size_t slot = sample / (uint64_t)etd->plan.origin_every % etd->slots;
     etd->began[slot] = sample;
     memset(etd->open + slot * etd_cells(etd), 0, etd_cells(etd) * sizeof *etd->open);
     for (size_t p = 0; p < etd->state.followed; p++)
         etd->bin[p * etd->slots + slot] = no_bin;
-    compact(etd);
+    mf_etd_records_compact(etd);
+    return slot;
+}
+
+static enum status search_simulation(struct etd *etd, const struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
+    const size_t slot = open_window(etd);
     if (covers(&simulation->neighbours, particles, etd->grid.r_maximum))
         return search_list(etd, slot, &simulation->neighbours, particles->id);
     return search_own_list(etd, slot, particles);
@@ -366,7 +342,34 @@ enum status mf_etd_sample(struct etd *etd, const struct simulation *simulation) 
     gather(etd, &simulation->particles);
     find_escapes(etd);
     search_window(etd);
-    TRY(open_window(etd, simulation));
+    if (mf_etd_opens(etd, etd->state.samples))
+        TRY(search_simulation(etd, simulation));
+    etd->state.samples++;
+    return STATUS_OK;
+}
+
+static enum status search_pairs(struct etd *etd, const struct etd_frame *frame) {
+    const struct metric metric = make_metric(etd->place, etd);
+    const size_t slot = open_window(etd);
+    for (size_t begin = 0; begin < frame->pairs; begin += BATCH) {
+        const size_t left = frame->pairs - begin, count = left < BATCH ? left : BATCH;
+        const uint32_t *first = frame->first + begin, *second = frame->second + begin;
+        measure_pairs(&metric, first, second, count, etd->squares);
+        for (size_t k = 0; k < count; k++)
+            if (etd->squares[k] < metric.limit)
+                TRY(begin_pair(etd, slot, first[k], second[k], etd->squares[k]));
+    }
+    return STATUS_OK;
+}
+
+enum status mf_etd_add(struct etd *etd, const struct etd_frame *frame) {
+    memcpy(etd->edge, frame->edge, sizeof etd->edge);
+    for (int d = 0; d < 3; d++)
+        memcpy(etd->place[d], frame->place[d], etd->count * sizeof *etd->place[d]);
+    find_escapes(etd);
+    search_window(etd);
+    if (mf_etd_opens(etd, etd->state.samples))
+        TRY(search_pairs(etd, frame));
     etd->state.samples++;
     return STATUS_OK;
 }

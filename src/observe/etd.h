@@ -45,6 +45,9 @@ struct etd {
     struct etd_plan plan;
     int64_t begin;          ///< step of the first sample
     size_t origins, blocks; ///< origins whose windows fit into the run
+    size_t each;            ///< origins of a block if nothing is planned, else 0
+    size_t count;           ///< of particles, likewise
+    double edge[3][3];      ///< vectors of the box, lower triangular [λ]
     size_t slots;           ///< windows that are open at the same time
     struct {
         uint64_t samples, followed;
@@ -75,7 +78,16 @@ static inline size_t etd_cells(const struct etd *etd) {
 /// below 2 r_maximum; NO_MEMORY.
 enum status mf_etd_init(struct etd *etd, const struct etd_grid *grid, const struct etd_plan *plan,
                         const struct simulation *simulation, int64_t begin, int64_t steps) MUST_USE;
+
+/// Prepare for samples that others take (mf_etd_add), as many as there will be, of `count`
+/// particles in three dimensions. Blocks have equal numbers of origins, and are joined two by two
+/// when there are 20. Fails: NO_MEMORY.
+enum status mf_etd_init_endless(struct etd *etd, const struct etd_grid *grid, int64_t origin_every,
+                                size_t count) MUST_USE;
 void mf_etd_clear(struct etd *etd);
+
+/// Origins whose windows are complete.
+size_t mf_etd_complete(const struct etd *etd);
 
 /// The step of the next sample, or INT64_MAX after the last.
 int64_t mf_etd_due(const struct etd *etd);
@@ -87,6 +99,22 @@ int64_t mf_etd_due(const struct etd *etd);
 /// or order of particles: distances are in double precision of 32-bit fractions of the box (2e-9
 /// λ). Fails: NO_MEMORY. Tested: test_etd, test_etd_brute_force.
 enum status mf_etd_sample(struct etd *etd, const struct simulation *simulation) MUST_USE;
+
+/// Whether sample number `sample`, from 0, is an origin, which needs the pairs.
+bool mf_etd_opens(const struct etd *etd, uint64_t sample);
+
+/// A sample that others have taken, in a box of any shape.
+struct etd_frame {
+    double edge[3][3];       ///< vectors of the box, turned so that this is lower triangular [λ]
+    const int32_t *place[3]; ///< shape [count]: fractions of these vectors (box_fraction)
+    /// Shape [pairs]: those within r_maximum, each once, if the sample is an origin; pairs that are
+    /// not to be followed are left out.
+    const uint32_t *first, *second;
+    size_t pairs;
+};
+
+/// Add a sample. Fails: NO_MEMORY. Tested: test_measured.
+enum status mf_etd_add(struct etd *etd, const struct etd_frame *frame) MUST_USE;
 
 /// E and its standard error from the complete windows of independent replicas with the same grid.
 ///

@@ -125,7 +125,7 @@ static void put(const void *state, const struct observable_results *results,
         for (int64_t bin = 0; bin < etd->grid.bins; bin++)
             pairs += etd->counts[block * etd_cells(etd) + (size_t)bin];
     mf_json_begin(writer, "etd");
-    mf_json_put_integer(writer, "origins", (int64_t)etd->origins);
+    mf_json_put_integer(writer, "origins", (int64_t)mf_etd_complete(etd));
     mf_json_put_integer(writer, "pairs", (int64_t)pairs);
     mf_json_put_quantity(writer, "interval", "tau", interval(etd, results));
     mf_json_end(writer);

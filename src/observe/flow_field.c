@@ -226,7 +226,10 @@ struct flow_field_summary mf_flow_field_result(const void *state) {
     found.velocity = average(f->velocity, (size_t)f->samples, &found.velocity_error);
     found.drag = average(f->drag + 1, intervals, &found.drag_error);
     found.driving_force = f->mass * f->parameters.acceleration[0];
-    found.coefficient = found.drag / (0.5 * density * found.velocity * found.velocity * area);
+    // What is not told from 0 is no flow, and what it would be divided by is noise.
+    const bool flows = fabs(found.velocity) > 3 * found.velocity_error;
+    found.coefficient =
+        flows ? found.drag / (0.5 * density * found.velocity * found.velocity * area) : NAN;
     found.reynolds = 2 * radius * fabs(found.velocity) / mf_collision_dynamics_viscosity(&f->setup);
     return found;
 }

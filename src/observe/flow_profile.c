@@ -60,8 +60,19 @@ static bool beads_diffuse_alone(const struct collision_dynamics_parameters *para
     return alone;
 }
 
+/// The highest velocity of the flow that s and the viscosity make; 0 if its shape is not known.
+static double peak_shape(const struct profile *p) {
+    if (p->parameters.obstacle_radius > 0)
+        return 0;
+    const double k = 2 * M_PI / p->height;
+    return p->parameters.walls == COLLISION_PLATES
+               ? fabs(p->parameters.acceleration[0]) * p->height * p->height / 8
+               : fabs(p->parameters.wave_acceleration) / (k * k);
+}
+
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
+    enum { LEAST_BINS = 3 }; // two of a parabola are as fast
     enum status status = STATUS_OK;
     const struct solvent *solvent = mf_collision_dynamics_solvent(simulation);
     struct profile *p = state;
@@ -75,6 +86,11 @@ static enum status begin(void *state, const void *settings, const struct simulat
     p->setup.integrator_parameters = &p->parameters;
     p->height = solvent->box.length[1];
     p->bins = given->bins > 0 ? (size_t)given->bins : (size_t)rint(p->height / p->parameters.cell);
+    if (peak_shape(p) > 0 && p->bins < LEAST_BINS)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "flow_profile.bins: %zu along y cannot tell a viscosity; %d and more "
+                              "can, in a channel of a few cells, too",
+                              p->bins, LEAST_BINS);
     p->interval = (double)plan->every * simulation->setup.time_step;
     p->each = ((size_t)plan->samples + MOST_BLOCKS - 1) / MOST_BLOCKS;
     p->blocks = (size_t)plan->samples / p->each;
@@ -198,16 +214,6 @@ static struct line fit(const struct profile *p, size_t first, size_t last) {
     }
     const double slope = (n * vs - s * v) / (n * ss - s * s);
     return (struct line){(v - slope * s) / n, slope};
-}
-
-/// The highest velocity of the flow that s and the viscosity make; 0 if its shape is not known.
-static double peak_shape(const struct profile *p) {
-    if (p->parameters.obstacle_radius > 0)
-        return 0;
-    const double k = 2 * M_PI / p->height;
-    return p->parameters.walls == COLLISION_PLATES
-               ? fabs(p->parameters.acceleration[0]) * p->height * p->height / 8
-               : fabs(p->parameters.wave_acceleration) / (k * k);
 }
 
 /// Of all blocks together, with errors from those of single ones: that of ν is by 1/ν, which is

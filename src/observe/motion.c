@@ -37,17 +37,30 @@ static bool keeps_momentum(const struct simulation_setup *setup) {
     return !simulation_is_overdamped(setup) && setup->integrator->companions == NULL;
 }
 
+static enum status allocate(struct motion *motion) {
+    enum status status = STATUS_OK;
+    const size_t state = 2 * (size_t)motion->dimensions, curve = (size_t)motion->plan.lags + 1;
+    motion->slots = (size_t)(motion->plan.lags / motion->plan.origin_every + 1);
+    NEW_ARRAY(motion->now, state * motion->count);
+    NEW_ARRAY(motion->origins, motion->slots * state * motion->count);
+    NEW_ARRAY(motion->squares, motion->blocks * curve);
+    NEW_ARRAY(motion->products, motion->blocks * curve);
+    CHECK(mf_maxwell_init(&motion->maxwell));
+done:
+    if (status != STATUS_OK)
+        mf_motion_clear(motion);
+    return status;
+}
+
 enum status mf_motion_init(struct motion *motion, const struct motion_plan *plan,
                            const struct simulation *simulation, int64_t begin, int64_t steps) {
-    enum status status = STATUS_OK;
     *motion = (struct motion){.plan = *plan,
                               .dimensions = simulation->setup.box.dimensions,
                               .count = simulation->particles.count,
                               .time_step = simulation->setup.time_step,
                               .flies = !simulation_is_overdamped(&simulation->setup),
                               .together = keeps_momentum(&simulation->setup),
-                              .begin = begin,
-                              .slots = (size_t)(plan->lags / plan->origin_every + 1)};
+                              .begin = begin};
     const size_t origins = complete_origins(plan, (size_t)(steps / plan->every));
     if (origins == 0)
         return mf_status_fail(
@@ -58,16 +71,20 @@ enum status mf_motion_init(struct motion *motion, const struct motion_plan *plan
     // Blocks of the same size: the mean over them is the mean over their origins.
     motion->each = (origins + MOST_BLOCKS - 1) / MOST_BLOCKS;
     motion->blocks = origins / motion->each;
-    const size_t state = 2 * (size_t)motion->dimensions, curve = (size_t)plan->lags + 1;
-    NEW_ARRAY(motion->now, state * motion->count);
-    NEW_ARRAY(motion->origins, motion->slots * state * motion->count);
-    NEW_ARRAY(motion->squares, motion->blocks * curve);
-    NEW_ARRAY(motion->products, motion->blocks * curve);
-    CHECK(mf_maxwell_init(&motion->maxwell));
-done:
-    if (status != STATUS_OK)
-        mf_motion_clear(motion);
-    return status;
+    return allocate(motion);
+}
+
+enum status mf_motion_init_endless(struct motion *motion, const struct motion_plan *plan,
+                                   size_t count, double interval, bool flies) {
+    *motion = (struct motion){.plan = *plan,
+                              .dimensions = 3,
+                              .count = count,
+                              .time_step = interval,
+                              .flies = flies,
+                              .blocks = MOST_BLOCKS,
+                              .each = 1,
+                              .endless = true};
+    return allocate(motion);
 }
 
 void mf_motion_clear(struct motion *motion) {
@@ -197,23 +214,58 @@ static void correlate(struct motion *motion, size_t origin, int threads) {
             : NAN;
 }
 
+/// Make of every two blocks one, of twice the origins.
+static void join_blocks(struct motion *motion) {
+    const size_t curve = (size_t)motion->plan.lags + 1, half = motion->blocks / 2;
+    double *const sums[] = {motion->squares, motion->products};
+    for (int n = 0; n < 2; n++) {
+        for (size_t b = 0; b < half; b++)
+            for (size_t lag = 0; lag < curve; lag++)
+                sums[n][b * curve + lag] =
+                    sums[n][2 * b * curve + lag] + sums[n][(2 * b + 1) * curve + lag];
+        memset(sums[n] + half * curve, 0, half * curve * sizeof *sums[n]);
+    }
+    motion->each *= 2;
+}
+
+/// Let a window begin with the present sample, if one is to.
+static void open_window(struct motion *motion) {
+    const size_t every = (size_t)motion->plan.origin_every, origin = motion->samples / every;
+    const size_t state = 2 * (size_t)motion->dimensions * motion->count;
+    if (motion->samples % every != 0)
+        return;
+    if (motion->endless && origin == motion->blocks * motion->each)
+        join_blocks(motion);
+    if (origin < motion->blocks * motion->each)
+        memcpy(motion->origins + origin % motion->slots * state, motion->now,
+               state * sizeof *motion->now);
+}
+
+/// Add what stands in motion->now.
+static void add_present(struct motion *motion, int threads) {
+    const size_t every = (size_t)motion->plan.origin_every, lags = (size_t)motion->plan.lags;
+    const size_t sample = motion->samples;
+    open_window(motion);
+    const size_t first = sample > lags ? (sample - lags + every - 1) / every : 0;
+    const size_t all = motion->blocks * motion->each;
+    for (size_t origin = first; origin < all && origin * every <= sample; origin++)
+        correlate(motion, origin, threads);
+    motion->samples++;
+}
+
 void mf_motion_sample(struct motion *motion, const struct simulation *simulation) {
     const struct simulation_setup *setup = &simulation->setup;
-    const struct particles *particles = &simulation->particles;
-    const size_t every = (size_t)motion->plan.origin_every, lags = (size_t)motion->plan.lags;
-    const size_t sample = motion->samples, all = motion->blocks * motion->each;
     gather(motion, simulation);
-    const size_t state = 2 * (size_t)motion->dimensions * motion->count;
-    if (sample % every == 0 && sample / every < all)
-        memcpy(motion->origins + sample / every % motion->slots * state, motion->now,
-               state * sizeof *motion->now);
-    const size_t first = sample > lags ? (sample - lags + every - 1) / every : 0;
-    for (size_t origin = first; origin < all && origin * every <= sample; origin++)
-        correlate(motion, origin, particles->threads);
-    if (setup->omega && sample % lags == 0)
-        mf_maxwell_sample(&motion->maxwell, particles, setup->temperature, setup->seed,
+    if (setup->omega && motion->samples % (size_t)motion->plan.lags == 0)
+        mf_maxwell_sample(&motion->maxwell, &simulation->particles, setup->temperature, setup->seed,
                           simulation->step);
-    motion->samples++;
+    add_present(motion, simulation->particles.threads);
+}
+
+void mf_motion_add(struct motion *motion, const double *state, int threads) {
+    memcpy(motion->now, state,
+           2 * (size_t)motion->dimensions * motion->count * sizeof *motion->now);
+    add_present(motion, threads);
 }
 
 size_t mf_motion_spans(struct motion *motion, struct memory_span *spans) {

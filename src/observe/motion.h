@@ -42,6 +42,7 @@ struct motion {
     int64_t begin; ///< step of the first sample
     size_t blocks; ///< of time origins, for the errors
     size_t each;   ///< time origins in a block
+    bool endless;  ///< nothing is planned: blocks are joined two by two when all are full
     size_t slots;  ///< time origins whose windows are open at the same time
     size_t samples;
     double *now;      ///< shape [2, dimensions, count]: positions, velocities by particle id
@@ -57,6 +58,13 @@ struct motion {
 enum status mf_motion_init(struct motion *motion, const struct motion_plan *plan,
                            const struct simulation *simulation, int64_t begin,
                            int64_t steps) MUST_USE;
+
+/// Prepare for samples that others take (mf_motion_add), `interval` apart, as many as there will
+/// be, of particles in three dimensions; `flies` if they come with velocities. The plan's `every`
+/// is
+/// 1. Fails: NO_MEMORY.
+enum status mf_motion_init_endless(struct motion *motion, const struct motion_plan *plan,
+                                   size_t count, double interval, bool flies) MUST_USE;
 void mf_motion_clear(struct motion *motion);
 
 /// Blocks of time origins whose windows are complete.
@@ -67,6 +75,10 @@ int64_t mf_motion_due(const struct motion *motion);
 
 /// Add the present positions and velocities: those of step mf_motion_due.
 void mf_motion_sample(struct motion *motion, const struct simulation *simulation);
+
+/// Add a sample that others have taken.
+/// @param[in] state  shape [2, dimensions, count]: unwrapped positions and velocities
+void mf_motion_add(struct motion *motion, const double *state, int threads);
 
 /// What goes with a checkpoint.
 enum { MOTION_SPANS = 5 };

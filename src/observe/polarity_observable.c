@@ -178,8 +178,11 @@ static void say(const void *state, const struct observable_results *results, cha
     char unit[UNITS_NAME_SIZE];
     mf_number_text(factor * fit.effective_diffusion, factor * fit.effective_diffusion_error,
                    diffusion);
-    snprintf(line, size, "polar order %s, effective diffusion %s%s", order, diffusion,
-             mf_units_suffix(results->units, "lambda^2/tau", unit));
+    if (isfinite(fit.effective_diffusion)) // the MSD of those that fly together has no such law
+        snprintf(line, size, "polar order %s, effective diffusion %s%s", order, diffusion,
+                 mf_units_suffix(results->units, "lambda^2/tau", unit));
+    else
+        snprintf(line, size, "polar order %s", order);
 }
 
 /// The correlation on the line between the two nearest lags; NaN beyond the last.
@@ -198,27 +201,34 @@ static enum status result(const void *const *states, size_t count,
     enum status status = STATUS_OK;
     const size_t times = (size_t)((const struct polarity *)states[0])->motion.plan.lags + 1;
     double *curve = NULL, *read = NULL;
-    struct pooled_curve *replicas = NULL;
+    struct pooled_curve *replicas = NULL, *orders = NULL;
     NEW_ARRAY(curve, 4 * times);
-    NEW_ARRAY(read, 2 * count * values->count);
+    NEW_ARRAY(read, 2 * count * (values->count + 1));
     NEW_ARRAY(replicas, count);
+    NEW_ARRAY(orders, count);
     const struct motion_curves curves = {curve, curve + times, curve + 2 * times,
                                          curve + 3 * times};
     for (size_t k = 0; k < count; k++) {
         const struct motion *motion = &((const struct polarity *)states[k])->motion;
-        double *value = read + 2 * k * values->count, *error = value + values->count;
+        double *value = read + 2 * k * (values->count + 1), *error = value + values->count;
+        double *order = error + values->count;
         mf_motion_result(motion, &curves);
         for (size_t n = 0; n < values->count; n++) {
             value[n] = read_at(motion, curves.vacf, values->x[n]);
             error[n] = read_at(motion, curves.vacf_error, values->x[n]);
         }
-        replicas[k] = (struct pooled_curve){value, error, (double)mf_motion_blocks(motion)};
+        order[0] = mean_order(states[k], &order[1]);
+        const double blocks = (double)mf_motion_blocks(motion);
+        replicas[k] = (struct pooled_curve){value, error, blocks};
+        orders[k] = (struct pooled_curve){&order[0], &order[1], blocks};
     }
-    mf_pooled_join(values, replicas, count);
+    mf_pooled_join(&values[0], replicas, count);
+    mf_pooled_join(&values[1], orders, count);
 done:
     mf_memory_free(curve);
     mf_memory_free(read);
     mf_memory_free(replicas);
+    mf_memory_free(orders);
     return status;
 }
 
@@ -243,6 +253,10 @@ static const struct observable_target targets[] = {
      .form = OBSERVABLE_CURVE,
      .argument = "time[tau]",
      .unit = "1",
+     .has_settings = true},
+    {.name = "polar_order",
+     .summary = "|<n>|, the mean over time",
+     .form = OBSERVABLE_NUMBER,
      .has_settings = true},
     {.name = NULL}};
 static const char *const files[] = {"polarity.tsv", "polar_order.tsv", NULL};

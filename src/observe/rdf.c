@@ -128,6 +128,25 @@ done:
     return status;
 }
 
+enum status mf_rdf_init_endless(struct rdf *rdf, const struct rdf_bins *bins, const struct box *box,
+                                const struct composition *composition) {
+    enum status status = STATUS_OK;
+    *rdf = (struct rdf){.bins = *bins,
+                        .box = *box,
+                        .particle_count = (size_t)mf_composition_particles(composition),
+                        .composition = *composition,
+                        .pairs = (size_t)mf_composition_pairs(composition),
+                        .planned = SIZE_MAX,
+                        .blocks = 2 * (size_t)BLOCKS,
+                        .each = 1};
+    NEW_ARRAY(rdf->histogram, rdf->blocks * rdf->pairs * bins->count);
+    NEW_ARRAY(rdf->block_samples, rdf->blocks);
+done:
+    if (status != STATUS_OK)
+        mf_rdf_clear(rdf);
+    return status;
+}
+
 void mf_rdf_clear(struct rdf *rdf) {
     mf_memory_free(rdf->histogram);
     mf_memory_free(rdf->block_samples);
@@ -151,11 +170,33 @@ static enum status make_own_list(struct rdf *rdf, const struct particles *partic
     return mf_neighbours_sort_and_build(&rdf->own_list, &rdf->own_particles);
 }
 
+/// Make of every two blocks one, of twice the samples.
+static void join_blocks(struct rdf *rdf) {
+    const size_t all = all_bins(rdf), half = rdf->blocks / 2;
+    for (size_t b = 0; b < half; b++) {
+        const double *two = rdf->histogram + 2 * b * all;
+        for (size_t k = 0; k < all; k++)
+            rdf->histogram[b * all + k] = two[k] + two[all + k];
+        rdf->block_samples[b] = rdf->block_samples[2 * b] + rdf->block_samples[2 * b + 1];
+    }
+    memset(rdf->histogram + half * all, 0, half * all * sizeof *rdf->histogram);
+    memset(rdf->block_samples + half, 0, half * sizeof *rdf->block_samples);
+    rdf->each *= 2;
+}
+
+static size_t find_block(struct rdf *rdf) {
+    if (rdf->each == 0) {
+        const size_t block = rdf->samples * rdf->blocks / rdf->planned;
+        return block < rdf->blocks ? block : rdf->blocks - 1;
+    }
+    if (rdf->samples == rdf->blocks * rdf->each)
+        join_blocks(rdf);
+    return rdf->samples / rdf->each;
+}
+
 /// The histogram of the next sample's block.
 static double *next_block(struct rdf *rdf) {
-    size_t block = rdf->samples * rdf->blocks / rdf->planned;
-    if (block >= rdf->blocks)
-        block = rdf->blocks - 1;
+    const size_t block = find_block(rdf);
     rdf->block_samples[block] += 1;
     rdf->samples++;
     return rdf->histogram + block * all_bins(rdf);
@@ -190,6 +231,14 @@ enum status mf_rdf_sample(struct rdf *rdf, const struct particles *particles,
     return STATUS_OK;
 }
 
+void mf_rdf_add(struct rdf *rdf, const uint64_t *counts, size_t stride, const double *weight) {
+    const size_t bins = rdf->bins.count;
+    double *histogram = next_block(rdf);
+    for (size_t pair = 0; pair < rdf->pairs; pair++)
+        for (size_t k = 0; k < bins; k++)
+            histogram[pair * bins + k] += weight[pair] * (double)counts[pair * stride + k];
+}
+
 size_t mf_rdf_spans(struct rdf *rdf, struct memory_span *spans) {
     spans[0] = (struct memory_span){&rdf->samples, sizeof rdf->samples};
     spans[1] =
@@ -204,12 +253,13 @@ static double ideal_at(const struct rdf *rdf, size_t k) {
                                  (int)(k / rdf->bins.count));
 }
 
-/// Blocks with samples, of the replica that has fewest.
+/// Blocks with samples, and all of them if their number was not planned, of the replica that has
+/// fewest.
 static size_t filled_blocks(const struct rdf *replicas, size_t count) {
     size_t least = replicas->blocks;
     for (size_t r = 0; r < count; r++)
         for (size_t b = 0; b < least; b++)
-            if (replicas[r].block_samples[b] == 0)
+            if (replicas[r].block_samples[b] < fmax(1, (double)replicas[r].each))
                 least = b;
     return least;
 }

@@ -3,6 +3,7 @@
 // Snapshots of a simulation: files while it runs, at steps of their own. A run that was resumed
 // leaves the files of one that was not.
 #include "base/memory.h"
+#include "dynamics/solvent.h"
 #include "io/data_table.h"
 #include "io/snapshot.h"
 #include "observe/measure.h"
@@ -10,6 +11,7 @@
 struct settings {
     int64_t every;
     int formats; ///< a bit each
+    int solvent; ///< 0 or 1: show it
 };
 
 struct state {
@@ -23,9 +25,17 @@ struct state {
 
 static enum status take(struct state *s, const struct simulation *simulation) {
     const double time = (double)simulation->step * simulation->setup.time_step;
+    const struct solvent *solvent = mf_collision_dynamics_solvent(simulation);
+    struct snapshot_companions companions = {.name = "solvent"};
+    if (s->settings.solvent) {
+        companions.count = solvent->count;
+        companions.position = solvent->position;
+        companions.velocity = solvent->velocity;
+        companions.mass = solvent->parameters.mass;
+    }
     mf_snapshot_clear(&s->last);
     return mf_snapshot_take(&s->last, &simulation->particles, &simulation->setup.composition,
-                            simulation->step, time);
+                            s->settings.solvent ? &companions : NULL, simulation->step, time);
 }
 
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
@@ -34,6 +44,14 @@ static enum status begin(void *state, const void *settings, const struct simulat
     *s = (struct state){.settings = *(const struct settings *)settings,
                         .begin = plan->equilibration,
                         .steps = plan->samples * plan->every};
+    if (s->settings.solvent && mf_collision_dynamics_solvent(simulation) == NULL)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "snapshots.solvent: %s has no solvent; use \"collision-dynamics\", "
+                              "or leave the key out",
+                              simulation->setup.integrator->name);
+    if (!s->settings.solvent && simulation->particles.count == 0)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "snapshots: nobody to show; \"solvent\": \"yes\" shows the solvent");
     return take(s, simulation);
 }
 
@@ -82,6 +100,8 @@ static enum status write(const void *state, const struct observable_results *res
     struct data_column columns[MOST];
     char names[MOST][SNAPSHOT_NAME_SIZE + 16], path[OUTPUT_PATH_SIZE];
     size_t n = 0;
+    if (snapshot->own == 0)
+        return STATUS_OK; // a solvent starts no scene
     for (int k = 0; k < snapshot->columns; k++) {
         const char *unit = mf_snapshot_unit(&snapshot->column[k]);
         for (int c = 0; c < snapshot->column[k].components && is_given(&snapshot->column[k]); c++) {
@@ -98,7 +118,7 @@ static enum status write(const void *state, const struct observable_results *res
         }
     }
     mf_observable_file(results, "configuration.tsv", path);
-    return mf_data_table_write_in(path, results->units, NULL, columns, n, snapshot->count);
+    return mf_data_table_write_in(path, results->units, NULL, columns, n, snapshot->own);
 }
 
 static enum status sample(void *state, struct simulation *simulation) {
@@ -129,13 +149,17 @@ static const double write_cost = 1500;
 static void explain(const void *settings, const struct simulation_setup *setup, double every,
                     struct stages *stages) {
     const struct settings *s = settings;
+    const double shown =
+        s->solvent ? simulation_moved(setup) / fmax(1, (double)setup->placement.count) : 1;
     int formats = 0;
-    (void)setup, (void)every;
+    (void)every;
     for (int k = 0; mf_snapshot_formats[k]; k++)
         formats += s->formats >> k & 1;
-    mf_stages_add(stages, "snapshots", true, write_cost * formats / (double)s->every,
+    mf_stages_add(stages, "snapshots", true, write_cost * formats * shown / (double)s->every,
                   "%d formats, one step in %lld", formats, (long long)s->every);
 }
+
+static const char *const no_or_yes[] = {"no", "yes", NULL};
 
 static const struct field fields[] = {
     {"every", FIELD_INTEGER, offsetof(struct settings, every), .required = true, .minimum = 1,
@@ -146,6 +170,10 @@ static const struct field fields[] = {
      .choices = mf_snapshot_format_names, .unit = "",
      .help = "files that ParaView opens, lists of numbers with which a scene can begin, one "
              "extended XYZ file"},
+    {"solvent", FIELD_CHOICE, offsetof(struct settings, solvent), .choices = no_or_yes,
+     .initial = 0, .unit = "",
+     .help = "whether they show the particles of collision-dynamics, behind the others and as a "
+             "type called so"},
     FIELD_END,
 };
 
@@ -153,6 +181,7 @@ static const char *const files[] = {"configuration.tsv", NULL};
 
 const struct observable mf_snapshots = {
     .name = "snapshots",
+    .of_solvent = true, // if it is to be shown
     .summary = "positions, velocities, forces and attributes of all particles, as files",
     .fields = fields,
     .settings_size = sizeof(struct settings),

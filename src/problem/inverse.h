@@ -75,7 +75,10 @@ struct unknown {
 enum inverse_place {
     INVERSE_OF_POTENTIAL = UNKNOWN_POTENTIAL,
     INVERSE_OF_OMEGA = UNKNOWN_OMEGA,
-    INVERSE_OF_SETUP,
+    INVERSE_OF_MEMORY, ///< of the first mode; those of the others follow
+    INVERSE_OF_TRANSVERSE = INVERSE_OF_MEMORY + PAIR_MEMORY_MOST_MODES,
+    INVERSE_LAWS, ///< how many laws there are
+    INVERSE_OF_SETUP = INVERSE_LAWS,
     INVERSE_OF_DYNAMICS,
     INVERSE_OF_INTERACTION,
 };
@@ -106,7 +109,7 @@ struct inverse_problem {
     struct unknown unknown[UNKNOWNS];
     size_t numbers;
     struct inverse_number number[INVERSE_MOST_NUMBERS];
-    struct inverse_law law[UNKNOWNS]; ///< those of the scene that are known
+    struct inverse_law law[INVERSE_LAWS]; ///< those of the scene that are known
     struct simulation_setup scene;    ///< all but the unknowns; its composition is set
     double core_threshold;            ///< bins below the first with g* above this are the hard core
     double core_stiffness;            ///< of the core (mf_core_fill) [k_B T_0/λ²]

@@ -26,7 +26,7 @@ void mf_numbers_fields_of(const char *unit, struct field fields[NUMBERS_FIELDS])
 }
 
 /// The curves of a law with these values, one table for all of them.
-static enum status tabulate(const struct inverse_problem *problem, enum unknown_kind kind,
+static enum status tabulate(const struct inverse_problem *problem, enum inverse_place kind,
                             const double *value, struct table *table) {
     enum status status = STATUS_OK;
     const struct inverse_law *law = &problem->law[kind];
@@ -41,12 +41,12 @@ static enum status tabulate(const struct inverse_problem *problem, enum unknown_
         memcpy(parameters, law->curve[pair].parameters, family->size);
         for (size_t n = 0; n < problem->numbers; n++) {
             const struct inverse_number *number = &problem->number[n];
-            if (number->place == (enum inverse_place)kind && number->part == pair)
+            if (number->place == kind && number->part == pair)
                 memcpy(parameters + number->offset, &value[n], sizeof value[n]);
         }
         const struct curve curve = {family, parameters};
-        CHECK(kind == UNKNOWN_POTENTIAL ? mf_table_init_potential(&part[pair], &curve)
-                                        : mf_table_init_omega(&part[pair], &curve));
+        CHECK(kind == INVERSE_OF_POTENTIAL ? mf_table_init_potential(&part[pair], &curve)
+                                           : mf_table_init_omega(&part[pair], &curve));
     }
     if (law->curves > 1) {
         CHECK(mf_table_stack(table, part, law->curves));
@@ -61,9 +61,9 @@ done:
     return status;
 }
 
-static bool concerns(const struct inverse_problem *problem, enum unknown_kind kind) {
+static bool concerns(const struct inverse_problem *problem, enum inverse_place kind) {
     for (size_t n = 0; n < problem->numbers; n++)
-        if (problem->number[n].place == (enum inverse_place)kind)
+        if (problem->number[n].place == kind)
             return true;
     return false;
 }
@@ -102,25 +102,36 @@ static enum status put(const struct inverse_number *number, double value,
     return STATUS_OK;
 }
 
+/// Where the setup has the table of a law.
+static const struct table **table_of(struct simulation_setup *scene, enum inverse_place place) {
+    switch (place) {
+    case INVERSE_OF_POTENTIAL:
+        return &scene->potential;
+    case INVERSE_OF_OMEGA:
+        return &scene->omega;
+    case INVERSE_OF_TRANSVERSE:
+        return &scene->memory.transverse;
+    default:
+        return &scene->memory.mode[place - INVERSE_OF_MEMORY].omega;
+    }
+}
+
 enum status mf_numbers_apply(const struct inverse_problem *problem, const double *value,
                              struct inverse_problem *changed, struct numbers_own *own) {
     *changed = *problem;
     for (size_t n = 0; n < problem->numbers; n++)
         TRY(put(&problem->number[n], value[n], &changed->scene, own));
-    if (concerns(problem, UNKNOWN_POTENTIAL)) {
-        TRY(tabulate(problem, UNKNOWN_POTENTIAL, value, &own->table[UNKNOWN_POTENTIAL]));
-        changed->scene.potential = &own->table[UNKNOWN_POTENTIAL];
-    }
-    if (concerns(problem, UNKNOWN_OMEGA)) {
-        TRY(tabulate(problem, UNKNOWN_OMEGA, value, &own->table[UNKNOWN_OMEGA]));
-        changed->scene.omega = &own->table[UNKNOWN_OMEGA];
-    }
+    for (int place = 0; place < INVERSE_LAWS; place++)
+        if (concerns(problem, place)) {
+            TRY(tabulate(problem, place, value, &own->table[place]));
+            *table_of(&changed->scene, place) = &own->table[place];
+        }
     return STATUS_OK;
 }
 
 void mf_numbers_own_clear(struct numbers_own *own) {
-    for (int kind = 0; kind < UNKNOWNS; kind++)
-        mf_table_clear(&own->table[kind]);
+    for (int place = 0; place < INVERSE_LAWS; place++)
+        mf_table_clear(&own->table[place]);
     for (int k = 0; k < INTERACTION_MOST; k++)
         mf_memory_free(own->interaction[k]);
     mf_memory_free(own->dynamics);

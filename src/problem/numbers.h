@@ -13,7 +13,7 @@ void mf_numbers_fields_of(const char *unit, struct field fields[NUMBERS_FIELDS])
 
 /// What is made for values: tables of laws, and parameters of the integrator and the interactions.
 struct numbers_own {
-    struct table table[UNKNOWNS];
+    struct table table[INVERSE_LAWS];
     void *dynamics, *interaction[INTERACTION_MOST];
 };
 

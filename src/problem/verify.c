@@ -170,6 +170,23 @@ done:
     return status;
 }
 
+/// The state of a simulation, from which another can go on.
+static enum status keep_configuration(const struct particles *particles,
+                                      struct verification *verification) {
+    enum status status = STATUS_OK;
+    const size_t count = particles->count;
+    verification->particles = count;
+    NEW_ARRAY(verification->configuration, 6 * count);
+    for (size_t k = 0; k < count; k++)
+        for (size_t d = 0; d < (size_t)particles->box.dimensions; d++) {
+            verification->configuration[d * count + particles->id[k]] = particles->position[d][k];
+            verification->configuration[(3 + d) * count + particles->id[k]] =
+                particles->velocity[d][k];
+        }
+done:
+    return status;
+}
+
 enum status mf_verify(const struct inverse_problem *problem, const struct table *potential,
                       const struct table *omega, const struct verify_parameters *parameters,
                       const struct inverse_listener *listener, struct verification *verification) {
@@ -181,6 +198,7 @@ enum status mf_verify(const struct inverse_problem *problem, const struct table 
     CHECK(run_replicas(
         &(struct work){problem, potential, omega, parameters, listener, replicas, {0}}));
     CHECK(summarise(replicas, count, verification));
+    CHECK(keep_configuration(&replicas->simulation.particles, verification));
 done:
     for (size_t k = 0; replicas && k < count; k++)
         mf_measurement_clear(&replicas[k]);
@@ -190,5 +208,6 @@ done:
 
 void mf_verify_clear(struct verification *verification) {
     mf_measurement_values_clear(&verification->observed);
+    mf_memory_free(verification->configuration);
     *verification = (struct verification){0};
 }

@@ -22,6 +22,10 @@ struct verification {
     double diffusion_begin, diffusion_end; ///< times between which D is the MSD's slope [τ]; or 0
     char warning[512]; ///< why its temperatures are not to be trusted; "" if they are
     uint64_t engine_steps;
+    size_t particles;
+    /// Where the first replica ended: positions, then velocities, by id, shape [6, particles];
+    /// behind the dimensions of the scene 0 [λ], [λ/τ].
+    double *configuration;
 };
 
 /// Simulate the problem's scene with new seeds; replicas in parallel.

@@ -243,6 +243,47 @@ static enum status draw_observable(const char *folder, const char *plots,
     return draw_to(folder, plots, observable->figure, observable->name);
 }
 
+/// Whether a file is a table of a measurement, x, values, errors, that has no script of its own.
+static bool is_curve(const char *name) {
+    static const char *const known[] = {"rdf.tsv", "msd.tsv", "vacf.tsv"};
+    char pair[PAIR_SIZE];
+    for (size_t k = 0; k < sizeof known / sizeof *known; k++)
+        if (strcmp(name, known[k]) == 0)
+            return true;
+    return take_pair(name, known[0], pair);
+}
+
+static enum status draw_curve(const char *folder, const char *plots, const char *table,
+                              size_t *count) {
+    char path[PATH_SIZE], name[PAIR_SIZE + 8];
+    snprintf(path, sizeof path, "%s/%s", folder, table);
+    if (!is_table(path) || has_column(path, "target"))
+        return STATUS_OK;
+    ++*count;
+    snprintf(name, sizeof name, "%.*s", (int)(strlen(table) - strlen(".tsv")), table);
+    if (setenv("MESOFIT_TABLE", table, 1) != 0 || setenv("MESOFIT_FIGURE", name, 1) != 0)
+        return mf_status_fail(STATUS_NO_MEMORY, "out of memory");
+    return draw_to(folder, plots, OBSERVABLE_FIGURE_OF_CURVE, name);
+}
+
+/// Draw the curves of a measurement, which has a target.json, and count them; the first failure.
+static enum status draw_measured(const char *folder, const char *plots, size_t *count) {
+    static const char *const target[] = {"target.json", NULL};
+    struct dirent **entries;
+    enum status first = STATUS_OK;
+    const int files = has_files(folder, target) ? scandir(folder, &entries, NULL, alphasort) : -1;
+    for (int k = 0; k < files; k++) {
+        const enum status status = is_curve(entries[k]->d_name)
+                                       ? draw_curve(folder, plots, entries[k]->d_name, count)
+                                       : STATUS_OK;
+        first = first == STATUS_OK ? status : first;
+        free(entries[k]);
+    }
+    if (files >= 0)
+        free(entries);
+    return first;
+}
+
 /// Draw all figures, and count them, also those that fail.
 static enum status draw_all(const char *folder, size_t *count) {
     enum status first = STATUS_OK;
@@ -251,6 +292,7 @@ static enum status draw_all(const char *folder, size_t *count) {
         return mf_status_fail(STATUS_IO, "%s: %s", folder, strerror(errno));
     TRY(find_plots(plots));
     const size_t fixed = sizeof figures / sizeof *figures;
+    TRY(draw_measured(folder, plots, count));
     for (size_t k = 0; k < fixed || mf_observables[k - fixed]; k++) {
         const enum status status =
             k < fixed ? draw_figure(folder, plots, &figures[k], count)

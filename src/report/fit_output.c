@@ -285,6 +285,29 @@ done:
     return status;
 }
 
+/// configuration.tsv: where the first simulation of the verification ended, as a placement file
+/// with which a scene or another program can begin.
+static enum status write_configuration(const struct fit_file *fit,
+                                       const struct verification *verification,
+                                       const struct run_folder *folder) {
+    static const char *const names[2][3] = {
+        {"x[lambda]", "y[lambda]", "z[lambda]"},
+        {"velocity_x[lambda/tau]", "velocity_y[lambda/tau]", "velocity_z[lambda/tau]"}};
+    const struct simulation_setup *setup = &fit->scene.setup;
+    const int kinds = simulation_is_overdamped(setup) ? 1 : 2;
+    struct data_column columns[6];
+    char path[OUTPUT_PATH_SIZE];
+    size_t n = 0;
+    for (size_t kind = 0; kind < (size_t)kinds; kind++)
+        for (size_t d = 0; d < (size_t)setup->box.dimensions; d++)
+            columns[n++] = (struct data_column){
+                names[kind][d],
+                verification->configuration + (3 * kind + d) * verification->particles, "%.17g"};
+    mf_run_folder_file(folder, "configuration.tsv", path);
+    return mf_data_table_write_in(path, &fit->scene.units, NULL, columns, n,
+                                  verification->particles);
+}
+
 enum status mf_fit_output_observables(const struct fit_file *fit, const struct fit_result *result,
                                       const struct run_folder *folder) {
     const struct target_files *files = &fit->files;
@@ -296,5 +319,5 @@ enum status mf_fit_output_observables(const struct fit_file *fit, const struct f
     for (int kind = 0; kind < TARGETS; kind++)
         if (files->curve[kind].points > 0)
             TRY(write_curve(fit, kind, observed, folder));
-    return STATUS_OK;
+    return write_configuration(fit, result->verification, folder);
 }

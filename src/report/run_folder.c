@@ -25,6 +25,7 @@ enum {
 /// What a run writes beside used.json; with * the tables about the pair types of a mixture.
 static const char *const results[] = {
     "summary.json",
+    "target.json",
     "history.tsv",
     "timing.tsv",
     "potential.tsv",
@@ -198,6 +199,18 @@ static bool is_simulation(const struct run_folder *folder) {
     return says(folder, "used.json", "seed", NULL) && !says(folder, "used.json", "method", NULL);
 }
 
+static bool is_measurement(const struct run_folder *folder) {
+    return says(folder, "used.json", "trajectories", NULL);
+}
+
+/// What is done again in no time may be replaced by its like.
+static enum status check_kind(const struct run_folder *folder, bool same, const char *name) {
+    return same ? STATUS_OK
+                : mf_status_fail(STATUS_BAD_INPUT,
+                                 "%s holds a %s: --force replaces it, -o OTHER keeps it",
+                                 folder->path, name);
+}
+
 /// Hours of work are not to be lost by a word: a fit goes by --force alone.
 static enum status check_replaced(const struct run_folder *folder, enum run_kind kind) {
     if (!has(folder, "used.json"))
@@ -205,12 +218,10 @@ static enum status check_replaced(const struct run_folder *folder, enum run_kind
     const bool summary = has(folder, "summary.json"), saved = has(folder, "checkpoint.bin");
     if (!summary && !saved)
         return STATUS_OK;
+    if (is_measurement(folder))
+        return check_kind(folder, kind == RUN_MEASUREMENT, "measurement");
     if (is_simulation(folder))
-        return kind == RUN_SIMULATION
-                   ? STATUS_OK
-                   : mf_status_fail(STATUS_BAD_INPUT,
-                                    "%s holds a simulation: --force replaces it, -o OTHER keeps it",
-                                    folder->path);
+        return check_kind(folder, kind == RUN_SIMULATION, "simulation");
     if (summary && !says(folder, "summary.json", "status", mf_status_name(STATUS_INTERRUPTED)))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s holds a finished fit: --force replaces it, -o OTHER keeps it",
@@ -247,13 +258,14 @@ static enum status lock(struct run_folder *folder) {
                           folder->path);
 }
 
-static enum status choose(struct run_folder *folder, const char *input,
+static enum status choose(struct run_folder *folder, enum run_kind kind, const char *input,
                           const struct run_options *options) {
     const char *slash = strrchr(input, '/');
-    const int length = options->folder
-                           ? snprintf(folder->path, sizeof folder->path, "%s", options->folder)
-                           : snprintf(folder->path, sizeof folder->path, "%.*sout",
-                                      slash ? (int)(slash - input + 1) : 0, input);
+    const char *const given =
+        options->folder || kind != RUN_MEASUREMENT ? options->folder : "target";
+    const int length = given ? snprintf(folder->path, sizeof folder->path, "%s", given)
+                             : snprintf(folder->path, sizeof folder->path, "%.*sout",
+                                        slash ? (int)(slash - input + 1) : 0, input);
     if (length >= 0 && length <= LONGEST_FOLDER)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
@@ -264,7 +276,7 @@ static enum status choose(struct run_folder *folder, const char *input,
 enum status mf_run_folder_open(struct run_folder *folder, enum run_kind kind, const char *input,
                                const struct input_files *inputs,
                                const struct run_options *options) {
-    TRY(choose(folder, input, options));
+    TRY(choose(folder, kind, input, options));
     TRY(mf_output_make_folder(folder->path));
     TRY(check_writable(folder));
     TRY(lock(folder));

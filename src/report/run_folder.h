@@ -11,8 +11,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/// A simulation may replace an earlier one, a fit nothing without --force.
-enum run_kind { RUN_SIMULATION, RUN_FIT };
+/// A simulation or a measurement may replace an earlier one of its kind, a fit nothing without
+/// --force.
+enum run_kind { RUN_SIMULATION, RUN_FIT, RUN_MEASUREMENT };
 
 /// A folder while a run writes it. Zeros are one that is not open.
 struct run_folder {
@@ -21,7 +22,8 @@ struct run_folder {
     int lock; ///< the folder, open
 };
 
-/// Choose, make and lock the folder of a run of `input`, in which nothing changes before
+/// Choose, make and lock the folder of a run of `input`, `out` beside it unless the options say
+/// where, and `target` here for a measurement, in which nothing changes before
 /// mf_run_folder_begin. Where files cannot be locked, it goes on without.
 /// Fails: BAD_INPUT if the path is too long, another process runs in the folder, a file that the
 /// run reads has the name of a result, there is nothing to resume, or there are results that only

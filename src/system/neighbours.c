@@ -164,10 +164,10 @@ struct watched {
     const struct particles *particles;
 };
 
-/// Whether some particle of a stretch has moved by half the skin: 0 or 1.
-SIMD_CLONES static double has_moved(const void *context, size_t begin, size_t end) {
-    const struct watched *watched = context;
-    const int dimensions = watched->particles->box.dimensions;
+/// Whether some particle of a stretch has moved by half the skin: 0 or 1. Vectors want the number
+/// of dimensions to be known.
+static inline __attribute__((always_inline)) double
+count_moved(const struct watched *watched, size_t begin, size_t end, const int dimensions) {
     const double limit = 0.25 * watched->neighbours->skin * watched->neighbours->skin;
     const double *const *position = (const double *const *)watched->particles->position;
     const double *const *built = (const double *const *)watched->neighbours->built;
@@ -179,6 +179,12 @@ SIMD_CLONES static double has_moved(const void *context, size_t begin, size_t en
         moved |= !(square < limit);
     }
     return moved;
+}
+
+SIMD_CLONES static double has_moved(const void *context, size_t begin, size_t end) {
+    const struct watched *watched = context;
+    return watched->particles->box.dimensions == 2 ? count_moved(watched, begin, end, 2)
+                                                   : count_moved(watched, begin, end, 3);
 }
 
 bool mf_neighbours_are_stale(const struct neighbours *neighbours,

@@ -25,9 +25,9 @@ const struct field mf_placement_fields[] = {
     {"separation", FIELD_NUMBER, MEMBER(separation), .initial = 0.5, .minimum = 0,
      .maximum = DBL_MAX, .unit = "lambda", .help = "random: least distance of any two"},
     {"file", FIELD_FILE, MEMBER(file), .unit = "",
-     .help =
-         "file: columns x, y (, z), if wanted the velocities, and attributes by their names; or a "
-         "snapshot in JSON"},
+     .help = "file: columns x, y (, z), if wanted the velocities, and attributes by their names, "
+             "in rows "
+             "in the order of \"types\"; or a snapshot in JSON"},
     {"velocities", FIELD_CHOICE, MEMBER(speeds), .initial = PARTICLES_MAXWELL, .choices = speeds,
      .unit = "",
      .help = "the first ones: maxwell is equilibrium; normal, uniform and signs (equal but for the "

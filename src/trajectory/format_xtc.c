@@ -107,13 +107,17 @@ static enum status copy_few(struct trajectory_frame *frame, size_t atoms) {
     return STATUS_OK;
 }
 
+static double peek(const struct trajectory_frame *frame) {
+    return binary_float(frame->raw.data + 12, true);
+}
+
 static enum status decode(const struct trajectory *trajectory, struct trajectory_frame *frame) {
     const unsigned char *const header = frame->raw.data;
     const size_t atoms = binary_word(header + 4, true);
     double box[3][3];
     (void)trajectory;
     frame->step = binary_int(header + 8, true);
-    frame->time = binary_float(header + 12, true);
+    frame->time = peek(frame);
     for (int k = 0; k < 9; k++)
         box[k / 3][k % 3] = binary_float(header + 16 + 4 * k, true);
     mf_frame_set_box(frame, box);
@@ -128,6 +132,7 @@ const struct trajectory_format mf_format_xtc = {
     .summary = "GROMACS, compressed: positions; also the frames of 64-bit sizes since 2023",
     .recognise = recognise,
     .fetch = fetch,
+    .peek = peek,
     .describe = describe,
     .decode = decode,
 };

@@ -75,6 +75,26 @@ bool mf_frame_box_of_angles(struct trajectory_frame *frame, const double length[
     return frame->has_box;
 }
 
+static void cross(const double a[3], const double b[3], double c[3]) {
+    c[0] = a[1] * b[2] - a[2] * b[1];
+    c[1] = a[2] * b[0] - a[0] * b[2];
+    c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+void mf_frame_reciprocal(const struct trajectory_frame *frame, double reciprocal[3][3]) {
+    memset(reciprocal, 0, 9 * sizeof(double));
+    if (!frame->has_box)
+        return;
+    for (int i = 0; i < 3; i++) {
+        const double *const own = frame->box[i];
+        double *const row = reciprocal[i];
+        cross(frame->box[(i + 1) % 3], frame->box[(i + 2) % 3], row);
+        const double volume = own[0] * row[0] + own[1] * row[1] + own[2] * row[2];
+        for (int d = 0; d < 3; d++)
+            row[d] = frame->periodic[i] ? row[d] / volume : 0;
+    }
+}
+
 enum { REASON_SIZE = 1024 };
 
 enum status mf_frame_fail_line(const struct trajectory_frame *frame, const char *at,

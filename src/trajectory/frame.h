@@ -46,6 +46,10 @@ bool mf_frame_box_of_angles(struct trajectory_frame *frame, const double length[
 /// A box has a volume, or it is none; what is periodic without one is not.
 void mf_frame_set_box(struct trajectory_frame *frame, const double box[3][3]);
 
+/// Reciprocal vectors of the box, without 2π, one a row: a difference of positions times a row is
+/// its fraction of that vector of the box. 0 for those that are not periodic.
+void mf_frame_reciprocal(const struct trajectory_frame *frame, double reciprocal[3][3]);
+
 /// BAD_INPUT for a place in a frame of text, whose lines end with NUL: "file:line: frame 3: …".
 enum status mf_frame_fail_line(const struct trajectory_frame *frame, const char *at,
                                const char *format, ...) __attribute__((format(printf, 3, 4)));

@@ -39,28 +39,6 @@ void mf_mapping_clear(struct mapping *mapping) {
     *mapping = (struct mapping){0};
 }
 
-static void cross(const double a[3], const double b[3], double c[3]) {
-    c[0] = a[1] * b[2] - a[2] * b[1];
-    c[1] = a[2] * b[0] - a[0] * b[2];
-    c[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-/// Reciprocal vectors of the box, without 2π: difference · row is its fraction of that vector of
-/// the box. 0 for those that are not periodic.
-static void invert(const struct trajectory_frame *frame, double reciprocal[3][3]) {
-    memset(reciprocal, 0, 9 * sizeof(double));
-    if (!frame->has_box)
-        return;
-    for (int i = 0; i < 3; i++) {
-        const double *const own = frame->box[i];
-        double *const row = reciprocal[i];
-        cross(frame->box[(i + 1) % 3], frame->box[(i + 2) % 3], row);
-        const double volume = own[0] * row[0] + own[1] * row[1] + own[2] * row[2];
-        for (int d = 0; d < 3; d++)
-            row[d] = frame->periodic[i] ? row[d] / volume : 0;
-    }
-}
-
 /// place = the image of `position` nearest to `place`.
 static void step_to(const struct trajectory_frame *frame, double reciprocal[3][3],
                     const double position[3], double place[3]) {
@@ -97,7 +75,7 @@ enum status mf_mapping_apply(const struct mapping *mapping, const struct traject
                               frame->file, frame->number, frame->atoms, mapping->atoms);
     TRY(mf_frame_reserve(beads, mapping->beads, frame->has_velocities));
     copy_surroundings(frame, beads);
-    invert(frame, reciprocal);
+    mf_frame_reciprocal(frame, reciprocal);
     for (size_t k = 0; k < mapping->beads; k++) {
         const struct mapping_bead *const bead = &mapping->bead[k];
         const size_t *const atom = &mapping->atom[bead->first];

@@ -80,10 +80,11 @@ enum status mf_trajectory_found_units(struct trajectory *trajectory, const char 
 static enum status check_units(const struct trajectory *trajectory) {
     if (trajectory->scale.length > 0)
         return STATUS_OK;
-    return mf_status_fail(STATUS_BAD_INPUT,
-                          "%s: this file of LAMMPS does not say its units: tell them (real, metal, "
-                          "nano, lj …)",
-                          trajectory->file);
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "%s: this file of LAMMPS does not say its units: tell them by --file-units (real, metal, "
+        "nano, lj …)",
+        trajectory->file);
 }
 
 static enum status begin(struct trajectory *trajectory) {
@@ -153,6 +154,13 @@ enum status mf_trajectory_fetch(struct trajectory *trajectory, struct trajectory
     TRY(trajectory->format->fetch(trajectory, frame, more));
     source->frame += *more;
     return STATUS_OK;
+}
+
+bool mf_trajectory_peek(const struct trajectory *trajectory, struct trajectory_frame *frame) {
+    if (trajectory->format->peek == NULL)
+        return false;
+    frame->time = trajectory->format->peek(frame);
+    return true;
 }
 
 enum status mf_trajectory_decode(const struct trajectory *trajectory,

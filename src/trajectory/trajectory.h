@@ -31,6 +31,8 @@ struct trajectory_format {
     /// Take the bytes of the next frame into frame->raw; `*more` is true, and becomes false if
     /// there is no further frame.
     enum status (*fetch)(struct trajectory *trajectory, struct trajectory_frame *frame, bool *more);
+    /// The time of a frame that was fetched [ps], without decoding it; NULL: it costs as much.
+    double (*peek)(const struct trajectory_frame *frame);
     /// Make the structure from the first frame, which has been fetched; its atoms stand in the
     /// order of ids if there are ids.
     enum status (*describe)(struct trajectory *trajectory, struct trajectory_frame *first);
@@ -97,6 +99,10 @@ enum status mf_trajectory_fetch(struct trajectory *trajectory, struct trajectory
                                 bool *more) MUST_USE;
 enum status mf_trajectory_decode(const struct trajectory *trajectory,
                                  struct trajectory_frame *frame) MUST_USE;
+
+/// Find the time of a frame that has been fetched, if that takes no decoding. @return whether it
+/// does not.
+bool mf_trajectory_peek(const struct trajectory *trajectory, struct trajectory_frame *frame);
 
 /// What formats share -----------------------------------------------------------------------------
 

@@ -185,6 +185,38 @@ static void test_fit_of_numbers_gives_the_same_bits_from_used_and_in_pieces(void
     free(text);
 }
 
+/// |<n>| grows with the coupling: simulations with 0.4 and 0.5 have 0.724(12) and 0.796(7). Both
+/// targets of one observable have its settings.
+static void test_fit_finds_a_coupling_from_the_polar_order(void **state) {
+    static const char run[] =
+        "{\"seed\": 3, \"target\": {\"polar_order\": {\"value\": 0.75, \"error\": 0.02, \"every\": "
+        "20, \"lags\": 5}},\n\"unknowns\": {\"numbers\": "
+        "{\"interactions.polar-alignment.coupling\": {\"minimum\": 0.1, \"maximum\": 2, \"start\": "
+        "1}}},\n\"scene\": {\"dimensions\": 2, \"box\": [12, 12], \"temperature\": 0.1,\n"
+        "\"time_step\": 0.02, \"particles\": {\"count\": 120, \"placement\": \"random\", "
+        "\"separation\": 0.5},\n\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 20, "
+        "\"cutoff\": 1},\n\"interactions\": {\"self-propulsion\": {\"force\": 1}, "
+        "\"polar-alignment\": {\"coupling\": 1, \"range\": 1.5}},\n\"dynamics\": {\"integrator\": "
+        "\"brownian\", \"orientation_temperature\": 0.5}},\n\"method\": {\"name\": "
+        "\"gauss-newton\", \"iterations\": 6, \"equilibration\": 500,\n\"samples\": 50, \"every\": "
+        "20},\n\"verification\": {\"replicas\": 2, \"equilibration\": 500, \"samples\": 100, "
+        "\"every\": 20}}\n";
+    small_inputs_write(*state, "run.json", run, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out");
+    assert_true(result.code == 0 || result.code == 1);
+    const double coupling =
+        results_parameter("out/summary.json", "interactions.polar-alignment.coupling", "value");
+    print_message("coupling %.3f\n", coupling);
+    assert_true(coupling > 0.34 && coupling < 0.56);
+    small_inputs_write(*state, "polarity.tsv", "0 1\n2 0.5\n4 0.3\n", NULL, NULL);
+    small_inputs_write(*state, "run.json", run, "\"polar_order\": {",
+                       "\"polarity_correlation\": {\"file\": \"polarity.tsv\", \"every\": 10, "
+                       "\"lags\": 10}, \"polar_order\": {");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "both");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "polar_order: must have the settings of the target before it");
+}
+
 static void test_explain_tells_of_numbers(void **state) {
     write_target(*state);
     write_fit(*state, (const char *const[]){NULL});
@@ -320,6 +352,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_fit_says_that_a_number_is_at_its_bound),
         TEST_WITHOUT_FIGURES(test_fit_says_that_a_number_is_undetermined),
         TEST_WITHOUT_FIGURES(test_fit_of_numbers_gives_the_same_bits_from_used_and_in_pieces),
+        TEST_WITHOUT_FIGURES(test_fit_finds_a_coupling_from_the_polar_order),
         TEST_WITHOUT_FIGURES(test_explain_tells_of_numbers),
         TEST_WITHOUT_FIGURES(test_explain_tells_of_numbers_of_a_pair_type_and_of_the_integrator),
         TEST_WITHOUT_FIGURES(test_fit_refuses_numbers_that_cannot_be_found),

@@ -20,6 +20,13 @@ static const char channel[] =
 
 static const char *const tables[] = {"flow_profile.tsv", "flow_field.tsv", "used.json", NULL};
 
+#define SNAPSHOTS                                                                                  \
+    "\"snapshots\": {\"every\": 500, \"formats\": [\"vtp\", \"json\", \"extxyz\"], \"solvent\": "  \
+    "\"yes\"},\n"
+static const char *const snapshots[] = {"snapshots/step_000000500.vtp",
+                                        "snapshots/step_000000500.json",
+                                        "snapshots/trajectory.extxyz", NULL};
+
 static void write(struct temporary_folder *folder, const char *from, const char *to) {
     small_inputs_write(folder, "scene.json", channel, from, to);
 }
@@ -37,6 +44,24 @@ static void test_simulate_measures_a_solvent_without_beads(void **state) {
     RUN_PROGRAM(&result, "simulate", "out/used.json", "-o", "again", "--threads", "2");
     run_program_assert_code(&result, 0);
     results_assert_same("out", "again", tables);
+}
+
+static void test_snapshots_show_the_solvent_where_it_is_wanted(void **state) {
+    static struct run_program_result result;
+    write(*state, "\"measure\": {\"equilibration\": 200,",
+          SNAPSHOTS "\"measure\": {\"equilibration\": 500,");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--threads", "1");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "threads", "--threads", "2");
+    run_program_assert_code(&result, 0);
+    results_assert_same("out", "threads", snapshots);
+    char *frames = temporary_folder_read("out/snapshots/trajectory.extxyz");
+    assert_true(strncmp(frames, "2754\nLattice=", 13) == 0);
+    free(frames);
+    write(*state, "\"measure\"", "\"snapshots\": {\"every\": 500}, \"measure\"");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "scene.json: snapshots: nobody to show; \"solvent\": \"yes\"");
 }
 
 static void test_a_flow_tells_its_viscosity_and_whether_it_has_settled(void **state) {
@@ -77,6 +102,32 @@ static void test_beads_that_drift_with_the_solvent_move(void **state) {
     assert_null(strstr(result.err, "by the positions"));
 }
 
+/// Of two bins between plates the flow is as fast in both; a drag coefficient wants a flow.
+static void test_no_viscosity_and_no_coefficient_where_there_is_none(void **state) {
+    static struct run_program_result result;
+    static const char scene[] =
+        "{\"dimensions\": 2, \"box\": [20, 2], \"particles\": {\"count\": 0}, "
+        "\"time_step\": 0.1,\n\"dynamics\": {\"integrator\": \"collision-dynamics\", "
+        "\"thermostat\": \"yes\", \"walls\": \"plates\",\n\"acceleration\": [1, 0]},\n"
+        "\"measure\": {\"equilibration\": 100, \"samples\": 100, \"every\": 2}, "
+        "\"flow_profile\": {}}\n";
+    small_inputs_write(*state, "scene.json", scene, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "scene.json: flow_profile.bins: 2 along y cannot tell a viscosity");
+    small_inputs_write(*state, "scene.json", scene, "\"flow_profile\": {}",
+                       "\"flow_profile\": {\"bins\": 6}");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    assert_true(results_number("out/summary.json", "viscosity") > 0);
+    write(*state, "\"acceleration\": [0.03, 0], ", "");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "still");
+    run_program_assert_code(&result, 0);
+    char *summary = temporary_folder_read("still/summary.json");
+    assert_contains(summary, "\"drag_coefficient\":\tnull");
+    free(summary);
+}
+
 static void test_figures_of_flow_are_drawn(void **state) {
     static struct run_program_result result;
     small_inputs_need_gnuplot();
@@ -106,6 +157,8 @@ static void assert_refused(void **state, const char *from, const char *to, const
 }
 
 static void test_simulate_refuses_bad_solvents_by_file_and_key(void **state) {
+    assert_refused(state, "\"thermostat\": \"yes\"", "\"thermostat\": true",
+                   "scene.json: dynamics.thermostat: \"true\" is unknown; known: no, yes");
     assert_refused(state, "\"angle\": 130", "\"cell\": 0.7",
                    "scene.json: dynamics.cell: cells of 0.7 do not divide box[0] = 24");
     assert_refused(state, "\"time_step\": 0.1", "\"time_step\": 5",
@@ -120,6 +173,7 @@ static void test_simulate_refuses_bad_solvents_by_file_and_key(void **state) {
 }
 
 static void test_simulate_refuses_a_flow_without_solvent(void **state) {
+    static struct run_program_result result;
     assert_refused(
         state,
         "\"particles\": {\"count\": 0},\n"
@@ -128,6 +182,14 @@ static void test_simulate_refuses_a_flow_without_solvent(void **state) {
         "\"acceleration\": [0.03, 0], \"obstacle_centre\": [8, 6], \"obstacle_radius\": 2},\n",
         "\"particles\": {\"count\": 10}, \"rdf\": {\"range\": 1},\n",
         "scene.json: flow_profile: velocity-verlet has no solvent");
+    small_inputs_write(*state, "scene.json",
+                       "{\"box\": [6, 6, 6], \"particles\": {\"count\": 10}, \"rdf\": {\"range\": "
+                       "1},\n\"dynamics\": {\"integrator\": \"velocity-verlet\"}, "
+                       "\"time_step\": 0.01,\n" SNAPSHOTS "\"measure\": {\"samples\": 2}}\n",
+                       NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "scene.json: snapshots.solvent: velocity-verlet has no solvent");
     assert_refused(state,
                    "\"collision-dynamics\",\n\"angle\": 130, \"thermostat\": \"yes\", "
                    "\"walls\": \"plates\",\n\"acceleration\": [0.03, 0], "
@@ -144,6 +206,62 @@ static void test_simulate_warns_of_few_particles_in_a_cell(void **state) {
     assert_contains(result.err, "warning: dynamics.particles_per_cell: below 3");
 }
 
+/// A lattice knows of no obstacle: the beads inside begin elsewhere; those of a file do not.
+static void test_beads_begin_outside_the_obstacle(void **state) {
+    static struct run_program_result result;
+    static const char beads[] =
+        "{\"dimensions\": 2, \"box\": [10, 10], \"particles\": {\"count\": 100}, "
+        "\"time_step\": 0.1,\n\"dynamics\": {\"integrator\": \"collision-dynamics\", "
+        "\"walls\": \"plates\",\n\"obstacle_centre\": [5, 5], \"obstacle_radius\": 2},\n"
+        "\"measure\": {\"equilibration\": 0, \"samples\": 2, \"every\": 20},\n"
+        "\"snapshots\": {\"every\": 20, \"formats\": [\"json\"]}, \"flow_field\": {}}\n";
+    small_inputs_write(*state, "scene.json", beads, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    FILE *table = fopen("out/configuration.tsv", "r");
+    assert_non_null(table);
+    char line[512];
+    size_t rows = 0;
+    for (double x, y; fgets(line, sizeof line, table);)
+        if (sscanf(line, "%lf %lf", &x, &y) == 2) {
+            assert_true((x - 5) * (x - 5) + (y - 5) * (y - 5) >= 4 * (1 - 1e-9));
+            rows++;
+        }
+    fclose(table);
+    assert_int_equal(rows, 100);
+#define FROM_FILE "{\"count\": 2, \"placement\": \"file\", \"file\": \"beads.tsv\"}"
+    small_inputs_write(*state, "scene.json", beads, "{\"count\": 100}", FROM_FILE);
+    small_inputs_write(*state, "beads.tsv", "1 1\n4 5.5\n", NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err,
+                    "scene.json: particles.file: particle 1 begins inside the obstacle");
+    small_inputs_write(*state, "beads.tsv", "1 -1\n1 2\n", NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "scene.json: particles.file: particle 0 begins beyond a plate");
+}
+
+static void test_simulate_warns_of_what_plates_and_flows_do_to_beads(void **state) {
+    static struct run_program_result result;
+    static const char beads[] =
+        "{\"dimensions\": 2, \"box\": [10, 10], \"particles\": {\"count\": 10}, "
+        "\"time_step\": 0.05,\n\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 5},\n"
+        "\"dynamics\": {\"integrator\": \"collision-dynamics\", \"walls\": \"plates\"},\n"
+        "\"measure\": {\"equilibration\": 0, \"samples\": 2, \"every\": 1}}\n";
+    small_inputs_write(*state, "scene.json", beads, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    assert_contains(result.err, "warning: dynamics.walls: forces of pairs know no plates");
+    small_inputs_write(*state, "scene.json", beads, "\"walls\": \"plates\"",
+                       "\"wave_acceleration\": 0.1");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    assert_contains(result.err, "warning: dynamics: the flow carries the beads");
+    small_inputs_write(*state, "scene.json", beads, "\"walls\": \"plates\"",
+                       "\"acceleration\": [0.1, 0]");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    assert_null(strstr(result.err, "flow carries")); // all fall alike
+}
+
 /// With beads that carry forces, in space, killed and resumed.
 static void test_simulate_goes_on_with_the_same_bits_with_a_solvent(void **state) {
     static const char beads[] =
@@ -151,7 +269,7 @@ static void test_simulate_goes_on_with_the_same_bits_with_a_solvent(void **state
         "\"time_step\": 0.05, \"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25},\n"
         "\"dynamics\": {\"integrator\": \"collision-dynamics\", \"interval\": 4,\n"
         "\"thermostat\": \"yes\", \"wave_acceleration\": 0.1},\n"
-        "\"measure\": {\"equilibration\": 500, \"samples\": 300, \"every\": 20},\n"
+        "\"measure\": {\"equilibration\": 500, \"samples\": 300, \"every\": 20},\n" SNAPSHOTS
         "\"flow_profile\": {}, \"flow_field\": {\"spacing\": 2}}\n";
     static struct run_program_result result;
     small_inputs_write(*state, "scene.json", beads, NULL, NULL);
@@ -160,6 +278,7 @@ static void test_simulate_goes_on_with_the_same_bits_with_a_solvent(void **state
     const char *const words[] = {"simulate", "scene.json", "-o", "pieces", NULL};
     run_program_in_pieces(0, words);
     results_assert_same("whole", "pieces", tables);
+    results_assert_same("whole", "pieces", snapshots);
 }
 
 /// From a time step of 0.25, where ν is 0.4 and the Schmidt number below 5, towards those targets.
@@ -202,9 +321,13 @@ int main(void) {
         TEST(test_a_flow_tells_its_viscosity_and_whether_it_has_settled),
         cmocka_unit_test_setup_teardown(test_figures_of_flow_are_drawn, small_inputs_enter,
                                         small_inputs_leave),
+        TEST(test_no_viscosity_and_no_coefficient_where_there_is_none),
         TEST(test_explain_tells_the_solvents_share),
         TEST(test_simulate_refuses_bad_solvents_by_file_and_key),
         TEST(test_simulate_refuses_a_flow_without_solvent),
+        TEST(test_snapshots_show_the_solvent_where_it_is_wanted),
+        TEST(test_beads_begin_outside_the_obstacle),
+        TEST(test_simulate_warns_of_what_plates_and_flows_do_to_beads),
         TEST(test_simulate_warns_of_few_particles_in_a_cell),
         TEST(test_simulate_goes_on_with_the_same_bits_with_a_solvent),
         TEST(test_fit_looks_for_angle_and_time_step),

@@ -148,6 +148,38 @@ static void test_broken_snapshot_is_refused_as_a_start(void **state) {
         (const char *[]){"particles.y: a list of 2 numbers is required", NULL});
 }
 
+/// Types follow from the order of particles: that of the file is to be that of the scene.
+static void test_snapshot_of_other_types_is_refused_as_a_start(void **state) {
+    static struct run_program_result result;
+    static const char scene[] =
+        "{\"dimensions\": 2, \"box\": [10, 10], \"particles\": {\"types\": {\"small\": 2, "
+        "\"large\": "
+        "2},\n\"placement\": \"file\", \"file\": \"start.json\"}, \"time_step\": 0.1,\n"
+        "\"dynamics\": {\"integrator\": \"event-driven\"}, \"rdf\": {\"range\": 1},\n"
+        "\"measure\": {\"samples\": 4}}\n";
+    static const char start[] =
+        "{\"particles\": {\"type\": [\"large\", \"large\", \"small\", \"small\"],\n"
+        "\"x\": [1, 3, 5, 7], \"y\": [1, 3, 5, 7], \"radius\": [1, 1, 0.1, 0.1]}}";
+    small_inputs_write(*state, "scene.json", scene, NULL, NULL);
+    small_inputs_write(*state, "start.json", start, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json");
+    run_program_assert_refused(
+        &result, ".", "order", 1,
+        (const char *[]){"scene.json: particles.file: start.json: particles.type: particle 0 is "
+                         "\"large\" here and \"small\" in the scene",
+                         NULL});
+    small_inputs_write(*state, "start.json", start, "\"small\"]", "3]");
+    RUN_PROGRAM(&result, "simulate", "scene.json");
+    run_program_assert_refused(
+        &result, ".", "texts", 1,
+        (const char *[]){"start.json: particles.type: a list of 4 texts is required", NULL});
+    small_inputs_write(*state, "start.json", start, NULL, NULL);
+    small_inputs_write(*state, "scene.json", scene, "\"small\": 2, \"large\": 2",
+                       "\"large\": 2, \"small\": 2");
+    RUN_PROGRAM(&result, "simulate", "scene.json");
+    run_program_assert_code(&result, 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_interrupted_run_leaves_the_same_snapshots,
@@ -161,6 +193,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_scene_begins_with_a_snapshot,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_interrupted_active_particles_go_on_with_the_same_bits,
+                                        small_inputs_enter_without_gnuplot, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_snapshot_of_other_types_is_refused_as_a_start,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_broken_snapshot_is_refused_as_a_start,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),

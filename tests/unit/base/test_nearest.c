@@ -34,6 +34,14 @@ static void test_nearest_name_finds_nothing_when_too_far(void **state) {
     assert_null(mf_nearest_name("seed", known, 0));
 }
 
+static void test_nearest_name_prefers_the_same_letters(void **state) {
+    static const char *const axes[] = {"y", "xy", "yz"};
+    (void)state;
+    assert_string_equal(mf_nearest_name("zy", axes, 3), "yz");
+    assert_string_equal(mf_nearest_name("yx", axes, 3), "xy");
+    assert_string_equal(mf_nearest_name("yy", axes, 3), "y");
+}
+
 static void test_nearest_name_finds_nothing_when_the_name_is_very_long(void **state) {
     (void)state;
     char given[1000];
@@ -60,6 +68,7 @@ int main(void) {
         cmocka_unit_test(test_nearest_name_finds_the_name_when_one_slip_was_made),
         cmocka_unit_test(test_nearest_name_finds_nothing_when_too_far),
         cmocka_unit_test(test_nearest_name_finds_nothing_when_the_name_is_very_long),
+        cmocka_unit_test(test_nearest_name_prefers_the_same_letters),
         cmocka_unit_test(test_nearest_hint_lists_the_known_when_nothing_is_near),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -2,7 +2,7 @@
 //
 // Normal numbers of random words: against the normal law of the GSL, over all words, and of words
 // that Philox draws.
-#include "base/normal.h"
+#include "base/normal_words.h"
 
 #include "base/rng.h"
 #include "shared/is_close.h"
@@ -36,6 +36,21 @@ static void test_normal_is_the_quantile_when_the_word_is_any(void **state) {
     print_message("largest error of a quantile: %.1e\n", worst);
     assert_close(worst, 0, 5e-7);
     assert_close(normal_of_word(&table, 0), 6.338, 0.001);
+}
+
+static void test_normal_of_many_words_has_the_same_bits(void **state) {
+    (void)state;
+    uint32_t word[NORMAL_WORDS];
+    double zeta[NORMAL_WORDS];
+    for (uint32_t n = 0; n < 1000; n++) {
+        const size_t count = 4 * (1 + n % (NORMAL_WORDS / 4));
+        for (uint32_t k = 0; k < count; k++)
+            word[k] = n < 500 ? mf_rng_philox(7, RNG_BROWNIAN, n, k, 0).word[0]
+                              : (k % 2 ? ~(n - 500 + k) : n - 500 + k);
+        normal_of_words(&table, word, count, zeta);
+        for (size_t k = 0; k < count; k++)
+            assert_identical(zeta[k], normal_of_word(&table, word[k]));
+    }
 }
 
 static void test_normal_changes_sign_when_the_word_is_inverted(void **state) {
@@ -119,6 +134,7 @@ static void test_normal_passes_for_normal_when_words_are_random(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_normal_is_the_quantile_when_the_word_is_any),
+        cmocka_unit_test(test_normal_of_many_words_has_the_same_bits),
         cmocka_unit_test(test_normal_changes_sign_when_the_word_is_inverted),
         cmocka_unit_test(test_normal_grows_when_the_word_nears_the_tail),
         cmocka_unit_test(test_normal_has_the_moments_of_the_law_when_all_words_are_drawn),

@@ -40,7 +40,7 @@ static char *write_one(void **state, const struct snapshot_format *format, const
     struct snapshot snapshot;
     int64_t size = 0;
     make(&particles);
-    assert_ok(mf_snapshot_take(&snapshot, &particles, &mixture, 20, 0.5));
+    assert_ok(mf_snapshot_take(&snapshot, &particles, &mixture, NULL, 20, 0.5));
     assert_ok(mf_snapshot_write(&snapshot, format, folder->path, &size));
     mf_snapshot_clear(&snapshot);
     mf_particles_clear(&particles);
@@ -67,6 +67,38 @@ static void test_json_has_all_digits_of_each_column(void **state) {
     assert_contains(text, "\"image_x\": [0, 0, 10]");
     assert_contains(text, "\"force_x\": [-0.2, -0.3333333333333333");
     assert_contains(text, "\"radius\": [1, 0, 0.5]");
+    free(text);
+}
+
+/// A solvent of two, the second beyond the edge, comes behind the particles and has no forces.
+static void test_companions_follow_as_a_type_of_their_own(void **state) {
+    struct temporary_folder *folder = *state;
+    double x[] = {0.5, 4.5}, y[] = {1, 2}, vx[] = {-1, 3}, vy[] = {7, 8};
+    double *const position[] = {x, y}, *const velocity[] = {vx, vy};
+    const struct snapshot_companions companions = {"solvent", 2, position, velocity, 1};
+    struct particles particles;
+    struct snapshot snapshot;
+    int64_t size = 0;
+    make(&particles);
+    assert_ok(mf_snapshot_take(&snapshot, &particles, &mixture, &companions, 20, 0.5));
+    assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_extxyz, folder->path, &size));
+    assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_json, folder->path, &size));
+    assert_int_equal(mf_snapshot_type(&snapshot, 2), 1);
+    assert_int_equal(mf_snapshot_type(&snapshot, 3), 2);
+    mf_snapshot_clear(&snapshot);
+    mf_particles_clear(&particles);
+    char *frames = temporary_folder_read(temporary_folder_file(folder, "trajectory.extxyz"));
+    assert_contains(frames, "5\nLattice");
+    assert_contains(frames, "Big 0.1 4.1 0 10 1 0 101 111 0 -0.25 -0.2 0 0.5 2\n"
+                            "solvent 0.5 1 0 0 0 0 -1 7 0 0 0 0 0 3\n"
+                            "solvent 0.5 2 0 0 0 0 3 8 0 0 0 0 0 4\n");
+    char *text = temporary_folder_read(temporary_folder_file(folder, "step_000000020.json"));
+    assert_contains(text, "\"count\": 3,");
+    assert_contains(text, "\"image_x\": [0, 0, 10]");
+    assert_contains(text, "\"solvent\": {\n    \"type\": [\"solvent\", \"solvent\"],\n"
+                          "    \"x\": [0.5, 0.5],\n    \"y\": [1, 2],\n"
+                          "    \"velocity_x\": [-1, 3],\n    \"velocity_y\": [7, 8]\n  }\n}");
+    free(frames);
     free(text);
 }
 
@@ -115,7 +147,7 @@ static void test_extxyz_is_continued_behind_the_bytes_that_count(void **state) {
     struct particles particles;
     struct snapshot snapshot;
     make(&particles);
-    assert_ok(mf_snapshot_take(&snapshot, &particles, &mixture, 20, 0.5));
+    assert_ok(mf_snapshot_take(&snapshot, &particles, &mixture, NULL, 20, 0.5));
     int64_t size = 0;
     assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_extxyz, folder->path, &size));
     const int64_t first = size;
@@ -151,6 +183,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_vtp_holds_the_bits_of_vectors_with_three_components,
                                         temporary_folder_create, temporary_folder_remove),
         cmocka_unit_test_setup_teardown(test_extxyz_is_continued_behind_the_bytes_that_count,
+                                        temporary_folder_create, temporary_folder_remove),
+        cmocka_unit_test_setup_teardown(test_companions_follow_as_a_type_of_their_own,
                                         temporary_folder_create, temporary_folder_remove),
         cmocka_unit_test(test_names_of_snapshots_are_known),
     };

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/command.h"
+#include "work/measure_run.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    STRUCTURE,
+    MAP,
+    BEGIN,
+    END,
+    EVERY,
+    RANGE,
+    BINS,
+    WINDOW,
+    ESCAPE,
+    VELOCITIES,
+    STATIC,
+    TEMPERATURE,
+    UNITS,
+    ALLOW_TRUNCATED,
+    FILE_UNITS,
+    FILE_TIME_STEP,
+};
+
+static const struct command_option options[] = {
+    [STRUCTURE] = {"-s", "FILE", "names, residues and masses of the atoms (.gro, .pdb, .data, …)"},
+    [MAP] = {"--map", "FILE.json", "atoms to beads (describe map); else a bead a residue"},
+    [BEGIN] = {"--begin", "T", "leave out what is before [ps]"},
+    [END] = {"--end", "T", "leave out what is after [ps]"},
+    [EVERY] = {"--every", "T", "take frames so far apart [ps]"},
+    [RANGE] = {"--range", "R", "of g(r) [nm]; else most of half the box"},
+    [BINS] = {"--bins", "N", "of g(r); else 0.01 nm wide"},
+    [WINDOW] = {"--window", "T",
+                "of MSD, VACF, escape times [ps]; else a tenth, 100 frames at most"},
+    [ESCAPE] = {"--escape", "R", "where a pair has escaped [nm]; else 1.6 density^(-1/3)"},
+    [VELOCITIES] = {"--velocities", "file|differences|none",
+                    "of the VACF; else the file's, if any"},
+    [STATIC] = {"--static", NULL, "g(r) alone, of frames in any interval"},
+    [TEMPERATURE] = {"--temperature", "T", "of the target [K]; else that of the velocities"},
+    [UNITS] = {"--units", "nm-ps|angstrom-fs", "of what is written (nm-ps)"},
+    [ALLOW_TRUNCATED] = {"--allow-truncated", NULL, "use a damaged file up to the damage"},
+    [FILE_UNITS] = {"--file-units", "STYLE", "of LAMMPS files that do not say: real, metal, …"},
+    [FILE_TIME_STEP] = {"--file-time-step", "T", "gives frames a time that have but a step [ps]"},
+    {NULL, NULL, NULL},
+};
+
+/// A finite number from `least` on; NULL leaves it alone.
+static enum status read_number(const struct command_line *line, int option, double least,
+                               double *number) {
+    const char *const text = line->own[option];
+    char *end = NULL;
+    if (text == NULL)
+        return STATUS_OK;
+    *number = strtod(text, &end);
+    if (end == text || *end != '\0' || !isfinite(*number) || *number < least)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s takes a number%s", options[option].name,
+                              least > 0    ? " above 0"
+                              : least == 0 ? " from 0 on"
+                                           : "");
+    return STATUS_OK;
+}
+
+static enum status read_bins(const char *text, int64_t *bins) {
+    char *end = NULL;
+    if (text == NULL)
+        return STATUS_OK;
+    *bins = strtoll(text, &end, 10);
+    if (end == text || *end != '\0' || *bins < 1 || *bins > 100000)
+        return mf_status_fail(STATUS_BAD_INPUT, "--bins takes a whole number from 1 to 100000");
+    return STATUS_OK;
+}
+
+/// One of the names of a list, the first of which is what is not told.
+static enum status read_choice(const struct command_line *line, int option,
+                               const char *const *names, int *choice) {
+    const char *const text = line->own[option];
+    if (text == NULL)
+        return STATUS_OK;
+    for (*choice = 1; names[*choice]; ++*choice)
+        if (strcmp(text, names[*choice]) == 0)
+            return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT, "%s takes %s", options[option].name,
+                          options[option].value);
+}
+
+static enum status read_request(const struct command_line *line, struct measure_request *request) {
+    static const double any = -HUGE_VAL, above_zero = 1e-300;
+    struct frames_plan *const frames = &request->frames;
+    TRY(read_number(line, BEGIN, any, &frames->begin));
+    TRY(read_number(line, END, any, &frames->end));
+    TRY(read_number(line, EVERY, above_zero, &frames->every));
+    TRY(read_number(line, RANGE, above_zero, &request->measured.range));
+    TRY(read_number(line, WINDOW, above_zero, &request->measured.motion.window));
+    TRY(read_number(line, ESCAPE, above_zero, &request->measured.motion.escape));
+    TRY(read_number(line, TEMPERATURE, above_zero, &request->temperature));
+    TRY(read_number(line, FILE_TIME_STEP, above_zero, &frames->options.time_step));
+    TRY(read_bins(line->own[BINS], &request->measured.bins));
+    TRY(read_choice(line, VELOCITIES, mf_measured_velocities,
+                    &request->measured.motion.velocities));
+    return read_choice(line, UNITS, mf_units_systems, &request->system);
+}
+
+static enum status run(const struct command_line *line) {
+    struct measure_request request = {
+        .structure = line->own[STRUCTURE],
+        .map = line->own[MAP],
+        .frames = {.file = line->files,
+                   .files = line->file_count,
+                   .options = {.units = line->own[FILE_UNITS]},
+                   .begin = NAN,
+                   .end = NAN,
+                   .allow_truncated = line->own[ALLOW_TRUNCATED] != NULL,
+                   .threads = line->options.threads},
+        .measured = {.motion = {.leave_out = line->own[STATIC] != NULL,
+                                .threads = line->options.threads},
+                     .threads = line->options.threads},
+        .temperature = NAN,
+        .system = UNITS_NM_PS,
+    };
+    TRY(read_request(line, &request));
+    return mf_measure_run(&request, &line->options);
+}
+
+const struct command cmd_measure = {
+    .name = "measure",
+    .usage = "TRAJECTORY...",
+    .summary = "make a target of a simulation of atoms: beads, g(r), motion",
+    .least_files = 1,
+    .most_files = COMMAND_MAX_FILES,
+    .options = options,
+    .run = run,
+};

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "export/export_engine.h"
+
+#include "base/memory.h"
+#include "base/nearest.h"
+#include "mesofit.h"
+
+#include <math.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#define EXPORT_LIST(record) &record,
+const struct export_engine *const mf_export_engines[] = {EXPORT_ENGINES(EXPORT_LIST) NULL};
+
+enum { MOST_ENGINES = 16 };
+
+static enum status find_engine(const char *name, const struct export_engine **engine) {
+    const char *names[MOST_ENGINES];
+    char hint[256];
+    size_t count = 0;
+    for (; mf_export_engines[count]; count++) {
+        names[count] = mf_export_engines[count]->name;
+        if (strcmp(name, names[count]) == 0) {
+            *engine = mf_export_engines[count];
+            return STATUS_OK;
+        }
+    }
+    mf_nearest_hint(name, names, count, hint, sizeof hint);
+    return mf_status_fail(STATUS_BAD_INPUT, "unknown engine \"%s\"; %s", name, hint);
+}
+
+static enum status check(const struct export_job *job, bool bands) {
+    const struct export_model *model = job->model;
+    const struct export_engine *engine = job->engine;
+    char path[OUTPUT_PATH_SIZE];
+    struct stat found;
+    snprintf(path, sizeof path, "%.4000s/used.json", job->folder);
+    if (stat(path, &found) == 0)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: holds a result; give another folder with -o",
+                              job->folder);
+    if (bands && !model->bands)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: --bands: its potential has no errors",
+                              model->folder);
+    if (model->setup.box.dimensions == 2 && !engine->flat)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: cannot be exported: %s is written for three dimensions",
+                              model->folder, engine->title);
+    if (model->types > engine->most_types)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: cannot be exported: %s is written for %d types of beads at most",
+                              model->folder, engine->title, engine->most_types);
+    return STATUS_OK;
+}
+
+static void find_powers(struct export_job *job) {
+    const struct simulation_setup *setup = &job->model->setup;
+    for (int pair = 0; setup->omega && pair < job->grids.pairs; pair++) {
+        job->power[pair] =
+            mf_export_power_fit(setup->omega, setup->potential, pair, setup->temperature);
+        job->worst_misfit = fmax(job->worst_misfit, job->power[pair].misfit);
+    }
+}
+
+static void print_friction(const struct export_job *job, FILE *stream) {
+    const double friction = export_units_friction(&job->units);
+    if (job->model->setup.omega == NULL) {
+        fprintf(stream, "The result has no friction weight.\n");
+        return;
+    }
+    fprintf(stream, "The power law A (1 - r/r_c)^s nearest to the friction weight omega:\n\n");
+    for (int pair = 0; pair < job->grids.pairs; pair++) {
+        const struct export_power *p = &job->power[pair];
+        char name[COMPOSITION_PAIR_NAME_SIZE];
+        int type[2];
+        mf_export_model_pair(job->model, pair, type, name);
+        fprintf(stream,
+                "    %s: gamma = A^2 = %.6g %s %s/%s^2, s = %.6g, r_c = %.6g %s; misfit of "
+                "omega %.2g\n",
+                name, friction * p->amplitude * p->amplitude, job->units.energy_name,
+                job->units.time_name, job->units.length_name, p->exponent,
+                job->units.length * p->cutoff, job->units.length_name, p->misfit);
+    }
+    fprintf(stream,
+            "\nThe misfit is sqrt(sum w (omega - power law)^2 / sum w omega^2) with w = r^2 "
+            "exp(-phi/k_B T);\nbelow %g the two count as the same friction.\n",
+            EXPORT_POWER_BOUND);
+}
+
+static void print_number(FILE *stream, const char *name, const struct export_number *number,
+                         double factor, const char *unit) {
+    if (!isfinite(number->value))
+        return;
+    fprintf(stream, "    %s %.6g", name, factor * number->value);
+    if (isfinite(number->error))
+        fprintf(stream, " +- %.2g", factor * number->error);
+    fprintf(stream, " %s\n", unit);
+}
+
+static void print_readme(const struct export_job *job, FILE *stream) {
+    const struct export_model *model = job->model;
+    const struct export_error *error = &job->grids.error;
+    const struct export_units *units = &job->units;
+    fprintf(stream, "%s%s%s, for %s\n\nWritten by mesofit %s from %s. Run it here:\n\n",
+            model->title[0] ? model->title : "A result of mesofit", "", "", job->engine->title,
+            MESOFIT_VERSION, model->folder);
+    fprintf(stream, "%s\n", job->engine->commands);
+    fprintf(stream, "Units: %s, %s, %s, %s, %s. Time step %.6g %s; mesofit's own was %.6g.\n\n",
+            units->length_name, units->time_name, units->energy_name, units->temperature_name,
+            units->pressure_name, units->time * job->time_step, units->time_name,
+            units->time * model->setup.time_step);
+    fprintf(
+        stream,
+        "Tables of %zu rows, read by %s as it reads them (%s), are within %.2g k_B T of the\n"
+        "potential and within %.2g of its largest force, %.4g %s/%s, for all r from %.4g %s on.\n",
+        job->grids.grid[0][0].rows, job->engine->title, job->engine->interpolation->summary,
+        error->phi, error->force, export_units_force(units) * error->largest_force,
+        units->energy_name, units->length_name, units->length * error->from, units->length_name);
+    if (job->grids.curves > 1)
+        fprintf(stream, "\n_lower and _upper are the potential less and plus one standard error at "
+                        "each r. Errors at\ndifferent r are correlated; the two are a band, not "
+                        "two likely potentials.\n");
+    fprintf(stream, "\nWhat mesofit itself measured of the result:\n\n");
+    print_number(stream, "temperature", &model->temperature, units->temperature,
+                 units->temperature_name);
+    print_number(stream, "pressure   ", &model->pressure, units->pressure, units->pressure_name);
+    fprintf(stream, "\n");
+    print_friction(job, stream);
+    fprintf(stream, "\n");
+    job->engine->explain(job, stream);
+    fprintf(stream, "\nThe start is %s.\n",
+            model->equilibrated ? "where the result's own simulation ended"
+                                : "that of the scene, which must be equilibrated first");
+}
+
+static void say(const struct export_job *job) {
+    const struct export_error *error = &job->grids.error;
+    if (job->model->warning[0])
+        fprintf(stderr, "mesofit: warning: %s\n", job->model->warning);
+    fprintf(stderr,
+            "%zu rows; as %s reads them within %.2g k_B T and %.2g of the largest force from r = "
+            "%.4g %s on\n",
+            job->grids.grid[0][0].rows, job->engine->title, error->phi, error->force,
+            job->units.length * error->from, job->units.length_name);
+    if (job->model->setup.omega)
+        fprintf(stderr, "omega is %sa power law: misfit %.2g\n",
+                mf_export_is_power(job) ? "" : "not ", job->worst_misfit);
+    fprintf(stderr, "%s: see README\n", job->folder);
+}
+
+static enum status write_folder(struct export_job *job) {
+    TRY(mf_output_make_folder(job->folder));
+    TRY(job->engine->write(job));
+    return mf_export_file(job, "README", print_readme);
+}
+
+/// The step of the result, shortened if its configurational temperature, whose error is as Δt²,
+/// shows that it is long.
+static double safe_step(const struct export_model *model) {
+    static const double allowed = 0.003;
+    const double wrong = fabs(model->configurational / model->setup.temperature - 1);
+    const double step = model->setup.time_step;
+    return wrong > allowed ? step * sqrt(allowed / wrong) : step;
+}
+
+static enum status run(struct export_job *job, bool bands, bool quiet) {
+    const struct export_model *model = job->model;
+    TRY(check(job, bands));
+    job->units = mf_export_units(job->engine->system, &model->scene.units, job->engine->physical);
+    job->time_step = safe_step(model);
+    TRY(mf_export_grids_make(&job->grids, job->engine->interpolation, model, bands,
+                             job->engine->one_cutoff ? model->setup.potential->cutoff : 0));
+    find_powers(job);
+    const enum status status = write_folder(job);
+    if (status == STATUS_OK && !quiet)
+        say(job);
+    mf_export_grids_clear(&job->grids);
+    return status;
+}
+
+enum status mf_export_run(const char *from, const char *name, const char *to, bool bands,
+                          bool quiet) {
+    enum status status = STATUS_OK;
+    struct export_model *model = NULL;
+    struct export_job *job = NULL;
+    const struct export_engine *engine;
+    TRY(find_engine(name, &engine));
+    NEW_ARRAY(model, 1);
+    NEW_ARRAY(job, 1);
+    CHECK(mf_export_model_read(model, from));
+    *job = (struct export_job){.engine = engine, .model = model, .folder = to ? to : engine->name};
+    CHECK(run(job, bands, quiet));
+done:
+    if (model)
+        mf_export_model_clear(model);
+    mf_memory_free(model);
+    mf_memory_free(job);
+    return status;
+}
+
+enum status mf_export_file(const struct export_job *job, const char *name, export_print *print) {
+    struct output output;
+    char path[OUTPUT_PATH_SIZE];
+    snprintf(path, sizeof path, "%.3800s/%.200s", job->folder, name);
+    TRY(mf_output_open(&output, path));
+    print(job, output.stream);
+    return mf_output_commit(&output);
+}
+
+const char *mf_export_curve_name(enum export_curve curve) {
+    return curve == EXPORT_FITTED ? "" : curve == EXPORT_LOWER ? "_lower" : "_upper";
+}
+
+bool mf_export_is_power(const struct export_job *job) {
+    return job->model->setup.omega && job->worst_misfit < EXPORT_POWER_BOUND;
+}
+
+bool mf_export_is_linear(const struct export_job *job) {
+    for (int pair = 0; pair < job->grids.pairs; pair++)
+        if (job->power[pair].exponent != 1 && job->power[pair].amplitude > 0)
+            return false;
+    return mf_export_is_power(job);
+}
+
+double mf_export_slowing(const struct export_job *job) {
+    enum { POINTS = 1000 };
+    const struct simulation_setup *setup = &job->model->setup;
+    const double density = (double)job->model->count / mf_box_volume(&setup->box);
+    double friction = 0;
+    if (setup->omega == NULL)
+        return 100 * job->time_step;
+    for (int k = 0; k < POINTS; k++) {
+        const double width = setup->omega->cutoff / POINTS, r = (k + 0.5) * width;
+        double omega, phi;
+        mf_table_evaluate_pair(setup->omega, 0, r, &omega, NULL, NULL);
+        mf_table_evaluate_pair(setup->potential, 0, r, &phi, NULL, NULL);
+        friction += density * mf_box_shell_volume(&setup->box, r - width / 2, r + width / 2) *
+                    omega * omega * fmin(1, exp(-phi / setup->temperature)) / setup->box.dimensions;
+    }
+    return friction > 0 ? job->model->mass[0] / friction : 100 * job->time_step;
+}
+
+double mf_export_place(const struct export_model *model, int axis, size_t particle) {
+    const double length = model->setup.box.length[axis];
+    const double x = model->position[axis][particle];
+    const double inside = x - length * floor(x / length);
+    return inside < length ? inside : 0;
+}
+
+int mf_export_type(const struct export_model *model, size_t particle) {
+    return model->types > 1 ? mf_composition_type(&model->setup.composition, (uint32_t)particle)
+                            : 0;
+}
+
+size_t mf_export_count(const struct export_model *model, int type) {
+    return model->types > 1 ? (size_t)model->setup.composition.count[type] : model->count;
+}

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Another engine that runs what was found: its record, and the folder that is written for
+/// it.
+///
+/// To add one, write a file with its record and put its name into EXPORT_ENGINES below.
+#pragma once
+
+#include "export/export_grid.h"
+#include "export/export_power.h"
+#include "export/export_units.h"
+
+#include <stdio.h>
+
+struct export_engine;
+
+/// What a writer writes of.
+struct export_job {
+    const struct export_engine *engine;
+    const struct export_model *model;
+    const char *folder;
+    struct export_units units;
+    struct export_grids grids;
+    struct export_power power[COMPOSITION_MOST_PAIRS]; ///< of ω, if there is one
+    double worst_misfit;                               ///< of all of them
+    double time_step;                                  ///< for this engine [τ]
+};
+
+struct export_engine {
+    const char *name;
+    const char *title;   ///< as its authors write it
+    const char *summary; ///< what is written, one line
+    enum export_system system;
+    bool physical; ///< knows no reduced units: these are then nm, kJ/mol and u
+    const struct export_interpolation *interpolation;
+    const char *commands; ///< that run the folder, a line each
+    const char *verified; ///< "run", or what was done instead
+    int most_types;       ///< that it is written for
+    bool one_cutoff;      ///< all its tables end at the same distance
+    bool flat;            ///< also in two dimensions
+    enum status (*write)(const struct export_job *job);
+    /// What a person should know of the thermostat, for the README.
+    void (*explain)(const struct export_job *job, FILE *stream);
+};
+
+/// All engines, in the order in which they are listed.
+#define EXPORT_ENGINES(EACH)                                                                       \
+    EACH(mf_export_lammps)                                                                         \
+    EACH(mf_export_hoomd)                                                                          \
+    EACH(mf_export_espresso)                                                                       \
+    EACH(mf_export_openmm)                                                                         \
+    EACH(mf_export_gromacs)                                                                        \
+    EACH(mf_export_dl_poly)                                                                        \
+    EACH(mf_export_votca)
+
+#define EXPORT_DECLARE(record) extern const struct export_engine record;
+EXPORT_ENGINES(EXPORT_DECLARE)
+#undef EXPORT_DECLARE
+
+/// The same, NULL-terminated.
+extern const struct export_engine *const mf_export_engines[];
+
+/// Write the folder `to` for the engine called `name` of the result in `from`, and say what was
+/// written on stderr unless `quiet`.
+/// Fails: BAD_INPUT for an engine or a result that is none, interactions that the engine does not
+/// express, and a folder `to` that holds a result; IO; NO_MEMORY. Nothing is written before all was
+/// read and checked. Tested: cli/test_export.
+enum status mf_export_run(const char *from, const char *name, const char *to, bool bands,
+                          bool quiet) MUST_USE;
+
+/// @name For the engines
+/// Write a file of the folder, whole or not at all. Fails: IO.
+typedef void export_print(const struct export_job *job, FILE *stream);
+enum status mf_export_file(const struct export_job *job, const char *name,
+                           export_print *print) MUST_USE;
+
+/// The ending of the names of a curve's tables: "", "_lower" or "_upper".
+const char *mf_export_curve_name(enum export_curve curve);
+
+/// Whether the friction is a power law within EXPORT_POWER_BOUND for all pairs, and whether its
+/// exponent is 1.
+bool mf_export_is_power(const struct export_job *job);
+bool mf_export_is_linear(const struct export_job *job);
+
+/// Time in which the friction of its neighbours slows a particle down [τ]; a hundred steps without
+/// friction. For thermostats that keep g(r) and not the motion.
+double mf_export_slowing(const struct export_job *job);
+
+/// A coordinate in the box, [0, length).
+double mf_export_place(const struct export_model *model, int axis, size_t particle);
+
+/// The type of a particle, from 0 on.
+int mf_export_type(const struct export_model *model, size_t particle);
+
+/// Particles of a type.
+size_t mf_export_count(const struct export_model *model, int type);

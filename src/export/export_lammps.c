@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// LAMMPS: pair_style table linear reads the rows as they are if its N is that of the file and the
+// rows are RSQ. Friction by dpd/tstat and dpd/ext/tstat, or by mesofit/table (share/lammps).
+#include "export/export_engine.h"
+
+#include <math.h>
+
+/// Of the neighbour list, as a share of the cutoff.
+#define SKIN 0.1
+
+static bool is_real(const struct export_job *job) {
+    return job->units.system == EXPORT_REAL;
+}
+
+static void print_data(const struct export_job *job, FILE *stream) {
+    static const char axes[] = "xyz";
+    const struct export_model *model = job->model;
+    const struct box *box = &model->setup.box;
+    const struct export_units *units = &job->units;
+    fprintf(stream, "%s (mesofit)\n\n%zu atoms\n%d atom types\n\n",
+            model->title[0] ? model->title : "beads", model->count, model->types);
+    for (int d = 0; d < 3; d++)
+        fprintf(stream, "%.15g %.15g %clo %chi\n", d < box->dimensions ? 0 : -0.5 * units->length,
+                (d < box->dimensions ? box->length[d] : 0.5) * units->length, axes[d], axes[d]);
+    fprintf(stream, "\nMasses\n\n");
+    for (int type = 0; type < model->types; type++)
+        fprintf(stream, "%d %.12g # %s\n", type + 1, model->mass[type] * units->mass,
+                model->name[type]);
+    fprintf(stream, "\nAtoms # atomic\n\n");
+    for (size_t k = 0; k < model->count; k++) {
+        double x[3] = {0};
+        for (int d = 0; d < box->dimensions; d++)
+            x[d] = mf_export_place(model, d, k) * units->length;
+        fprintf(stream, "%zu %d %.12g %.12g %.12g\n", k + 1, mf_export_type(model, k) + 1, x[0],
+                x[1], x[2]);
+    }
+    fprintf(stream, "\nVelocities\n\n");
+    for (size_t k = 0; k < model->count; k++)
+        fprintf(stream, "%zu %.12g %.12g %.12g\n", k + 1,
+                model->velocity[0][k] * export_units_velocity(units),
+                model->velocity[1][k] * export_units_velocity(units),
+                model->velocity[2][k] * export_units_velocity(units));
+}
+
+static void print_potential(const struct export_job *job, enum export_curve curve, int pair,
+                            FILE *stream) {
+    const struct export_grid *grid = &job->grids.grid[curve][pair];
+    const struct export_units *units = &job->units;
+    char name[COMPOSITION_PAIR_NAME_SIZE];
+    int type[2];
+    mf_export_model_pair(job->model, pair, type, name);
+    fprintf(stream, "\nPHI_%s%s\nN %zu RSQ %.15g %.15g\n\n", name, mf_export_curve_name(curve),
+            grid->rows, grid->first * units->length, grid->last * units->length);
+    for (size_t k = 0; k < grid->rows; k++)
+        fprintf(stream, "%zu %.15g %.15g %.15g\n", k + 1, grid->r[k] * units->length,
+                grid->phi[k] * units->energy, grid->force[k] * export_units_force(units));
+}
+
+/// ω is made of straight pieces, whose ends are the rows.
+static void print_omega(const struct export_job *job, int pair, FILE *stream) {
+    const struct table *omega = job->model->setup.omega;
+    const double unit = sqrt(export_units_friction(&job->units));
+    const double cutoff = table_cutoff(omega, pair);
+    char name[COMPOSITION_PAIR_NAME_SIZE];
+    int type[2];
+    if (!(cutoff > 0))
+        return;
+    mf_export_model_pair(job->model, pair, type, name);
+    fprintf(stream, "\nOMEGA_%s\nN %d R 0 %.15g\n\n", name, TABLE_INTERVALS + 1,
+            cutoff * job->units.length);
+    for (int k = 0; k <= TABLE_INTERVALS; k++) {
+        const double r = cutoff * k / TABLE_INTERVALS;
+        const ptrdiff_t row = (ptrdiff_t)pair * table_stride(omega) + k;
+        fprintf(stream, "%d %.15g %.15g\n", k + 1, r * job->units.length,
+                unit * omega->coefficient[2 * row]);
+    }
+}
+
+static void print_table(const struct export_job *job, FILE *stream) {
+    fprintf(stream, "# UNITS: %s\n# r[%s] energy[%s] force[%s/%s]; omega[sqrt(%s %s)/%s]\n",
+            is_real(job) ? "real" : "lj", job->units.length_name, job->units.energy_name,
+            job->units.energy_name, job->units.length_name, job->units.energy_name,
+            job->units.time_name, job->units.length_name);
+    for (int curve = 0; curve < job->grids.curves; curve++)
+        for (int pair = 0; pair < job->grids.pairs; pair++)
+            print_potential(job, (enum export_curve)curve, pair, stream);
+    for (int pair = 0; job->model->setup.omega && pair < job->grids.pairs; pair++)
+        print_omega(job, pair, stream);
+}
+
+static void print_names(const struct export_job *job, int pair, FILE *stream) {
+    char name[COMPOSITION_PAIR_NAME_SIZE];
+    int type[2];
+    mf_export_model_pair(job->model, pair, type, name);
+    fprintf(stream, "mesofit.table PHI_%s${band}", name);
+}
+
+static void print_types(const struct export_job *job, int pair, FILE *stream) {
+    char name[COMPOSITION_PAIR_NAME_SIZE];
+    int type[2];
+    mf_export_model_pair(job->model, pair, type, name);
+    fprintf(stream, "%d %d", type[0] + 1, type[1] + 1);
+}
+
+/// Friction of a power law beside the table.
+static void print_power(const struct export_job *job, FILE *stream) {
+    const bool linear = mf_export_is_linear(job);
+    const double temperature = job->model->setup.temperature * job->units.temperature;
+    fprintf(stream,
+            " &\nelif \"${friction} == dpd\" &\n  \"pair_style hybrid/overlay table linear %zu "
+            "%s %.12g %.12g %.12g ${seed}\"",
+            job->grids.grid[0][0].rows, linear ? "dpd/tstat" : "dpd/ext/tstat", temperature,
+            temperature, job->model->setup.omega->cutoff * job->units.length);
+    for (int pair = 0; pair < job->grids.pairs; pair++) {
+        const struct export_power *power = &job->power[pair];
+        const double gamma =
+            power->amplitude * power->amplitude * export_units_friction(&job->units);
+        fprintf(stream, " &\n  \"pair_coeff ");
+        print_types(job, pair, stream);
+        fprintf(stream, " table ");
+        print_names(job, pair, stream);
+        fprintf(stream, "\"");
+        if (!(power->cutoff > 0))
+            continue;
+        fprintf(stream, " &\n  \"pair_coeff ");
+        print_types(job, pair, stream);
+        if (linear)
+            fprintf(stream, " dpd/tstat %.12g", gamma);
+        else // gamma and then exponents, of each the parallel one first
+            fprintf(stream, " dpd/ext/tstat %.12g 0 %.12g 1", gamma, power->exponent);
+        fprintf(stream, " %.12g\"", power->cutoff * job->units.length);
+    }
+}
+
+/// Potential and friction weight as they are, by the pair style of our own.
+static void print_exact(const struct export_job *job, FILE *stream) {
+    fprintf(stream,
+            " &\nelif \"${friction} == exact\" &\n  \"pair_style mesofit/table %.12g ${seed}\"",
+            job->model->setup.temperature * job->units.temperature);
+    for (int pair = 0; pair < job->grids.pairs; pair++) {
+        char name[COMPOSITION_PAIR_NAME_SIZE];
+        int type[2];
+        mf_export_model_pair(job->model, pair, type, name);
+        fprintf(stream, " &\n  \"pair_coeff ");
+        print_types(job, pair, stream);
+        fprintf(stream, " ");
+        print_names(job, pair, stream);
+        if (table_cutoff(job->model->setup.omega, pair) > 0)
+            fprintf(stream, " OMEGA_%s", name);
+        fprintf(stream, "\"");
+    }
+}
+
+/// A bath for each particle, which keeps g(r) and not the motion.
+static void print_langevin(const struct export_job *job, FILE *stream) {
+    const double temperature = job->model->setup.temperature * job->units.temperature;
+    fprintf(stream, "if \"${friction} == langevin\" then &\n  \"pair_style table linear %zu\"",
+            job->grids.grid[0][0].rows);
+    for (int pair = 0; pair < job->grids.pairs; pair++) {
+        fprintf(stream, " &\n  \"pair_coeff ");
+        print_types(job, pair, stream);
+        fprintf(stream, " ");
+        print_names(job, pair, stream);
+        fprintf(stream, "\"");
+    }
+    fprintf(stream, " &\n  \"fix bath all langevin %.12g %.12g %.6g ${seed} zero yes\"",
+            temperature, temperature, mf_export_slowing(job) * job->units.time);
+}
+
+static void print_thermostat(const struct export_job *job, FILE *stream) {
+    print_langevin(job, stream);
+    if (mf_export_is_power(job))
+        print_power(job, stream);
+    if (job->model->setup.omega)
+        print_exact(job, stream);
+    fprintf(stream, " &\nelse \"print 'no such friction here: ${friction}'\" \"quit 1\"\n");
+}
+
+/// g(r) on the bins of the result, of all pair types. LAMMPS refuses a range that is longer than
+/// its list by a rounding.
+static void print_measurements(const struct export_job *job, FILE *stream) {
+    static const double rounding = 1 - 1e-9;
+    const struct export_model *model = job->model;
+    fprintf(stream, "compute rdf all rdf %zu", model->rdf_bins);
+    for (int pair = 0; pair < job->grids.pairs; pair++) {
+        fprintf(stream, " ");
+        print_types(job, pair, stream);
+    }
+    fprintf(stream, " cutoff %.12g\n", model->rdf_range * job->units.length * rounding);
+    fprintf(stream, "fix rdf all ave/time ${every} $(v_steps/v_every) ${steps} c_rdf[*] file "
+                    "rdf.dat mode vector\n"
+                    "fix means all ave/time ${every} 1 ${every} c_thermo_temp c_thermo_press "
+                    "c_thermo_pe file thermo.dat\n"
+                    "if \"${dump} > 0\" then &\n  \"dump beads all custom ${dump} dump.lammpstrj "
+                    "id type x y z vx vy vz\"\n");
+}
+
+static void print_input(const struct export_job *job, FILE *stream) {
+    const struct export_model *model = job->model;
+    const double cutoff = mf_export_model_cutoff(model), skin = SKIN * cutoff;
+    const struct export_units *units = &job->units;
+    fprintf(
+        stream,
+        "# %s: written by mesofit; README tells of it. Variables: lmp -in in.mesofit -var steps "
+        "100000\n\n"
+        "variable steps index 10000      # that are measured\n"
+        "variable equilibration index %d\n"
+        "variable every index 20         # steps between samples\n"
+        "variable dump index 0           # steps between frames of dump.lammpstrj; 0: none\n"
+        "variable friction index langevin # or another one that README names\n"
+        "variable band index \"\"          # _lower or _upper: exported with --bands\n"
+        "variable seed index 12345\n\n",
+        model->title[0] ? model->title : "beads", model->equilibrated ? 1000 : 5000);
+    fprintf(stream,
+            "units %s\ndimension %d\nboundary p p p\natom_style atomic\nneighbor %.6g bin\n"
+            "neigh_modify every 1 delay 0 check yes\ncomm_modify vel yes cutoff %.9g\n"
+            "read_data data.mesofit\n\n",
+            is_real(job) ? "real" : "lj", model->setup.box.dimensions, skin * units->length,
+            (fmax(cutoff, model->rdf_range) + skin) * units->length * (1 + 1e-6));
+    print_thermostat(job, stream);
+    fprintf(stream,
+            "\nfix move all nve\n%stimestep %.9g\nthermo 1000\n"
+            "thermo_style custom step temp press pe\nthermo_modify norm yes\n"
+            "run ${equilibration}\nreset_timestep 0\n\n",
+            model->setup.box.dimensions == 2 ? "fix flat all enforce2d\n" : "",
+            job->time_step * units->time);
+    print_measurements(job, stream);
+    fprintf(stream, "run ${steps}\n");
+}
+
+static enum status write(const struct export_job *job) {
+    TRY(mf_export_file(job, "mesofit.table", print_table));
+    TRY(mf_export_file(job, "data.mesofit", print_data));
+    return mf_export_file(job, "in.mesofit", print_input);
+}
+
+static void explain(const struct export_job *job, FILE *stream) {
+    fprintf(stream,
+            "in.mesofit leaves LAMMPS's own g(r) in rdf.dat (bins of the result; of mixtures a "
+            "column g and a\ncoordination number for each pair type), temperature, pressure and "
+            "energy in thermo.dat.\n\n");
+    fprintf(stream, "-var friction langevin, the default, runs in every LAMMPS: a bath for each "
+                    "particle. It keeps "
+                    "g(r), energy\nand pressure; the dynamics is not the result's: diffusion and "
+                    "all else that moves differs.\n");
+    if (mf_export_is_power(job))
+        fprintf(stream,
+                "-var friction dpd: %s by pair_style hybrid/overlay, the power law above. LAMMPS "
+                "needs its package DPD-BASIC.\n",
+                mf_export_is_linear(job) ? "dpd/tstat" : "dpd/ext/tstat");
+    else if (job->model->setup.omega)
+        fprintf(stream, "LAMMPS's own dpd/tstat and dpd/ext/tstat cannot express this omega.\n");
+    if (job->model->setup.omega)
+        fprintf(stream, "-var friction exact: the result's own omega, by pair_style mesofit/table "
+                        "of mesofit's share/lammps.\n");
+}
+
+const struct export_engine mf_export_lammps = {
+    .name = "lammps",
+    .title = "LAMMPS",
+    .summary = "in.mesofit, data.mesofit, mesofit.table; units real or lj",
+    .system = EXPORT_REAL,
+    .interpolation = &mf_export_grid_square,
+    .commands = "    lmp -in in.mesofit\n    mpirun -np 4 lmp -in in.mesofit   # the same on four "
+                "processors\n",
+    .verified = "run",
+    .most_types = COMPOSITION_MOST_TYPES,
+    .flat = true,
+    .write = write,
+    .explain = explain,
+};

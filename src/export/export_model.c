@@ -1,0 +1,447 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "export/export_model.h"
+
+#include "base/memory.h"
+#include "curves/sampled.h"
+#include "export/export_columns.h"
+#include "input/fit_numbers.h"
+#include "input/heading.h"
+#include "io/snapshot.h"
+#include "observe/rdf_observable.h"
+#include "problem/omega_grid.h"
+#include "problem/verify.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+#include <sys/stat.h>
+
+/// What is read on the way.
+struct reading {
+    struct export_model *model;
+    bool fit;
+    int unknown; ///< a sum of scene_unknown
+    struct inverse_number number[INVERSE_MOST_NUMBERS];
+    double value[INVERSE_MOST_NUMBERS];
+    size_t numbers;
+};
+
+static void file_of(const struct export_model *model, const char *name, char *path) {
+    snprintf(path, OUTPUT_PATH_SIZE, "%.3900s/%.120s", model->folder, name);
+}
+
+static bool exists(const char *path) {
+    struct stat found;
+    return stat(path, &found) == 0;
+}
+
+static enum status check_folder(const struct export_model *model) {
+    static const char *const names[] = {"used.json", "summary.json"};
+    char path[OUTPUT_PATH_SIZE];
+    if (!exists(model->folder))
+        return mf_status_fail(STATUS_IO, "%s: %s", model->folder, strerror(errno));
+    for (int k = 0; k < 2; k++) {
+        file_of(model, names[k], path);
+        if (!exists(path))
+            return mf_status_fail(
+                STATUS_BAD_INPUT,
+                "%s: not the folder of a finished fit or simulation: it has no %s", model->folder,
+                names[k]);
+    }
+    return STATUS_OK;
+}
+
+/// The scene of a run file leaves out what was fitted.
+static enum status read_run(struct reading *reading, struct json_object *root,
+                            struct json_object *object) {
+    struct scene *scene = &reading->model->scene;
+    struct json_object unknowns = mf_json_child(root, "unknowns", true);
+    if (mf_json_is_object(&unknowns, mf_inverse_unknown_names[UNKNOWN_POTENTIAL]))
+        reading->unknown |= SCENE_FITS_POTENTIAL;
+    if (mf_json_is_object(&unknowns, mf_inverse_unknown_names[UNKNOWN_OMEGA]))
+        reading->unknown |= SCENE_FITS_OMEGA;
+    TRY(mf_scene_read(scene, object, reading->unknown));
+    return mf_fit_numbers_read(&unknowns, scene, reading->number, &reading->numbers);
+}
+
+/// The step that the result was verified with.
+static void read_time_step(struct simulation_setup *setup, struct json_object *root) {
+    struct verify_parameters verification;
+    struct json_object object = mf_json_child(root, "verification", false);
+    mf_json_fields(&object, mf_verify_fields, &verification);
+    if (verification.time_step > 0)
+        setup->time_step = verification.time_step;
+}
+
+static enum status read_used(struct reading *reading) {
+    struct export_model *model = reading->model;
+    char path[OUTPUT_PATH_SIZE];
+    struct json_document *document;
+    struct heading heading;
+    file_of(model, "used.json", path);
+    TRY(mf_json_open(&document, path));
+    struct json_object root = mf_json_root(document);
+    mf_json_fields(&root, mf_heading_fields, &heading);
+    snprintf(model->title, sizeof model->title, "%s", heading.title);
+    reading->fit = mf_json_is_object(&root, "scene");
+    struct json_object scene = reading->fit ? mf_json_child(&root, "scene", true) : root;
+    mf_units_speak(&root, &scene);
+    const enum status status = reading->fit
+                                   ? read_run(reading, &root, &scene)
+                                   : mf_scene_read(&model->scene, &scene, SCENE_FITS_NOTHING);
+    read_time_step(&model->scene.setup, &root);
+    TRY(mf_json_close(document, status));
+    model->setup = model->scene.setup;
+    model->setup.seed = heading.seed;
+    return STATUS_OK;
+}
+
+#define NUMBER(key, member, its_unit)                                                              \
+    {                                                                                              \
+        .name = key, .type = FIELD_NUMBER, .offset = offsetof(struct export_model, member),        \
+        .initial = NAN, .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = its_unit                  \
+    }
+static const struct field summary_fields[] = {
+    NUMBER("temperature", temperature.value, "T_0"),
+    NUMBER("temperature_error", temperature.error, "T_0"),
+    NUMBER("temperature_configurational", configurational, "T_0"),
+    NUMBER("pressure", pressure.value, "k_B T_0/lambda^d"),
+    NUMBER("pressure_error", pressure.error, "k_B T_0/lambda^d"),
+    FIELD_END,
+};
+
+/// "parameters": {"dissipative.sigma": {"value": 3.1, …}, …}: numbers of the scene that were
+/// fitted.
+static void read_numbers(struct reading *reading, struct json_object *root) {
+    struct json_object parameters = mf_json_child(root, "parameters", reading->numbers > 0);
+    for (size_t n = 0; n < reading->numbers; n++) {
+        const struct field fields[] = {{.name = "value",
+                                        .type = FIELD_NUMBER,
+                                        .required = true,
+                                        .minimum = -DBL_MAX,
+                                        .maximum = DBL_MAX,
+                                        .unit = reading->number[n].unit},
+                                       FIELD_END};
+        struct json_object number = mf_json_child(&parameters, reading->number[n].name, true);
+        mf_json_fields(&number, fields, &reading->value[n]);
+    }
+}
+
+static enum status read_summary(struct reading *reading) {
+    struct export_model *model = reading->model;
+    char path[OUTPUT_PATH_SIZE];
+    struct json_document *document;
+    file_of(model, "summary.json", path);
+    TRY(mf_json_open(&document, path));
+    mf_json_speak(document, &model->scene.units);
+    struct json_object root = mf_json_root(document);
+    const char *status = mf_json_choice(&root, "status", NULL, "");
+    if (status && reading->fit && strcmp(status, "converged") != 0 && strcmp(status, "ok") != 0)
+        snprintf(model->warning, sizeof model->warning,
+                 "%.160s: the fit is %.40s; what is exported is its best so far", model->folder,
+                 status);
+    mf_json_fields(&root, summary_fields, model);
+    read_numbers(reading, &root);
+    return mf_json_close(document, STATUS_OK);
+}
+
+/// What pair forces and velocities do not express.
+static enum status check_scene(const struct export_model *model) {
+    const struct simulation_setup *setup = &model->setup;
+    const char *what = NULL, *why = NULL;
+    if (setup->integrator->events || setup->integrator->companions) {
+        what = setup->integrator->name;
+        why = setup->integrator->events ? "moves hard particles, which have no pair forces"
+                                        : "moves a solvent, which other engines have not";
+    } else if (setup->integrator->mobility) {
+        what = setup->integrator->name;
+        why = "moves particles without velocities; only dynamics with velocities are exported";
+    } else if (setup->interactions > 0) {
+        what = setup->interaction[0].kind->name;
+        why = "acts beside the pairs; only pair forces are exported";
+    }
+    return what == NULL ? STATUS_OK
+                        : mf_status_fail(STATUS_BAD_INPUT, "%s: cannot be exported: \"%s\" %s",
+                                         model->folder, what, why);
+}
+
+/// A curve through the points with `sign` errors added; what is set and has no error moves with the
+/// first point that has one, and the last stays 0.
+static enum status make_curve(const struct export_columns *points, int sign, struct table *table) {
+    enum status status = STATUS_OK;
+    const size_t rows = points->rows;
+    const double *r = points->values, *phi = r + rows, *error = phi + rows;
+    double *moved = NULL;
+    struct curve curve = {0};
+    size_t first = 0;
+    NEW_ARRAY(moved, rows);
+    while (first < rows && isnan(error[first]))
+        first++;
+    for (size_t k = 0; k < rows; k++) {
+        const double own = k < first && first < rows ? error[first] : error[k];
+        moved[k] = phi[k] + (sign && isfinite(own) ? sign * own : 0);
+    }
+    CHECK(mf_sampled_create(&curve, r, moved, rows));
+    status = mf_table_init_potential(table, &curve);
+    mf_curve_clear(&curve);
+done:
+    mf_memory_free(moved);
+    return status;
+}
+
+static bool has_errors(const struct export_columns *points) {
+    for (size_t k = 0; k < points->rows; k++)
+        if (isfinite(points->values[2 * points->rows + k]))
+            return true;
+    return false;
+}
+
+/// The fitted potentials, "potential.tsv" or "potential_A-B.tsv".
+static enum status read_potentials(struct export_model *model) {
+    static const struct export_column wanted[] = {
+        {"r", "lambda", true}, {"phi", "k_B.T_0", true}, {"phi_error", "k_B.T_0", false}, {0}};
+    static const int sign[EXPORT_CURVES] = {0, -1, 1};
+    enum status status = STATUS_OK;
+    const int pairs = mf_export_model_pairs(model);
+    struct table part[EXPORT_CURVES][COMPOSITION_MOST_PAIRS] = {{{0}}};
+    model->bands = true;
+    for (int pair = 0; pair < pairs; pair++) {
+        struct export_columns points;
+        char path[OUTPUT_PATH_SIZE], name[2 * COMPOSITION_PAIR_NAME_SIZE],
+            of[COMPOSITION_PAIR_NAME_SIZE];
+        mf_composition_pair_name(&model->setup.composition, pair, of);
+        snprintf(name, sizeof name, "potential%s%s.tsv", pairs > 1 ? "_" : "", pairs > 1 ? of : "");
+        file_of(model, name, path);
+        CHECK(mf_export_columns_read(&points, path, &model->scene.units, wanted));
+        for (int c = 0; c < EXPORT_CURVES && status == STATUS_OK; c++)
+            status = make_curve(&points, sign[c], &part[c][pair]);
+        model->bands = model->bands && has_errors(&points);
+        mf_export_columns_clear(&points);
+        if (status != STATUS_OK)
+            status = mf_status_prefix(status, "%s", path);
+        CHECK(status);
+    }
+    for (int c = 0; c < EXPORT_CURVES; c++)
+        CHECK(mf_table_stack(&model->potential[c], part[c], pairs));
+    model->setup.potential = &model->potential[EXPORT_FITTED];
+done:
+    for (int k = 0; k < EXPORT_CURVES * COMPOSITION_MOST_PAIRS; k++)
+        mf_table_clear(&part[k / COMPOSITION_MOST_PAIRS][k % COMPOSITION_MOST_PAIRS]);
+    return status;
+}
+
+/// The fitted friction weight, one for all pairs.
+static enum status read_omega(struct export_model *model) {
+    static const struct export_column wanted[] = {
+        {"r", "lambda", true}, {"omega", "sqrt(mu/tau)", true}, {0}};
+    enum status status = STATUS_OK;
+    struct omega_grid grid;
+    struct export_columns points;
+    char path[OUTPUT_PATH_SIZE];
+    file_of(model, "omega.tsv", path);
+    TRY(mf_export_columns_read(&points, path, &model->scene.units, wanted));
+    const double *r = points.values, *omega = r + points.rows;
+    if (points.rows != OMEGA_POINTS || !(r[0] < r[points.rows - 1]))
+        status =
+            mf_status_fail(STATUS_BAD_INPUT, "%s: not %d rows with growing r", path, OMEGA_POINTS);
+    CHECK(status);
+    mf_omega_grid_init(&grid, r[0], r[points.rows - 1]);
+    CHECK(mf_omega_grid_table(&grid, omega, &model->omega));
+    model->setup.omega = &model->omega;
+done:
+    mf_export_columns_clear(&points);
+    return status;
+}
+
+/// Numbers of the scene that were fitted: its laws and settings with their values.
+static enum status apply_numbers(struct reading *reading) {
+    struct export_model *model = reading->model;
+    const struct scene_law *law[UNKNOWNS] = {&model->scene.potential, &model->scene.omega};
+    struct inverse_problem problem = {.numbers = reading->numbers, .scene = model->setup}, changed;
+    memcpy(problem.number, reading->number, sizeof problem.number);
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        problem.law[kind] = (struct inverse_law){law[kind]->curves, law[kind]->curve};
+    TRY(mf_numbers_apply(&problem, reading->value, &changed, &model->own));
+    model->setup = changed.scene;
+    return STATUS_OK;
+}
+
+static enum status find_laws(struct reading *reading) {
+    struct export_model *model = reading->model;
+    TRY(apply_numbers(reading));
+    if (reading->unknown & SCENE_FITS_POTENTIAL)
+        TRY(read_potentials(model));
+    if (reading->unknown & SCENE_FITS_OMEGA)
+        TRY(read_omega(model));
+    if (model->setup.potential == NULL)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: there is no potential to export",
+                              model->folder);
+    return STATUS_OK;
+}
+
+/// The configuration that the result's simulation ended with, if it left one, as the start of
+/// another: the columns of configuration.tsv.
+static enum status read_start(struct export_model *model, struct export_columns *columns,
+                              struct simulation_start *start) {
+    static const struct export_column wanted[] = {{"x", "lambda", true},
+                                                  {"y", "lambda", true},
+                                                  {"z", "lambda", false},
+                                                  {"velocity_x", "lambda/tau", false},
+                                                  {"velocity_y", "lambda/tau", false},
+                                                  {"velocity_z", "lambda/tau", false},
+                                                  {0}};
+    const int dimensions = model->setup.box.dimensions;
+    char path[OUTPUT_PATH_SIZE];
+    *start = model->scene.start;
+    file_of(model, "configuration.tsv", path);
+    if (!exists(path))
+        return STATUS_OK;
+    TRY(mf_export_columns_read(columns, path, &model->scene.units, wanted));
+    if (columns->rows != (size_t)model->setup.placement.count)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: %zu rows, not the %lld particles of used.json",
+                              path, columns->rows, (long long)model->setup.placement.count);
+    *start = (struct simulation_start){0};
+    for (int d = 0; d < dimensions; d++) {
+        start->position[d] = columns->values + (size_t)d * columns->rows;
+        const double *velocity = columns->values + (size_t)(3 + d) * columns->rows;
+        start->velocity[d] = isnan(velocity[0]) ? NULL : velocity;
+    }
+    model->setup.placement.kind = PLACEMENT_FILE;
+    model->equilibrated = true;
+    return STATUS_OK;
+}
+
+static int type_of(const struct export_model *model, uint32_t id) {
+    return model->types > 1 ? mf_composition_type(&model->setup.composition, id) : 0;
+}
+
+/// Masses, which are alike within a type.
+static enum status keep_masses(struct export_model *model, const struct particles *particles) {
+    const double *mass = particles_masses(particles);
+    for (int type = 0; type < model->types; type++)
+        model->mass[type] = 1;
+    for (size_t k = 0; mass && k < model->count; k++)
+        model->mass[type_of(model, particles->id[k])] = mass[k];
+    for (size_t k = 0; mass && k < model->count; k++)
+        if (mass[k] != model->mass[type_of(model, particles->id[k])])
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: cannot be exported: masses differ within a type",
+                                  model->folder);
+    return STATUS_OK;
+}
+
+/// Positions and velocities by id.
+static enum status keep_state(struct export_model *model, const struct particles *particles) {
+    enum status status = STATUS_OK;
+    model->count = particles->count;
+    for (int d = 0; d < 3; d++) {
+        NEW_ARRAY(model->position[d], model->count);
+        NEW_ARRAY(model->velocity[d], model->count);
+        for (size_t k = 0; d < model->setup.box.dimensions && k < model->count; k++) {
+            model->position[d][particles->id[k]] = particles->position[d][k];
+            model->velocity[d][particles->id[k]] = particles->velocity[d][k];
+        }
+    }
+    CHECK(keep_masses(model, particles));
+done:
+    return status;
+}
+
+/// Where the particles start, as our own simulation would have them start.
+static enum status find_start(struct export_model *model) {
+    enum status status = STATUS_OK;
+    struct simulation_start start;
+    struct simulation simulation = {0};
+    struct export_columns columns = {0};
+    CHECK(read_start(model, &columns, &start));
+    status = mf_simulation_init(&simulation, &model->setup, &start);
+    if (status != STATUS_OK)
+        status = mf_status_prefix(status, "%s", model->folder);
+    CHECK(status);
+    CHECK(keep_state(model, &simulation.particles));
+done:
+    mf_simulation_clear(&simulation);
+    mf_export_columns_clear(&columns);
+    return status;
+}
+
+/// The bins of the result's g(r), or a hundred up to the cutoff.
+static enum status find_bins(struct export_model *model) {
+    static const struct export_column wanted[] = {{"r", "lambda", true}, {0}};
+    char path[OUTPUT_PATH_SIZE];
+    model->rdf_bins = 100;
+    model->rdf_range = mf_export_model_cutoff(model);
+    mf_rdf_observable_file(model->folder, &model->setup.composition, 0, path);
+    if (!exists(path))
+        return STATUS_OK;
+    struct export_columns columns;
+    TRY(mf_export_columns_read(&columns, path, &model->scene.units, wanted));
+    const double *r = columns.values;
+    if (columns.rows > 1) {
+        const double width = (r[columns.rows - 1] - r[0]) / (double)(columns.rows - 1);
+        const double below = floor(r[0] / width); // bins of LAMMPS begin at 0
+        model->rdf_bins = columns.rows + (size_t)below;
+        model->rdf_range = (double)model->rdf_bins * width;
+    }
+    mf_export_columns_clear(&columns);
+    return STATUS_OK;
+}
+
+static void name_types(struct export_model *model) {
+    const struct composition *composition = &model->setup.composition;
+    model->types = composition_is_mixed(composition) ? composition->types : 1;
+    for (int type = 0; type < model->types; type++)
+        snprintf(model->name[type], sizeof model->name[type], "%s",
+                 composition_is_mixed(composition) ? composition->name[type] : "A");
+}
+
+enum status mf_export_model_read(struct export_model *model, const char *folder) {
+    struct reading reading = {.model = model};
+    *model = (struct export_model){
+        .temperature = {NAN, NAN}, .pressure = {NAN, NAN}, .configurational = NAN};
+    snprintf(model->folder, sizeof model->folder, "%s", folder);
+    TRY(check_folder(model));
+    TRY(read_used(&reading));
+    TRY(check_scene(model));
+    TRY(read_summary(&reading));
+    name_types(model);
+    TRY(find_laws(&reading));
+    TRY(find_start(model));
+    return find_bins(model);
+}
+
+void mf_export_model_clear(struct export_model *model) {
+    for (int d = 0; d < 3; d++) {
+        mf_memory_free(model->position[d]);
+        mf_memory_free(model->velocity[d]);
+    }
+    for (int c = 0; c < EXPORT_CURVES; c++)
+        mf_table_clear(&model->potential[c]);
+    mf_table_clear(&model->omega);
+    mf_numbers_own_clear(&model->own);
+    mf_scene_clear(&model->scene);
+    *model = (struct export_model){0};
+}
+
+int mf_export_model_pairs(const struct export_model *model) {
+    return mf_composition_pairs(&model->setup.composition);
+}
+
+const struct table *mf_export_model_potential(const struct export_model *model,
+                                              enum export_curve curve) {
+    return curve == EXPORT_FITTED ? model->setup.potential : &model->potential[curve];
+}
+
+void mf_export_model_pair(const struct export_model *model, int pair, int type[2],
+                          char name[COMPOSITION_PAIR_NAME_SIZE]) {
+    type[0] = type[1] = 0;
+    if (model->types > 1)
+        mf_composition_pair_types(&model->setup.composition, pair, type);
+    snprintf(name, COMPOSITION_PAIR_NAME_SIZE, "%.14s-%.14s", model->name[type[0]],
+             model->name[type[1]]);
+}
+
+double mf_export_model_cutoff(const struct export_model *model) {
+    const double potential = model->setup.potential->cutoff;
+    return model->setup.omega ? fmax(potential, model->setup.omega->cutoff) : potential;
+}

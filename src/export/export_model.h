@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What a finished fit or simulation found, as another engine needs it.
+///
+/// All numbers are reduced (k_B T_0, λ, μ, τ); a writer multiplies them with the units of its
+/// engine.
+#pragma once
+
+#include "input/scene.h"
+#include "io/output.h"
+#include "problem/numbers.h"
+
+/// Φ, and Φ less and plus one standard error.
+enum export_curve { EXPORT_FITTED, EXPORT_LOWER, EXPORT_UPPER, EXPORT_CURVES };
+
+/// A number of summary.json with its standard error; NAN where it does not say.
+struct export_number {
+    double value, error;
+};
+
+/// Owns everything.
+struct export_model {
+    char folder[OUTPUT_PATH_SIZE], title[FIELD_TEXT_SIZE];
+    struct scene scene;
+    struct numbers_own own;
+    struct simulation_setup setup;         ///< of the scene, with what was fitted in its place
+    struct table potential[EXPORT_CURVES]; ///< of a fitted potential
+    bool bands;                            ///< the last two of them are known
+    struct table omega;                    ///< of a fitted friction weight
+    int types;                             ///< at least 1
+    char name[COMPOSITION_MOST_TYPES][COMPOSITION_NAME_SIZE];
+    double mass[COMPOSITION_MOST_TYPES]; ///< [μ]
+    size_t count;
+    double *position[3], *velocity[3]; ///< shape [count], by id: in the box [λ], [λ/τ]
+    bool equilibrated;                 ///< they are where the result's own simulation ended
+    size_t rdf_bins;                   ///< of g(r), equally wide from 0 on
+    double rdf_range;                  ///< where they end [λ]
+    struct export_number temperature, pressure; ///< of the result
+    double configurational;                     ///< its configurational temperature; or NAN
+    char warning[256]; ///< what a person should know of the result; "" if nothing
+};
+
+/// Read the folder of a finished fit or simulation.
+/// Fails: IO; BAD_INPUT with one line for a folder that is none, has no potential, or whose scene
+/// is of what pair forces and velocities do not express: hard particles, a solvent, forces beside
+/// the pairs, dynamics without velocities, masses that differ within a type; NO_MEMORY.
+/// Tested: test_export_model.
+enum status mf_export_model_read(struct export_model *model, const char *folder) MUST_USE;
+void mf_export_model_clear(struct export_model *model);
+
+/// Pair types, at least 1, and Φ or ω of one of them.
+int mf_export_model_pairs(const struct export_model *model);
+const struct table *mf_export_model_potential(const struct export_model *model,
+                                              enum export_curve curve);
+
+/// "A-B", and the types of it.
+void mf_export_model_pair(const struct export_model *model, int pair, int type[2],
+                          char name[COMPOSITION_PAIR_NAME_SIZE]);
+
+/// Largest cutoff of Φ and ω [λ].
+double mf_export_model_cutoff(const struct export_model *model);

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// OpenMM: the natural spline of a Continuous1DFunction, one force for each pair type. Its
+// DPDIntegrator (from 8.3 on) multiplies the velocity of a pair by exp(−Δt friction (1 − r/r_c)²):
+// friction is 2 γ/m between beads of one mass.
+#include "export/export_script.h"
+
+static void print(const struct export_job *job, FILE *stream) {
+    mf_export_script_head(job, "openmm", stream);
+    fprintf(stream,
+            "system = openmm.System()\n"
+            "system.setDefaultPeriodicBoxVectors((box[0], 0, 0), (0, box[1], 0), (0, 0, box[2]))\n"
+            "types_of = start[:, 0].astype(int)\n"
+            "for a in types_of:\n"
+            "    system.addParticle(masses[a])\n"
+            "for a, b, name, cutoff, gamma, friction_cutoff in pairs:\n"
+            "    rows = numpy.loadtxt(name + \".txt\")\n"
+            "    force = openmm.CustomNonbondedForce(\"phi(r)\")\n"
+            "    force.addTabulatedFunction(\"phi\", openmm.Continuous1DFunction(\n"
+            "        rows[:, 1].tolist(), rows[0, 0], rows[-1, 0]))\n"
+            "    force.setNonbondedMethod(openmm.CustomNonbondedForce.CutoffPeriodic)\n"
+            "    force.setCutoffDistance(cutoff)\n"
+            "    for particle in types_of:\n"
+            "        force.addParticle([])\n"
+            "    if len(types) > 1:\n"
+            "        force.addInteractionGroup(numpy.flatnonzero(types_of == a).tolist(),\n"
+            "                                  numpy.flatnonzero(types_of == b).tolist())\n"
+            "    system.addForce(force)\n\n"
+            "if linear and len(types) == 1 and hasattr(openmm, \"DPDIntegrator\"):\n"
+            "    a, b, name, cutoff, gamma, friction_cutoff = pairs[0]\n"
+            "    integrator = openmm.DPDIntegrator(temperature, 2 * gamma / masses[0], "
+            "friction_cutoff, time_step)\n"
+            "else:\n"
+            "    integrator = openmm.LangevinMiddleIntegrator(temperature, 1 / slowing, "
+            "time_step)\n"
+            "context = openmm.Context(system, integrator)\n"
+            "context.setPositions(start[:, 1:4].tolist())\n"
+            "context.setVelocities(start[:, 4:7].tolist())\n"
+            "for block in range(10):\n"
+            "    integrator.step(steps // 10)\n"
+            "    state = context.getState(getEnergy=True)\n"
+            "    kinetic = state.getKineticEnergy()._value\n"
+            "    print((block + 1) * (steps // 10), temperature * 2 * kinetic / (3 * len(start) * "
+            "kT), state.getPotentialEnergy()._value)\n"
+            "state = context.getState(getPositions=True, getVelocities=True)\n"
+            "numpy.savetxt(\"end.txt\", numpy.column_stack((types_of,\n"
+            "    state.getPositions(asNumpy=True)._value, state.getVelocities(asNumpy=True)."
+            "_value)))\n");
+}
+
+static enum status write(const struct export_job *job) {
+    TRY(mf_export_script_files(job, 0));
+    return mf_export_file(job, "run.py", print);
+}
+
+static void explain(const struct export_job *job, FILE *stream) {
+    mf_export_script_explain(
+        job,
+        "DPDIntegrator with friction 2 gamma/m, of beads of one type and from version 8.3 on; "
+        "else a Langevin bath",
+        stream);
+}
+
+const struct export_engine mf_export_openmm = {
+    .name = "openmm",
+    .title = "OpenMM",
+    .summary = "run.py, start.txt, A-B.txt; nm, ps, kJ/mol",
+    .system = EXPORT_NANOMETRES,
+    .physical = true,
+    .interpolation = &mf_export_grid_spline,
+    .commands = "    python3 run.py\n    python3 run.py 100000   # steps\n",
+    .verified = "not run",
+    .most_types = COMPOSITION_MOST_TYPES,
+    .write = write,
+    .explain = explain,
+};

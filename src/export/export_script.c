@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "export/export_script.h"
+
+/// What a printer of one file is to print.
+struct printed {
+    const struct export_job *job;
+    enum export_curve curve;
+    int pair;
+    double shift;
+};
+
+static void print_start(const struct export_job *job, double shift, FILE *stream) {
+    const struct export_model *model = job->model;
+    const double velocity = export_units_velocity(&job->units);
+    fprintf(stream, "# type\tx[%s]\ty\tz\tvelocity_x[%s/%s]\tvelocity_y\tvelocity_z\n",
+            job->units.length_name, job->units.length_name, job->units.time_name);
+    for (size_t k = 0; k < model->count; k++) {
+        fprintf(stream, "%d", mf_export_type(model, k));
+        for (int d = 0; d < 3; d++)
+            fprintf(stream, "\t%.12g",
+                    (mf_export_place(model, d, k) - shift * model->setup.box.length[d]) *
+                        job->units.length);
+        for (int d = 0; d < 3; d++)
+            fprintf(stream, "\t%.12g", model->velocity[d][k] * velocity);
+        fprintf(stream, "\n");
+    }
+}
+
+static void print_table(const struct printed *what, FILE *stream) {
+    const struct export_job *job = what->job;
+    const struct export_grid *grid = &job->grids.grid[what->curve][what->pair];
+    fprintf(stream, "# r[%s] energy[%s] force[%s/%s]\n", job->units.length_name,
+            job->units.energy_name, job->units.energy_name, job->units.length_name);
+    for (size_t k = 0; k < grid->rows; k++)
+        fprintf(stream, "%.15g %.15g %.15g\n", grid->r[k] * job->units.length,
+                grid->phi[k] * job->units.energy, grid->force[k] * export_units_force(&job->units));
+}
+
+static enum status write_one(const struct printed *what, const char *name, bool start) {
+    struct output output;
+    char path[OUTPUT_PATH_SIZE];
+    snprintf(path, sizeof path, "%.3800s/%.200s", what->job->folder, name);
+    TRY(mf_output_open(&output, path));
+    if (start)
+        print_start(what->job, what->shift, output.stream);
+    else
+        print_table(what, output.stream);
+    return mf_output_commit(&output);
+}
+
+enum status mf_export_script_files(const struct export_job *job, double shift) {
+    struct printed what = {.job = job, .shift = shift};
+    TRY(write_one(&what, "start.txt", true));
+    for (int curve = 0; curve < job->grids.curves; curve++)
+        for (what.pair = 0; what.pair < job->grids.pairs; what.pair++) {
+            char pair[COMPOSITION_PAIR_NAME_SIZE], name[2 * COMPOSITION_PAIR_NAME_SIZE];
+            int type[2];
+            what.curve = (enum export_curve)curve;
+            mf_export_model_pair(job->model, what.pair, type, pair);
+            snprintf(name, sizeof name, "%s%s.txt", pair, mf_export_curve_name(what.curve));
+            TRY(write_one(&what, name, false));
+        }
+    return STATUS_OK;
+}
+
+static void print_pairs(const struct export_job *job, FILE *stream) {
+    const double friction = export_units_friction(&job->units);
+    fprintf(stream,
+            "# types a and b, table, cutoff; friction gamma (1 - r/r_c)^2 and r_c\npairs = [");
+    for (int pair = 0; pair < job->grids.pairs; pair++) {
+        const struct export_power *power = &job->power[pair];
+        char name[COMPOSITION_PAIR_NAME_SIZE];
+        int type[2];
+        mf_export_model_pair(job->model, pair, type, name);
+        fprintf(stream, "%s(%d, %d, \"%s\", %.15g, %.12g, %.12g)", pair ? ",\n         " : "",
+                type[0], type[1], name, job->grids.grid[0][pair].last * job->units.length,
+                power->amplitude * power->amplitude * friction, power->cutoff * job->units.length);
+    }
+    fprintf(stream, "]\n");
+}
+
+void mf_export_script_head(const struct export_job *job, const char *module, FILE *stream) {
+    const struct export_model *model = job->model;
+    const struct export_units *units = &job->units;
+    const double *length = model->setup.box.length;
+    fprintf(stream, "# Written by mesofit; README tells of it. Units: %s, %s, %s.\n",
+            units->length_name, units->time_name, units->energy_name);
+    fprintf(stream, "import sys\nimport numpy\nimport %s\n\n", module);
+    fprintf(stream, "box = [%.12g, %.12g, %.12g]\n", length[0] * units->length,
+            length[1] * units->length, length[2] * units->length);
+    fprintf(stream, "kT = %.12g\ntemperature = %.12g # K, or T_0\ntime_step = %.9g\n",
+            model->setup.temperature * units->energy, model->setup.temperature * units->temperature,
+            job->time_step * units->time);
+    fprintf(stream, "types = [");
+    for (int type = 0; type < model->types; type++)
+        fprintf(stream, "%s\"%s\"", type ? ", " : "", model->name[type]);
+    fprintf(stream, "]\nmasses = [");
+    for (int type = 0; type < model->types; type++)
+        fprintf(stream, "%s%.12g", type ? ", " : "", model->mass[type] * units->mass);
+    fprintf(stream, "]\n");
+    print_pairs(job, stream);
+    fprintf(stream, "linear = %s # the friction of the result is A (1 - r/r_c)\nslowing = %.6g\n",
+            mf_export_is_linear(job) ? "True" : "False", mf_export_slowing(job) * units->time);
+    fprintf(stream, "steps = int(sys.argv[1]) if len(sys.argv) > 1 else 10000\n"
+                    "start = numpy.loadtxt(\"start.txt\")\n\n");
+}
+
+void mf_export_script_explain(const struct export_job *job, const char *dpd, FILE *stream) {
+    if (mf_export_is_linear(job))
+        fprintf(stream, "Friction and noise: %s, that of the result.\n", dpd);
+    else if (job->model->setup.omega)
+        fprintf(stream,
+                "%s cannot express this omega: a Langevin bath of each particle holds the "
+                "temperature instead. It keeps g(r), energy\nand pressure; the dynamics is not "
+                "the result's: diffusion and all else that moves differs.\n",
+                job->engine->title);
+    else
+        fprintf(stream, "A Langevin bath of each particle holds the temperature.\n");
+    fprintf(stream, "This folder was checked against the engine's source, and not run.\n");
+}

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What the engines that a Python script drives have in common: tables and a start as columns
+/// of numbers.
+#pragma once
+
+#include "export/export_engine.h"
+
+/// Write start.txt (type, position, velocity) and for each pair type and curve A-B.txt, rows r, Φ,
+/// F. Fails: IO.
+/// @param[in] shift  what is taken off positions, as a share of the box
+enum status mf_export_script_files(const struct export_job *job, double shift) MUST_USE;
+
+/// Print the numbers that all scripts begin with: `box`, `kT`, `time_step`, `types`, `masses`,
+/// `pairs` (types a and b, file, cutoff, and γ and r_c of the friction), `linear`, whether the
+/// friction is A (1 − r/r_c), and `slowing`, the time of a bath instead.
+void mf_export_script_head(const struct export_job *job, const char *module, FILE *stream);
+
+/// What the README says of the thermostat of such a script.
+void mf_export_script_explain(const struct export_job *job, const char *dpd, FILE *stream);

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// VOTCA: A-B.pot with rows r, Φ and a flag, "i" where pairs come and "o" in the core.
+#include "base/memory.h"
+#include "export/export_engine.h"
+#include "io/votca.h"
+
+static enum status write_curve(const struct export_job *job, enum export_curve curve, int pair) {
+    enum status status = STATUS_OK;
+    const struct export_grid *grid = &job->grids.grid[curve][pair];
+    double *r = NULL, *phi = NULL;
+    char path[OUTPUT_PATH_SIZE], name[COMPOSITION_PAIR_NAME_SIZE];
+    int type[2];
+    size_t first = 0;
+    NEW_ARRAY(r, grid->rows);
+    NEW_ARRAY(phi, grid->rows);
+    for (size_t k = 0; k < grid->rows; k++) {
+        r[k] = grid->r[k] * job->units.length;
+        phi[k] = grid->phi[k] * job->units.energy;
+        first += grid->r[k] < job->grids.error.from;
+    }
+    mf_export_model_pair(job->model, pair, type, name);
+    snprintf(path, sizeof path, "%.3800s/%s%s.pot", job->folder, name, mf_export_curve_name(curve));
+    CHECK(mf_votca_write(path, r, phi, grid->rows, first));
+done:
+    mf_memory_free(r);
+    mf_memory_free(phi);
+    return status;
+}
+
+static enum status write(const struct export_job *job) {
+    for (int n = 0; n < job->grids.curves * job->grids.pairs; n++)
+        TRY(write_curve(job, (enum export_curve)(n / job->grids.pairs), n % job->grids.pairs));
+    return STATUS_OK;
+}
+
+static void explain(const struct export_job *job, FILE *stream) {
+    (void)job;
+    fprintf(stream, "VOTCA makes tables of other programs from .pot files; it has no friction "
+                    "weights.\nThis folder was checked against the format, and not run.\n");
+}
+
+const struct export_engine mf_export_votca = {
+    .name = "votca",
+    .title = "VOTCA",
+    .summary = "A-B.pot; nm, kJ/mol",
+    .system = EXPORT_NANOMETRES,
+    .physical = true,
+    .interpolation = &mf_export_grid_spline,
+    .commands = "    csg_resample --in A-A.pot --out table.pot --grid 0:0.002:1\n"
+                "    csg_call --ia-type non-bonded --options settings.xml convert_potential "
+                "lammps A-A.pot A-A.table\n",
+    .verified = "not run",
+    .most_types = COMPOSITION_MOST_TYPES,
+    .write = write,
+    .explain = explain,
+};

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Friction that remembers: hidden variables of pairs, and white friction across them.
+///
+/// Each pair within the range of a mode has a hidden variable z; with e the unit vector from j to i
+/// and u = e·(v_i − v_j), unit masses,
+///   dv_i = Σ_j e g(r) z dt,   dz = −g(r) u dt − z dt/τ + sqrt(2 k_B T/τ) dW,   g = ω(r)/sqrt(τ),
+/// so that a pair at rest feels a friction force with the kernel ω² exp(−t/τ)/τ, which is the white
+/// friction ω² for τ → 0, and its noise. A mode with a frequency Ω has two variables,
+///   dz = … + Ω y dt,   dy = −Ω z dt − y dt/τ + sqrt(2 k_B T/τ) dW',
+/// and the kernel ω² exp(−t/τ) cos(Ω t)/τ. exp(−(H + Σ z²/2 + Σ y²/2)/k_B T) is stationary, so
+/// that Φ and g(r) do not know of it; linear and angular momentum are conserved. The auxiliary
+/// variables are those of Z. Li et al., J. Chem. Phys. 143, 243128 (2015), one a pair as in W. J.
+/// Briels, Soft Matter 5, 4401 (2009).
+///
+/// Transverse friction ω_t(r) damps the velocities of a pair across e: C. Junghans, M. Praprotnik
+/// and K. Kremer, Soft Matter 4, 156 (2008). It keeps no angular momentum.
+///
+/// A step does for each pair, one after the other and at fixed positions: the exact law of z and y
+/// without u, the rotation of (u/√2, z) by √2 g Δt, and the exact decay of what is across e. Each
+/// keeps the stationary law whatever Δt. A pair that comes into the range draws its z from it.
+#pragma once
+
+#include "base/memory.h"
+#include "base/normal.h"
+#include "curves/table.h"
+#include "system/composition.h"
+#include "system/neighbours.h"
+
+enum { PAIR_MEMORY_MOST_MODES = 4, PAIR_MEMORY_MOST_VARIABLES = 2 * PAIR_MEMORY_MOST_MODES };
+
+struct pair_memory_mode {
+    const struct table *omega; ///< ω(r), one or for each pair type; borrowed
+    double time;               ///< τ [τ]
+    double frequency;          ///< Ω [1/τ]; 0: none
+};
+
+/// All zero: nothing remembers.
+struct pair_memory_law {
+    int modes;
+    struct pair_memory_mode mode[PAIR_MEMORY_MOST_MODES];
+    const struct table *transverse; ///< ω_t(r), the same, or NULL; borrowed
+};
+
+static inline bool pair_memory_acts(const struct pair_memory_law *law) {
+    return law->modes > 0 || law->transverse;
+}
+
+/// The largest distance at which it acts [λ].
+double mf_pair_memory_range(const struct pair_memory_law *law);
+
+/// What belongs to a simulation and does not change.
+struct pair_memory_scene {
+    struct composition composition;
+    double temperature; ///< [k_B T_0]
+    double time_step;   ///< [τ]
+    uint64_t seed;
+};
+
+struct pair_memory {
+    struct pair_memory_law law;
+    struct pair_memory_scene scene;
+    double range[TABLE_MOST_CURVES]; ///< of each pair type; 0: nothing acts
+    int variables;                   ///< of a pair
+    struct {
+        double (*half)[2]; ///< tan of half the angle of the rotation: rows of the table of ω
+        int first;         ///< of its variables
+        double keep, turn; ///< z ← keep z + turn y + noise ξ, y ← keep y − turn z + noise ξ'
+        double noise;
+    } mode[PAIR_MEMORY_MOST_MODES];
+    double (*root)[2]; ///< sqrt of the transverse damping: rows of its table
+    struct normal_table normal;
+    uint64_t builds; ///< of the neighbour list whose pairs these are
+    size_t pairs, capacity;
+    size_t begin[NEIGHBOURS_MOST_PARTS], end[NEIGHBOURS_MOST_PARTS]; ///< of each part of the list
+    int parts;
+    int32_t *first, *second; ///< shape [capacity]: particles
+    uint32_t *low, *high;    ///< shape [capacity]: their ids
+    int32_t *kind;           ///< shape [capacity]: their pair types
+    /// Shape [variables][capacity] [sqrt(k_B T_0)]; NaN: the pair is out of range.
+    double *value[PAIR_MEMORY_MOST_VARIABLES];
+};
+
+/// Prepare for a law that acts. Fails: NO_MEMORY.
+enum status mf_pair_memory_init(struct pair_memory *memory, const struct pair_memory_law *law,
+                                const struct pair_memory_scene *scene) MUST_USE;
+void mf_pair_memory_clear(struct pair_memory *memory);
+
+/// Take over the pairs of the neighbour list that was built as number `builds`, if it is another
+/// one: pairs in range keep their variables. Fails: NO_MEMORY.
+enum status mf_pair_memory_follow(struct pair_memory *memory, const struct particles *particles,
+                                  const struct neighbours *neighbours, uint64_t builds) MUST_USE;
+
+/// Change velocities and variables by one time step, pair after pair in an order that depends on
+/// the list alone: the same bits for any number of threads.
+/// @param[in] step  the counter of random numbers
+/// Tested: test_pair_memory, physics/test_memory.
+void mf_pair_memory_sweep(struct pair_memory *memory, struct particles *particles, uint64_t step);
+
+/// ½ Σ z² of the pairs in range [k_B T_0], and their number of variables: what the extended energy
+/// adds to that of the particles.
+double mf_pair_memory_energy(const struct pair_memory *memory, size_t *variables);
+
+/// @name Restart
+/// The first span is `pairs`: read it before the others and call mf_pair_memory_make_room, since
+/// their lengths depend on it. Afterwards the pairs follow the list anew.
+enum { PAIR_MEMORY_SPANS = 3 + PAIR_MEMORY_MOST_VARIABLES };
+size_t mf_pair_memory_spans(struct pair_memory *memory, struct memory_span *spans);
+enum status mf_pair_memory_make_room(struct pair_memory *memory) MUST_USE;

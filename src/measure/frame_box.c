@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "measure/frame_box.h"
+
+#include <math.h>
+
+static double product(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Cholesky's factor of the products of the box's vectors.
+static void find_edges(const double vector[3][3], double edge[3][3]) {
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            double rest = product(vector[i], vector[j]);
+            for (int k = 0; k < j && j <= i; k++)
+                rest -= edge[i][k] * edge[j][k];
+            edge[i][j] = j > i ? 0 : j == i ? sqrt(fmax(0, rest)) : rest / edge[j][j];
+        }
+}
+
+enum status mf_frame_box_find(struct frame_box *box, const struct trajectory_frame *frame) {
+    *box = (struct frame_box){.volume = 1};
+    if (!frame->has_box)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: frame %zu has no box: g(r) needs the volume and its images",
+                              frame->file, frame->number);
+    for (int i = 0; i < 3; i++)
+        if (!frame->periodic[i])
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: frame %zu is not periodic along vector %c of its box",
+                                  frame->file, frame->number, 'a' + i);
+    find_edges(frame->box, box->edge);
+    mf_frame_reciprocal(frame, box->inverse);
+    for (int i = 0; i < 3; i++) {
+        box->height[i] = 1 / sqrt(product(box->inverse[i], box->inverse[i]));
+        box->volume *= box->edge[i][i];
+    }
+    return STATUS_OK;
+}
+
+double mf_frame_box_least_height(const struct frame_box *box) {
+    return fmin(box->height[0], fmin(box->height[1], box->height[2]));
+}
+
+enum status mf_frame_box_check_range(const struct frame_box *box,
+                                     const struct trajectory_frame *frame, double range,
+                                     const char *what) {
+    const double half = 0.5 * mf_frame_box_least_height(box);
+    if (range <= half)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: frame %zu: %s, %g nm, is beyond half the shortest height of the "
+                          "box, %.6g nm: pairs would be seen in the wrong image",
+                          frame->file, frame->number, what, range, half);
+}
+
+void mf_frame_box_places(const struct frame_box *box, const struct trajectory_frame *frame,
+                         int32_t *const place[3]) {
+    for (int i = 0; i < 3; i++)
+        for (size_t k = 0; k < frame->atoms; k++)
+            place[i][k] = box_fraction(product(frame->position[k], box->inverse[i]), 1);
+}

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Pairs of beads in a frame: how many at which distance, and which are near.
+#pragma once
+
+#include "base/status.h"
+#include "measure/frame_grid.h"
+#include "system/composition.h"
+
+/// What is counted, the same for all frames.
+struct frame_pairs_plan {
+    double range; ///< of the bins, from 0 on [nm]
+    size_t bins;
+    struct composition composition; ///< beads stand in the order of their types
+    const uint32_t *molecule; ///< shape [beads]: pairs of one molecule are left out; NULL: none is
+};
+
+/// Memory of one thread, used again for every frame; all zero is none.
+struct frame_pairs {
+    struct frame_grid grid;
+    int32_t *type;            ///< shape [beads], in the order of cells: of a mixture
+    uint32_t *molecule;       ///< likewise, if there are such pairs
+    uint64_t *counts;         ///< shape [pair types, bins + 1]; the last bin is of what is left out
+    uint32_t *first, *second; ///< shape [near_count]: beads of pairs that are near
+    size_t near_count, near_room;
+};
+
+void mf_frame_pairs_clear(struct frame_pairs *pairs);
+
+/// Count the pairs of a frame by type and distance, r < range, into pairs->counts.
+/// @param[in] place  shape [3][beads]: mf_frame_box_places
+/// The range is at most half the least height (mf_frame_box_check_range). Fails: NO_MEMORY.
+/// Threads: one a struct frame_pairs. Tested: test_frame_pairs, against all images.
+enum status mf_frame_pairs_count(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
+                                 const struct frame_box *box, int32_t *const place[3]) MUST_USE;
+
+/// Find the pairs nearer than `range`, of whatever types, into pairs->first and
+/// second. Fails: NO_MEMORY.
+enum status mf_frame_pairs_find(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
+                                double range, const struct frame_box *box,
+                                int32_t *const place[3]) MUST_USE;
+
+/// How many pairs of each pair type there are to be counted: all but those of one molecule.
+/// @param[out] possible  shape [pair types]
+/// Fails: NO_MEMORY. Tested: test_frame_pairs.
+enum status mf_frame_pairs_possible(const struct frame_pairs_plan *plan, double *possible) MUST_USE;

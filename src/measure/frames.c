@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "measure/frames.h"
+
+#include "base/digest.h"
+#include "base/interrupt.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+#include <sys/stat.h>
+
+/// Frames of a batch for each thread: enough that none waits long for the others.
+enum { FRAMES_A_THREAD = 4 };
+
+/// Times are written in single precision: two that differ by so much may be the same [ps].
+static double time_tolerance(double time) {
+    return 2 * (double)FLT_EPSILON * fabs(time) + 1e-9;
+}
+
+static enum status note(struct frames *frames, const char *format, ...)
+    __attribute__((format(printf, 2, 3), warn_unused_result));
+
+static enum status note(struct frames *frames, const char *format, ...) {
+    char line[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    const size_t length = strlen(line);
+    TRY(mf_source_room(&frames->notes, length + 2));
+    memcpy(frames->notes.data + frames->notes.size, line, length);
+    memcpy(frames->notes.data + frames->notes.size + length, "\n", 2);
+    frames->notes.size += length + 1;
+    return STATUS_OK;
+}
+
+// Files -------------------------------------------------------------------------------------------
+
+static enum status open_file(struct frames *frames) {
+    const char *const file = frames->plan.file[frames->at];
+    TRY(mf_trajectory_open(&frames->trajectory, file, &frames->plan.options));
+    frames->open = true;
+    if (frames->structure == NULL)
+        return STATUS_OK;
+    return mf_structure_check_same(frames->structure, frames->structure_file,
+                                   &frames->trajectory.structure, file);
+}
+
+static enum status close_file(struct frames *frames) {
+    const struct frames_source *source = &frames->source[frames->at];
+    if (source->doubled > 0)
+        TRY(note(frames, "%s: %zu frames of times that had been were left out",
+                 frames->plan.file[frames->at], source->doubled));
+    mf_trajectory_close(&frames->trajectory);
+    frames->open = false;
+    frames->at++;
+    frames->ended = frames->ended || frames->at == frames->plan.files;
+    return STATUS_OK;
+}
+
+enum status mf_frames_open(struct frames *frames, const struct frames_plan *plan,
+                           const struct structure *structure, const char *structure_file) {
+    enum status status;
+    *frames = (struct frames){.plan = *plan,
+                              .structure = structure,
+                              .structure_file = structure_file,
+                              .slots = (size_t)(FRAMES_A_THREAD * plan->threads)};
+    NEW_ARRAY(frames->source, plan->files);
+    NEW_ARRAY(frames->frame, frames->slots);
+    for (size_t k = 0; k < plan->files; k++) {
+        struct stat is;
+        frames->source[k].digest = DIGEST_OF_NOTHING;
+        if (stat(plan->file[k], &is) == 0 && S_ISREG(is.st_mode))
+            frames->source[k].bytes = (uint64_t)is.st_size;
+    }
+    CHECK(open_file(frames));
+    frames->first_bytes = frames->trajectory.source.byte;
+done:
+    if (status != STATUS_OK)
+        mf_frames_close(frames);
+    return status;
+}
+
+void mf_frames_close(struct frames *frames) {
+    if (frames->open)
+        mf_trajectory_close(&frames->trajectory);
+    for (size_t k = 0; frames->frame && k < frames->slots; k++)
+        mf_frame_clear(&frames->frame[k]);
+    mf_memory_free(frames->frame);
+    mf_memory_free(frames->source);
+    mf_series_clear(&frames->time);
+    mf_source_free(&frames->notes);
+    *frames = (struct frames){0};
+}
+
+void mf_frames_bytes(const struct frames *frames, uint64_t *done, uint64_t *total) {
+    *done = frames->open ? frames->trajectory.source.byte : 0;
+    *total = 0;
+    for (size_t k = 0; k < frames->plan.files; k++) {
+        *total += frames->source[k].bytes;
+        *done += k < frames->at ? frames->source[k].bytes : 0;
+    }
+}
+
+size_t mf_frames_expected(const struct frames *frames) {
+    const struct frames_plan *const plan = &frames->plan;
+    uint64_t done, total;
+    mf_frames_bytes(frames, &done, &total);
+    if (frames->time.count < 2 || total == 0)
+        return 0;
+    const double begin = frames->time.value[0], interval = frames->time.value[1] - begin;
+    const double all = (double)total / (double)frames->first_bytes;
+    double last = begin + (all - 1) * interval;
+    if (plan->end < last)
+        last = plan->end;
+    return (size_t)fmax(1, (last - begin) / fmax(interval, plan->every) + 1);
+}
+
+// Which are used ----------------------------------------------------------------------------------
+
+/// Whether a frame of this time has been.
+static bool was_seen(const struct frames *frames, double time) {
+    const double tolerance = time_tolerance(time);
+    size_t low = 0, high = frames->time.count; // of the first that is not before
+    while (low < high) {
+        const size_t middle = (low + high) / 2;
+        if (frames->time.value[middle] < time - tolerance)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < frames->time.count && frames->time.value[low] <= time + tolerance;
+}
+
+static enum status check_known(const struct frames *frames, const struct trajectory_frame *frame) {
+    const struct frames_plan *const plan = &frames->plan;
+    if (isnan(plan->begin) && isnan(plan->end) && plan->every == 0)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: frame %zu has no time: --begin, --end and --every cannot be met",
+                          frame->file, frame->number);
+}
+
+/// Whether a frame is the next in time, or a doubled one.
+static enum status find_order(struct frames *frames, const struct trajectory_frame *frame,
+                              bool *is_next) {
+    const struct series *const seen = &frames->time;
+    const double last = seen->count ? seen->value[seen->count - 1] : NAN;
+    *is_next = !(frame->time <= last + time_tolerance(last));
+    if (*is_next)
+        return mf_series_add(&frames->time, frame->time);
+    if (!was_seen(frames, frame->time))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: frame %zu is out of order: its time, %.7g ps, comes after %.7g "
+                              "ps",
+                              frame->file, frame->number, frame->time, last);
+    frames->source[frames->at].doubled++;
+    return STATUS_OK;
+}
+
+/// Whether a frame in order is wanted.
+static bool is_wanted(const struct frames *frames, double time) {
+    const struct frames_plan *const plan = &frames->plan;
+    static const double share = 1e-3; // of an interval
+    const double steps = (time - frames->time.value[0]) / plan->every;
+    return plan->every == 0 ||
+           fabs(steps - rint(steps)) < share + time_tolerance(time) / plan->every;
+}
+
+static enum status judge(struct frames *frames, const struct trajectory_frame *frame, bool *use) {
+    const struct frames_plan *const plan = &frames->plan;
+    const double time = frame->time;
+    *use = true;
+    if (isnan(time))
+        return check_known(frames, frame);
+    *use = !(time < plan->begin - time_tolerance(time));
+    frames->ended = frames->ended || time > plan->end + time_tolerance(time);
+    if (frames->ended || !*use) {
+        *use = false;
+        return STATUS_OK;
+    }
+    TRY(find_order(frames, frame, use));
+    *use = *use && is_wanted(frames, time);
+    return STATUS_OK;
+}
+
+// Batches -----------------------------------------------------------------------------------------
+
+/// What a batch has of the file that is read.
+struct batch {
+    struct frames *frames;
+    bool *decoded;         ///< shape [slots]
+    size_t first, fetched; ///< frames first … fetched − 1 are new
+    bool judged;           ///< only those to be used were kept, by times that took no decoding
+    bool over;             ///< the file has no further frame, or is damaged
+};
+
+/// A file that breaks off is over, if that is allowed: the failure becomes a note.
+static enum status forgive(struct batch *batch, enum status status) {
+    struct frames *const frames = batch->frames;
+    if (status != STATUS_BAD_INPUT || !frames->plan.allow_truncated)
+        return status;
+    batch->over = true;
+    return note(frames, "%s; what is before it is used", mf_status_message());
+}
+
+static enum status fetch(struct batch *batch) {
+    struct frames *const frames = batch->frames;
+    struct frames_source *const source = &frames->source[frames->at];
+    while (batch->fetched < frames->slots && !batch->over && !frames->ended &&
+           !mf_interrupt_requested()) {
+        struct trajectory_frame *const frame = &frames->frame[batch->fetched];
+        bool more = true;
+        const enum status status = mf_trajectory_fetch(&frames->trajectory, frame, &more);
+        if (status != STATUS_OK)
+            return forgive(batch, status);
+        batch->over = !more;
+        if (!more)
+            break;
+        mf_digest_add(&source->digest, frame->raw.data, frame->raw.size);
+        source->read++;
+        batch->judged = mf_trajectory_peek(&frames->trajectory, frame);
+        bool use = true;
+        if (batch->judged)
+            TRY(judge(frames, frame, &use));
+        batch->fetched += use;
+    }
+    return STATUS_OK;
+}
+
+static enum status decode_one(void *context, size_t task, void *result) {
+    const struct batch *const batch = context;
+    (void)result;
+    const size_t k = batch->first + task;
+    TRY(mf_trajectory_decode(&batch->frames->trajectory, &batch->frames->frame[k]));
+    batch->decoded[k] = true;
+    return STATUS_OK;
+}
+
+/// Decode all that was fetched; what is behind a damaged frame is lost.
+static enum status decode(struct batch *batch) {
+    const struct parallel_tasks tasks = {.count = batch->fetched - batch->first,
+                                         .threads = batch->frames->plan.threads,
+                                         .run = decode_one,
+                                         .context = batch};
+    TRY(forgive(batch, mf_parallel_try(&tasks)));
+    size_t good = batch->first;
+    while (good < batch->fetched && batch->decoded[good])
+        good++;
+    batch->fetched = good;
+    return STATUS_OK;
+}
+
+static void swap(struct trajectory_frame *a, struct trajectory_frame *b) {
+    const struct trajectory_frame kept = *a;
+    *a = *b;
+    *b = kept;
+}
+
+/// Bring those to be used to the front.
+static enum status choose(struct batch *batch, size_t *count) {
+    struct frames *const frames = batch->frames;
+    struct frames_source *const source = &frames->source[frames->at];
+    for (size_t k = batch->first; k < batch->fetched; k++) {
+        bool use = batch->judged;
+        if (!batch->judged)
+            TRY(judge(frames, &frames->frame[k], &use));
+        if (!use)
+            continue;
+        if (*count != k)
+            swap(&frames->frame[*count], &frames->frame[k]);
+        const double time = frames->frame[*count].time;
+        source->first_time = source->used ? source->first_time : time;
+        source->last_time = time;
+        source->used++;
+        frames->used++;
+        ++*count;
+    }
+    return STATUS_OK;
+}
+
+static enum status read_batch(struct batch *batch, size_t *count) {
+    struct frames *const frames = batch->frames;
+    if (!frames->open)
+        TRY(open_file(frames));
+    TRY(fetch(batch));
+    TRY(decode(batch));
+    TRY(choose(batch, count));
+    return batch->over || frames->ended ? close_file(frames) : STATUS_OK;
+}
+
+enum status mf_frames_next(struct frames *frames, size_t *count) {
+    enum status status = STATUS_OK;
+    struct batch batch = {.frames = frames};
+    *count = 0;
+    NEW_ARRAY(batch.decoded, frames->slots);
+    while (*count < frames->slots / 2 && !frames->ended) {
+        if (mf_interrupt_requested()) {
+            status = mf_status_fail(STATUS_INTERRUPTED, "interrupted");
+            goto done;
+        }
+        batch.first = batch.fetched = *count;
+        batch.over = false;
+        memset(batch.decoded, 0, frames->slots * sizeof *batch.decoded);
+        CHECK(read_batch(&batch, count));
+    }
+done:
+    mf_memory_free(batch.decoded);
+    return status;
+}

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "measure/measured.h"
+
+#include "base/memory.h"
+#include "base/parallel.h"
+
+#include <math.h>
+#include <string.h>
+
+/// Width of the bins of g(r), and the part of the least height to which it goes, unless told [nm].
+static const double usual_width = 0.01, usual_part = 0.45;
+
+static struct box cube_of(double volume) {
+    const double edge = cbrt(volume);
+    return (struct box){3, {edge, edge, edge}};
+}
+
+// What the beads are ------------------------------------------------------------------------------
+
+static enum status find_composition(const struct mapping *mapping,
+                                    struct composition *composition) {
+    *composition = mf_composition_of_one((int64_t)mapping->beads);
+    if (mapping->types < 2)
+        return STATUS_OK;
+    if (mapping->types > COMPOSITION_MOST_TYPES)
+        return mf_status_fail(STATUS_BAD_INPUT, "the map has %zu types of beads; there may be %d",
+                              mapping->types, COMPOSITION_MOST_TYPES);
+    *composition = (struct composition){.types = (int)mapping->types};
+    for (size_t type = 0; type < mapping->types; type++) {
+        const char *name = mapping->type_name[type];
+        if (!mf_composition_is_name(name))
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "the type of beads \"%s\": a type is called by up to %d letters, "
+                                  "digits and _; give it another name in a map (--map)",
+                                  name, COMPOSITION_NAME_SIZE - 1);
+        snprintf(composition->name[type], COMPOSITION_NAME_SIZE, "%.*s", COMPOSITION_NAME_SIZE - 1,
+                 name);
+    }
+    for (size_t k = 0; k < mapping->beads; k++)
+        composition->count[mapping->bead[k].type]++;
+    return STATUS_OK;
+}
+
+/// Molecules matter if one has several beads.
+static enum status find_molecules(struct measured *measured) {
+    enum status status = STATUS_OK;
+    const struct mapping *const mapping = measured->mapping;
+    bool *seen = NULL, several = false;
+    NEW_ARRAY(seen, mapping->atoms);
+    NEW_ARRAY(measured->molecule, mapping->beads);
+    for (size_t k = 0; k < mapping->beads; k++) {
+        const size_t molecule = mapping->bead[k].molecule;
+        several = several || seen[molecule];
+        seen[molecule] = true;
+        measured->molecule[k] = (uint32_t)molecule;
+    }
+    measured->pairs.molecule = several ? measured->molecule : NULL;
+done:
+    mf_memory_free(seen);
+    return status;
+}
+
+static enum status find_shares(struct measured *measured) {
+    TRY(mf_frame_pairs_possible(&measured->pairs, measured->share));
+    for (int pair = 0; pair < mf_composition_pairs(&measured->pairs.composition); pair++) {
+        const double all = mf_composition_possible_pairs(&measured->pairs.composition, pair);
+        measured->share[pair] = measured->share[pair] > 0 ? measured->share[pair] / all : 1;
+    }
+    return STATUS_OK;
+}
+
+/// What is not told: equal bins of the usual width up to most of what the box allows.
+static enum status find_bins(struct measured *measured, const struct frame_box *box,
+                             const struct trajectory_frame *first) {
+    struct measured_plan *const plan = &measured->plan;
+    if (plan->range == 0)
+        plan->range =
+            usual_width * floor(usual_part * mf_frame_box_least_height(box) / usual_width);
+    if (!(plan->range > 0))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: frame %zu: the box is too small for a g(r): its shortest height "
+                              "is %g nm; --range and --bins say what is wanted",
+                              first->file, first->number, mf_frame_box_least_height(box));
+    if (plan->bins == 0)
+        plan->bins = (int64_t)fmax(1, rint(plan->range / usual_width));
+    measured->pairs.range = plan->range;
+    measured->pairs.bins = (size_t)plan->bins;
+    return STATUS_OK;
+}
+
+enum status mf_measured_begin(struct measured *measured, const struct measured_plan *plan,
+                              const struct mapping *mapping, const struct trajectory_frame *first) {
+    enum status status = STATUS_OK;
+    struct frame_box box;
+    *measured = (struct measured){.plan = *plan, .mapping = mapping};
+    CHECK(mf_frame_box_find(&box, first));
+    CHECK(find_composition(mapping, &measured->pairs.composition));
+    CHECK(find_molecules(measured));
+    CHECK(find_shares(measured));
+    CHECK(find_bins(measured, &box, first));
+    const struct box cube = cube_of(box.volume);
+    const struct rdf_bins bins = {.width = measured->pairs.range / (double)measured->pairs.bins,
+                                  .count = measured->pairs.bins};
+    CHECK(mf_rdf_init_endless(&measured->rdf.counted, &bins, &cube, &measured->pairs.composition));
+done:
+    if (status != STATUS_OK)
+        mf_measured_clear(measured);
+    return status;
+}
+
+static void clear_slots(struct measured *measured) {
+    for (size_t k = 0; k < measured->slots; k++) {
+        struct measured_slot *const slot = &measured->slot[k];
+        mf_frame_clear(&slot->beads);
+        for (int d = 0; d < 3; d++)
+            mf_memory_free(slot->place[d]);
+        mf_frame_pairs_clear(&slot->pairs);
+    }
+    mf_memory_free(measured->slot);
+    measured->slots = 0;
+}
+
+void mf_measured_clear(struct measured *measured) {
+    clear_slots(measured);
+    mf_memory_free(measured->molecule);
+    mf_rdf_clear(&measured->rdf.counted);
+    mf_measured_motion_clear(&measured->motion);
+    mf_series_clear(&measured->volume);
+    *measured = (struct measured){0};
+}
+
+static enum status make_slots(struct measured *measured, size_t count) {
+    enum status status = STATUS_OK;
+    if (count <= measured->slots)
+        return STATUS_OK;
+    clear_slots(measured);
+    NEW_ARRAY(measured->slot, count);
+    measured->slots = count;
+    for (size_t k = 0; k < count; k++)
+        for (int d = 0; d < 3; d++)
+            NEW_ARRAY(measured->slot[k].place[d], measured->mapping->beads);
+done:
+    return status;
+}
+
+// Frames ------------------------------------------------------------------------------------------
+
+/// Frames that are looked at by several threads, each by one.
+struct batch {
+    struct measured *measured;
+    const struct trajectory_frame *frame;
+};
+
+/// Count pairs, and find those that escape times ask for.
+static enum status find_pairs(const struct measured *measured, size_t frame,
+                              struct measured_slot *slot) {
+    const double near = mf_measured_motion_pairs_range(&measured->motion, frame);
+    if (near > 0) {
+        TRY(mf_frame_box_check_range(&slot->box, &slot->beads, near, "the range of escape times"));
+        TRY(mf_frame_pairs_find(&slot->pairs, &measured->pairs, near, &slot->box, slot->place));
+    }
+    return mf_frame_pairs_count(&slot->pairs, &measured->pairs, &slot->box, slot->place);
+}
+
+static enum status look_at(void *context, size_t task, void *result) {
+    const struct batch *const batch = context;
+    struct measured *const measured = batch->measured;
+    struct measured_slot *const slot = &measured->slot[task];
+    (void)result;
+    TRY(mf_mapping_apply(measured->mapping, &batch->frame[task], &slot->beads));
+    TRY(mf_frame_box_find(&slot->box, &slot->beads));
+    TRY(mf_frame_box_check_range(&slot->box, &slot->beads, measured->pairs.range,
+                                 "the range of g(r)"));
+    mf_frame_box_places(&slot->box, &slot->beads, slot->place);
+    return find_pairs(measured, measured->frames + task, slot);
+}
+
+static void add_pairs(struct measured *measured, const struct measured_slot *slot) {
+    struct rdf *const rdf = &measured->rdf.counted;
+    double weight[COMPOSITION_MOST_PAIRS];
+    for (size_t pair = 0; pair < rdf->pairs; pair++)
+        weight[pair] = slot->box.volume / mf_box_volume(&rdf->box) / measured->share[pair];
+    mf_rdf_add(rdf, slot->pairs.counts, measured->pairs.bins + 1, weight);
+}
+
+static enum status add_one(struct measured *measured, const struct measured_slot *slot) {
+    add_pairs(measured, slot);
+    measured->frames++;
+    TRY(mf_measured_motion_add(&measured->motion, &slot->beads, &slot->box, slot->place,
+                               &slot->pairs));
+    return mf_series_add(&measured->volume, slot->box.volume);
+}
+
+static enum status begin_motion(struct measured *measured, const struct trajectory_frame *first) {
+    struct frame_box box;
+    TRY(mf_frame_box_find(&box, first));
+    return mf_measured_motion_begin(&measured->motion, &measured->plan.motion, measured->mapping,
+                                    first, &box);
+}
+
+enum status mf_measured_add(struct measured *measured, const struct trajectory_frame *frames,
+                            size_t count) {
+    struct batch batch = {measured, frames};
+    const struct parallel_tasks tasks = {
+        .count = count, .threads = measured->plan.threads, .run = look_at, .context = &batch};
+    TRY(make_slots(measured, count));
+    if (measured->frames == 0 && count > 1)
+        TRY(begin_motion(measured, frames));
+    TRY(mf_parallel_try(&tasks));
+    for (size_t k = 0; k < count; k++)
+        TRY(add_one(measured, &measured->slot[k]));
+    return STATUS_OK;
+}
+
+struct box mf_measured_box(const struct measured *measured) {
+    return cube_of(mf_series_mean(&measured->volume));
+}
+
+struct units mf_measured_units(int system) {
+    return (struct units){.length = 1,
+                          .temperature = 1e3 / (UNITS_BOLTZMANN * UNITS_AVOGADRO),
+                          .mass = UNITS_ATOMIC_MASS,
+                          .system = system};
+}

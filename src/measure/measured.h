@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What is measured of the frames of a trajectory, over beads.
+///
+/// All numbers are in nm, ps, u and kJ/mol: these are the reduced units of λ = 1 nm, μ = 1 u and
+/// k_B T_0 = 1 kJ/mol, of which τ is 1 ps, so that the accumulators of observe/ take them as they
+/// are.
+#pragma once
+
+#include "measure/frame_pairs.h"
+#include "measure/measured_motion.h"
+#include "observe/rdf_observable.h"
+#include "trajectory/mapping.h"
+
+struct measured_plan {
+    double range; ///< of g(r) [nm]
+    int64_t bins; ///< of it
+    struct measured_motion_plan motion;
+    int threads;
+};
+
+struct measured {
+    struct measured_plan plan;
+    const struct mapping *mapping; ///< borrowed
+    struct frame_pairs_plan pairs;
+    double share[COMPOSITION_MOST_PAIRS]; ///< of a type's pairs that are not of one molecule
+    uint32_t *molecule;                   ///< shape [beads], of what has several beads
+    struct measured_slot {
+        struct trajectory_frame beads;
+        struct frame_box box;
+        int32_t *place[3]; ///< shape [beads]
+        struct frame_pairs pairs;
+    } * slot; ///< one for each frame of a batch
+    size_t slots;
+    struct rdf_observed rdf;
+    struct measured_motion motion;
+    size_t frames;
+    struct series volume; ///< [nm³]
+};
+
+/// Prepare for the frames of a mapping, whose types must be names of types of beads. `first` is a
+/// frame with the box that says what range there may be. Fails: BAD_INPUT, NO_MEMORY.
+enum status mf_measured_begin(struct measured *measured, const struct measured_plan *plan,
+                              const struct mapping *mapping,
+                              const struct trajectory_frame *first) MUST_USE;
+
+/// Add frames in their order, the first two together; the same bits for any number of threads, and
+/// however many come at a time. Fails: BAD_INPUT, naming the frame; NO_MEMORY. Tested:
+/// test_measured.
+enum status mf_measured_add(struct measured *measured, const struct trajectory_frame *frames,
+                            size_t count) MUST_USE;
+
+void mf_measured_clear(struct measured *measured);
+
+/// The units of all that is measured, for results in those of `system`.
+struct units mf_measured_units(int system);
+
+/// Cube of the mean volume.
+struct box mf_measured_box(const struct measured *measured);

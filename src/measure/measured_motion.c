@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "measure/measured_motion.h"
+
+#include "base/memory.h"
+#include "io/units_scale.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *const mf_measured_velocities[] = {"usual", "file", "differences", "none", NULL};
+
+/// Unless told: frames of a window, and which part of the trajectory a window is at most.
+enum { USUAL_LAGS = 100, USUAL_PART = 10, WINDOWS_BETWEEN = 10, ESCAPE_BINS = 50 };
+
+/// Unless told, where pairs begin and where they have escaped, in units of ρ^(−1/3): around the
+/// first shell of a liquid.
+static const double usual_near = 0.8, usual_far = 1.6;
+
+/// Of an interval, by which frames may be off beside the rounding of their times.
+static const double interval_tolerance = 1e-3;
+
+// Preparing ---------------------------------------------------------------------------------------
+
+static enum status copy_masses(struct measured_motion *motion, const struct mapping *mapping) {
+    enum status status = STATUS_OK;
+    for (size_t k = 0; k < mapping->beads; k++)
+        if (!(mapping->bead[k].mass > 0))
+            return STATUS_OK;
+    NEW_ARRAY(motion->mass, mapping->beads);
+    for (size_t k = 0; k < mapping->beads; k++)
+        motion->mass[k] = mapping->bead[k].mass;
+done:
+    return status;
+}
+
+/// Momentum is that of all atoms: beads of some of them have a share that comes and goes.
+static bool are_all(const struct mapping *mapping) {
+    size_t atoms = 0;
+    for (size_t k = 0; k < mapping->beads; k++)
+        atoms += mapping->bead[k].count;
+    return atoms == mapping->atoms;
+}
+
+static enum status choose_velocities(struct measured_motion *motion,
+                                     const struct trajectory_frame *first) {
+    const int wish = motion->plan.velocities;
+    if (wish == MEASURED_VELOCITIES_FILE && !first->has_velocities)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: frame %zu has no velocities; --velocities differences would "
+                              "make them of positions",
+                              first->file, first->number);
+    motion->path.differences = wish == MEASURED_VELOCITIES_DIFFERENCES;
+    motion->has_vacf =
+        motion->path.differences || (wish != MEASURED_VELOCITIES_NONE && first->has_velocities);
+    return STATUS_OK;
+}
+
+static enum status choose_lags(const struct measured_motion *motion,
+                               const struct trajectory_frame *first, struct motion_plan *plan) {
+    const struct measured_motion_plan *const wish = &motion->plan;
+    const double lags = rint(wish->window / motion->interval);
+    const size_t part = wish->expected / USUAL_PART;
+    if (wish->window > 0 && !(lags >= 2 && lags <= 1e5))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: --window %g: frames are %g ps apart, and a window has 2 to "
+                              "100000 intervals",
+                              first->file, wish->window, motion->interval);
+    *plan = (struct motion_plan){.every = 1, .lags = USUAL_LAGS, .fit_from = 0.5};
+    if (wish->window > 0)
+        plan->lags = (int64_t)lags;
+    else if (wish->expected > 0 && part < USUAL_LAGS)
+        plan->lags = part > 2 ? (int64_t)part : 2;
+    plan->origin_every = plan->lags > WINDOWS_BETWEEN ? plan->lags / WINDOWS_BETWEEN : 1;
+    return STATUS_OK;
+}
+
+static enum status begin_etd(struct measured_motion *motion, const struct motion_plan *plan,
+                             size_t beads, const struct trajectory_frame *first,
+                             const struct frame_box *box) {
+    const double spacing = cbrt(box->volume / (double)beads),
+                 half = 0.5 * mf_frame_box_least_height(box);
+    const double wish = motion->plan.escape;
+    const double far = wish > 0 ? wish : 0.01 * floor(100 * fmin(usual_far * spacing, 0.9 * half));
+    const struct etd_grid grid = {.r_minimum = 0.01 * rint(100 * usual_near / usual_far * far),
+                                  .r_maximum = far,
+                                  .bins = ESCAPE_BINS,
+                                  .times = plan->lags + 1};
+    TRY(mf_frame_box_check_range(box, first, far, "the range of escape times"));
+    return mf_etd_init_endless(&motion->etd, &grid, plan->origin_every, beads);
+}
+
+/// Whether frames can be followed in time.
+static bool are_timed(const struct trajectory_frame *first) {
+    return isfinite(first[0].time) && isfinite(first[1].time);
+}
+
+enum status mf_measured_motion_begin(struct measured_motion *motion,
+                                     const struct measured_motion_plan *plan,
+                                     const struct mapping *mapping,
+                                     const struct trajectory_frame *first,
+                                     const struct frame_box *box) {
+    enum status status = STATUS_OK;
+    struct motion_plan lags;
+    *motion = (struct measured_motion){.plan = *plan};
+    if (plan->leave_out || !are_timed(first))
+        return STATUS_OK;
+    motion->first_time = first[0].time;
+    motion->interval = first[1].time - first[0].time;
+    CHECK(copy_masses(motion, mapping));
+    CHECK(mf_frame_motion_init(&motion->path, mapping->beads));
+    motion->path.mass = motion->mass;
+    motion->path.together = are_all(mapping);
+    motion->path.interval = motion->interval;
+    CHECK(choose_velocities(motion, first));
+    CHECK(choose_lags(motion, first, &lags));
+    CHECK(mf_motion_init_endless(&motion->motion, &lags, mapping->beads, motion->interval,
+                                 motion->has_vacf));
+    CHECK(begin_etd(motion, &lags, mapping->beads, first, box));
+    motion->begun = true;
+done:
+    if (status != STATUS_OK)
+        mf_measured_motion_clear(motion);
+    return status;
+}
+
+void mf_measured_motion_clear(struct measured_motion *motion) {
+    mf_memory_free(motion->mass);
+    mf_frame_motion_clear(&motion->path);
+    mf_motion_clear(&motion->motion);
+    mf_etd_clear(&motion->etd);
+    mf_series_clear(&motion->temperature);
+    *motion = (struct measured_motion){0};
+}
+
+// Frames ------------------------------------------------------------------------------------------
+
+double mf_measured_motion_pairs_range(const struct measured_motion *motion, size_t frame) {
+    return motion->begun && mf_etd_opens(&motion->etd, frame) ? motion->etd.grid.r_maximum : 0;
+}
+
+static enum status check_frame(const struct measured_motion *motion,
+                               const struct trajectory_frame *beads) {
+    const double gone = beads->time - motion->last_time;
+    const double tolerance =
+        interval_tolerance * motion->interval + 4 * (double)FLT_EPSILON * fabs(beads->time);
+    if (motion->frames > 0 && !(fabs(gone - motion->interval) <= tolerance))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: frame %zu, at %.7g ps, comes %.6g ps after the one before, not "
+                              "%.6g: motion needs equal intervals; --every takes frames so far "
+                              "apart, --static measures what needs no times",
+                              beads->file, beads->number, beads->time, gone, motion->interval);
+    if (motion->has_vacf && !motion->path.differences && !beads->has_velocities)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: frame %zu has no velocities, those before have; --velocities "
+                              "none does without",
+                              beads->file, beads->number);
+    return STATUS_OK;
+}
+
+/// Kinetic temperature [K] of the beads' velocities, about that of their centre of mass if it
+/// rests.
+static double find_temperature(const struct measured_motion *motion,
+                               const struct trajectory_frame *beads) {
+    const double *const mass = motion->mass;
+    double momentum[3] = {0}, squares = 0, all = 0;
+    for (size_t k = 0; k < beads->atoms; k++) {
+        all += mass[k];
+        for (int d = 0; d < 3; d++) {
+            momentum[d] += mass[k] * beads->velocity[k][d];
+            squares += mass[k] * beads->velocity[k][d] * beads->velocity[k][d];
+        }
+    }
+    const bool together = motion->path.together;
+    for (int d = 0; together && d < 3; d++)
+        squares -= momentum[d] * momentum[d] / all;
+    const double freedom = 3 * ((double)beads->atoms - (together ? 1 : 0));
+    // In u nm²/ps², which are kJ/mol.
+    return squares / freedom * 1e3 / (UNITS_BOLTZMANN * UNITS_AVOGADRO);
+}
+
+static enum status add_pairs(struct measured_motion *motion, const struct frame_box *box,
+                             int32_t *const place[3], const struct frame_pairs *pairs) {
+    struct etd_frame frame = {.place = {place[0], place[1], place[2]},
+                              .first = pairs->first,
+                              .second = pairs->second,
+                              .pairs = pairs->near_count};
+    memcpy(frame.edge, box->edge, sizeof frame.edge);
+    return mf_etd_add(&motion->etd, &frame);
+}
+
+enum status mf_measured_motion_add(struct measured_motion *motion,
+                                   const struct trajectory_frame *beads,
+                                   const struct frame_box *box, int32_t *const place[3],
+                                   const struct frame_pairs *pairs) {
+    if (!motion->begun)
+        return STATUS_OK;
+    TRY(check_frame(motion, beads));
+    const double *const state = mf_frame_motion_add(&motion->path, beads, place);
+    if (state)
+        mf_motion_add(&motion->motion, state, motion->plan.threads);
+    TRY(add_pairs(motion, box, place, pairs));
+    if (beads->has_velocities && motion->mass && beads->atoms > 1)
+        TRY(mf_series_add(&motion->temperature, find_temperature(motion, beads)));
+    motion->last_time = beads->time;
+    motion->frames++;
+    return STATUS_OK;
+}
+
+/// The shortest decimal number that `interval` may be, since times have been rounded to single
+/// precision.
+static double shorten(double interval, double error) {
+    for (int digits = 1; digits < 9; digits++) {
+        char text[32];
+        snprintf(text, sizeof text, "%.*g", digits, interval);
+        const double shorter = strtod(text, NULL);
+        if (fabs(shorter - interval) <= error)
+            return shorter;
+    }
+    return interval;
+}
+
+void mf_measured_motion_end(struct measured_motion *motion) {
+    if (motion->frames < 2)
+        return;
+    const double intervals = (double)(motion->frames - 1);
+    const double most = fmax(fabs(motion->first_time), fabs(motion->last_time));
+    motion->interval = shorten((motion->last_time - motion->first_time) / intervals,
+                               (double)FLT_EPSILON * most / intervals);
+    motion->motion.time_step = motion->interval;
+}

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What is measured of frames that are equally far apart in time: motion and escape times.
+#pragma once
+
+#include "measure/frame_motion.h"
+#include "measure/frame_pairs.h"
+#include "measure/series.h"
+#include "observe/etd.h"
+#include "observe/motion.h"
+#include "trajectory/mapping.h"
+
+/// Where the velocities of the VACF come from.
+enum measured_velocities {
+    MEASURED_VELOCITIES_USUAL, ///< of the frames if the first has them, else none
+    MEASURED_VELOCITIES_FILE,
+    MEASURED_VELOCITIES_DIFFERENCES,
+    MEASURED_VELOCITIES_NONE,
+};
+
+/// Names of these, NULL-terminated.
+extern const char *const mf_measured_velocities[];
+
+struct measured_motion_plan {
+    bool leave_out;  ///< all of it: frames need no times
+    int velocities;  ///< enum measured_velocities
+    double window;   ///< [ps]; 0: a tenth of the trajectory, or 100 frames if that is less
+    double escape;   ///< r_maximum of escape times [nm]; 0: 1.6 ρ^(−1/3)
+    size_t expected; ///< frames that there may be; 0: not known
+    int threads;
+};
+
+struct measured_motion {
+    struct measured_motion_plan plan;
+    bool begun;
+    bool has_vacf;
+    double interval; ///< between frames [ps]
+    double first_time, last_time;
+    size_t frames;
+    double *mass; ///< shape [beads]; NULL: not all are known
+    struct frame_motion path;
+    struct motion motion;
+    struct etd etd;
+    struct series temperature; ///< kinetic, of the beads [K]
+};
+
+/// Prepare for frames whose first two are given, of beads in a box of that density.
+/// Nothing begins, and `begun` stays false, if that is wanted, or if the frames have no times.
+/// Fails: BAD_INPUT for velocities that are asked for and missing, or a window that is too short;
+/// NO_MEMORY.
+enum status mf_measured_motion_begin(struct measured_motion *motion,
+                                     const struct measured_motion_plan *plan,
+                                     const struct mapping *mapping,
+                                     const struct trajectory_frame *first,
+                                     const struct frame_box *box) MUST_USE;
+
+/// How far apart pairs are looked for in frame number `frame` from 0; 0: not at all.
+double mf_measured_motion_pairs_range(const struct measured_motion *motion, size_t frame);
+
+/// Add the next frame; `pairs` has those near if they were looked for. Fails: BAD_INPUT, naming the
+/// frame, if it is not an interval behind the one before, or has no velocities where others have;
+/// NO_MEMORY.
+enum status mf_measured_motion_add(struct measured_motion *motion,
+                                   const struct trajectory_frame *beads,
+                                   const struct frame_box *box, int32_t *const place[3],
+                                   const struct frame_pairs *pairs) MUST_USE;
+
+/// Take the mean interval of all frames for that of results.
+void mf_measured_motion_end(struct measured_motion *motion);
+
+void mf_measured_motion_clear(struct measured_motion *motion);

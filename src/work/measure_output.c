@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "work/measure_output.h"
+
+#include "io/json_write.h"
+#include "io/units.h"
+#include "base/memory.h"
+#include "base/statistics.h"
+#include "mesofit.h"
+#include "observe/kirkwood_buff.h"
+#include "work/measure_tables.h"
+
+#include <math.h>
+
+/// The digest of a file's frames, as a text: not every reader of JSON knows integers of 64 bits.
+static void put_digest(struct json_writer *writer, uint64_t digest) {
+    char text[24];
+    snprintf(text, sizeof text, "%016llx", (unsigned long long)digest);
+    mf_json_put_text(writer, "digest", text);
+}
+
+/// "trajectories": {"1": {"file": …, "bytes": …, …}, "2": …}
+static void put_trajectories(const struct measure_result *result, struct json_writer *writer) {
+    mf_json_begin(writer, "trajectories");
+    for (size_t k = 0; k < result->request->frames.files; k++) {
+        const struct frames_source *const source = &result->frames->source[k];
+        char number[24];
+        snprintf(number, sizeof number, "%zu", k + 1);
+        mf_json_begin(writer, number);
+        mf_json_put_text(writer, "file", result->request->frames.file[k]);
+        mf_json_put_integer(writer, "bytes", (int64_t)source->bytes);
+        mf_json_put_integer(writer, "frames", (int64_t)source->read);
+        mf_json_put_integer(writer, "frames_used", (int64_t)source->used);
+        mf_json_put_integer(writer, "frames_doubled", (int64_t)source->doubled);
+        put_digest(writer, source->digest);
+        mf_json_end(writer);
+    }
+    mf_json_end(writer);
+}
+
+static enum status write_json(const struct measure_result *result, const char *name,
+                              struct json_writer *writer) {
+    char path[OUTPUT_PATH_SIZE];
+    snprintf(path, sizeof path, "%.*s/%s", OUTPUT_PATH_SIZE - 64, result->folder, name);
+    const enum status status = mf_json_write(writer, path);
+    mf_json_writer_free(writer);
+    return status;
+}
+
+/// Number density of all beads [1/nm³].
+static double find_density(const struct measure_result *result) {
+    const struct box box = mf_measured_box(result->measured);
+    return (double)result->mapping->beads / mf_box_volume(&box);
+}
+
+/// [K]: as told, or the kinetic one; NAN if neither is known.
+static double find_temperature(const struct measure_result *result) {
+    const double told = result->request->temperature;
+    return isnan(told) ? mf_series_mean(&result->measured->motion.temperature) : told;
+}
+
+/// Mean mass of a type's beads [u]; NAN if it is not known.
+static double find_mass(const struct measure_result *result, int type) {
+    const struct mapping *const mapping = result->mapping;
+    struct running_mean mean = {0};
+    for (size_t k = 0; k < mapping->beads; k++)
+        if (mapping->bead[k].type == (size_t)type)
+            mf_statistics_add(&mean, mapping->bead[k].mass);
+    return mean.mean;
+}
+
+// summary.json ------------------------------------------------------------------------------------
+
+static void put_density(const struct measure_result *result, struct json_writer *writer) {
+    const struct series *const volume = &result->measured->volume;
+    const double density = find_density(result), mean = mf_series_mean(volume);
+    const double error = density * mf_series_error(volume) / mean;
+    mf_json_put_quantity(writer, "density", "1/lambda^3", density);
+    mf_json_put_quantity(writer, "density_error", "1/lambda^3", error);
+    mf_json_put_quantity(writer, "volume", "lambda^3", mean);
+}
+
+/// Kirkwood and Buff's integral of what is of one type.
+static enum status put_kirkwood_buff(const struct measure_result *result,
+                                     struct json_writer *writer) {
+    enum status status = STATUS_OK;
+    const struct rdf *const rdf = &result->measured->rdf.counted;
+    const struct box box = mf_measured_box(result->measured);
+    double *g = NULL, *error = NULL;
+    if (composition_is_mixed(&rdf->composition))
+        return STATUS_OK;
+    NEW_ARRAY(g, rdf->bins.count);
+    NEW_ARRAY(error, rdf->bins.count);
+    CHECK(mf_rdf_result(rdf, 1, g, error));
+    const struct kirkwood_buff found =
+        mf_kirkwood_buff_integrate(&rdf->bins, g, error, &box, rdf->particle_count);
+    mf_json_put_quantity(writer, "kirkwood_buff", "lambda^3", found.integral);
+    mf_json_put_quantity(writer, "kirkwood_buff_error", "lambda^3", found.integral_error);
+    mf_json_put_number(writer, "compressibility", found.compressibility);
+    mf_json_put_number(writer, "compressibility_error", found.compressibility_error);
+done:
+    mf_memory_free(g);
+    mf_memory_free(error);
+    return status;
+}
+
+static void put_temperature(const struct measure_result *result, struct json_writer *writer) {
+    const struct series *const series = &result->measured->motion.temperature;
+    if (series->count == 0)
+        return;
+    mf_json_put_number(writer, "temperature", mf_series_mean(series));
+    mf_json_put_number(writer, "temperature_error", mf_series_error(series));
+}
+
+/// D by the MSD, and by the VACF if there is one.
+static void put_diffusion(const struct measure_result *result, struct json_writer *writer) {
+    const double unit = mf_units_diffusion_cm2_per_s(&result->units);
+    if (!mf_measure_tables_have_motion(result))
+        return;
+    struct motion_summary s = mf_motion_result(&result->measured->motion.motion, NULL);
+    mf_statistics_forget_errors(&s.msd_error, 1);
+    mf_json_put_quantity(writer, "diffusion", "lambda^2/tau", s.msd);
+    mf_json_put_quantity(writer, "diffusion_error", "lambda^2/tau", s.msd_error);
+    mf_json_put_number(writer, "diffusion_cm2_per_s", s.msd * unit);
+    mf_json_put_number(writer, "diffusion_error_cm2_per_s", s.msd_error * unit);
+    mf_json_put_quantity(writer, "diffusion_fit_begin", "tau", s.fit_begin);
+    mf_json_put_quantity(writer, "diffusion_fit_end", "tau", s.fit_end);
+    if (!result->measured->motion.has_vacf)
+        return;
+    const double error = mf_motion_green_kubo_uncertainty(&s);
+    mf_json_put_quantity(writer, "diffusion_green_kubo", "lambda^2/tau", s.green_kubo);
+    mf_json_put_quantity(writer, "diffusion_green_kubo_error", "lambda^2/tau", error);
+    mf_json_put_number(writer, "diffusion_green_kubo_cm2_per_s", s.green_kubo * unit);
+    mf_json_put_number(writer, "diffusion_green_kubo_error_cm2_per_s", error * unit);
+}
+
+/// What is measured of time.
+static void put_motion(const struct measure_result *result, struct json_writer *writer) {
+    const struct measured_motion *const motion = &result->measured->motion;
+    if (!motion->begun)
+        return;
+    mf_json_put_quantity(writer, "interval", "tau", motion->interval);
+    mf_json_put_quantity(writer, "window", "tau",
+                         (double)motion->motion.plan.lags * motion->interval);
+    put_temperature(result, writer);
+    put_diffusion(result, writer);
+}
+
+static void put_masses(const struct measure_result *result, struct json_writer *writer) {
+    const struct composition *const composition = &result->measured->pairs.composition;
+    const bool mixed = composition_is_mixed(composition);
+    if (isnan(find_mass(result, 0)))
+        return;
+    if (!mixed) {
+        mf_json_put_quantity(writer, "mass", "mu", find_mass(result, 0));
+        return;
+    }
+    mf_json_begin(writer, "mass");
+    for (int type = 0; type < composition->types; type++)
+        mf_json_put_quantity(writer, composition->name[type], "mu", find_mass(result, type));
+    mf_json_end(writer);
+}
+
+static enum status write_summary(const struct measure_result *result) {
+    struct json_writer *writer = mf_json_writer_create();
+    mf_json_put_text(writer, "status",
+                     mf_status_name(result->interrupted ? STATUS_INTERRUPTED : STATUS_OK));
+    mf_json_put_text(writer, "method", "measure");
+    mf_units_write_summary(&result->units, writer);
+    mf_json_put_number(writer, "seconds", result->seconds);
+    mf_json_put_integer(writer, "frames", (int64_t)result->measured->frames);
+    mf_json_put_integer(writer, "particles", (int64_t)result->mapping->beads);
+    put_masses(result, writer);
+    put_density(result, writer);
+    put_motion(result, writer);
+    const enum status status = put_kirkwood_buff(result, writer);
+    if (status != STATUS_OK) {
+        mf_json_writer_free(writer);
+        return status;
+    }
+    put_trajectories(result, writer);
+    mf_json_put_text(writer, "version", MESOFIT_VERSION);
+    return write_json(result, "summary.json", writer);
+}
+
+// target.json -------------------------------------------------------------------------------------
+
+static void put_rdf_file(const struct measure_result *result, struct json_writer *writer,
+                         const char *file) {
+    mf_json_put_text(writer, "file", file);
+    mf_json_put_integer(writer, "particles", (int64_t)result->mapping->beads);
+}
+
+static void put_rdf(const struct measure_result *result, struct json_writer *writer) {
+    const struct composition *const composition = &result->measured->pairs.composition;
+    mf_json_begin(writer, "rdf");
+    if (!composition_is_mixed(composition))
+        put_rdf_file(result, writer, "rdf.tsv");
+    for (int pair = 0;
+         composition_is_mixed(composition) && pair < mf_composition_pairs(composition); pair++) {
+        char name[COMPOSITION_PAIR_NAME_SIZE], file[COMPOSITION_PAIR_NAME_SIZE + 16];
+        mf_composition_pair_name(composition, pair, name);
+        snprintf(file, sizeof file, "rdf_%s.tsv", name);
+        mf_json_begin(writer, name);
+        put_rdf_file(result, writer, file);
+        mf_json_end(writer);
+    }
+    mf_json_end(writer);
+}
+
+static void put_curve(struct json_writer *writer, const char *name, const char *file) {
+    mf_json_begin(writer, name);
+    mf_json_put_text(writer, "file", file);
+    mf_json_end(writer);
+}
+
+static void put_etd(struct json_writer *writer) {
+    mf_json_begin(writer, "etd");
+    mf_json_put_text(writer, "file", "etd.tsv");
+    mf_json_put_text(writer, "error_file", "etd_error.tsv");
+    mf_json_end(writer);
+}
+
+static void put_diffusion_target(const struct measure_result *result, struct json_writer *writer) {
+    struct motion_summary s = mf_motion_result(&result->measured->motion.motion, NULL);
+    mf_json_begin(writer, "diffusion");
+    mf_json_put_text(writer, "fitted", "no");
+    mf_json_put_quantity(writer, "value", "lambda^2/tau", s.msd);
+    mf_json_put_quantity(writer, "error", "lambda^2/tau", s.msd_error);
+    mf_json_end(writer);
+}
+
+static void put_targets(const struct measure_result *result, struct json_writer *writer) {
+    mf_json_begin(writer, "target");
+    put_rdf(result, writer);
+    if (mf_measure_tables_have_etd(result))
+        put_etd(writer);
+    if (mf_measure_tables_have_motion(result)) {
+        if (result->measured->motion.has_vacf)
+            put_curve(writer, "vacf", "vacf.tsv");
+        put_curve(writer, "msd", "msd.tsv");
+        put_diffusion_target(result, writer);
+    }
+    mf_json_end(writer);
+}
+
+/// A mixture is told by the numbers of its beads, of no more of them than a fit simulates well.
+static void put_particles(const struct measure_result *result, struct json_writer *writer) {
+    enum { MOST_BEADS = 4000 };
+    const struct composition *const all = &result->measured->pairs.composition;
+    const int64_t beads = mf_composition_particles(all);
+    const struct composition some =
+        mf_composition_scaled(all, beads < MOST_BEADS ? beads : MOST_BEADS);
+    if (!composition_is_mixed(all) && isnan(find_mass(result, 0)))
+        return;
+    mf_json_begin(writer, "particles");
+    if (composition_is_mixed(all)) {
+        mf_json_begin(writer, "types");
+        for (int type = 0; type < some.types; type++)
+            mf_json_put_integer(writer, some.name[type], some.count[type]);
+        mf_json_end(writer);
+    }
+    put_masses(result, writer);
+    mf_json_end(writer);
+}
+
+static enum status write_target(const struct measure_result *result) {
+    struct json_writer *writer = mf_json_writer_create();
+    mf_json_put_text(writer, "title", result->request->frames.file[0]);
+    mf_json_put_text(writer, "units", mf_units_systems[result->units.system]);
+    mf_json_writer_speak(writer, &result->units);
+    put_targets(result, writer);
+    mf_json_begin(writer, "scene");
+    mf_json_put_quantity(writer, "density", "1/lambda^3", find_density(result));
+    put_particles(result, writer);
+    if (!isnan(find_temperature(result)))
+        mf_json_put_number(writer, "temperature", find_temperature(result));
+    mf_json_end(writer);
+    return write_json(result, "target.json", writer);
+}
+
+static enum status write_used(const struct measure_result *result) {
+    const struct measured_plan *const plan = &result->measured->plan;
+    struct json_writer *writer = mf_json_writer_create();
+    put_trajectories(result, writer);
+    mf_json_put_number(writer, "range", plan->range);
+    mf_json_put_integer(writer, "bins", plan->bins);
+    return write_json(result, "used.json", writer);
+}
+
+enum status mf_measure_output_write(const struct measure_result *result) {
+    TRY(write_used(result));
+    TRY(mf_measure_tables_write(result));
+    TRY(write_target(result));
+    return write_summary(result);
+}

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The folder of a measurement: a target for `mesofit fit`.
+#pragma once
+
+#include "work/measure_run.h"
+
+/// A measurement that is over.
+struct measure_result {
+    const struct measure_request *request;
+    const struct frames *frames;
+    const struct mapping *mapping;
+    const struct measured *measured;
+    struct units units;
+    const char *folder;
+    bool interrupted;
+    double seconds;
+};
+
+/// Write the tables, target.json, summary.json and used.json. Fails: IO, NO_MEMORY.
+enum status mf_measure_output_write(const struct measure_result *result) MUST_USE;

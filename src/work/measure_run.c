@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "work/measure_run.h"
+
+#include "base/number_text.h"
+#include "io/units.h"
+#include "report/progress.h"
+#include "work/measure_output.h"
+
+#include <math.h>
+#include <string.h>
+
+struct run {
+    const struct measure_request *request;
+    struct progress progress;
+    struct run_folder folder;
+    struct input_files inputs;
+    struct trajectory structure;
+    struct mapping mapping;
+    struct frames frames;
+    struct measured measured;
+};
+
+/// Every file that is read must be spared.
+static enum status collect_inputs(struct run *run) {
+    const struct measure_request *const request = run->request;
+    for (size_t k = 0; k < request->frames.files; k++)
+        TRY(mf_input_files_add(&run->inputs, request->frames.file[k]));
+    if (request->structure)
+        TRY(mf_input_files_add(&run->inputs, request->structure));
+    return request->map ? mf_input_files_add(&run->inputs, request->map) : STATUS_OK;
+}
+
+static const char *structure_file(const struct run *run) {
+    return run->request->structure ? run->request->structure : run->request->frames.file[0];
+}
+
+/// Lines of a text, one at a time.
+static void say_lines(struct progress *progress, const struct bytes *notes) {
+    const char *line = (const char *)notes->data;
+    while (line && *line) {
+        const char *const end = strchr(line, '\n');
+        mf_progress_say(progress, "%.*s", (int)(end - line), line);
+        line = end + 1;
+    }
+}
+
+/// What the atoms are, and which of them are beads.
+static enum status find_beads(struct run *run) {
+    struct mapping_plan plan;
+    TRY(run->request->map ? mf_mapping_plan_read(&plan, run->request->map)
+                          : mf_mapping_plan_default(&plan));
+    enum status status =
+        mf_trajectory_open(&run->structure, structure_file(run), &run->request->frames.options);
+    if (status == STATUS_OK)
+        status = mf_mapping_init(&run->mapping, &plan, &run->structure.structure);
+    mf_mapping_plan_clear(&plan);
+    TRY(status);
+    say_lines(&run->progress, &run->mapping.notes);
+    return STATUS_OK;
+}
+
+static void tell(struct run *run) {
+    const struct frames *const frames = &run->frames;
+    uint64_t done, total;
+    char text[96];
+    mf_frames_bytes(frames, &done, &total);
+    if (!run->progress.terminal || total == 0 || done == 0)
+        return;
+    const double all = (double)frames->used * (double)total / (double)done;
+    snprintf(text, sizeof text, "%zu frames", frames->used);
+    mf_progress_tell(&run->progress, frames->used, (uint64_t)fmax(all, (double)frames->used),
+                     "frames", text);
+}
+
+static enum status begin_measuring(struct run *run) {
+    struct measured_plan plan = run->request->measured;
+    plan.motion.expected = mf_frames_expected(&run->frames);
+    return mf_measured_begin(&run->measured, &plan, &run->mapping, run->frames.frame);
+}
+
+static enum status read_frames(struct run *run) {
+    size_t count;
+    for (;;) {
+        TRY(mf_frames_next(&run->frames, &count));
+        if (count == 0)
+            break;
+        if (run->measured.mapping == NULL)
+            TRY(begin_measuring(run));
+        TRY(mf_measured_add(&run->measured, run->frames.frame, count));
+        tell(run);
+    }
+    if (run->frames.used > 0)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT, "%s: no frame is left to be measured",
+                          run->request->frames.file[0]);
+}
+
+/// How far beads go, and what is to be known of it: a periodic box slows D.
+static void say_diffusion(struct run *run, const struct units *units) {
+    const struct measured_motion *const motion = &run->measured.motion;
+    const struct motion_summary s = mf_motion_result(&motion->motion, NULL);
+    const double cm2 = mf_units_diffusion_cm2_per_s(units) * 1e5;
+    char diffusion[NUMBER_TEXT_SIZE];
+    mf_number_text(cm2 * s.msd, cm2 * s.msd_error, diffusion);
+    mf_progress_say(&run->progress,
+                    "D = %s 1e-5 cm^2/s by the MSD from %.4g to %.4g ps, as it is in this box: a "
+                    "larger one has more, by 2.84 k_B T/(6 pi eta L) of a cube",
+                    diffusion, s.fit_begin, s.fit_end);
+    if (motion->path.differences)
+        mf_progress_say(&run->progress,
+                        "mesofit: warning: the VACF is of differences of positions over %.4g ps: "
+                        "it is lower at short times, its integral is right",
+                        2 * motion->interval);
+}
+
+static void say_motion(struct run *run, const struct units *units) {
+    const struct measured_motion *const motion = &run->measured.motion;
+    if (!motion->begun && !motion->plan.leave_out)
+        mf_progress_say(&run->progress, "mesofit: warning: no motion, no escape times: %s",
+                        run->measured.frames < 2 ? "there is one frame"
+                                                 : "frames have no times (--file-time-step)");
+    if (!motion->begun)
+        return;
+    if (mf_motion_blocks(&motion->motion) == 0)
+        mf_progress_say(&run->progress,
+                        "mesofit: warning: no motion, no escape times: %zu frames are no window "
+                        "of %lld intervals (--window)",
+                        motion->frames, (long long)motion->motion.plan.lags);
+    else
+        say_diffusion(run, units);
+    if (!motion->has_vacf && motion->plan.velocities == MEASURED_VELOCITIES_USUAL)
+        mf_progress_say(&run->progress, "no VACF: there are no velocities (--velocities "
+                                        "differences makes them of positions)");
+}
+
+/// What a person is to know.
+static void say_results(struct run *run, const struct units *units) {
+    const struct measured *const measured = &run->measured;
+    mf_progress_say(&run->progress, "g(r) to %.4g nm in %lld bins%s", measured->plan.range,
+                    (long long)measured->plan.bins,
+                    measured->pairs.molecule ? ", without pairs of one molecule or residue" : "");
+    say_motion(run, units);
+    if (isnan(run->request->temperature) && measured->motion.temperature.count == 0)
+        mf_progress_say(&run->progress, "no temperature is known: tell it by --temperature, or in "
+                                        "\"scene\" of target.json");
+}
+
+static enum status write_results(struct run *run, bool interrupted) {
+    mf_measured_motion_end(&run->measured.motion);
+    const struct measure_result result = {.request = run->request,
+                                          .frames = &run->frames,
+                                          .mapping = &run->mapping,
+                                          .measured = &run->measured,
+                                          .units = mf_measured_units(run->request->system),
+                                          .folder = run->folder.path,
+                                          .interrupted = interrupted,
+                                          .seconds = mf_progress_seconds(&run->progress)};
+    TRY(mf_run_folder_begin(&run->folder, false));
+    TRY(mf_measure_output_write(&result));
+    mf_run_folder_draw(&run->folder);
+    say_lines(&run->progress, &run->frames.notes);
+    say_results(run, &result.units);
+    mf_progress_say(&run->progress, "%zu frames of %zu beads in %.3g s; results in %s",
+                    run->measured.frames, run->mapping.beads, result.seconds, run->folder.path);
+    return STATUS_OK;
+}
+
+static enum status prepare(struct run *run, const struct run_options *options) {
+    TRY(collect_inputs(run));
+    TRY(find_beads(run));
+    TRY(mf_frames_open(&run->frames, &run->request->frames, &run->structure.structure,
+                       structure_file(run)));
+    return mf_run_folder_open(&run->folder, RUN_MEASUREMENT, run->request->frames.file[0],
+                              &run->inputs, options);
+}
+
+/// What was measured before a wish to stop is a measurement, too.
+static enum status carry_out(struct run *run, const struct run_options *options) {
+    TRY(prepare(run, options));
+    const enum status status = read_frames(run);
+    const bool interrupted = status == STATUS_INTERRUPTED && run->measured.frames > 0;
+    if (status != STATUS_OK && !interrupted)
+        return status;
+    TRY(write_results(run, interrupted));
+    return !interrupted ? STATUS_OK
+                        : mf_status_fail(STATUS_INTERRUPTED,
+                                         "interrupted after %zu frames, whose results are in %s",
+                                         run->measured.frames, run->folder.path);
+}
+
+enum status mf_measure_run(const struct measure_request *request,
+                           const struct run_options *options) {
+    struct run run = {.request = request, .progress = mf_progress_begin(options->quiet)};
+    const enum status status = carry_out(&run, options);
+    mf_measured_clear(&run.measured);
+    mf_frames_close(&run.frames);
+    mf_mapping_clear(&run.mapping);
+    mf_trajectory_close(&run.structure);
+    mf_input_files_clear(&run.inputs);
+    mf_run_folder_close(&run.folder);
+    return status;
+}

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "work/measure_tables.h"
+
+#include "base/memory.h"
+#include "base/statistics.h"
+#include "io/data_table.h"
+#include "observe/measure.h"
+
+bool mf_measure_tables_have_motion(const struct measure_result *result) {
+    const struct measured_motion *const motion = &result->measured->motion;
+    return motion->begun && mf_motion_blocks(&motion->motion) > 0;
+}
+
+bool mf_measure_tables_have_etd(const struct measure_result *result) {
+    const struct measured_motion *const motion = &result->measured->motion;
+    return motion->begun && mf_etd_complete(&motion->etd) > 0;
+}
+
+struct simulation_setup mf_measure_tables_setup(const struct measure_result *result) {
+    return (struct simulation_setup){.box = mf_measured_box(result->measured),
+                                     .placement = {.count = (int64_t)result->mapping->beads},
+                                     .composition = result->measured->pairs.composition,
+                                     .time_step = result->measured->motion.interval};
+}
+
+static enum status write_curve(const struct measure_result *result, const char *file,
+                               const struct data_column *columns, size_t rows) {
+    char path[OUTPUT_PATH_SIZE];
+    snprintf(path, sizeof path, "%.*s/%s", OUTPUT_PATH_SIZE - 64, result->folder, file);
+    return mf_data_table_write_in(path, &result->units, NULL, columns, 3, rows);
+}
+
+/// msd.tsv and vacf.tsv: time, value, standard error.
+static enum status write_motion(const struct measure_result *result) {
+    enum status status = STATUS_OK;
+    const struct measured_motion *const measured = &result->measured->motion;
+    const struct motion *const motion = &measured->motion;
+    const size_t rows = (size_t)motion->plan.lags + 1;
+    double *time = NULL, *values = NULL;
+    NEW_ARRAY(time, rows);
+    NEW_ARRAY(values, 4 * rows);
+    const struct motion_curves curves = {values, values + rows, values + 2 * rows,
+                                         values + 3 * rows};
+    mf_motion_result(motion, &curves);
+    mf_statistics_forget_errors(curves.msd_error, rows);
+    mf_statistics_forget_errors(curves.vacf_error, rows);
+    for (size_t k = 0; k < rows; k++)
+        time[k] = (double)k * measured->interval;
+    const struct data_column msd[] = {{"time[tau]", time, NULL},
+                                      {"msd[lambda^2]", curves.msd, "%.8g"},
+                                      {"msd_error[lambda^2]", curves.msd_error, "%.3g"}};
+    const struct data_column vacf[] = {{"time[tau]", time, NULL},
+                                       {"vacf[lambda^2/tau^2]", curves.vacf, "%.8g"},
+                                       {"vacf_error[lambda^2/tau^2]", curves.vacf_error, "%.3g"}};
+    CHECK(write_curve(result, "msd.tsv", msd, rows));
+    if (measured->has_vacf)
+        CHECK(write_curve(result, "vacf.tsv", vacf, rows));
+done:
+    mf_memory_free(time);
+    mf_memory_free(values);
+    return status;
+}
+
+enum status mf_measure_tables_write(const struct measure_result *result) {
+    const struct simulation_setup setup = mf_measure_tables_setup(result);
+    const struct measure_plan plan = {.samples = (int64_t)result->measured->frames};
+    const struct observable_results results = {&setup, &plan, &result->units, result->folder};
+    TRY(mf_rdf_observable.write(&result->measured->rdf, &results));
+    if (mf_measure_tables_have_motion(result))
+        TRY(write_motion(result));
+    return mf_measure_tables_have_etd(result)
+               ? mf_etd_observable.write(&result->measured->motion.etd, &results)
+               : STATUS_OK;
+}

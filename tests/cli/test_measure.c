@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// `mesofit measure` on trajectories whose contents another program has told
+// (tests/trajectories/README.md).
+#include "io/data_table.h"
+#include "shared/is_close.h"
+#include "shared/results.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { WATERS = 2744, PATH = 1024, MOST_WORDS = 16 };
+
+static struct run_program_result result;
+
+static char xtc[PATH], trr[PATH], gro[PATH], wrapped[PATH], dump[PATH];
+
+static const char map[] = "{\"beads\": {\"W\": {\"residue\": \"SOL\"}},"
+                          " \"masses\": {\"OW\": 15.9994, \"HW1\": 1.008, \"HW2\": 1.008}}";
+
+static int enter(void **state) {
+    const char *const folder = run_program_sources();
+    snprintf(xtc, PATH, "%s/tests/trajectories/water.xtc", folder);
+    snprintf(trr, PATH, "%s/tests/trajectories/water.trr", folder);
+    snprintf(gro, PATH, "%s/tests/trajectories/water.gro", folder);
+    snprintf(wrapped, PATH, "%s/tests/trajectories/water-atoms-wrapped.xtc", folder);
+    snprintf(dump, PATH, "%s/tests/trajectories/lammps-plain.dump", folder);
+    return small_inputs_enter_without_gnuplot(state);
+}
+
+#define MEASURE(...)                                                                               \
+    do {                                                                                           \
+        RUN_PROGRAM(&result, "measure", __VA_ARGS__);                                              \
+        run_program_assert_code(&result, 0);                                                       \
+    } while (0)
+
+/// Mean number of pairs from `low` to `high` nm, by g in bins of 0.01 nm.
+static double count_pairs(const char *file, double low, double high) {
+    struct data_table table;
+    double pairs = 0;
+    assert_ok(mf_data_table_read(&table, file, 2));
+    for (size_t k = 0; k < table.rows; k++) {
+        const double r = table.values[table.columns * k], g = table.values[table.columns * k + 1];
+        if (r > low && r < high)
+            pairs += g * (pow(r + 0.005, 3) - pow(r - 0.005, 3));
+    }
+    mf_data_table_clear(&table);
+    return pairs * 4 * acos(-1) / 3 * WATERS * (WATERS - 1.0) / 2 / pow(4.384, 3);
+}
+
+/// Counts of centres of mass, by another program from the trr.
+static void test_measure_counts_the_pairs_that_there_are(void **state) {
+    temporary_folder_write(*state, "map.json", map, sizeof map - 1);
+    MEASURE(trr, "-s", gro, "--map", "map.json", "-o", "trr", "--quiet");
+    assert_close(count_pairs("trr/rdf.tsv", 0.2, 0.3), (3977 + 4003) / 2.0, 0.01);
+    assert_close(count_pairs("trr/rdf.tsv", 0.3, 0.4), (6737 + 6683) / 2.0, 0.01);
+    assert_close(count_pairs("trr/rdf.tsv", 0.4, 0.5), (11831 + 11879) / 2.0, 0.01);
+    // Σ M v² / (3 N k_B) of frames 0 and 1; three degrees of freedom are those of the whole.
+    assert_close(results_number("trr/summary.json", "temperature"), (292.570 + 287.689) / 2, 0.2);
+    assert_close(results_number("trr/summary.json", "particles"), WATERS, 0);
+    assert_close(results_number("trr/summary.json", "density"), WATERS / pow(4.384, 3), 1e-4);
+    // Rounded to 0.001 nm, a few pairs are in other bins.
+    MEASURE(xtc, "-s", gro, "-o", "xtc");
+    assert_contains(result.err, "no VACF: there are no velocities");
+    assert_close(count_pairs("xtc/rdf.tsv", 0.2, 0.3), (3977 + 4003 + 4013 + 4041 + 4045) / 5.0, 5);
+    MEASURE(wrapped, "-s", gro, "-o", "wrapped", "--quiet");
+    assert_close(count_pairs("wrapped/rdf.tsv", 0.2, 0.3), count_pairs("xtc/rdf.tsv", 0.2, 0.3),
+                 0.5);
+    MEASURE(gro, "-o", "gro", "--quiet");
+    assert_close(count_pairs("gro/rdf.tsv", 0.2, 0.3), 3977, 20);
+    assert_false(temporary_folder_exists("gro/msd.tsv")); // of one frame
+}
+
+static const char *const tables[] = {"rdf.tsv",       "msd.tsv",      "etd.tsv",
+                                     "etd_error.tsv", "etd_bins.tsv", NULL};
+
+static void test_measure_writes_the_same_bytes_when_threads_differ(void **state) {
+    (void)state;
+    MEASURE(xtc, "-s", gro, "-o", "one", "--threads", "1", "--window", "0.04", "--quiet");
+    MEASURE(xtc, "-s", gro, "-o", "two", "--threads", "2", "--window", "0.04", "--quiet");
+    MEASURE(xtc, "-s", gro, "-o", "three", "--threads", "3", "--window", "0.04", "--quiet");
+    results_assert_same("one", "two", tables);
+    results_assert_same("one", "three", tables);
+    results_assert_same("one", "three", (const char *const[]){"target.json", NULL});
+}
+
+/// Frames `first` … `end` − 1 of water.xtc, whose header tells the bytes that follow it.
+static void write_frames(struct temporary_folder *folder, const char *name, size_t first,
+                         size_t end) {
+    enum { HEADER = 92, SIZE = 88 };
+    static unsigned char bytes[200000];
+    FILE *stream = fopen(xtc, "rb");
+    const size_t all = fread(bytes, 1, sizeof bytes, stream);
+    size_t begin[8] = {0}, frames = 0;
+    fclose(stream);
+    while (begin[frames] < all) {
+        const unsigned char *const size = bytes + begin[frames] + SIZE;
+        const size_t packed = (size_t)size[1] << 16 | (size_t)size[2] << 8 | size[3];
+        begin[frames + 1] = begin[frames] + HEADER + (packed + 3) / 4 * 4;
+        frames++;
+    }
+    assert_int_equal(frames, 5);
+    temporary_folder_write(folder, name, (const char *)bytes + begin[first],
+                           begin[end] - begin[first]);
+}
+
+static void test_measure_joins_files_when_a_run_was_restarted(void **state) {
+    write_frames(*state, "a.xtc", 0, 3);
+    write_frames(*state, "b.xtc", 1, 5); // from an earlier checkpoint on
+    MEASURE(xtc, "-s", gro, "-o", "whole", "--window", "0.04", "--quiet");
+    MEASURE("a.xtc", "b.xtc", "-s", gro, "-o", "parts", "--window", "0.04");
+    assert_contains(result.err, "b.xtc: 2 frames of times that had been were left out");
+    char *target = temporary_folder_read("parts/target.json");
+    assert_contains(target, "\"title\":\t\"a.xtc\"");
+    free(target);
+    results_assert_same("whole", "parts", tables);
+    MEASURE(xtc, "-s", gro, "-o", "every", "--every", "0.04", "--begin", "0.01", "--end", "0.07",
+            "--static", "--quiet");
+    assert_close(results_number("every/summary.json", "frames"), 2, 0); // 0.02 and 0.06 ps
+}
+
+static void test_measure_uses_what_is_whole_when_a_file_breaks_off(void **state) {
+    write_frames(*state, "four.xtc", 0, 4);
+    write_frames(*state, "five.xtc", 0, 5);
+    char *five = temporary_folder_read("five.xtc");
+    FILE *stream = fopen("five.xtc", "rb");
+    fseek(stream, 0, SEEK_END);
+    const long size = ftell(stream);
+    fclose(stream);
+    temporary_folder_write(*state, "broken.xtc", five, (size_t)size - 1000);
+    free(five);
+    RUN_PROGRAM(&result, "measure", "broken.xtc", "-s", gro, "-o", "no", "--quiet");
+    run_program_assert_refused(&result, "no", "broken", 1,
+                               (const char *const[]){"broken.xtc: frame 4, byte", "ends", NULL});
+    assert_false(temporary_folder_exists("no/rdf.tsv"));
+    MEASURE("broken.xtc", "-s", gro, "-o", "broken", "--allow-truncated");
+    assert_contains(result.err, "broken.xtc: frame 4, byte");
+    MEASURE("four.xtc", "-s", gro, "-o", "four", "--quiet");
+    results_assert_same("broken", "four", (const char *const[]){"rdf.tsv", NULL});
+}
+
+static void test_measure_speaks_angstrom_when_asked(void **state) {
+    (void)state;
+    MEASURE(trr, "-s", gro, "-o", "nm", "--quiet");
+    MEASURE(trr, "-s", gro, "-o", "angstrom", "--units", "angstrom-fs", "--quiet");
+    char *table = temporary_folder_read("angstrom/rdf.tsv");
+    assert_contains(table, "# r[angstrom]\tg[1]\tg_error[1]\n0.05\t");
+    free(table);
+    assert_close_relative(results_number("angstrom/summary.json", "density"),
+                          1e-3 * results_number("nm/summary.json", "density"), 1e-12);
+    assert_close_relative(results_number("angstrom/summary.json", "interval"), 20, 1e-12);
+}
+
+static void test_measure_tells_types_apart_when_the_map_does(void **state) {
+    static const char two[] = "{\"beads\": {\"O\": {\"residue\": \"SOL\", \"atoms\": \"OW\"},"
+                              "\"H\": {\"residue\": \"SOL\", \"atoms\": \"HW1 HW2\"}}}";
+    temporary_folder_write(*state, "two.json", two, sizeof two - 1);
+    MEASURE(xtc, "-s", gro, "--map", "two.json", "-o", "two");
+    assert_contains(result.err, "without pairs of one molecule");
+    assert_true(temporary_folder_exists("two/rdf_O-O.tsv"));
+    assert_true(temporary_folder_exists("two/rdf_H-H.tsv"));
+    struct data_table table;
+    assert_ok(mf_data_table_read(&table, "two/rdf_O-H.tsv", 3));
+    // The hydrogens' middle is 0.06 nm from the own oxygen, and 0.1 nm from no other one.
+    for (size_t k = 0; k < 10; k++)
+        assert_close(table.values[3 * k + 1], 0, 0);
+    mf_data_table_clear(&table);
+    char *target = temporary_folder_read("two/target.json");
+    assert_contains(target, "\"O-H\":");
+    assert_contains(target, "\"types\":");
+    free(target);
+}
+
+static const struct {
+    const char *words[MOST_WORDS];
+    const char *says[3];
+} refusals[] = {
+    {{"XTC", "-s", "missing.gro"}, {"missing.gro"}},
+    {{"missing.xtc", "-s", "GRO"}, {"missing.xtc"}},
+    {{"XTC", "-s", "small.gro"}, {"has 8232 atoms", "small.gro has 3"}},
+    {{"XTC", "-s", "GRO", "--map", "oxygen.json"}, {"oxygen.json: atom 2", "belongs to no bead"}},
+    {{"XTC", "-s", "GRO", "--map", "wrong.json"}, {"wrong.json: residue 1", "atoms \"CA\""}},
+    {{"odd.gro", "--map", "map.json"},
+     {"map.json: residue 2 \"SOL\" (atom 4) has 2 atoms", "the first of its name has 3"}},
+    {{"unboxed.gro"}, {"unboxed.gro: frame 0 has no box"}},
+    {{"XTC", "-s", "GRO", "--range", "2.3"}, {"frame 0: the range of g(r), 2.3 nm", "2.192"}},
+    {{"XTC", "-s", "GRO", "--escape", "2.3"}, {"the range of escape times, 2.3 nm"}},
+    {{"XTC", "-s", "GRO", "--velocities", "file"}, {"frame 0 has no velocities"}},
+    {{"late.xtc", "early.xtc", "-s", "GRO"}, {"early.xtc: frame 0 is out of order"}},
+    {{"early.xtc", "last.xtc", "-s", "GRO"}, {"last.xtc: frame 0, at 0.08", "not 0.02"}},
+    {{"XTC", "-s", "GRO", "--begin", "7"}, {"no frame is left"}},
+    {{"XTC", "-s", "GRO", "--range", "far"}, {"--range takes a number above 0"}},
+    {{"XTC", "-s", "GRO", "--bins", "0"}, {"--bins takes a whole number"}},
+    {{"XTC", "-s", "GRO", "--units", "mile"}, {"--units takes nm-ps|angstrom-fs"}},
+    {{"XTC", "-s", "GRO", "--window", "0.02"}, {"--window 0.02", "0.02 ps apart"}},
+    {{"DUMP", "-s", "GRO"}, {"lammps-plain.dump"}},
+};
+
+static void write_bad_files(struct temporary_folder *folder) {
+    static const char small[] = "three atoms\n3\n"
+                                "    1SOL     OW    1   0.100   0.100   0.100\n"
+                                "    1SOL    HW1    2   0.200   0.100   0.100\n"
+                                "    1SOL    HW2    3   0.100   0.200   0.100\n"
+                                "   3.0 3.0 3.0\n";
+    static const char odd[] = "two waters\n5\n"
+                              "    1SOL     OW    1   0.100   0.100   0.100\n"
+                              "    1SOL    HW1    2   0.200   0.100   0.100\n"
+                              "    1SOL    HW2    3   0.100   0.200   0.100\n"
+                              "    2SOL     OW    4   1.100   0.100   0.100\n"
+                              "    2SOL    HW1    5   1.200   0.100   0.100\n"
+                              "   3.0 3.0 3.0\n";
+    static const char unboxed[] = "two atoms\n2\n"
+                                  "    1SOL     OW    1   0.100   0.100   0.100\n"
+                                  "    2SOL     OW    2   0.200   0.100   0.100\n"
+                                  "   0.0 0.0 0.0\n";
+    static const char oxygen[] = "{\"beads\": {\"O\": {\"residue\": \"SOL\", \"atoms\": \"OW\"}}}";
+    static const char wrong[] = "{\"beads\": {\"O\": {\"residue\": \"SOL\", \"atoms\": \"CA\"}}}";
+    temporary_folder_write(folder, "small.gro", small, sizeof small - 1);
+    temporary_folder_write(folder, "odd.gro", odd, sizeof odd - 1);
+    temporary_folder_write(folder, "unboxed.gro", unboxed, sizeof unboxed - 1);
+    temporary_folder_write(folder, "map.json", map, sizeof map - 1);
+    temporary_folder_write(folder, "oxygen.json", oxygen, sizeof oxygen - 1);
+    temporary_folder_write(folder, "wrong.json", wrong, sizeof wrong - 1);
+    write_frames(folder, "early.xtc", 0, 2);
+    write_frames(folder, "late.xtc", 2, 4);
+    write_frames(folder, "last.xtc", 4, 5);
+}
+
+static void test_measure_refuses_what_does_not_fit_in_a_line(void **state) {
+    write_bad_files(*state);
+    for (size_t k = 0; k < sizeof refusals / sizeof *refusals; k++) {
+        const char *words[MOST_WORDS + 5] = {"measure", "--quiet", "-o", "bad"};
+        for (size_t n = 0; refusals[k].words[n]; n++) {
+            const char *const word = refusals[k].words[n];
+            words[4 + n] = strcmp(word, "XTC") == 0    ? xtc
+                           : strcmp(word, "GRO") == 0  ? gro
+                           : strcmp(word, "DUMP") == 0 ? dump
+                                                       : word;
+        }
+        run_program(&result, &(struct run_program_how){0}, words);
+        run_program_assert_refused(&result, ".", refusals[k].says[0], 1, refusals[k].says);
+        assert_false(temporary_folder_exists("bad/rdf.tsv"));
+        assert_false(temporary_folder_exists("bad/target.json"));
+    }
+}
+
+static void test_measure_spares_what_it_did_not_write(void **state) {
+    (void)state;
+    MEASURE(xtc, "-s", gro, "-o", "again", "--static", "--quiet");
+    MEASURE(xtc, "-s", gro, "-o", "again", "--static", "--quiet"); // may replace itself
+    remove("again/used.json");
+    RUN_PROGRAM(&result, "measure", xtc, "-s", gro, "-o", "again", "--static", "--quiet");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "so no run wrote it");
+    MEASURE(xtc, "-s", gro, "-o", "again", "--static", "--quiet", "--force");
+}
+
+int main(void) {
+#define TEST(name) cmocka_unit_test_setup_teardown(name, enter, small_inputs_leave)
+    const struct CMUnitTest tests[] = {
+        TEST(test_measure_counts_the_pairs_that_there_are),
+        TEST(test_measure_writes_the_same_bytes_when_threads_differ),
+        TEST(test_measure_joins_files_when_a_run_was_restarted),
+        TEST(test_measure_uses_what_is_whole_when_a_file_breaks_off),
+        TEST(test_measure_speaks_angstrom_when_asked),
+        TEST(test_measure_tells_types_apart_when_the_map_does),
+        TEST(test_measure_refuses_what_does_not_fit_in_a_line),
+        TEST(test_measure_spares_what_it_did_not_write),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Figures whose shape depends on the scene: particles, obstacles, dimensions.
+#include "report/figures.h"
+#include "shared/figure_folders.h"
+#include "shared/is_close.h"
+#include "shared/testing.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static const char blue[] = "rgb(  0, 114, 178)", vermillion[] = "rgb(213,  94,   0)";
+
+/// Radius of the last point of a colour; 0 if there is none.
+static double radius_of(const char *folder, const char *colour) {
+    char path[FIGURE_PATH + 64], line[4096];
+    double radius = 0;
+    snprintf(path, sizeof path, "%s/figures/configuration.svg", folder);
+    FILE *stream = fopen(path, "r");
+    assert_non_null(stream);
+    while (fgets(line, sizeof line, stream)) {
+        const char *at = strstr(line, "scale(");
+        if (at && strstr(line, colour))
+            radius = strtod(at + strlen("scale("), NULL);
+    }
+    fclose(stream);
+    return radius;
+}
+
+/// Two types, of which the table tells the radii alone: their discs are as large, and apart by
+/// colour.
+static void test_particles_are_discs_of_their_size_and_type(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "types");
+    figure_folders_write(
+        folder, "used.json",
+        "{\n\t\"dimensions\":\t2,\n\t\"box\":\t[10, 20],\n\t\"particles\":\t{\n"
+        "\t\t\"types\":\t{\n\t\t\t\"Big\":\t1,\n\t\t\t\"small\":\t2\n\t\t}\n\t}\n}\n");
+    figure_folders_write(folder, "configuration.tsv",
+                         "# x[lambda]\ty[lambda]\tradius\n5\t5\t2\n2\t2\t0.5\n8\t9\t0.5\n");
+    figure_folders_draw(folder);
+    assert_true(figure_folders_drawn(folder, "configuration"));
+    const double big = radius_of(folder, blue), small = radius_of(folder, vermillion);
+    // 10 λ are about as wide as the figure without its margins; a rim is 0.3 pixels.
+    assert_true(big > 60 && big < 110);
+    assert_close_relative((big + 0.3) / (small + 0.3), 4, 0.01);
+    assert_true(figure_folders_say(folder, "configuration", ">small<"));
+}
+
+/// Discs without radii touch where they begin to repel each other.
+static void test_particles_without_radii_are_as_large_as_their_forces_reach(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    static const char scene[] =
+        "{\n\t\"dimensions\":\t2,\n\t\"box\":\t[10, 10],\n\t\"conservative\":\t{\n"
+        "\t\t\"law\":\t\"soft-repulsion\",\n\t\t\"a\":\t20,\n\t\t\"cutoff\":\t%s\n\t}\n}\n";
+    static const char table[] = "# x[lambda]\ty[lambda]\n5\t5\n";
+    char text[256];
+    double width[2];
+    for (int k = 0; k < 2; k++) {
+        figure_folders_make(folder, k == 0 ? "short" : "long");
+        snprintf(text, sizeof text, scene, k == 0 ? "1" : "3");
+        figure_folders_write(folder, "used.json", text);
+        figure_folders_write(folder, "configuration.tsv", table);
+        figure_folders_draw(folder);
+        width[k] = radius_of(folder, blue) + 0.3;
+    }
+    assert_close_relative(width[1] / width[0], 3, 0.01);
+}
+
+static const char grey[] = "<polygon fill = 'rgb(217, 217, 217)'";
+
+static void test_flow_shows_its_obstacle(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH],
+        text[1024] =
+            "# x[lambda]\ty[lambda]\tv_x[lambda/tau]\tv_y[lambda/tau]\tdensity[1/lambda^d]\t"
+            "vorticity[1/tau]\tstream_function[lambda^2/tau]\n";
+    for (int n = 0; n < 16; n++)
+        sprintf(text + strlen(text), "%g\t%g\t1\t0\t10\t%g\t%g\n", n % 4 + 0.5, n / 4 + 0.5,
+                0.1 * n, n / 4 + 0.5);
+    static const char scene[] =
+        "{\n\t\"dimensions\":\t2,\n\t\"box\":\t[4, 4],\n\t\"dynamics\":\t{\n"
+        "\t\t\"obstacle_centre\":\t[2, 2],\n\t\t\"obstacle_radius\":\t1\n"
+        "\t}\n}\n";
+    figure_folders_make(folder, "obstacle");
+    figure_folders_write(folder, "used.json", scene);
+    figure_folders_write(folder, "flow_field.tsv", text);
+    figure_folders_draw(folder);
+    assert_true(figure_folders_drawn(folder, "flow_field"));
+    assert_true(figure_folders_say(folder, "flow_field", grey));
+    figure_folders_make(folder, "no-obstacle");
+    figure_folders_write(folder, "used.json", "{\n\t\"box\":\t[4, 4]\n}\n");
+    figure_folders_write(folder, "flow_field.tsv", text);
+    figure_folders_draw(folder);
+    assert_false(figure_folders_say(folder, "flow_field", grey));
+}
+
+static void test_pressure_is_over_lengths_of_as_many_dimensions(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    for (int dimensions = 2; dimensions <= 3; dimensions++) {
+        char folder[FIGURE_PATH], text[64];
+        figure_folders_make(folder, dimensions == 2 ? "plane" : "space");
+        figure_folders_write(folder, "thermodynamics.tsv",
+                             "# step\ttime[tau]\ttemperature[T_0]\tpotential_energy[k_B.T_0]\t"
+                             "pressure[k_B.T_0/lambda^d]\ttemperature_configurational[T_0]\n"
+                             "0\t0\t1\t0\t30\tnan\n1\t0.1\t1\t0\t30\tnan\n");
+        snprintf(text, sizeof text, "{\n\t\"dimensions\":\t%d\n}\n", dimensions);
+        figure_folders_write(folder, "used.json", text);
+        figure_folders_draw(folder);
+        // The only raised figure.
+        assert_true(figure_folders_say(
+            folder, "simulation", dimensions == 2 ? "dy=\"-6.50px\">2<" : "dy=\"-6.50px\">3<"));
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_particles_are_discs_of_their_size_and_type),
+        cmocka_unit_test(test_particles_without_radii_are_as_large_as_their_forces_reach),
+        cmocka_unit_test(test_flow_shows_its_obstacle),
+        cmocka_unit_test(test_pressure_is_over_lengths_of_as_many_dimensions),
+    };
+    return cmocka_run_group_tests(tests, figure_folders_begin, figure_folders_end);
+}
