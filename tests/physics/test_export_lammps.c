@@ -117,7 +117,7 @@ static void test_lammps_has_our_water(void **state) {
 }
 
 #define TEST(name)                                                                                 \
-    cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
+    cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
 
 int main(void) {
     const struct CMUnitTest tests[] = {TEST(test_lammps_has_our_water)};
