@@ -115,6 +115,11 @@ static void test_lammps_reads_the_potential(void **state) {
     init(&rows);
     read_lammps(&rows, "lammps/mesofit.table", "PHI_A-A");
     assert_reads(lammps_value, &rows, 4.184, 0.1);
+    for (double r = 1.01 * rows.low; r < 0.02 * rows.high; r *= 1.1) { // no pole near r = 0
+        double phi, force;
+        lammps_value(&rows, r, &phi, &force);
+        assert_true(force >= 0 && force < 1.1 * 25 * thermal / 4.184 / 7);
+    }
     char *input = temporary_folder_read("lammps/in.mesofit");
     snprintf(style, sizeof style, "table linear %zu\"", rows.count);
     assert_contains(input, style);
