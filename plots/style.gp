@@ -101,8 +101,9 @@ in_units(file, name, physical, reduced) = system(sprintf("awk -F '\t' -v name='%
         if (own[1] == wanted[1] && own[2] && !seen++) { spoken = own[2]; sub(/\\]$/, \"\", spoken) } } } \
     END { if (label == reduced && spoken && spoken !~ /^1$|lambda|tau|k_B|T_0|mu/) { \
             gsub(/angstrom/, \"Å\", spoken); gsub(/\\./, \" \", spoken); \
-            if (spoken ~ /\\//) spoken = \"(\" spoken \")\"; \
-            label = physical; sub(/ \\/ .*/, \" / \" spoken, label) } \
+            half = sub(/^sqrt/, \"\", spoken) ? \"^{1/2}\" : \"\"; \
+            if (!half && spoken ~ /\\//) spoken = \"(\" spoken \")\"; \
+            label = physical; sub(/ \\/ .*/, \" / \" spoken half, label) } \
         print label }'", name, physical, reduced) . from(file))
 # The same of a column that is in physical units only if the file is.
 axis_of(file, name, symbol, reduced) = in_units(file, name . "[]", symbol . " / ", reduced)
@@ -142,9 +143,10 @@ log_axis(axis, a, b) = sprintf("set logscale %s; set %srange [%g:%g]; ", axis, a
 log_range(axis, a, b) = a > b ? log_axis(axis, 0.1, 1) : log_axis(axis, a / 1.4, b * 1.4)
 
 # k_B T_0 in the units of column 2 of a potential's table, by the temperature at the top of used.json.
-energy_of(file) = real("0" . system("awk -F '\t' '/^#/ && NF > 1 { print ($2 ~ /kcal/ ? 0.0019872 : $2 ~ /kJ/ ? 0.0083145 : 0); exit }'" . \
+energy_of(file) = real(system("awk -F '\t' '/^#/ && NF > 1 && !k { k = $2 ~ /kcal/ ? 0.0019872 : $2 ~ /kJ/ ? 0.0083145 : 0 } \
+    END { print k + 0 }'" . \
     from(file)))
-kelvins = !has("used.json") ? 300 : real("0" . system("awk -F '[:,]' '/\"temperature\":/ { print $2; exit }' used.json"))
+kelvins = !has("used.json") ? 300 : real(system("awk -F '[:,]' '/\"temperature\":/ && !T { T = $2 } END { print T + 0 }' used.json"))
 thermal_energy(file) = energy_of(file) > 0 ? energy_of(file) * high(1, kelvins) : 1
 
 # Where a potential's axes begin and end: "top begin lowest" in the table's own units, of all blocks

@@ -3,6 +3,7 @@
 #include "io/data_table.h"
 #include "io/units_text.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -45,10 +46,15 @@ enum status mf_data_table_convert(struct data_table *table, const char *file, si
     const enum status status = named ? mf_units_from(units, given, unit, &factor) : STATUS_OK;
     if (status != STATUS_OK)
         return mf_status_prefix(status, "%s: column %zu", file, column + 1);
+    const double spoken = mf_units_factor(units, unit);
     for (size_t row = 0; row < table->rows; row++) {
         double *value = &table->values[row * table->columns + column];
         // As numbers of the file itself are converted, to the same bits.
-        *value = named ? *value * factor : *value / mf_units_factor(units, unit);
+        const double reduced = named ? *value * factor : *value / spoken;
+        if (isinf(reduced))
+            return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: %g is too large", file,
+                                  table->line[row], column + 1, *value);
+        *value = reduced;
     }
     return STATUS_OK;
 }

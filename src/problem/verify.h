@@ -20,7 +20,7 @@ struct verification {
                                     ///< that of g(r) by leaving out blocks. NaN with one replica
     struct thermodynamics_summary thermodynamics;
     double diffusion_begin, diffusion_end; ///< times between which D is the MSD's slope [τ]; or 0
-    char warning[256]; ///< why its temperatures are not to be trusted; "" if they are
+    char warning[512]; ///< why its temperatures are not to be trusted; "" if they are
     uint64_t engine_steps;
     size_t particles;
     /// Where the first replica ended: positions, then velocities, by id, shape [6, particles];

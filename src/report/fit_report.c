@@ -156,7 +156,8 @@ void mf_fit_report_say(struct progress *to, const struct fit_file *fit,
     const struct units *units = &fit->scene.units;
     say_changes(to, units, unknowns, result);
     if (result->formula[0])
-        mf_progress_say(to, "formula: %s", result->formula);
+        mf_progress_say(to, "formula%s: %s", mf_units_speaks(units) ? " in reduced units" : "",
+                        result->formula);
     say_parameters(to, fit, result->parameter);
     say_numbers(to, fit, result->number);
     say_distances(to, fit, v);

@@ -24,27 +24,41 @@ static const char *find_cause(const struct thermodynamics_summary *found, double
 }
 
 bool mf_fit_verdict_contradicts(const struct verification *verification, bool pressure_is_fitted,
-                                double temperature, double noise_margin,
+                                double temperature, double noise_margin, const struct units *units,
                                 char reason[INVERSE_REASON_SIZE]) {
+    const double bar = mf_units_factor(units, "k_B T_0/lambda^d");
+    char unit[UNITS_NAME_SIZE], kelvin[UNITS_NAME_SIZE];
+    mf_units_suffix(units, "k_B T_0/lambda^d", unit);
+    mf_units_suffix(units, "T_0", kelvin);
     const struct target_distance *rdf = &verification->distance[TARGET_RDF];
     const struct thermodynamics_summary *found = &verification->thermodynamics;
     const struct target_distance *pressure = &verification->distance[TARGET_PRESSURE];
     if (pressure_is_fitted && pressure->rms > noise_margin * pressure->noise) {
-        snprintf(reason, INVERSE_REASON_SIZE,
-                 "the verification's pressure, %.4g, is off by %.2g (%.2g by statistics): its time "
-                 "step may be too long",
-                 found->pressure, pressure->rms, pressure->noise);
+        snprintf(
+            reason, INVERSE_REASON_SIZE,
+            "the verification's pressure, %.4g%.16s, is off by %.2g (%.2g by statistics): its time "
+            "step may be too long",
+            bar * found->pressure, unit, bar * pressure->rms, bar * pressure->noise);
         return true;
     }
     if (!(rdf->rms > noise_margin * rdf->noise))
         return false;
     snprintf(reason, INVERSE_REASON_SIZE,
              "the fit's samples agree with g(r), its verification is off by %.2g (%.2g by "
-             "statistics) at T = %.3g, pressure %.3g: %s",
+             "statistics) at T = %.3g%.8s, pressure %.3g%.16s: %s",
              rdf->rms, rdf->noise,
-             isnan(found->temperature) ? found->temperature_configurational : found->temperature,
-             found->pressure, find_cause(found, temperature));
+             mf_units_factor(units, "T_0") * (isnan(found->temperature)
+                                                  ? found->temperature_configurational
+                                                  : found->temperature),
+             kelvin, bar * found->pressure, unit, find_cause(found, temperature));
     return true;
+}
+
+void mf_fit_verdict_mark(const struct units *units, struct verification *verification) {
+    if (verification->warning[0] == '\0' || !mf_units_speaks(units))
+        return;
+    mf_units_mark(units, mf_status_fail(STATUS_UNSTABLE, "%s", verification->warning));
+    snprintf(verification->warning, sizeof verification->warning, "%s", mf_status_message());
 }
 
 bool mf_fit_verdict_is_worse(const struct verification *verification, const struct targets *targets,

@@ -13,7 +13,7 @@
 /// @param[in] noise_margin  either may be off by this many times its statistical error
 /// Returns whether there is something to say. Tested: test_fit_verdict.
 bool mf_fit_verdict_contradicts(const struct verification *verification, bool pressure_is_fitted,
-                                double temperature, double noise_margin,
+                                double temperature, double noise_margin, const struct units *units,
                                 char reason[INVERSE_REASON_SIZE]);
 
 /// Why the verified error of all targets is not the one that a method measured itself: it is larger
@@ -24,3 +24,6 @@ bool mf_fit_verdict_contradicts(const struct verification *verification, bool pr
 /// Returns whether there is something to say. Tested: test_fit_verdict.
 bool mf_fit_verdict_is_worse(const struct verification *verification, const struct targets *targets,
                              double error, double variance, char reason[INVERSE_REASON_SIZE]);
+
+/// Simulations warn in reduced units: add the scale to a warning if the file speaks in others.
+void mf_fit_verdict_mark(const struct units *units, struct verification *verification);

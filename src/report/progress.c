@@ -59,3 +59,10 @@ void mf_progress_say(struct progress *progress, const char *format, ...) {
     va_end(arguments);
     fputc('\n', stderr);
 }
+
+void mf_progress_say_scale(struct progress *progress, const struct units *units) {
+    char line[UNITS_LINE_SIZE];
+    mf_units_tell(units, line);
+    if (mf_units_speaks(units))
+        mf_progress_say(progress, "%s", line);
+}

@@ -3,6 +3,8 @@
 /// in a pipe, nothing with --quiet. Always on stderr.
 #pragma once
 
+#include "io/units_scale.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -27,3 +29,6 @@ void mf_progress_tell(struct progress *progress, uint64_t done, uint64_t total, 
 /// End the updating line, if there is one, and print a line of its own unless quiet.
 void mf_progress_say(struct progress *progress, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
+
+/// Say what the scale of a file in physical units is.
+void mf_progress_say_scale(struct progress *progress, const struct units *units);

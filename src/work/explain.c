@@ -140,6 +140,13 @@ static void add_companions(struct stages *stages, const struct simulation_setup 
                       "%.0f particles of %s", own, integrator->name);
 }
 
+void mf_explain_scale(FILE *out, const struct units *units) {
+    char line[UNITS_LINE_SIZE];
+    mf_units_tell(units, line);
+    if (mf_units_speaks(units))
+        fprintf(out, "%s\n", line);
+}
+
 void mf_explain_scene(FILE *out, const struct simulation_setup *setup, const struct units *units,
                       const struct observable_use *uses, int64_t every) {
     struct stages stages = {.units = units};
@@ -157,10 +164,6 @@ void mf_explain_scene(FILE *out, const struct simulation_setup *setup, const str
     if (!simulation_holds_temperature(setup) && !setup->integrator->events)
         mf_stages_add(&stages, "thermostat", false, 0, "nothing holds the temperature");
     double total = 0;
-    char scale[UNITS_LINE_SIZE];
-    mf_units_tell(units, scale);
-    if (mf_units_speaks(units))
-        fprintf(out, "%s\n", scale);
     for (int k = 0; k < stages.count; k++)
         total += stages.stage[k].nanoseconds;
     const double rate = 1e9 / (total * counted(setup));

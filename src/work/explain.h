@@ -6,6 +6,9 @@
 
 #include <stdio.h>
 
+/// Print the scale of a scene whose file speaks physical units.
+void mf_explain_scale(FILE *out, const struct units *units);
+
 /// Print the stages of a step with the share of the time that each is expected to take, from costs
 /// measured on one processor: shares are good to some percent of the whole.
 /// @param[in] uses   what is measured, with its settings, ended by one without an observable

@@ -41,6 +41,7 @@ struct run {
         char reason[INVERSE_REASON_SIZE];
         char formula[FIELD_TEXT_SIZE]; ///< or ""
     } standing;
+    bool doubted; ///< by the verification
 };
 
 static double seconds(const struct run *run) {
@@ -148,11 +149,7 @@ static void say_line(void *progress, const char *line) {
 static enum status tell_targets(struct run *run) {
     const struct target_etd *etd = &run->fit.files.etd;
     const char *warning = mf_scene_warning(&run->fit.scene);
-    if (mf_units_speaks(&run->fit.scene.units)) {
-        char scale[UNITS_LINE_SIZE];
-        mf_units_tell(&run->fit.scene.units, scale);
-        mf_progress_say(&run->progress, "%s", scale);
-    }
+    mf_progress_say_scale(&run->progress, &run->fit.scene.units);
     if (warning)
         mf_progress_say(&run->progress, "mesofit: warning: scene: %s", warning);
     if (etd->left_out > 0)
@@ -316,7 +313,9 @@ static void tell_unconverged(const struct run *run) {
                        "not one simulation of the fit succeeded; the failures are counted in "
                        "%s/history.tsv",
                        folder);
-    mf_units_mark(&run->fit.scene.units, STATUS_UNCONVERGED);
+    // What the verification says of it speaks as the file does, and most reasons of no units.
+    if (!run->doubted && (strstr(reason, "pressure") || strstr(reason, "k_B T_0")))
+        mf_units_mark(&run->fit.scene.units, STATUS_UNCONVERGED);
 }
 
 /// A result whose verification blows up leaves a summary that says so.
@@ -359,9 +358,11 @@ static void doubt(struct run *run, const struct verification *verification) {
     if (run->fit.method->kind == INVERSE_INVERSION
             ? mf_fit_verdict_contradicts(verification, targets_ask(targets, TARGET_PRESSURE),
                                          run->fit.problem.scene.temperature, noise_margin,
-                                         standing->reason)
+                                         &run->fit.scene.units, standing->reason)
             : mf_fit_verdict_is_worse(verification, targets, standing->error, standing->variance,
                                       standing->reason))
+        run->doubted = true;
+    if (run->doubted)
         standing->converged = standing->used_up = false;
 }
 
@@ -381,6 +382,7 @@ static enum status verify_and_write(struct run *run) {
     if (status == STATUS_UNSTABLE)
         status = write_unstable(run);
     CHECK(status);
+    mf_fit_verdict_mark(&run->fit.scene.units, &verification);
     doubt(run, &verification);
     const bool accepted = run->standing.converged || run->standing.used_up;
     struct fit_result result = result_so_far(run, accepted ? STATUS_OK : STATUS_UNCONVERGED);

@@ -84,6 +84,7 @@ enum status mf_fit_explain(const char *file, const struct run_options *options) 
         status = try_method(&fit);
     CHECK(status != STATUS_OK ? mf_status_prefix(status, "%s", file) : STATUS_OK);
     CHECK(mf_unknowns_laws_start(&unknowns, &laws));
+    mf_explain_scale(stdout, &fit.scene.units);
     CHECK(mf_target_sanity_tell(&fit.files, &fit.scene,
                                 &(struct target_sanity_listener){print_line, stdout}));
     print_numbers(&fit);

@@ -166,11 +166,8 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
 
 static void warn(struct run *run) {
     const char *warning = mf_scene_warning(&run->scene);
-    char line[SCENE_LINE_SIZE], scale[UNITS_LINE_SIZE];
-    if (mf_units_speaks(&run->scene.units)) {
-        mf_units_tell(&run->scene.units, scale);
-        mf_progress_say(&run->progress, "%s", scale);
-    }
+    char line[SCENE_LINE_SIZE];
+    mf_progress_say_scale(&run->progress, &run->scene.units);
     if (warning)
         mf_progress_say(&run->progress, "mesofit: warning: %s", warning);
     if (mf_scene_is_hot(&run->scene, line))
@@ -239,6 +236,7 @@ enum status mf_simulate_explain(const char *file, const struct run_options *opti
     CHECK(read_file(run, file, options));
     // All that a run refuses before its first step.
     CHECK(begin_measuring(run, file));
+    mf_explain_scale(stdout, &run->scene.units);
     mf_explain_scene(stdout, &run->scene.setup, &run->scene.units, run->observables.use,
                      run->plan.every);
 done:

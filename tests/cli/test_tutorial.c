@@ -34,7 +34,7 @@ static void test_tutorial_does_what_it_says(void **state) {
         results_number("tutorial/omega/summary.json", "parameters.omega.sigma.value");
     const double error =
         results_number("tutorial/omega/summary.json", "parameters.omega.sigma.error");
-    assert_true(error > 0 && error < 1 && fabs(sigma - 6) < 3 * error);
+    assert_true(error > 0 && error < 4 && fabs(sigma - 22.74) < 3 * error);
     // LAMMPS finds 23.652(1), see tests/reference_data; one run has an error of 0.007.
     assert_close(results_number("tutorial/scene/summary.json", "pressure"), 23.652, 0.04);
     results_assert_table("tutorial/scene/rdf.tsv", 3, 100);
@@ -42,7 +42,7 @@ static void test_tutorial_does_what_it_says(void **state) {
     assert_contains(page, "target rdf: g from 0.005 to 0.995 nm, peak 2.79 at 0.275 nm");
     assert_contains(page, "omega: sigma = ");
     free(page);
-    results_assert_table("tutorial/out/potential.tsv", 7, 101);
+    results_assert_table("tutorial/out/potential.tsv", 5, 101);
     char *table = temporary_folder_read("tutorial/potential.lammps");
     assert_contains(table, "MESOFIT\nN 86\n\n1 1.55 ");
     free(table);

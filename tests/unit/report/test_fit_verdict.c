@@ -15,7 +15,7 @@ static struct verification make(double rms, double temperature, double pressure)
 
 static void assert_says(const struct verification *verification, const char *words) {
     char reason[INVERSE_REASON_SIZE];
-    assert_true(mf_fit_verdict_contradicts(verification, false, 1.5, 3, reason));
+    assert_true(mf_fit_verdict_contradicts(verification, false, 1.5, 3, NULL, reason));
     assert_contains(reason, words);
     assert_true(strlen(reason) + 1 < INVERSE_REASON_SIZE);
 }
@@ -24,7 +24,7 @@ static void test_fit_verdict_is_silent_when_g_is_off_by_noise(void **state) {
     (void)state;
     char reason[INVERSE_REASON_SIZE];
     const struct verification good = make(0.0059, 1.8, -3);
-    assert_false(mf_fit_verdict_contradicts(&good, true, 1.5, 3, reason));
+    assert_false(mf_fit_verdict_contradicts(&good, true, 1.5, 3, NULL, reason));
 }
 
 static void test_fit_verdict_names_the_cause_when_g_is_off(void **state) {
@@ -45,11 +45,11 @@ static void test_fit_verdict_names_the_pressure_when_it_was_fitted_and_is_off(vo
     char reason[INVERSE_REASON_SIZE];
     struct verification found = make(0.0021, 1.5, 1.9);
     found.distance[TARGET_PRESSURE] = (struct target_distance){.rms = 0.4, .noise = 0.1};
-    assert_false(mf_fit_verdict_contradicts(&found, false, 1.5, 3, reason));
-    assert_true(mf_fit_verdict_contradicts(&found, true, 1.5, 3, reason));
+    assert_false(mf_fit_verdict_contradicts(&found, false, 1.5, 3, NULL, reason));
+    assert_true(mf_fit_verdict_contradicts(&found, true, 1.5, 3, NULL, reason));
     assert_contains(reason, "pressure, 1.9, is off by 0.4 (0.1 by statistics)");
     found.distance[TARGET_PRESSURE].rms = 0.29;
-    assert_false(mf_fit_verdict_contradicts(&found, true, 1.5, 3, reason));
+    assert_false(mf_fit_verdict_contradicts(&found, true, 1.5, 3, NULL, reason));
 }
 
 /// Of one target, and of two that count in units of their errors.
