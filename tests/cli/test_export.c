@@ -135,6 +135,34 @@ static void test_lammps_reads_the_potential(void **state) {
     clear(&rows);
 }
 
+/// The same fluid, its file in nm, ps and u, with a lambda that the program chooses.
+static void test_result_in_nm_and_ps_is_exported_alike(void **state) {
+    static struct rows rows;
+    static struct run_program_result result;
+    char text[1024];
+    const double mass = 9e-26 * 6.02214076e26, picoseconds = 0.7 * sqrt(mass / thermal);
+    snprintf(text, sizeof text,
+             "{\"units\": \"nm-ps\", \"seed\": 5, \"box\": [3.248, 3.248, 3.248], \"temperature\": "
+             "300,\n\"particles\": {\"count\": 300, \"mass\": %.15g}, \"time_step\": %.15g,\n"
+             "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": %.15g, \"cutoff\": 0.7},\n"
+             "\"dissipative\": {\"law\": \"power\", \"sigma\": %.15g, \"cutoff\": 0.7},\n"
+             "\"measure\": {\"equilibration\": 10, \"samples\": 2, \"every\": 10}}\n",
+             mass, 0.04 * picoseconds, 25 * thermal / 0.7, 2.1213 * sqrt(mass / picoseconds));
+    small_inputs_write(*state, "scene.json", text, NULL, NULL);
+    small_scenes_simulate(&result, "out");
+    run_export("lammps", "lammps");
+    init(&rows);
+    read_lammps(&rows, "lammps/mesofit.table", "PHI_A-A");
+    assert_reads(lammps_value, &rows, 4.184, 0.1);
+    clear(&rows);
+    char *input = temporary_folder_read("lammps/in.mesofit");
+    const char *found = strstr(input, "pair_coeff 1 1 dpd/tstat ");
+    assert_non_null(found);
+    const double gamma = 4.49991 * thermal / 4.184 * picoseconds * 1e3 / 49;
+    assert_true(fabs(strtod(found + strlen("pair_coeff 1 1 dpd/tstat "), NULL) / gamma - 1) < 1e-4);
+    free(input);
+}
+
 /// Three columns r, Φ, F; both ends are among the rows.
 static void read_columns(struct rows *rows, const char *path) {
     FILE *file = open_text(path);
@@ -389,6 +417,7 @@ static void test_fit_leaves_where_another_run_begins(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_lammps_reads_the_potential),
+        TEST(test_result_in_nm_and_ps_is_exported_alike),
         TEST(test_python_engines_read_the_potential),
         TEST(test_gromacs_reads_the_potential),
         TEST(test_dl_poly_reads_the_potential),
