@@ -411,6 +411,41 @@ static void test_fit_leaves_where_another_run_begins(void **state) {
     assert_true(fabs(x - start) < 1e-9);
 }
 
+/// A fit that speaks nm and ps: where its first bead is, in Å.
+static void test_fit_in_nm_and_ps_is_exported(void **state) {
+    static struct run_program_result result;
+    static const char target[] = "# r[nm] g error\n0.05 0.3 0.1\n0.15 0.6 0.1\n0.25 0.8 0.1\n"
+                                 "0.35 1.1 0.1\n0.45 1.0 0.1\n";
+    static const char run[] =
+        "{\"units\": \"nm-ps\", \"seed\": 1, \"target\": {\"rdf\": {\"file\": \"target.tsv\"}},\n"
+        "\"scene\": {\"box\": [1.5, 1.5, 1.5], \"particles\": {\"count\": 81, \"mass\": 18},\n"
+        "\"temperature\": 300, \"time_step\": 0.02,\n"
+        "\"dissipative\": {\"law\": \"power\", \"sigma\": 9, \"cutoff\": 0.5}},\n"
+        "\"method\": {\"name\": \"imc\", \"replicas\": 2, \"equilibration\": 1, \"samples\": 8, "
+        "\"every\": 1, \"iterations\": 1},\n"
+        "\"verification\": {\"replicas\": 1, \"equilibration\": 1, \"samples\": 2, \"every\": "
+        "1}}\n";
+    double x, start, friction;
+    small_inputs_write(*state, "run.json", run, NULL, NULL);
+    small_inputs_write(*state, "target.tsv", target, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out");
+    run_export("lammps", "lammps");
+    char *text = temporary_folder_read("out/configuration.tsv");
+    assert_contains(text, "x[nm]");
+    assert_int_equal(sscanf(strchr(text, '\n'), "%lf", &x), 1);
+    free(text);
+    text = temporary_folder_read("lammps/data.mesofit");
+    assert_int_equal(sscanf(strstr(text, "Atoms # atomic") + 14, "%*d %*d %lf", &start), 1);
+    free(text);
+    assert_true(fabs(10 * x - start) < 1e-8);
+    text = temporary_folder_read("lammps/in.mesofit"); // 81 u/ps in kcal/mol fs/A²
+    const char *found = strstr(text, "pair_coeff 1 1 dpd/tstat ");
+    assert_non_null(found);
+    friction = strtod(found + strlen("pair_coeff 1 1 dpd/tstat "), NULL);
+    free(text);
+    assert_true(fabs(friction / (81 * 1e-3 * 48.88821291 * 48.88821291) - 1) < 1e-5);
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -425,6 +460,7 @@ int main(void) {
         TEST(test_mixture_has_a_table_for_each_pair_type),
         TEST(test_what_cannot_be_exported_is_one_line),
         TEST(test_fit_leaves_where_another_run_begins),
+        TEST(test_fit_in_nm_and_ps_is_exported),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
