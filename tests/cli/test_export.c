@@ -446,11 +446,51 @@ static void test_fit_in_nm_and_ps_is_exported(void **state) {
     assert_true(fabs(friction / (81 * 1e-3 * 48.88821291 * 48.88821291) - 1) < 1e-5);
 }
 
+/// `lmp -in lammps/in.mesofit` where the folder was written: a short run whose g(r) is ours within
+/// 0.02; it was 0.013. tests/physics/test_export_lammps.c has the long one.
+static void test_lammps_runs_what_was_written(void **state) {
+    static struct run_program_result result;
+    if (system("command -v lmp >/dev/null") != 0) {
+        print_message("lmp is not installed: LAMMPS is not run\n");
+        skip();
+    }
+    small_scenes_write(*state, small_scenes_dpd, "\"samples\": 20", "\"samples\": 400");
+    small_scenes_simulate(&result, "out");
+    run_export("lammps", "lammps");
+    assert_int_equal(system("lmp -in lammps/in.mesofit -var steps 4000 -var equilibration 500 "
+                            "-log none >lmp.out 2>&1"),
+                     0);
+    FILE *ours = open_text("out/rdf.tsv"), *theirs = open_text("lammps/rdf.dat");
+    char line[512], other[512];
+    double squares = 0;
+    int rows = 0;
+    for (int k = 0; k < 4; k++) // three comments and the step
+        assert_non_null(fgets(other, sizeof other, theirs));
+    for (; fgets(line, sizeof line, ours); rows += line[0] != '#') {
+        double r, g, their_r, their_g;
+        if (line[0] == '#')
+            continue;
+        assert_int_equal(sscanf(line, "%lf %lf", &r, &g), 2);
+        assert_non_null(fgets(other, sizeof other, theirs));
+        assert_int_equal(sscanf(other, "%*d %lf %lf", &their_r, &their_g), 2);
+        assert_true(fabs(their_r - 7 * r) < 1e-5); // A
+        squares += (g - their_g) * (g - their_g);
+    }
+    fclose(ours);
+    fclose(theirs);
+    assert_int_equal(rows, 100);
+    print_message("rms of g - ours: %.4f\n", sqrt(squares / rows));
+    assert_true(sqrt(squares / rows) < 0.02);
+}
+
+#define TEST_WITH_PATH(name)                                                                       \
+    cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        TEST_WITH_PATH(test_lammps_runs_what_was_written),
         TEST(test_lammps_reads_the_potential),
         TEST(test_result_in_nm_and_ps_is_exported_alike),
         TEST(test_python_engines_read_the_potential),
