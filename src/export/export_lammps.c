@@ -276,7 +276,7 @@ const struct export_engine mf_export_lammps = {
     .interpolation = &mf_export_grid_square,
     .commands = "    lmp -in in.mesofit\n    mpirun -np 4 lmp -in in.mesofit   # the same on four "
                 "processors\n",
-    .verified = "run",
+    .verified = "Such folders were run with LAMMPS of 29 Sep 2021 and 6 Jan 2022.",
     .most_types = COMPOSITION_MOST_TYPES,
     .flat = true,
     .write = write,

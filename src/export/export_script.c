@@ -119,5 +119,4 @@ void mf_export_script_explain(const struct export_job *job, const char *dpd, FIL
                 job->engine->title);
     else
         fprintf(stream, "A Langevin bath of each particle holds the temperature.\n");
-    fprintf(stream, "This folder was checked against the engine's source, and not run.\n");
 }
