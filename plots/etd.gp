@@ -10,7 +10,7 @@ rdfs = system("ls | grep -E '^rdf(_[A-Za-z0-9_]+-[A-Za-z0-9_]+)?[.]tsv$'")
 distances = words(rdfs) > 0 ? word(rdfs, 1) : ""
 ps = has(times) ? factor_of(times, "time[ps]", 2) : 1
 nm = strlen(distances) ? factor_of(distances, "r[nm]", 1) : 1
-t_axis = has(times) ? t_axis_of(times) : t_label
+t_axis = t_axis_of(has(times) ? times : "etd.tsv")
 r0_axis = strlen(distances) ? in_units(distances, "r[nm]", "{/:Italic r}_0 / nm", \
     "{/:Italic r}_0 / {/:Italic λ}") : "{/:Italic r}_0 / {/:Italic λ}"
 

@@ -63,6 +63,9 @@ static const struct inner scene_objects[] = {
     {"conservative", "{\"law\": …}, the potential; in a mixture one for each pair type",
      "conservative"},
     {"dissipative", "{\"law\": …}, the friction weight; likewise", "dissipative"},
+    {"dissipative_transverse", "{\"law\": …}, the friction weight across pairs; likewise",
+     "dissipative"},
+    {"memory", "{\"slow\": {…}, …}: friction that remembers, modes under names of yours", "memory"},
     {"interactions", "what acts beside the pairs: {\"harmonic-trap\": {…}, …}", "interactions"},
     {"dynamics",
      "{\"integrator\": …} and its numbers; without it \"aboba\" if there is friction, else "
@@ -70,6 +73,11 @@ static const struct inner scene_objects[] = {
      "dynamics"},
     {"units", "of a scene in reduced units: physical ones for the results beside", "scale"},
     {"measure", "when to sample; this and observables in a scene file only", "measure"},
+    {NULL, NULL, NULL},
+};
+
+static const struct inner memory_objects[] = {
+    {"omega", "{\"law\": …}, how strongly: the friction of the mode is omega^2", "dissipative"},
     {NULL, NULL, NULL},
 };
 
@@ -86,6 +94,7 @@ static const struct {
     {"run", run_objects},           {"scene", scene_objects},
     {"unknowns", unknowns_objects}, {"potential", potential_objects},
     {"omega", omega_objects},       {"map", map_objects},
+    {"memory", memory_objects},
 };
 
 static const struct topic fixed_topics[] = {
@@ -98,6 +107,8 @@ static const struct topic fixed_topics[] = {
      "particles",
      "\"particles\" of a scene; a mixture has \"types\": {\"A\": 500, \"B\": 300} for \"count\"",
      {mf_placement_count_fields, mf_placement_fields, mf_attributes_fields}},
+    {"files", "memory", "a mode of \"memory\" of a scene: friction that remembers",
+     {mf_scene_memory_fields}},
     {"files", "measure", "\"measure\" of a scene file: when to sample", {mf_measure_plan_fields}},
     {"files",
      "units",

@@ -405,7 +405,7 @@ enum status mf_simulation_run(struct simulation *simulation, uint64_t steps) {
 double mf_simulation_pressure(const struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
     const struct simulation_setup *setup = &simulation->setup;
-    const bool held = setup->omega || pair_memory_acts(&setup->memory) ||
+    const bool held = simulation->law.omega || pair_memory_acts(&setup->memory) ||
                       simulation_is_overdamped(setup);
     const double temperature =
         held ? setup->temperature : mf_simulation_temperature(simulation);
@@ -417,7 +417,7 @@ size_t mf_simulation_spans(struct simulation *simulation, struct memory_span *sp
     struct particles *particles = &simulation->particles;
     const struct integrator *integrator = simulation->setup.integrator;
     const size_t numbers = particles->count * sizeof(double);
-    size_t n = mf_simulation_wants_room(simulation)
+    size_t n = simulation_wants_room(simulation)
                    ? mf_pair_memory_spans(&simulation->memory, spans)
                    : 0;
     n += mf_particles_spans(particles, spans + n);
@@ -433,10 +433,6 @@ size_t mf_simulation_spans(struct simulation *simulation, struct memory_span *sp
             n += use->choice.kind->spans(use->state, spans + n);
     }
     return n;
-}
-
-bool mf_simulation_wants_room(const struct simulation *simulation) {
-    return pair_memory_acts(&simulation->setup.memory);
 }
 
 enum status mf_simulation_make_room(struct simulation *simulation) {

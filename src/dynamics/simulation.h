@@ -188,7 +188,9 @@ size_t mf_simulation_spans(struct simulation *simulation, struct memory_span *sp
 
 /// Whether lengths of the spans depend on the first of them: it is then restored before the others,
 /// alone, and mf_simulation_make_room is called.
-bool mf_simulation_wants_room(const struct simulation *simulation);
+static inline bool simulation_wants_room(const struct simulation *simulation) {
+    return pair_memory_acts(&simulation->setup.memory);
+}
 enum status mf_simulation_make_room(struct simulation *simulation) MUST_USE;
 
 /// Rebuild the list as it was when the state was saved. Fails: NO_MEMORY.

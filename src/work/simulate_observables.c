@@ -91,7 +91,7 @@ enum status mf_simulate_observables_load(struct simulate_observables *observable
                                          uint64_t digest) {
     struct memory_span spans[SIMULATE_MOST_SPANS];
     size_t n = mf_simulation_spans(simulation, spans);
-    if (mf_simulation_wants_room(simulation)) {
+    if (simulation_wants_room(simulation)) {
         TRY(mf_checkpoint_load_span(file, digest, 0, &spans[0]));
         TRY(mf_simulation_make_room(simulation));
         n = mf_simulation_spans(simulation, spans);

@@ -8,7 +8,7 @@ void restart_simulation(struct simulation *simulation) {
     struct simulation again;
     assert_ok(mf_simulation_init(&again, &simulation->setup, NULL));
     const size_t spans = mf_simulation_spans(simulation, from);
-    if (mf_simulation_wants_room(&again)) {
+    if (simulation_wants_room(&again)) {
         mf_simulation_spans(&again, to);
         memcpy(to[0].memory, from[0].memory, from[0].bytes);
         assert_ok(mf_simulation_make_room(&again));
