@@ -90,7 +90,7 @@ static enum status run(const struct command_line *line) {
 
 const struct command cmd_fit = {
     .name = "fit",
-    .usage = "RUN.json | --target DIR",
+    .usage = "RUN.json",
     .summary = "find the potential that reproduces a target",
     .least_files = 0,
     .most_files = 1,

@@ -25,7 +25,8 @@ static enum status begin_one(const struct fit_file *fit, const struct inverse_pr
                                             .thermodynamics = true,
                                             .threads = 1,
                                             .seed = problem->seed};
-    CHECK(mf_measurement_init(&measurement, &laws.problem, &setup));
+    CHECK(
+        mf_units_mark(&fit->scene.units, mf_measurement_init(&measurement, &laws.problem, &setup)));
 done:
     mf_measurement_clear(&measurement);
     mf_unknowns_laws_clear(&laws);
@@ -44,7 +45,9 @@ static enum status try_scene(const struct fit_file *fit) {
             number->start = end ? number->maximum : number->minimum;
             const enum status status = begin_one(fit, &other);
             if (status != STATUS_OK)
-                return mf_status_prefix(status, "with %s = %g", number->name, number->start);
+                return mf_status_prefix(status, "with %s = %g", number->name,
+                                        number->start *
+                                            mf_units_factor(&fit->scene.units, number->unit));
         }
     return STATUS_OK;
 }
@@ -54,11 +57,14 @@ static enum status check_range(const struct fit_file *fit, const char *file, con
     const struct box *box = &fit->scene.setup.box;
     if (mf_box_shortest(box) >= 2 * range)
         return STATUS_OK;
+    const double length = mf_units_factor(&fit->scene.units, "lambda");
+    char unit[UNITS_NAME_SIZE];
     return mf_status_fail(STATUS_BAD_INPUT,
                           "%s: scene.box: the shortest edge %g is below twice the range of the "
-                          "target \"%s\", %g; are both in the same unit? A larger box with more "
+                          "target \"%s\", %g%s; are both in the same unit? A larger box with more "
                           "particles, or a target that ends earlier, would do",
-                          file, mf_box_shortest(box), target, range);
+                          file, length * mf_box_shortest(box), target, length * range,
+                          mf_units_suffix(&fit->scene.units, "lambda", unit));
 }
 
 static enum status check_unknowns(const struct fit_file *fit, const char *file) {

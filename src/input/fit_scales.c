@@ -108,7 +108,7 @@ static double find_core(const struct view *view) {
 /// Upper edge of the last bin about which g differs from its tail by more than noise.
 static double find_seen(const struct view *view) {
     enum { HALF = 2 };
-    static const double standard_errors = 3, least = 0.002;
+    static const double standard_errors = 5, least = 0.002; // of some hundred places
     const struct rdf_bins *bins = view->bins;
     for (size_t k = bins->count; k-- > 0;) {
         double sum = 0, variance = 0, count = 0;

@@ -18,9 +18,9 @@ static enum status read_columns(const char *file, const char *unit, const struct
     struct data_table table = {0};
     enum status status = STATUS_OK;
     CHECK(mf_data_table_read(&table, file, 2));
+    CHECK(mf_data_table_check_increasing(&table, file, 0, 0));
     CHECK(mf_data_table_convert(&table, file, 0, "lambda", units));
     CHECK(mf_data_table_convert(&table, file, 1, unit, units));
-    CHECK(mf_data_table_check_increasing(&table, file, 0, 0));
     NEW_ARRAY(*r, table.rows);
     NEW_ARRAY(*value, table.rows);
     for (size_t k = 0; k < table.rows; k++) {

@@ -176,6 +176,7 @@ enum status mf_target_curve_read(struct target_curve *curve, const struct observ
     mf_json_finish(object);
     if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
+    curve->time = mf_json_factor(object, "tau");
     struct data_table table = {0};
     const enum status status = load(curve, about, mf_json_units(object), &table);
     mf_data_table_clear(&table);
@@ -194,12 +195,12 @@ void mf_target_curve_clear(struct target_curve *curve) {
 }
 
 enum status mf_target_curve_check_steps(const struct target_curve *curve, double time_step) {
-    const double steps = curve->interval / time_step;
+    const double steps = curve->interval / time_step, time = curve->time > 0 ? curve->time : 1;
     if (!(curve->interval > 0) || (steps > 0.5 && fabs(steps / fmax(1, round(steps)) - 1) < 1e-3))
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
                           "%s: its interval %.6g is not a whole number of time steps of %g; %.6g "
                           "would do",
-                          curve->parameters.file, curve->interval, time_step,
-                          curve->interval / fmax(1, ceil(steps)));
+                          curve->parameters.file, time * curve->interval, time * time_step,
+                          time * curve->interval / fmax(1, ceil(steps)));
 }

@@ -15,6 +15,7 @@ struct target_curve {
     } parameters;
     size_t points;             ///< 0: not given
     double interval;           ///< between times [τ]; 0: of a curve that is no function of time
+    double time;               ///< τ in the units of the file, for messages; 0: 1
     double *x, *value, *error; ///< shape [points]
 };
 

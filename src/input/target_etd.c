@@ -197,6 +197,7 @@ enum status mf_target_etd_read(struct target_etd *target, struct json_object *ob
     mf_json_finish(object);
     if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
+    target->time = mf_json_factor(object, "tau");
     struct data_table table = {0}, errors = {0};
     const enum status status = load(target, mf_json_units(object), &table, &errors);
     mf_data_table_clear(&table);
@@ -222,13 +223,13 @@ enum status mf_target_etd_steps(const struct target_etd *target, double time_ste
         *every = (int64_t)whole;
         return STATUS_OK;
     }
+    const double time = target->time > 0 ? target->time : 1, interval = time * target->interval;
     char above[64] = "";
     if (steps >= 1)
-        snprintf(above, sizeof above, " or %.6g", target->interval / floor(steps));
+        snprintf(above, sizeof above, " or %.6g", interval / floor(steps));
     return mf_status_fail(
         STATUS_BAD_INPUT,
         "the times of %s are %.6g apart, %.4g time steps of %g: not a whole number, "
         "as it would be with a time step of %.6g%s",
-        target->parameters.file, target->interval, steps, time_step, target->interval / ceil(steps),
-        above);
+        target->parameters.file, interval, steps, time * time_step, interval / ceil(steps), above);
 }

@@ -18,6 +18,7 @@ struct target_etd {
     struct target_etd_parameters parameters;
     struct etd_grid grid;
     double interval;          ///< between times [τ]
+    double time;              ///< τ in the units of the file, for messages; 0: 1
     double *survival, *error; ///< shape [times, bins]; NaN: not known; error 0 without errors
     size_t left_out;          ///< cells that are not known
 };

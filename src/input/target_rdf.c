@@ -124,8 +124,8 @@ static enum status read_columns(const struct target_rdf_parameters *p, const str
                              (size_t)(p->r_column > p->g_column ? p->r_column : p->g_column)));
     CHECK(mf_target_rdf_error_column(p->error_column, p->r_column, p->g_column, &table, p->file,
                                      &error_column));
-    CHECK(mf_data_table_convert(&table, p->file, (size_t)p->r_column - 1, "lambda", units));
     CHECK(mf_data_table_check_increasing(&table, p->file, (size_t)p->r_column - 1, 0));
+    CHECK(mf_data_table_convert(&table, p->file, (size_t)p->r_column - 1, "lambda", units));
     CHECK(mf_target_rows_allocate(rows, table.rows));
     for (size_t k = 0; k < table.rows; k++) {
         rows->r[k] = cell(&table, k, p->r_column);

@@ -36,7 +36,7 @@ enum status mf_snapshot_translate(struct snapshot *told, const struct snapshot *
         const size_t numbers = (size_t)column->components * from->count;
         double *values = told->memory + (column->values - from->memory);
         for (size_t k = 0; k < numbers; k++)
-            values[k] = mf_units_spoken(column->values[k], factor);
+            values[k] = column->values[k] * factor;
         told->column[n].values = values;
     }
     return STATUS_OK;

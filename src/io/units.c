@@ -154,7 +154,8 @@ static bool read_system(struct system *system, struct json_object *root) {
 void mf_units_speak(struct json_object *root, struct json_object *scene) {
     struct system system;
     if (!read_system(&system, root)) {
-        if (root->item != scene->item && mf_json_is_object(root, "units"))
+        if (root->item != scene->item && mf_json_is_object(root, "units") &&
+            mf_json_has(root, "units"))
             mf_json_fault(root, "units",
                           "\"system\" is missing; without it, it stands in "
                           "\"scene\"");

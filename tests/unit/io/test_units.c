@@ -207,6 +207,53 @@ static void test_units_spoken_is_what_was_read(void **state) {
         }
 }
 
+static enum status read_scene(void **state, const char *text, struct units *units) {
+    struct json_document *document;
+    assert_ok(
+        mf_json_open(&document, temporary_folder_write(*state, "a.json", text, strlen(text))));
+    struct json_object root = mf_json_root(document);
+    mf_units_read(units, &root);
+    return mf_json_close(document, STATUS_OK);
+}
+
+/// Three beads in λ³, in two dimensions in λ²; the mean of all masses; 1 u where there are none.
+static void test_units_follow_from_the_scene_when_the_file_does_not_say_them(void **state) {
+    static const struct {
+        const char *text;
+        double length, temperature, mass;
+    } scenes[] = {
+        {"{\"units\": \"nm-ps\", \"box\": [2, 3, 4], \"particles\": {\"count\": 576, \"mass\": "
+         "18}, "
+         "\"temperature\": 298}",
+         0.5, 298, 18},
+        {"{\"units\": \"angstrom-fs\", \"box\": [20, 30], \"particles\": {\"count\": 200}, "
+         "\"temperature\": 350}",
+         0.3, 350, 1},
+        {"{\"units\": \"nm-ps\", \"box\": [1, 1, 1], \"particles\": {\"types\": {\"A\": 2, \"B\": "
+         "1}, "
+         "\"mass\": {\"A\": 10, \"B\": {\"minimum\": 30, \"maximum\": 50}}}, \"temperature\": 300}",
+         1, 300, 20},
+        {"{\"units\": {\"system\": \"nm-ps\", \"length\": 0.7, \"temperature\": 250, \"mass\": 9}, "
+         "\"box\": [1, 1, 1], \"particles\": {\"count\": 3, \"mass\": 18}, \"temperature\": 300}",
+         0.7, 250, 9},
+    };
+    struct units units;
+    for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) {
+        assert_ok(read_scene(state, scenes[k].text, &units));
+        assert_close_relative(units.length, scenes[k].length, 1e-14);
+        assert_close_relative(units.temperature, scenes[k].temperature, 0);
+        assert_close_relative(units.mass / UNITS_ATOMIC_MASS, scenes[k].mass, 1e-14);
+        assert_int_equal(units.chosen, k < 3);
+    }
+    assert_fails(read_scene(state,
+                            "{\"units\": \"nm-ps\", \"box\": [1e200, 1e200, 1e200], "
+                            "\"particles\": {\"count\": 3}, \"temperature\": 300}",
+                            &units),
+                 STATUS_BAD_INPUT, "units: no numbers can hold");
+    assert_ok(read_scene(state, "{\"units\": \"reduced\"}", &units));
+    assert_false(mf_units_speaks(&units));
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, temporary_folder_create, temporary_folder_remove)
 
@@ -220,6 +267,7 @@ int main(void) {
         cmocka_unit_test(test_units_from_takes_back_what_name_gives),
         cmocka_unit_test(test_units_spoken_is_what_was_read),
         TEST(test_units_read_refuses_when_no_number_can_hold_what_follows),
+        TEST(test_units_follow_from_the_scene_when_the_file_does_not_say_them),
         TEST(test_units_put_writes_results_in_physical_units),
         TEST(test_units_put_writes_nothing_when_there_are_none),
     };
