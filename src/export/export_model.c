@@ -137,7 +137,8 @@ static enum status read_summary(struct reading *reading) {
     mf_json_speak(document, &model->scene.units);
     struct json_object root = mf_json_root(document);
     const char *status = mf_json_choice(&root, "status", NULL, "");
-    if (status && reading->fit && strcmp(status, "converged") != 0 && strcmp(status, "ok") != 0)
+    if (status && reading->fit && strcmp(status, "converged") != 0 &&
+        strcmp(status, "finished") != 0)
         snprintf(model->warning, sizeof model->warning,
                  "%.160s: the fit is %.40s; what is exported is its best so far", model->folder,
                  status);

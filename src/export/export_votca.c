@@ -50,7 +50,7 @@ const struct export_engine mf_export_votca = {
     .commands = "    csg_resample --in A-A.pot --out table.pot --grid 0:0.002:1\n"
                 "    csg_call --ia-type non-bonded --options settings.xml convert_potential "
                 "lammps A-A.pot A-A.table\n",
-    .verified = "Such folders were checked against the source of the engine, and not run.",
+    .verified = "Such files were checked against the format that VOTCA reads, and not run.",
     .most_types = COMPOSITION_MOST_TYPES,
     .write = write,
     .explain = explain,

@@ -42,8 +42,10 @@ static void fit_and_export(struct temporary_folder *folder, const char *unknowns
     small_inputs_write(folder, "run.json", text, "FRICTION", friction);
     free(text);
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit"); // that need not converge
+    const bool good = result.code == 0;
     RUN_PROGRAM(&result, "export", "fit", "--engine", "lammps", "-o", "lammps");
     run_program_assert_code(&result, 0);
+    assert_int_equal(strstr(result.err, "warning: fit: the fit is ") == NULL, good);
 }
 
 /// The number behind `words` in a file.
