@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** @file A simulation: create it from a scene, step it, measure it.
  *
- * All numbers are in reduced units: energy k_B T_0, length lambda, mass mu, time
- * tau = lambda sqrt(mu / k_B T_0). Several simulations may live in one process, each used by one
- * thread at a time.
+ * All numbers are in reduced units, also where a file speaks others: energy k_B T_0, length lambda,
+ * mass mu, time tau = lambda sqrt(mu / k_B T_0). Several simulations may live in one process, each
+ * used by one thread at a time.
  */
 #ifndef MESOFIT_SIMULATION_H
 #define MESOFIT_SIMULATION_H

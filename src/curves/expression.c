@@ -51,6 +51,25 @@ bool mf_expression_append(struct expression *expression, const struct expression
     return fits;
 }
 
+bool mf_expression_scale(struct expression *expression, double length, double unit) {
+    struct expression scaled = {0};
+    bool fits = mf_expression_push(&scaled, EXPRESSION_CONSTANT, unit);
+    for (int k = 0; k < expression->length && fits; k++) {
+        const struct expression_node *node = &expression->node[k];
+        if (node->kind == EXPRESSION_DISTANCE)
+            fits = mf_expression_push(&scaled, EXPRESSION_CONSTANT, 1 / length) &&
+                   mf_expression_push(&scaled, EXPRESSION_DISTANCE, 0) &&
+                   mf_expression_push(&scaled, EXPRESSION_MULTIPLY, 0);
+        else
+            fits = mf_expression_push(&scaled, node->kind, node->constant);
+    }
+    if (!fits || !mf_expression_push(&scaled, EXPRESSION_MULTIPLY, 0))
+        return false;
+    mf_expression_simplify(&scaled);
+    *expression = scaled;
+    return true;
+}
+
 // Values ------------------------------------------------------------------------------------------
 
 /// Rounding of differences of numbers about 1.

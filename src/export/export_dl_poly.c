@@ -105,7 +105,7 @@ static void explain(const struct export_job *job, FILE *stream) {
     fprintf(stream,
             "A Langevin bath of each particle holds the temperature%s. It keeps g(r), energy and "
             "pressure; the dynamics\nis not the result's: diffusion and all else that moves "
-            "differs.\nThis folder was checked against the engine's source, and not run.\n",
+            "differs.\n",
             job->model->setup.omega ? ", and not this omega" : "");
 }
 
@@ -117,7 +117,7 @@ const struct export_engine mf_export_dl_poly = {
     .physical = true,
     .interpolation = &mf_export_grid_quadratic,
     .commands = "    DLPOLY.Z\n    mpirun -np 4 DLPOLY.Z\n",
-    .verified = "not run",
+    .verified = "Such folders were checked against the source of the engine, and not run.",
     .most_types = COMPOSITION_MOST_TYPES,
     .one_cutoff = true,
     .write = write,

@@ -127,7 +127,7 @@ static void print_readme(const struct export_job *job, FILE *stream) {
     print_friction(job, stream);
     fprintf(stream, "\n");
     job->engine->explain(job, stream);
-    fprintf(stream, "\nThe start is %s.\n",
+    fprintf(stream, "%s\n\nThe start is %s.\n", job->engine->verified,
             model->equilibrated ? "where the result's own simulation ended"
                                 : "that of the scene, which must be equilibrated first");
 }

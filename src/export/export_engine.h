@@ -33,7 +33,7 @@ struct export_engine {
     bool physical; ///< knows no reduced units: these are then nm, kJ/mol and u
     const struct export_interpolation *interpolation;
     const char *commands; ///< that run the folder, a line each
-    const char *verified; ///< "run", or what was done instead
+    const char *verified; ///< whether such folders were run: a sentence of the README
     int most_types;       ///< that it is written for
     bool one_cutoff;      ///< all its tables end at the same distance
     bool flat;            ///< also in two dimensions

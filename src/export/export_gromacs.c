@@ -106,8 +106,7 @@ static void explain(const struct export_job *job, FILE *stream) {
     fprintf(stream,
             "GROMACS reads tables up to version 2019. It has no DPD%s: its integrator sd, "
             "a bath of each particle,\nkeeps g(r), energy and pressure; the dynamics is "
-            "not the result's: diffusion and all else that moves differs.\nThis folder was "
-            "checked against the engine's source, and not run.\n",
+            "not the result's: diffusion and all else that moves differs.\n",
             job->model->setup.omega ? " and so no omega" : "");
 }
 
@@ -120,7 +119,7 @@ const struct export_engine mf_export_gromacs = {
     .physical = true,
     .interpolation = &mf_export_grid_hermite,
     .commands = "    gmx grompp\n    gmx mdrun\n",
-    .verified = "not run",
+    .verified = "Such folders were checked against the source of the engine, and not run.",
     .most_types = COMPOSITION_MOST_TYPES,
     .one_cutoff = true,
     .write = write,

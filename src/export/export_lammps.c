@@ -6,8 +6,16 @@
 
 #include <math.h>
 
-/// Of the neighbour list, as a share of the cutoff.
-#define SKIN 0.1
+/// Skin of the neighbour list [λ]: a tenth of the cutoff, and so much that the fastest particle, of
+/// eight times the thermal velocity, crosses half of it in no step.
+static double choose_skin(const struct export_job *job) {
+    const struct export_model *model = job->model;
+    double lightest = model->mass[0];
+    for (int type = 1; type < model->types; type++)
+        lightest = fmin(lightest, model->mass[type]);
+    return fmax(0.1 * mf_export_model_cutoff(model),
+                16 * job->time_step * sqrt(model->setup.temperature / lightest));
+}
 
 static bool is_real(const struct export_job *job) {
     return job->units.system == EXPORT_REAL;
@@ -198,7 +206,7 @@ static void print_measurements(const struct export_job *job, FILE *stream) {
 
 static void print_input(const struct export_job *job, FILE *stream) {
     const struct export_model *model = job->model;
-    const double cutoff = mf_export_model_cutoff(model), skin = SKIN * cutoff;
+    const double cutoff = mf_export_model_cutoff(model), skin = choose_skin(job);
     const struct export_units *units = &job->units;
     fprintf(
         stream,
@@ -212,6 +220,10 @@ static void print_input(const struct export_job *job, FILE *stream) {
         "variable band index \"\"          # _lower or _upper: exported with --bands\n"
         "variable seed index 12345\n\n",
         model->title[0] ? model->title : "beads", model->equilibrated ? 1000 : 5000);
+    fprintf(stream,
+            "# in this folder, or where it was written from\n"
+            "if \"$(is_file(data.mesofit)) == 0\" then 'shell cd \"%s\"'\n\n",
+            job->folder);
     fprintf(stream,
             "units %s\ndimension %d\nboundary p p p\natom_style atomic\nneighbor %.6g bin\n"
             "neigh_modify every 1 delay 0 check yes\ncomm_modify vel yes cutoff %.9g\n"
@@ -264,7 +276,7 @@ const struct export_engine mf_export_lammps = {
     .interpolation = &mf_export_grid_square,
     .commands = "    lmp -in in.mesofit\n    mpirun -np 4 lmp -in in.mesofit   # the same on four "
                 "processors\n",
-    .verified = "run",
+    .verified = "Such folders were run with LAMMPS of 29 Sep 2021 and 6 Jan 2022.",
     .most_types = COMPOSITION_MOST_TYPES,
     .flat = true,
     .write = write,

@@ -85,7 +85,8 @@ static enum status read_used(struct reading *reading) {
     snprintf(model->title, sizeof model->title, "%s", heading.title);
     reading->fit = mf_json_is_object(&root, "scene");
     struct json_object scene = reading->fit ? mf_json_child(&root, "scene", true) : root;
-    mf_units_speak(&root, &scene);
+    if (reading->fit) // of a scene that is its own root, mf_scene_read does so
+        mf_units_speak(&root, &scene);
     const enum status status = reading->fit
                                    ? read_run(reading, &root, &scene)
                                    : mf_scene_read(&model->scene, &scene, SCENE_FITS_NOTHING);

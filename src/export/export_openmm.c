@@ -69,7 +69,9 @@ const struct export_engine mf_export_openmm = {
     .physical = true,
     .interpolation = &mf_export_grid_spline,
     .commands = "    python3 run.py\n    python3 run.py 100000   # steps\n",
-    .verified = "not run",
+    .verified =
+        "Such folders were run with OpenMM 7.7 and its Langevin bath; DPDIntegrator is as in its "
+        "source, and was not run.",
     .most_types = COMPOSITION_MOST_TYPES,
     .write = write,
     .explain = explain,

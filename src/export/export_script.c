@@ -85,7 +85,10 @@ void mf_export_script_head(const struct export_job *job, const char *module, FIL
     const double *length = model->setup.box.length;
     fprintf(stream, "# Written by mesofit; README tells of it. Units: %s, %s, %s.\n",
             units->length_name, units->time_name, units->energy_name);
-    fprintf(stream, "import sys\nimport numpy\nimport %s\n\n", module);
+    fprintf(stream,
+            "import os\nimport sys\nimport numpy\nimport %s\n\n"
+            "os.chdir(os.path.dirname(os.path.abspath(__file__)))\n",
+            module);
     fprintf(stream, "box = [%.12g, %.12g, %.12g]\n", length[0] * units->length,
             length[1] * units->length, length[2] * units->length);
     fprintf(stream, "kT = %.12g\ntemperature = %.12g # K, or T_0\ntime_step = %.9g\n",
@@ -116,5 +119,4 @@ void mf_export_script_explain(const struct export_job *job, const char *dpd, FIL
                 job->engine->title);
     else
         fprintf(stream, "A Langevin bath of each particle holds the temperature.\n");
-    fprintf(stream, "This folder was checked against the engine's source, and not run.\n");
 }

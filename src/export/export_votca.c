@@ -37,7 +37,7 @@ static enum status write(const struct export_job *job) {
 static void explain(const struct export_job *job, FILE *stream) {
     (void)job;
     fprintf(stream, "VOTCA makes tables of other programs from .pot files; it has no friction "
-                    "weights.\nThis folder was checked against the format, and not run.\n");
+                    "weights.\n");
 }
 
 const struct export_engine mf_export_votca = {
@@ -50,7 +50,7 @@ const struct export_engine mf_export_votca = {
     .commands = "    csg_resample --in A-A.pot --out table.pot --grid 0:0.002:1\n"
                 "    csg_call --ia-type non-bonded --options settings.xml convert_potential "
                 "lammps A-A.pot A-A.table\n",
-    .verified = "not run",
+    .verified = "Such folders were checked against the source of the engine, and not run.",
     .most_types = COMPOSITION_MOST_TYPES,
     .write = write,
     .explain = explain,

@@ -10,16 +10,29 @@
 enum { NAME_SIZE = 256 };
 static const char gaps[] = " \t,;";
 
-/// Step over a word of the line of names, and over "[nm]" behind it.
+/// Behind a "[…]", whatever stands in it.
+static const char *behind_brackets(const char *open) {
+    const char *close = strchr(open, ']');
+    return close ? close + 1 : open + strlen(open);
+}
+
+/// Step over a word of the line of names, and over "[nm]" in it or behind it.
 static const char *behind_word(const char *word) {
-    word += strcspn(word, gaps);
+    for (word += strcspn(word, " \t,;["); *word == '['; word += strcspn(word, " \t,;["))
+        word = behind_brackets(word);
     const char *next = word + strspn(word, " \t");
-    return *next == '[' ? next + strcspn(next, gaps) : word;
+    return *next == '[' ? behind_brackets(next) : word;
+}
+
+/// The first name of a column: a "columns:" before it is none.
+static const char *first_name(const struct data_table *table) {
+    const char *word = table->header + strspn(table->header, gaps), *end = behind_word(word);
+    return end > word && end[-1] == ':' ? end + strspn(end, gaps) : word;
 }
 
 /// The unit of a column by the line of names; false if that has none, or is of other columns.
 static bool heading_unit(const struct data_table *table, size_t column, char unit[NAME_SIZE]) {
-    const char *word = table->header + strspn(table->header, gaps), *found = NULL;
+    const char *word = first_name(table), *found = NULL;
     size_t words = 0, length = 0;
     while (*word) {
         const char *end = behind_word(word);

@@ -5,12 +5,12 @@
 #include "base/faults.h"
 #include "io/json.h"
 
-#include <cJSON.h>
+struct cJSON;
 
 enum { JSON_LINE_SIZE = 4096 };
 
 struct json_document {
-    cJSON *root;
+    struct cJSON *root;
     char *file;
     struct input_files *inputs; ///< files that it names, or NULL: nobody wants to know
     struct units units;         ///< in which its numbers are

@@ -4,6 +4,8 @@
 #include "io/json_item.h"
 #include "io/json_list.h"
 
+#include <cJSON.h>
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

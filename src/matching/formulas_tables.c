@@ -14,10 +14,22 @@ static enum status open_in(const struct inverse_folder *folder, const char *name
     return mf_output_open(output, path);
 }
 
-/// What a formula is shifted by.
-static double shift_of(const struct formulas_state *state, const struct expression *expression) {
-    return isnan(state->points.zero) ? 0
-                                     : mf_expression_value(expression, state->points.zero, NULL);
+/// A formula of the front as its tables tell it, with what it is shifted by.
+struct told {
+    struct expression expression;
+    double shift;
+};
+
+static struct told tell(const struct formulas_state *state, int nodes,
+                        const struct inverse_folder *folder) {
+    const double length = mf_units_factor(folder->units, "lambda");
+    const double unit = mf_units_factor(folder->units, mf_unknowns_unit(state->kind));
+    struct told told = {.expression = state->front[nodes].formula.expression};
+    if (!isnan(state->points.zero))
+        told.shift = unit * mf_expression_value(&told.expression, state->points.zero, NULL);
+    if (length != 1 || unit != 1)
+        mf_expression_scale(&told.expression, length, unit);
+    return told;
 }
 
 /// formulas.tsv: a row a formula; the last column is text.
@@ -32,7 +44,8 @@ static enum status write_front(const struct formulas_state *state,
             continue;
         const bool known = member->measured && member->error < OPTIMISER_FAILED;
         char text[EXPRESSION_TEXT_SIZE];
-        mf_expression_print(&member->formula.expression, EXPRESSION_PLAIN, text);
+        const struct told told = tell(state, k, folder);
+        mf_expression_print(&told.expression, EXPRESSION_PLAIN, text);
         fprintf(output.stream, "%d\t%d\t%.6g\t%.6g\t%.3g\t%s\n", member->formula.expression.length,
                 known && k == state->progress.chosen, member->formula.error,
                 known ? member->error : NAN, known ? sqrt(member->variance) : NAN, text);
@@ -50,9 +63,10 @@ static enum status write_latex(const struct formulas_state *state,
         const struct expression *expression = &state->front[k].formula.expression;
         if (expression->length == 0)
             continue;
-        const double shift = shift_of(state, expression);
+        const struct told told = tell(state, k, folder);
+        const double shift = told.shift;
         char text[EXPRESSION_TEXT_SIZE];
-        mf_expression_print(expression, EXPRESSION_LATEX, text);
+        mf_expression_print(&told.expression, EXPRESSION_LATEX, text);
         fprintf(output.stream, "%% %d nodes\n\\begin{equation}\n  %s(r) = %s", expression->length,
                 symbol, text);
         if (shift != 0)
@@ -67,6 +81,7 @@ static enum status write_c(const struct formulas_state *state,
                            const struct inverse_folder *folder) {
     const double last = mf_unknowns_r(
         &state->unknowns, state->kind)[mf_unknowns_points(&state->unknowns, state->kind) - 1];
+    const double length = mf_units_factor(folder->units, "lambda");
     struct output output;
     TRY(open_in(folder, "formulas.h", &output));
     fprintf(output.stream, "#include <math.h>\n");
@@ -75,11 +90,12 @@ static enum status write_c(const struct formulas_state *state,
         if (expression->length == 0)
             continue;
         char text[EXPRESSION_TEXT_SIZE];
-        mf_expression_print(expression, EXPRESSION_C, text);
+        const struct told told = tell(state, k, folder);
+        mf_expression_print(&told.expression, EXPRESSION_C, text);
         fprintf(output.stream,
                 "\n/* For %.10g <= r < %.10g. */\nstatic inline double formula_%d(double r) {\n"
                 "    return %s - (%.17g);\n}\n",
-                state->points.r[0], last, expression->length, text, shift_of(state, expression));
+                length * state->points.r[0], length * last, expression->length, text, told.shift);
     }
     return mf_output_commit(&output);
 }

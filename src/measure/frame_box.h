@@ -32,7 +32,7 @@ enum status mf_frame_box_find(struct frame_box *box, const struct trajectory_fra
 double mf_frame_box_least_height(const struct frame_box *box);
 
 /// Fails: BAD_INPUT, naming the frame, if `range` is beyond half the least height; `what` says
-/// whose range it is. Tested: test_measure.
+/// whose range it is. Tested: test_frame_pairs.
 enum status mf_frame_box_check_range(const struct frame_box *box,
                                      const struct trajectory_frame *frame, double range,
                                      const char *what) MUST_USE;

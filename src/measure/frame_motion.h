@@ -37,6 +37,6 @@ enum status mf_frame_motion_init(struct frame_motion *motion, size_t beads) MUST
 void mf_frame_motion_clear(struct frame_motion *motion);
 
 /// Follow the beads to the next frame. @return the state of this frame, with differences of the one
-/// before; NULL if there is none yet. Tested: test_frame_motion.
+/// before; NULL if there is none yet. Tested: test_measured.
 const double *mf_frame_motion_add(struct frame_motion *motion, const struct trajectory_frame *beads,
                                   int32_t *const place[3]);

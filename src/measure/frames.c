@@ -12,8 +12,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/// Frames of a batch for each thread: enough that none waits long for the others.
-enum { FRAMES_A_THREAD = 4 };
+/// Frames of a batch for each thread, and at least: a batch is called for when half of it is there,
+/// and the first has two frames.
+enum { FRAMES_A_THREAD = 2, LEAST_SLOTS = 4 };
 
 /// Times are written in single precision: two that differ by so much may be the same [ps].
 static double time_tolerance(double time) {
@@ -68,6 +69,7 @@ enum status mf_frames_open(struct frames *frames, const struct frames_plan *plan
                               .structure = structure,
                               .structure_file = structure_file,
                               .slots = (size_t)(FRAMES_A_THREAD * plan->threads)};
+    frames->slots = frames->slots < LEAST_SLOTS ? LEAST_SLOTS : frames->slots;
     NEW_ARRAY(frames->source, plan->files);
     NEW_ARRAY(frames->frame, frames->slots);
     for (size_t k = 0; k < plan->files; k++) {

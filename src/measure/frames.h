@@ -46,7 +46,7 @@ struct frames {
 
 /// Open the first file. @param[in] structure  NULL: that of the first file
 /// Fails: as mf_trajectory_open; BAD_INPUT if its atoms are not those of the structure.
-/// Tested: test_frames.
+/// Tested: test_measure.
 enum status mf_frames_open(struct frames *frames, const struct frames_plan *plan,
                            const struct structure *structure, const char *structure_file) MUST_USE;
 

@@ -106,13 +106,12 @@ static const struct block blocks[] = {
 /// The names of the columns, with the units that the folder speaks.
 static void write_header(FILE *stream, const struct block *block,
                          const struct result_summary *summary) {
-    const struct units units = {.system = summary->system};
     const char *name = block->header;
     while (*name) {
         char reduced[64], spoken[256];
         const size_t length = strcspn(name, "\t");
         snprintf(reduced, sizeof reduced, "%.*s", (int)length, name);
-        mf_data_table_translate(&units, reduced, spoken, sizeof spoken);
+        mf_data_table_translate(&summary->units, reduced, spoken, sizeof spoken);
         name += length + (name[length] == '\t');
         fprintf(stream, "%s%c", spoken, *name ? '\t' : '\n');
     }
@@ -152,17 +151,60 @@ static enum status write_tables(const char *out, const struct compared *fits, si
     return STATUS_OK;
 }
 
-/// Numbers of different units do not stand in one table.
-static enum status check_systems(const struct compared *fits, size_t count,
-                                 const char *const *folders) {
+/// What a folder calls 1 of a reduced unit, in nm, ps, u and so on.
+static double size_of(const struct units *units, const char *unit) {
+    struct units physical = *units;
+    physical.system = UNITS_NM_PS;
+    return mf_units_factor(&physical, unit) / mf_units_factor(units, unit);
+}
+
+static void convert_table(struct result_table *table, const char *header, const struct units *from,
+                          const struct units *to) {
+    const char *name = header;
+    for (size_t c = 0; c < table->columns; c++) {
+        char unit[UNITS_NAME_SIZE];
+        const char *bracket = strchr(name, '[') + 1;
+        snprintf(unit, sizeof unit, "%.*s", (int)strcspn(bracket, "]"), bracket);
+        for (size_t row = 0; row < table->rows; row++)
+            table->values[row * table->columns + c] *= size_of(from, unit) / size_of(to, unit);
+        name = bracket;
+    }
+}
+
+/// Make the numbers of a folder those of other units.
+static void convert(struct compared *fit, const struct units *to) {
+    struct result_summary *summary = &fit->result.summary;
+    for (const struct field *field = mf_result_summary_fields; field->name; field++)
+        if (field->type == FIELD_NUMBER) {
+            char *member = (char *)summary + field->offset;
+            double value;
+            memcpy(&value, member, sizeof value);
+            value *= size_of(&summary->units, field->unit) / size_of(to, field->unit);
+            memcpy(member, &value, sizeof value);
+        }
+    for (size_t k = 0; k < sizeof blocks / sizeof blocks[0]; k++)
+        convert_table((struct result_table *)((char *)&fit->result + blocks[k].table),
+                      blocks[k].header, &summary->units, to);
+    summary->units = *to;
+    summary->length_unit_nm = NAN;
+}
+
+/// Numbers of different units do not stand in one table: those of the first folder are for all.
+static enum status bring_together(struct compared *fits, size_t count, const char *const *folders) {
+    const struct units *first = &fits[0].result.summary.units;
     for (size_t k = 1; k < count; k++) {
-        const int first = fits[0].result.summary.system, other = fits[k].result.summary.system;
-        if (first != other)
+        const struct units *other = &fits[k].result.summary.units;
+        if (first->system == other->system)
+            continue;
+        if (!mf_units_known(first) || !mf_units_known(other))
             return mf_status_fail(STATUS_BAD_INPUT,
-                                  "compare: %s speaks %s units and %s %s ones: one of them has to "
-                                  "be run in the \"units\" of the other",
-                                  folders[0], mf_units_systems[first], folders[k],
-                                  mf_units_systems[other]);
+                                  "compare: %s speaks %s units and %s %s ones, and what they are "
+                                  "is not known: the scene's \"units\" would tell",
+                                  folders[0], mf_units_systems[first->system], folders[k],
+                                  mf_units_systems[other->system]);
+        convert(&fits[k], first);
+        if (!mf_units_speaks(first))
+            fits[k].result.summary.length_unit_nm = first->length;
     }
     return STATUS_OK;
 }
@@ -216,7 +258,7 @@ enum status mf_compare_folders(const char *const *folders, size_t count, const c
         CHECK(mf_result_read(&fits[k].result, folders[k]));
         CHECK(find_path(&fits[k], folders[k]));
     }
-    CHECK(check_systems(fits, count, folders));
+    CHECK(bring_together(fits, count, folders));
     CHECK(check_lengths(fits, count, folders));
     if (!quiet)
         warn_of_lengths(fits, count, folders);

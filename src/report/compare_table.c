@@ -210,7 +210,7 @@ enum status mf_compare_table_write(const char *out, const struct compared *fits,
     enum status status = STATUS_OK;
     char file[PATH_SIZE], headers[MOST_NUMBERS][HEADER_SIZE], *comment = NULL;
     struct data_column written[MOST_NUMBERS] = {{.name = "index[1]"}};
-    const struct units units = {.system = fits[0].result.summary.system};
+    const struct units units = fits[0].result.summary.units;
     double *values = NULL;
     size_t used = 1;
     NEW_ARRAY(values, MOST_NUMBERS * count);

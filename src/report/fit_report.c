@@ -4,8 +4,26 @@
 #include "problem/parametrisation.h"
 #include "report/fit_change.h"
 #include "base/number_text.h"
+#include "curves/expression_text.h"
 
 #include <math.h>
+
+void mf_fit_report_formula(const struct fit_file *fit, const char *formula,
+                           char text[FIELD_TEXT_SIZE]) {
+    const struct units *units = &fit->scene.units;
+    const enum unknown_kind kind =
+        fit->unknown[UNKNOWN_POTENTIAL].wanted ? UNKNOWN_POTENTIAL : UNKNOWN_OMEGA;
+    struct expression expression;
+    char printed[EXPRESSION_TEXT_SIZE] = "";
+    if (formula)
+        snprintf(printed, sizeof printed, "%s", formula);
+    if (formula && mf_units_speaks(units) &&
+        mf_expression_parse(&expression, formula) == STATUS_OK &&
+        mf_expression_scale(&expression, mf_units_factor(units, "lambda"),
+                            mf_units_factor(units, mf_unknowns_unit(kind))))
+        mf_expression_print(&expression, EXPRESSION_PLAIN, printed);
+    snprintf(text, FIELD_TEXT_SIZE, "%.*s", FIELD_TEXT_SIZE - 1, printed);
+}
 
 /// "omega: sigma = 6.00(4) (at its maximum), exponent = 1 (fixed), inner_cutoff = 0.02(1)".
 static void say_parameters(struct progress *to, const struct fit_file *fit,
@@ -156,8 +174,7 @@ void mf_fit_report_say(struct progress *to, const struct fit_file *fit,
     const struct units *units = &fit->scene.units;
     say_changes(to, units, unknowns, result);
     if (result->formula[0])
-        mf_progress_say(to, "formula%s: %s", mf_units_speaks(units) ? " in reduced units" : "",
-                        result->formula);
+        mf_progress_say(to, "formula: %s", result->formula);
     say_parameters(to, fit, result->parameter);
     say_numbers(to, fit, result->number);
     say_distances(to, fit, v);

@@ -9,3 +9,7 @@
 /// verification found.
 void mf_fit_report_say(struct progress *to, const struct fit_file *fit,
                        const struct unknowns *unknowns, const struct fit_result *result);
+
+/// The formula that a fit found, in the units of its file; NULL: none, which is "".
+void mf_fit_report_formula(const struct fit_file *fit, const char *formula,
+                           char text[FIELD_TEXT_SIZE]);

@@ -140,14 +140,53 @@ static void read_length_unit(struct json_object *root, struct result_summary *su
     mf_json_fields(&physical, fields, summary);
 }
 
+/// What a summary says of the scale.
+struct scale {
+    double length, temperature, mass; ///< in physical units
+    double time, energy;              ///< beside reduced ones, with the length
+};
+
+#define SCALE(key, member)                                                                         \
+    {                                                                                              \
+        .name = key, .type = FIELD_NUMBER, .offset = offsetof(struct scale, member),               \
+        .initial = NAN, .minimum = -DBL_MAX, .maximum = DBL_MAX, .unit = ""                        \
+    }
+
+/// "physical" of a summary in reduced units.
+static void read_scale_beside(struct json_object *root, struct units *units) {
+    static const struct field fields[] = {SCALE("length_unit_nm", length),
+                                          SCALE("time_unit_ps", time),
+                                          SCALE("energy_unit_kJ_per_mol", energy), FIELD_END};
+    struct json_object physical = mf_json_child(root, "physical", false);
+    struct scale scale;
+    mf_json_fields(&physical, fields, &scale);
+    if (!(scale.length > 0))
+        return;
+    units->length = scale.length;
+    units->temperature = 1e3 * scale.energy / (UNITS_BOLTZMANN * UNITS_AVOGADRO);
+    // 1 u nm²/ps² is 1 kJ/mol.
+    units->mass = scale.energy * pow(scale.time / scale.length, 2) * UNITS_ATOMIC_MASS;
+}
+
 /// In which units the folder speaks stands in an object of its own.
-static void read_system(struct json_object *root, struct result_summary *summary) {
-    struct json_object units = mf_json_child(root, "units", false);
+static void read_units(struct json_object *root, struct units *units) {
+    static const struct field fields[] = {
+        SCALE("length", length), SCALE("temperature", temperature), SCALE("mass", mass), FIELD_END};
+    struct json_object object = mf_json_child(root, "units", false);
+    struct scale scale;
     const char *name =
-        mf_json_choice(&units, "system", mf_units_systems, mf_units_systems[UNITS_REDUCED]);
+        mf_json_choice(&object, "system", mf_units_systems, mf_units_systems[UNITS_REDUCED]);
     for (int k = 0; name && mf_units_systems[k]; k++)
         if (strcmp(mf_units_systems[k], name) == 0)
-            summary->system = k;
+            units->system = k;
+    if (!mf_units_speaks(units)) {
+        read_scale_beside(root, units);
+        return;
+    }
+    mf_json_fields(&object, fields, &scale);
+    units->length = units->system == UNITS_ANGSTROM_FS ? scale.length / 10 : scale.length;
+    units->temperature = scale.temperature;
+    units->mass = scale.mass * UNITS_ATOMIC_MASS;
 }
 
 /// Keys that are not in the table are left alone: a later version may write more.
@@ -157,7 +196,7 @@ static enum status read_summary(struct result_summary *summary, const char *file
     struct json_object root = mf_json_root(document);
     mf_json_fields(&root, mf_result_summary_fields, summary);
     read_length_unit(&root, summary);
-    read_system(&root, summary);
+    read_units(&root, &summary->units);
     read_old_truth(&root, summary);
     if (is_simulation(summary))
         read_simulated_diffusion(&root, summary);

@@ -4,6 +4,7 @@
 
 #include "base/fields.h"
 #include "base/status.h"
+#include "io/units_scale.h"
 
 #include <stddef.h>
 
@@ -28,7 +29,7 @@ struct result_summary {
     double ramp_error, ramp_pressure, pressure_left_open, directions; ///< of an inversion
     double seed;
     double length_unit_nm; ///< λ
-    int system;            ///< enum units_system: in which all of them are
+    struct units units;    ///< in which all of them are; no scale: unknown
 };
 
 extern const struct field mf_result_summary_fields[];

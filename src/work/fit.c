@@ -268,8 +268,7 @@ static enum status record(struct run *run, const struct inverse_step *step) {
     memcpy(run->standing.parameter, step->parameter, sizeof run->standing.parameter);
     memcpy(run->standing.number, step->number, sizeof run->standing.number);
     memcpy(run->standing.reason, step->reason, sizeof run->standing.reason);
-    snprintf(run->standing.formula, sizeof run->standing.formula, "%s",
-             step->formula ? step->formula : "");
+    mf_fit_report_formula(&run->fit, step->formula, run->standing.formula);
     mf_history_add(&run->history, step, run->standing.seconds);
     TRY(mf_history_write(&run->history, run->fit.method, &run->unknowns, &run->fit.scene.units,
                          &run->folder));

@@ -128,6 +128,10 @@ static void say_motion(struct run *run, const struct units *units) {
                         motion->frames, (long long)motion->motion.plan.lags);
     else
         say_diffusion(run, units);
+    const struct etd_grid *const grid = &motion->etd.grid;
+    mf_progress_say(&run->progress,
+                    "escape times of pairs from %.4g to %.4g nm, in windows of %.4g ps",
+                    grid->r_minimum, grid->r_maximum, (double)(grid->times - 1) * motion->interval);
     if (!motion->has_vacf && motion->plan.velocities == MEASURED_VELOCITIES_USUAL)
         mf_progress_say(&run->progress, "no VACF: there are no velocities (--velocities "
                                         "differences makes them of positions)");

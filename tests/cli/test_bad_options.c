@@ -25,7 +25,7 @@ struct command_line {
 
 static const struct command_line bad_lines[] = {
     {{"simulat", "scene.json"}, {"unknown command \"simulat\"", "did you mean \"simulate\"?"}},
-    {{"dance"}, {"unknown command \"dance\"", "known: simulate, fit"}},
+    {{"dance"}, {"unknown command \"dance\"", "known: measure, fit"}},
     {{"simulate", "scene.json", "--thread", "2"},
      {"unknown option --thread", "did you mean \"--threads\"?"}},
     {{"simulate", "scene.json", "--fast"}, {"unknown option --fast", "known: -o"}},

@@ -115,6 +115,11 @@ static void test_lammps_reads_the_potential(void **state) {
     init(&rows);
     read_lammps(&rows, "lammps/mesofit.table", "PHI_A-A");
     assert_reads(lammps_value, &rows, 4.184, 0.1);
+    for (double r = 1.01 * rows.low; r < 0.02 * rows.high; r *= 1.1) { // no pole near r = 0
+        double phi, force;
+        lammps_value(&rows, r, &phi, &force);
+        assert_true(force >= 0 && force < 1.1 * 25 * thermal / 4.184 / 7);
+    }
     char *input = temporary_folder_read("lammps/in.mesofit");
     snprintf(style, sizeof style, "table linear %zu\"", rows.count);
     assert_contains(input, style);
@@ -128,6 +133,34 @@ static void test_lammps_reads_the_potential(void **state) {
     assert_contains(input, "comm_modify vel yes");
     free(input);
     clear(&rows);
+}
+
+/// The same fluid, its file in nm, ps and u, with a lambda that the program chooses.
+static void test_result_in_nm_and_ps_is_exported_alike(void **state) {
+    static struct rows rows;
+    static struct run_program_result result;
+    char text[1024];
+    const double mass = 9e-26 * 6.02214076e26, picoseconds = 0.7 * sqrt(mass / thermal);
+    snprintf(text, sizeof text,
+             "{\"units\": \"nm-ps\", \"seed\": 5, \"box\": [3.248, 3.248, 3.248], \"temperature\": "
+             "300,\n\"particles\": {\"count\": 300, \"mass\": %.15g}, \"time_step\": %.15g,\n"
+             "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": %.15g, \"cutoff\": 0.7},\n"
+             "\"dissipative\": {\"law\": \"power\", \"sigma\": %.15g, \"cutoff\": 0.7},\n"
+             "\"measure\": {\"equilibration\": 10, \"samples\": 2, \"every\": 10}}\n",
+             mass, 0.04 * picoseconds, 25 * thermal / 0.7, 2.1213 * sqrt(mass / picoseconds));
+    small_inputs_write(*state, "scene.json", text, NULL, NULL);
+    small_scenes_simulate(&result, "out");
+    run_export("lammps", "lammps");
+    init(&rows);
+    read_lammps(&rows, "lammps/mesofit.table", "PHI_A-A");
+    assert_reads(lammps_value, &rows, 4.184, 0.1);
+    clear(&rows);
+    char *input = temporary_folder_read("lammps/in.mesofit");
+    const char *found = strstr(input, "pair_coeff 1 1 dpd/tstat ");
+    assert_non_null(found);
+    const double gamma = 4.49991 * thermal / 4.184 * picoseconds * 1e3 / 49;
+    assert_true(fabs(strtod(found + strlen("pair_coeff 1 1 dpd/tstat "), NULL) / gamma - 1) < 1e-4);
+    free(input);
 }
 
 /// Three columns r, Φ, F; both ends are among the rows.
@@ -378,12 +411,88 @@ static void test_fit_leaves_where_another_run_begins(void **state) {
     assert_true(fabs(x - start) < 1e-9);
 }
 
+/// A fit that speaks nm and ps: where its first bead is, in Å.
+static void test_fit_in_nm_and_ps_is_exported(void **state) {
+    static struct run_program_result result;
+    static const char target[] = "# r[nm] g error\n0.05 0.3 0.1\n0.15 0.6 0.1\n0.25 0.8 0.1\n"
+                                 "0.35 1.1 0.1\n0.45 1.0 0.1\n";
+    static const char run[] =
+        "{\"units\": \"nm-ps\", \"seed\": 1, \"target\": {\"rdf\": {\"file\": \"target.tsv\"}},\n"
+        "\"scene\": {\"box\": [1.5, 1.5, 1.5], \"particles\": {\"count\": 81, \"mass\": 18},\n"
+        "\"temperature\": 300, \"time_step\": 0.02,\n"
+        "\"dissipative\": {\"law\": \"power\", \"sigma\": 9, \"cutoff\": 0.5}},\n"
+        "\"method\": {\"name\": \"imc\", \"replicas\": 2, \"equilibration\": 1, \"samples\": 8, "
+        "\"every\": 1, \"iterations\": 1},\n"
+        "\"verification\": {\"replicas\": 1, \"equilibration\": 1, \"samples\": 2, \"every\": "
+        "1}}\n";
+    double x, start, friction;
+    small_inputs_write(*state, "run.json", run, NULL, NULL);
+    small_inputs_write(*state, "target.tsv", target, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out");
+    run_export("lammps", "lammps");
+    char *text = temporary_folder_read("out/configuration.tsv");
+    assert_contains(text, "x[nm]");
+    assert_int_equal(sscanf(strchr(text, '\n'), "%lf", &x), 1);
+    free(text);
+    text = temporary_folder_read("lammps/data.mesofit");
+    assert_int_equal(sscanf(strstr(text, "Atoms # atomic") + 14, "%*d %*d %lf", &start), 1);
+    free(text);
+    assert_true(fabs(10 * x - start) < 1e-8);
+    text = temporary_folder_read("lammps/in.mesofit"); // 81 u/ps in kcal/mol fs/A²
+    const char *found = strstr(text, "pair_coeff 1 1 dpd/tstat ");
+    assert_non_null(found);
+    friction = strtod(found + strlen("pair_coeff 1 1 dpd/tstat "), NULL);
+    free(text);
+    assert_true(fabs(friction / (81 * 1e-3 * 48.88821291 * 48.88821291) - 1) < 1e-5);
+}
+
+/// `lmp -in lammps/in.mesofit` where the folder was written: a short run whose g(r) is ours within
+/// 0.02; it was 0.013. tests/physics/test_export_lammps.c has the long one.
+static void test_lammps_runs_what_was_written(void **state) {
+    static struct run_program_result result;
+    if (system("command -v lmp >/dev/null") != 0) {
+        print_message("lmp is not installed: LAMMPS is not run\n");
+        skip();
+    }
+    small_scenes_write(*state, small_scenes_dpd, "\"samples\": 20", "\"samples\": 400");
+    small_scenes_simulate(&result, "out");
+    run_export("lammps", "lammps");
+    assert_int_equal(system("lmp -in lammps/in.mesofit -var steps 4000 -var equilibration 500 "
+                            "-log none >lmp.out 2>&1"),
+                     0);
+    FILE *ours = open_text("out/rdf.tsv"), *theirs = open_text("lammps/rdf.dat");
+    char line[512], other[512];
+    double squares = 0;
+    int rows = 0;
+    for (int k = 0; k < 4; k++) // three comments and the step
+        assert_non_null(fgets(other, sizeof other, theirs));
+    for (; fgets(line, sizeof line, ours); rows += line[0] != '#') {
+        double r, g, their_r, their_g;
+        if (line[0] == '#')
+            continue;
+        assert_int_equal(sscanf(line, "%lf %lf", &r, &g), 2);
+        assert_non_null(fgets(other, sizeof other, theirs));
+        assert_int_equal(sscanf(other, "%*d %lf %lf", &their_r, &their_g), 2);
+        assert_true(fabs(their_r - 7 * r) < 1e-5); // A
+        squares += (g - their_g) * (g - their_g);
+    }
+    fclose(ours);
+    fclose(theirs);
+    assert_int_equal(rows, 100);
+    print_message("rms of g - ours: %.4f\n", sqrt(squares / rows));
+    assert_true(sqrt(squares / rows) < 0.02);
+}
+
+#define TEST_WITH_PATH(name)                                                                       \
+    cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        TEST_WITH_PATH(test_lammps_runs_what_was_written),
         TEST(test_lammps_reads_the_potential),
+        TEST(test_result_in_nm_and_ps_is_exported_alike),
         TEST(test_python_engines_read_the_potential),
         TEST(test_gromacs_reads_the_potential),
         TEST(test_dl_poly_reads_the_potential),
@@ -391,6 +500,7 @@ int main(void) {
         TEST(test_mixture_has_a_table_for_each_pair_type),
         TEST(test_what_cannot_be_exported_is_one_line),
         TEST(test_fit_leaves_where_another_run_begins),
+        TEST(test_fit_in_nm_and_ps_is_exported),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

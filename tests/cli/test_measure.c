@@ -88,22 +88,29 @@ static void test_measure_writes_the_same_bytes_when_threads_differ(void **state)
     results_assert_same("one", "three", (const char *const[]){"target.json", NULL});
 }
 
-/// Frames `first` … `end` − 1 of water.xtc, whose header tells the bytes that follow it.
-static void write_frames(struct temporary_folder *folder, const char *name, size_t first,
-                         size_t end) {
+/// water.xtc, and where its frames begin and end.
+static unsigned char bytes[200000];
+static size_t begin[8];
+
+/// Headers tell the bytes that follow them.
+static void read_frames(void) {
     enum { HEADER = 92, SIZE = 88 };
-    static unsigned char bytes[200000];
     FILE *stream = fopen(xtc, "rb");
     const size_t all = fread(bytes, 1, sizeof bytes, stream);
-    size_t begin[8] = {0}, frames = 0;
+    size_t frames = 0;
     fclose(stream);
-    while (begin[frames] < all) {
+    for (; begin[frames] < all; frames++) {
         const unsigned char *const size = bytes + begin[frames] + SIZE;
         const size_t packed = (size_t)size[1] << 16 | (size_t)size[2] << 8 | size[3];
         begin[frames + 1] = begin[frames] + HEADER + (packed + 3) / 4 * 4;
-        frames++;
     }
     assert_int_equal(frames, 5);
+}
+
+/// Frames `first` … `end` − 1.
+static void write_frames(struct temporary_folder *folder, const char *name, size_t first,
+                         size_t end) {
+    read_frames();
     temporary_folder_write(folder, name, (const char *)bytes + begin[first],
                            begin[end] - begin[first]);
 }
@@ -141,6 +148,42 @@ static void test_measure_uses_what_is_whole_when_a_file_breaks_off(void **state)
     assert_contains(result.err, "broken.xtc: frame 4, byte");
     MEASURE("four.xtc", "-s", gro, "-o", "four", "--quiet");
     results_assert_same("broken", "four", (const char *const[]){"rdf.tsv", NULL});
+}
+
+/// The frames of water.xtc over and over, at times that go on: a header of 16 bytes has the time
+/// last.
+static void write_long(const char *name) {
+    enum { COPIES = 250, TIME = 12 };
+    FILE *stream = fopen(name, "wb");
+    for (int frame = 0; frame < 5 * COPIES; frame++) {
+        unsigned char *const header = bytes + begin[frame % 5];
+        const float time = 0.02F * (float)frame;
+        uint32_t word;
+        memcpy(&word, &time, sizeof word);
+        for (int k = 0; k < 4; k++)
+            header[TIME + k] = (unsigned char)(word >> (24 - 8 * k));
+        fwrite(header, 1, begin[frame % 5 + 1] - begin[frame % 5], stream);
+    }
+    assert_int_equal(fclose(stream), 0);
+}
+
+/// Some seconds of work, of which there is time for a part.
+static void test_measure_writes_what_it_has_when_it_is_stopped(void **state) {
+    (void)state;
+    read_frames();
+    write_long("long.xtc");
+    const struct run_program_how how = {.interrupt_after = 0.7};
+    run_program(&result, &how,
+                (const char *const[]){"measure", "long.xtc", "-s", gro, "-o", "stopped",
+                                      "--threads", "1", NULL});
+    run_program_assert_code(&result, 130);
+    assert_contains(result.err, "mesofit: interrupted after ");
+    results_assert_text("stopped/summary.json", "status", "interrupted");
+    const double frames = results_number("stopped/summary.json", "frames");
+    assert_true(frames > 0 && frames < 1250);
+    assert_true(temporary_folder_exists("stopped/target.json"));
+    assert_true(temporary_folder_exists("stopped/rdf.tsv"));
+    run_program_assert_no_partial("stopped");
 }
 
 static void test_measure_speaks_angstrom_when_asked(void **state) {
@@ -266,6 +309,7 @@ int main(void) {
         TEST(test_measure_writes_the_same_bytes_when_threads_differ),
         TEST(test_measure_joins_files_when_a_run_was_restarted),
         TEST(test_measure_uses_what_is_whole_when_a_file_breaks_off),
+        TEST(test_measure_writes_what_it_has_when_it_is_stopped),
         TEST(test_measure_speaks_angstrom_when_asked),
         TEST(test_measure_tells_types_apart_when_the_map_does),
         TEST(test_measure_refuses_what_does_not_fit_in_a_line),

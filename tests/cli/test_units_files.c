@@ -157,6 +157,44 @@ static void test_used_json_of_physical_units_gives_the_same_bits(void **state) {
     results_assert_same("first", "second", same);
 }
 
+/// The numbers of a line, all behind each other.
+static size_t numbers_of(const char *line, double *values, size_t most) {
+    size_t count = 0;
+    char *rest;
+    for (double value; count < most; line = rest) {
+        value = strtod(line, &rest);
+        if (rest == line)
+            break;
+        values[count++] = value;
+    }
+    return count;
+}
+
+/// The same physics in two units side by side: but for index and seconds, the rows are the same.
+static void test_compare_tells_all_in_the_units_of_the_first(void **state) {
+    enum { MOST = 32, SECONDS = 1 };
+    const struct scale scales[] = {scale_of("nm-ps"), scale_of("angstrom-fs")};
+    for (int k = 0; k < 2; k++) {
+        write_scene(*state, "scene.json", &scales[k]);
+        simulate("scene.json", scales[k].system);
+    }
+    RUN_PROGRAM(&result, "compare", "nm-ps", "angstrom-fs", "-o", "both");
+    run_program_assert_code(&result, 0);
+    char *text = temporary_folder_read("both/compare.tsv");
+    assert_contains(text, "pressure[bar]");
+    char *second = strrchr(text, '\n');
+    *second = '\0'; // the last line end
+    second = strrchr(text, '\n');
+    *second++ = '\0';
+    double first_row[MOST], second_row[MOST];
+    const size_t count = numbers_of(strrchr(text, '\n') + 1, first_row, MOST);
+    assert_true(count > 8);
+    assert_int_equal(numbers_of(second, second_row, MOST), count);
+    for (size_t k = SECONDS + 1; k < count; k++)
+        assert_close_relative(second_row[k], first_row[k], 1e-6);
+    free(text);
+}
+
 /// No table of a run in nm has a reduced unit in the names of its columns.
 static void assert_speaks_physical_units(const char *folder) {
     static const char *const words[] = {"[lambda", "lambda]", "tau", "k_B", "T_0", "mu/"};
@@ -291,7 +329,7 @@ static void test_units_of_all_field_tables_are_known(void **state) {
         if (!mf_units_text_parse(&parsed, unit, 3))
             fail_msg("%s: \"%s\" is no unit", key, unit);
     }
-    assert_true(rows > 150); // all others are pure numbers and texts
+    assert_true(rows > 100); // all others are pure numbers and texts
     free(page);
 }
 
@@ -302,6 +340,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_scenes_are_the_same_physics_in_all_units),
         TEST(test_used_json_of_physical_units_gives_the_same_bits),
+        TEST(test_compare_tells_all_in_the_units_of_the_first),
         TEST(test_tables_of_simulations_speak_physical_units),
         TEST(test_fits_speak_physical_units),
         TEST(test_bad_units_are_one_line_with_file_and_key),

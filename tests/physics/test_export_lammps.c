@@ -23,14 +23,14 @@ static void write_scene(struct temporary_folder *folder) {
     char text[4096];
     snprintf(text, sizeof text,
              "{\"seed\": 3, \"box\": [9.428, 9.428, 9.428], \"particles\": {\"count\": 2744},\n"
-             "\"time_step\": 0.0025, \"conservative\": {\"law\": \"table\", \"file\": "
+             "\"time_step\": 0.002, \"conservative\": {\"law\": \"table\", \"file\": "
              "\"%s/targets/spc-water/potential_imc.tsv\"},\n"
              "\"dissipative\": {\"law\": \"power\", \"sigma\": 2.589, \"inner_cutoff\": 0.596, "
              "\"cutoff\": 1.72},\n"
              "\"units\": {\"length\": 0.465, \"temperature\": 298, \"mass\": 2.992e-26},\n"
              "\"rdf\": {\"range\": 2.15, \"bins\": 100},\n"
-             "\"measure\": {\"equilibration\": 2000, \"samples\": 200, \"every\": 40},\n"
-             "\"snapshots\": {\"every\": 8000, \"formats\": [\"json\"]}}\n",
+             "\"measure\": {\"equilibration\": 2500, \"samples\": 200, \"every\": 50},\n"
+             "\"snapshots\": {\"every\": 10000, \"formats\": [\"json\"]}}\n",
              run_program_sources());
     small_inputs_write(folder, "scene.json", text, NULL, NULL);
 }
@@ -116,8 +116,7 @@ static void test_lammps_has_our_water(void **state) {
     assert_true(fabs(pressure - ours) < 4.5 * hypot(error, our_error));
 }
 
-#define TEST(name)                                                                                 \
-    cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
+#define TEST(name) cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
 
 int main(void) {
     const struct CMUnitTest tests[] = {TEST(test_lammps_has_our_water)};

@@ -37,6 +37,21 @@ static void assert_simplifies(const char *text, const char *expected) {
     assert_string_equal(printed, expected);
 }
 
+/// 4.184 f(r/0.34) wherever it is asked, also of a formula of 30 nodes, half of them r.
+static void test_expression_scale_tells_the_same_formula_in_other_units(void **state) {
+    (void)state;
+    static const char *const formulas[] = {"4*(1/r^12 - 1/r^6)", "r", "2",
+                                           "exp(-r^2)*(1 - r/0.99)^2.5",
+                                           "r*r+r*r+r*r+r*r+r*r+r*r+r*r+exp(r)"};
+    for (size_t k = 0; k < sizeof formulas / sizeof *formulas; k++) {
+        struct expression expression = parse(formulas[k]);
+        assert_true(mf_expression_scale(&expression, 0.34, 4.184));
+        for (double r = 0.4; r < 0.99; r += 0.1)
+            assert_close_relative(mf_expression_value(&expression, 0.34 * r, NULL),
+                                  4.184 * value(formulas[k], r), 1e-11);
+    }
+}
+
 /// The numbers are those of a pocket calculator's rules.
 static void test_expression_parse_obeys_the_rules_of_arithmetic_when_evaluated(void **state) {
     (void)state;
@@ -265,6 +280,7 @@ static void test_expression_law_is_refused_when_it_is_not_finite(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_expression_scale_tells_the_same_formula_in_other_units),
         cmocka_unit_test(test_expression_parse_obeys_the_rules_of_arithmetic_when_evaluated),
         cmocka_unit_test(test_expression_parse_names_the_place_when_a_formula_is_wrong),
         cmocka_unit_test(test_expression_print_is_what_a_person_writes_when_parsed),

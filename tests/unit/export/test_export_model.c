@@ -9,6 +9,7 @@
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
 
+#include <gsl/gsl_spline.h>
 #include <math.h>
 
 /// SPC water: λ = 0.465 nm, T_0 = 298 K, μ = 18.0154 u.
@@ -125,6 +126,29 @@ static void test_errors_of_interpolations_are_measured(void **state) {
     mf_table_clear(&table);
 }
 
+/// GSL's cspline has natural ends, too.
+static void test_spline_is_the_natural_one(void **state) {
+    (void)state;
+    struct curve curve;
+    struct table table = {0};
+    struct export_grid grid;
+    assert_ok(mf_curve_create(&curve, mf_curve_find(mf_curve_potentials, "soft-repulsion")));
+    assert_ok(mf_table_init_potential(&table, &curve));
+    assert_ok(mf_export_grid_make(&grid, &mf_export_grid_spline, &table, 0, 0, 21));
+    gsl_spline *natural = gsl_spline_alloc(gsl_interp_cspline, grid.rows);
+    gsl_spline_init(natural, grid.r, grid.phi, grid.rows);
+    for (double r = 0.003; r < 1; r += 0.0171) {
+        double phi, force;
+        mf_export_grid_spline.value(&grid, r, &phi, &force);
+        assert_true(fabs(phi - gsl_spline_eval(natural, r, NULL)) < 1e-10);
+        assert_true(fabs(force + gsl_spline_eval_deriv(natural, r, NULL)) < 1e-8);
+    }
+    gsl_spline_free(natural);
+    mf_export_grid_clear(&grid);
+    mf_table_clear(&table);
+    mf_curve_clear(&curve);
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, temporary_folder_create, temporary_folder_remove)
 
@@ -134,6 +158,7 @@ int main(void) {
         TEST(test_units_of_engines_are_consistent),
         TEST(test_power_laws_are_found_and_others_are_not),
         TEST(test_errors_of_interpolations_are_measured),
+        TEST(test_spline_is_the_natural_one),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -25,9 +25,12 @@ static enum status convert(void **state, const char *text, const struct units *u
 /// 0.34 nm are 1 lambda, and 120 K · 0.0083144626 kJ/mol/K are 1 k_B T_0.
 static void test_data_table_convert_reads_the_units_of_headings(void **state) {
     static const char *const same[] = {
-        "# r[nm]\tphi[kJ/mol]\n0.34 0.997735512\n", "# r [nm]  phi [kJ/mol]\n0.34 0.997735512\n",
-        "r[A];phi[kcal/mol]\n3.4;0.23846451\n", "# made by hand\n0.34 0.997735512\n",
-        "# r phi[J/mol]\n0.34 997.735512\n"};
+        "# r[nm]\tphi[kJ/mol]\n0.34 0.997735512\n",
+        "# r [nm]  phi [kJ/mol]\n0.34 0.997735512\n",
+        "r[A];phi[kcal/mol]\n3.4;0.23846451\n",
+        "# made by hand\n0.34 0.997735512\n",
+        "# r phi[J/mol]\n0.34 997.735512\n",
+        "# columns: r[A] phi[kcal/mol] pairs[of all frames]\n3.4 0.23846451 7\n"};
     double value[2];
     for (size_t k = 0; k < sizeof same / sizeof *same; k++) {
         assert_ok(convert(state, same[k], &argon, value));

@@ -281,7 +281,7 @@ static void test_measured_escapes_are_those_of_all_images_when_beads_walk(void *
     const double low = etd->grid.r_minimum, width = (0.6 - low) / (double)bins;
     for (size_t i = 0; i < BEADS; i++)
         for (size_t j = 0; j < i; j++) {
-            double r[90];
+            double r[90] = {0};
             for (size_t t = 0; t < film->frames && i / 2 != j / 2; t++)
                 r[t] = find_distance(&film->frame[t], i, j);
             for (size_t t = 0; t + LAGS < film->frames && i / 2 != j / 2; t++) {
