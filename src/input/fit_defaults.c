@@ -221,6 +221,7 @@ static enum status choose_friction(struct fit_choice *c) {
     const struct simulation_setup *setup = &c->read->scene.setup;
     if (c->finds[UNKNOWN_OMEGA] || !mf_fit_choice_lacks(c->root, "scene", "dissipative") ||
         !mf_fit_choice_lacks(c->root, "scene", "dynamics") ||
+        !mf_fit_choice_lacks(c->root, "scene", "memory") ||
         !attributes_are(&setup->attribute[ATTRIBUTES_MASS], 1))
         return STATUS_OK;
     const double cutoff = c->scales.shell, sigma = moderate_friction(c, cutoff);
