@@ -162,8 +162,7 @@ static enum status read_dynamics(struct scene *scene, struct json_object *object
         mf_json_fault(object, "dynamics",
                       "%s knows no friction; use \"aboba\" with \"dissipative\"", integrator->name);
     else if (remembers && !integrator->remembers)
-        mf_json_fault(object, "dynamics",
-                      "%s knows no \"%s\"; use \"aboba\"", integrator->name,
+        mf_json_fault(object, "dynamics", "%s knows no \"%s\"; use \"aboba\"", integrator->name,
                       scene->memory.modes > 0 ? "memory" : "dissipative_transverse");
     check_orientation(scene, object);
     struct attributes_source *mass = &scene->setup.attribute[ATTRIBUTES_MASS];

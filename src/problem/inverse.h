@@ -110,9 +110,9 @@ struct inverse_problem {
     size_t numbers;
     struct inverse_number number[INVERSE_MOST_NUMBERS];
     struct inverse_law law[INVERSE_LAWS]; ///< those of the scene that are known
-    struct simulation_setup scene;    ///< all but the unknowns; its composition is set
-    double core_threshold;            ///< bins below the first with g* above this are the hard core
-    double core_stiffness;            ///< of the core (mf_core_fill) [k_B T_0/λ²]
+    struct simulation_setup scene;        ///< all but the unknowns; its composition is set
+    double core_threshold; ///< bins below the first with g* above this are the hard core
+    double core_stiffness; ///< of the core (mf_core_fill) [k_B T_0/λ²]
     uint64_t seed;
     int threads;
 };
