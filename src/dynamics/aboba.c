@@ -39,8 +39,7 @@ static enum status sweep(struct simulation *simulation) {
         mf_friction_sweep(&simulation->friction, particles);
     if (!pair_memory_acts(&simulation->setup.memory))
         return STATUS_OK;
-    TRY(mf_pair_memory_follow(memory, particles, &simulation->neighbours,
-                              simulation->list_builds));
+    TRY(mf_pair_memory_follow(memory, particles, &simulation->neighbours, simulation->list_builds));
     mf_pair_memory_sweep(memory, particles, simulation->step);
     return STATUS_OK;
 }

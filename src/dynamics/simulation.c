@@ -200,10 +200,10 @@ enum status mf_simulation_init(struct simulation *simulation, const struct simul
         CHECK(mf_friction_init(&simulation->friction, setup->omega, setup->time_step,
                                setup->temperature, setup->integrator->friction));
     if (pair_memory_acts(&setup->memory))
-        CHECK(mf_pair_memory_init(
-            &simulation->memory, &setup->memory,
-            &(struct pair_memory_scene){setup->composition, setup->temperature, setup->time_step,
-                                        setup->seed}));
+        CHECK(
+            mf_pair_memory_init(&simulation->memory, &setup->memory,
+                                &(struct pair_memory_scene){setup->composition, setup->temperature,
+                                                            setup->time_step, setup->seed}));
     CHECK(place(simulation, start));
     CHECK(add_interactions(simulation));
     CHECK(mf_neighbours_sort_and_build(&simulation->neighbours, &simulation->particles));
@@ -407,8 +407,7 @@ double mf_simulation_pressure(const struct simulation *simulation) {
     const struct simulation_setup *setup = &simulation->setup;
     const bool held = simulation->law.omega || pair_memory_acts(&setup->memory) ||
                       simulation_is_overdamped(setup);
-    const double temperature =
-        held ? setup->temperature : mf_simulation_temperature(simulation);
+    const double temperature = held ? setup->temperature : mf_simulation_temperature(simulation);
     return mf_particles_density(particles) * temperature +
            simulation->sums.virial / (particles->box.dimensions * mf_box_volume(&particles->box));
 }
@@ -417,9 +416,8 @@ size_t mf_simulation_spans(struct simulation *simulation, struct memory_span *sp
     struct particles *particles = &simulation->particles;
     const struct integrator *integrator = simulation->setup.integrator;
     const size_t numbers = particles->count * sizeof(double);
-    size_t n = simulation_wants_room(simulation)
-                   ? mf_pair_memory_spans(&simulation->memory, spans)
-                   : 0;
+    size_t n =
+        simulation_wants_room(simulation) ? mf_pair_memory_spans(&simulation->memory, spans) : 0;
     n += mf_particles_spans(particles, spans + n);
     for (int d = 0; d < particles->box.dimensions; d++)
         spans[n++] = (struct memory_span){simulation->neighbours.built[d], numbers};

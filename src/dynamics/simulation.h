@@ -181,8 +181,8 @@ double mf_simulation_pressure(const struct simulation *simulation);
 /// The state that, loaded into a simulation made with the same setup and followed by
 /// mf_simulation_restore, goes on with the same bits.
 enum {
-    SIMULATION_SPANS =
-        PARTICLES_SPANS + 5 + INTEGRATOR_SPANS + SIMULATION_MOST_INTERACTIONS * INTERACTION_SPANS + PAIR_MEMORY_SPANS
+    SIMULATION_SPANS = PARTICLES_SPANS + 5 + INTEGRATOR_SPANS +
+                       SIMULATION_MOST_INTERACTIONS * INTERACTION_SPANS + PAIR_MEMORY_SPANS
 };
 size_t mf_simulation_spans(struct simulation *simulation, struct memory_span *spans);
 

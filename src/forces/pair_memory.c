@@ -62,9 +62,7 @@ static double range_of(const struct pair_memory_law *law, int pair) {
 
 enum status mf_pair_memory_init(struct pair_memory *memory, const struct pair_memory_law *law,
                                 const struct pair_memory_scene *scene) {
-    *memory = (struct pair_memory){.law = *law,
-                                   .scene = *scene,
-                                   .builds = UINT64_MAX};
+    *memory = (struct pair_memory){.law = *law, .scene = *scene, .builds = UINT64_MAX};
     mf_normal_table_init(&memory->normal);
     for (int pair = 0; pair < mf_composition_pairs(&scene->composition); pair++)
         memory->range[pair] = range_of(law, pair);

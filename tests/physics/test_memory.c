@@ -28,9 +28,8 @@ static struct thermodynamics_summary simulate(const struct simulation_setup *set
     assert_ok(mf_simulation_init(simulation, setup, NULL));
     assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)plan.samples));
     assert_ok(mf_measure_equilibrate(simulation, &plan, &temperature, NULL));
-    assert_ok(watched_sample(simulation, &plan,
-                             (struct watched){.rdf = rdf, .thermodynamics = &thermodynamics},
-                             NULL));
+    assert_ok(watched_sample(
+        simulation, &plan, (struct watched){.rdf = rdf, .thermodynamics = &thermodynamics}, NULL));
     const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
     print_message("temperature %.4f(%.4f), configurational %.4f(%.4f), U/N %.4f(%.4f)\n",
                   s.temperature, s.temperature_error, s.temperature_configurational,

@@ -22,8 +22,7 @@ static void begin(struct simulation *simulation, struct pair_memory *memory,
                                             setup->time_step, setup->seed};
     assert_ok(mf_simulation_init(simulation, setup, NULL));
     assert_ok(mf_pair_memory_init(memory, &setup->memory, &scene));
-    assert_ok(
-        mf_pair_memory_follow(memory, &simulation->particles, &simulation->neighbours, 0));
+    assert_ok(mf_pair_memory_follow(memory, &simulation->particles, &simulation->neighbours, 0));
 }
 
 static double extended_energy(const struct simulation *simulation,
@@ -88,8 +87,7 @@ static void test_memory_keeps_angular_momentum_and_transverse_friction_does_not(
         const struct pair_memory_scene scene = {setup->composition, 1, 0.02, 1};
         assert_ok(mf_simulation_init(&simulation, setup, &start));
         assert_ok(mf_pair_memory_init(&memory, &setup->memory, &scene));
-        assert_ok(
-            mf_pair_memory_follow(&memory, &simulation.particles, &simulation.neighbours, 0));
+        assert_ok(mf_pair_memory_follow(&memory, &simulation.particles, &simulation.neighbours, 0));
         const double before = angular_momentum(&simulation.particles);
         const double kinetic = mf_particles_kinetic_energy(&simulation.particles);
         for (uint64_t step = 1; step < 20; step++)
@@ -146,14 +144,13 @@ static void test_a_pair_follows_its_exact_law(void **state) {
     const double steps[] = {0.004, 0.02};
     for (int k = 0; k < 2; k++) {
         const double lag = 0.1, rate = 1 / (2 * time);
-        const double expected =
-            exp(-rate * lag) * (cos(nu * lag) + rate / nu * sin(nu * lag));
+        const double expected = exp(-rate * lag) * (cos(nu * lag) + rate / nu * sin(nu * lag));
         double variance, correlation;
         check_pair(steps[k], &variance, &correlation, lag);
         // 400000 samples that forget each other in about 2τ: ⟨s²⟩ to sqrt(2 · 2τ/(n Δt)).
         const double error = sqrt(4 * time / (400000 * steps[k]));
-        print_message("step %g: variance %.3f (1), correlation %.3f (%.3f), error %.3f\n",
-                      steps[k], variance, correlation, expected, error);
+        print_message("step %g: variance %.3f (1), correlation %.3f (%.3f), error %.3f\n", steps[k],
+                      variance, correlation, expected, error);
         assert_close(variance, 1, deviations * error);
         assert_close(correlation, expected, deviations * error);
         assert_true(fabs(expected) > 0.4);
