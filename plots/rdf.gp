@@ -19,7 +19,7 @@ limit = D_max > 0 ? 1.15 * D_max : 1
 do for [kind in kinds] {
     eval open(kind, "rdf" . pair, 720, 560)
     set multiplot
-    set lmargin at screen 0.145
+    set lmargin at screen 0.17
     set rmargin at screen 0.97
     set xrange [0:R_max]
 
