@@ -10,9 +10,12 @@
 #include <string.h>
 #include <unistd.h>
 
-const struct snapshot_format *const mf_snapshot_formats[] = {&mf_snapshot_vtp, &mf_snapshot_json,
-                                                             &mf_snapshot_extxyz, NULL};
-const char *const mf_snapshot_format_names[] = {"vtp", "json", "extxyz", NULL};
+const struct snapshot_format *const mf_snapshot_formats[] = {
+    &mf_snapshot_vtp, &mf_snapshot_json, &mf_snapshot_extxyz, &mf_snapshot_lammps, NULL};
+const char *const mf_snapshot_format_names[] = {"vtp", "json", "extxyz", "lammps-dump", NULL};
+_Static_assert(sizeof mf_snapshot_formats / sizeof *mf_snapshot_formats == SNAPSHOT_FORMATS + 1 &&
+                   sizeof mf_snapshot_format_names == sizeof mf_snapshot_formats,
+               "every format has a name");
 
 // Taking ------------------------------------------------------------------------------------------
 

@@ -86,7 +86,9 @@ struct snapshot_format {
     void (*print)(const struct snapshot *snapshot, FILE *stream);
 };
 
-extern const struct snapshot_format mf_snapshot_vtp, mf_snapshot_json, mf_snapshot_extxyz;
+extern const struct snapshot_format mf_snapshot_vtp, mf_snapshot_json, mf_snapshot_extxyz,
+    mf_snapshot_lammps;
+enum { SNAPSHOT_FORMATS = 4 };
 
 /// All formats, NULL-terminated, and their names.
 extern const struct snapshot_format *const mf_snapshot_formats[];
@@ -95,7 +97,7 @@ extern const char *const mf_snapshot_format_names[];
 /// Write a snapshot into `folder`: step_000001000.vtp, which appears whole or not at all, or a
 /// frame behind the first `size` bytes of trajectory.extxyz. Those are all that is kept of it, so
 /// that a run that goes on from an earlier step leaves the file of one that was not interrupted.
-/// @param[in,out] size  of the file of all snapshots [bytes]; others leave it alone
+/// @param[in,out] size  of the format's file of all snapshots [bytes]; others leave it alone
 /// Fails: IO; the file is then as it was. Tested: test_snapshot, cli/test_snapshots.
 enum status mf_snapshot_write(const struct snapshot *snapshot, const struct snapshot_format *format,
                               const char *folder, int64_t *size) MUST_USE;

@@ -19,8 +19,8 @@ struct state {
     struct observable_results results;
     int64_t begin, steps; ///< of the measurement
     int64_t taken;
-    int64_t size;         ///< of the file of all snapshots [bytes]
-    struct snapshot last; ///< or the state before the first
+    int64_t size[SNAPSHOT_FORMATS]; ///< of the file of all snapshots of a format [bytes]
+    struct snapshot last;           ///< or the state before the first
 };
 
 static enum status take(struct state *s, const struct simulation *simulation) {
@@ -79,7 +79,7 @@ static enum status write_formats(struct state *s) {
     CHECK(mf_snapshot_translate(&told, &s->last, s->results.units));
     for (int k = 0; mf_snapshot_formats[k]; k++)
         if (s->settings.formats >> k & 1)
-            CHECK(mf_snapshot_write(&told, mf_snapshot_formats[k], folder, &s->size));
+            CHECK(mf_snapshot_write(&told, mf_snapshot_formats[k], folder, &s->size[k]));
 done:
     mf_snapshot_clear(&told);
     return status;
@@ -132,7 +132,7 @@ static enum status sample(void *state, struct simulation *simulation) {
 static size_t spans(void *state, struct memory_span *spans) {
     struct state *s = state;
     spans[0] = (struct memory_span){&s->taken, sizeof s->taken};
-    spans[1] = (struct memory_span){&s->size, sizeof s->size};
+    spans[1] = (struct memory_span){s->size, sizeof s->size};
     spans[2] = (struct memory_span){s->last.memory, s->last.numbers * sizeof *s->last.memory};
     return 3;
 }
@@ -169,7 +169,7 @@ static const struct field fields[] = {
     {"formats", FIELD_CHOICES, offsetof(struct settings, formats), .initial = 1,
      .choices = mf_snapshot_format_names, .unit = "",
      .help = "files that ParaView opens, lists of numbers with which a scene can begin, one "
-             "extended XYZ file"},
+             "extended XYZ file, one dump as LAMMPS writes it"},
     {"solvent", FIELD_CHOICE, offsetof(struct settings, solvent), .choices = no_or_yes,
      .initial = 0, .unit = "",
      .help = "whether they show the particles of collision-dynamics, behind the others and as a "

@@ -6,6 +6,7 @@
 #include "shared/is_close.h"
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
+#include "trajectory/trajectory.h"
 
 #include <stdlib.h>
 
@@ -102,6 +103,56 @@ static void test_companions_follow_as_a_type_of_their_own(void **state) {
     free(text);
 }
 
+/// Two frames with a solvent, read as a trajectory: places beyond the box by their images, which
+/// the particle at 0.1 + 10 and 4.1 + 1 boxes shows.
+static void test_lammps_dump_is_read_back(void **state) {
+    struct temporary_folder *folder = *state;
+    double x[] = {0.5, 4.5}, y[] = {1, 2}, vx[] = {-1, 3}, vy[] = {7, 8};
+    double *const position[] = {x, y}, *const velocity[] = {vx, vy};
+    const struct snapshot_companions companions = {"solvent", 2, position, velocity, 1};
+    static const double expected[COUNT + 2][4] = {{3.1, 3.1, 102, 112},
+                                                  {1.1, 1.1, 100, 110},
+                                                  {40.1, 12.1, 101, 111},
+                                                  {0.5, 1, -1, 7},
+                                                  {0.5, 2, 3, 8}};
+    struct particles particles;
+    struct snapshot snapshot;
+    struct trajectory trajectory;
+    struct trajectory_frame frame = {0};
+    int64_t size = 0;
+    bool more;
+    make(&particles);
+    for (uint64_t step = 20; step <= 40; step += 20) {
+        assert_ok(mf_snapshot_take(&snapshot, &particles, &mixture, &companions, step,
+                                   0.025 * (double)step));
+        assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_lammps, folder->path, &size));
+        mf_snapshot_clear(&snapshot);
+    }
+    mf_particles_clear(&particles);
+    assert_ok(mf_trajectory_open(&trajectory, temporary_folder_file(folder, "trajectory.lammpstrj"),
+                                 &(struct trajectory_options){.units = "lj"}));
+    assert_string_equal(trajectory.format->name, mf_snapshot_lammps.name);
+    for (int n = 1; n <= 2; n++) {
+        assert_ok(mf_trajectory_next(&trajectory, &frame, &more));
+        assert_true(more && frame.atoms == COUNT + 2 && frame.has_velocities);
+        assert_int_equal(frame.step, 20 * n);
+        assert_close(frame.time, 0.5 * n, 1e-12);
+        assert_close(frame.box[0][0], 4, 1e-12);
+        assert_close(frame.box[1][1], 8, 1e-12);
+        for (int k = 0; k < COUNT + 2; k++)
+            for (int d = 0; d < 3; d++) {
+                assert_close(frame.position[k][d], d < 2 ? expected[k][d] : 0, 1e-9);
+                assert_close(frame.velocity[k][d], d < 2 ? expected[k][2 + d] : 0, 1e-9);
+            }
+    }
+    assert_int_equal(trajectory.structure.atom[2].type, 2);
+    assert_int_equal(trajectory.structure.atom[4].type, 3);
+    assert_ok(mf_trajectory_next(&trajectory, &frame, &more));
+    assert_false(more);
+    mf_frame_clear(&frame);
+    mf_trajectory_close(&trajectory);
+}
+
 /// The bytes behind the first > after a text, out of base64.
 static void decode(const char *text, const char *after, unsigned char *bytes, size_t size) {
     static const char letters[] =
@@ -169,6 +220,7 @@ static void test_names_of_snapshots_are_known(void **state) {
     assert_true(mf_snapshot_is_file("step_000000100.vtp"));
     assert_true(mf_snapshot_is_file("step_12345678901.json"));
     assert_true(mf_snapshot_is_file("trajectory.extxyz"));
+    assert_true(mf_snapshot_is_file("trajectory.lammpstrj"));
     assert_false(mf_snapshot_is_file("step_one.vtp"));
     assert_false(mf_snapshot_is_file("step_000000100.png"));
     assert_false(mf_snapshot_is_file("notes.extxyz"));
@@ -184,6 +236,8 @@ int main(void) {
                                         temporary_folder_create, temporary_folder_remove),
         cmocka_unit_test_setup_teardown(test_extxyz_is_continued_behind_the_bytes_that_count,
                                         temporary_folder_create, temporary_folder_remove),
+        cmocka_unit_test_setup_teardown(test_lammps_dump_is_read_back, temporary_folder_create,
+                                        temporary_folder_remove),
         cmocka_unit_test_setup_teardown(test_companions_follow_as_a_type_of_their_own,
                                         temporary_folder_create, temporary_folder_remove),
         cmocka_unit_test(test_names_of_snapshots_are_known),
