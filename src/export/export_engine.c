@@ -29,6 +29,17 @@ static enum status find_engine(const char *name, const struct export_engine **en
     return mf_status_fail(STATUS_BAD_INPUT, "unknown engine \"%s\"; %s", name, hint);
 }
 
+static enum status check_friction(const struct export_job *job) {
+    if (job->engine->friction == EXPORT_NO_FRICTION)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: --project: what is written for %s has no friction between pairs",
+                              job->model->folder, job->engine->title);
+    if (job->model->setup.omega == NULL)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: --project: there is no friction weight",
+                              job->model->folder);
+    return STATUS_OK;
+}
+
 static enum status check(const struct export_job *job, bool bands) {
     const struct export_model *model = job->model;
     const struct export_engine *engine = job->engine;
@@ -49,14 +60,15 @@ static enum status check(const struct export_job *job, bool bands) {
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: cannot be exported: %s is written for %d types of beads at most",
                               model->folder, engine->title, engine->most_types);
-    return STATUS_OK;
+    return job->projected ? check_friction(job) : STATUS_OK;
 }
 
 static void find_powers(struct export_job *job) {
     const struct simulation_setup *setup = &job->model->setup;
+    const bool only_linear = job->projected && job->engine->friction == EXPORT_LINEAR;
     for (int pair = 0; setup->omega && pair < job->grids.pairs; pair++) {
-        job->power[pair] =
-            mf_export_power_fit(setup->omega, setup->potential, pair, setup->temperature);
+        job->power[pair] = mf_export_power_fit(setup->omega, setup->potential, pair,
+                                               setup->temperature, only_linear);
         job->worst_misfit = fmax(job->worst_misfit, job->power[pair].misfit);
     }
 }
@@ -84,6 +96,53 @@ static void print_friction(const struct export_job *job, FILE *stream) {
             "\nThe misfit is sqrt(sum w (omega - power law)^2 / sum w omega^2) with w = r^2 "
             "exp(-phi/k_B T);\nbelow %g the two count as the same friction.\n",
             EXPORT_POWER_BOUND);
+}
+
+/// What both simulations found, in the units of the engine.
+static void print_cost(const struct export_job *job, FILE *stream) {
+    const struct export_projection *p = &job->projection;
+    const struct export_units *units = &job->units;
+    const double diffusion = units->length * units->length / units->time;
+    const double window = p->interval * (EXPORT_TIMES - 1);
+    const struct export_measured *const both[] = {&p->result, &p->projected};
+    static const char *const names[] = {"omega of the result", "power law          "};
+    for (int k = 0; k < 2; k++)
+        fprintf(stream, "    %s: temperature %.6g +- %.2g %s, D %.4g +- %.2g %s^2/%s\n", names[k],
+                units->temperature * both[k]->temperature.value,
+                units->temperature * both[k]->temperature.error, units->temperature_name,
+                diffusion * both[k]->diffusion.value, diffusion * both[k]->diffusion.error,
+                units->length_name, units->time_name);
+    fprintf(stream,
+            "    E(t, r_0) to t = %.4g %s, r_0 < %.4g %s: rms of the difference %.2g; statistical "
+            "noise alone gives %.2g\n",
+            units->time * window, units->time_name, units->length * p->r_maximum,
+            units->length_name, p->rms, p->noise);
+}
+
+static void explain_projection(const struct export_job *job, FILE *stream) {
+    fprintf(stream,
+            "\nThe power law stands for omega here (--project). What that costs, by two "
+            "simulations of mesofit\nof %lld steps each, with standard errors; projection.tsv has "
+            "both E:\n\n",
+            (long long)job->projection.steps);
+    print_cost(job, stream);
+}
+
+/// Both E(t, r_0), a row for each time and bin.
+static void print_escapes(const struct export_job *job, FILE *stream) {
+    const struct export_projection *p = &job->projection;
+    const struct export_measured *a = &p->result, *b = &p->projected;
+    fprintf(stream,
+            "# t[%s]\tr_0[%s]\tresult[1]\tresult_error[1]\tprojected[1]\tprojected_error[1]\n",
+            job->units.time_name, job->units.length_name);
+    for (int k = 0; k < EXPORT_TIMES * EXPORT_BINS; k++) {
+        const int time = k / EXPORT_BINS, bin = k % EXPORT_BINS;
+        if (isfinite(a->survival[k] + b->survival[k]))
+            fprintf(stream, "%.6g\t%.6g\t%.6g\t%.2g\t%.6g\t%.2g\n",
+                    time * p->interval * job->units.time,
+                    (bin + 0.5) / EXPORT_BINS * p->r_maximum * job->units.length, a->survival[k],
+                    a->error[k], b->survival[k], b->error[k]);
+    }
 }
 
 static void print_number(FILE *stream, const char *name, const struct export_number *number,
@@ -125,6 +184,8 @@ static void print_readme(const struct export_job *job, FILE *stream) {
     print_number(stream, "pressure   ", &model->pressure, units->pressure, units->pressure_name);
     fprintf(stream, "\n");
     print_friction(job, stream);
+    if (job->projected)
+        explain_projection(job, stream);
     fprintf(stream, "\n");
     job->engine->explain(job, stream);
     fprintf(stream, "%s\n\nThe start is %s.\n", job->engine->verified,
@@ -141,7 +202,10 @@ static void say(const struct export_job *job) {
             "%.4g %s on\n",
             job->grids.grid[0][0].rows, job->engine->title, error->phi, error->force,
             job->units.length * error->from, job->units.length_name);
-    if (job->model->setup.omega)
+    if (job->projected) {
+        fprintf(stderr, "a power law stands for omega: misfit %.2g\n", job->worst_misfit);
+        print_cost(job, stderr);
+    } else if (job->model->setup.omega)
         fprintf(stderr, "omega is %sa power law: misfit %.2g\n",
                 mf_export_is_power(job) ? "" : "not ", job->worst_misfit);
     fprintf(stderr, "%s: see README\n", job->folder);
@@ -150,6 +214,8 @@ static void say(const struct export_job *job) {
 static enum status write_folder(struct export_job *job) {
     TRY(mf_output_make_folder(job->folder));
     TRY(job->engine->write(job));
+    if (job->projected)
+        TRY(mf_export_file(job, "projection.tsv", print_escapes));
     return mf_export_file(job, "README", print_readme);
 }
 
@@ -162,33 +228,39 @@ static double safe_step(const struct export_model *model) {
     return wrong > allowed ? step * sqrt(allowed / wrong) : step;
 }
 
-static enum status run(struct export_job *job, bool bands, bool quiet) {
+static enum status run(struct export_job *job, const struct export_request *request) {
+    enum status status = STATUS_OK;
     const struct export_model *model = job->model;
-    TRY(check(job, bands));
+    TRY(check(job, request->bands));
     job->units = mf_export_units(job->engine->system, &model->scene.units, job->engine->physical);
     job->time_step = safe_step(model);
-    TRY(mf_export_grids_make(&job->grids, job->engine->interpolation, model, bands,
+    TRY(mf_export_grids_make(&job->grids, job->engine->interpolation, model, request->bands,
                              job->engine->one_cutoff ? model->setup.potential->cutoff : 0));
     find_powers(job);
-    const enum status status = write_folder(job);
-    if (status == STATUS_OK && !quiet)
+    if (job->projected)
+        CHECK(mf_export_project(model, job->power, request->threads, &job->projection));
+    CHECK(write_folder(job));
+    if (!request->quiet)
         say(job);
+done:
     mf_export_grids_clear(&job->grids);
     return status;
 }
 
-enum status mf_export_run(const char *from, const char *name, const char *to, bool bands,
-                          bool quiet) {
+enum status mf_export_run(const struct export_request *request) {
     enum status status = STATUS_OK;
     struct export_model *model = NULL;
     struct export_job *job = NULL;
     const struct export_engine *engine;
-    TRY(find_engine(name, &engine));
+    TRY(find_engine(request->engine, &engine));
     NEW_ARRAY(model, 1);
     NEW_ARRAY(job, 1);
-    CHECK(mf_export_model_read(model, from));
-    *job = (struct export_job){.engine = engine, .model = model, .folder = to ? to : engine->name};
-    CHECK(run(job, bands, quiet));
+    CHECK(mf_export_model_read(model, request->from));
+    *job = (struct export_job){.engine = engine,
+                               .model = model,
+                               .folder = request->to ? request->to : engine->name,
+                               .projected = request->project};
+    CHECK(run(job, request));
 done:
     if (model)
         mf_export_model_clear(model);
@@ -211,7 +283,7 @@ const char *mf_export_curve_name(enum export_curve curve) {
 }
 
 bool mf_export_is_power(const struct export_job *job) {
-    return job->model->setup.omega && job->worst_misfit < EXPORT_POWER_BOUND;
+    return job->model->setup.omega && (job->projected || job->worst_misfit < EXPORT_POWER_BOUND);
 }
 
 bool mf_export_is_linear(const struct export_job *job) {

@@ -7,6 +7,7 @@
 
 #include "export/export_grid.h"
 #include "export/export_power.h"
+#include "export/export_projection.h"
 #include "export/export_units.h"
 
 #include <stdio.h>
@@ -22,8 +23,13 @@ struct export_job {
     struct export_grids grids;
     struct export_power power[COMPOSITION_MOST_PAIRS]; ///< of ω, if there is one
     double worst_misfit;                               ///< of all of them
+    bool projected;                                    ///< the power laws stand for ω, and
+    struct export_projection projection;               ///< what that costs
     double time_step;                                  ///< for this engine [τ]
 };
+
+/// What friction between pairs an engine has: none, A (1 − r/r_c), A (1 − r/r_c)^s.
+enum export_friction { EXPORT_NO_FRICTION, EXPORT_LINEAR, EXPORT_POWER };
 
 struct export_engine {
     const char *name;
@@ -32,6 +38,7 @@ struct export_engine {
     enum export_system system;
     bool physical; ///< knows no reduced units: these are then nm, kJ/mol and u
     const struct export_interpolation *interpolation;
+    enum export_friction friction;
     const char *commands; ///< that run the folder, a line each
     const char *verified; ///< whether such folders were run: a sentence of the README
     int most_types;       ///< that it is written for
@@ -59,13 +66,22 @@ EXPORT_ENGINES(EXPORT_DECLARE)
 /// The same, NULL-terminated.
 extern const struct export_engine *const mf_export_engines[];
 
-/// Write the folder `to` for the engine called `name` of the result in `from`, and say what was
-/// written on stderr unless `quiet`.
+/// What is to be exported, and how.
+struct export_request {
+    const char *from, *engine;
+    const char *to; ///< folder; NULL: called as the engine
+    bool bands;     ///< Φ less and plus one standard error, too
+    bool project;   ///< the nearest power law of the engine stands for ω, and its cost is measured
+    bool quiet;
+    int threads; ///< of that measurement
+};
+
+/// Write the folder for an engine of a result, and say what was written on stderr unless `quiet`.
 /// Fails: BAD_INPUT for an engine or a result that is none, interactions that the engine does not
-/// express, and a folder `to` that holds a result; IO; NO_MEMORY. Nothing is written before all was
+/// express, no friction to project, and a folder `to` that holds a result; IO; NO_MEMORY; with
+/// `project` as mf_export_project. Nothing is written before all was
 /// read and checked. Tested: cli/test_export.
-enum status mf_export_run(const char *from, const char *name, const char *to, bool bands,
-                          bool quiet) MUST_USE;
+enum status mf_export_run(const struct export_request *request) MUST_USE;
 
 /// @name For the engines
 /// Write a file of the folder, whole or not at all. Fails: IO.
@@ -76,8 +92,8 @@ enum status mf_export_file(const struct export_job *job, const char *name,
 /// The ending of the names of a curve's tables: "", "_lower" or "_upper".
 const char *mf_export_curve_name(enum export_curve curve);
 
-/// Whether the friction is a power law within EXPORT_POWER_BOUND for all pairs, and whether its
-/// exponent is 1.
+/// Whether the friction is a power law within EXPORT_POWER_BOUND for all pairs, or projected onto
+/// one, and whether its exponent is 1.
 bool mf_export_is_power(const struct export_job *job);
 bool mf_export_is_linear(const struct export_job *job);
 

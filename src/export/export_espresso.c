@@ -49,6 +49,7 @@ const struct export_engine mf_export_espresso = {
     .summary = "run.py, start.txt, A-B.txt; reduced units, or nm, ps, kJ/mol",
     .system = EXPORT_NANOMETRES,
     .interpolation = &mf_export_grid_linear,
+    .friction = EXPORT_LINEAR,
     .commands = "    pypresso run.py\n    pypresso run.py 100000   # steps\n",
     .verified = "Such folders were checked against the source of the engine, and not run.",
     .most_types = COMPOSITION_MOST_TYPES,

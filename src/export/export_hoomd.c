@@ -63,6 +63,7 @@ const struct export_engine mf_export_hoomd = {
     .summary = "run.py, start.txt, A-B.txt; reduced units, or nm, ps, kJ/mol",
     .system = EXPORT_NANOMETRES,
     .interpolation = &mf_export_grid_open,
+    .friction = EXPORT_LINEAR,
     .commands = "    python3 run.py\n    python3 run.py 100000   # steps\n",
     .verified = "Such folders were checked against the source of the engine, and not run.",
     .most_types = COMPOSITION_MOST_TYPES,

@@ -216,10 +216,11 @@ static void print_input(const struct export_job *job, FILE *stream) {
         "variable equilibration index %d\n"
         "variable every index 20         # steps between samples\n"
         "variable dump index 0           # steps between frames of dump.lammpstrj; 0: none\n"
-        "variable friction index langevin # or another one that README names\n"
+        "variable friction index %s # or another one that README names\n"
         "variable band index \"\"          # _lower or _upper: exported with --bands\n"
         "variable seed index 12345\n\n",
-        model->title[0] ? model->title : "beads", model->equilibrated ? 1000 : 5000);
+        model->title[0] ? model->title : "beads", model->equilibrated ? 1000 : 5000,
+        job->projected ? "dpd" : "langevin");
     fprintf(stream,
             "# in this folder, or where it was written from\n"
             "if \"$(is_file(data.mesofit)) == 0\" then 'shell cd \"%s\"'\n\n",
@@ -252,14 +253,16 @@ static void explain(const struct export_job *job, FILE *stream) {
             "in.mesofit leaves LAMMPS's own g(r) in rdf.dat (bins of the result; of mixtures a "
             "column g and a\ncoordination number for each pair type), temperature, pressure and "
             "energy in thermo.dat.\n\n");
-    fprintf(stream, "-var friction langevin, the default, runs in every LAMMPS: a bath for each "
-                    "particle. It keeps "
-                    "g(r), energy\nand pressure; the dynamics is not the result's: diffusion and "
-                    "all else that moves differs.\n");
+    fprintf(stream,
+            "-var friction langevin%s runs in every LAMMPS: a bath for each particle. It keeps "
+            "g(r), energy\nand pressure; the dynamics is not the result's: diffusion and all else "
+            "that moves differs.\n",
+            job->projected ? "" : ", the default,");
     if (mf_export_is_power(job))
         fprintf(stream,
-                "-var friction dpd: %s by pair_style hybrid/overlay, the power law above. LAMMPS "
+                "-var friction dpd%s: %s by pair_style hybrid/overlay, the power law above. LAMMPS "
                 "needs its package DPD-BASIC.\n",
+                job->projected ? ", the default" : "",
                 mf_export_is_linear(job) ? "dpd/tstat" : "dpd/ext/tstat");
     else if (job->model->setup.omega)
         fprintf(stream, "LAMMPS's own dpd/tstat and dpd/ext/tstat cannot express this omega.\n");
@@ -274,6 +277,7 @@ const struct export_engine mf_export_lammps = {
     .summary = "in.mesofit, data.mesofit, mesofit.table; units real or lj",
     .system = EXPORT_REAL,
     .interpolation = &mf_export_grid_square,
+    .friction = EXPORT_POWER,
     .commands = "    lmp -in in.mesofit\n    mpirun -np 4 lmp -in in.mesofit   # the same on four "
                 "processors\n",
     .verified = "Such folders were run with LAMMPS of 29 Sep 2021 and 6 Jan 2022.",

@@ -26,12 +26,12 @@ static struct export_power fit_amplitude(const struct table *omega, const struct
 }
 
 struct export_power mf_export_power_fit(const struct table *omega, const struct table *potential,
-                                        int pair, double temperature) {
+                                        int pair, double temperature, bool only_linear) {
     static const double golden = 0.6180339887498949;
     if (!(table_cutoff(omega, pair) > 0))
         return (struct export_power){0};
     const struct export_power linear = fit_amplitude(omega, potential, pair, temperature, 1);
-    if (linear.misfit < 0.1 * EXPORT_POWER_BOUND)
+    if (only_linear || linear.misfit < 0.1 * EXPORT_POWER_BOUND)
         return linear;
     double low = log(0.02), high = log(20);
     for (int k = 0; k < 60; k++) {

@@ -16,6 +16,7 @@ struct export_power {
 #define EXPORT_POWER_BOUND 0.01
 
 /// Least squares of a pair type's ω, weighted as pairs of a dilute gas are; s = 1, which engines
-/// know best, if it is good enough. All zero where ω is. Tested: test_export_power.
+/// know best, if it is good enough, or if `only_linear`, whatever it leaves. All zero where ω is.
+/// Tested: test_export_power.
 struct export_power mf_export_power_fit(const struct table *omega, const struct table *potential,
-                                        int pair, double temperature);
+                                        int pair, double temperature, bool only_linear);

@@ -102,7 +102,7 @@ void mf_export_script_head(const struct export_job *job, const char *module, FIL
         fprintf(stream, "%s%.12g", type ? ", " : "", model->mass[type] * units->mass);
     fprintf(stream, "]\n");
     print_pairs(job, stream);
-    fprintf(stream, "linear = %s # the friction of the result is A (1 - r/r_c)\nslowing = %.6g\n",
+    fprintf(stream, "linear = %s # the friction is A (1 - r/r_c)\nslowing = %.6g\n",
             mf_export_is_linear(job) ? "True" : "False", mf_export_slowing(job) * units->time);
     fprintf(stream, "steps = int(sys.argv[1]) if len(sys.argv) > 1 else 10000\n"
                     "start = numpy.loadtxt(\"start.txt\")\n\n");
@@ -110,7 +110,8 @@ void mf_export_script_head(const struct export_job *job, const char *module, FIL
 
 void mf_export_script_explain(const struct export_job *job, const char *dpd, FILE *stream) {
     if (mf_export_is_linear(job))
-        fprintf(stream, "Friction and noise: %s, that of the result.\n", dpd);
+        fprintf(stream, "Friction and noise: %s, that of the result%s.\n", dpd,
+                job->projected ? " as the power law above" : "");
     else if (job->model->setup.omega)
         fprintf(stream,
                 "%s cannot express this omega: a Langevin bath of each particle holds the "

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "export/export_projection.h"
+
+#include "curves/formula.h"
+#include "observe/etd.h"
+#include "observe/measure.h"
+#include "observe/motion.h"
+#include "observe/thermodynamics.h"
+
+#include <math.h>
+
+/// What is measured of both, and when.
+struct plan {
+    struct etd_settings etd;
+    struct motion_plan motion;
+    struct measure_plan measure;
+};
+
+/// One simulation.
+struct run {
+    struct simulation simulation;
+    struct etd etd;
+    struct motion motion;
+    struct thermodynamics thermodynamics;
+};
+
+/// Mean distance of neighbours [λ].
+static double find_spacing(const struct export_model *model) {
+    const struct box *box = &model->setup.box;
+    return pow(mf_box_volume(box) / (double)model->count, 1.0 / box->dimensions);
+}
+
+static struct plan make_plan(const struct export_model *model) {
+    enum { LAGS = 2 * (EXPORT_TIMES - 1), WINDOWS = 20, WINDOWS_BEFORE = 3 };
+    const struct simulation_setup *setup = &model->setup;
+    const double spacing = find_spacing(model), widest = 1.6 * spacing;
+    const double window = 3 * spacing * sqrt(model->mass[0] / setup->temperature);
+    const int64_t every = (int64_t)fmax(1, round(window / LAGS / setup->time_step));
+    double reach = widest;
+    for (int d = 0; d < setup->box.dimensions; d++)
+        reach = fmin(reach, 0.499 * setup->box.length[d]);
+    return (struct plan){
+        .etd = {{.r_maximum = reach, .bins = EXPORT_BINS, .times = EXPORT_TIMES},
+                {.every = 2 * every, .origin_every = 5}},
+        .motion = {.every = every, .lags = LAGS, .origin_every = 5, .fit_from = 0.5},
+        .measure = {.equilibration = WINDOWS_BEFORE * LAGS * every,
+                    .samples = WINDOWS * LAGS / 2,
+                    .every = 2 * every},
+    };
+}
+
+static void clear(struct run *run) {
+    mf_thermodynamics_clear(&run->thermodynamics);
+    mf_motion_clear(&run->motion);
+    mf_etd_clear(&run->etd);
+    mf_simulation_clear(&run->simulation);
+}
+
+static enum status sample(struct run *run, struct plan *plan) {
+    double temperature;
+    struct observable_use uses[] = {{&mf_thermodynamics_observable, &run->thermodynamics, NULL},
+                                    {&mf_etd_observable, &run->etd, &plan->etd},
+                                    {&mf_motion_observable, &run->motion, &plan->motion},
+                                    {0}};
+    TRY(mf_measure_equilibrate(&run->simulation, &plan->measure, &temperature, NULL));
+    for (struct observable_use *use = uses; use->observable; use++)
+        TRY(use->observable->begin(use->state, use->settings, &run->simulation, &plan->measure));
+    return mf_measure_sample(&run->simulation, &plan->measure, uses, NULL);
+}
+
+static enum status read_results(const struct run *run, struct export_measured *measured) {
+    const struct thermodynamics_summary state = mf_thermodynamics_result(&run->thermodynamics, 1);
+    const struct motion_summary motion = mf_motion_result(&run->motion, NULL);
+    measured->temperature = (struct export_number){state.temperature, state.temperature_error};
+    measured->diffusion = (struct export_number){motion.msd, motion.msd_error};
+    return mf_etd_result(&(const struct etd *){&run->etd}, 1, measured->survival, measured->error,
+                         measured->pairs);
+}
+
+/// A simulation from the model's start; `seed` tells one from another.
+static enum status simulate(const struct export_model *model, const struct table *omega,
+                            uint64_t seed, int threads, struct plan *plan,
+                            struct export_measured *measured) {
+    enum status status = STATUS_OK;
+    struct run run = {0};
+    struct simulation_setup setup = model->setup;
+    struct simulation_start start = {0};
+    setup.omega = omega;
+    setup.seed = seed;
+    setup.threads = threads;
+    setup.placement.kind = PLACEMENT_FILE;
+    for (int d = 0; d < setup.box.dimensions; d++) {
+        start.position[d] = model->position[d];
+        start.velocity[d] = model->velocity[d];
+    }
+    CHECK(mf_simulation_init(&run.simulation, &setup, &start));
+    CHECK(sample(&run, plan));
+    CHECK(read_results(&run, measured));
+done:
+    clear(&run);
+    return status;
+}
+
+static enum status tabulate(const struct export_power *power, int pairs, struct table *omega) {
+    enum status status = STATUS_OK;
+    struct table part[COMPOSITION_MOST_PAIRS] = {{0}};
+    for (int pair = 0; pair < pairs; pair++) {
+        struct formula_power_omega_parameters formula = {.sigma = power[pair].amplitude,
+                                                         .exponent = power[pair].exponent,
+                                                         .cutoff = power[pair].cutoff};
+        if (formula.cutoff > 0)
+            CHECK(mf_table_init_omega(&part[pair],
+                                      &(struct curve){&mf_formula_power_omega, &formula}));
+    }
+    CHECK(mf_table_stack(omega, part, pairs));
+done:
+    for (int pair = 0; pair < pairs; pair++)
+        mf_table_clear(&part[pair]);
+    return status;
+}
+
+static void compare(struct export_projection *projection) {
+    const struct export_measured *a = &projection->result, *b = &projection->projected;
+    double squares = 0, errors = 0, weights = 0;
+    for (int k = EXPORT_BINS; k < EXPORT_TIMES * EXPORT_BINS; k++) {
+        if (!isfinite(a->survival[k] + b->survival[k] + a->error[k] + b->error[k]))
+            continue;
+        const double weight = (double)(a->pairs[k % EXPORT_BINS] + b->pairs[k % EXPORT_BINS]);
+        weights += weight;
+        squares += weight * pow(b->survival[k] - a->survival[k], 2);
+        errors += weight * (a->error[k] * a->error[k] + b->error[k] * b->error[k]);
+    }
+    projection->rms = weights > 0 ? sqrt(squares / weights) : NAN;
+    projection->noise = weights > 0 ? sqrt(errors / weights) : NAN;
+}
+
+enum status mf_export_project(const struct export_model *model, const struct export_power *power,
+                              int threads, struct export_projection *projection) {
+    enum status status = STATUS_OK;
+    const uint64_t seed = model->setup.seed;
+    struct plan plan = make_plan(model);
+    struct table omega = {0};
+    *projection =
+        (struct export_projection){.interval = (double)plan.etd.plan.every * model->setup.time_step,
+                                   .r_maximum = plan.etd.grid.r_maximum,
+                                   .steps = plan.measure.samples * plan.measure.every};
+    CHECK(tabulate(power, mf_export_model_pairs(model), &omega));
+    CHECK(simulate(model, model->setup.omega, seed + 1, threads, &plan, &projection->result));
+    CHECK(simulate(model, &omega, seed + 2, threads, &plan, &projection->projected));
+    compare(projection);
+done:
+    mf_table_clear(&omega);
+    return status;
+}
