@@ -40,6 +40,17 @@ static enum status check_friction(const struct export_job *job) {
     return STATUS_OK;
 }
 
+/// Without friction between pairs a bath stands for all of it, and says so.
+static enum status check_memory(const struct export_job *job) {
+    const struct pair_memory_law *memory = &job->model->setup.memory;
+    if (job->engine->friction == EXPORT_NO_FRICTION || !pair_memory_acts(memory))
+        return STATUS_OK;
+    return mf_status_fail(
+        STATUS_BAD_INPUT, "%s: cannot be exported: \"%s\" is friction that is not written for %s",
+        job->model->folder, memory->transverse ? "dissipative_transverse" : "memory",
+        job->engine->title);
+}
+
 static enum status check(const struct export_job *job, bool bands) {
     const struct export_model *model = job->model;
     const struct export_engine *engine = job->engine;
@@ -60,6 +71,7 @@ static enum status check(const struct export_job *job, bool bands) {
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: cannot be exported: %s is written for %d types of beads at most",
                               model->folder, engine->title, engine->most_types);
+    TRY(check_memory(job));
     return job->projected ? check_friction(job) : STATUS_OK;
 }
 

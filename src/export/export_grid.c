@@ -222,6 +222,8 @@ struct export_error mf_export_grid_error(const struct export_grid *grid,
     const double end = cutoff_of(table, pair),
                  row = grid->r[grid->rows - 1] - grid->r[grid->rows - 2];
     const double cutoff = grid->last > end * (1 + 1e-6) ? end - 2 * row : end;
+    // Where no row is at the cutoff, the force falls from the last row to 0, jump or not.
+    const double last_force = grid->r[grid->rows - 1];
     struct export_error error = {.from = find_accessible(table, pair, cutoff, temperature)};
     for (int k = 0; k < SAMPLES; k++) {
         const double r = sample_place(error.from, cutoff, k);
@@ -229,7 +231,8 @@ struct export_error mf_export_grid_error(const struct export_grid *grid,
         mf_table_evaluate_pair(table, pair, r, &phi, &slope, NULL);
         interpolation->value(grid, r, &read_phi, &read_force);
         error.phi = fmax(error.phi, fabs(read_phi - phi) / temperature);
-        error.force = fmax(error.force, fabs(read_force + slope));
+        if (r <= last_force)
+            error.force = fmax(error.force, fabs(read_force + slope));
         error.largest_force = fmax(error.largest_force, fabs(slope));
     }
     if (error.largest_force > 0)

@@ -53,7 +53,8 @@ enum status mf_export_grid_make(struct export_grid *grid,
                                 size_t rows) MUST_USE;
 void mf_export_grid_clear(struct export_grid *grid);
 
-/// Compare what an engine reads with the potential, at 200,000 distances.
+/// Compare what an engine reads with the potential, at 200,000 distances; behind the last row only
+/// Φ. Tested: test_export_model.
 struct export_error mf_export_grid_error(const struct export_grid *grid,
                                          const struct export_interpolation *interpolation,
                                          const struct table *table, int pair, double temperature);
@@ -67,7 +68,7 @@ struct export_grids {
 
 /// @param[in] last  of all grids [λ]; 0: each ends at its own cutoff
 /// Fails: NO_MEMORY; BAD_INPUT if even the longest table does not meet the bounds.
-/// Tested: test_export_grid.
+/// Tested: test_export_model, cli/test_export.
 enum status mf_export_grids_make(struct export_grids *grids,
                                  const struct export_interpolation *interpolation,
                                  const struct export_model *model, bool bands,

@@ -17,6 +17,6 @@ struct export_power {
 
 /// Least squares of a pair type's ω, weighted as pairs of a dilute gas are; s = 1, which engines
 /// know best, if it is good enough, or if `only_linear`, whatever it leaves. All zero where ω is.
-/// Tested: test_export_power.
+/// Tested: test_export_model.
 struct export_power mf_export_power_fit(const struct table *omega, const struct table *potential,
                                         int pair, double temperature, bool only_linear);

@@ -17,7 +17,7 @@ struct export_units {
 
 /// The units of a system. Where the result has no physical units, reduced ones, or, for an engine
 /// that knows none, those of λ = 1 nm, μ = 1 u and k_B T_0 = 1 kJ/mol, so that τ = 1 ps.
-/// Tested: test_export_units.
+/// Tested: test_export_model.
 struct export_units mf_export_units(enum export_system system, const struct units *units,
                                     bool physical);
 

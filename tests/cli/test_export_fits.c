@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 /// A soft fluid whose escape times are the target.
 static const char soft_fluid[] =
@@ -106,6 +107,116 @@ static void test_friction_weight_that_was_found_is_exported(void **state) {
     assert_true(expected > 0 && fabs(found / expected - 1) < 1e-3);
 }
 
+/// A fit in the family of an engine needs no projection: γ is σ² of the style, s the exponent.
+static void assert_runs_as_fitted(struct temporary_folder *folder, const char *exponent,
+                                  const char *style) {
+    char unknowns[256], coefficients[64];
+    snprintf(unknowns, sizeof unknowns,
+             "\"omega\": {\"curve\": \"power\", \"minimum\": 1, \"maximum\": 6, \"fixed\": "
+             "{\"exponent\": %s, \"inner_cutoff\": 0}}",
+             exponent);
+    snprintf(coefficients, sizeof coefficients, "pair_coeff 1 1 %s ", style);
+    fit_and_export(folder, unknowns, "");
+    const double sigma = results_parameter("fit/summary.json", "sigma", "value");
+    const double gamma = number_behind("lammps/in.mesofit", coefficients);
+    assert_true(sigma > 1 && fabs(gamma / (sigma * sigma) - 1) < 1e-3);
+    assert_true(fabs(number_behind("lammps/README", ", s = ") / strtod(exponent, NULL) - 1) < 1e-3);
+    assert_true(number_behind("lammps/README", "misfit of omega ") < 0.01);
+}
+
+static void test_fit_with_exponent_1_runs_as_dpd_tstat(void **state) {
+    assert_runs_as_fitted(*state, "1", "dpd/tstat");
+}
+
+static void test_fit_with_another_exponent_runs_as_dpd_ext_tstat(void **state) {
+    assert_runs_as_fitted(*state, "1.7", "dpd/ext/tstat");
+}
+
+static void simulate_with(struct temporary_folder *folder, const char *friction, const char *out) {
+    static struct run_program_result result;
+    small_inputs_write(folder, "scene.json", soft_fluid, "{\"law\": \"power\", \"sigma\": 3}",
+                       friction);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", out, "--quiet");
+    run_program_assert_code(&result, 0);
+}
+
+static void project(const char *engine, const char *threads) {
+    static struct run_program_result result;
+    RUN_PROGRAM(&result, "export", "out", "--engine", engine, "--project", "--threads", threads);
+    run_program_assert_code(&result, 0);
+}
+
+/// A projection that changes nothing costs nothing, but for statistics: a difference of five
+/// standard errors is one in 2e6. What E of another seed differs by is near its noise.
+static void test_projection_of_a_power_law_costs_nothing(void **state) {
+    double value[2], error[2];
+    simulate_with(*state, "{\"law\": \"power\", \"sigma\": 3}", "out");
+    project("lammps", "2");
+    char *text = temporary_folder_read("lammps/README");
+    const char *at = strstr(text, "The power law stands for omega here");
+    assert_non_null(at);
+    for (int k = 0; k < 2; k++) {
+        at = strstr(at, ", D ");
+        assert_non_null(at);
+        assert_int_equal(sscanf(at++, ", D %lf +- %lf", &value[k], &error[k]), 2);
+    }
+    free(text);
+    assert_true(fabs(value[0] - value[1]) < 5 * sqrt(error[0] * error[0] + error[1] * error[1]));
+    const double rms = number_behind("lammps/README", "rms of the difference ");
+    const double noise = number_behind("lammps/README", "noise alone gives ");
+    assert_true(rms > 0 && noise > 0 && rms < 3 * noise && noise < 0.05);
+    assert_true(fabs(number_behind("lammps/in.mesofit", "dpd/tstat ") - 1) <
+                1e-12); // T of pair_style
+    assert_true(fabs(number_behind("lammps/in.mesofit", "1 1 dpd/tstat ") / 9 - 1) < 1e-6);
+    text = temporary_folder_read("lammps/in.mesofit");
+    assert_contains(text, "variable friction index dpd ");
+    free(text);
+}
+
+/// A friction in a narrow shell, and the smooth one that is nearest: E differs by more than noise.
+static void test_projection_is_made_for_the_engine_and_its_cost_is_told(void **state) {
+    static const char *const files[] = {"projection.tsv", "README", NULL};
+    simulate_with(*state,
+                  "{\"law\": \"power\", \"sigma\": 40, \"inner_cutoff\": 0.8, \"exponent\": 0.5}",
+                  "out");
+    project("lammps", "1");
+    results_assert_table("lammps/projection.tsv", 6, 0);
+    assert_true(number_behind("lammps/README", "misfit of omega ") > 0.1);
+    const double rms = number_behind("lammps/README", "rms of the difference ");
+    assert_true(rms > 5 * number_behind("lammps/README", "noise alone gives "));
+    assert_int_equal(rename("lammps", "one"), 0);
+    project("lammps", "2");
+    results_assert_same("one", "lammps", files);
+    project("espresso", "2"); // which has no exponent but 1
+    assert_true(number_behind("espresso/README", ", s = ") == 1);
+    char *text = temporary_folder_read("espresso/run.py");
+    assert_contains(text, "linear = True");
+    free(text);
+}
+
+static void assert_refused(const char *from, const char *engine, const char *option,
+                           const char *word) {
+    static struct run_program_result result;
+    RUN_PROGRAM(&result, "export", from, "--engine", engine, "-o", "empty", option);
+    run_program_assert_refused(&result, "empty", word, 1, (const char *const[]){word, NULL});
+}
+
+static void test_friction_that_cannot_be_written_is_one_line(void **state) {
+    assert_int_equal(mkdir("empty", 0777), 0);
+    simulate_with(*state, "{\"law\": \"power\", \"sigma\": 3}", "out");
+    assert_refused("out", "votca", "--project", "no friction between pairs");
+    simulate_with(*state, "{\"law\": \"none\"}", "free");
+    assert_refused("free", "lammps", "--project", "no friction weight");
+    simulate_with(*state, "{\"law\": \"power\"}, \"dissipative_transverse\": {\"law\": \"power\"}",
+                  "across");
+    assert_refused("across", "lammps", "--quiet", "dissipative_transverse");
+    simulate_with(*state,
+                  "{\"law\": \"power\"}, \"memory\": {\"slow\": {\"time\": 0.5, \"omega\": "
+                  "{\"law\": \"power\"}}}",
+                  "slow");
+    assert_refused("slow", "hoomd", "--quiet", "\"memory\"");
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -113,6 +224,11 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_numbers_that_were_found_are_exported),
         TEST(test_friction_weight_that_was_found_is_exported),
+        TEST(test_fit_with_exponent_1_runs_as_dpd_tstat),
+        TEST(test_fit_with_another_exponent_runs_as_dpd_ext_tstat),
+        TEST(test_projection_of_a_power_law_costs_nothing),
+        TEST(test_projection_is_made_for_the_engine_and_its_cost_is_told),
+        TEST(test_friction_that_cannot_be_written_is_one_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

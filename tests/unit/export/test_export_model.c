@@ -2,6 +2,7 @@
 //
 // Export: columns of results in any units, the units of engines, power laws, and how far
 // interpolations are off.
+#include "curves/formula.h"
 #include "export/export_columns.h"
 #include "export/export_grid.h"
 #include "export/export_power.h"
@@ -80,7 +81,7 @@ static void test_power_laws_are_found_and_others_are_not(void **state) {
         double values[] = {cases[k].sigma, cases[k].exponent, cases[k].inner, 1.3};
         make(&curve, power, values, 4);
         assert_ok(mf_table_init_omega(&omega, &curve));
-        const struct export_power found = mf_export_power_fit(&omega, &potential, 0, 1);
+        const struct export_power found = mf_export_power_fit(&omega, &potential, 0, 1, false);
         assert_true((found.misfit < EXPORT_POWER_BOUND) == cases[k].is_power);
         assert_true(fabs(found.cutoff - 1.3) < 1e-12);
         if (cases[k].is_power) {
@@ -91,6 +92,49 @@ static void test_power_laws_are_found_and_others_are_not(void **state) {
         mf_curve_clear(&curve);
     }
     mf_table_clear(&potential);
+}
+
+/// The nearest A (1 − r) to 3 (1 − r)² without a potential, by Euler's integrals: A/3 =
+/// B(3, 4)/B(3, 3) = 1/2, misfit² = 1 − B(3, 4)²/(B(3, 5) B(3, 3)) = 1/8.
+static void test_engines_with_one_exponent_get_the_nearest_of_it(void **state) {
+    (void)state;
+    struct curve curve;
+    struct table omega = {0}, potential = {0};
+    make(&curve, mf_curve_find(mf_curve_potentials, "soft-repulsion"), (double[]){0, 1}, 2);
+    assert_ok(mf_table_init_potential(&potential, &curve));
+    mf_curve_clear(&curve);
+    make(&curve, mf_curve_find(mf_curve_omegas, "power"), (double[]){3, 2, 0, 1}, 4);
+    assert_ok(mf_table_init_omega(&omega, &curve));
+    mf_curve_clear(&curve);
+    const struct export_power found = mf_export_power_fit(&omega, &potential, 0, 1, true);
+    assert_true(found.exponent == 1 && found.cutoff == 1);
+    assert_true(fabs(found.amplitude - 1.5) < 1e-4);
+    assert_true(fabs(found.misfit - sqrt(0.125)) < 1e-4);
+    mf_table_clear(&omega);
+    mf_table_clear(&potential);
+}
+
+/// Lennard-Jones to 1.5 ends with a force of 1.16: HOOMD's falls to 0 behind the last of its rows,
+/// however many there are. That interval is no fault of a table, and all before it are.
+static void test_jump_of_the_force_at_the_cutoff_needs_no_rows(void **state) {
+    (void)state;
+    struct curve curve;
+    struct table table = {0};
+    struct export_error error[2];
+    assert_ok(mf_curve_create(&curve, mf_curve_find(mf_curve_potentials, "lennard-jones")));
+    ((struct formula_lennard_jones_parameters *)curve.parameters)->cutoff = 1.5;
+    assert_ok(mf_table_init_potential(&table, &curve));
+    mf_curve_clear(&curve);
+    for (int k = 0; k < 2; k++) {
+        struct export_grid grid;
+        assert_ok(mf_export_grid_make(&grid, &mf_export_grid_open, &table, 0, 0, k ? 1001 : 5001));
+        error[k] = mf_export_grid_error(&grid, &mf_export_grid_open, &table, 0, 1);
+        mf_export_grid_clear(&grid);
+    }
+    assert_true(error[0].largest_force * EXPORT_FORCE_BOUND < 1.15);
+    assert_true(error[0].force < EXPORT_FORCE_BOUND && error[0].phi < EXPORT_PHI_BOUND);
+    assert_true(error[1].force > 20 * error[0].force && error[1].force < 30 * error[0].force);
+    mf_table_clear(&table);
 }
 
 /// Errors of twice as many rows are a fourth, of straight lines as of LAMMPS, and what is told is
@@ -157,6 +201,8 @@ int main(void) {
         TEST(test_columns_are_reduced_whatever_their_heading_says),
         TEST(test_units_of_engines_are_consistent),
         TEST(test_power_laws_are_found_and_others_are_not),
+        TEST(test_engines_with_one_exponent_get_the_nearest_of_it),
+        TEST(test_jump_of_the_force_at_the_cutoff_needs_no_rows),
         TEST(test_errors_of_interpolations_are_measured),
         TEST(test_spline_is_the_natural_one),
     };
