@@ -34,6 +34,10 @@ static enum status check_friction(const struct export_job *job) {
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: --project: what is written for %s has no friction between pairs",
                               job->model->folder, job->engine->title);
+    if (job->engine->friction == EXPORT_LINEAR_OF_ONE_TYPE && job->model->types > 1)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: --project: friction of %s is between beads of one type",
+                              job->model->folder, job->engine->title);
     if (job->model->setup.omega == NULL)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: --project: there is no friction weight",
                               job->model->folder);
@@ -77,7 +81,7 @@ static enum status check(const struct export_job *job, bool bands) {
 
 static void find_powers(struct export_job *job) {
     const struct simulation_setup *setup = &job->model->setup;
-    const bool only_linear = job->projected && job->engine->friction == EXPORT_LINEAR;
+    const bool only_linear = job->projected && job->engine->friction != EXPORT_POWER;
     for (int pair = 0; setup->omega && pair < job->grids.pairs; pair++) {
         job->power[pair] = mf_export_power_fit(setup->omega, setup->potential, pair,
                                                setup->temperature, only_linear);

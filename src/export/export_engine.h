@@ -28,8 +28,9 @@ struct export_job {
     double time_step;                                  ///< for this engine [τ]
 };
 
-/// What friction between pairs an engine has: none, A (1 − r/r_c), A (1 − r/r_c)^s.
-enum export_friction { EXPORT_NO_FRICTION, EXPORT_LINEAR, EXPORT_POWER };
+/// What friction between pairs an engine has: none, A (1 − r/r_c), the same and for beads of one
+/// type only, A (1 − r/r_c)^s.
+enum export_friction { EXPORT_NO_FRICTION, EXPORT_LINEAR, EXPORT_LINEAR_OF_ONE_TYPE, EXPORT_POWER };
 
 struct export_engine {
     const char *name;

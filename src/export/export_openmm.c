@@ -68,7 +68,7 @@ const struct export_engine mf_export_openmm = {
     .system = EXPORT_NANOMETRES,
     .physical = true,
     .interpolation = &mf_export_grid_spline,
-    .friction = EXPORT_LINEAR,
+    .friction = EXPORT_LINEAR_OF_ONE_TYPE,
     .commands = "    python3 run.py\n    python3 run.py 100000   # steps\n",
     .verified =
         "Such folders were run with OpenMM 7.7 and its Langevin bath; DPDIntegrator is as in its "

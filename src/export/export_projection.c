@@ -31,11 +31,13 @@ static double find_spacing(const struct export_model *model) {
 }
 
 static struct plan make_plan(const struct export_model *model) {
-    enum { LAGS = 2 * (EXPORT_TIMES - 1), WINDOWS = 20, WINDOWS_BEFORE = 3 };
+    enum { LAGS = 2 * (EXPORT_TIMES - 1), WINDOWS_BEFORE = 3 };
+    static const double cheap = 1e7; // particles × steps
     const struct simulation_setup *setup = &model->setup;
     const double spacing = find_spacing(model), widest = 1.6 * spacing;
     const double window = 3 * spacing * sqrt(model->mass[0] / setup->temperature);
     const int64_t every = (int64_t)fmax(1, round(window / LAGS / setup->time_step));
+    const double windows = cheap / (LAGS * (double)every * (double)model->count);
     double reach = widest;
     for (int d = 0; d < setup->box.dimensions; d++)
         reach = fmin(reach, 0.499 * setup->box.length[d]);
@@ -44,7 +46,7 @@ static struct plan make_plan(const struct export_model *model) {
                 {.every = 2 * every, .origin_every = 5}},
         .motion = {.every = every, .lags = LAGS, .origin_every = 5, .fit_from = 0.5},
         .measure = {.equilibration = WINDOWS_BEFORE * LAGS * every,
-                    .samples = WINDOWS * LAGS / 2,
+                    .samples = LAGS / 2 * (int64_t)fmin(fmax(20, windows), 200),
                     .every = 2 * every},
     };
 }

@@ -26,9 +26,9 @@ struct export_projection {
 };
 
 /// Simulate a model from its start with its own ω and with the power laws of its pairs: twenty
-/// windows after three for equilibration, each of 3 ρ^(−1/d) sqrt(μ/k_B T), in which pairs of
-/// neighbours part. The noise is the sqrt of the likewise weighted mean of both squared standard
-/// errors.
+/// windows, of a small model up to two hundred, after three for equilibration, each of 3 ρ^(−1/d)
+/// sqrt(μ/k_B T), in which pairs of neighbours part. The noise is the sqrt of the likewise weighted
+/// mean of both squared standard errors.
 /// @param[in] power  shape [pairs]
 /// Fails: as mf_simulation_run; BAD_INPUT for a box too small for E; NO_MEMORY. Same bits for any
 /// number of threads. Tested: cli/test_export_fits.
