@@ -5,6 +5,7 @@
 #include "base/nearest.h"
 #include "mesofit.h"
 
+#include <dirent.h>
 #include <math.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -13,6 +14,9 @@
 const struct export_engine *const mf_export_engines[] = {EXPORT_ENGINES(EXPORT_LIST) NULL};
 
 enum { MOST_ENGINES = 16 };
+
+/// How a line of README begins that tells who wrote the folder.
+static const char written_by[] = "Written by mesofit";
 
 static enum status find_engine(const char *name, const struct export_engine **engine) {
     const char *names[MOST_ENGINES];
@@ -44,15 +48,23 @@ static enum status check_friction(const struct export_job *job) {
     return STATUS_OK;
 }
 
-/// Without friction between pairs a bath stands for all of it, and says so.
-static enum status check_memory(const struct export_job *job) {
-    const struct pair_memory_law *memory = &job->model->setup.memory;
-    if (job->engine->friction == EXPORT_NO_FRICTION || !pair_memory_acts(memory))
-        return STATUS_OK;
-    return mf_status_fail(
-        STATUS_BAD_INPUT, "%s: cannot be exported: \"%s\" is friction that is not written for %s",
-        job->model->folder, memory->transverse ? "dissipative_transverse" : "memory",
-        job->engine->title);
+/// Whether a folder has nothing, or what an export wrote before, whose README tells so.
+static bool is_free(const char *folder) {
+    char path[OUTPUT_PATH_SIZE], line[1024];
+    DIR *entries = opendir(folder);
+    size_t count = 0;
+    bool ours = false;
+    while (entries && readdir(entries))
+        count++;
+    if (entries)
+        closedir(entries);
+    snprintf(path, sizeof path, "%.4000s/README", folder);
+    FILE *readme = fopen(path, "r");
+    while (readme && !ours && fgets(line, sizeof line, readme))
+        ours = strncmp(line, written_by, strlen(written_by)) == 0;
+    if (readme)
+        fclose(readme);
+    return ours || count <= 2; // "." and ".."
 }
 
 static enum status check(const struct export_job *job, bool bands) {
@@ -63,6 +75,11 @@ static enum status check(const struct export_job *job, bool bands) {
     snprintf(path, sizeof path, "%.4000s/used.json", job->folder);
     if (stat(path, &found) == 0)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: holds a result; give another folder with -o",
+                              job->folder);
+    if (!is_free(job->folder))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: holds files that are not of an export; give another folder with "
+                              "-o",
                               job->folder);
     if (bands && !model->bands)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: --bands: its potential has no errors",
@@ -75,7 +92,6 @@ static enum status check(const struct export_job *job, bool bands) {
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: cannot be exported: %s is written for %d types of beads at most",
                               model->folder, engine->title, engine->most_types);
-    TRY(check_memory(job));
     return job->projected ? check_friction(job) : STATUS_OK;
 }
 
@@ -89,10 +105,14 @@ static void find_powers(struct export_job *job) {
     }
 }
 
+static const char left_out[] = "Friction with memory or across pairs is left out: g(r) is the "
+                               "result's, the dynamics is not";
+
 static void print_friction(const struct export_job *job, FILE *stream) {
     const double friction = export_units_friction(&job->units);
     if (job->model->setup.omega == NULL) {
-        fprintf(stream, "The result has no friction weight.\n");
+        fprintf(stream, "%s.\n",
+                job->model->remembers ? left_out : "The result has no friction weight");
         return;
     }
     fprintf(stream, "The power law A (1 - r/r_c)^s nearest to the friction weight omega:\n\n");
@@ -175,8 +195,8 @@ static void print_readme(const struct export_job *job, FILE *stream) {
     const struct export_model *model = job->model;
     const struct export_error *error = &job->grids.error;
     const struct export_units *units = &job->units;
-    fprintf(stream, "%s%s%s, for %s\n\nWritten by mesofit %s from %s. Run it here:\n\n",
-            model->title[0] ? model->title : "A result of mesofit", "", "", job->engine->title,
+    fprintf(stream, "%s, for %s\n\n%s %s from %s. Run it here:\n\n",
+            model->title[0] ? model->title : "A result of mesofit", job->engine->title, written_by,
             MESOFIT_VERSION, model->folder);
     fprintf(stream, "%s\n", job->engine->commands);
     fprintf(stream, "Units: %s, %s, %s, %s, %s. Time step %.6g %s; mesofit's own was %.6g.\n\n",
@@ -218,6 +238,8 @@ static void say(const struct export_job *job) {
             "%.4g %s on\n",
             job->grids.grid[0][0].rows, job->engine->title, error->phi, error->force,
             job->units.length * error->from, job->units.length_name);
+    if (job->model->remembers)
+        fprintf(stderr, "mesofit: warning: %.160s: %s\n", job->model->folder, left_out);
     if (job->projected) {
         fprintf(stderr, "a power law stands for omega: misfit %.2g\n", job->worst_misfit);
         print_cost(job, stderr);
@@ -229,10 +251,10 @@ static void say(const struct export_job *job) {
 
 static enum status write_folder(struct export_job *job) {
     TRY(mf_output_make_folder(job->folder));
-    TRY(job->engine->write(job));
+    TRY(mf_export_file(job, "README", print_readme)); // by which the folder is known
     if (job->projected)
         TRY(mf_export_file(job, "projection.tsv", print_escapes));
-    return mf_export_file(job, "README", print_readme);
+    return job->engine->write(job);
 }
 
 /// The step of the result, shortened if its configurational temperature, whose error is as Δt²,

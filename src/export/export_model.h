@@ -26,6 +26,7 @@ struct export_model {
     struct table potential[EXPORT_CURVES]; ///< of a fitted potential
     bool bands;                            ///< the last two of them are known
     struct table omega;                    ///< of a fitted friction weight
+    bool remembers;                        ///< friction has memory, or acts across pairs: left out
     int types;                             ///< at least 1
     char name[COMPOSITION_MOST_TYPES][COMPOSITION_NAME_SIZE];
     double mass[COMPOSITION_MOST_TYPES]; ///< [μ]

@@ -388,6 +388,63 @@ static void test_what_cannot_be_exported_is_one_line(void **state) {
     assert_contains(result.err, "--engine");
 }
 
+/// What stands in its place would be another friction, called the result's own.
+static void test_friction_with_memory_is_left_out_and_told(void **state) {
+    static struct run_program_result result;
+    static const char *const instead[] = {
+        "\"memory\": {\"slow\": {\"time\": 0.3, \"omega\": {\"law\": \"power\", \"sigma\": 2}}}",
+        "\"dissipative_transverse\": {\"law\": \"power\", \"sigma\": 2},\n"
+        "\"dissipative\": {\"law\": \"power\", \"sigma\": 2.1213}"};
+    for (int k = 0; k < 2; k++) {
+        small_scenes_write(*state, small_scenes_dpd,
+                           "\"dissipative\": {\"law\": \"power\", \"sigma\": 2.1213}", instead[k]);
+        small_scenes_simulate(&result, k ? "across" : "slow");
+        RUN_PROGRAM(&result, "export", k ? "across" : "slow", "--engine", "lammps", "-o",
+                    k ? "to-across" : "to-slow");
+        run_program_assert_code(&result, 0);
+        assert_contains(result.err, "warning");
+        assert_contains(result.err, "memory");
+        char *readme = temporary_folder_read(k ? "to-across/README" : "to-slow/README");
+        assert_contains(readme, "memory or across pairs is left out");
+        assert_null(strstr(readme, "result's own omega"));
+        free(readme);
+        char *input = temporary_folder_read(k ? "to-across/in.mesofit" : "to-slow/in.mesofit");
+        assert_null(strstr(input, "dpd"));
+        free(input);
+    }
+}
+
+static void test_title_stays_in_the_line_of_its_comment(void **state) {
+    static struct run_program_result result;
+    small_scenes_write(*state, small_scenes_dpd, "\"seed\": 5",
+                       "\"seed\": 5, \"title\": \"soft\\nshell ls\"");
+    small_scenes_simulate(&result, "out");
+    run_export("lammps", "lammps");
+    char *input = temporary_folder_read("lammps/in.mesofit");
+    assert_null(strstr(input, "\nshell ls"));
+    assert_contains(input, "# soft shell ls: written by mesofit");
+    free(input);
+}
+
+static void test_folders_of_others_are_spared(void **state) {
+    static struct run_program_result result;
+    small_scenes_write(*state, small_scenes_dpd, NULL, NULL);
+    small_scenes_simulate(&result, "out");
+    assert_int_equal(mkdir("gromacs", 0777), 0);
+    temporary_folder_write(*state, "gromacs/topol.top", "mine", 4);
+    RUN_PROGRAM(&result, "export", "out", "--engine", "gromacs");
+    assert_int_equal(result.code, 2);
+    assert_contains(result.err, "gromacs: holds files that are not of an export");
+    temporary_folder_write(*state, "gromacs/README", "of mine", 7);
+    RUN_PROGRAM(&result, "export", "out", "--engine", "gromacs");
+    assert_int_equal(result.code, 2);
+    char *text = temporary_folder_read("gromacs/topol.top");
+    assert_string_equal(text, "mine");
+    free(text);
+    run_export("gromacs", "again");
+    run_export("gromacs", "again");
+}
+
 static void test_fit_leaves_where_another_run_begins(void **state) {
     static struct run_program_result result;
     small_inputs_write(*state, "run.json", small_inputs_run, NULL, NULL);
@@ -499,6 +556,9 @@ int main(void) {
         TEST(test_votca_reads_the_potential),
         TEST(test_mixture_has_a_table_for_each_pair_type),
         TEST(test_what_cannot_be_exported_is_one_line),
+        TEST(test_friction_with_memory_is_left_out_and_told),
+        TEST(test_title_stays_in_the_line_of_its_comment),
+        TEST(test_folders_of_others_are_spared),
         TEST(test_fit_leaves_where_another_run_begins),
         TEST(test_fit_in_nm_and_ps_is_exported),
     };
