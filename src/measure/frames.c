@@ -16,9 +16,10 @@
 /// and the first has two frames.
 enum { FRAMES_A_THREAD = 2, LEAST_SLOTS = 4 };
 
-/// Times are written in single precision: two that differ by so much may be the same [ps].
+/// Times are written in single precision: two that differ by so much, one or two of its last
+/// digits, may be the same [ps].
 static double time_tolerance(double time) {
-    return 2 * (double)FLT_EPSILON * fabs(time) + 1e-9;
+    return (double)FLT_EPSILON * fabs(time) + 1e-9;
 }
 
 static enum status note(struct frames *frames, const char *format, ...)
@@ -113,8 +114,12 @@ size_t mf_frames_expected(const struct frames *frames) {
     mf_frames_bytes(frames, &done, &total);
     if (frames->time.count < 2 || total == 0)
         return 0;
+    size_t read = 0;
+    for (size_t k = 0; k <= frames->at && k < frames->plan.files; k++)
+        read += frames->source[k].read;
+    const double left_out = (double)(read - frames->time.count); // before the first, or doubled
     const double begin = frames->time.value[0], interval = frames->time.value[1] - begin;
-    const double all = (double)total / (double)frames->first_bytes;
+    const double all = (double)total / (double)frames->first_bytes - left_out;
     double last = begin + (all - 1) * interval;
     if (plan->end < last)
         last = plan->end;

@@ -92,6 +92,19 @@ static enum status begin_etd(struct measured_motion *motion, const struct motion
     return mf_etd_init_endless(&motion->etd, &grid, plan->origin_every, beads);
 }
 
+/// The shortest decimal number that `interval` may be, since times have been rounded to single
+/// precision.
+static double shorten(double interval, double error) {
+    for (int digits = 1; digits < 9; digits++) {
+        char text[32];
+        snprintf(text, sizeof text, "%.*g", digits, interval);
+        const double shorter = strtod(text, NULL);
+        if (fabs(shorter - interval) <= error)
+            return shorter;
+    }
+    return interval;
+}
+
 /// Whether frames can be followed in time.
 static bool are_timed(const struct trajectory_frame *first) {
     return isfinite(first[0].time) && isfinite(first[1].time);
@@ -108,7 +121,9 @@ enum status mf_measured_motion_begin(struct measured_motion *motion,
     if (plan->leave_out || !are_timed(first))
         return STATUS_OK;
     motion->first_time = first[0].time;
-    motion->interval = first[1].time - first[0].time;
+    motion->interval =
+        shorten(first[1].time - first[0].time,
+                (double)FLT_EPSILON * fmax(fabs(first[0].time), fabs(first[1].time)));
     CHECK(copy_masses(motion, mapping));
     CHECK(mf_frame_motion_init(&motion->path, mapping->beads));
     motion->path.mass = motion->mass;
@@ -209,17 +224,14 @@ enum status mf_measured_motion_add(struct measured_motion *motion,
     return STATUS_OK;
 }
 
-/// The shortest decimal number that `interval` may be, since times have been rounded to single
-/// precision.
-static double shorten(double interval, double error) {
-    for (int digits = 1; digits < 9; digits++) {
-        char text[32];
-        snprintf(text, sizeof text, "%.*g", digits, interval);
-        const double shorter = strtod(text, NULL);
-        if (fabs(shorter - interval) <= error)
-            return shorter;
-    }
-    return interval;
+/// Differences of positions were divided by the interval of the first two frames, whose times are
+/// rounded more than those of all.
+static void correct_differences(struct measured_motion *motion) {
+    const size_t products = motion->motion.blocks * (size_t)(motion->motion.plan.lags + 1);
+    const double factor = pow(motion->path.interval / motion->interval, 2);
+    for (size_t k = 0; factor != 1 && k < products; k++)
+        motion->motion.products[k] *= factor;
+    motion->path.interval = motion->interval;
 }
 
 void mf_measured_motion_end(struct measured_motion *motion) {
@@ -230,4 +242,6 @@ void mf_measured_motion_end(struct measured_motion *motion) {
     motion->interval = shorten((motion->last_time - motion->first_time) / intervals,
                                (double)FLT_EPSILON * most / intervals);
     motion->motion.time_step = motion->interval;
+    if (motion->path.differences)
+        correct_differences(motion);
 }

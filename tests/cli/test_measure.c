@@ -88,6 +88,42 @@ static void test_measure_writes_the_same_bytes_when_threads_differ(void **state)
     results_assert_same("one", "three", (const char *const[]){"target.json", NULL});
 }
 
+/// Times that are 0.02 ps apart and have a last digit of 0.008 ps.
+static void test_measure_keeps_frames_whose_late_times_are_rounded(void **state) {
+    enum { FRAMES = 40 };
+    char text[FRAMES * 256];
+    size_t length = 0;
+    for (int k = 0; k < FRAMES; k++)
+        length += (size_t)snprintf(
+            text + length, sizeof text - length,
+            "2\nLattice=\"30 0 0 0 30 0 0 0 30\" Properties=species:S:1:pos:R:3 Time=%.9g\n"
+            "Ar %.9g 0 0\nAr %.9g 0 0\n",
+            1e3 * (double)(float)(100000 + 0.02 * k), 5 + 0.005 * k, 9 - 0.005 * k);
+    temporary_folder_write(*state, "late.xyz", text, length);
+    MEASURE("late.xyz", "--window", "0.04", "-o", "late");
+    assert_false(strstr(result.err, "left out"));
+    assert_close(results_number("late/summary.json", "frames"), FRAMES, 0);
+    assert_close(results_number("late/summary.json", "interval"), 0.02, 1e-9);
+}
+
+/// The usual window is a tenth of what is used, not of the file.
+static void test_measure_has_motion_of_the_frames_that_are_used(void **state) {
+    enum { FRAMES = 200 };
+    char text[FRAMES * 256];
+    size_t length = 0;
+    for (int k = 0; k < FRAMES; k++)
+        length += (size_t)snprintf(
+            text + length, sizeof text - length,
+            "2\nLattice=\"30 0 0 0 30 0 0 0 30\" Properties=species:S:1:pos:R:3 Time=%d\n"
+            "Ar %05.3f 0 0\nAr %05.3f 0 0\n",
+            1000 * k, 5 + 0.005 * k, 9 - 0.005 * k);
+    temporary_folder_write(*state, "long.xyz", text, length);
+    MEASURE("long.xyz", "--begin", "179.5", "-o", "end", "--quiet");
+    assert_close(results_number("end/summary.json", "frames"), 20, 0);
+    assert_close(results_number("end/summary.json", "window"), 2, 1e-9);
+    assert_true(temporary_folder_exists("end/msd.tsv"));
+}
+
 /// water.xtc, and where its frames begin and end.
 static unsigned char bytes[200000];
 static size_t begin[8];
@@ -307,6 +343,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_measure_counts_the_pairs_that_there_are),
         TEST(test_measure_writes_the_same_bytes_when_threads_differ),
+        TEST(test_measure_keeps_frames_whose_late_times_are_rounded),
+        TEST(test_measure_has_motion_of_the_frames_that_are_used),
         TEST(test_measure_joins_files_when_a_run_was_restarted),
         TEST(test_measure_uses_what_is_whole_when_a_file_breaks_off),
         TEST(test_measure_writes_what_it_has_when_it_is_stopped),
