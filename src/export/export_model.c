@@ -96,6 +96,7 @@ static enum status read_used(struct reading *reading) {
     read_time_step(&model->scene.setup, &root);
     TRY(mf_json_close(document, status));
     model->setup = model->scene.setup;
+    model->scene.units.dimensions = model->setup.box.dimensions;
     model->setup.seed = heading.seed;
     return STATUS_OK;
 }

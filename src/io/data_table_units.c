@@ -49,12 +49,29 @@ static bool heading_unit(const struct data_table *table, size_t column, char uni
     return true;
 }
 
+/// A reduced file takes numbers as they are. Of a heading in other units, whose 1 is not the
+/// scene's, it would make something else.
+static enum status check_reduced(const struct data_table *table, const char *file, size_t column,
+                                 const char *unit, const struct units *units) {
+    static const double rounding = 1e-3; // of a scale that a person has written
+    char given[NAME_SIZE];
+    double factor;
+    if (units == NULL || !mf_units_known(units) || !heading_unit(table, column, given) ||
+        mf_units_from(units, given, unit, &factor) != STATUS_OK || fabs(factor - 1) < rounding)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: column %zu is in %.60s, and the file that names it is reduced, with "
+                          "%g %.60s for 1 by its \"units\"; a file in \"nm-ps\" or \"angstrom-fs\" "
+                          "converts tables",
+                          file, column + 1, given, 1 / factor, given);
+}
+
 enum status mf_data_table_convert(struct data_table *table, const char *file, size_t column,
                                   const char *unit, const struct units *units) {
     char given[NAME_SIZE];
     double factor = 1;
     if (!mf_units_speaks(units))
-        return STATUS_OK;
+        return check_reduced(table, file, column, unit, units);
     const bool named = heading_unit(table, column, given);
     const enum status status = named ? mf_units_from(units, given, unit, &factor) : STATUS_OK;
     if (status != STATUS_OK)

@@ -192,6 +192,7 @@ void mf_units_read(struct units *units, struct json_object *scene) {
     mf_json_fields(&object, mf_units_fields, units);
     if (object.item == NULL)
         return;
+    units->dimensions = find_dimensions(scene);
     mf_json_finish(&object);
     if (mf_json_fault_count(object.document) == faults && !can_be_held(units))
         fault_unholdable(scene);
@@ -242,6 +243,7 @@ void mf_units_put(const struct units *units, struct json_writer *writer, double 
     mf_json_put_number(writer, "diffusion_unit_cm2_per_s", mf_units_diffusion_cm2_per_s(units));
     mf_json_put_number(writer, "potential_energy_kJ_per_mol",
                        energy * mf_units_energy_kj_per_mol(units));
-    mf_json_put_number(writer, "pressure_bar", pressure * mf_units_pressure_bar(units));
+    if (units->dimensions != 2) // there it is energy over an area
+        mf_json_put_number(writer, "pressure_bar", pressure * mf_units_pressure_bar(units));
     mf_json_end(writer);
 }

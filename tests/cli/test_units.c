@@ -76,6 +76,19 @@ static void test_tables_of_a_simulation_stand_in_physical_units_too(void **state
             columns[k].factor * last_in_column(columns[k].file, columns[k].reduced), 1e-6);
 }
 
+/// There pressure is energy over an area, which no bar is.
+static void test_flat_scenes_have_no_pressure_in_bar(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "scene.json", scene, "\"box\": [3, 3, 3]",
+                       "\"dimensions\": 2, \"box\": [6, 6]");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--quiet");
+    run_program_assert_code(&result, 0);
+    char *summary = temporary_folder_read("out/summary.json");
+    assert_contains(summary, "potential_energy_kJ_per_mol");
+    assert_null(strstr(summary, "bar"));
+    free(summary);
+}
+
 static void test_tables_of_a_fit_stand_in_physical_units_too(void **state) {
     static struct run_program_result result;
     small_inputs_write(*state, "scene.json", scene, NULL, NULL);
@@ -99,6 +112,7 @@ static void test_tables_of_a_fit_stand_in_physical_units_too(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST_WITHOUT_FIGURES(test_tables_of_a_simulation_stand_in_physical_units_too),
+        TEST_WITHOUT_FIGURES(test_flat_scenes_have_no_pressure_in_bar),
         TEST_WITHOUT_FIGURES(test_tables_of_a_fit_stand_in_physical_units_too),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

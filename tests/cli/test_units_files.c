@@ -266,6 +266,8 @@ static void test_fits_speak_physical_units(void **state) {
 }
 
 #define BOX "\"box\": [3, 3, 3], \"particles\": {\"count\": 81}"
+#define REDUCED(length)                                                                            \
+    "\"units\": {\"length\": " length ", \"temperature\": 300, \"mass\": 3e-26}, "
 #define PHYSICAL "\"units\": \"nm-ps\", \"time_step\": 0.01, "
 
 static void test_bad_units_are_one_line_with_file_and_key(void **state) {
@@ -293,7 +295,12 @@ static void test_bad_units_are_one_line_with_file_and_key(void **state) {
         {"{" PHYSICAL "\"temperature\": 300, " BOX
          ", \"conservative\": {\"law\": \"table\", \"file\": \"other.tsv\"}}",
          "other.tsv: column 1: \"lambda\" needs the lambda that it was made with"},
+        {"{" REDUCED("0.5") BOX ", \"conservative\": {\"law\": \"table\", \"file\": \"nm.tsv\"}}",
+         "nm.tsv: column 1 is in nm, and the file that names it is reduced, with 0.5 nm for 1"},
+        {"{" REDUCED("1") BOX ", \"conservative\": {\"law\": \"table\", \"file\": \"nm.tsv\"}}",
+         "nm.tsv: column 2 is in kJ/mol, and the file that names it is reduced, with 2.49434 "},
     };
+    small_inputs_write(*state, "nm.tsv", "# r[nm]\tphi[kJ/mol]\n0 1\n1 0\n1.1 0\n", NULL, NULL);
     small_inputs_write(*state, "bad.tsv", "# r[ps]\tphi[kJ/mol]\n0 1\n1 0\n2 0\n", NULL, NULL);
     small_inputs_write(*state, "other.tsv", "# r[lambda]\tphi[k_B.T_0]\n0 1\n1 0\n2 0\n", NULL,
                        NULL);

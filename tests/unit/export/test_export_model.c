@@ -51,6 +51,12 @@ static void test_units_of_engines_are_consistent(void **state) {
     const struct export_units internal = mf_export_units(EXPORT_DL_POLY, &water, true);
     const double a_v = export_units_velocity(&internal);
     assert_true(fabs(internal.mass * a_v * a_v / (100 * internal.energy) - 1) < 1e-8);
+    // In two dimensions pressure is energy over an area.
+    struct units plane = water;
+    plane.dimensions = 2;
+    const struct export_units flat = mf_export_units(EXPORT_REAL, &plane, false);
+    assert_true(fabs(flat.pressure / (flat.energy / pow(flat.length, 2)) - 1) < 1e-12);
+    assert_string_equal(flat.pressure_name, "kcal/mol/A^2");
     // An engine without reduced units: 1 nm, 1 kJ/mol, 1 ps.
     const struct units none = {0};
     const struct export_units made_up = mf_export_units(EXPORT_NANOMETRES, &none, true);

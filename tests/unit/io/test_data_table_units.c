@@ -49,11 +49,21 @@ static void test_data_table_convert_reads_the_units_of_headings(void **state) {
 
 static void test_data_table_convert_leaves_reduced_files_alone(void **state) {
     struct units reduced = argon;
+    const struct units none = {0};
     double value[2];
     reduced.system = UNITS_REDUCED;
-    assert_ok(convert(state, "# r[nm]\tphi[kJ/mol]\n0.34 0.5\n", &reduced, value));
+    assert_ok(convert(state, "# r[nm]\tphi[kJ/mol]\n0.34 0.5\n", &none, value));
     assert_close(value[0], 0.34, 0);
     assert_close(value[1], 0.5, 0);
+    assert_ok(convert(state, "# r[lambda]\tphi[1]\n0.34 0.5\n", &reduced, value));
+    assert_close(value[0], 0.34, 0);
+    // The scale tells that 1 nm is not 1.
+    assert_int_equal(convert(state, "# r[nm]\tphi[1]\n0.34 0.5\n", &reduced, value),
+                     STATUS_BAD_INPUT);
+    assert_contains(mf_status_message(), "column 1 is in nm");
+    reduced.length = 1;
+    assert_ok(convert(state, "# r[nm]\tphi[1]\n0.34 0.5\n", &reduced, value));
+    assert_close(value[0], 0.34, 0);
 }
 
 static void test_data_table_convert_refuses_units_of_something_else(void **state) {
