@@ -68,6 +68,14 @@ static double find_mass(const struct measure_result *result, int type) {
     return mean.mean;
 }
 
+bool mf_measure_output_masses_differ(const struct measure_result *result) {
+    const int types = result->measured->pairs.composition.types;
+    bool differ = false;
+    for (int type = 1; type < types; type++)
+        differ = differ || fabs(find_mass(result, type) / find_mass(result, 0) - 1) > 1e-9;
+    return differ;
+}
+
 // summary.json ------------------------------------------------------------------------------------
 
 static void put_density(const struct measure_result *result, struct json_writer *writer) {
@@ -207,14 +215,23 @@ static void put_rdf(const struct measure_result *result, struct json_writer *wri
     mf_json_end(writer);
 }
 
-static void put_curve(struct json_writer *writer, const char *name, const char *file) {
+/// Friction is for beads of one mass: motion of others is compared with, and not fitted.
+static void put_fitted(const struct measure_result *result, struct json_writer *writer) {
+    if (mf_measure_output_masses_differ(result))
+        mf_json_put_text(writer, "fitted", "no");
+}
+
+static void put_curve(const struct measure_result *result, struct json_writer *writer,
+                      const char *name, const char *file) {
     mf_json_begin(writer, name);
+    put_fitted(result, writer);
     mf_json_put_text(writer, "file", file);
     mf_json_end(writer);
 }
 
-static void put_etd(struct json_writer *writer) {
+static void put_etd(const struct measure_result *result, struct json_writer *writer) {
     mf_json_begin(writer, "etd");
+    put_fitted(result, writer);
     mf_json_put_text(writer, "file", "etd.tsv");
     mf_json_put_text(writer, "error_file", "etd_error.tsv");
     mf_json_end(writer);
@@ -233,11 +250,11 @@ static void put_targets(const struct measure_result *result, struct json_writer 
     mf_json_begin(writer, "target");
     put_rdf(result, writer);
     if (mf_measure_tables_have_etd(result))
-        put_etd(writer);
+        put_etd(result, writer);
     if (mf_measure_tables_have_motion(result)) {
         if (result->measured->motion.has_vacf)
-            put_curve(writer, "vacf", "vacf.tsv");
-        put_curve(writer, "msd", "msd.tsv");
+            put_curve(result, writer, "vacf", "vacf.tsv");
+        put_curve(result, writer, "msd", "msd.tsv");
         put_diffusion_target(result, writer);
     }
     mf_json_end(writer);

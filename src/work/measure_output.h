@@ -16,5 +16,8 @@ struct measure_result {
     double seconds;
 };
 
+/// Whether types of beads have different masses.
+bool mf_measure_output_masses_differ(const struct measure_result *result);
+
 /// Write the tables, target.json, summary.json and used.json. Fails: IO, NO_MEMORY.
 enum status mf_measure_output_write(const struct measure_result *result) MUST_USE;

@@ -138,12 +138,19 @@ static void say_motion(struct run *run, const struct units *units) {
 }
 
 /// What a person is to know.
-static void say_results(struct run *run, const struct units *units) {
+static void say_results(struct run *run, const struct measure_result *result) {
     const struct measured *const measured = &run->measured;
     mf_progress_say(&run->progress, "g(r) to %.4g nm in %lld bins%s", measured->plan.range,
                     (long long)measured->plan.bins,
                     measured->pairs.molecule ? ", without pairs of one molecule or residue" : "");
-    say_motion(run, units);
+    if (measured->pairs.molecule)
+        mf_progress_say(&run->progress,
+                        "mesofit: warning: molecules have several beads: a fit knows "
+                        "no bonds, its beads go where they like");
+    say_motion(run, &result->units);
+    if (measured->motion.begun && mf_measure_output_masses_differ(result))
+        mf_progress_say(&run->progress, "masses of beads differ: target.json has motion compared "
+                                        "with and not fitted, since friction is for one mass");
     if (isnan(run->request->temperature) && measured->motion.temperature.count == 0)
         mf_progress_say(&run->progress, "no temperature is known: tell it by --temperature, or in "
                                         "\"scene\" of target.json");
@@ -163,7 +170,7 @@ static enum status write_results(struct run *run, bool interrupted) {
     TRY(mf_measure_output_write(&result));
     mf_run_folder_draw(&run->folder);
     say_lines(&run->progress, &run->frames.notes);
-    say_results(run, &result.units);
+    say_results(run, &result);
     mf_progress_say(&run->progress, "%zu frames of %zu beads in %.3g s; results in %s",
                     run->measured.frames, run->mapping.beads, result.seconds, run->folder.path);
     return STATUS_OK;
