@@ -126,6 +126,7 @@ enum status mf_measured_motion_begin(struct measured_motion *motion,
                 (double)FLT_EPSILON * fmax(fabs(first[0].time), fabs(first[1].time)));
     CHECK(copy_masses(motion, mapping));
     CHECK(mf_frame_motion_init(&motion->path, mapping->beads));
+    motion->is_thermal = motion->mass && !mapping->broken && mapping->beads > 1;
     motion->path.mass = motion->mass;
     motion->path.together = are_all(mapping);
     motion->path.interval = motion->interval;
@@ -217,7 +218,7 @@ enum status mf_measured_motion_add(struct measured_motion *motion,
     if (state)
         mf_motion_add(&motion->motion, state, motion->plan.threads);
     TRY(add_pairs(motion, box, place, pairs));
-    if (beads->has_velocities && motion->mass && beads->atoms > 1)
+    if (beads->has_velocities && motion->is_thermal)
         TRY(mf_series_add(&motion->temperature, find_temperature(motion, beads)));
     motion->last_time = beads->time;
     motion->frames++;

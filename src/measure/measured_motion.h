@@ -33,6 +33,7 @@ struct measured_motion {
     struct measured_motion_plan plan;
     bool begun;
     bool has_vacf;
+    bool is_thermal; ///< velocities tell the temperature, if there are any
     double interval; ///< between frames [ps]
     double first_time, last_time;
     size_t frames;

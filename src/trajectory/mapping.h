@@ -21,6 +21,8 @@ struct mapping {
     size_t *atom;        ///< shape [atoms that are mapped]
     double *weight;      ///< the same: of a mean over the bead's atoms, 1 in all
     struct bytes notes;  ///< lines that tell what was made and what was guessed, a text
+    bool broken; ///< a bead is a part of its residue or molecule, or not its centre of mass: bonds
+                 ///< of fixed length hold it, and its velocity does not tell the temperature
 };
 
 /// Find the beads of a plan among atoms. Masses are those of the plan, of the file, or else of

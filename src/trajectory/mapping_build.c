@@ -178,6 +178,17 @@ static enum status find_rest(const struct work *work) {
     return fail_atom(work, atom, "belongs to no bead; \"rest\": \"ignore\" leaves such atoms out");
 }
 
+static bool is_broken(const struct work *work) {
+    for (size_t k = 0; k < work->mapping->beads; k++) {
+        const struct mapping_bead *const bead = &work->mapping->bead[k];
+        const size_t *const first = work->first + bead->molecule;
+        if (bead->count < first[1] - first[0] ||
+            (bead->count > 1 && work->mapping->weight[bead->first] > 0))
+            return true;
+    }
+    return false;
+}
+
 enum status mf_mapping_build(struct mapping *mapping, const struct mapping_plan *plan,
                              const struct structure *structure) {
     enum status status = STATUS_OK;
@@ -193,6 +204,7 @@ enum status mf_mapping_build(struct mapping *mapping, const struct mapping_plan 
         CHECK(plan->entry[k].first ? take_range(&work, &plan->entry[k])
                                    : take_residues(&work, &plan->entry[k]));
     CHECK(find_rest(&work));
+    mapping->broken = is_broken(&work);
 done:
     mf_memory_free(work.taken);
     mf_memory_free(work.first);

@@ -72,6 +72,20 @@ static void tell(struct run *run) {
                      "frames", text);
 }
 
+/// Frames that are wanted further apart than they are come at common multiples of both times.
+static void say_interval(struct run *run, size_t count) {
+    static const double share = 0.01;
+    const double every = run->request->frames.every;
+    const struct trajectory_frame *const frame = run->frames.frame;
+    const double interval = count > 1 ? frame[1].time - frame[0].time : every;
+    if (every > 0 && fabs(interval / every - 1) > share)
+        mf_progress_say(
+            &run->progress,
+            "mesofit: warning: --every %g: frames are used that are %.6g ps apart, since "
+            "there are none between",
+            every, interval);
+}
+
 static enum status begin_measuring(struct run *run) {
     struct measured_plan plan = run->request->measured;
     plan.motion.expected = mf_frames_expected(&run->frames);
@@ -84,8 +98,10 @@ static enum status read_frames(struct run *run) {
         TRY(mf_frames_next(&run->frames, &count));
         if (count == 0)
             break;
-        if (run->measured.mapping == NULL)
+        if (run->measured.mapping == NULL) {
+            say_interval(run, count);
             TRY(begin_measuring(run));
+        }
         TRY(mf_measured_add(&run->measured, run->frames.frame, count));
         tell(run);
     }
@@ -152,8 +168,10 @@ static void say_results(struct run *run, const struct measure_result *result) {
         mf_progress_say(&run->progress, "masses of beads differ: target.json has motion compared "
                                         "with and not fitted, since friction is for one mass");
     if (isnan(run->request->temperature) && measured->motion.temperature.count == 0)
-        mf_progress_say(&run->progress, "no temperature is known: tell it by --temperature, or in "
-                                        "\"scene\" of target.json");
+        mf_progress_say(&run->progress,
+                        "no temperature is known%s: tell it by --temperature, or in "
+                        "\"scene\" of target.json",
+                        run->mapping.broken ? " by parts of molecules" : "");
 }
 
 static enum status write_results(struct run *run, bool interrupted) {

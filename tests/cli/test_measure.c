@@ -122,6 +122,10 @@ static void test_measure_has_motion_of_the_frames_that_are_used(void **state) {
     assert_close(results_number("end/summary.json", "frames"), 20, 0);
     assert_close(results_number("end/summary.json", "window"), 2, 1e-9);
     assert_true(temporary_folder_exists("end/msd.tsv"));
+    MEASURE("long.xyz", "--every", "2.5", "-o", "five"); // of 1 ps
+    assert_contains(result.err, "--every 2.5: frames are used that are 5 ps apart");
+    MEASURE("long.xyz", "--every", "2", "-o", "two");
+    assert_null(strstr(result.err, "--every"));
 }
 
 /// water.xtc, and where its frames begin and end.
@@ -251,6 +255,11 @@ static void test_measure_tells_types_apart_when_the_map_does(void **state) {
     char *target = temporary_folder_read("two/target.json");
     assert_contains(target, "\"O-H\":");
     assert_contains(target, "\"types\":");
+    free(target);
+    // Rigid bonds: oxygens alone have 279 K, halves of molecules 214 K.
+    MEASURE(trr, "-s", gro, "--map", "two.json", "-o", "halves", "--quiet");
+    target = temporary_folder_read("halves/target.json");
+    assert_null(strstr(target, "temperature"));
     free(target);
     // There are no bonds, and friction is for one mass: motion is not fitted, so that a fit begins.
     MEASURE(xtc, "-s", gro, "--map", "two.json", "-o", "moving", "--window", "0.04",

@@ -31,8 +31,8 @@ static struct film *make_film(size_t frames, size_t types) {
     struct film *film = calloc(1, sizeof *film);
     film->frames = frames;
     film->frame = calloc(frames, sizeof *film->frame);
-    film->mapping = (struct mapping){BEADS,      BEADS,      types,        film->name,
-                                     film->bead, film->atom, film->weight, {0}};
+    film->mapping = (struct mapping){BEADS,      BEADS,        types, film->name, film->bead,
+                                     film->atom, film->weight, {0},   false};
     for (size_t k = 0; k < BEADS; k++) {
         film->bead[k] = (struct mapping_bead){k, 1, types == 2 && k >= BEADS / 3, k, 2};
         film->atom[k] = k;
