@@ -5,8 +5,10 @@
 #include "base/nearest.h"
 #include "mesofit.h"
 
+#include <ctype.h>
 #include <dirent.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -51,13 +53,14 @@ static enum status check_friction(const struct export_job *job) {
 /// Whether a folder has nothing, or what an export wrote before, whose README tells so.
 static bool is_free(const char *folder) {
     char path[OUTPUT_PATH_SIZE], line[1024];
-    DIR *entries = opendir(folder);
-    size_t count = 0;
+    struct dirent **entries;
+    const int count = scandir(folder, &entries, NULL, NULL);
     bool ours = false;
-    while (entries && readdir(entries))
-        count++;
-    if (entries)
-        closedir(entries);
+    if (count < 0) // there is none, or making it will say why
+        return true;
+    for (int k = 0; k < count; k++)
+        free(entries[k]);
+    free(entries);
     snprintf(path, sizeof path, "%.4000s/README", folder);
     FILE *readme = fopen(path, "r");
     while (readme && !ours && fgets(line, sizeof line, readme))
@@ -285,6 +288,20 @@ done:
     return status;
 }
 
+/// No engine is told of memory, or of what acts across pairs. What is left of such friction would
+/// be another one.
+static void leave_out_friction(struct export_model *model) {
+    model->remembers = pair_memory_acts(&model->setup.memory);
+    if (model->remembers)
+        model->setup.omega = NULL;
+}
+
+/// The title stands in comments, which a line ends.
+static void join_lines(char *title) {
+    for (; *title; title++)
+        *title = (char)(iscntrl((unsigned char)*title) ? ' ' : *title);
+}
+
 enum status mf_export_run(const struct export_request *request) {
     enum status status = STATUS_OK;
     struct export_model *model = NULL;
@@ -294,6 +311,8 @@ enum status mf_export_run(const struct export_request *request) {
     NEW_ARRAY(model, 1);
     NEW_ARRAY(job, 1);
     CHECK(mf_export_model_read(model, request->from));
+    leave_out_friction(model);
+    join_lines(model->title);
     *job = (struct export_job){.engine = engine,
                                .model = model,
                                .folder = request->to ? request->to : engine->name,

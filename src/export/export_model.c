@@ -11,7 +11,6 @@
 #include "problem/omega_grid.h"
 #include "problem/verify.h"
 
-#include <ctype.h>
 #include <errno.h>
 #include <math.h>
 #include <string.h>
@@ -84,8 +83,6 @@ static enum status read_used(struct reading *reading) {
     struct json_object root = mf_json_root(document);
     mf_json_fields(&root, mf_heading_fields, &heading);
     snprintf(model->title, sizeof model->title, "%s", heading.title);
-    for (char *c = model->title; *c; c++) // it stands in comments, which a line ends
-        *c = iscntrl((unsigned char)*c) ? ' ' : *c;
     reading->fit = mf_json_is_object(&root, "scene");
     struct json_object scene = reading->fit ? mf_json_child(&root, "scene", true) : root;
     if (reading->fit) // of a scene that is its own root, mf_scene_read does so
@@ -393,14 +390,6 @@ static enum status find_bins(struct export_model *model) {
     return STATUS_OK;
 }
 
-/// No engine is told of memory, or of what acts across pairs. What is left of such friction would
-/// be another one.
-static void leave_out_friction(struct export_model *model) {
-    model->remembers = pair_memory_acts(&model->setup.memory);
-    if (model->remembers)
-        model->setup.omega = NULL;
-}
-
 static void name_types(struct export_model *model) {
     const struct composition *composition = &model->setup.composition;
     model->types = composition_is_mixed(composition) ? composition->types : 1;
@@ -421,7 +410,6 @@ enum status mf_export_model_read(struct export_model *model, const char *folder)
     name_types(model);
     TRY(find_laws(&reading));
     TRY(find_start(model));
-    leave_out_friction(model);
     return find_bins(model);
 }
 
