@@ -54,7 +54,7 @@ static enum status check_friction(const struct export_job *job) {
 static bool is_free(const char *folder) {
     char path[OUTPUT_PATH_SIZE], line[1024];
     struct dirent **entries;
-    const int count = scandir(folder, &entries, NULL, NULL);
+    const int count = scandir(folder, &entries, NULL, alphasort);
     bool ours = false;
     if (count < 0) // there is none, or making it will say why
         return true;

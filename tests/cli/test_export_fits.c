@@ -209,7 +209,8 @@ static void test_friction_that_cannot_be_written_is_one_line(void **state) {
     assert_refused("free", "lammps", "--project", "no friction weight");
     simulate_with(*state, "{\"law\": \"power\"}, \"dissipative_transverse\": {\"law\": \"power\"}",
                   "across");
-    assert_refused("across", "lammps", "--project", "no friction weight"); // white friction is left out, too
+    assert_refused("across", "lammps", "--project",
+                   "no friction weight"); // white friction is left out, too
 }
 
 #define TEST(name)                                                                                 \
