@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 
 enum status mf_mapping_note(struct mapping *mapping, const char *format, ...) {
@@ -111,9 +112,13 @@ enum status mf_mapping_build_notes(struct mapping *mapping) {
         bool same = true;
         for (; k < mapping->beads && mapping->bead[k].type == type; k++)
             same = same && mapping->bead[k].count == mapping->bead[begin].count;
-        TRY(mf_mapping_note(mapping, "%s: %zu beads of %s%zu atoms, the first of %.6g u",
-                            mapping->type_name[type], k - begin, same ? "" : "other than ",
-                            mapping->bead[begin].count, mapping->bead[begin].mass));
+        const struct mapping_bead *first = &mapping->bead[begin];
+        char mass[64] = "of unknown mass: nothing names residues and atoms (-s)";
+        if (isfinite(first->mass))
+            snprintf(mass, sizeof mass, "the first of %.6g u", first->mass);
+        TRY(mf_mapping_note(mapping, "%s: %zu beads of %s%zu atom%s, %s", mapping->type_name[type],
+                            k - begin, same ? "" : "other than ", first->count,
+                            first->count == 1 ? "" : "s", mass));
     }
     return STATUS_OK;
 }

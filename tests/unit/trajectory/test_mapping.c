@@ -208,6 +208,7 @@ static void test_atoms_are_beads_when_there_are_no_residues(void **state) {
     assert_int_equal(mapping.beads, 3);
     assert_string_equal(mapping.type_name[0], "A");
     assert_true(isnan(mapping.bead[2].mass) && mapping.weight[2] == 1);
+    assert_contains((const char *)mapping.notes.data, "beads of 1 atom, of unknown mass");
     mf_mapping_plan_clear(&plan);
     clear();
 }
