@@ -117,7 +117,8 @@ const struct export_engine mf_export_dl_poly = {
     .physical = true,
     .interpolation = &mf_export_grid_quadratic,
     .commands = "    DLPOLY.Z\n    mpirun -np 4 DLPOLY.Z\n",
-    .verified = "Such folders were checked against the source of the engine, and not run.",
+    .verified = "The tables of such folders were checked against the source of the engine; nothing "
+                "was run.",
     .most_types = COMPOSITION_MOST_TYPES,
     .one_cutoff = true,
     .write = write,

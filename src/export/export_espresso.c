@@ -51,7 +51,8 @@ const struct export_engine mf_export_espresso = {
     .interpolation = &mf_export_grid_linear,
     .friction = EXPORT_LINEAR,
     .commands = "    pypresso run.py\n    pypresso run.py 100000   # steps\n",
-    .verified = "Such folders were checked against the source of the engine, and not run.",
+    .verified = "The tables of such folders were checked against the source of the engine; nothing "
+                "was run.",
     .most_types = COMPOSITION_MOST_TYPES,
     .write = write,
     .explain = explain,

@@ -26,7 +26,7 @@ struct columns {
 };
 
 /// What the numbers are for: the lower bits of the fourth counter.
-enum { OF_STEP, OF_ENTRY = 1 << 4, OF_TRANSVERSE = 2 << 4, PURPOSES = 3 << 4 };
+enum { OF_STEP, OF_ENTRY = 1 << 4, OF_TRANSVERSE = 2 << 4 };
 
 static inline void random_words(const struct pair_memory *memory, uint64_t step, uint32_t low,
                                 uint32_t high, uint32_t purpose, uint32_t word[WORDS]) {
