@@ -7,6 +7,7 @@
 # make test           builds and passes all tests: check, then check-physics
 # make check          unit, reference and command-line tests (about a minute)
 # make check-physics  laws and exact limits (minutes)
+# make check-live     the live view, also in a browser (minutes)
 # make check-stress   time steps, friction, tables, sizes and lengths beyond the ordinary (minutes)
 # make asan           the whole test suite under address and undefined-behaviour sanitizers
 # make fuzz           damaged files, SECONDS=600 of them: every reader (libFuzzer, needs clang), whole runs
@@ -21,6 +22,10 @@ MAKEFLAGS += --no-print-directory
 BUILD   ?= build
 AT       = $(if $(VERBOSE),,@)
 PACKAGES = gsl libcjson nlopt
+# Reads H5MD, if it is there; HDF5= builds without.
+ifeq ($(origin HDF5),undefined)
+HDF5    := $(firstword $(foreach name,hdf5 hdf5-serial,$(shell pkg-config --exists $(name) && echo $(name))))
+endif
 # No psabi: all functions of vectors are inlined, so how one would be passed does not matter.
 WARN     = -Wall -Wextra -Wshadow -Wpointer-arith -Wstrict-prototypes -Wmissing-prototypes \
            -Wvla -Wundef -Wno-psabi $(if $(WERROR),-Werror)
@@ -31,12 +36,25 @@ CFLAGS  ?= $(OPTIMISE) -g
 # Hidden: the shared library shows what include/ declares, and calls inside it go straight.
 override CFLAGS += -std=c11 -fPIC -fvisibility=hidden -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 -fopenmp $(WARN) \
            -Iinclude -Isrc -MMD -MP $(shell pkg-config --cflags $(PACKAGES)) $(SANITIZE)
-LDLIBS  := $(shell pkg-config --libs $(PACKAGES)) -lm
+# As needed: HDF5 brings a dozen libraries along, and 10 ms at the start of what is linked with it.
+LDLIBS  := $(shell pkg-config --libs $(PACKAGES)) -Wl,--as-needed $(if $(HDF5),$(shell pkg-config --libs $(HDF5))) -lm
 override LDFLAGS += -fopenmp $(SANITIZE)
 
-SOURCES  = $(wildcard src/*/*.c)
+H5MD     = $(wildcard src/trajectory/format_h5md.c src/trajectory/h5md_*.c)
+# The live view is built where libmicrohttpd and Chart.js are (Debian: libmicrohttpd-dev,
+# libjs-chart.js). The program alone has it, the libraries do not.
+CHART       ?= /usr/share/javascript/chart.js
+HAS_LIVE    := $(if $(wildcard $(CHART)/chart.min.js),$(shell pkg-config --exists libmicrohttpd && echo yes))
+LIVE_WITHOUT = $(if $(HAS_LIVE),src/live/live_server_none.c,src/live/live_server.c src/live/live_assets.c)
+LIVE_LIBS   := $(if $(HAS_LIVE),$(shell pkg-config --libs libmicrohttpd))
+
+SOURCES  = $(filter-out $(LIVE_WITHOUT) $(if $(HDF5),src/trajectory/format_h5md_without.c,$(H5MD)),$(wildcard src/*/*.c))
 OBJECTS  = $(SOURCES:%.c=$(BUILD)/%.o)
+$(H5MD:%.c=$(BUILD)/%.o) $(BUILD)/tests/unit/trajectory/test_trajectory_h5md.o: \
+    override CFLAGS += $(if $(HDF5),$(shell pkg-config --cflags $(HDF5)))
 LIBRARY  = $(BUILD)/libmesofit.a
+LIVE     = $(BUILD)/live.a
+OF_LIBRARY = $(filter-out $(BUILD)/src/app/% $(BUILD)/src/live/%,$(OBJECTS))
 PROGRAM  = $(BUILD)/mesofit
 VERSION := $(shell sed -n 's/^.define MESOFIT_VERSION "\(.*\)"/\1/p' include/mesofit.h)
 SONAME   = libmesofit.so.$(word 1,$(subst ., ,$(VERSION)))
@@ -50,21 +68,30 @@ all: $(PROGRAM) mesofit $(SHARED_LIBRARY) $(MAN_PAGE) $(COMPLETION)
 mesofit: $(PROGRAM)
 	ln -sf $(PROGRAM) $@
 
-$(LIBRARY): $(filter-out $(BUILD)/src/app/%,$(OBJECTS))
+$(LIBRARY): $(OF_LIBRARY)
+$(LIVE): $(filter $(BUILD)/src/live/%,$(OBJECTS))
+$(LIBRARY) $(LIVE):
 	@rm -f $@
 	@echo "ar $@"
 	$(AT)ar rcs $@ $^
 
-$(SHARED_LIBRARY): $(filter-out $(BUILD)/src/app/%,$(OBJECTS)) src/library/exports.map
+# No header of it reads trajectories, so that its users load no HDF5.
+SHARED_OBJECTS = $(sort $(filter-out $(H5MD:%.c=$(BUILD)/%.o),$(OF_LIBRARY)) \
+                 $(BUILD)/src/trajectory/format_h5md_without.o)
+$(SHARED_LIBRARY): $(SHARED_OBJECTS) src/library/exports.map
 	@echo "ld $@"
 	$(AT)$(CC) -shared -Wl,-soname,$(SONAME) -Wl,--no-undefined \
 	    -Wl,--version-script=src/library/exports.map $(LDFLAGS) -o $@ $(filter %.o,$^) $(LDLIBS)
 	@ln -sf $(@F) $(BUILD)/$(SONAME)
 	@ln -sf $(SONAME) $(BUILD)/libmesofit.so
 
-$(PROGRAM): $(filter $(BUILD)/src/app/%,$(OBJECTS)) $(LIBRARY)
+$(PROGRAM): $(filter $(BUILD)/src/app/%,$(OBJECTS)) $(LIVE) $(LIBRARY)
 	@echo "ld $@"
-	$(AT)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+	$(AT)$(CC) $(LDFLAGS) -o $@ $^ $(LIVE_LIBS) $(LDLIBS)
+
+# The page's files, which the assembler takes from there.
+$(BUILD)/src/live/live_assets.o: CFLAGS += -Wa,-Ishare/live,-I$(CHART)
+$(BUILD)/src/live/live_assets.o: $(wildcard share/live/*) $(CHART)/chart.min.js
 
 # What the program tells of itself, whole or not at all.
 $(MAN_PAGE): $(PROGRAM)
@@ -82,7 +109,8 @@ $(BUILD)/%.o: %.c Makefile
 	$(AT)$(CC) $(CFLAGS) -c -o $@ $<
 
 # Tests: one program a file; a test may use the helpers in tests/shared.
-UNIT      = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/unit/*/test_*.c))
+UNIT_WITHOUT = $(if $(HDF5),,%_h5md.c) $(if $(HAS_LIVE),,tests/unit/live/test_live_server.c)
+UNIT      = $(patsubst %.c,$(BUILD)/%,$(filter-out $(UNIT_WITHOUT),$(wildcard tests/unit/*/test_*.c)))
 REFERENCE = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/reference/test_*.c))
 CLI       = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/cli/test_*.c))
 PHYSICS   = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/physics/test_*.c))
@@ -92,9 +120,10 @@ TESTS     = $(UNIT) $(REFERENCE) $(CLI) $(PHYSICS)
 .SECONDARY: $(TESTS:=.o) $(STRESS:=.o) $(SHARED)
 
 $(TESTS) $(STRESS): CFLAGS += -Itests
+$(filter $(BUILD)/tests/unit/live/%,$(UNIT)): $(LIVE)
 $(TESTS) $(STRESS): %: %.o $(SHARED) $(LIBRARY)
 	@echo "ld $@"
-	$(AT)$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LDLIBS)
+	$(AT)$(CC) $(LDFLAGS) -o $@ $(filter %.o,$^) $(filter $(LIVE),$^) $(LIBRARY) -lcmocka $(if $(filter $(LIVE),$^),$(LIVE_LIBS)) $(LDLIBS)
 
 .PHONY: test tests
 tests: all $(TESTS)
@@ -108,6 +137,12 @@ check: all $(UNIT) $(REFERENCE) $(CLI) check-install
 
 check-physics: all $(PHYSICS)
 	MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(PHYSICS)
+
+# The live view: who looks changes nothing, and the page in a browser, if there is one (Debian:
+# chromium, chromium-driver, python3-selenium).
+.PHONY: check-live
+check-live: all
+	MESOFIT=$(abspath $(PROGRAM)) tests/tools/check_live.sh
 
 # Kills a process at one of its renames: see tests/stress/test_kill.c.
 KILL_HOOK = $(BUILD)/tests/stress/hooks/kill_at.so
@@ -129,7 +164,7 @@ asan:
 	$(ASAN) check-all
 
 # Fuzzing. The readers belong to a few layers, which clang builds anew; the rest is as it always is.
-FUZZED  = $(wildcard src/base/*.c src/curves/*.c src/io/*.c src/input/*.c src/trajectory/*.c) src/system/composition.c \
+FUZZED  = $(filter src/base/% src/curves/% src/io/% src/input/% src/trajectory/%,$(SOURCES)) src/system/composition.c \
           tests/fuzz/fuzz_readers.c
 READERS = build/fuzz/readers
 MUTATE  = build/fuzz/mutate
@@ -194,8 +229,8 @@ check-install: all
 	$(MAKE) install PREFIX=$(STAGE) >/dev/null
 	CC="$(CC)" tests/tools/check_install.sh $(STAGE) $(BUILD)
 
-lint: $(LIBRARY)
-	tests/tools/lint.sh $(LIBRARY)
+lint: $(LIBRARY) $(LIVE)
+	tests/tools/lint.sh $(LIBRARY) $(LIVE)
 
 bench: $(PROGRAM)
 	tests/bench/run.sh $(PROGRAM)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Where the particles are in the last snapshot, seen along z: discs of their size, in the colour of
-# their orientation or of their type.
+# their orientation or of their type, which fades with the distance in three dimensions.
 # Reads configuration.tsv, and of used.json the box, the types, and what the size of those without radii is.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
@@ -36,6 +36,10 @@ discs = sprintf("< awk -v usual=%g -v angle=%d -v radius=%d -v types='%s' '\
 # Each once more before, white and a little larger, where there are few enough to see it.
 outlined = rows <= 5000 ? discs . " | awk '{ print $0, -1; print $0, 0 }'" : discs . " | awk '{ print $0, 0 }'"
 rim = 0.3
+# Of what is behind the rest the colour is a sixth, of what is in front all of it.
+strength(z) = dimensions == 3 ? (1 + 5 * low(1, high(0, z / edge(3)))) / 6 : 1
+part(colour, shift, share) = int(255 - share * (255 - ((colour >> shift) & 255))) << shift
+faded(colour, share) = part(colour, 16, share) + part(colour, 8, share) + part(colour, 0, share)
 paint(shade) = angle > 0 ? hsv2rgb(shade, 0.75, 0.85) : int("0x" . substr(colour_of(int(shade)), 2, 7))
 
 # Pixels of the figure, of its margins and of a length of 1; circles as polygons would be large files.
@@ -46,6 +50,11 @@ bottom = 74
 across = 640
 tall = high(180, low(1200, (across - left - right) * edge(2) / edge(1) + top + bottom))
 scale = low((across - left - right) / edge(1), (tall - top - bottom) / edge(2))
+# Discs at an edge of the box reach so far beyond it: the figure grows by that, the scale stays.
+if (radius > 0) { stats table using radius name "RADIUS" nooutput } else { RADIUS_max = usual }
+beyond = low(RADIUS_max, low(edge(1), edge(2)) / 4)
+across = ceil(across + 2 * beyond * scale)
+tall = ceil(tall + 2 * beyond * scale)
 # What pointsize makes a point of so many pixels' radius: measured.
 pointsize_of(kind, pixels) = kind eq "svg" ? pixels / 4.875 : high(0.05, (2 * pixels - 1) / 6)
 
@@ -56,11 +65,13 @@ do for [kind in kinds] {
     set bmargin at screen bottom / real(tall)
     set tmargin at screen 1 - top / real(tall)
     set size ratio -1
-    set border 15
+    set border 3
     unset grid
-    set xrange [0:edge(1)]
-    set yrange [0:edge(2)]
-    set xlabel axis_of(table, "x", "{/:Italic x}", "{/:Italic x} / {/:Italic λ}")
+    set xrange [-beyond:edge(1) + beyond]
+    set yrange [-beyond:edge(2) + beyond]
+    # The box itself, as a frame.
+    set object 1 rectangle from 0, 0 to edge(1), edge(2) front fillstyle empty border rgb ink linewidth 0.8
+    set xlabel axis_of(table, "x", "{/:Italic x}", "{/:Italic x} / {/:Italic λ}") . (dimensions == 3 ? "  (pale: far along {/:Italic z})" : "")
     set ylabel axis_of(table, "y", "{/:Italic y}", "{/:Italic y} / {/:Italic λ}")
     set palette model HSV functions gray, 0.75, 0.85
     set cbrange [0:1]
@@ -70,7 +81,7 @@ do for [kind in kinds] {
     if (angle > 0) { set colorbox } else { unset colorbox }
     plot NaN with points palette, \
         for [k = 1:words(types) / 2] NaN with points pointtype 7 linecolor rgb colour_of(k - 1) title word(types, 2 * k - 1), \
-        outlined using 1:2:(pointsize_of(kind, $3 * scale - (1 + $6) * rim)):($6 < 0 ? 0xffffff : paint($4)) \
+        outlined using 1:2:(pointsize_of(kind, $3 * scale - (1 + $6) * rim)):($6 < 0 ? 0xffffff : faded(paint($4), strength($5))) \
             with points pointtype 7 pointsize variable linecolor rgb variable
     eval close
 }

@@ -10,12 +10,17 @@ load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 table = "./" . system("printf %s \"$MESOFIT_TABLE\"")
 figure = system("printf %s \"$MESOFIT_FIGURE\"")
 y = column_of(table, "result") > 0 ? 4 : 2
+# Symbols as the other figures have them, for what heads of columns call by plain letters.
+names = "of[\"r\"] = \"{/:Italic r}\"; of[\"q\"] = \"{/:Italic q}\"; of[\"time\"] = \"{/:Italic t}\"; " . \
+    "of[\"g\"] = \"{/:Italic g}({/:Italic r})\"; of[\"S\"] = \"{/:Italic S}({/:Italic q})\"; " . \
+    "of[\"msd\"] = \"MSD\"; of[\"vacf\"] = \"VACF\"; "
 # The name of column n and its unit, "q / lambda^{-1}" for "q[1/lambda]", "S" for "S[1]".
-header(n) = system(sprintf("awk -F '\t' '/^#/ { sub(/^# */, \"\"); h = $%d; ", n) . \
+header(n) = system(sprintf("awk -F '\t' 'BEGIN { " . names . "} /^#/ { sub(/^# */, \"\"); h = $%d; ", n) . \
     "gsub(/\\^2/, \"²\", h); gsub(/\\^3/, \"³\", h); " . \
-    "gsub(/[{}_@&~^\\\\]/, \" \", h); sub(/\\[1\\]$/, \"\", h); " . \
+    "gsub(/k_B\\.T_0/, \"ENERGY\", h); gsub(/[{}_@&~^\\\\]/, \" \", h); gsub(/ENERGY[.]?/, \"{/:Italic k}_B{/:Italic T}_0 \", h); sub(/\\[1\\]$/, \"\", h); " . \
     "if (sub(/\\[1\\//, \" / \", h)) sub(/\\]$/, \"^{-1}\", h); sub(/\\[/, \" / \", h); sub(/\\]/, \"\", h); " . \
-    "gsub(/lambda/, \"λ\", h); gsub(/tau/, \"τ\", h); print h; exit }'" . from(table))
+    "gsub(/lambda/, \"λ\", h); gsub(/tau/, \"τ\", h); " . \
+    "k = index(h \" \", \" \"); s = substr(h, 1, k - 1); print (s in of ? of[s] : s) substr(h, k); exit }'" . from(table))
 
 stats table using 1 name "X" nooutput
 # Errors are nan where they are not known: there is no band then.

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The friction weight that was found with its 95 % band, and the true one if it is known.
 # Reads omega.tsv: r, omega, omega_error (nan where not known), and perhaps truth, r[nm]; and omega_flat.tsv
-# if it is there: the change that the data say least of, on the same r.
+# if it is there: the change that the data say least of, on the same r. Friction across pairs and modes
+# of memory, omega_transverse.tsv and memory_NAME.tsv, are drawn beside it with their bands.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
@@ -15,6 +16,23 @@ if (truth) {
 }
 stats "omega.tsv" using (shown_high(2, 3, W_max)) name "B" nooutput
 top = high(W_max, B_max)
+others = system("ls omega_transverse.tsv memory_*.tsv 2>/dev/null | grep -v -e _flat -e _history")
+other_name(file) = file eq "omega_transverse.tsv" ? "across" : file[8:strlen(file) - 4]
+do for [file in others] {
+    stats file using ($1 * nm) name "Q" nooutput
+    stats file using 2 name "V" nooutput
+    stats file using (shown_high(2, 3, V_max)) name "U" nooutput
+    R_max = high(R_max, Q_max)
+    top = high(top, high(V_max, U_max))
+}
+show_others = ""
+do for [k = 1:words(others)] {
+    file = word(others, k)
+    show_others = show_others . sprintf(", '%s' using ($1 * nm):(band_low(2, 3)):(band_high(2, 3)) " . \
+        "with filledcurves @band linecolor rgb '%s' notitle, '%s' using ($1 * nm):2 with lines " . \
+        "linewidth 2.6 linecolor rgb '%s' title '%s'", \
+        file, colour_of(k * 2), file, colour_of(k * 2), other_name(file))
+}
 # An empty loop would keep its place in the legend; so would nan.
 show_band = !has_numbers("omega.tsv", 3) ? "" : "'omega.tsv' " . \
     "using ($1 * nm):(band_low(2, 3)):(band_high(2, 3)) " . \
@@ -40,7 +58,7 @@ do for [kind in kinds] {
     set xlabel r_axis_of("omega.tsv")
     eval name_axis(axis_of("omega.tsv", "omega", "{/:Italic ω}({/:Italic r})", omega_label), 0.024)
     set key at screen 0.97, screen 0.985 right top vertical maxrows 1
-    plot @show_band "omega.tsv" using ($1 * nm):2 with lines title "result" \
-            linewidth 2.6 linecolor rgb vermillion @show_truth @show_flat
+    plot @show_band "omega.tsv" using ($1 * nm):2 with lines title words(others) ? "white" : "result" \
+            linewidth 2.6 linecolor rgb vermillion @show_truth @show_flat @show_others
     eval close
 }

@@ -38,6 +38,11 @@ static const struct inner run_objects[] = {
 static const struct inner unknowns_objects[] = {
     {"potential", "Phi(r)", "potential"},
     {"omega", "omega(r)", "omega"},
+    {"omega_transverse", "the same across pairs", "omega"},
+    {"memory",
+     "{\"slow\": {…}, …}: the same of modes of the scene's \"memory\", which then have no "
+     "\"omega\"",
+     "omega"},
     {"numbers",
      "{\"dissipative.sigma\": {…}, …}: numbers of the scene by their paths, for methods that "
      "search",
@@ -77,7 +82,8 @@ static const struct inner scene_objects[] = {
 };
 
 static const struct inner memory_objects[] = {
-    {"omega", "{\"law\": …}, how strongly: the friction of the mode is omega^2", "dissipative"},
+    {"omega", "{\"law\": …}, how strongly: friction omega^2, over 1 + (time frequency)^2",
+     "dissipative"},
     {NULL, NULL, NULL},
 };
 
@@ -156,7 +162,7 @@ static const struct topic fixed_topics[] = {
     {"target", "diffusion-target", "\"diffusion\" besides", {mf_target_curve_diffusion_fields}},
     {"unknowns", "unknowns", "\"unknowns\" of a run file", {NULL}},
     {"unknowns", "potential", "Phi(r), to be found", {mf_inverse_potential_fields}},
-    {"unknowns", "omega", "omega(r), to be found", {mf_inverse_omega_fields}},
+    {"unknowns", "omega", "a friction weight omega(r), to be found", {mf_inverse_omega_fields}},
     {"unknowns",
      "numbers",
      "a number of the scene, to be found, under the path of its key: \"conservative.a\", "
@@ -328,10 +334,14 @@ static enum status run(const struct command_line *line) {
         return STATUS_OK;
     for (size_t k = 0; k < count; k++)
         names[k] = topics[k].name;
-    char hint[512];
-    mf_nearest_hint(line->files[0], names, count, hint, sizeof hint);
-    return mf_status_fail(STATUS_BAD_INPUT, "describe: \"%s\" is not known; %s", line->files[0],
-                          hint);
+    const char *nearest = mf_nearest_name(line->files[0], names, count);
+    return nearest ? mf_status_fail(STATUS_BAD_INPUT,
+                                    "describe: \"%s\" is not known; did you mean \"%s\"?",
+                                    line->files[0], nearest)
+                   : mf_status_fail(STATUS_BAD_INPUT,
+                                    "describe: \"%s\" is not known; `mesofit describe` without a "
+                                    "name lists what is",
+                                    line->files[0]);
 }
 
 const struct command cmd_describe = {

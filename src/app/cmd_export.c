@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command.h"
 #include "export/export_engine.h"
+#include "report/progress.h"
 
 enum { ENGINE, BANDS, PROJECT, TO };
 
@@ -14,17 +15,33 @@ static const struct command_option options[] = {
     {NULL, NULL, NULL},
 };
 
+/// On a terminal alone: in a pipe the lines of the result say how long it was.
+static void tell(void *context, const struct simulation *simulation, uint64_t done,
+                 uint64_t total) {
+    struct progress *const progress = context;
+    (void)simulation;
+    if (!progress->terminal)
+        return;
+    mf_progress_tell(progress, done, total, "steps", "with both frictions");
+    if (done == total)
+        mf_progress_say(progress, "%llu steps with both frictions in %.3g s",
+                        (unsigned long long)total, mf_progress_seconds(progress));
+}
+
 static enum status run(const struct command_line *line) {
+    struct progress progress = mf_progress_begin(line->options.quiet, NULL);
     if (line->own[ENGINE] == NULL)
         return mf_status_fail(STATUS_BAD_INPUT, "--engine says for what program; one of %s",
                               options[ENGINE].value);
-    return mf_export_run(&(struct export_request){.from = line->files[0],
-                                                  .engine = line->own[ENGINE],
-                                                  .to = line->own[TO],
-                                                  .bands = line->own[BANDS] != NULL,
-                                                  .project = line->own[PROJECT] != NULL,
-                                                  .quiet = line->options.quiet,
-                                                  .threads = line->options.threads});
+    return mf_export_run(&(struct export_request){
+        .from = line->files[0],
+        .engine = line->own[ENGINE],
+        .to = line->own[TO],
+        .bands = line->own[BANDS] != NULL,
+        .project = line->own[PROJECT] != NULL,
+        .quiet = line->options.quiet,
+        .threads = line->options.threads,
+        .listener = &(struct measure_listener){.tell = tell, .context = &progress}});
 }
 
 const struct command cmd_export = {

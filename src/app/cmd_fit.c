@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/cmd_live.h"
 #include "app/command.h"
+#include "base/memory.h"
+#include "io/json_fill.h"
 #include "io/output.h"
 #include "io/text_file.h"
 #include "work/fit.h"
@@ -9,19 +12,22 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { EXPLAIN, TARGET, DENSITY, TEMPERATURE };
+enum { EXPLAIN, TARGET, DENSITY, TEMPERATURE, LIVE };
 
 static const struct command_option options[] = {
     [EXPLAIN] = {"--explain", NULL, "print what a step will pay for and why; run nothing"},
     [TARGET] = {"--target", "DIR", "fit DIR/target.json, or with the next two DIR/rdf.tsv alone"},
-    [DENSITY] = {"--density", "NUMBER", "beads in a unit of volume, where there is no target.json"},
-    [TEMPERATURE] = {"--temperature", "NUMBER", "likewise; without it 1"},
+    [DENSITY] = {"--density", "NUMBER", "beads in a unit of volume, which target.json lacks"},
+    [TEMPERATURE] = {"--temperature", "NUMBER", "likewise; without target.json 1"},
+    [LIVE] = CMD_LIVE_OPTION,
     {NULL, NULL, NULL},
 };
 
 static enum status run_file(const char *file, const struct command_line *line) {
-    return line->own[EXPLAIN] ? mf_fit_explain(file, &line->options)
-                              : mf_fit_run(file, &line->options);
+    if (line->own[EXPLAIN])
+        return mf_fit_explain(file, &line->options);
+    return line->own[LIVE] ? mf_cmd_live_run(file, &line->options, line->own[LIVE])
+                           : mf_fit_run(file, &line->options);
 }
 
 static enum status parse_positive(const char *option, const char *text, double *value) {
@@ -60,6 +66,28 @@ static enum status run_rdf(const char *file, const char *rdf, const struct comma
     return status;
 }
 
+/// The folder's target.json with what the command line says and the file does not.
+static enum status run_filled(const char *file, const struct command_line *line) {
+    struct json_filling filling[2];
+    size_t count = 0;
+    char *text;
+    if (line->own[DENSITY]) {
+        filling[count].key = "density";
+        TRY(parse_positive("--density", line->own[DENSITY], &filling[count++].value));
+    }
+    if (line->own[TEMPERATURE]) {
+        filling[count].key = "temperature";
+        TRY(parse_positive("--temperature", line->own[TEMPERATURE], &filling[count++].value));
+    }
+    TRY(mf_json_fill(file, "scene", filling, count, &text));
+    const struct text_lent lent = {file, text};
+    mf_text_file_lend(&lent, 1);
+    const enum status status = run_file(file, line);
+    mf_text_file_lend(NULL, 0);
+    mf_memory_free(text);
+    return status;
+}
+
 static enum status run_target(const char *folder, const struct command_line *line) {
     char file[OUTPUT_PATH_SIZE], rdf[OUTPUT_PATH_SIZE];
     size_t length = strlen(folder);
@@ -72,7 +100,7 @@ static enum status run_target(const char *folder, const struct command_line *lin
     if (access(file, F_OK) != 0)
         return run_rdf(file, rdf, line);
     if (line->own[DENSITY] || line->own[TEMPERATURE])
-        return mf_status_fail(STATUS_BAD_INPUT, "%s says density and temperature", file);
+        return run_filled(file, line);
     return run_file(file, line);
 }
 

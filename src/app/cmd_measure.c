@@ -14,6 +14,8 @@ enum {
     EVERY,
     RANGE,
     BINS,
+    Q_RANGE,
+    WAVES,
     WINDOW,
     ESCAPE,
     VELOCITIES,
@@ -23,6 +25,7 @@ enum {
     ALLOW_TRUNCATED,
     FILE_UNITS,
     FILE_TIME_STEP,
+    FILE_GROUP,
 };
 
 static const struct command_option options[] = {
@@ -33,17 +36,20 @@ static const struct command_option options[] = {
     [EVERY] = {"--every", "T", "take frames so far apart [ps]"},
     [RANGE] = {"--range", "R", "of g(r) [nm]; else most of half the box"},
     [BINS] = {"--bins", "N", "of g(r); else 0.01 nm wide"},
+    [Q_RANGE] = {"--q-range", "Q", "of S(q) [1/nm]; else 4 pi density^(1/3); 0: no S(q)"},
+    [WAVES] = {"--waves", "N", "of each of 100 bins of S(q), at most; else 10"},
     [WINDOW] = {"--window", "T",
                 "of MSD, VACF, escape times [ps]; else a tenth, 100 frames at most"},
     [ESCAPE] = {"--escape", "R", "where a pair has escaped [nm]; else 1.6 density^(-1/3)"},
     [VELOCITIES] = {"--velocities", "file|differences|none",
                     "of the VACF; else the file's, if any"},
-    [STATIC] = {"--static", NULL, "g(r) alone, of frames in any interval"},
+    [STATIC] = {"--static", NULL, "g(r) and S(q) alone, of frames in any interval"},
     [TEMPERATURE] = {"--temperature", "T", "of the target [K]; else that of the velocities"},
     [UNITS] = {"--units", "nm-ps|angstrom-fs", "of what is written (nm-ps)"},
     [ALLOW_TRUNCATED] = {"--allow-truncated", NULL, "use a damaged file up to the damage"},
     [FILE_UNITS] = {"--file-units", "STYLE", "of LAMMPS files that do not say: real, metal, …"},
     [FILE_TIME_STEP] = {"--file-time-step", "T", "gives frames a time that have but a step [ps]"},
+    [FILE_GROUP] = {"--file-group", "NAME", "of particles, of an H5MD file with several"},
     {NULL, NULL, NULL},
 };
 
@@ -56,20 +62,20 @@ static enum status read_number(const struct command_line *line, int option, doub
         return STATUS_OK;
     *number = strtod(text, &end);
     if (end == text || *end != '\0' || !isfinite(*number) || *number < least)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s takes a number%s", options[option].name,
-                              least > 0    ? " above 0"
-                              : least == 0 ? " from 0 on"
-                                           : "");
+        return mf_status_fail(STATUS_BAD_INPUT, "%s takes a number %s, not \"%.60s\"",
+                              options[option].name, least > 0 ? "above 0" : "from 0 on", text);
     return STATUS_OK;
 }
 
-static enum status read_bins(const char *text, int64_t *bins) {
+static enum status read_count(const struct command_line *line, int option, int64_t *count) {
+    const char *const text = line->own[option];
     char *end = NULL;
     if (text == NULL)
         return STATUS_OK;
-    *bins = strtoll(text, &end, 10);
-    if (end == text || *end != '\0' || *bins < 1 || *bins > 100000)
-        return mf_status_fail(STATUS_BAD_INPUT, "--bins takes a whole number from 1 to 100000");
+    *count = strtoll(text, &end, 10);
+    if (end == text || *end != '\0' || *count < 1 || *count > 100000)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s takes a whole number from 1 to 100000",
+                              options[option].name);
     return STATUS_OK;
 }
 
@@ -87,17 +93,19 @@ static enum status read_choice(const struct command_line *line, int option,
 }
 
 static enum status read_request(const struct command_line *line, struct measure_request *request) {
-    static const double any = -HUGE_VAL, above_zero = 1e-300;
+    static const double above_zero = 1e-300;
     struct frames_plan *const frames = &request->frames;
-    TRY(read_number(line, BEGIN, any, &frames->begin));
-    TRY(read_number(line, END, any, &frames->end));
+    TRY(read_number(line, BEGIN, 0, &frames->begin));
+    TRY(read_number(line, END, 0, &frames->end));
     TRY(read_number(line, EVERY, above_zero, &frames->every));
     TRY(read_number(line, RANGE, above_zero, &request->measured.range));
     TRY(read_number(line, WINDOW, above_zero, &request->measured.motion.window));
     TRY(read_number(line, ESCAPE, above_zero, &request->measured.motion.escape));
     TRY(read_number(line, TEMPERATURE, above_zero, &request->temperature));
     TRY(read_number(line, FILE_TIME_STEP, above_zero, &frames->options.time_step));
-    TRY(read_bins(line->own[BINS], &request->measured.bins));
+    TRY(read_number(line, Q_RANGE, 0, &request->measured.q_maximum));
+    TRY(read_count(line, BINS, &request->measured.bins));
+    TRY(read_count(line, WAVES, &request->measured.waves));
     TRY(read_choice(line, VELOCITIES, mf_measured_velocities,
                     &request->measured.motion.velocities));
     return read_choice(line, UNITS, mf_units_systems, &request->system);
@@ -109,13 +117,14 @@ static enum status run(const struct command_line *line) {
         .map = line->own[MAP],
         .frames = {.file = line->files,
                    .files = line->file_count,
-                   .options = {.units = line->own[FILE_UNITS]},
+                   .options = {.units = line->own[FILE_UNITS], .group = line->own[FILE_GROUP]},
                    .begin = NAN,
                    .end = NAN,
                    .allow_truncated = line->own[ALLOW_TRUNCATED] != NULL,
                    .threads = line->options.threads},
         .measured = {.motion = {.leave_out = line->own[STATIC] != NULL,
                                 .threads = line->options.threads},
+                     .q_maximum = NAN,
                      .threads = line->options.threads},
         .temperature = NAN,
         .system = UNITS_NM_PS,

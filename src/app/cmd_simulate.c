@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/command.h"
+#include "app/cmd_live.h"
 #include "work/simulate.h"
 
-enum { EXPLAIN };
+enum { EXPLAIN, LIVE };
 
 static const struct command_option options[] = {
     [EXPLAIN] = {"--explain", NULL, "print what a step will pay for and why; run nothing"},
+    [LIVE] = CMD_LIVE_OPTION,
     {NULL, NULL, NULL},
 };
 
 static enum status run(const struct command_line *line) {
     if (line->own[EXPLAIN])
         return mf_simulate_explain(line->files[0], &line->options);
+    if (line->own[LIVE])
+        return mf_cmd_live_run(line->files[0], &line->options, line->own[LIVE]);
     return mf_simulate_file(line->files[0], &line->options);
 }
 

@@ -6,8 +6,8 @@
 #include <string.h>
 
 const struct command *const mf_command_list[] = {
-    &cmd_measure, &cmd_fit,      &cmd_export, &cmd_simulate, &cmd_plot,
-    &cmd_compare, &cmd_describe, &cmd_bench,  NULL,
+    &cmd_measure, &cmd_fit,     &cmd_export,   &cmd_simulate, &cmd_live, &cmd_watch,
+    &cmd_plot,    &cmd_compare, &cmd_describe, &cmd_bench,    NULL,
 };
 
 _Static_assert(sizeof mf_command_list / sizeof *mf_command_list <= COMMAND_MAX_COMMANDS + 1,
@@ -33,11 +33,18 @@ const char mf_command_purpose[] = "fit the pair interactions of a coarse liquid 
 const char mf_command_exit_codes[] = "0 done; 1 not converged or unstable; 2 bad input, files or "
                                      "options; 3 out of memory; 130 interrupted";
 
+const char *mf_command_option_text(const struct command_option *option,
+                                   char text[COMMAND_OPTION_SIZE]) {
+    const bool apart = option->value && option->value[0] != '[';
+    snprintf(text, COMMAND_OPTION_SIZE, "%s%s%s", option->name, apart ? " " : "",
+             option->value ? option->value : "");
+    return text;
+}
+
 static void print_options(const struct command_option *option) {
+    char text[COMMAND_OPTION_SIZE];
     for (; option && option->name; option++)
-        printf("  %s%s%-*s  %s\n", option->name, option->value ? " " : "",
-               16 - (int)strlen(option->name) - (option->value ? 1 : 0),
-               option->value ? option->value : "", option->help);
+        printf("  %-16s  %s\n", mf_command_option_text(option, text), option->help);
 }
 
 void mf_command_print_help(void) {

@@ -6,13 +6,20 @@
 
 #include <stddef.h>
 
-enum { COMMAND_MAX_FILES = 64, COMMAND_MAX_OPTIONS = 24, COMMAND_MAX_COMMANDS = 16 };
+enum {
+    COMMAND_MAX_FILES = 64,
+    COMMAND_MAX_OPTIONS = 24,
+    COMMAND_MAX_COMMANDS = 16,
+    COMMAND_OPTION_SIZE = 64
+};
 
 /// An option of one subcommand. It may take the place of a common one.
 struct command_option {
-    const char *name;  ///< such as "--json"
-    const char *value; ///< what it takes, such as "FILE", choices such as "a|b", or NULL
-    const char *help;  ///< one line
+    const char *name; ///< such as "--json"
+    /// What it takes, such as "FILE", choices such as "a|b", "[=PORT]" for what may follow its name
+    /// in the same word, or NULL.
+    const char *value;
+    const char *help; ///< one line
 };
 
 /// The command line after the subcommand, parsed.
@@ -35,8 +42,12 @@ struct command {
     enum status (*run)(const struct command_line *line);
 };
 
-extern const struct command cmd_measure, cmd_fit, cmd_export, cmd_simulate, cmd_plot, cmd_compare,
-    cmd_describe, cmd_bench;
+/// An option as it is written: "-o DIR", "--live[=PORT]".
+const char *mf_command_option_text(const struct command_option *option,
+                                   char text[COMMAND_OPTION_SIZE]);
+
+extern const struct command cmd_measure, cmd_fit, cmd_export, cmd_simulate, cmd_live, cmd_watch,
+    cmd_plot, cmd_compare, cmd_describe, cmd_bench;
 
 /// All subcommands, in the order of --help, up to NULL.
 extern const struct command *const mf_command_list[];

@@ -22,7 +22,7 @@ static void put_choices(FILE *stream, const char *value) {
 
 static void put_option_values(FILE *stream, const char *verb, const struct command_option *option) {
     for (; option && option->name; option++) {
-        if (option->value == NULL)
+        if (option->value == NULL || option->value[0] == '[')
             continue;
         fprintf(stream, "    %s:%s) ", verb, option->name);
         if (strchr(option->value, '|')) {

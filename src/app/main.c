@@ -48,14 +48,28 @@ static enum status parse_number(const char *option, const char *text, uint64_t l
     return STATUS_OK;
 }
 
+/// Whether a word can be the value of an option: another option cannot, a number below 0 can, of
+/// which the option says whether it will do.
+static bool is_value(const char *word) {
+    return word && *word && (*word != '-' || strchr("0123456789.", word[1] ? word[1] : '-'));
+}
+
 /// An option of the subcommand itself, if `word` is one: *used is then how many words it took.
 static enum status parse_own_option(const struct command *command, const char *word,
                                     const char *value, struct command_line *line, int *used) {
     for (size_t k = 0; command->options && command->options[k].name; k++) {
         const struct command_option *own = &command->options[k];
-        if (strcmp(word, own->name) != 0)
+        const size_t length = strlen(own->name);
+        const bool joins = own->value && own->value[0] == '[';
+        if (strcmp(word, own->name) != 0 &&
+            !(joins && strncmp(word, own->name, length) == 0 && word[length] == '='))
             continue;
-        if (own->value && (value == NULL || *value == '\0' || *value == '-'))
+        if (joins) {
+            line->own[k] = word[length] ? word + length + 1 : own->name;
+            *used = 1;
+            return STATUS_OK;
+        }
+        if (own->value && !is_value(value))
             return mf_status_fail(STATUS_BAD_INPUT, "%s takes %s", word, own->value);
         line->own[k] = own->value ? value : own->name;
         *used = own->value ? 2 : 1;

@@ -151,13 +151,11 @@ static const struct look man = {
 static void print_options(FILE *stream, const struct look *look,
                           const struct command_option *option) {
     static const char *const titles[] = {"option", "what", NULL};
-    char name[64];
+    char name[COMMAND_OPTION_SIZE];
     look->titles(stream, titles);
-    for (; option->name; option++) {
-        snprintf(name, sizeof name, "%s%s%s", option->name, option->value ? " " : "",
-                 option->value ? option->value : "");
-        look->row(stream, titles, (const char *const[]){name, option->help});
-    }
+    for (; option->name; option++)
+        look->row(stream, titles,
+                  (const char *const[]){mf_command_option_text(option, name), option->help});
 }
 
 static void print_commands(FILE *stream, const struct look *look) {

@@ -12,6 +12,13 @@ static inline double clock_seconds(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+/// Seconds of processor time that this thread has had.
+static inline double clock_thread_seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
 /// Ticks of the processor's time-stamp counter, a few nanoseconds to read; nanoseconds where there
 /// is none.
 static inline uint64_t clock_ticks(void) {

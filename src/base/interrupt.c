@@ -5,6 +5,7 @@
 #include <stddef.h>
 
 static volatile sig_atomic_t requested;
+static atomic_bool wished;
 
 static void remember(int signal_number) {
     (void)signal_number;
@@ -36,8 +37,12 @@ void mf_interrupt_install(void) {
     }
 }
 
+void mf_interrupt_wish(bool stop) {
+    atomic_store(&wished, stop);
+}
+
 bool mf_interrupt_requested(void) {
-    return requested != 0;
+    return requested != 0 || atomic_load_explicit(&wished, memory_order_relaxed);
 }
 
 bool mf_interrupt_wanted(const atomic_bool *cancel) {

@@ -10,6 +10,10 @@
 /// and SIGPIPE unless they are ignored. Tested: test_signals.
 void mf_interrupt_install(void);
 
+/// Ask to stop as a user does with Ctrl-C, or take that back; what a signal has asked for stays.
+/// From any thread. Tested: test_live_feed.
+void mf_interrupt_wish(bool stop);
+
 /// True once the user has asked to stop. Any thread may ask, as often as it likes.
 bool mf_interrupt_requested(void);
 

@@ -349,7 +349,7 @@ enum status mf_bench_accuracy(const char *file, const struct run_options *common
     NEW_ARRAY(run, 1);
     run->common = common;
     run->options = options;
-    run->progress = mf_progress_begin(common->quiet);
+    run->progress = mf_progress_begin(common->quiet, NULL);
     run->progress.quiet |= !run->progress.terminal; // nothing but results goes into a pipe
     status = carry_out(run, file);
 done:

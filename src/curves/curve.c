@@ -15,7 +15,7 @@ const struct curve_family *const mf_curve_potentials[] = {
 const struct curve_family *const mf_curve_omegas[] = {
     &mf_formula_power_omega,
     &mf_expression_omega,
-    &mf_sampled_family,
+    &mf_sampled_omega_family,
     NULL,
 };
 

@@ -11,6 +11,15 @@ static double value(const void *parameters, double r) {
     return gsl_spline_eval(p->spline, r, NULL);
 }
 
+static double omega_value(const void *parameters, double r) {
+    const struct sampled_parameters *p = parameters;
+    const double *x = p->spline->x, *y = p->spline->y;
+    if (r >= p->cutoff || r < x[0])
+        return 0;
+    const size_t k = gsl_interp_bsearch(x, r, 0, p->spline->size - 1);
+    return y[k] + (r - x[k]) / (x[k + 1] - x[k]) * (y[k + 1] - y[k]);
+}
+
 static double cutoff(const void *parameters) {
     return ((const struct sampled_parameters *)parameters)->cutoff;
 }
@@ -39,6 +48,16 @@ const struct curve_family mf_sampled_family = {
     .fields = fields,
     .size = sizeof(struct sampled_parameters),
     .value = value,
+    .cutoff = cutoff,
+    .clear = clear,
+};
+
+const struct curve_family mf_sampled_omega_family = {
+    .name = "table",
+    .summary = "straight pieces between the points of a file, as omega.tsv; 0 before the first",
+    .fields = fields,
+    .size = sizeof(struct sampled_parameters),
+    .value = omega_value,
     .cutoff = cutoff,
     .clear = clear,
 };

@@ -10,6 +10,14 @@
 /// there, beyond the cutoff 0.
 extern const struct curve_family mf_sampled_family;
 
+/// Of a friction weight: straight pieces between the points, which never swing below 0; before the
+/// first 0, as a fit's friction weight is below its inner cutoff.
+extern const struct curve_family mf_sampled_omega_family;
+
+static inline bool curve_is_sampled(const struct curve_family *family) {
+    return family == &mf_sampled_family || family == &mf_sampled_omega_family;
+}
+
 enum { SAMPLED_COLUMNS, SAMPLED_VOTCA };
 
 struct sampled_parameters {
@@ -20,12 +28,12 @@ struct sampled_parameters {
     double first_slope;
 };
 
-/// Give a curve of this family its points.
+/// Give a curve of either family its points.
 /// @param[in] r, y  shape [count], r ≥ 0 growing strictly, count ≥ 3   [λ], [curve's unit]
 /// Fails: NO_MEMORY; BAD_INPUT if the last r lies below the cutoff or r does not grow.
 enum status mf_sampled_set_points(struct curve *curve, const double *r, const double *y,
                                   size_t count) MUST_USE;
 
-/// A new curve of this family through points in memory.
+/// A new curve of the first family through points in memory.
 enum status mf_sampled_create(struct curve *curve, const double *r, const double *y,
                               size_t count) MUST_USE;

@@ -36,11 +36,11 @@ static enum status sweep(struct simulation *simulation) {
     struct particles *particles = &simulation->particles;
     struct pair_memory *memory = &simulation->memory;
     if (simulation->setup.omega)
-        mf_friction_sweep(&simulation->friction, particles);
+        mf_friction_sweep(&simulation->friction, particles, simulation->transfer);
     if (!pair_memory_acts(&simulation->setup.memory))
         return STATUS_OK;
     TRY(mf_pair_memory_follow(memory, particles, &simulation->neighbours, simulation->list_builds));
-    mf_pair_memory_sweep(memory, particles, simulation->step);
+    mf_pair_memory_sweep(memory, particles, simulation->step, simulation->transfer);
     return STATUS_OK;
 }
 
@@ -83,6 +83,7 @@ const struct integrator mf_aboba = {
     .fields = no_fields,
     .dissipative = true,
     .remembers = true,
+    .tells_transfer = true,
     .friction = &exact,
     .forces_midway = true,
     .step = step_exact,

@@ -28,5 +28,6 @@ const struct integrator mf_dpd_verlet = {
     .fields = fields,
     .parameters_size = sizeof(struct dpd_verlet_parameters),
     .dissipative = true,
+    .tells_transfer = true,
     .step = step,
 };

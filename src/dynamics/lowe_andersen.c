@@ -33,7 +33,7 @@ static enum status step(struct simulation *simulation) {
     mf_simulation_kick(simulation);
     if (simulation->setup.omega) {
         draw_collisions(&simulation->friction, simulation->setup.temperature);
-        mf_friction_sweep(&simulation->friction, &simulation->particles);
+        mf_friction_sweep(&simulation->friction, &simulation->particles, simulation->transfer);
     }
     return STATUS_OK;
 }
@@ -46,6 +46,7 @@ const struct integrator mf_lowe_andersen = {
                "Lett. 47, 145 (1999)",
     .fields = fields,
     .dissipative = true,
+    .tells_transfer = true,
     .friction = &collisions,
     .step = step,
 };

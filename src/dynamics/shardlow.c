@@ -20,7 +20,7 @@ static const struct friction_method halves = {.damping = damping, .square = squa
 /// end of the last step.
 static enum status step(struct simulation *simulation) {
     if (simulation->setup.omega)
-        mf_friction_sweep(&simulation->friction, &simulation->particles);
+        mf_friction_sweep(&simulation->friction, &simulation->particles, simulation->transfer);
     mf_simulation_kick_and_drift(simulation);
     TRY(mf_simulation_compute_forces(simulation, 0));
     mf_simulation_kick(simulation);
@@ -34,6 +34,7 @@ const struct integrator mf_shardlow = {
     .summary = "S1 splitting; T. Shardlow, SIAM J. Sci. Comput. 24, 1267 (2003)",
     .fields = fields,
     .dissipative = true,
+    .tells_transfer = true,
     .friction = &halves,
     .friction_first = true,
     .step = step,

@@ -331,6 +331,7 @@ enum status mf_simulation_compute_forces(struct simulation *simulation, double a
     TRY(refresh_list(simulation));
     if (law.friction)
         TRY(mf_friction_reserve(law.friction, neighbours));
+    law.transfer = simulation->transfer;
     begin = count_ticks(simulation, SIMULATION_LIST, begin);
     mf_orientation_clear_torques(particles);
     const enum status status = pass_over(simulation, 0,
@@ -340,6 +341,7 @@ enum status mf_simulation_compute_forces(struct simulation *simulation, double a
                                                                     .step = simulation->step,
                                                                     .wants = simulation->wants,
                                                                     .sums = &simulation->sums});
+    mf_transfer_collect(law.transfer, neighbours->parts, simulation->setup.time_step);
     count_ticks(simulation, SIMULATION_FORCES, begin);
     return status;
 }
@@ -393,6 +395,8 @@ enum status mf_simulation_run(struct simulation *simulation, uint64_t steps) {
         simulation->temperature = NAN;
         simulation->particles.threads = simulation->crew.now;
         TRY(simulation->setup.integrator->step(simulation));
+        mf_transfer_carry(simulation->transfer, &simulation->particles,
+                          simulation->setup.time_step);
         TRY(watch(simulation));
         mf_crew_end_turn(&simulation->crew,
                          count_ticks(simulation, SIMULATION_MOTION, begin) - begin);

@@ -69,6 +69,9 @@ struct simulation {
     uint64_t step;
     enum pair_wants wants; ///< set before a step whose sums will be read
     struct pair_sums sums; ///< of the last step, if it was asked for them
+    /// What each step adds its momentum transfer to, or NULL; borrowed. For integrators that tell
+    /// it.
+    struct transfer *transfer;
     bool velocities_drawn; ///< at the start, and not given by a file
     double temperature;    ///< kinetic, where the integrator's is best; NaN: at the end of a step
     uint64_t list_builds;

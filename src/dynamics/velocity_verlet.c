@@ -16,5 +16,6 @@ const struct integrator mf_velocity_verlet = {
         "NVE, the default without friction; W. C. Swope et al., J. Chem. Phys. 76, 637 (1982)",
     .fields = fields,
     .masses = true,
+    .tells_transfer = true,
     .step = step,
 };

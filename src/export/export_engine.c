@@ -45,8 +45,11 @@ static enum status check_friction(const struct export_job *job) {
                               "%s: --project: friction of %s is between beads of one type",
                               job->model->folder, job->engine->title);
     if (job->model->setup.omega == NULL)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: --project: there is no friction weight",
-                              job->model->folder);
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: --project: there is no friction weight%s",
+                              job->model->folder,
+                              job->model->remembers ? " alone: friction remembers or acts across "
+                                                      "pairs, and no power law stands for that"
+                                                    : "");
     return STATUS_OK;
 }
 
@@ -217,7 +220,10 @@ static void print_readme(const struct export_job *job, FILE *stream) {
         fprintf(stream, "\n_lower and _upper are the potential less and plus one standard error at "
                         "each r. Errors at\ndifferent r are correlated; the two are a band, not "
                         "two likely potentials.\n");
-    fprintf(stream, "\nWhat mesofit itself measured of the result:\n\n");
+    const bool measured = isfinite(model->temperature.value) || isfinite(model->pressure.value);
+    fprintf(stream, measured ? "\nWhat mesofit itself measured of the result:\n\n"
+                             : "\nThe result was not simulated by mesofit to its end: nothing was "
+                               "measured of it.\n");
     print_number(stream, "temperature", &model->temperature, units->temperature,
                  units->temperature_name);
     print_number(stream, "pressure   ", &model->pressure, units->pressure, units->pressure_name);
@@ -279,21 +285,14 @@ static enum status run(struct export_job *job, const struct export_request *requ
                              job->engine->one_cutoff ? model->setup.potential->cutoff : 0));
     find_powers(job);
     if (job->projected)
-        CHECK(mf_export_project(model, job->power, request->threads, &job->projection));
+        CHECK(mf_export_project(model, job->power, request->threads, request->listener,
+                                &job->projection));
     CHECK(write_folder(job));
     if (!request->quiet)
         say(job);
 done:
     mf_export_grids_clear(&job->grids);
     return status;
-}
-
-/// No engine is told of memory, or of what acts across pairs. What is left of such friction would
-/// be another one.
-static void leave_out_friction(struct export_model *model) {
-    model->remembers = pair_memory_acts(&model->setup.memory);
-    if (model->remembers)
-        model->setup.omega = NULL;
 }
 
 /// The title stands in comments, which a line ends.
@@ -311,7 +310,6 @@ enum status mf_export_run(const struct export_request *request) {
     NEW_ARRAY(model, 1);
     NEW_ARRAY(job, 1);
     CHECK(mf_export_model_read(model, request->from));
-    leave_out_friction(model);
     join_lines(model->title);
     *job = (struct export_job){.engine = engine,
                                .model = model,

@@ -74,7 +74,8 @@ struct export_request {
     bool bands;     ///< Φ less and plus one standard error, too
     bool project;   ///< the nearest power law of the engine stands for ω, and its cost is measured
     bool quiet;
-    int threads; ///< of that measurement
+    int threads;                             ///< of that measurement
+    const struct measure_listener *listener; ///< of its progress; NULL: none
 };
 
 /// Write the folder for an engine of a result, and say what was written on stderr unless `quiet`.

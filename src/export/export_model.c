@@ -4,9 +4,9 @@
 #include "base/memory.h"
 #include "curves/sampled.h"
 #include "export/export_columns.h"
-#include "input/fit_numbers.h"
+#include "export/export_start.h"
+#include "input/fit_unknowns.h"
 #include "input/heading.h"
-#include "io/snapshot.h"
 #include "observe/rdf_observable.h"
 #include "problem/omega_grid.h"
 #include "problem/verify.h"
@@ -40,6 +40,12 @@ static enum status check_folder(const struct export_model *model) {
     char path[OUTPUT_PATH_SIZE];
     if (!exists(model->folder))
         return mf_status_fail(STATUS_IO, "%s: %s", model->folder, strerror(errno));
+    file_of(model, "target.json", path);
+    if (exists(path))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: holds a target that was measured, no result: fit it first "
+                              "(mesofit fit --target %s -o fit) and export the fit",
+                              model->folder, model->folder);
     for (int k = 0; k < 2; k++) {
         file_of(model, names[k], path);
         if (!exists(path))
@@ -56,10 +62,7 @@ static enum status read_run(struct reading *reading, struct json_object *root,
                             struct json_object *object) {
     struct scene *scene = &reading->model->scene;
     struct json_object unknowns = mf_json_child(root, "unknowns", true);
-    if (mf_json_is_object(&unknowns, mf_inverse_unknown_names[UNKNOWN_POTENTIAL]))
-        reading->unknown |= SCENE_FITS_POTENTIAL;
-    if (mf_json_is_object(&unknowns, mf_inverse_unknown_names[UNKNOWN_OMEGA]))
-        reading->unknown |= SCENE_FITS_OMEGA;
+    reading->unknown = mf_fit_unknowns_left_out(&unknowns);
     TRY(mf_scene_read(scene, object, reading->unknown));
     return mf_fit_numbers_read(&unknowns, scene, reading->number, &reading->numbers);
 }
@@ -259,14 +262,26 @@ done:
 /// Numbers of the scene that were fitted: its laws and settings with their values.
 static enum status apply_numbers(struct reading *reading) {
     struct export_model *model = reading->model;
-    const struct scene_law *law[UNKNOWNS] = {&model->scene.potential, &model->scene.omega};
     struct inverse_problem problem = {.numbers = reading->numbers, .scene = model->setup}, changed;
     memcpy(problem.number, reading->number, sizeof problem.number);
-    for (int kind = 0; kind < UNKNOWNS; kind++)
-        problem.law[kind] = (struct inverse_law){law[kind]->curves, law[kind]->curve};
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        const struct scene_law *law = mf_fit_numbers_law(&model->scene, kind);
+        problem.law[kind] = (struct inverse_law){law->curves, law->curve};
+    }
     TRY(mf_numbers_apply(&problem, reading->value, &changed, &model->own));
     model->setup = changed.scene;
     return STATUS_OK;
+}
+
+/// No engine is told of memory, or of what acts across pairs. What is left of such friction would
+/// be another one.
+static void leave_out_friction(struct export_model *model) {
+    const int found = model->scene.unknown & (SCENE_FITS_MEMORY | SCENE_FITS_TRANSVERSE);
+    model->remembers = found || pair_memory_acts(&model->setup.memory);
+    if (!model->remembers)
+        return;
+    model->setup.omega = NULL;
+    model->setup.memory = (struct pair_memory_law){0};
 }
 
 static enum status find_laws(struct reading *reading) {
@@ -276,96 +291,11 @@ static enum status find_laws(struct reading *reading) {
         TRY(read_potentials(model));
     if (reading->unknown & SCENE_FITS_OMEGA)
         TRY(read_omega(model));
+    leave_out_friction(model);
     if (model->setup.potential == NULL)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: there is no potential to export",
                               model->folder);
     return STATUS_OK;
-}
-
-/// The configuration that the result's simulation ended with, if it left one, as the start of
-/// another: the columns of configuration.tsv.
-static enum status read_start(struct export_model *model, struct export_columns *columns,
-                              struct simulation_start *start) {
-    static const struct export_column wanted[] = {{"x", "lambda", true},
-                                                  {"y", "lambda", true},
-                                                  {"z", "lambda", false},
-                                                  {"velocity_x", "lambda/tau", false},
-                                                  {"velocity_y", "lambda/tau", false},
-                                                  {"velocity_z", "lambda/tau", false},
-                                                  {0}};
-    const int dimensions = model->setup.box.dimensions;
-    char path[OUTPUT_PATH_SIZE];
-    *start = model->scene.start;
-    file_of(model, "configuration.tsv", path);
-    if (!exists(path))
-        return STATUS_OK;
-    TRY(mf_export_columns_read(columns, path, &model->scene.units, wanted));
-    if (columns->rows != (size_t)model->setup.placement.count)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: %zu rows, not the %lld particles of used.json",
-                              path, columns->rows, (long long)model->setup.placement.count);
-    *start = (struct simulation_start){0};
-    for (int d = 0; d < dimensions; d++) {
-        start->position[d] = columns->values + (size_t)d * columns->rows;
-        const double *velocity = columns->values + (size_t)(3 + d) * columns->rows;
-        start->velocity[d] = isnan(velocity[0]) ? NULL : velocity;
-    }
-    model->setup.placement.kind = PLACEMENT_FILE;
-    model->equilibrated = true;
-    return STATUS_OK;
-}
-
-static int type_of(const struct export_model *model, uint32_t id) {
-    return model->types > 1 ? mf_composition_type(&model->setup.composition, id) : 0;
-}
-
-/// Masses, which are alike within a type.
-static enum status keep_masses(struct export_model *model, const struct particles *particles) {
-    const double *mass = particles_masses(particles);
-    for (int type = 0; type < model->types; type++)
-        model->mass[type] = 1;
-    for (size_t k = 0; mass && k < model->count; k++)
-        model->mass[type_of(model, particles->id[k])] = mass[k];
-    for (size_t k = 0; mass && k < model->count; k++)
-        if (mass[k] != model->mass[type_of(model, particles->id[k])])
-            return mf_status_fail(STATUS_BAD_INPUT,
-                                  "%s: cannot be exported: masses differ within a type",
-                                  model->folder);
-    return STATUS_OK;
-}
-
-/// Positions and velocities by id.
-static enum status keep_state(struct export_model *model, const struct particles *particles) {
-    enum status status = STATUS_OK;
-    model->count = particles->count;
-    for (int d = 0; d < 3; d++) {
-        NEW_ARRAY(model->position[d], model->count);
-        NEW_ARRAY(model->velocity[d], model->count);
-        for (size_t k = 0; d < model->setup.box.dimensions && k < model->count; k++) {
-            model->position[d][particles->id[k]] = particles->position[d][k];
-            model->velocity[d][particles->id[k]] = particles->velocity[d][k];
-        }
-    }
-    CHECK(keep_masses(model, particles));
-done:
-    return status;
-}
-
-/// Where the particles start, as our own simulation would have them start.
-static enum status find_start(struct export_model *model) {
-    enum status status = STATUS_OK;
-    struct simulation_start start;
-    struct simulation simulation = {0};
-    struct export_columns columns = {0};
-    CHECK(read_start(model, &columns, &start));
-    status = mf_simulation_init(&simulation, &model->setup, &start);
-    if (status != STATUS_OK)
-        status = mf_status_prefix(status, "%s", model->folder);
-    CHECK(status);
-    CHECK(keep_state(model, &simulation.particles));
-done:
-    mf_simulation_clear(&simulation);
-    mf_export_columns_clear(&columns);
-    return status;
 }
 
 /// The bins of the result's g(r), or a hundred up to the cutoff.
@@ -409,7 +339,7 @@ enum status mf_export_model_read(struct export_model *model, const char *folder)
     TRY(read_summary(&reading));
     name_types(model);
     TRY(find_laws(&reading));
-    TRY(find_start(model));
+    TRY(mf_export_start_find(model));
     return find_bins(model);
 }
 

@@ -3,7 +3,6 @@
 
 #include "curves/formula.h"
 #include "observe/etd.h"
-#include "observe/measure.h"
 #include "observe/motion.h"
 #include "observe/thermodynamics.h"
 
@@ -14,7 +13,23 @@ struct plan {
     struct etd_settings etd;
     struct motion_plan motion;
     struct measure_plan measure;
+    int threads;
+    struct measure_listener half; ///< who is told of one simulation of two
 };
+
+/// Who is told of two simulations as of one.
+struct halves {
+    const struct measure_listener *listener; ///< NULL: nobody
+    int done;                                ///< simulations that are over
+};
+
+static void tell_half(void *context, const struct simulation *simulation, uint64_t done,
+                      uint64_t total) {
+    const struct halves *const halves = context;
+    if (halves->listener)
+        halves->listener->tell(halves->listener->context, simulation,
+                               (uint64_t)halves->done * total + done, 2 * total);
+}
 
 /// One simulation.
 struct run {
@@ -64,10 +79,10 @@ static enum status sample(struct run *run, struct plan *plan) {
                                     {&mf_etd_observable, &run->etd, &plan->etd},
                                     {&mf_motion_observable, &run->motion, &plan->motion},
                                     {0}};
-    TRY(mf_measure_equilibrate(&run->simulation, &plan->measure, &temperature, NULL));
+    TRY(mf_measure_equilibrate(&run->simulation, &plan->measure, &temperature, &plan->half));
     for (struct observable_use *use = uses; use->observable; use++)
         TRY(use->observable->begin(use->state, use->settings, &run->simulation, &plan->measure));
-    return mf_measure_sample(&run->simulation, &plan->measure, uses, NULL);
+    return mf_measure_sample(&run->simulation, &plan->measure, uses, &plan->half);
 }
 
 static enum status read_results(const struct run *run, struct export_measured *measured) {
@@ -81,15 +96,14 @@ static enum status read_results(const struct run *run, struct export_measured *m
 
 /// A simulation from the model's start; `seed` tells one from another.
 static enum status simulate(const struct export_model *model, const struct table *omega,
-                            uint64_t seed, int threads, struct plan *plan,
-                            struct export_measured *measured) {
+                            uint64_t seed, struct plan *plan, struct export_measured *measured) {
     enum status status = STATUS_OK;
     struct run run = {0};
     struct simulation_setup setup = model->setup;
     struct simulation_start start = {0};
     setup.omega = omega;
     setup.seed = seed;
-    setup.threads = threads;
+    setup.threads = plan->threads;
     setup.placement.kind = PLACEMENT_FILE;
     for (int d = 0; d < setup.box.dimensions; d++) {
         start.position[d] = model->position[d];
@@ -137,18 +151,23 @@ static void compare(struct export_projection *projection) {
 }
 
 enum status mf_export_project(const struct export_model *model, const struct export_power *power,
-                              int threads, struct export_projection *projection) {
+                              int threads, const struct measure_listener *listener,
+                              struct export_projection *projection) {
     enum status status = STATUS_OK;
     const uint64_t seed = model->setup.seed;
     struct plan plan = make_plan(model);
+    struct halves halves = {.listener = listener};
     struct table omega = {0};
     *projection =
         (struct export_projection){.interval = (double)plan.etd.plan.every * model->setup.time_step,
                                    .r_maximum = plan.etd.grid.r_maximum,
                                    .steps = plan.measure.samples * plan.measure.every};
+    plan.threads = threads;
+    plan.half = (struct measure_listener){.tell = tell_half, .context = &halves};
     CHECK(tabulate(power, mf_export_model_pairs(model), &omega));
-    CHECK(simulate(model, model->setup.omega, seed + 1, threads, &plan, &projection->result));
-    CHECK(simulate(model, &omega, seed + 2, threads, &plan, &projection->projected));
+    CHECK(simulate(model, model->setup.omega, seed + 1, &plan, &projection->result));
+    halves.done = 1;
+    CHECK(simulate(model, &omega, seed + 2, &plan, &projection->projected));
     compare(projection);
 done:
     mf_table_clear(&omega);

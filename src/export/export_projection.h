@@ -4,6 +4,7 @@
 #pragma once
 
 #include "export/export_power.h"
+#include "observe/measure.h"
 
 enum { EXPORT_BINS = 12, EXPORT_TIMES = 21 };
 
@@ -29,8 +30,10 @@ struct export_projection {
 /// windows, of a small model up to two hundred, after three for equilibration, each of 3 ρ^(−1/d)
 /// sqrt(μ/k_B T), in which pairs of neighbours part. The noise is the sqrt of the likewise weighted
 /// mean of both squared standard errors.
-/// @param[in] power  shape [pairs]
+/// @param[in] power     shape [pairs]
+/// @param[in] listener  told of both simulations as one; NULL: none
 /// Fails: as mf_simulation_run; BAD_INPUT for a box too small for E; NO_MEMORY. Same bits for any
 /// number of threads. Tested: cli/test_export_fits.
 enum status mf_export_project(const struct export_model *model, const struct export_power *power,
-                              int threads, struct export_projection *projection) MUST_USE;
+                              int threads, const struct measure_listener *listener,
+                              struct export_projection *projection) MUST_USE;

@@ -15,6 +15,7 @@
 
 #include "base/normal.h"
 #include "curves/table.h"
+#include "forces/transfer.h"
 #include "system/neighbours.h"
 
 struct friction_pair {
@@ -73,7 +74,10 @@ void mf_friction_store_velocities(struct particles *particles);
 
 /// Change the velocities pair after pair, in an order that depends on the list alone: the same bits
 /// for any number of threads.
-void mf_friction_sweep(const struct friction *friction, struct particles *particles);
+/// @param[in,out] transfer  what the impulses are added to, the particles being where the pairs
+///                          were kept; or NULL
+void mf_friction_sweep(const struct friction *friction, struct particles *particles,
+                       struct transfer *transfer);
 
 /// to_i = Σ_j (kick − damping·u) e for all pairs at once, u from the velocities `from`.
 /// @param[in]  from   shape [count, 4], the last of each 0

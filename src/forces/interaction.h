@@ -56,7 +56,8 @@ enum { INTERACTION_SPANS = 4 };
     EACH(mf_harmonic_trap)                                                                         \
     EACH(mf_self_propulsion)                                                                       \
     EACH(mf_polar_alignment)                                                                       \
-    EACH(mf_soft_discs)
+    EACH(mf_soft_discs)                                                                            \
+    EACH(mf_shear_wave)
 
 #define INTERACTION_DECLARE(record) extern const struct interaction record;
 INTERACTIONS(INTERACTION_DECLARE)

@@ -10,6 +10,7 @@
 
 #include "curves/table.h"
 #include "forces/friction.h"
+#include "forces/transfer.h"
 #include "system/composition.h"
 #include "system/neighbours.h"
 #include "system/particles.h"
@@ -49,6 +50,7 @@ struct pair_law {
     const struct pair_histogram *histogram; ///< of the pairs in range, or NULL
     struct friction *friction; ///< keeps the pairs within the cutoff of ω instead of adding their
                                ///< friction and noise to the forces; NULL: adds them
+    struct transfer *transfer; ///< whose parts r F of each pair is added to, or NULL
 };
 
 /// Sums over the pairs of one pass.

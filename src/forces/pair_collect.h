@@ -28,7 +28,8 @@ struct pair_scene {
     const struct pair_law *law;
     struct particles *particles;
     struct pair_sums *sums;
-    uint32_t *counts; ///< of the histogram, or NULL
+    uint32_t *counts;      ///< of the histogram, or NULL
+    double (*transfer)[3]; ///< of this part, or NULL
     uint64_t step;
     struct pair_box box;
     REAL cutoff2, near_cutoff2; ///< squared: of the law, of its dissipative part
@@ -59,6 +60,15 @@ INLINE int pair_append(struct pair_batch *batch, int n, unsigned mask,
     if (dim == 3)
         lanes_store(batch->dz + n, lanes_permute(dr[2], order));
     return n + __builtin_popcount(mask);
+}
+
+/// Fill up the last vector with pairs so far apart.
+INLINE void pair_fill_up(struct pair_batch *batch, REAL beyond) {
+    for (int k = batch->count; k < batch->count + RNG_LANES; k++) {
+        batch->i[k] = batch->j[k] = batch->id_i[k] = batch->id_j[k] = 0;
+        batch->dx[k] = beyond;
+        batch->dy[k] = batch->dz[k] = 0;
+    }
 }
 
 /// Collect those of `count` entries of the list that are in range.

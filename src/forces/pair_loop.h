@@ -22,7 +22,7 @@ INLINE void pair_evaluate(struct pair_batch *batch, int count, const struct pair
     const struct pair_law *law = scene->law;
     struct pair_columns columns;
     if (mixed)
-        pair_kinds(&columns, batch, count, &scene->mixture);
+        pair_kinds(columns.kind, batch, count, &scene->mixture);
     pair_distances(&columns, batch, count, scene, dim, conservative, friction, mixed);
     if (scene->counts)
         pair_count(&columns, count, scene, mixed);
@@ -40,14 +40,16 @@ INLINE void pair_evaluate(struct pair_batch *batch, int count, const struct pair
             pair_scatter_few(&columns, batch, count, force);
         else
             pair_scatter(&columns, batch, count, force);
+        if (scene->transfer)
+            pair_transfer(&columns, batch, count, scene->transfer, dim);
     }
     if (friction == PAIR_KEEPS_FRICTION) {
-        pair_ids(&columns, batch, count);
+        pair_ids(columns.low_id, columns.high_id, batch, count);
         pair_noise(&columns, count, law->seed, scene->step);
         if (law->friction->method->uniform)
             pair_uniform(&columns, count);
         else
-            pair_normal(&columns, count, &law->friction->normal);
+            pair_normal(columns.zeta, columns.noise, count, &law->friction->normal);
         pair_keep(&columns, batch, count, law->friction, *scene->kept, dim);
         *scene->kept += (size_t)count;
     }
@@ -81,12 +83,7 @@ INLINE void pair_evaluate_rest(struct pair_batch *batch, const struct pair_scene
                                const int dim, const bool conservative,
                                const enum pair_friction friction, const bool wants_sums,
                                const bool mixed) {
-    const REAL beyond = 2 * (REAL)sqrt(scene->cutoff2);
-    for (int k = batch->count; k < batch->count + RNG_LANES; k++) {
-        batch->i[k] = batch->j[k] = batch->id_i[k] = batch->id_j[k] = 0;
-        batch->dx[k] = beyond;
-        batch->dy[k] = batch->dz[k] = 0;
-    }
+    pair_fill_up(batch, 2 * (REAL)sqrt(scene->cutoff2));
     pair_evaluate(batch, batch->count, scene, dim, conservative, friction, wants_sums, mixed);
 }
 
@@ -107,6 +104,8 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
                                .near_cutoff2 = (REAL)(near_cutoff * near_cutoff)};
     if (histogram)
         scene.counts = histogram->counts + (size_t)part_number * pair_histogram_size(histogram);
+    if (law->transfer)
+        scene.transfer = law->transfer->part[part_number];
     scene.has_few =
         sizeof(REAL) == 4 && part->end - part->begin < PAIR_FEW * (part->last - part->first);
     if (friction == PAIR_KEEPS_FRICTION)

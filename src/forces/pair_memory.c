@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "forces/pair_memory.h"
 
+#include "forces/pair_memory_kernels.h"
+
 #include <math.h>
 
 double mf_pair_memory_range(const struct pair_memory_law *law) {
@@ -10,10 +12,29 @@ double mf_pair_memory_range(const struct pair_memory_law *law) {
     return range;
 }
 
+static double largest(const struct table *omega) {
+    double most = 0;
+    for (int k = 0; omega && k < (TABLE_INTERVALS + 1) * omega->curves; k++)
+        most = fmax(most, fabs(omega->coefficient[2 * k]));
+    return most;
+}
+
+bool mf_pair_memory_is_coarse(const struct pair_memory_law *law, double time_step) {
+    static const double part = 0.5, most_turn = 1;
+    for (int m = 0; m < law->modes; m++) {
+        const struct pair_memory_mode *mode = &law->mode[m];
+        const double turn = M_SQRT2 * largest(mode->omega) * time_step / sqrt(mode->time);
+        if (time_step > part * mode->time || time_step * mode->frequency > part || turn > most_turn)
+            return true;
+    }
+    return false;
+}
+
 // Tables ------------------------------------------------------------------------------------------
 
 /// A function of ω for each row of its table: at the start of an interval, and its change over it.
-static enum status tabulate(double (**rows)[2], const struct table *omega,
+/// The other two are 0: kernels read records of four.
+static enum status tabulate(float (**rows)[4], const struct table *omega,
                             double (*of)(double omega, double number), double number) {
     enum status status = STATUS_OK;
     const int count = (TABLE_INTERVALS + 1) * omega->curves;
@@ -22,8 +43,9 @@ static enum status tabulate(double (**rows)[2], const struct table *omega,
         if (k % (TABLE_INTERVALS + 1) == TABLE_INTERVALS) // beyond the cutoff is nothing
             continue;
         const double *c = omega->coefficient + 2 * k;
-        (*rows)[k][0] = of(c[0], number);
-        (*rows)[k][1] = of(c[0] + c[1], number) - (*rows)[k][0];
+        const double value = of(c[0], number);
+        (*rows)[k][0] = (float)value;
+        (*rows)[k][1] = (float)(of(c[0] + c[1], number) - value);
     }
 done:
     return status;
@@ -60,164 +82,179 @@ static double range_of(const struct pair_memory_law *law, int pair) {
     return range;
 }
 
+/// All that depends on temperature and time step.
+static enum status tabulate_all(struct pair_memory *memory) {
+    const struct pair_memory_law *law = &memory->law;
+    memory->variables = 0;
+    for (int m = 0; m < law->modes; m++)
+        TRY(init_mode(memory, m));
+    return law->transverse
+               ? tabulate(&memory->root, law->transverse, root_damping, memory->scene.time_step)
+               : STATUS_OK;
+}
+
+static void free_tables(struct pair_memory *memory) {
+    for (int m = 0; m < memory->law.modes; m++) {
+        mf_memory_free(memory->mode[m].half);
+        memory->mode[m].half = NULL;
+    }
+    mf_memory_free(memory->root);
+    memory->root = NULL;
+}
+
 enum status mf_pair_memory_init(struct pair_memory *memory, const struct pair_memory_law *law,
                                 const struct pair_memory_scene *scene) {
     *memory = (struct pair_memory){.law = *law, .scene = *scene, .builds = UINT64_MAX};
     mf_normal_table_init(&memory->normal);
     for (int pair = 0; pair < mf_composition_pairs(&scene->composition); pair++)
         memory->range[pair] = range_of(law, pair);
-    for (int m = 0; m < law->modes; m++)
-        TRY(init_mode(memory, m));
-    return law->transverse
-               ? tabulate(&memory->root, law->transverse, root_damping, scene->time_step)
-               : STATUS_OK;
+    return tabulate_all(memory);
+}
+
+enum status mf_pair_memory_change(struct pair_memory *memory, double temperature,
+                                  double time_step) {
+    const double scale = sqrt(temperature / memory->scene.temperature);
+    memory->scene.temperature = temperature;
+    memory->scene.time_step = time_step;
+    for (int n = 0; n < memory->variables; n++)
+        for (size_t k = 0; k < memory->pairs.count; k++)
+            memory->pairs.value[n][k] *= scale;
+    free_tables(memory);
+    return tabulate_all(memory);
 }
 
 // Pairs -------------------------------------------------------------------------------------------
 
-static void free_pairs(struct pair_memory *memory) {
-    mf_memory_free(memory->first);
-    mf_memory_free(memory->second);
-    mf_memory_free(memory->low);
-    mf_memory_free(memory->high);
-    mf_memory_free(memory->kind);
-    for (int k = 0; k < memory->variables; k++)
-        mf_memory_free(memory->value[k]);
+static void free_pairs(struct pair_memory_pairs *pairs) {
+    mf_memory_free(pairs->first);
+    mf_memory_free(pairs->second);
+    mf_memory_free(pairs->first_id);
+    mf_memory_free(pairs->second_id);
+    for (int k = 0; k < PAIR_MEMORY_MOST_VARIABLES; k++)
+        mf_memory_free(pairs->value[k]);
+    *pairs = (struct pair_memory_pairs){0};
 }
 
 void mf_pair_memory_clear(struct pair_memory *memory) {
-    free_pairs(memory);
-    for (int m = 0; m < memory->law.modes; m++)
-        mf_memory_free(memory->mode[m].half);
-    mf_memory_free(memory->root);
+    free_pairs(&memory->pairs);
+    free_pairs(&memory->before);
+    mf_memory_free(memory->index.built);
+    mf_memory_free(memory->index.begin);
+    mf_memory_free(memory->index.end);
+    mf_memory_free(memory->index.seen);
+    mf_memory_free(memory->index.mark);
+    free_tables(memory);
     *memory = (struct pair_memory){0};
 }
 
-/// Room for `count` pairs, which are none yet; the old arrays are left to the caller.
-static enum status allocate(struct pair_memory *memory, size_t count) {
+/// Room for `count` pairs; what the arrays held is lost if they are too small.
+static enum status reserve(struct pair_memory_pairs *pairs, size_t count, int variables) {
     enum status status = STATUS_OK;
-    memory->first = memory->second = NULL;
-    memory->low = memory->high = NULL;
-    memory->kind = NULL;
-    memory->capacity = count;
-    for (int k = 0; k < memory->variables; k++)
-        memory->value[k] = NULL;
-    NEW_ARRAY(memory->first, count);
-    NEW_ARRAY(memory->second, count);
-    NEW_ARRAY(memory->low, count);
-    NEW_ARRAY(memory->high, count);
-    NEW_ARRAY(memory->kind, count);
-    for (int k = 0; k < memory->variables; k++)
-        NEW_ARRAY(memory->value[k], count);
-done:
-    return status;
-}
-
-/// The pairs in range of an older list by their ids.
-struct lookup {
-    const struct pair_memory *old;
-    size_t buckets; ///< a power of two
-    uint32_t *bucket, *next;
-};
-
-static const uint32_t none = UINT32_MAX;
-
-static size_t bucket_of(const struct lookup *lookup, uint32_t low, uint32_t high) {
-    const uint64_t mixed = ((uint64_t)low << 32 | high) * 0x9E3779B97F4A7C15u;
-    return (size_t)(mixed >> 32) & (lookup->buckets - 1);
-}
-
-static enum status lookup_init(struct lookup *lookup, const struct pair_memory *old) {
-    enum status status = STATUS_OK;
-    *lookup = (struct lookup){.old = old, .buckets = 16};
-    if (old->variables == 0)
+    if (count <= pairs->capacity)
         return STATUS_OK;
-    while (lookup->buckets < old->pairs)
-        lookup->buckets *= 2;
-    NEW_ARRAY(lookup->bucket, lookup->buckets);
-    NEW_ARRAY(lookup->next, old->pairs + 1);
-    memset(lookup->bucket, 0xFF, lookup->buckets * sizeof *lookup->bucket);
-    for (size_t n = 0; n < old->pairs; n++) {
-        if (isnan(old->value[0][n]))
-            continue;
-        const size_t bucket = bucket_of(lookup, old->low[n], old->high[n]);
-        lookup->next[n] = lookup->bucket[bucket];
-        lookup->bucket[bucket] = (uint32_t)n;
-    }
+    const size_t capacity = count + count / 8;
+    free_pairs(pairs);
+    NEW_ARRAY(pairs->first, capacity + PARTICLES_PADDING);
+    NEW_ARRAY(pairs->second, capacity + PARTICLES_PADDING);
+    NEW_ARRAY(pairs->first_id, capacity);
+    NEW_ARRAY(pairs->second_id, capacity);
+    for (int k = 0; k < variables; k++)
+        NEW_ARRAY(pairs->value[k], capacity + 1);
+    pairs->capacity = capacity;
 done:
     return status;
 }
 
-static void lookup_clear(struct lookup *lookup) {
-    mf_memory_free(lookup->bucket);
-    mf_memory_free(lookup->next);
+static enum status reserve_index(struct pair_memory_index *index, size_t particles) {
+    enum status status = STATUS_OK;
+    if (index->mark)
+        return STATUS_OK;
+    NEW_ARRAY(index->built, particles);
+    NEW_ARRAY(index->begin, particles);
+    NEW_ARRAY(index->end, particles);
+    NEW_ARRAY(index->seen, particles);
+    NEW_ARRAY(index->mark, particles);
+done:
+    return status;
 }
 
-/// Give a new pair its old variables, or none.
-static void carry(struct pair_memory *memory, size_t n, const struct lookup *lookup) {
-    const struct pair_memory *old = lookup->old;
+/// Find the pairs of each first particle. There is no branch that a processor would not foresee.
+static void index_pairs(struct pair_memory_index *index, const struct pair_memory_pairs *pairs,
+                        size_t particles) {
+    memset(index->begin, 0, particles * sizeof *index->begin);
+    memset(index->end, 0, particles * sizeof *index->end);
+    memset(index->seen, 0, particles * sizeof *index->seen);
+    memset(index->mark, 0xFF, particles * sizeof *index->mark);
+    uint32_t last = UINT32_MAX, begin = 0;
+    uint64_t seen = 0;
+    for (uint32_t n = 0; n < pairs->count; n++) {
+        const uint32_t id = pairs->first_id[n];
+        begin = id == last ? begin : n;
+        seen = (id == last ? seen : 0) | (uint64_t)1 << pairs->second_id[n] % 64;
+        index->begin[id] = begin;
+        index->end[id] = n + 1;
+        index->seen[id] = seen;
+        last = id;
+    }
+}
+
+/// The pair of two ids, the first one's first, or the place behind the last.
+static uint32_t find(const struct pair_memory *memory, uint32_t first_id, uint32_t second_id) {
+    for (uint32_t p = memory->index.begin[first_id]; p < memory->index.end[first_id]; p++)
+        if (memory->before.second_id[p] == second_id)
+            return p;
+    return (uint32_t)memory->before.count;
+}
+
+/// Give the pairs their variables of before, or none. Those of a particle are marked by the ids of
+/// the others; few have had their particles in the other order since.
+static void carry(struct pair_memory *memory) {
+    const struct pair_memory_index *index = &memory->index;
+    const struct pair_memory_pairs *before = &memory->before;
+    struct pair_memory_pairs *pairs = &memory->pairs;
+    const size_t total = pairs->count;
+    const uint32_t none = (uint32_t)before->count;
     for (int k = 0; k < memory->variables; k++)
-        memory->value[k][n] = NAN;
-    if (memory->variables == 0)
-        return;
-    uint32_t found = lookup->bucket[bucket_of(lookup, memory->low[n], memory->high[n])];
-    while (found != none &&
-           (old->low[found] != memory->low[n] || old->high[found] != memory->high[n]))
-        found = lookup->next[found];
-    for (int k = 0; found != none && k < memory->variables; k++)
-        memory->value[k][n] = old->value[k][found];
-}
-
-/// Squared distance when the list was built [λ²]: a restart finds the same pairs.
-static double square_of(const struct neighbours *neighbours, const struct box *box, size_t i,
-                        size_t j) {
-    double square = 0;
-    for (int d = 0; d < box->dimensions; d++) {
-        const double dx =
-            box_nearest(neighbours->built[d][i] - neighbours->built[d][j], box->length[d]);
-        square += dx * dx;
-    }
-    return square;
-}
-
-static int kind_of(const struct composition *composition, uint32_t i, uint32_t j) {
-    return composition_is_mixed(composition) ? mf_composition_pair_of_ids(composition, i, j) : 0;
-}
-
-/// Pairs that may come into their range before the list is built anew. With nowhere to put them
-/// they are counted.
-static size_t collect_part(struct pair_memory *memory, const struct particles *particles,
-                           const struct neighbours *neighbours, int p, size_t n, bool put) {
-    const struct neighbours_part *part = &neighbours->part[p];
-    for (size_t k = part->begin; k < part->end; k++) {
-        const int32_t i = neighbours->owner[k / NEIGHBOURS_ROW], j = neighbours->list[k];
-        if (i == j)
-            continue;
-        const uint32_t a = particles->id[i], b = particles->id[j];
-        const int kind = kind_of(&memory->scene.composition, a, b);
-        const double far = memory->range[kind] + neighbours->skin;
-        if (memory->range[kind] == 0 ||
-            square_of(neighbours, &particles->box, (size_t)i, (size_t)j) >= far * far)
-            continue;
-        if (put) {
-            memory->first[n] = i;
-            memory->second[n] = j;
-            memory->low[n] = a < b ? a : b;
-            memory->high[n] = a < b ? b : a;
-            memory->kind[n] = kind;
+        before->value[k][none] = NAN;
+    for (size_t n = 0; n < total;) {
+        const uint32_t id = pairs->first_id[n], begin = index->begin[id];
+        const uint32_t count = index->end[id] - begin;
+        for (uint32_t p = begin; p < begin + count; p++)
+            index->mark[before->second_id[p]] = p;
+        for (; n < total && pairs->first_id[n] == id; n++) {
+            const uint32_t other = pairs->second_id[n], mark = index->mark[other];
+            const bool known = mark - begin < count; // else it is a mark of another particle's
+            uint32_t found = known ? mark : none;
+            if (!known && (index->seen[other] >> id % 64 & 1))
+                found = find(memory, other, id);
+            for (int k = 0; k < memory->variables; k++)
+                pairs->value[k][n] = before->value[k][found];
         }
-        n++;
     }
-    return n;
+}
+
+/// Where particles were when the list was built: a restart finds the same pairs.
+static void find_built(struct particle_place *built, const struct particles *particles,
+                       const struct neighbours *neighbours) {
+    for (int d = 0; d < particles->box.dimensions; d++) {
+        const double inverse_length = 1 / particles->box.length[d];
+        for (size_t k = 0; k < particles->count; k++)
+            built[k].fraction[d] = box_fraction(neighbours->built[d][k], inverse_length);
+    }
+    for (size_t k = 0; k < particles->count; k++)
+        built[k].id = particles->id[k];
 }
 
 static size_t collect(struct pair_memory *memory, const struct particles *particles,
-                      const struct neighbours *neighbours, bool put) {
+                      const struct neighbours *neighbours) {
+    const struct pair_memory_kernels *kernels = mf_pair_memory_kernels();
+    struct particles built = *particles;
     size_t n = 0;
+    built.kernel_place = memory->index.built;
     memory->parts = neighbours->parts;
     for (int p = 0; p < neighbours->parts; p++) {
         memory->begin[p] = n;
-        n = collect_part(memory, particles, neighbours, p, n, put);
+        n = kernels->collect(memory, &built, neighbours, p, n);
         memory->end[p] = n;
     }
     return n;
@@ -227,46 +264,55 @@ enum status mf_pair_memory_follow(struct pair_memory *memory, const struct parti
                                   const struct neighbours *neighbours, uint64_t builds) {
     if (memory->builds == builds)
         return STATUS_OK;
-    enum status status = STATUS_OK;
-    struct pair_memory old = *memory;
-    struct lookup lookup;
-    const size_t count = collect(memory, particles, neighbours, false);
-    CHECK(lookup_init(&lookup, &old));
-    CHECK(allocate(memory, count));
-    memory->pairs = collect(memory, particles, neighbours, true);
+    TRY(reserve_index(&memory->index, particles->count));
+    find_built(memory->index.built, particles, neighbours);
+    const struct pair_memory_pairs last = memory->pairs;
+    memory->pairs = memory->before;
+    memory->before = last;
+    memory->pairs.count = collect(memory, particles, neighbours);
+    if (memory->pairs.count > memory->pairs.capacity) {
+        const size_t count = memory->pairs.count;
+        TRY(reserve(&memory->pairs, count, memory->variables));
+        memory->pairs.count = collect(memory, particles, neighbours);
+    }
     memory->builds = builds;
-    for (size_t n = 0; n < memory->pairs; n++)
-        carry(memory, n, &lookup);
-done:
-    lookup_clear(&lookup);
-    free_pairs(&old);
-    return status;
+    if (memory->variables == 0)
+        return STATUS_OK;
+    TRY(reserve(&memory->before, 1, memory->variables));
+    index_pairs(&memory->index, &memory->before, particles->count);
+    carry(memory);
+    return STATUS_OK;
 }
 
 double mf_pair_memory_energy(const struct pair_memory *memory, size_t *variables) {
+    const struct pair_memory_pairs *pairs = &memory->pairs;
     double energy = 0;
     *variables = 0;
     for (int k = 0; k < memory->variables; k++)
-        for (size_t n = 0; n < memory->pairs; n++)
-            if (!isnan(memory->value[k][n])) {
-                energy += 0.5 * memory->value[k][n] * memory->value[k][n];
+        for (size_t n = 0; n < pairs->count; n++)
+            if (!isnan(pairs->value[0][n])) {
+                energy += 0.5 * pairs->value[k][n] * pairs->value[k][n];
                 ++*variables;
             }
     return energy;
 }
 
 size_t mf_pair_memory_spans(struct pair_memory *memory, struct memory_span *spans) {
+    struct pair_memory_pairs *pairs = &memory->pairs;
+    const size_t count = pairs->count;
     size_t n = 0;
-    spans[n++] = (struct memory_span){&memory->pairs, sizeof memory->pairs};
-    spans[n++] = (struct memory_span){memory->low, memory->pairs * sizeof *memory->low};
-    spans[n++] = (struct memory_span){memory->high, memory->pairs * sizeof *memory->high};
+    spans[n++] = (struct memory_span){&pairs->count, sizeof pairs->count};
+    spans[n++] = (struct memory_span){pairs->first_id, count * sizeof *pairs->first_id};
+    spans[n++] = (struct memory_span){pairs->second_id, count * sizeof *pairs->second_id};
     for (int k = 0; k < memory->variables; k++)
-        spans[n++] = (struct memory_span){memory->value[k], memory->pairs * sizeof(double)};
+        spans[n++] = (struct memory_span){pairs->value[k], count * sizeof(double)};
     return n;
 }
 
 enum status mf_pair_memory_make_room(struct pair_memory *memory) {
-    free_pairs(memory);
+    const size_t count = memory->pairs.count;
     memory->builds = UINT64_MAX;
-    return allocate(memory, memory->pairs);
+    TRY(reserve(&memory->pairs, count, memory->variables));
+    memory->pairs.count = count;
+    return STATUS_OK;
 }

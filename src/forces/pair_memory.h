@@ -23,6 +23,7 @@
 #include "base/memory.h"
 #include "base/normal.h"
 #include "curves/table.h"
+#include "forces/transfer.h"
 #include "system/composition.h"
 #include "system/neighbours.h"
 
@@ -48,12 +49,37 @@ static inline bool pair_memory_acts(const struct pair_memory_law *law) {
 /// The largest distance at which it acts [λ].
 double mf_pair_memory_range(const struct pair_memory_law *law);
 
-/// What belongs to a simulation and does not change.
+/// Whether a step is too long to follow it: longer than half of a mode's τ, or of 1/Ω, or such that
+/// the pairs that rub most turn by more than 1 rad. A pair's friction is then not that of its
+/// kernel, however short the memory. An ω that is not known yet is left out.
+/// Tested: cli/test_simulate.
+bool mf_pair_memory_is_coarse(const struct pair_memory_law *law, double time_step);
+
+/// What belongs to a simulation.
 struct pair_memory_scene {
     struct composition composition;
     double temperature; ///< [k_B T_0]
     double time_step;   ///< [τ]
     uint64_t seed;
+};
+
+/// Pairs of a neighbour list, and their variables.
+struct pair_memory_pairs {
+    size_t count, capacity;
+    /// Shape [capacity + PARTICLES_PADDING]: particles. Those of one first particle are together.
+    int32_t *first, *second;
+    uint32_t *first_id, *second_id; ///< shape [capacity]: their ids
+    /// Shape [variables][capacity] [sqrt(k_B T_0)]; NaN: the pair is out of range.
+    /// There is room for one more, which `before` has for pairs that are new: it is NaN.
+    double *value[PAIR_MEMORY_MOST_VARIABLES];
+};
+
+/// By particles: shape [particles].
+struct pair_memory_index {
+    struct particle_place *built; ///< where they were when the list was built
+    uint32_t *begin, *end;        ///< pairs of `before` whose first particle has this id
+    uint64_t *seen;               ///< bit n: of those, one has a second id of n more than 64 k
+    uint32_t *mark;               ///< by id: where the first particle of now had a pair with it
 };
 
 struct pair_memory {
@@ -62,28 +88,29 @@ struct pair_memory {
     double range[TABLE_MOST_CURVES]; ///< of each pair type; 0: nothing acts
     int variables;                   ///< of a pair
     struct {
-        double (*half)[2]; ///< tan of half the angle of the rotation: rows of the table of ω
+        float (*half)[4];  ///< tan of half the angle of the rotation: rows of the table of ω
         int first;         ///< of its variables
         double keep, turn; ///< z ← keep z + turn y + noise ξ, y ← keep y − turn z + noise ξ'
         double noise;
     } mode[PAIR_MEMORY_MOST_MODES];
-    double (*root)[2]; ///< sqrt of the transverse damping: rows of its table
+    float (*root)[4]; ///< sqrt of the transverse damping: rows of its table
     struct normal_table normal;
-    uint64_t builds; ///< of the neighbour list whose pairs these are
-    size_t pairs, capacity;
+    uint64_t builds;                        ///< of the neighbour list whose pairs these are
+    struct pair_memory_pairs pairs, before; ///< of this list, and those of the last
+    struct pair_memory_index index;
     size_t begin[NEIGHBOURS_MOST_PARTS], end[NEIGHBOURS_MOST_PARTS]; ///< of each part of the list
     int parts;
-    int32_t *first, *second; ///< shape [capacity]: particles
-    uint32_t *low, *high;    ///< shape [capacity]: their ids
-    int32_t *kind;           ///< shape [capacity]: their pair types
-    /// Shape [variables][capacity] [sqrt(k_B T_0)]; NaN: the pair is out of range.
-    double *value[PAIR_MEMORY_MOST_VARIABLES];
 };
 
 /// Prepare for a law that acts. Fails: NO_MEMORY.
 enum status mf_pair_memory_init(struct pair_memory *memory, const struct pair_memory_law *law,
                                 const struct pair_memory_scene *scene) MUST_USE;
 void mf_pair_memory_clear(struct pair_memory *memory);
+
+/// Go on with another temperature, above 0, and time step: variables are scaled to the law that is
+/// stationary then. Fails: NO_MEMORY.
+enum status mf_pair_memory_change(struct pair_memory *memory, double temperature,
+                                  double time_step) MUST_USE;
 
 /// Take over the pairs of the neighbour list that was built as number `builds`, if it is another
 /// one: pairs in range keep their variables. Fails: NO_MEMORY.
@@ -92,17 +119,19 @@ enum status mf_pair_memory_follow(struct pair_memory *memory, const struct parti
 
 /// Change velocities and variables by one time step, pair after pair in an order that depends on
 /// the list alone: the same bits for any number of threads.
-/// @param[in] step  the counter of random numbers
+/// @param[in] step          the counter of random numbers
+/// @param[in,out] transfer  what the impulses are added to, or NULL
 /// Tested: test_pair_memory, physics/test_memory.
-void mf_pair_memory_sweep(struct pair_memory *memory, struct particles *particles, uint64_t step);
+void mf_pair_memory_sweep(struct pair_memory *memory, struct particles *particles, uint64_t step,
+                          struct transfer *transfer);
 
 /// ½ Σ z² of the pairs in range [k_B T_0], and their number of variables: what the extended energy
 /// adds to that of the particles.
 double mf_pair_memory_energy(const struct pair_memory *memory, size_t *variables);
 
 /// @name Restart
-/// The first span is `pairs`: read it before the others and call mf_pair_memory_make_room, since
-/// their lengths depend on it. Afterwards the pairs follow the list anew.
+/// The first span is `pairs.count`: read it before the others and call mf_pair_memory_make_room,
+/// since their lengths depend on it. Afterwards the pairs follow the list anew.
 enum { PAIR_MEMORY_SPANS = 3 + PAIR_MEMORY_MOST_VARIABLES };
 size_t mf_pair_memory_spans(struct pair_memory *memory, struct memory_span *spans);
 enum status mf_pair_memory_make_room(struct pair_memory *memory) MUST_USE;

@@ -23,21 +23,32 @@ struct pair_columns {
 };
 
 /// Types of the pairs.
-INLINE void pair_kinds(struct pair_columns *columns, const struct pair_batch *batch, int count,
+INLINE void pair_kinds(int32_t *kind, const struct pair_batch *batch, int count,
                        const struct pair_mixture *mixture) {
     for (int k = 0; k < count; k += LANES)
-        lanes_store_int(columns->kind + k, pair_kind(mixture, lanes_load_int(batch->id_i + k),
-                                                     lanes_load_int(batch->id_j + k)));
+        lanes_store_int(kind + k, pair_kind(mixture, lanes_load_int(batch->id_i + k),
+                                            lanes_load_int(batch->id_j + k)));
 }
 
-/// Rows of distances in a table whose curves for these pairs begin at `first`.
-INLINE void pair_place(struct pair_places *places, int k, lanes_real inverse_spacing,
-                       lanes_int first, lanes_real r) {
+/// Where distances lie in a table: rows, and how far behind them.
+struct pair_rows {
+    lanes_int interval;
+    lanes_real fraction;
+};
+
+/// Of a table whose curves for these pairs begin at `first`.
+INLINE struct pair_rows pair_rows_of(lanes_real inverse_spacing, lanes_int first, lanes_real r) {
     // Beyond the cutoff is the last row, of zeros.
     const lanes_real place = lanes_least(r * inverse_spacing, lanes_all(TABLE_INTERVALS));
     const lanes_int interval = lanes_to_int(place);
-    lanes_store_int(places->interval + k, first + interval);
-    lanes_store(places->fraction + k, place - lanes_to_real(interval));
+    return (struct pair_rows){first + interval, place - lanes_to_real(interval)};
+}
+
+INLINE void pair_place(struct pair_places *places, int k, lanes_real inverse_spacing,
+                       lanes_int first, lanes_real r) {
+    const struct pair_rows rows = pair_rows_of(inverse_spacing, first, r);
+    lanes_store_int(places->interval + k, rows.interval);
+    lanes_store(places->fraction + k, rows.fraction);
 }
 
 INLINE void pair_place_all(struct pair_columns *columns, int k, const struct pair_law *law,
@@ -220,20 +231,38 @@ INLINE void pair_scatter_few(const struct pair_columns *columns, struct pair_bat
     }
 }
 
+/// Adds Σ r_a F_b: struct transfer.
+INLINE void pair_transfer(const struct pair_columns *columns, const struct pair_batch *batch,
+                          int count, double (*transfer)[3], const int dim) {
+    const REAL *const separation[3] = {batch->dx, batch->dy, batch->dz};
+    for (int a = 0; a < dim; a++)
+        for (int b = a; b < dim; b++) {
+            lanes_real sum = lanes_all(0);
+            for (int k = 0; k < count; k += LANES)
+                sum += lanes_load(columns->force_over_r + k) * lanes_load(separation[a] + k) *
+                       lanes_load(separation[b] + k);
+            const double all = (double)lanes_sum(sum);
+            transfer[a][b] += all;
+            if (b != a)
+                transfer[b][a] += all;
+        }
+}
+
 /// The ordered ids that key the noise.
-INLINE void pair_ids(struct pair_columns *columns, const struct pair_batch *batch, int count) {
+INLINE void pair_ids(int32_t *low, int32_t *high, const struct pair_batch *batch, int count) {
     for (int k = 0; k < count; k += LANES) {
         const lanes_int id_i = lanes_load_int(batch->id_i + k);
         const lanes_int id_j = lanes_load_int(batch->id_j + k);
-        lanes_store_int(columns->low_id + k, lanes_least_int(id_i, id_j));
-        lanes_store_int(columns->high_id + k, lanes_most_int(id_i, id_j));
+        lanes_store_int(low + k, lanes_least_int(id_i, id_j));
+        lanes_store_int(high + k, lanes_most_int(id_i, id_j));
     }
 }
 
 /// ζ of the words: normal_of_word of each.
-INLINE void pair_normal(struct pair_columns *columns, int count, const struct normal_table *table) {
+INLINE void pair_normal(REAL *zeta, const int32_t *words, int count,
+                        const struct normal_table *table) {
     for (int k = 0; k < count; k += LANES) {
-        const lanes_int word = lanes_load_int(columns->noise + k);
+        const lanes_int word = lanes_load_int(words + k);
         // GCC's vectors shift the sign in: one instruction, where word < 0 is three.
         // cppcheck-suppress shiftTooManyBitsSigned
         const lanes_int sign = word >> 31;
@@ -243,8 +272,8 @@ INLINE void pair_normal(struct pair_columns *columns, int count, const struct no
         lanes_store_int(row, (bits >> NORMAL_BITS) - NORMAL_FIRST);
         const struct lanes_record c = lanes_load_records(table->PAIR_ROWS, row);
         const lanes_real f = (REAL)(1.0 / (1 << NORMAL_BITS)) * lanes_to_real(place);
-        const lanes_real zeta = c.word[0] + f * (c.word[1] + f * (c.word[2] + f * c.word[3]));
-        lanes_store(columns->zeta + k, zeta * lanes_to_real(sign | 1));
+        const lanes_real value = c.word[0] + f * (c.word[1] + f * (c.word[2] + f * c.word[3]));
+        lanes_store(zeta + k, value * lanes_to_real(sign | 1));
     }
 }
 

@@ -69,7 +69,8 @@ static enum status check_range(const struct fit_file *fit, const char *file, con
 
 static enum status check_unknowns(const struct fit_file *fit, const char *file) {
     for (int kind = 0; kind < UNKNOWNS; kind++)
-        if (fit->unknown[kind].wanted && !fit->method->fits[kind])
+        if (fit->unknown[kind].wanted &&
+            !(unknown_is_omega(kind) ? fit->method->finds_omega : fit->method->finds_potential))
             return mf_status_fail(STATUS_BAD_INPUT, "%s: method.name: \"%s\" does not find %s",
                                   file, fit->method->name, mf_inverse_unknown_names[kind]);
     if (fit->numbers > 0 && fit->method->kind == INVERSE_INVERSION)

@@ -61,3 +61,7 @@ void mf_fit_file_clear(struct fit_file *fit);
 
 /// Write all values, defaults filled in, so that running the written file gives the same bits.
 enum status mf_fit_file_write(const struct fit_file *fit, const char *path) MUST_USE;
+
+/// Add what used.json only names to the digest of a checkpoint: targets, tables, curves to begin
+/// with.
+void mf_fit_file_digest(const struct fit_file *fit, uint64_t *digest);

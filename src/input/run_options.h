@@ -5,6 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+struct watcher;
+
 /// Options that all runs share, from the command line.
 struct run_options {
     const char *folder; ///< -o, or NULL: `out` beside the input file
@@ -13,5 +15,6 @@ struct run_options {
     bool has_seed;
     uint64_t seed; ///< --seed, instead of the input file's
     bool quiet, resume;
-    bool force; ///< replace the results that are in the folder
+    bool force;                    ///< replace the results that are in the folder
+    const struct watcher *watcher; ///< who watches the run (report/watcher.h), or NULL; borrowed
 };

@@ -125,7 +125,8 @@ static enum status read_dynamics(struct scene *scene, struct json_object *object
     const char **names;
     TRY(mf_names_collect(mf_integrator_list, NULL, &names));
     struct json_object dynamics = mf_json_child_of(object, "dynamics", false, "integrator");
-    const bool remembers = pair_memory_acts(&scene->setup.memory);
+    const bool remembers =
+        pair_memory_acts(&scene->setup.memory) || (unknown & SCENE_FITS_TRANSVERSE);
     const bool dissipative = scene->omega.curves > 0 || (unknown & SCENE_FITS_OMEGA) || remembers;
     const char *name = dissipative ? mf_aboba.name : mf_velocity_verlet.name;
     if (dynamics.item)
@@ -198,6 +199,20 @@ bool mf_scene_is_hot(const struct scene *scene, char line[SCENE_LINE_SIZE]) {
            scene->setup.attribute[ATTRIBUTES_MASS].ranges == 0;
 }
 
+/// In a reduced file masses of beads are in μ: one that is μ in u was told twice, and a bead would
+/// have its square.
+static void check_mass_told_twice(const struct scene *scene, struct json_object *object) {
+    static const double alike = 0.01, light = 1.1;
+    const struct attributes_range masses =
+        mf_attributes_span(&scene->setup.attribute[ATTRIBUTES_MASS]);
+    const double unit = scene->units.mass / UNITS_ATOMIC_MASS;
+    if (masses.maximum > light && fabs(masses.maximum / unit - 1) < alike)
+        mf_json_fault(object, "particles.mass",
+                      "%g is in units of mu, and \"mass\" of \"units\" makes mu %.6g u: a bead "
+                      "would have %.6g u; leave one of them out, or let mu be another mass",
+                      masses.maximum, unit, masses.maximum * unit);
+}
+
 /// Masses that are not in kg and temperatures that are in K.
 static void check_units(const struct scene *scene, struct json_object *object) {
     static const double densest = 30; // g/cm³: no matter is denser
@@ -215,6 +230,8 @@ static void check_units(const struct scene *scene, struct json_object *object) {
                       "%g is in units of T_0, %g K in \"units\": it would be %g K; 1 is T_0",
                       setup->temperature, scene->units.temperature,
                       setup->temperature * scene->units.temperature);
+    if (reduced)
+        check_mass_told_twice(scene, object);
     const double density = setup->box.dimensions == 3 ? mf_scene_mass_density(scene) : 0;
     if (density > densest && !reduced)
         mf_json_fault(object, "box",
@@ -231,13 +248,18 @@ static void check_units(const struct scene *scene, struct json_object *object) {
             mass, atomic_mass, density);
 }
 
+/// Friction, of pairs whose potential is known.
+static bool finds_friction_alone(int unknown) {
+    return unknown && !(unknown & SCENE_FITS_POTENTIAL);
+}
+
 enum status mf_scene_read(struct scene *scene, struct json_object *object, int unknown) {
     *scene = (struct scene){.unknown = unknown};
     mf_units_read(&scene->units, object);
     read_top(scene, object);
     TRY(mf_scene_particles_read(scene, object));
     check_units(scene, object);
-    if (unknown == SCENE_FITS_OMEGA) // between what particles, a fit would ask in vain
+    if (finds_friction_alone(unknown)) // between what particles, a fit would ask in vain
         mf_json_child(object, "conservative", true);
     if (!(unknown & SCENE_FITS_POTENTIAL)) {
         TRY(mf_scene_law_read(&scene->potential, object, "conservative", mf_curve_potentials,
@@ -250,7 +272,8 @@ enum status mf_scene_read(struct scene *scene, struct json_object *object, int u
         TRY(mf_scene_law_tabulate(&scene->omega, mf_table_init_omega));
         check_omega(scene, object);
     }
-    TRY(mf_scene_memory_read(&scene->memory, object, &scene->setup.composition, &scene->units));
+    TRY(mf_scene_memory_read(&scene->memory, object, &scene->setup.composition, &scene->units,
+                             unknown & SCENE_FITS_MEMORY));
     scene->setup.memory = mf_scene_memory_law(&scene->memory);
     TRY(mf_scene_interactions_read(&scene->interactions, object, &scene->setup));
     TRY(read_dynamics(scene, object, unknown));
@@ -274,8 +297,12 @@ const char *mf_scene_warning(const struct scene *scene) {
     const char *own = integrator->warning ? integrator->warning(&scene->setup) : NULL;
     if (own)
         return own;
+    if (mf_pair_memory_is_coarse(&scene->setup.memory, scene->setup.time_step))
+        return "\"time_step\" is too long for \"memory\": beyond half of a \"time\" or of "
+               "1/\"frequency\", or where a pair's friction is strong, what acts is another "
+               "friction; a tenth of both follows it, and a short memory is \"dissipative\"";
     if (simulation_holds_temperature(&scene->setup) || integrator->events ||
-        (scene->unknown & SCENE_FITS_OMEGA))
+        (scene->unknown & ~SCENE_FITS_POTENTIAL))
         return NULL;
     return "nothing holds the temperature: without \"dissipative\", friction and noise, a "
            "simulation "
@@ -294,7 +321,7 @@ void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
         top.box[d] = setup->box.length[d];
     mf_json_put_fields(writer, mf_scene_fields, &top);
     mf_scene_particles_write(scene, writer);
-    if (scene->potential.curves || scene->unknown == SCENE_FITS_OMEGA)
+    if (scene->potential.curves || finds_friction_alone(scene->unknown))
         mf_scene_law_write(&scene->potential, &setup->composition, writer, "conservative");
     if (scene->omega.curves)
         mf_scene_law_write(&scene->omega, &setup->composition, writer, "dissipative");

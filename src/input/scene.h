@@ -10,8 +10,10 @@
 /// What a fit looks for, and the scene therefore does not say.
 enum scene_unknown {
     SCENE_FITS_NOTHING = 0,
-    SCENE_FITS_POTENTIAL = 1, ///< no "conservative"
-    SCENE_FITS_OMEGA = 2,     ///< no "dissipative"; there will be friction
+    SCENE_FITS_POTENTIAL = 1,  ///< no "conservative"
+    SCENE_FITS_OMEGA = 2,      ///< no "dissipative"; there will be friction
+    SCENE_FITS_TRANSVERSE = 4, ///< no "dissipative_transverse"; the same
+    SCENE_FITS_MEMORY = 8,     ///< modes of "memory" without "omega"
 };
 
 /// Owns its laws and arrays; `setup` borrows them.

@@ -82,7 +82,7 @@ static enum status load_points(struct curve *curve, const char *unit, struct jso
 /// A table that could not be loaded has no points, and parameters may not go together: forget the
 /// curve, the fault is recorded.
 static bool is_usable(const struct curve *curve) {
-    if (curve->family == &mf_sampled_family)
+    if (curve_is_sampled(curve->family))
         return ((const struct sampled_parameters *)curve->parameters)->spline != NULL;
     return mf_curve_check(curve) == STATUS_OK;
 }
@@ -102,7 +102,7 @@ enum status mf_scene_read_curve(struct curve *curve, struct json_object *parent,
         const size_t faults = mf_json_fault_count(object.document);
         TRY(mf_curve_create(curve, family));
         mf_json_fields(&object, family->fields, curve->parameters);
-        if (family == &mf_sampled_family && mf_json_fault_count(object.document) == faults)
+        if (curve_is_sampled(family) && mf_json_fault_count(object.document) == faults)
             TRY(load_points(curve, unit, &object, units));
         mf_curve_scale(curve, mf_units_factor(units, "lambda"), mf_units_factor(units, unit));
         if (mf_json_fault_count(object.document) == faults && mf_curve_check(curve) != STATUS_OK)

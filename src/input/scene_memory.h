@@ -26,10 +26,12 @@ struct scene_memory {
     struct scene_law transverse;
 };
 
-/// Read both objects of `scene`, if they are there. Faults go to the document. Fails: NO_MEMORY.
+/// Read both objects of `scene`, if they are there.
+/// @param[in] open  whether modes may have no ω, which is to be found
+/// Faults go to the document. Fails: NO_MEMORY.
 enum status mf_scene_memory_read(struct scene_memory *memory, struct json_object *scene,
-                                 const struct composition *composition,
-                                 const struct units *units) MUST_USE;
+                                 const struct composition *composition, const struct units *units,
+                                 bool open) MUST_USE;
 void mf_scene_memory_clear(struct scene_memory *memory);
 
 /// What a simulation takes of it; borrowed.

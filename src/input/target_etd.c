@@ -91,9 +91,10 @@ static enum status read_table(struct data_table *table, const char *file,
         for (size_t column = before; column < table->columns; column++) {
             const double value = table->values[row * table->columns + column];
             if (value < 0 || value > largest)
-                return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: %g is not %s", file,
-                                      table->line[row], column + 1, value,
-                                      largest == 1 ? "from 0 to 1" : "a standard error");
+                return mf_status_fail(
+                    STATUS_BAD_INPUT, "%s:%zu: column %zu: %g is not %s%s", file, table->line[row],
+                    column + 1, value, largest == 1 ? "from 0 to 1" : "a standard error",
+                    column == before ? ": \"first_column\" tells where E begins" : "");
         }
     return STATUS_OK;
 }

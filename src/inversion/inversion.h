@@ -118,13 +118,14 @@ void mf_inversion_destroy(void *inversion);
 enum status mf_inversion_iterate(void *inversion, struct inverse_step *step,
                                  const struct inverse_listener *listener) MUST_USE;
 size_t mf_inversion_spans(void *inversion, struct memory_span *span);
+enum status mf_inversion_write(const void *inversion, const struct inverse_folder *folder) MUST_USE;
 
 /// What the records of the inversions have in common.
 #define INVERSION_RECORD                                                                           \
     .kind = INVERSE_INVERSION, .parameters_size = sizeof(struct inversion_settings),               \
-    .state_size = sizeof(struct inversion), .fits = {[UNKNOWN_POTENTIAL] = true},                  \
+    .state_size = sizeof(struct inversion), .finds_potential = true,                               \
     .most_iterations = mf_inversion_most_iterations, .destroy = mf_inversion_destroy,              \
-    .iterate = mf_inversion_iterate, .spans = mf_inversion_spans
+    .iterate = mf_inversion_iterate, .spans = mf_inversion_spans, .write = mf_inversion_write
 
 /// The parameters that all have, the first of their tables.
 #define INVERSION_TABLE                                                                            \

@@ -47,9 +47,10 @@ enum status mf_data_table_check_increasing(const struct data_table *table, const
 size_t mf_data_table_find(const struct data_table *table, const char *name);
 
 /// Make numbers of the reduced `unit` of a column: they are in the unit in brackets behind its
-/// name, or else in those of the file that names the table. Nothing changes for a reduced file.
-/// Fails: BAD_INPUT if the name has no such unit, or, of a reduced file with a scale, one whose 1
-/// is not that of the scale. Tested: test_data_table_units.
+/// name, or, of the first column, in that of the x axis of xmgrace's "@" lines, or else in those of
+/// the file that names the table. Nothing changes for a reduced file. Fails: BAD_INPUT if the name
+/// has no such unit, or, of a reduced file with a scale, one whose 1 is not that of the scale.
+/// Tested: test_data_table_units.
 enum status mf_data_table_convert(struct data_table *table, const char *file, size_t column,
                                   const char *unit, const struct units *units) MUST_USE;
 

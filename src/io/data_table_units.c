@@ -49,6 +49,29 @@ static bool heading_unit(const struct data_table *table, size_t column, char uni
     return true;
 }
 
+/// The unit of the first column by the label of an axis as xmgrace has it, `@ xaxis label "r
+/// (nm)"`: files of GROMACS. What is below the y axis may be many things.
+static bool axis_unit(const struct data_table *table, size_t column, char unit[NAME_SIZE]) {
+    for (const char *line = table->comments; column == 0 && line && *line;) {
+        const char *const end = line + strcspn(line, "\n");
+        char words[NAME_SIZE];
+        snprintf(words, sizeof words, "%.*s", (int)(end - line), line);
+        const char *const open = strrchr(words, '('), *const close =
+                                                          open ? strchr(open, ')') : NULL;
+        line = *end ? end + 1 : end;
+        if (words[0] != '@' || !strstr(words, "xaxis") || !strstr(words, "label") || close == NULL)
+            continue;
+        snprintf(unit, NAME_SIZE, "%.*s", (int)(close - open - 1), open + 1);
+        return true;
+    }
+    return false;
+}
+
+/// The unit of a column as the file tells it.
+static bool find_unit(const struct data_table *table, size_t column, char unit[NAME_SIZE]) {
+    return heading_unit(table, column, unit) || axis_unit(table, column, unit);
+}
+
 /// A reduced file takes numbers as they are. Of a heading in other units, whose 1 is not the
 /// scene's, it would make something else.
 static enum status check_reduced(const struct data_table *table, const char *file, size_t column,
@@ -56,7 +79,7 @@ static enum status check_reduced(const struct data_table *table, const char *fil
     static const double rounding = 1e-3; // of a scale that a person has written
     char given[NAME_SIZE];
     double factor;
-    if (units == NULL || !mf_units_known(units) || !heading_unit(table, column, given) ||
+    if (units == NULL || !mf_units_known(units) || !find_unit(table, column, given) ||
         mf_units_from(units, given, unit, &factor) != STATUS_OK || fabs(factor - 1) < rounding)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
@@ -72,7 +95,7 @@ enum status mf_data_table_convert(struct data_table *table, const char *file, si
     double factor = 1;
     if (!mf_units_speaks(units))
         return check_reduced(table, file, column, unit, units);
-    const bool named = heading_unit(table, column, given);
+    const bool named = find_unit(table, column, given);
     const enum status status = named ? mf_units_from(units, given, unit, &factor) : STATUS_OK;
     if (status != STATUS_OK)
         return mf_status_prefix(status, "%s: column %zu", file, column + 1);

@@ -69,30 +69,40 @@ static void put(struct json_writer *writer, const char *key, cJSON *item) {
     cJSON_Delete(item);
 }
 
-/// Put a new last object into the list, which is the root.
+/// Put a new last object into the list.
 static void begin_in_list(struct json_writer *writer) {
-    if (writer->depth > 0 || !cJSON_IsArray(writer->object[0])) {
+    cJSON *list = writer->object[writer->depth];
+    if (!cJSON_IsArray(list) || writer->depth + 1 == DEEPEST_OBJECT) {
         note_problem(writer, "", "is an object without a key");
         return;
     }
     cJSON *item = cJSON_CreateObject();
-    if (!cJSON_AddItemToArray(writer->object[0], item))
+    if (!cJSON_AddItemToArray(list, item))
         note_problem(writer, "", "does not fit into the memory");
     writer->object[++writer->depth] = item;
 }
 
-void mf_json_begin(struct json_writer *writer, const char *key) {
-    if (key == NULL) {
-        begin_in_list(writer);
-        return;
-    }
+/// Enter `item`, new at a key.
+static void enter(struct json_writer *writer, const char *key, cJSON *item) {
     if (writer->depth + 1 == DEEPEST_OBJECT) {
         note_problem(writer, key, "is nested too deeply");
+        cJSON_Delete(item);
         return;
     }
-    put(writer, key, cJSON_CreateObject());
+    put(writer, key, item);
     cJSON *object = cJSON_GetObjectItemCaseSensitive(writer->object[writer->depth], key);
     writer->object[++writer->depth] = object;
+}
+
+void mf_json_begin(struct json_writer *writer, const char *key) {
+    if (key == NULL)
+        begin_in_list(writer);
+    else
+        enter(writer, key, cJSON_CreateObject());
+}
+
+void mf_json_begin_list(struct json_writer *writer, const char *key) {
+    enter(writer, key, cJSON_CreateArray());
 }
 
 void mf_json_end(struct json_writer *writer) {

@@ -25,6 +25,8 @@ void mf_json_writer_free(struct json_writer *writer);
 /// Enter a new object at `key` of the current object, or with `key` NULL a new last object of the
 /// list; leave it with mf_json_end.
 void mf_json_begin(struct json_writer *writer, const char *key);
+/// Enter a new list of objects, which mf_json_begin without a key makes.
+void mf_json_begin_list(struct json_writer *writer, const char *key);
 void mf_json_end(struct json_writer *writer);
 
 /// Say in which units quantities and fields are to be written, which is reduced until then.

@@ -229,6 +229,8 @@ void mf_units_write_summary(const struct units *units, struct json_writer *write
     put_scale(units, writer);
     for (size_t k = 0; k < sizeof derived / sizeof *derived; k++)
         mf_json_put_quantity(writer, derived[k][0], derived[k][1], 1);
+    if (units->dimensions == 2) // of pressure, which is then of an area
+        mf_json_put_integer(writer, "dimensions", 2);
     mf_json_end(writer);
 }
 

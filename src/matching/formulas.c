@@ -65,7 +65,7 @@ static enum status refuse(const struct inverse_method *method,
     const struct unknown *omega = &problem->unknown[UNKNOWN_OMEGA];
     const bool potential = problem->unknown[UNKNOWN_POTENTIAL].wanted;
     const char *why = NULL;
-    if (potential == omega->wanted || problem->numbers > 0)
+    if (potential == omega->wanted || mf_inverse_unknown_count(problem) > 1)
         why = "finds the formula of one unknown: the potential, or omega";
     else if (composition_is_mixed(&problem->scene.composition))
         why = "finds the formula of beads that are all alike";
@@ -368,7 +368,8 @@ const struct inverse_method mf_formulas = {
                                              {NULL, 0}},
     .parameters_size = sizeof(struct formulas_parameters),
     .state_size = sizeof(struct formulas_state),
-    .fits = {true, true},
+    .finds_potential = true,
+    .finds_omega = true,
     .most_iterations = most_iterations,
     .sampling = mf_population_sampling,
     .columns = columns,

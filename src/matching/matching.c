@@ -6,6 +6,7 @@
 #include "problem/inverse.h"
 
 #include "base/memory.h"
+#include "matching/individuals.h"
 #include "matching/population.h"
 #include "problem/parametrisation.h"
 #include "optimise/genetic.h"
@@ -44,6 +45,7 @@ struct state {
     bool created;
     struct parametrisation parametrisation;
     struct population population;
+    struct individuals individuals;
     double *incumbent;                    ///< shape [variables]: what is thought best
     double *best;                         ///< shape [variables]: the best by fresh measurements
     struct parametrisation_curves curves; ///< of the best, with errors by the linear model
@@ -110,6 +112,7 @@ static void destroy(void *memory) {
         state->optimiser->destroy(state->optimiser_state);
     mf_memory_free(state->optimiser_state);
     mf_population_clear(&state->population);
+    mf_individuals_clear(&state->individuals);
     mf_parametrisation_clear(&state->parametrisation);
     mf_memory_free(state->incumbent);
     mf_memory_free(state->best);
@@ -158,6 +161,7 @@ static enum status create(void *memory, const struct inverse_method *method,
     CHECK(create_optimiser(state, (const char *)parameters + driven->parameters));
     CHECK(mf_population_init(&state->population, &state->parametrisation,
                              &state->parameters.population));
+    CHECK(mf_individuals_init(&state->individuals, state->parametrisation.variables));
     state->population.iterations = most_iterations(method, problem, parameters);
 done:
     return status;
@@ -168,11 +172,24 @@ static bool is_full(const struct population_survey *survey, size_t next_round) {
     return survey->evaluations >= (next_round == 1 ? least_evaluations : 1);
 }
 
+/// Keep the round for individuals.tsv, with its parents, of which telling makes others.
+static void keep_individuals(struct state *state, const struct optimiser_round *round) {
+    for (size_t k = 0; k < round->count; k++) {
+        uint64_t parent[2] = {0, 0};
+        if (state->optimiser->parents)
+            state->optimiser->parents(state->optimiser_state, k, parent);
+        mf_individuals_add(&state->individuals, state->progress.iteration,
+                           round->variables + k * state->parametrisation.variables,
+                           state->population.errors[k], parent);
+    }
+}
+
 /// One round of the optimiser: measure what it asks for and tell it.
 static enum status take_round(struct state *state, const struct optimiser_round *round,
                               const struct inverse_listener *listener) {
     TRY(mf_population_measure(&state->population, round,
                               state->optimiser->discard_above(state->optimiser_state), listener));
+    keep_individuals(state, round);
     TRY(state->optimiser->tell(state->optimiser_state, state->population.errors,
                                state->population.variances));
     mf_population_next_round(&state->population);
@@ -307,6 +324,7 @@ static enum status iterate(void *memory, struct inverse_step *step,
 
 static enum status write(const void *memory, const struct inverse_folder *folder) {
     const struct state *state = memory;
+    TRY(mf_individuals_write(&state->individuals, &state->parametrisation, folder));
     return mf_population_write(&state->population, folder);
 }
 
@@ -318,6 +336,7 @@ static size_t spans(void *memory, struct memory_span *span) {
     span[n++] = (struct memory_span){state->best, bytes};
     n += mf_parametrisation_curves_spans(&state->parametrisation, &state->curves, span + n);
     n += mf_population_spans(&state->population, span + n);
+    n += mf_individuals_spans(&state->individuals, span + n);
     n += state->optimiser->spans(state->optimiser_state, span + n);
     return n;
 }
@@ -337,7 +356,8 @@ static size_t spans(void *memory, struct memory_span *span) {
                                                  {NULL, 0}},                                       \
         .parameters_size = sizeof(struct record##_settings),                                       \
         .state_size = sizeof(struct state),                                                        \
-        .fits = {true, true},                                                                      \
+        .finds_potential = true,                                                                   \
+        .finds_omega = true,                                                                       \
         .most_iterations = most_iterations,                                                        \
         .sampling = mf_population_sampling,                                                        \
         .keeps_parts = true,                                                                       \
@@ -346,5 +366,6 @@ static size_t spans(void *memory, struct memory_span *span) {
         .destroy = destroy,                                                                        \
         .iterate = iterate,                                                                        \
         .spans = spans,                                                                            \
-        .write = write};
+        .write = write,                                                                            \
+    };
 OPTIMISERS(MATCHING)

@@ -26,7 +26,7 @@ struct part {
     bool created;
 };
 
-enum { PARTS = UNKNOWNS }; // by what they find
+enum { PARTS = 2 }; // UNKNOWN_POTENTIAL and UNKNOWN_OMEGA
 
 /// What is known of a part.
 struct outcome {
@@ -40,12 +40,12 @@ struct state {
     const struct inverse_problem *problem;
     struct unknowns unknowns;
     struct part part[PARTS];
-    struct table table;      ///< of the potential that is held
-    bool has_table;          ///< it is made when it is needed
-    double *curve[UNKNOWNS]; ///< shape [points]: the best so far
-    double *error[UNKNOWNS]; ///< of them
-    double *flat[UNKNOWNS];  ///< shape [INVERSE_FLAT, points]
-    double *without_ramp;    ///< shape [points of the potential]
+    struct table table;   ///< of the potential that is held
+    bool has_table;       ///< it is made when it is needed
+    double *curve[PARTS]; ///< shape [points]: the best so far
+    double *error[PARTS]; ///< of them
+    double *flat[PARTS];  ///< shape [INVERSE_FLAT, points]
+    double *without_ramp; ///< shape [points of the potential]
     struct progress {
         uint32_t iteration;
         uint32_t begun; ///< iteration with which the second part began
@@ -106,7 +106,7 @@ static enum status refuse(const struct inverse_method *method,
     for (int target = 0; target < TARGETS; target++)
         of_omega += targets_ask(&problem->targets, target) && !is_of_potential(target);
     if (!problem->unknown[UNKNOWN_POTENTIAL].wanted || !problem->unknown[UNKNOWN_OMEGA].wanted ||
-        problem->numbers > 0)
+        mf_inverse_unknown_count(problem) > PARTS)
         why = "finds a potential and omega, and nothing else";
     else if (of_omega == 0)
         why = "finds omega from a target of motion, as \"etd\", that is fitted";
@@ -277,17 +277,34 @@ static void describe(struct state *state, int stage, bool finished, struct inver
         conclude(state, step);
 }
 
-/// The second part counts its iterations from 0.
+/// An error of the part at work as that of all targets so far, as the iterations tell it; what is
+/// not known stays so.
+static double among_all(const struct state *state, double error) {
+    double errors = 0;
+    size_t all = 0, count;
+    for (int kind = 0; kind <= state->progress.stage; kind++) {
+        const double of_part =
+            kind < state->progress.stage ? state->progress.outcome[kind].error : error;
+        errors += squares_of(&state->part[kind].problem, of_part, &count);
+        all += count;
+    }
+    return sqrt(errors / (double)all);
+}
+
+/// The second part counts its iterations from 0, and each knows its own targets alone.
 struct listening {
     const struct inverse_listener *listener;
-    uint32_t begun;
+    const struct state *state;
 };
 
 static void tell(void *context, const struct inverse_progress *progress) {
     const struct listening *listening = context;
     struct inverse_progress own = *progress;
-    own.iteration += listening->begun;
-    own.iterations += listening->begun;
+    own.iteration += listening->state->progress.begun;
+    own.iterations += listening->state->progress.begun;
+    own.best = among_all(listening->state, own.best);
+    own.least = among_all(listening->state, own.least);
+    own.mean = among_all(listening->state, own.mean);
     listening->listener->tell(listening->listener->context, &own);
 }
 
@@ -297,7 +314,7 @@ static enum status iterate(void *memory, struct inverse_step *step,
     struct progress *progress = &state->progress;
     const int stage = progress->stage;
     const struct part *part = &state->part[stage];
-    struct listening listening = {listener, progress->begun};
+    struct listening listening = {listener, state};
     const struct inverse_listener own = {tell, &listening};
     struct inverse_step inner;
     if (stage == UNKNOWN_OMEGA && !state->has_table) {
@@ -343,7 +360,8 @@ const struct inverse_method mf_successive = {
             {own_fields, 0}, {mf_population_fields, 0}, {mf_population_round_fields, 0}, {NULL, 0}},
     .parameters_size = sizeof(struct parameters),
     .state_size = sizeof(struct state),
-    .fits = {true, true},
+    .finds_potential = true,
+    .finds_omega = true,
     .most_iterations = most_iterations,
     .sampling = mf_population_sampling,
     .columns = columns,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "surrogate_rows.h"
 
+#include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
@@ -55,11 +56,10 @@ static double feature_weight(const struct surrogate_work *work, size_t j) {
     return 1 / (work->scatter[j] + target * target + least_error * least_error);
 }
 
-/// Cholesky factor of H = Jᵀ W J + damping.
-static void factor_hessian(const struct surrogate_work *work, double damping) {
+/// H = Jᵀ W J + damping.
+static void find_hessian(const struct surrogate_work *work, double damping, double *hessian) {
     const struct surrogate *s = work->surrogate;
     const size_t variables = s->variables;
-    double *hessian = work->hessian;
     memset(hessian, 0, variables * variables * sizeof *hessian);
     for (size_t j = 0; j < s->features; j++) {
         const double *slope = work->model + j * work->terms + 1;
@@ -70,6 +70,13 @@ static void factor_hessian(const struct surrogate_work *work, double damping) {
     }
     for (size_t a = 0; a < variables; a++)
         hessian[a * variables + a] += damping;
+}
+
+/// Its Cholesky factor.
+static void factor_hessian(const struct surrogate_work *work, double damping) {
+    const size_t variables = work->surrogate->variables;
+    double *hessian = work->hessian;
+    find_hessian(work, damping, hessian);
     gsl_matrix_view view = gsl_matrix_view_array(hessian, variables, variables);
     gsl_linalg_cholesky_decomp1(&view.matrix);
 }
@@ -130,39 +137,144 @@ static void add_noise(const struct surrogate_work *work, double *covariance) {
     }
 }
 
-/// to = Λ from, Λ = Σ_j w_j σ_j² spread: so much do slopes of noise alone add to Jᵀ W J.
-static void attenuate(const struct surrogate_work *work, const double *from, double *to) {
-    double noise = 0;
-    for (size_t j = 0; j < work->surrogate->features; j++)
-        noise += feature_weight(work, j) * work->scatter[j];
-    for (size_t a = 0; a + 1 < work->terms; a++) {
-        to[a] = 0;
-        for (size_t b = 0; b + 1 < work->terms; b++)
-            to[a] += noise * work->spread[(a + 1) * work->terms + b + 1] * from[b];
-    }
-}
-
-/// What the data say nothing of is as wide as the prior: H⁻¹/s² of a variable is held back by it,
-/// and H⁻¹ Λ by the noise of the slopes (attenuation: W. A. Fuller, Measurement Error Models
-/// (1987), section 1.1), without which a variable that has no effect would pass for one that is
-/// known. How much of a step that is comes first; the share's share, H⁻¹ Λ H⁻¹ Λ, counts as not
-/// known.
-static void add_open(const struct surrogate_work *work, double *covariance) {
+/// H⁻¹/s² of a variable is held back by the prior.
+static void add_held(const struct surrogate_work *work, double *covariance) {
     const size_t variables = work->surrogate->variables;
-    double *held = work->term, *delta = work->delta;
-    attenuate(work, delta, held);
-    divide(work, held);
-    mf_surrogate_add_outer(covariance, held, variables, 1);
+    double *delta = work->delta;
     for (size_t a = 0; a < variables; a++) {
         memset(delta, 0, variables * sizeof *delta);
-        delta[a] = 1;
-        attenuate(work, delta, held);
-        divide(work, held);
-        attenuate(work, held, delta);
-        delta[a] += 1 / (prior_width * prior_width);
+        delta[a] = 1 / (prior_width * prior_width);
         divide(work, delta);
         mf_surrogate_add_outer(covariance, delta, variables, prior_width * prior_width);
     }
+}
+
+/// Directions v of the variables by how far the slopes stand above their noise, H v = μ Λ v and
+/// vᵀΛv = 1, where Λ = Σ_j w_j σ_j² spread is what slopes of noise alone add to Jᵀ W J.
+struct directions {
+    size_t count;
+    gsl_matrix *hessian, *noise, *vector; ///< the last in columns
+    gsl_vector *value;                    ///< μ
+    double *factor;                       ///< shape [count]: scratch
+    double *mapping;                      ///< shape [count, count]: Σ factor v vᵀΛ
+    double *product;                      ///< shape [count, count]: scratch
+};
+
+static void clear_directions(struct directions *d) {
+    gsl_matrix_free(d->hessian);
+    gsl_matrix_free(d->noise);
+    gsl_matrix_free(d->vector);
+    gsl_vector_free(d->value);
+    mf_memory_free(d->factor);
+    mf_memory_free(d->mapping);
+    mf_memory_free(d->product);
+}
+
+/// Λ, and next to nothing in directions in which the rows do not differ, so that it has a factor.
+static void fill_noise(const struct surrogate_work *work, gsl_matrix *matrix) {
+    static const double nothing = 1e-12;
+    const size_t variables = work->surrogate->variables;
+    double noise = 0, trace = 1;
+    for (size_t j = 0; j < work->surrogate->features; j++)
+        noise += feature_weight(work, j) * work->scatter[j];
+    for (size_t a = 0; a < variables; a++)
+        trace += noise * work->spread[(a + 1) * (work->terms + 1)];
+    for (size_t a = 0; a < variables; a++)
+        for (size_t b = 0; b < variables; b++)
+            gsl_matrix_set(matrix, a, b,
+                           noise * work->spread[(a + 1) * work->terms + b + 1] +
+                               (a == b ? nothing * trace : 0));
+}
+
+static enum status find_directions(const struct surrogate_work *work, struct directions *d) {
+    enum status status = STATUS_OK;
+    const size_t n = work->surrogate->variables;
+    *d = (struct directions){.count = n,
+                             .hessian = gsl_matrix_alloc(n, n),
+                             .noise = gsl_matrix_alloc(n, n),
+                             .vector = gsl_matrix_alloc(n, n),
+                             .value = gsl_vector_alloc(n)};
+    gsl_eigen_gensymmv_workspace *eigen = gsl_eigen_gensymmv_alloc(n);
+    CHECK(d->hessian && d->noise && d->vector && d->value && eigen ? STATUS_OK : STATUS_NO_MEMORY);
+    NEW_ARRAY(d->factor, n);
+    NEW_ARRAY(d->mapping, n * n);
+    NEW_ARRAY(d->product, n * n);
+    find_hessian(work, 1 / (prior_width * prior_width), d->product);
+    for (size_t k = 0; k < n * n; k++)
+        gsl_matrix_set(d->hessian, k / n, k % n, d->product[k]);
+    fill_noise(work, d->noise);
+    gsl_eigen_gensymmv(d->hessian, d->noise, d->value, d->vector, eigen);
+    fill_noise(work, d->noise);      // which the above has made something else of
+    for (size_t v = 0; v < n; v++) { // to the length that vᵀΛv = 1 asks for
+        double square = 0;
+        for (size_t a = 0; a < n; a++)
+            for (size_t b = 0; b < n; b++)
+                square += gsl_matrix_get(d->vector, a, v) * gsl_matrix_get(d->noise, a, b) *
+                          gsl_matrix_get(d->vector, b, v);
+        for (size_t a = 0; a < n; a++)
+            gsl_matrix_set(d->vector, a, v, gsl_matrix_get(d->vector, a, v) / sqrt(square));
+    }
+done:
+    if (eigen)
+        gsl_eigen_gensymmv_free(eigen);
+    return status;
+}
+
+/// The mapping of its factors.
+static void map(struct directions *d) {
+    const size_t n = d->count;
+    memset(d->mapping, 0, n * n * sizeof *d->mapping);
+    for (size_t v = 0; v < n; v++)
+        for (size_t b = 0; b < n; b++) {
+            double share = 0;
+            for (size_t c = 0; c < n; c++)
+                share += gsl_matrix_get(d->vector, c, v) * gsl_matrix_get(d->noise, c, b);
+            for (size_t a = 0; a < n; a++)
+                d->mapping[a * n + b] += d->factor[v] * gsl_matrix_get(d->vector, a, v) * share;
+        }
+}
+
+/// C ← M C Mᵀ.
+static void transform(const struct directions *d, double *covariance) {
+    const size_t n = d->count;
+    memset(d->product, 0, n * n * sizeof *d->product);
+    for (size_t a = 0; a < n; a++)
+        for (size_t b = 0; b < n; b++)
+            for (size_t c = 0; c < n; c++)
+                d->product[a * n + b] += d->mapping[a * n + c] * covariance[c * n + b];
+    memset(covariance, 0, n * n * sizeof *covariance);
+    for (size_t a = 0; a < n; a++)
+        for (size_t b = 0; b < n; b++)
+            for (size_t c = 0; c < n; c++)
+                covariance[a * n + b] += d->product[a * n + c] * d->mapping[b * n + c];
+}
+
+/// Slopes with noise make H too large by Λ, and with it steps and their errors too small: W. A.
+/// Fuller, Measurement Error Models (1987), section 1.2. In a direction in which they stand well
+/// above it, errors grow by μ/(μ − margin); one in which they do not is as wide as the prior.
+static enum status correct(const struct surrogate_work *work, double *covariance) {
+    static const double margin = 2, least_share = 0.1;
+    enum status status = STATUS_OK;
+    struct directions d;
+    const size_t n = work->surrogate->variables;
+    CHECK(find_directions(work, &d));
+    for (size_t v = 0; v < n; v++) {
+        const double share = 1 - margin / gsl_vector_get(d.value, v);
+        d.factor[v] = share > least_share ? 1 / share : 1;
+    }
+    map(&d);
+    transform(&d, covariance);
+    for (size_t v = 0; v < n; v++)
+        d.factor[v] = 1 - margin / gsl_vector_get(d.value, v) > least_share ? 0 : 1;
+    map(&d);
+    for (size_t a = 0; a < n; a++)
+        for (size_t b = 0; b < n; b++)
+            for (size_t c = 0; c < n; c++)
+                covariance[a * n + b] +=
+                    prior_width * prior_width * d.mapping[a * n + c] * d.mapping[b * n + c];
+done:
+    clear_directions(&d);
+    return status;
 }
 
 static double rms(const double *values, size_t count) {
@@ -224,7 +336,7 @@ static enum status find_best(const struct surrogate *surrogate, const double *ce
     struct surrogate_work work = {0};
     const size_t most = MOST_ROWS_PER_GENE * surrogate->variables + MORE_ROWS;
     enum status status =
-        mf_surrogate_fit_rows(&work, surrogate, centre, kept, kept < most ? kept : most);
+        mf_surrogate_fit_rows(&work, surrogate, centre, kept, kept < most ? kept : most, false);
     if (status == STATUS_OK) {
         take_step(&work, reach);
         for (size_t n = 0; n < surrogate->variables; n++)
@@ -239,13 +351,13 @@ static enum status find_best(const struct surrogate *surrogate, const double *ce
 static enum status find_covariance(const struct surrogate *surrogate, const double *centre,
                                    size_t kept, struct surrogate_model *model) {
     struct surrogate_work work = {0};
-    enum status status = mf_surrogate_fit_rows(&work, surrogate, centre, kept, kept);
+    enum status status = mf_surrogate_fit_rows(&work, surrogate, centre, kept, kept, true);
     if (status == STATUS_OK) {
         factor_hessian(&work, 1 / (prior_width * prior_width));
         solve(&work, work.miss, NULL);
         add_noise(&work, model->covariance);
-        solve(&work, work.miss, NULL);
-        add_open(&work, model->covariance);
+        status = correct(&work, model->covariance);
+        add_held(&work, model->covariance);
         bound(work.hessian, model->covariance, surrogate->variables);
     }
     mf_surrogate_clear_rows(&work);

@@ -47,6 +47,12 @@ done:
     return status;
 }
 
+/// exp(−d²/2h²) with h the distance of the middle row.
+static double near_weight(const struct surrogate_work *work, size_t row) {
+    const double width = fmax(work->near[work->rows / 2].distance, 1e-300);
+    return exp(-0.5 * work->near[row].distance / width);
+}
+
 /// The rows nearest to the centre, weighted by exp(−d²/2h²) with h the distance of the middle one.
 static void choose_rows(struct surrogate_work *work, const double *centre, size_t kept) {
     const struct surrogate *s = work->surrogate;
@@ -59,10 +65,9 @@ static void choose_rows(struct surrogate_work *work, const double *centre, size_
         work->near[k] = (struct surrogate_near){sum, k};
     }
     qsort(work->near, kept, sizeof *work->near, by_distance);
-    const double width = fmax(work->near[work->rows / 2].distance, 1e-300);
     for (size_t k = 0; k < work->rows; k++) {
         const double *x = s->x + work->near[k].row * s->variables;
-        work->weight[k] = exp(-0.5 * work->near[k].distance / width);
+        work->weight[k] = near_weight(work, k);
         work->design[k * work->terms] = 1;
         for (size_t n = 0; n < s->variables; n++)
             work->design[k * work->terms + n + 1] = x[n] - centre[n];
@@ -138,13 +143,68 @@ static void find_spread(struct surrogate_work *work) {
     }
 }
 
-enum status mf_surrogate_fit_rows(struct surrogate_work *work, const struct surrogate *surrogate,
-                                  const double *centre, size_t kept, size_t rows) {
-    TRY(work_init(work, surrogate, kept, rows));
-    choose_rows(work, centre, kept);
+/// Rms of what the model misses of a row, in errors of the target.
+static double miss_of(const struct surrogate_work *work, size_t row) {
+    const struct surrogate *s = work->surrogate;
+    double sum = 0;
+    for (size_t j = 0; j < s->features; j++)
+        sum += work->residual[row * s->features + j] * work->residual[row * s->features + j] /
+               (s->target_error[j] * s->target_error[j] + 1e-8);
+    return sqrt(sum / (double)s->features);
+}
+
+static int by_size(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/// Weights of rows that the model misses by more than twice as much as the middle one fall as the
+/// inverse square, as if all missed as much: a few candidates far away, where a liquid is none,
+/// would drown the others (P. J. Huber, Robust Statistics (1981)).
+static enum status weigh_down(struct surrogate_work *work) {
+    enum status status = STATUS_OK;
+    static const double usual = 2;
+    double *miss = NULL, *sorted = NULL;
+    NEW_ARRAY(miss, work->rows);
+    NEW_ARRAY(sorted, work->rows);
+    for (size_t k = 0; k < work->rows; k++)
+        miss[k] = sorted[k] = miss_of(work, k);
+    qsort(sorted, work->rows, sizeof *sorted, by_size);
+    for (size_t k = 0; k < work->rows; k++)
+        work->weight[k] *= fmin(1, pow(usual * sorted[work->rows / 2] / fmax(miss[k], 1e-300), 2));
+done:
+    mf_memory_free(miss);
+    mf_memory_free(sorted);
+    return status;
+}
+
+static void forget_fit(struct surrogate_work *work) {
+    const size_t terms = work->terms, features = work->surrogate->features;
+    memset(work->normal, 0, terms * terms * sizeof *work->normal);
+    memset(work->spread, 0, terms * terms * sizeof *work->spread);
+    memset(work->model, 0, features * terms * sizeof *work->model);
+    memset(work->scatter, 0, features * sizeof *work->scatter);
+}
+
+static void fit_weighted(struct surrogate_work *work) {
     factor(work);
     find_spread(work);
     fit_features(work);
+}
+
+enum status mf_surrogate_fit_rows(struct surrogate_work *work, const struct surrogate *surrogate,
+                                  const double *centre, size_t kept, size_t rows, bool robust) {
+    enum { ROUNDS = 5 };
+    TRY(work_init(work, surrogate, kept, rows));
+    choose_rows(work, centre, kept);
+    fit_weighted(work);
+    for (int round = 0; robust && round < ROUNDS; round++) {
+        for (size_t k = 0; k < rows; k++)
+            work->weight[k] = near_weight(work, k);
+        TRY(weigh_down(work));
+        forget_fit(work);
+        fit_weighted(work);
+    }
     for (size_t j = 0; j < surrogate->features; j++)
         work->miss[j] = surrogate->target[j] - work->model[j * work->terms];
     return STATUS_OK;

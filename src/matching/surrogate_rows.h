@@ -31,10 +31,12 @@ struct surrogate_work {
     double freedom;  ///< rows that the scatter rests on
 };
 
-/// Fit the model to the `rows` nearest to the centre among `kept`. Must be cleared, also after a
-/// failure. Fails: NO_MEMORY.
+/// Fit the model to the `rows` nearest to the centre among `kept`; those that a linear model does
+/// not describe count less if it is to be `robust`. Must be cleared, also after a failure. Fails:
+/// NO_MEMORY.
 enum status mf_surrogate_fit_rows(struct surrogate_work *work, const struct surrogate *surrogate,
-                                  const double *centre, size_t kept, size_t rows) MUST_USE;
+                                  const double *centre, size_t kept, size_t rows,
+                                  bool robust) MUST_USE;
 void mf_surrogate_clear_rows(struct surrogate_work *work);
 
 /// Σ += share · δ δᵀ, shape [size, size].

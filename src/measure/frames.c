@@ -45,6 +45,8 @@ static enum status open_file(struct frames *frames) {
     const char *const file = frames->plan.file[frames->at];
     TRY(mf_trajectory_open(&frames->trajectory, file, &frames->plan.options));
     frames->open = true;
+    if (frames->at == 0 && frames->trajectory.note[0])
+        TRY(note(frames, "%s", frames->trajectory.note));
     if (frames->structure == NULL)
         return STATUS_OK;
     return mf_structure_check_same(frames->structure, frames->structure_file,

@@ -10,6 +10,10 @@
 /// Width of the bins of g(r), and the part of the least height to which it goes, unless told [nm].
 static const double usual_width = 0.01, usual_part = 0.45;
 
+/// S(q) goes to twice the wave number 2π ρ^(1/3), near which a liquid has its peak, in so many bins
+/// of at most so many waves unless told: their cost grows with beads times waves.
+enum { WAVE_BINS = 100, USUAL_WAVES = 10 };
+
 static struct box cube_of(double volume) {
     const double edge = cbrt(volume);
     return (struct box){3, {edge, edge, edge}};
@@ -88,6 +92,19 @@ static enum status find_bins(struct measured *measured, const struct frame_box *
     return STATUS_OK;
 }
 
+static void plan_waves(struct measured *measured, const struct frame_box *box) {
+    struct measured_plan *const plan = &measured->plan;
+    const double density = (double)measured->mapping->beads / box->volume;
+    if (isnan(plan->q_maximum))
+        plan->q_maximum = 4 * acos(-1) * cbrt(density);
+    if (plan->waves == 0)
+        plan->waves = USUAL_WAVES;
+    measured->waves = (struct density_waves_plan){.composition = measured->pairs.composition,
+                                                  .q_maximum = plan->q_maximum,
+                                                  .bins = WAVE_BINS,
+                                                  .most = (size_t)plan->waves};
+}
+
 enum status mf_measured_begin(struct measured *measured, const struct measured_plan *plan,
                               const struct mapping *mapping, const struct trajectory_frame *first) {
     enum status status = STATUS_OK;
@@ -98,6 +115,8 @@ enum status mf_measured_begin(struct measured *measured, const struct measured_p
     CHECK(find_molecules(measured));
     CHECK(find_shares(measured));
     CHECK(find_bins(measured, &box, first));
+    plan_waves(measured, &box);
+    CHECK(mf_structure_factor_init(&measured->factor, &measured->waves, 0));
     const struct box cube = cube_of(box.volume);
     const struct rdf_bins bins = {.width = measured->pairs.range / (double)measured->pairs.bins,
                                   .count = measured->pairs.bins};
@@ -115,6 +134,7 @@ static void clear_slots(struct measured *measured) {
         for (int d = 0; d < 3; d++)
             mf_memory_free(slot->place[d]);
         mf_frame_pairs_clear(&slot->pairs);
+        mf_frame_waves_clear(&slot->waves);
     }
     mf_memory_free(measured->slot);
     measured->slots = 0;
@@ -124,6 +144,7 @@ void mf_measured_clear(struct measured *measured) {
     clear_slots(measured);
     mf_memory_free(measured->molecule);
     mf_rdf_clear(&measured->rdf.counted);
+    mf_structure_factor_clear(&measured->factor);
     mf_measured_motion_clear(&measured->motion);
     mf_series_clear(&measured->volume);
     *measured = (struct measured){0};
@@ -162,6 +183,16 @@ static enum status find_pairs(const struct measured *measured, size_t frame,
     return mf_frame_pairs_count(&slot->pairs, &measured->pairs, &slot->box, slot->place);
 }
 
+static enum status find_waves(const struct measured *measured, struct measured_slot *slot) {
+    if (measured->plan.q_maximum == 0)
+        return STATUS_OK;
+    const enum status status =
+        mf_frame_waves_find(&slot->waves, &measured->waves, &slot->box, slot->place);
+    return status == STATUS_BAD_INPUT ? mf_status_prefix(status, "%s: frame %zu: S(q)",
+                                                         slot->beads.file, slot->beads.number)
+                                      : status;
+}
+
 static enum status look_at(void *context, size_t task, void *result) {
     const struct batch *const batch = context;
     struct measured *const measured = batch->measured;
@@ -172,6 +203,7 @@ static enum status look_at(void *context, size_t task, void *result) {
     TRY(mf_frame_box_check_range(&slot->box, &slot->beads, measured->pairs.range,
                                  "the range of g(r)"));
     mf_frame_box_places(&slot->box, &slot->beads, slot->place);
+    TRY(find_waves(measured, slot));
     return find_pairs(measured, measured->frames + task, slot);
 }
 
@@ -185,6 +217,8 @@ static void add_pairs(struct measured *measured, const struct measured_slot *slo
 
 static enum status add_one(struct measured *measured, const struct measured_slot *slot) {
     add_pairs(measured, slot);
+    if (slot->waves.numbers)
+        mf_structure_factor_add(&measured->factor, slot->waves.numbers);
     measured->frames++;
     TRY(mf_measured_motion_add(&measured->motion, &slot->beads, &slot->box, slot->place,
                                &slot->pairs));

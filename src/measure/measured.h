@@ -7,13 +7,16 @@
 #pragma once
 
 #include "measure/frame_pairs.h"
+#include "measure/frame_waves.h"
 #include "measure/measured_motion.h"
 #include "observe/rdf_observable.h"
 #include "trajectory/mapping.h"
 
 struct measured_plan {
-    double range; ///< of g(r) [nm]
-    int64_t bins; ///< of it
+    double range;     ///< of g(r) [nm]
+    int64_t bins;     ///< of it
+    double q_maximum; ///< of S(q) [1/nm]; NAN: 4π ρ^(1/3); 0: it is not measured
+    int64_t waves;    ///< of one of its bins at most; 0: 10
     struct measured_motion_plan motion;
     int threads;
 };
@@ -29,9 +32,12 @@ struct measured {
         struct frame_box box;
         int32_t *place[3]; ///< shape [beads]
         struct frame_pairs pairs;
+        struct frame_waves waves;
     } * slot; ///< one for each frame of a batch
     size_t slots;
     struct rdf_observed rdf;
+    struct density_waves_plan waves;
+    struct structure_factor factor;
     struct measured_motion motion;
     size_t frames;
     struct series volume; ///< [nm³]

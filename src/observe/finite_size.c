@@ -58,3 +58,9 @@ double mf_finite_size_factor_of(const struct rdf_bins *bins, const double *g, co
     }
     return mf_finite_size_factor(s, from, to);
 }
+
+double mf_finite_size_diffusion(double temperature, double viscosity, double density,
+                                double diffusion, double edge) {
+    static const double lattice = 2.837297; // of periodic point forces in a cube
+    return lattice * temperature / (6 * M_PI * (viscosity + density * diffusion) * edge);
+}

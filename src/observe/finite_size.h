@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file What g(r) of N particles differs by from g(r) of another number at the same densities.
+/// @file What g(r) of N particles differs by from g(r) of another number at the same densities, and
+/// D of a periodic box from that of an infinite one.
 ///
 /// In a closed system every g_ab, normalised by the possible pairs as observe/rdf.h does,
 /// integrates to the volume, whereas that of the infinite system integrates to V + G_ab, G_ab being
@@ -34,3 +35,18 @@ double mf_finite_size_factor(double s, double from, double to);
 double mf_finite_size_factor_of(const struct rdf_bins *bins, const double *g, const double *error,
                                 const struct box *box, const struct composition *composition,
                                 int pair, double from, double to);
+
+/// What D of a periodic cube of this edge lacks [λ²/τ]: ξ k_B T/(6π (η + ρ_m D) L), ξ = 2.837297,
+/// the correction of I.-C. Yeh and G. Hummer, J. Phys. Chem. B 108, 15873 (2004), for liquids,
+/// where η is far above ρ_m D. A particle of a fluid as thin as those of dissipative particle
+/// dynamics leaves its own eddy by diffusion, too: the vortices of wave number k that carry it
+/// decay with (ν + D) k², as in the long-time tail of M. H. Ernst, E. H. Hauge and J. M. J. van
+/// Leeuwen, Phys. Rev. Lett. 25, 1254 (1970). Momentum is conserved, and that of the whole box is
+/// 0.
+/// @param[in] viscosity  η [k_B T_0 τ/λ³]
+/// @param[in] density    of mass, ρ_m [μ/λ³]
+/// @param[in] diffusion  D as measured [λ²/τ]
+/// @param[in] edge       L [λ]
+/// Tested: test_finite_size, physics/test_viscosity.
+double mf_finite_size_diffusion(double temperature, double viscosity, double density,
+                                double diffusion, double edge);

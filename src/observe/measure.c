@@ -32,15 +32,22 @@ static void tell(const struct measure_listener *listener, const struct simulatio
 /// same bits.
 enum { STEPS_A_WORD = 1 << 21 };
 
+static int64_t find_piece(const struct simulation *simulation,
+                          const struct measure_listener *listener) {
+    const int64_t most = 1 + STEPS_A_WORD / (int64_t)simulation_moved(&simulation->setup);
+    const int64_t wanted = listener && listener->steps ? listener->steps(listener->context) : 0;
+    return wanted > 0 && wanted < most ? wanted : most;
+}
+
 /// Run until `step`, which a restart may already have passed.
 static enum status run_until(struct simulation *simulation, int64_t step,
                              const struct measure_plan *plan,
                              const struct measure_listener *listener) {
-    const int64_t piece = 1 + STEPS_A_WORD / (int64_t)simulation_moved(&simulation->setup);
     for (int64_t now; (now = (int64_t)simulation->step) < step;) {
+        const int64_t piece = find_piece(simulation, listener);
         const int64_t steps = step - now <= piece ? step - now : piece;
         TRY(mf_simulation_run(simulation, (uint64_t)steps));
-        if (now + steps < step)
+        if (now + steps < step || piece == 1)
             tell(listener, simulation, plan);
     }
     return STATUS_OK;
@@ -178,9 +185,18 @@ static enum status run_sampled_step(struct simulation *simulation, int64_t due,
     return status;
 }
 
-enum status mf_measure_sample(struct simulation *simulation, const struct measure_plan *plan,
-                              const struct observable_use *uses,
-                              const struct measure_listener *listener) {
+/// The first that wants the momentum transfer has it.
+static struct transfer *find_transfer(const struct observable_use *uses) {
+    struct transfer *transfer = NULL;
+    for (; uses->observable && transfer == NULL; uses++)
+        if (uses->observable->transfer)
+            transfer = uses->observable->transfer(uses->state);
+    return transfer;
+}
+
+static enum status take_samples(struct simulation *simulation, const struct measure_plan *plan,
+                                const struct observable_use *uses,
+                                const struct measure_listener *listener) {
     const int64_t begun = (int64_t)simulation->step - plan->equilibration;
     const struct observable_use *counted;
     for (int64_t sample = begun / plan->every; sample < plan->samples; sample++) {
@@ -198,4 +214,13 @@ enum status mf_measure_sample(struct simulation *simulation, const struct measur
         tell(listener, simulation, plan);
     }
     return STATUS_OK;
+}
+
+enum status mf_measure_sample(struct simulation *simulation, const struct measure_plan *plan,
+                              const struct observable_use *uses,
+                              const struct measure_listener *listener) {
+    simulation->transfer = find_transfer(uses);
+    const enum status status = take_samples(simulation, plan, uses, listener);
+    simulation->transfer = NULL;
+    return status;
 }

@@ -21,6 +21,9 @@ uint64_t mf_measure_steps(const struct measure_plan *plan);
 struct measure_listener {
     void (*tell)(void *context, const struct simulation *simulation, uint64_t done, uint64_t total);
     void *context;
+    /// Steps until the next word at most, asked for after each; 0, or NULL: every second or so.
+    /// With 1 it is told after every step, of some twice.
+    int64_t (*steps)(void *context);
 };
 
 /// Take the samples of a plan whose equilibration is over: all of them, or after a restart those

@@ -6,6 +6,7 @@
 #include "observe/measure.h"
 #include "observe/motion.h"
 #include "observe/pooled.h"
+#include "observe/shear_viscosity.h"
 
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
@@ -74,6 +75,16 @@ done:
     return status;
 }
 
+/// D of an infinite box, where the viscosity is known.
+static void put_infinite(const struct motion_summary *s, const struct observable_results *results,
+                         struct json_writer *writer) {
+    double diffusion = s->msd, error = s->msd_error;
+    if (!mf_shear_viscosity_correct(results, &diffusion, &error))
+        return;
+    mf_json_put_quantity(writer, "diffusion_infinite", "lambda^2/tau", diffusion);
+    mf_json_put_quantity(writer, "diffusion_infinite_error", "lambda^2/tau", error);
+}
+
 /// The object "motion": diffusion coefficients with errors, in cm²/s too when the units are known,
 /// and the test of the velocities.
 static void put(const void *state, const struct observable_results *results,
@@ -86,6 +97,7 @@ static void put(const void *state, const struct observable_results *results,
         mf_json_put_text(writer, "warning", mf_status_message());
     mf_json_put_quantity(writer, "diffusion_msd", "lambda^2/tau", s.msd);
     mf_json_put_quantity(writer, "diffusion_msd_error", "lambda^2/tau", s.msd_error);
+    put_infinite(&s, results, writer);
     mf_json_put_quantity(writer, "diffusion_green_kubo", "lambda^2/tau", s.green_kubo);
     const double error = mf_motion_green_kubo_uncertainty(&s);
     mf_json_put_quantity(writer, "diffusion_green_kubo_error", "lambda^2/tau", error);

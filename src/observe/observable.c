@@ -3,6 +3,7 @@
 
 #include "observe/flow_field.h"
 #include "observe/flow_profile.h"
+#include "observe/shear_viscosity.h"
 
 /// Of which nothing else knows.
 extern const struct observable mf_structure_factor, mf_snapshots, mf_polarity_observable;
@@ -22,6 +23,7 @@ const struct observable *const mf_observables[] = {
     &mf_polarity_observable,
     &mf_clusters,
     &mf_local_density,
+    &mf_shear_viscosity,
     NULL,
 };
 

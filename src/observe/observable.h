@@ -16,6 +16,7 @@
 #include "observe/stages.h"
 
 struct measure_plan;
+struct observable_use;
 
 /// The script that draws x, values and errors of the first file, and a target of that name.
 #define OBSERVABLE_FIGURE_OF_CURVE "curve"
@@ -28,6 +29,8 @@ struct observable_results {
     const struct measure_plan *plan;
     const struct units *units;
     const char *folder;
+    const struct observable_use
+        *use; ///< all that was measured, as mf_measure_sample has it, or NULL
 };
 
 /// How a target is told in a run file.
@@ -78,6 +81,9 @@ struct observable {
     /// stands for `sample`. One observable at a time is served so, the others sample.
     const struct pair_histogram *(*histogram)(void *state);
     enum status (*counted)(void *state, struct simulation *simulation);
+    /// What all steps from the first sample on are to add their momentum transfer to, or NULL if it
+    /// wants none. One observable is served so.
+    struct transfer *(*transfer)(void *state);
     /// The step of its next sample, INT64_MAX after the last. Without it samples are the plan's.
     int64_t (*due)(const void *state);
     /// Add the present configuration, with the forces of its step. Fails: NO_MEMORY.

@@ -130,6 +130,7 @@ enum status mf_genetic_init(struct genetic *genetic, const struct genetic_parame
                                 .median = HUGE_VAL,
                                 .elite_error = GENETIC_FAILED};
     NEW_ARRAY(genetic->population, (size_t)((p.population + p.remeasurements) * p.genes));
+    NEW_ARRAY(genetic->parent, (size_t)(2 * (p.population + p.remeasurements + 1)));
     // Children come in pairs: one place more for the last of an odd population.
     NEW_ARRAY(genetic->offspring, total_genes(genetic) + (size_t)p.genes);
     NEW_ARRAY(genetic->ranked, (size_t)p.population);
@@ -150,6 +151,7 @@ done:
 
 void mf_genetic_clear(struct genetic *genetic) {
     mf_memory_free(genetic->population);
+    mf_memory_free(genetic->parent);
     mf_memory_free(genetic->offspring);
     mf_memory_free(genetic->ranked);
     mf_memory_free(genetic->block);
@@ -198,14 +200,15 @@ static struct parents parents_of(const struct genetic *genetic, int64_t child) {
     return (struct parents){shore(p, island), shore(p, island + 1) - shore(p, island)};
 }
 
-/// A copy of the winner of a tournament.
-static void copy_winner(const struct genetic *genetic, struct parents parents, const double *errors,
-                        double *child, struct rng_sequence *random) {
+/// A copy of the winner of a tournament. Returns its number.
+static uint64_t copy_winner(const struct genetic *genetic, struct parents parents,
+                            const double *errors, double *child, struct rng_sequence *random) {
     const struct genetic_parameters *p = &genetic->parameters;
     const int64_t winner = parents.first + mf_genetic_tournament(errors + parents.first,
                                                                  parents.count, p->tournament_size,
                                                                  p->tournament_probability, random);
     memcpy(child, mf_genetic_individual(genetic, winner), (size_t)p->genes * sizeof *child);
+    return genetic->measured + (uint64_t)winner + 1;
 }
 
 static int compare_numbers(const void *a, const void *b) {
@@ -238,6 +241,16 @@ static void find_spread(struct genetic *genetic, const double *errors) {
     }
 }
 
+/// As individual 0, which it was already, or the challenger behind the generation that was
+/// measured.
+static void place_elite(struct genetic *genetic) {
+    const struct genetic_parameters *p = &genetic->parameters;
+    const bool is_new = genetic->elite_since + 1 == genetic->generation;
+    memcpy(genetic->population, genetic->elite, (size_t)p->genes * sizeof(double));
+    genetic->parent[0] = genetic->measured + 1 + (is_new ? (uint64_t)p->population : 0);
+    genetic->parent[1] = 0;
+}
+
 void mf_genetic_next_generation(struct genetic *genetic, const double *errors) {
     const struct genetic_parameters *p = &genetic->parameters;
     genetic->generation++;
@@ -248,18 +261,24 @@ void mf_genetic_next_generation(struct genetic *genetic, const double *errors) {
                                                            genetic->generation, (uint32_t)pair);
         const struct parents parents = parents_of(genetic, pair);
         double *first = genetic->offspring + pair * p->genes, *second = first + p->genes;
-        copy_winner(genetic, parents, errors, first, &random);
-        copy_winner(genetic, parents, errors, second, &random);
-        if (mf_rng_sequence_uniform(&random) < p->crossover)
+        uint64_t *parent = genetic->parent + 2 * pair; // of both children
+        parent[0] = copy_winner(genetic, parents, errors, first, &random);
+        parent[2] = copy_winner(genetic, parents, errors, second, &random);
+        parent[1] = parent[3] = 0;
+        if (mf_rng_sequence_uniform(&random) < p->crossover) {
             mf_genetic_recombine(first, second, p, &random);
+            parent[1] = parent[2];
+            parent[3] = parent[0];
+        }
         mf_genetic_mutate(first, genetic, &random);
         mf_genetic_mutate(second, genetic, &random);
     }
     for (size_t k = 0; k < total_genes(genetic); k++)
         genetic->population[k] = within_range(genetic->offspring[k], p);
-    genetic->rows = p->population;
     if (genetic->elite_measured > 0)
-        memcpy(genetic->population, genetic->elite, (size_t)p->genes * sizeof(double));
+        place_elite(genetic);
+    genetic->measured += (uint64_t)genetic->rows;
+    genetic->rows = p->population;
 }
 
 double mf_genetic_diversity(const struct genetic *genetic) {

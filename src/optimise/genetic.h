@@ -52,6 +52,11 @@ struct genetic {
     /// shape [rows, genes], room for population + remeasurements; individual 0 is the elite once
     /// there is one
     double *population;
+    /// shape [room, 2]: whose child each is, as numbers of individuals in the order in which they
+    /// were measured, from 1; 0: nobody's. The elite, and copies of a challenger, have the one that
+    /// they are
+    uint64_t *parent;
+    uint64_t measured;     ///< individuals before this generation
     double *offspring;     ///< shape [population, genes]: scratch
     double *ranked;        ///< shape [population]: scratch
     double *elite;         ///< shape [genes]

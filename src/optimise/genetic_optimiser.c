@@ -114,13 +114,17 @@ static int64_t find_challenger(const struct genetic *genetic, const double *erro
 }
 
 /// Rows of a challenger behind the next generation.
-static void add_challenger(struct state *state) {
+/// @param[in] number  of the individual that it is
+static void add_challenger(struct state *state, uint64_t number) {
     struct genetic *genetic = &state->genetic;
     const int64_t population = genetic->parameters.population;
     const size_t genes = (size_t)genetic->parameters.genes;
     genetic->rows = population + genetic->parameters.remeasurements;
-    for (int64_t k = population; k < genetic->rows; k++)
+    for (int64_t k = population; k < genetic->rows; k++) {
         memcpy(genetic->population + (size_t)k * genes, state->challenger, genes * sizeof(double));
+        genetic->parent[2 * k] = number;
+        genetic->parent[2 * k + 1] = 0;
+    }
 }
 
 static void tell_generation(struct state *state) {
@@ -134,9 +138,17 @@ static void tell_generation(struct state *state) {
     if (challenger >= 0)
         memcpy(state->challenger, mf_genetic_individual(genetic, challenger),
                (size_t)genetic->parameters.genes * sizeof(double));
+    const uint64_t number = genetic->measured + (uint64_t)challenger + 1;
     mf_genetic_next_generation(genetic, state->errors);
     if (challenger >= 0)
-        add_challenger(state);
+        add_challenger(state, number);
+}
+
+/// In the place of the elite, which it was the last to be measured as.
+static void begin_with_challenger(struct genetic *genetic) {
+    memcpy(genetic->population, genetic->elite, (size_t)genetic->parameters.genes * sizeof(double));
+    genetic->parent[0] = genetic->measured;
+    genetic->parent[1] = 0;
 }
 
 static enum status tell(void *memory, const double *errors, const double *variances) {
@@ -150,11 +162,11 @@ static enum status tell(void *memory, const double *errors, const double *varian
         tell_generation(state);
     } else if (has_challenger(genetic)) {
         judge_challenger(genetic, state->errors);
+        genetic->measured += (uint64_t)count;
         genetic->rows = genetic->parameters.population;
         // If it has won, patience begins anew, with it in the place of the elite.
         if (!is_over(genetic))
-            memcpy(genetic->population, genetic->elite,
-                   (size_t)genetic->parameters.genes * sizeof(double));
+            begin_with_challenger(genetic);
     }
     return STATUS_OK;
 }
@@ -183,6 +195,14 @@ static void suggest(void *memory, const double *genes) {
     const struct genetic_parameters *p = &genetic->parameters;
     memcpy(genetic->population + (p->population - 1) * p->genes, genes,
            (size_t)p->genes * sizeof *genes);
+    genetic->parent[2 * (p->population - 1)] = genetic->parent[2 * p->population - 1] = 0;
+}
+
+static void parents(const void *memory, size_t row, uint64_t parent[2]) {
+    const struct genetic *genetic = &((const struct state *)memory)->genetic;
+    const uint64_t *of_row = genetic->parent + 2 * ((size_t)first_row(genetic) + row);
+    parent[0] = of_row[0];
+    parent[1] = of_row[1];
 }
 
 static double discard_above(const void *memory) {
@@ -204,6 +224,9 @@ static size_t spans(void *memory, struct memory_span *span) {
     span[n++] = (struct memory_span){&genetic->elite_error, sizeof genetic->elite_error};
     span[n++] = (struct memory_span){&genetic->elite_measured, sizeof genetic->elite_measured};
     span[n++] = (struct memory_span){genetic->spread, genetic->blocks * sizeof *genetic->spread};
+    span[n++] = (struct memory_span){&genetic->measured, sizeof genetic->measured};
+    span[n++] = (struct memory_span){genetic->parent, (size_t)(p->population + p->remeasurements) *
+                                                          2 * sizeof *genetic->parent};
     span[n++] = (struct memory_span){&genetic->elite_since, sizeof genetic->elite_since};
     return n;
 }
@@ -224,5 +247,6 @@ const struct optimiser mf_genetic_optimiser = {
     .discard_above = discard_above,
     .suggest = suggest,
     .settled = settled,
+    .parents = parents,
     .spans = spans,
 };

@@ -71,6 +71,9 @@ struct optimiser {
     bool (*settled)(const void *state);
     /// Whether it ended by itself without having settled, or NULL: it does not.
     bool (*gave_up)(const void *state);
+    /// Whose child row `row` of the round asked for is, as numbers of candidates in the order in
+    /// which they were told, from 1; 0: nobody's. NULL: there are no parents.
+    void (*parents)(const void *state, size_t row, uint64_t parent[2]);
     /// The state of a checkpoint, between tell and tell: what is written there and read into a new
     /// state of the same space and parameters goes on with the same bits. Returns their number, at
     /// most OPTIMISER_MAX_SPANS.

@@ -11,7 +11,15 @@
 /// within 1.7.
 const double mf_inverse_noise_margin = 1.7;
 
-const char *const mf_inverse_unknown_names[UNKNOWNS] = {"potential", "omega"};
+const char *const mf_inverse_unknown_names[UNKNOWNS] = {
+    "potential", "omega", "memory", "memory", "memory", "memory", "omega_transverse"};
+
+size_t mf_inverse_unknown_count(const struct inverse_problem *problem) {
+    size_t count = problem->numbers;
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        count += problem->unknown[kind].wanted;
+    return count;
+}
 
 static const char *const potential_curves[] = {"bezier", "bspline", NULL};
 static const char *const omega_curves[] = {"bezier", "bspline", "power", NULL};

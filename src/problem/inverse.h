@@ -12,9 +12,21 @@
 #include "optimise/optimiser.h"
 #include "problem/targets.h"
 
-enum unknown_kind { UNKNOWN_POTENTIAL, UNKNOWN_OMEGA, UNKNOWNS };
+/// Φ, and the friction weights: ω of white friction, those of the modes of memory
+/// (forces/pair_memory.h), and of white friction across pairs.
+enum unknown_kind {
+    UNKNOWN_POTENTIAL,
+    UNKNOWN_OMEGA,
+    UNKNOWN_MEMORY, ///< of the first mode; those of the others follow
+    UNKNOWN_TRANSVERSE = UNKNOWN_MEMORY + PAIR_MEMORY_MOST_MODES,
+    UNKNOWNS,
+};
 
-/// Names in run files, shape [UNKNOWNS].
+static inline bool unknown_is_omega(int kind) {
+    return kind != UNKNOWN_POTENTIAL;
+}
+
+/// Names in run files, shape [UNKNOWNS]; the modes of memory are one object of that name.
 extern const char *const mf_inverse_unknown_names[UNKNOWNS];
 
 /// What variables make: the shapes of curves/shape.h in their order, or the formula of a friction
@@ -75,10 +87,9 @@ struct unknown {
 enum inverse_place {
     INVERSE_OF_POTENTIAL = UNKNOWN_POTENTIAL,
     INVERSE_OF_OMEGA = UNKNOWN_OMEGA,
-    INVERSE_OF_MEMORY, ///< of the first mode; those of the others follow
-    INVERSE_OF_TRANSVERSE = INVERSE_OF_MEMORY + PAIR_MEMORY_MOST_MODES,
-    INVERSE_LAWS, ///< how many laws there are
-    INVERSE_OF_SETUP = INVERSE_LAWS,
+    INVERSE_OF_MEMORY = UNKNOWN_MEMORY,
+    INVERSE_OF_TRANSVERSE = UNKNOWN_TRANSVERSE,
+    INVERSE_OF_SETUP = UNKNOWNS,
     INVERSE_OF_DYNAMICS,
     INVERSE_OF_INTERACTION,
 };
@@ -109,13 +120,17 @@ struct inverse_problem {
     struct unknown unknown[UNKNOWNS];
     size_t numbers;
     struct inverse_number number[INVERSE_MOST_NUMBERS];
-    struct inverse_law law[INVERSE_LAWS]; ///< those of the scene that are known
-    struct simulation_setup scene;        ///< all but the unknowns; its composition is set
+    struct inverse_law law[UNKNOWNS];         ///< those of the scene that are known
+    const char *mode[PAIR_MEMORY_MOST_MODES]; ///< names of the modes of memory; borrowed
+    struct simulation_setup scene;            ///< all but the unknowns; its composition is set
     double core_threshold; ///< bins below the first with g* above this are the hard core
     double core_stiffness; ///< of the core (mf_core_fill) [k_B T_0/λ²]
     uint64_t seed;
     int threads;
 };
+
+/// Curves and numbers that are to be found.
+size_t mf_inverse_unknown_count(const struct inverse_problem *problem);
 
 /// Error at or below this many times the noise of target and measurement counts as none.
 extern const double mf_inverse_noise_margin;
@@ -239,8 +254,8 @@ struct inverse_method {
                                 const struct inverse_problem *problem, const void *parameters);
     struct inverse_sampling (*sampling)(const void *parameters); ///< NULL of an inversion
     bool keeps_parts;
-    const char *const *columns; ///< names of `extra`, NULL-terminated
-    bool fits[UNKNOWNS];        ///< what it can find
+    const char *const *columns;        ///< names of `extra`, NULL-terminated
+    bool finds_potential, finds_omega; ///< whether it can
     enum status (*create)(void *state, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters);
     void (*destroy)(void *state);

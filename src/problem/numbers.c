@@ -102,17 +102,16 @@ static enum status put(const struct inverse_number *number, double value,
     return STATUS_OK;
 }
 
-/// Where the setup has the table of a law.
-static const struct table **table_of(struct simulation_setup *scene, enum inverse_place place) {
-    switch (place) {
-    case INVERSE_OF_POTENTIAL:
+const struct table **mf_numbers_table_of(struct simulation_setup *scene, int law) {
+    switch (law) {
+    case UNKNOWN_POTENTIAL:
         return &scene->potential;
-    case INVERSE_OF_OMEGA:
+    case UNKNOWN_OMEGA:
         return &scene->omega;
-    case INVERSE_OF_TRANSVERSE:
+    case UNKNOWN_TRANSVERSE:
         return &scene->memory.transverse;
     default:
-        return &scene->memory.mode[place - INVERSE_OF_MEMORY].omega;
+        return &scene->memory.mode[law - UNKNOWN_MEMORY].omega;
     }
 }
 
@@ -121,16 +120,16 @@ enum status mf_numbers_apply(const struct inverse_problem *problem, const double
     *changed = *problem;
     for (size_t n = 0; n < problem->numbers; n++)
         TRY(put(&problem->number[n], value[n], &changed->scene, own));
-    for (int place = 0; place < INVERSE_LAWS; place++)
+    for (int place = 0; place < UNKNOWNS; place++)
         if (concerns(problem, place)) {
             TRY(tabulate(problem, place, value, &own->table[place]));
-            *table_of(&changed->scene, place) = &own->table[place];
+            *mf_numbers_table_of(&changed->scene, place) = &own->table[place];
         }
     return STATUS_OK;
 }
 
 void mf_numbers_own_clear(struct numbers_own *own) {
-    for (int place = 0; place < INVERSE_LAWS; place++)
+    for (int place = 0; place < UNKNOWNS; place++)
         mf_table_clear(&own->table[place]);
     for (int k = 0; k < INTERACTION_MOST; k++)
         mf_memory_free(own->interaction[k]);

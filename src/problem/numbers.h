@@ -11,9 +11,12 @@ extern const struct field mf_numbers_fields[NUMBERS_FIELDS];
 /// Those of a number of this unit.
 void mf_numbers_fields_of(const char *unit, struct field fields[NUMBERS_FIELDS]);
 
+/// Where a setup has the table of a law, by enum unknown_kind.
+const struct table **mf_numbers_table_of(struct simulation_setup *scene, int law);
+
 /// What is made for values: tables of laws, and parameters of the integrator and the interactions.
 struct numbers_own {
-    struct table table[INVERSE_LAWS];
+    struct table table[UNKNOWNS];
     void *dynamics, *interaction[INTERACTION_MOST];
 };
 

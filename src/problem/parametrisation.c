@@ -25,9 +25,8 @@ size_t mf_parametrisation_variables(const struct parametrisation *parametrisatio
                : 0;
 }
 
-/// Points of a curve below this one do not follow its variables: the core of a potential.
-static size_t first_point(const struct parametrisation *parametrisation, enum unknown_kind kind,
-                          size_t curve) {
+size_t mf_parametrisation_first_point(const struct parametrisation *parametrisation,
+                                      enum unknown_kind kind, size_t curve) {
     return kind == UNKNOWN_POTENTIAL ? parametrisation->unknowns.potential.core[curve] : 0;
 }
 
@@ -48,12 +47,10 @@ static void add_steepness(const struct parametrisation *parametrisation, size_t 
     }
 }
 
-/// Where the points of a curve lie between the first that follows its variables (0) and the cutoff
-/// (1).
-static void find_places(const struct parametrisation *parametrisation, enum unknown_kind kind,
-                        size_t curve, double *place) {
+void mf_parametrisation_places(const struct parametrisation *parametrisation,
+                               enum unknown_kind kind, size_t curve, double *place) {
     const size_t points = mf_unknowns_points_each(&parametrisation->unknowns, kind);
-    const size_t first = first_point(parametrisation, kind, curve);
+    const size_t first = mf_parametrisation_first_point(parametrisation, kind, curve);
     const double *r = mf_unknowns_r(&parametrisation->unknowns, kind) + curve * points;
     for (size_t k = first; k < points; k++)
         place[k - first] = (r[k] - r[first]) / (r[points - 1] - r[first]);
@@ -72,11 +69,12 @@ static enum status fill_block(struct parametrisation *parametrisation, enum unkn
     const size_t variables = mf_parametrisation_variables(parametrisation, kind),
                  own = variables_of_curve(parametrisation, kind);
     const size_t points = mf_unknowns_points_each(&parametrisation->unknowns, kind);
-    const size_t first = first_point(parametrisation, kind, curve), moving = points - first;
+    const size_t first = mf_parametrisation_first_point(parametrisation, kind, curve),
+                 moving = points - first;
     double *place = NULL, *block = NULL;
     NEW_ARRAY(place, moving);
     NEW_ARRAY(block, moving * own);
-    find_places(parametrisation, kind, curve, place);
+    mf_parametrisation_places(parametrisation, kind, curve, place);
     CHECK(mf_shape_basis(mf_shapes[unknown_of(parametrisation, kind)->parameters.shape], own, place,
                          moving, block));
     for (size_t k = 0; k < moving; k++)
@@ -142,7 +140,7 @@ static void linear_curve(const struct parametrisation *parametrisation, enum unk
         double sum = base_of(parametrisation, kind, k);
         for (size_t n = 0; n < count; n++)
             sum += row[n] * (p->minimum + x[n] * (p->maximum - p->minimum));
-        curve[k] = kind == UNKNOWN_OMEGA ? fmax(0, sum) : sum;
+        curve[k] = unknown_is_omega(kind) ? fmax(0, sum) : sum;
     }
 }
 
@@ -207,7 +205,8 @@ static void power_curve(const struct parametrisation *parametrisation, const dou
         .cutoff = unknown_of(parametrisation, UNKNOWN_OMEGA)->parameters.cutoff};
     const struct curve power = {&mf_formula_power_omega, &formula};
     for (size_t k = 0; k < OMEGA_POINTS; k++)
-        curve[k] = fmax(0, mf_curve_value(&power, parametrisation->unknowns.omega.r[k]));
+        curve[k] =
+            fmax(0, mf_curve_value(&power, parametrisation->unknowns.omega[UNKNOWN_OMEGA].r[k]));
 }
 
 void mf_parametrisation_curve(const struct parametrisation *parametrisation, enum unknown_kind kind,
@@ -295,12 +294,12 @@ static enum status start_of_curve(const struct parametrisation *parametrisation,
     const struct unknown_parameters *p = &unknown_of(parametrisation, kind)->parameters;
     const size_t count = variables_of_curve(parametrisation, kind),
                  all = mf_parametrisation_variables(parametrisation, kind);
-    const size_t first = first_point(parametrisation, kind, number),
+    const size_t first = mf_parametrisation_first_point(parametrisation, kind, number),
                  points = mf_unknowns_points_each(&parametrisation->unknowns, kind);
     const double *block = parametrisation->basis[kind] + number * (points * all + count);
     double *place = NULL;
     NEW_ARRAY(place, points);
-    find_places(parametrisation, kind, number, place);
+    mf_parametrisation_places(parametrisation, kind, number, place);
     // Variables that the curve leaves open stay in the middle of their range.
     const double middle = 0.5 * (p->minimum + p->maximum), range = p->maximum - p->minimum;
     for (size_t k = first; k < points; k++)

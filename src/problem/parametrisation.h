@@ -25,6 +25,15 @@ void mf_parametrisation_clear(struct parametrisation *parametrisation);
 size_t mf_parametrisation_variables(const struct parametrisation *parametrisation,
                                     enum unknown_kind kind);
 
+/// Points of a curve below this one do not follow its variables: the core of a potential.
+size_t mf_parametrisation_first_point(const struct parametrisation *parametrisation,
+                                      enum unknown_kind kind, size_t curve);
+
+/// Where the points of a curve lie between the first that follows its variables (0) and the cutoff
+/// (1), shape [points of it] of which the last are not set: its core has no place.
+void mf_parametrisation_places(const struct parametrisation *parametrisation,
+                               enum unknown_kind kind, size_t curve, double *place);
+
 /// Curve of some variables, shape [points]. A friction weight that would be negative is 0.
 void mf_parametrisation_curve(const struct parametrisation *parametrisation, enum unknown_kind kind,
                               const double *variables, double *curve);

@@ -7,9 +7,12 @@
 #include <stdio.h>
 
 enum status mf_unknowns_init(struct unknowns *unknowns, const struct inverse_problem *problem) {
-    const struct unknown_parameters *omega = &problem->unknown[UNKNOWN_OMEGA].parameters;
     *unknowns = (struct unknowns){.problem = problem};
-    mf_omega_grid_init(&unknowns->omega, omega->inner_cutoff, omega->cutoff);
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        const struct unknown_parameters *p = &problem->unknown[kind].parameters;
+        if (unknown_is_omega(kind))
+            mf_omega_grid_init(&unknowns->omega[kind], p->inner_cutoff, p->cutoff);
+    }
     return problem->unknown[UNKNOWN_POTENTIAL].wanted
                ? mf_potential_grid_init(&unknowns->potential, problem)
                : STATUS_OK;
@@ -27,7 +30,7 @@ size_t mf_unknowns_points(const struct unknowns *unknowns, enum unknown_kind kin
 }
 
 const double *mf_unknowns_r(const struct unknowns *unknowns, enum unknown_kind kind) {
-    return kind == UNKNOWN_POTENTIAL ? unknowns->potential.r : unknowns->omega.r;
+    return kind == UNKNOWN_POTENTIAL ? unknowns->potential.r : unknowns->omega[kind].r;
 }
 
 size_t mf_unknowns_curve_count(const struct unknowns *unknowns, enum unknown_kind kind) {
@@ -48,12 +51,21 @@ const char *mf_unknowns_unit(enum unknown_kind kind) {
     return kind == UNKNOWN_POTENTIAL ? "k_B.T_0" : "sqrt(mu/tau)";
 }
 
+void mf_unknowns_kind_name(const struct unknowns *unknowns, enum unknown_kind kind,
+                           char name[UNKNOWNS_NAME_SIZE]) {
+    const int mode = kind - UNKNOWN_MEMORY;
+    const bool remembers = mode >= 0 && mode < PAIR_MEMORY_MOST_MODES;
+    snprintf(name, UNKNOWNS_NAME_SIZE, "%s%s%s", mf_inverse_unknown_names[kind],
+             remembers ? "_" : "", remembers ? unknowns->problem->mode[mode] : "");
+}
+
 void mf_unknowns_curve_name(const struct unknowns *unknowns, enum unknown_kind kind, size_t curve,
                             char name[UNKNOWNS_NAME_SIZE]) {
-    char pair[COMPOSITION_PAIR_NAME_SIZE] = "";
+    char pair[COMPOSITION_PAIR_NAME_SIZE] = "", own[UNKNOWNS_NAME_SIZE];
+    mf_unknowns_kind_name(unknowns, kind, own);
     if (kind == UNKNOWN_POTENTIAL)
         mf_composition_pair_name(&unknowns->problem->scene.composition, (int)curve, pair);
-    snprintf(name, UNKNOWNS_NAME_SIZE, "%s%s%s", mf_inverse_unknown_names[kind], pair[0] ? "_" : "",
+    snprintf(name, UNKNOWNS_NAME_SIZE, "%.*s%s%s", UNKNOWNS_NAME_SIZE / 2, own, pair[0] ? "_" : "",
              pair);
 }
 
@@ -63,7 +75,7 @@ void mf_unknowns_start(const struct unknowns *unknowns, enum unknown_kind kind, 
         mf_potential_grid_start(&unknowns->potential, unknowns->problem, curve);
         return;
     }
-    const struct omega_grid *grid = &unknowns->omega;
+    const struct omega_grid *grid = &unknowns->omega[kind];
     const double middle = 0.5 * (unknown->parameters.minimum + unknown->parameters.maximum);
     for (int k = 0; k < OMEGA_POINTS; k++)
         curve[k] = unknown->start[0] ? mf_curve_value(unknown->start[0], grid->r[k])
@@ -82,16 +94,17 @@ enum status mf_unknowns_laws_make(const struct unknowns *unknowns,
                                   struct unknowns_laws *laws) {
     *laws = (struct unknowns_laws){0};
     TRY(mf_numbers_apply(unknowns->problem, number, &laws->problem, &laws->own));
-    laws->table[UNKNOWN_POTENTIAL] = laws->problem.scene.potential;
-    laws->table[UNKNOWN_OMEGA] = laws->problem.scene.omega;
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        laws->table[kind] = *mf_numbers_table_of(&laws->problem.scene, kind);
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         struct table *own = &laws->own.table[kind];
         if (curve[kind] == NULL)
             continue;
         TRY(kind == UNKNOWN_POTENTIAL
                 ? mf_potential_grid_table(&unknowns->potential, curve[kind], own)
-                : mf_omega_grid_table(&unknowns->omega, curve[kind], own));
+                : mf_omega_grid_table(&unknowns->omega[kind], curve[kind], own));
         laws->table[kind] = own;
+        *mf_numbers_table_of(&laws->problem.scene, kind) = own;
     }
     return STATUS_OK;
 }

@@ -10,8 +10,8 @@
 
 struct unknowns {
     const struct inverse_problem *problem;
-    struct potential_grid potential; ///< if it is unknown
-    struct omega_grid omega;         ///< if it is unknown
+    struct potential_grid potential;   ///< if it is unknown
+    struct omega_grid omega[UNKNOWNS]; ///< of friction weights that are unknown
 };
 
 /// Fails: NO_MEMORY; BAD_INPUT as mf_potential_grid_init.
@@ -33,8 +33,11 @@ bool mf_unknowns_fits(const struct unknowns *unknowns, enum unknown_kind kind, s
 /// Unit of the values, as headings have it.
 const char *mf_unknowns_unit(enum unknown_kind kind);
 
-/// What files call one of them: "potential", or "potential_A-B" in a mixture.
-enum { UNKNOWNS_NAME_SIZE = COMPOSITION_PAIR_NAME_SIZE + 16 };
+/// What files call an unknown, "omega" or "memory_slow", and one of its curves, "potential_A-B" in
+/// a mixture.
+enum { UNKNOWNS_NAME_SIZE = COMPOSITION_PAIR_NAME_SIZE + 48 };
+void mf_unknowns_kind_name(const struct unknowns *unknowns, enum unknown_kind kind,
+                           char name[UNKNOWNS_NAME_SIZE]);
 void mf_unknowns_curve_name(const struct unknowns *unknowns, enum unknown_kind kind, size_t curve,
                             char name[UNKNOWNS_NAME_SIZE]);
 
@@ -54,8 +57,8 @@ bool mf_unknowns_has_start(const struct unknowns *unknowns, enum unknown_kind ki
 /// Fails: NO_MEMORY; BAD_INPUT as mf_numbers_apply.
 struct unknowns_laws {
     struct inverse_problem problem;
-    struct numbers_own own; ///< zero for what is the scene's
-    const struct table *table[UNKNOWNS];
+    struct numbers_own own;              ///< zero for what is the scene's
+    const struct table *table[UNKNOWNS]; ///< those of memory also stand in the scene of `problem`
 };
 enum status mf_unknowns_laws_make(const struct unknowns *unknowns,
                                   const double *const curve[UNKNOWNS], const double *number,

@@ -6,7 +6,7 @@
 /// Whether the target has enough pairs at a point to tell of the curve there.
 static bool is_determined(const struct unknowns *unknowns, enum unknown_kind kind, size_t point) {
     const struct potential_grid *grid = &unknowns->potential;
-    if (kind == UNKNOWN_OMEGA)
+    if (unknown_is_omega(kind))
         return mf_unknowns_fits(unknowns, kind, point);
     for (size_t n = 0; n < grid->known; n++)
         if (grid->known_point[n] == point)

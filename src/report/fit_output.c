@@ -94,23 +94,25 @@ done:
 }
 
 static enum status write_omega(const struct fit_file *fit, const struct unknowns *unknowns,
-                               const struct fit_result *result, const struct run_folder *folder) {
-    const bool truth_known = fit->unknown[UNKNOWN_OMEGA].truth.curves > 0;
+                               const struct fit_result *result, enum unknown_kind kind,
+                               const struct run_folder *folder) {
+    const bool truth_known = fit->unknown[kind].truth.curves > 0;
     const struct units *units = &fit->scene.units;
     enum status status = STATUS_NO_MEMORY;
-    double *truth = truth_at(fit, UNKNOWN_OMEGA, 0, unknowns->omega.r, OMEGA_POINTS);
-    double *nanometres = mf_units_column(unknowns->omega.r, OMEGA_POINTS, units->length);
+    const double *r = mf_unknowns_r(unknowns, kind);
+    double *truth = truth_at(fit, kind, 0, r, OMEGA_POINTS);
+    double *nanometres = mf_units_column(r, OMEGA_POINTS, units->length);
     char path[OUTPUT_PATH_SIZE];
     struct data_column columns[5] = {
-        {"r[lambda]", unknowns->omega.r, "%.17g"},
-        {"omega[sqrt(mu/tau)]", result->curve[UNKNOWN_OMEGA], "%.17g"},
-        {"omega_error[sqrt(mu/tau)]", result->curve_error[UNKNOWN_OMEGA], "%.3g"}};
+        {"r[lambda]", r, "%.17g"},
+        {"omega[sqrt(mu/tau)]", result->curve[kind], "%.17g"},
+        {"omega_error[sqrt(mu/tau)]", result->curve_error[kind], "%.3g"}};
     size_t count = 3;
     if (truth_known)
         columns[count++] = (struct data_column){"truth[sqrt(mu/tau)]", truth, "%.8g"};
     if (mf_units_beside(units))
         columns[count++] = (struct data_column){"r[nm]", nanometres, NULL};
-    mf_run_folder_file(folder, "omega.tsv", path);
+    curve_file(unknowns, kind, 0, ".tsv", folder, path);
     if (truth && nanometres)
         status =
             mf_data_table_write_in(path, &fit->scene.units, NULL, columns, count, OMEGA_POINTS);
@@ -152,7 +154,10 @@ enum status mf_fit_output_curves(const struct fit_file *fit, const struct unknow
             TRY(write_flat(fit, kind, n, unknowns, result, folder));
     if (result->curve[UNKNOWN_POTENTIAL])
         TRY(write_potentials(fit, unknowns, result, folder));
-    return result->curve[UNKNOWN_OMEGA] ? write_omega(fit, unknowns, result, folder) : STATUS_OK;
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        if (unknown_is_omega(kind) && result->curve[kind])
+            TRY(write_omega(fit, unknowns, result, kind, folder));
+    return STATUS_OK;
 }
 
 /// g(r) of a pair type: rdf.tsv, or rdf_A-B.tsv in a mixture.

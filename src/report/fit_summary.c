@@ -36,13 +36,12 @@ struct fit_truth mf_fit_output_truth(const struct fit_file *fit, const struct un
 
 /// rms of ω − ω_true over the points that the data can see, relative to the largest ω_true.
 static double omega_truth(const struct fit_file *fit, const struct unknowns *unknowns,
-                          const double *omega) {
+                          enum unknown_kind kind, const double *omega) {
     double squares = 0, largest = 0, count = 0;
     // Between the cutoffs, at which a friction weight may end in a step.
     for (size_t k = 1; k + 1 < OMEGA_POINTS; k++) {
-        const double r = unknowns->omega.r[k];
-        const double truth =
-            mf_curve_value(mf_scene_law_curve(&fit->unknown[UNKNOWN_OMEGA].truth, 0), r);
+        const double r = unknowns->omega[kind].r[k];
+        const double truth = mf_curve_value(mf_scene_law_curve(&fit->unknown[kind].truth, 0), r);
         largest = fmax(largest, truth);
         // Closer pairs than the target follows do not exist.
         if (fit->files.given[TARGET_ETD] && r < fit->files.etd.grid.r_minimum)
@@ -114,7 +113,7 @@ static void put_flat(struct json_writer *writer, enum unknown_kind kind,
     const size_t points = mf_unknowns_points(unknowns, kind);
     const double *r = mf_unknowns_r(unknowns, kind), *flat = result->curve_flat[kind];
     double all = 0, widest = 0, ramps = 0, product = 0;
-    char key[64];
+    char key[UNKNOWNS_NAME_SIZE + 16], name[UNKNOWNS_NAME_SIZE];
     for (size_t k = 0; flat && k < points; k++) {
         const double ramp = 1 - r[k] / r[points - 1], error = result->curve_error[kind][k];
         if (!isfinite(flat[k]) || !isfinite(error))
@@ -126,7 +125,8 @@ static void put_flat(struct json_writer *writer, enum unknown_kind kind,
     }
     if (!(all > 0))
         return;
-    snprintf(key, sizeof key, "%s_flat_share", mf_inverse_unknown_names[kind]);
+    mf_unknowns_kind_name(unknowns, kind, name);
+    snprintf(key, sizeof key, "%s_flat_share", name);
     mf_json_put_number(writer, key, fmin(1, widest / all));
     if (kind == UNKNOWN_POTENTIAL)
         mf_json_put_number(writer, "potential_flat_is_ramp", product * product / (widest * ramps));
@@ -225,12 +225,19 @@ static void put_potential_truth(struct json_writer *writer, const struct fit_fil
 
 static void put_truth(struct json_writer *writer, const struct fit_file *fit,
                       const struct unknowns *unknowns, const struct fit_result *result) {
-    const double *phi = result->curve[UNKNOWN_POTENTIAL], *omega = result->curve[UNKNOWN_OMEGA];
+    const double *phi = result->curve[UNKNOWN_POTENTIAL];
+    char name[UNKNOWNS_NAME_SIZE], key[UNKNOWNS_NAME_SIZE + 16];
     for (size_t pair = 0; phi && pair < unknowns->potential.pairs; pair++)
         if (mf_scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair))
             put_potential_truth(writer, fit, unknowns, phi, pair);
-    if (omega && fit->unknown[UNKNOWN_OMEGA].truth.curves > 0)
-        put_known(writer, "omega_truth_rms", omega_truth(fit, unknowns, omega));
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        const double *omega = result->curve[kind];
+        if (!unknown_is_omega(kind) || omega == NULL || fit->unknown[kind].truth.curves == 0)
+            continue;
+        mf_unknowns_kind_name(unknowns, kind, name);
+        snprintf(key, sizeof key, "%s_truth_rms", name);
+        put_known(writer, key, omega_truth(fit, unknowns, kind, omega));
+    }
 }
 
 /// What the targets g(r) were divided by. In a mixture those that the file states are left out.

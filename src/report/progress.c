@@ -10,9 +10,11 @@
 /// Least time between two lines [s].
 static const double terminal_interval = 0.2, pipe_interval = 5;
 
-struct progress mf_progress_begin(bool quiet) {
-    return (struct progress){
-        .quiet = quiet, .terminal = isatty(STDERR_FILENO), .started = clock_seconds()};
+struct progress mf_progress_begin(bool quiet, const struct watcher *watcher) {
+    return (struct progress){.quiet = quiet,
+                             .terminal = isatty(STDERR_FILENO),
+                             .started = clock_seconds(),
+                             .watcher = watcher};
 }
 
 double mf_progress_seconds(const struct progress *progress) {
@@ -30,34 +32,56 @@ static void format_duration(double seconds, char text[32]) {
 
 void mf_progress_tell(struct progress *progress, uint64_t done, uint64_t total, const char *unit,
                       const char *text) {
-    const double now = clock_seconds();
+    const double now = clock_seconds(), elapsed = now - progress->started;
+    const double fresh = (double)(done - progress->done_before);
+    const double rate = elapsed > 0 ? fresh / elapsed : 0;
+    const struct watcher *watcher = progress->watcher;
+    if (watcher)
+        watcher->tell(watcher->context, &(struct watcher_progress){done, total, unit, text, rate});
     const double interval = progress->terminal ? terminal_interval : pipe_interval;
     if (progress->quiet || (now - progress->last < interval && done < total))
         return;
     progress->last = now;
-    const double elapsed = now - progress->started;
-    const double fresh = (double)(done - progress->done_before);
     char left[32] = "?";
     if (fresh > 0)
         format_duration(elapsed * (double)(total - done) / fresh, left);
     fprintf(stderr, "%s%s  %3.0f %%  %.3g %s/s  %s%s left%s", progress->terminal ? "\r\033[K" : "",
-            text, 100 * (double)done / (double)total, elapsed > 0 ? fresh / elapsed : 0, unit,
+            text, 100 * (double)done / (double)total, rate, unit,
             progress->may_end_early ? "at most " : "", left, progress->terminal ? "" : "\n");
     fflush(stderr);
     progress->open_line = progress->terminal;
 }
 
 void mf_progress_say(struct progress *progress, const char *format, ...) {
+    const struct watcher *watcher = progress->watcher;
+    char line[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    if (watcher)
+        watcher->say(watcher->context, line);
     if (progress->quiet)
         return;
     if (progress->open_line)
         fputs("\r\033[K", stderr);
     progress->open_line = false;
-    va_list arguments;
-    va_start(arguments, format);
-    vfprintf(stderr, format, arguments);
-    va_end(arguments);
-    fputc('\n', stderr);
+    fprintf(stderr, "%s\n", line);
+}
+
+void mf_progress_tell_run(const struct progress *progress, const struct watcher_run *run) {
+    if (progress->watcher)
+        progress->watcher->begin(progress->watcher->context, run);
+}
+
+void mf_progress_tell_written(const struct progress *progress) {
+    if (progress->watcher)
+        progress->watcher->write(progress->watcher->context);
+}
+
+bool mf_progress_ask_change(const struct progress *progress, struct simulation_change *change) {
+    const struct watcher *watcher = progress->watcher;
+    return watcher && watcher->change(watcher->context, change);
 }
 
 void mf_progress_say_scale(struct progress *progress, const struct units *units) {

@@ -4,20 +4,23 @@
 #pragma once
 
 #include "io/units_scale.h"
+#include "report/watcher.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
 struct progress {
     bool quiet, terminal;
-    double started;       ///< clock at the begin [s]
-    double last;          ///< clock of the last line [s]
-    uint64_t done_before; ///< parts that a run before a restart had done
-    bool open_line;       ///< the terminal's line has no end yet
-    bool may_end_early;   ///< the time left is the most that it may take
+    double started;                ///< clock at the begin [s]
+    double last;                   ///< clock of the last line [s]
+    uint64_t done_before;          ///< parts that a run before a restart had done
+    bool open_line;                ///< the terminal's line has no end yet
+    bool may_end_early;            ///< the time left is the most that it may take
+    const struct watcher *watcher; ///< told of the same, or NULL; borrowed
 };
 
-struct progress mf_progress_begin(bool quiet);
+/// @param[in] watcher  NULL: nobody watches
+struct progress mf_progress_begin(bool quiet, const struct watcher *watcher);
 
 /// Seconds since mf_progress_begin.
 double mf_progress_seconds(const struct progress *progress);
@@ -29,6 +32,13 @@ void mf_progress_tell(struct progress *progress, uint64_t done, uint64_t total, 
 /// End the updating line, if there is one, and print a line of its own unless quiet.
 void mf_progress_say(struct progress *progress, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
+
+/// Tell who watches, if anybody does, what has begun, and that tables of the folder are new.
+void mf_progress_tell_run(const struct progress *progress, const struct watcher_run *run);
+void mf_progress_tell_written(const struct progress *progress);
+
+/// Whether who watches wants a simulation to go on with another temperature or time step.
+bool mf_progress_ask_change(const struct progress *progress, struct simulation_change *change);
 
 /// Say what the scale of a file in physical units is.
 void mf_progress_say_scale(struct progress *progress, const struct units *units);

@@ -45,7 +45,7 @@ const struct field mf_result_summary_fields[] = {
     DISTANCE(vacf, "lambda^2/tau^2"),
     DISTANCE(msd, "lambda^2"),
     DISTANCE(diffusion, "lambda^2/tau"),
-    DISTANCE(pressure, "k_BT_0/lambda^3"),
+    DISTANCE(pressure, "k_BT_0/lambda^d"),
     MEAN(diffusion, "lambda^2/tau"),
     NUMBER(diffusion_cm2_per_s, "cm^2/s"),
     NUMBER(diffusion_error_cm2_per_s, "cm^2/s"),
@@ -56,12 +56,12 @@ const struct field mf_result_summary_fields[] = {
     MEAN(temperature, "T_0"),
     MEAN(temperature_configurational, "T_0"),
     MEAN(potential_energy, "k_BT_0"),
-    MEAN(pressure, "k_BT_0/lambda^3"),
-    MEAN(kirkwood_buff, "lambda^3"),
+    MEAN(pressure, "k_BT_0/lambda^d"),
+    MEAN(kirkwood_buff, "lambda^d"),
     MEAN(compressibility, "1"),
     NUMBER(ramp_error, "k_BT_0"),
-    NUMBER(ramp_pressure, "1/lambda^3"),
-    NUMBER(pressure_left_open, "k_BT_0/lambda^3"),
+    NUMBER(ramp_pressure, "1/lambda^d"),
+    NUMBER(pressure_left_open, "k_BT_0/lambda^d"),
     NUMBER(directions, "1"),
     NUMBER(seed, "1"),
     FIELD_END,
@@ -144,6 +144,7 @@ static void read_length_unit(struct json_object *root, struct result_summary *su
 struct scale {
     double length, temperature, mass; ///< in physical units
     double time, energy;              ///< beside reduced ones, with the length
+    double dimensions;                ///< of the scene; 3 if it does not say
 };
 
 #define SCALE(key, member)                                                                         \
@@ -170,8 +171,9 @@ static void read_scale_beside(struct json_object *root, struct units *units) {
 
 /// In which units the folder speaks stands in an object of its own.
 static void read_units(struct json_object *root, struct units *units) {
-    static const struct field fields[] = {
-        SCALE("length", length), SCALE("temperature", temperature), SCALE("mass", mass), FIELD_END};
+    static const struct field fields[] = {SCALE("length", length),
+                                          SCALE("temperature", temperature), SCALE("mass", mass),
+                                          SCALE("dimensions", dimensions), FIELD_END};
     struct json_object object = mf_json_child(root, "units", false);
     struct scale scale;
     const char *name =
@@ -185,6 +187,7 @@ static void read_units(struct json_object *root, struct units *units) {
     }
     mf_json_fields(&object, fields, &scale);
     units->length = units->system == UNITS_ANGSTROM_FS ? scale.length / 10 : scale.length;
+    units->dimensions = scale.dimensions == 2 ? 2 : 3;
     units->temperature = scale.temperature;
     units->mass = scale.mass * UNITS_ATOMIC_MASS;
 }

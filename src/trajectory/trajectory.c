@@ -29,8 +29,6 @@ static const char *find_hint(const unsigned char *begin, size_t size) {
         return "it is packed: unpack it with gunzip";
     if (size >= 4 && memcmp(begin, "\x28\xB5\x2F\xFD", 4) == 0)
         return "it is packed: unpack it with unzstd";
-    if (size >= 4 && memcmp(begin, "\x89HDF", 4) == 0)
-        return "it is HDF5, which is not read here";
     return "neither its first bytes nor its extension are those of a format that is read here";
 }
 
@@ -108,7 +106,8 @@ static enum status begin(struct trajectory *trajectory) {
 enum status mf_trajectory_open(struct trajectory *trajectory, const char *file,
                                const struct trajectory_options *options) {
     enum status status;
-    *trajectory = (struct trajectory){.file = file, .time_step = options->time_step};
+    *trajectory =
+        (struct trajectory){.file = file, .time_step = options->time_step, .group = options->group};
     CHECK(mf_source_open(&trajectory->source, file));
     CHECK(find_format(trajectory));
     CHECK(find_units(trajectory, options->units));
@@ -120,6 +119,8 @@ done:
 }
 
 void mf_trajectory_close(struct trajectory *trajectory) {
+    if (trajectory->state && trajectory->format->close)
+        trajectory->format->close(trajectory);
     mf_source_close(&trajectory->source);
     mf_structure_clear(&trajectory->structure);
     mf_frame_clear(&trajectory->first);

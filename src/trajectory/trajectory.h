@@ -28,6 +28,8 @@ struct trajectory_format {
     bool (*recognise)(const unsigned char *begin, size_t size);
     /// Take what stands before the first frame; NULL: nothing does.
     enum status (*open)(struct trajectory *trajectory);
+    /// Give back what its state holds besides its own memory; NULL: nothing.
+    void (*close)(struct trajectory *trajectory);
     /// Take the bytes of the next frame into frame->raw; `*more` is true, and becomes false if
     /// there is no further frame.
     enum status (*fetch)(struct trajectory *trajectory, struct trajectory_frame *frame, bool *more);
@@ -49,7 +51,8 @@ struct trajectory_format {
     EACH(mf_format_gro)                                                                            \
     EACH(mf_format_xyz)                                                                            \
     EACH(mf_format_pdb)                                                                            \
-    EACH(mf_format_lammps_data)
+    EACH(mf_format_lammps_data)                                                                    \
+    EACH(mf_format_h5md)
 
 #define TRAJECTORY_DECLARE(record) extern const struct trajectory_format record;
 TRAJECTORY_FORMATS(TRAJECTORY_DECLARE)
@@ -62,6 +65,7 @@ extern const struct trajectory_format *const mf_trajectory_formats[];
 struct trajectory_options {
     const char *units; ///< one of mf_trajectory_unit_names, or NULL
     double time_step; ///< of the simulation [ps]: gives frames a time that have but a step; 0: none
+    const char *group; ///< of particles, in a file that may have several; NULL: the only one
 };
 
 struct trajectory {
@@ -70,6 +74,8 @@ struct trajectory {
     struct structure structure; ///< what the file itself knows of its atoms
     struct trajectory_scale scale;
     double time_step;
+    const char *group;    ///< borrowed
+    char note[320];       ///< what was assumed of the file, a line for a person; "": nothing
     struct source source; ///< what follows is the readers' own
     struct trajectory_frame first;
     bool waiting; ///< the first frame is fetched and not yet given away

@@ -8,9 +8,9 @@
 
 /// Nanoseconds, as those of observe/stages.h: of a particle and step, also with noise for each
 /// (`walk`); of a collision of hard particles with the crossings on the way to it; of a pair in
-/// range, whatever is computed of it; `tell`: of its types.
+/// range, whatever is computed of it; `remember`: for each mode of memory; `tell`: of its types.
 static const struct {
-    double move, walk, collision, pair, conservative, dissipative, kept, tell;
+    double move, walk, collision, pair, conservative, dissipative, kept, remember, tell;
 } cost = {.move = 8,
           .walk = 30,
           .collision = 600,
@@ -18,6 +18,7 @@ static const struct {
           .conservative = 0.3,
           .dissipative = 1.3,
           .kept = 3.0,
+          .remember = 12,
           .tell = 0.7};
 
 /// From event to event: as many collisions as there are of particles of the mean radius and mass.
@@ -106,6 +107,20 @@ static void add_forces(struct stages *stages, const struct simulation_setup *set
                       "them");
 }
 
+static void add_memory(struct stages *stages, const struct simulation_setup *setup) {
+    const struct pair_memory_law *law = &setup->memory;
+    char unit[UNITS_NAME_SIZE];
+    if (!pair_memory_acts(law))
+        return;
+    const double length = length_of(stages, unit), range = mf_pair_memory_range(law);
+    const int passes = law->modes + (law->transverse != NULL);
+    mf_stages_add(stages, "friction that remembers", true,
+                  cost.remember * passes * mf_stages_pairs_within(setup, range),
+                  "%d mode%s of memory%s, of pairs within %.3g%s", law->modes,
+                  law->modes == 1 ? "" : "s", law->transverse ? " and friction across pairs" : "",
+                  length * range, unit);
+}
+
 static void add_interactions(struct stages *stages, const struct simulation_setup *setup) {
     for (int k = 0; k < setup->interactions; k++) {
         const struct interaction *kind = setup->interaction[k].kind;
@@ -158,6 +173,7 @@ void mf_explain_scene(FILE *out, const struct simulation_setup *setup, const str
         if (setup->placement.count > 0)
             add_list(&stages, setup);
         add_forces(&stages, setup);
+        add_memory(&stages, setup);
     }
     add_interactions(&stages, setup);
     add_observables(&stages, setup, uses, (double)every);

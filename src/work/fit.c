@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "work/fit.h"
 
-#include "base/digest.h"
 #include "base/memory.h"
 #include "base/visible.h"
 #include "io/checkpoint.h"
@@ -86,19 +85,6 @@ static enum status load(struct run *run) {
     return STATUS_OK;
 }
 
-/// Curves to begin with may come from files, which used.json only names.
-static void digest_starts(struct run *run) {
-    enum { POINTS = 1000 };
-    for (int n = 0; n < UNKNOWNS * COMPOSITION_MOST_PAIRS; n++) {
-        const int kind = n / COMPOSITION_MOST_PAIRS, pair = n % COMPOSITION_MOST_PAIRS;
-        const struct curve *start = run->fit.problem.unknown[kind].start[pair];
-        for (int k = 0; start && k < POINTS; k++) {
-            const double value = mf_curve_value(start, mf_curve_cutoff(start) * k / POINTS);
-            mf_digest_add(&run->digest, &value, sizeof value);
-        }
-    }
-}
-
 /// Write all settings to used.json and take their digest. A run that is resumed leaves used.json
 /// alone, since the settings may turn out to be others.
 static enum status write_used(struct run *run, bool resume) {
@@ -107,9 +93,7 @@ static enum status write_used(struct run *run, bool resume) {
     mf_run_folder_file(&run->folder, resume ? "used.json.resumed" : "used.json", path);
     TRY(mf_fit_file_write(fit, path));
     TRY(mf_checkpoint_digest(path, &run->digest));
-    mf_target_files_digest(&fit->files, &run->digest);
-    mf_scene_digest(&fit->scene, &run->digest);
-    digest_starts(run);
+    mf_fit_file_digest(fit, &run->digest);
     if (resume)
         remove(path);
     return STATUS_OK;
@@ -174,6 +158,8 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
     TRY(options->resume ? load(run) : save(run));
     // What an earlier run left is touched once this one has begun.
     TRY(mf_run_folder_begin(&run->folder, options->resume));
+    mf_progress_tell_run(&run->progress, &(struct watcher_run){RUN_FIT, run->folder.path,
+                                                               .units = &run->fit.scene.units});
     return tell_targets(run);
 }
 
@@ -278,6 +264,7 @@ static enum status record(struct run *run, const struct inverse_step *step) {
         const struct inverse_folder own = {own_file, &run->folder, &run->fit.scene.units};
         TRY(run->fit.method->write(run->state, &own));
     }
+    mf_progress_tell_written(&run->progress);
     mf_progress_say(&run->progress, "iteration %u  error %.4f  noise %.4f  %.1f s", step->iteration,
                     mf_visible_number(step->error), mf_visible_number(step->noise),
                     run->standing.seconds);
@@ -372,7 +359,7 @@ static enum status verify_and_write(struct run *run) {
     struct unknowns_laws laws = {0};
     double number[INVERSE_MOST_NUMBERS];
     struct verification verification = {0};
-    struct progress progress = mf_progress_begin(run->progress.quiet);
+    struct progress progress = mf_progress_begin(run->progress.quiet, run->progress.watcher);
     const struct inverse_listener listener = {tell_verification, &progress};
     enum status status = STATUS_OK;
     for (int n = 0; n < INVERSE_MOST_NUMBERS; n++)
@@ -420,7 +407,7 @@ enum status mf_fit_run(const char *file, const struct run_options *options) {
     enum status status = STATUS_OK;
     struct run *run = NULL;
     NEW_ARRAY(run, 1);
-    run->progress = mf_progress_begin(options->quiet);
+    run->progress = mf_progress_begin(options->quiet, options->watcher);
     run->progress.may_end_early = true; // it may converge before the last iteration
     CHECK(prepare(run, file, options));
     status = iterate(run);

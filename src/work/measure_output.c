@@ -99,8 +99,10 @@ static enum status put_kirkwood_buff(const struct measure_result *result,
     NEW_ARRAY(g, rdf->bins.count);
     NEW_ARRAY(error, rdf->bins.count);
     CHECK(mf_rdf_result(rdf, 1, g, error));
-    const struct kirkwood_buff found =
+    struct kirkwood_buff found =
         mf_kirkwood_buff_integrate(&rdf->bins, g, error, &box, rdf->particle_count);
+    mf_statistics_forget_errors(&found.integral_error, 1);
+    mf_statistics_forget_errors(&found.compressibility_error, 1);
     mf_json_put_quantity(writer, "kirkwood_buff", "lambda^3", found.integral);
     mf_json_put_quantity(writer, "kirkwood_buff_error", "lambda^3", found.integral_error);
     mf_json_put_number(writer, "compressibility", found.compressibility);
@@ -301,6 +303,8 @@ static enum status write_used(const struct measure_result *result) {
     put_trajectories(result, writer);
     mf_json_put_number(writer, "range", plan->range);
     mf_json_put_integer(writer, "bins", plan->bins);
+    mf_json_put_number(writer, "q_maximum", plan->q_maximum);
+    mf_json_put_integer(writer, "waves", plan->waves);
     return write_json(result, "used.json", writer);
 }
 

@@ -159,6 +159,9 @@ static void say_results(struct run *run, const struct measure_result *result) {
     mf_progress_say(&run->progress, "g(r) to %.4g nm in %lld bins%s", measured->plan.range,
                     (long long)measured->plan.bins,
                     measured->pairs.molecule ? ", without pairs of one molecule or residue" : "");
+    if (measured->plan.q_maximum > 0)
+        mf_progress_say(&run->progress, "S(q) to %.4g 1/nm, of at most %lld waves in a bin",
+                        measured->plan.q_maximum, (long long)measured->plan.waves);
     if (measured->pairs.molecule)
         mf_progress_say(&run->progress,
                         "mesofit: warning: molecules have several beads: a fit knows "
@@ -219,7 +222,7 @@ static enum status carry_out(struct run *run, const struct run_options *options)
 
 enum status mf_measure_run(const struct measure_request *request,
                            const struct run_options *options) {
-    struct run run = {.request = request, .progress = mf_progress_begin(options->quiet)};
+    struct run run = {.request = request, .progress = mf_progress_begin(options->quiet, NULL)};
     const enum status status = carry_out(&run, options);
     mf_measured_clear(&run.measured);
     mf_frames_close(&run.frames);

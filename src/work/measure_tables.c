@@ -64,8 +64,10 @@ done:
 enum status mf_measure_tables_write(const struct measure_result *result) {
     const struct simulation_setup setup = mf_measure_tables_setup(result);
     const struct measure_plan plan = {.samples = (int64_t)result->measured->frames};
-    const struct observable_results results = {&setup, &plan, &result->units, result->folder};
+    const struct observable_results results = {&setup, &plan, &result->units, result->folder, NULL};
     TRY(mf_rdf_observable.write(&result->measured->rdf, &results));
+    if (mf_structure_factor_blocks(&result->measured->factor) > 0)
+        TRY(mf_structure_factor_write(&result->measured->factor, &results));
     if (mf_measure_tables_have_motion(result))
         TRY(write_motion(result));
     return mf_measure_tables_have_etd(result)

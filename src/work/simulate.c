@@ -8,6 +8,7 @@
 #include "mesofit.h"
 #include "report/progress.h"
 #include "work/explain.h"
+#include "work/simulate_changes.h"
 #include "work/simulate_observables.h"
 
 /// Seconds between checkpoints of a long simulation.
@@ -20,10 +21,13 @@ struct run {
     struct measure_plan plan;
     struct heading heading;
     struct input_files inputs;
-    uint64_t digest; ///< of used.json
+    int64_t equilibration; ///< of the file; that of the plan grows with a change
+    uint64_t digest;       ///< of used.json
     double last_checkpoint;
     struct simulation simulation;
     struct simulate_observables observables;
+    struct simulate_changes changes;
+    atomic_bool cancel; ///< set for a change
 };
 
 /// Threads meet a dozen times in a step: with fewer particles than this each, and a busy machine,
@@ -50,6 +54,7 @@ static enum status read_file(struct run *run, const char *file, const struct run
     mf_json_fields(&measure, mf_measure_plan_fields, &run->plan);
     if (measure.item)
         mf_json_finish(&measure);
+    run->equilibration = run->plan.equilibration;
     if (status == STATUS_OK)
         status = mf_simulate_observables_read(&run->observables, &root, &run->scene.setup);
     mf_json_finish(&root);
@@ -57,6 +62,7 @@ static enum status read_file(struct run *run, const char *file, const struct run
     if (options->has_seed)
         run->heading.seed = options->seed;
     run->scene.setup.seed = run->heading.seed;
+    run->scene.setup.cancel = &run->cancel;
     run->scene.setup.threads = find_threads(&run->scene.setup, options->threads);
     return STATUS_OK;
 }
@@ -85,18 +91,33 @@ static enum status write_used(struct run *run, bool resume) {
 }
 
 static enum status save(struct run *run) {
-    struct memory_span spans[SIMULATE_MOST_SPANS];
+    struct memory_span spans[1 + SIMULATE_MOST_SPANS] = {mf_simulate_changes_span(&run->changes)};
     char path[OUTPUT_PATH_SIZE];
     mf_run_folder_file(&run->folder, "checkpoint.bin", path);
     run->last_checkpoint = mf_progress_seconds(&run->progress);
-    const size_t count = mf_simulate_observables_spans(&run->observables, &run->simulation, spans);
-    return mf_checkpoint_save(path, run->digest, spans, count);
+    const size_t count =
+        mf_simulate_observables_spans(&run->observables, &run->simulation, spans + 1);
+    return mf_checkpoint_save(path, run->digest, spans, 1 + count);
+}
+
+/// What was measured before a change is not of what comes after it: the simulation equilibrates
+/// once more, and all samples are taken anew.
+static enum status change(struct run *run) {
+    const struct simulation_change *last = mf_simulate_changes_last(&run->changes);
+    TRY(mf_simulation_change(&run->simulation, last));
+    run->plan.equilibration = (int64_t)last->step + run->equilibration;
+    return mf_simulate_observables_begin_anew(&run->observables, &run->simulation, &run->plan);
 }
 
 static enum status load(struct run *run) {
+    const struct memory_span changes = mf_simulate_changes_span(&run->changes);
     char path[OUTPUT_PATH_SIZE];
     mf_run_folder_file(&run->folder, "checkpoint.bin", path);
-    TRY(mf_simulate_observables_load(&run->observables, &run->simulation, path, run->digest));
+    TRY(mf_checkpoint_load_span(path, run->digest, 0, &changes));
+    if (mf_simulate_changes_last(&run->changes))
+        TRY(change(run));
+    TRY(mf_simulate_observables_load(&run->observables, &run->simulation, path, run->digest,
+                                     &changes));
     run->progress.done_before = run->simulation.step;
     return STATUS_OK;
 }
@@ -116,13 +137,33 @@ static void tell(void *context, const struct simulation *simulation, uint64_t do
     if (mf_progress_seconds(&run->progress) - run->last_checkpoint > checkpoint_interval &&
         save(run) != STATUS_OK)
         mf_progress_say(&run->progress, "mesofit: warning: %s", mf_status_message());
+    struct simulation_change wanted;
+    if (done < total && mf_progress_ask_change(&run->progress, &wanted) &&
+        mf_simulate_changes_add(&run->changes, &wanted))
+        atomic_store(&run->cancel, true);
+}
+
+static int64_t steps(void *context) {
+    const struct watcher *watcher = ((const struct run *)context)->progress.watcher;
+    return watcher->steps(watcher->context);
+}
+
+static void tell_run(struct run *run) {
+    const struct watcher_run watched = {.kind = RUN_SIMULATION,
+                                        .folder = run->folder.path,
+                                        .units = &run->scene.units,
+                                        .simulation = &run->simulation,
+                                        .plan = &run->plan,
+                                        .observables = run->observables.use};
+    mf_progress_tell_run(&run->progress, &watched);
 }
 
 static struct observable_results results_of(const struct run *run) {
     return (struct observable_results){.setup = &run->simulation.setup,
                                        .plan = &run->plan,
                                        .units = &run->scene.units,
-                                       .folder = run->folder.path};
+                                       .folder = run->folder.path,
+                                       .use = run->observables.use};
 }
 
 static enum status write_summary(const struct run *run, double seconds) {
@@ -134,6 +175,7 @@ static enum status write_summary(const struct run *run, double seconds) {
     mf_json_put_text(writer, "method", "simulate");
     mf_json_put_number(writer, "seconds", seconds);
     mf_json_put_number(writer, "engine_steps", (double)run->simulation.step);
+    mf_simulate_changes_put(&run->changes, writer);
     mf_json_put_number(writer, "steps_per_second",
                        (double)(run->simulation.step - run->progress.done_before) / seconds);
     mf_simulate_observables_put(&run->observables, &results, writer);
@@ -174,14 +216,28 @@ static void warn(struct run *run) {
         mf_progress_say(&run->progress, "mesofit: warning: %s", line);
 }
 
-static enum status carry_out(struct run *run) {
-    const struct measure_listener listener = {tell, run};
+static enum status measure(struct run *run, const struct measure_listener *listener) {
     const struct observable_results results = results_of(run);
-    mf_simulate_observables_open(&run->observables, &results);
     double temperature;
+    mf_simulate_observables_open(&run->observables, &results);
+    TRY(mf_measure_equilibrate(&run->simulation, &run->plan, &temperature, listener));
+    return mf_measure_sample(&run->simulation, &run->plan, run->observables.use, listener);
+}
+
+static enum status carry_out(struct run *run) {
+    const struct watcher *watcher = run->progress.watcher;
+    const struct measure_listener listener = {tell, run, watcher ? steps : NULL};
+    tell_run(run);
     warn(run);
-    TRY(mf_measure_equilibrate(&run->simulation, &run->plan, &temperature, &listener));
-    return mf_measure_sample(&run->simulation, &run->plan, run->observables.use, &listener);
+    enum status status = measure(run, &listener);
+    // A person may have stopped it meanwhile: it then begins with the change when it goes on.
+    while (status == STATUS_INTERRUPTED && atomic_exchange(&run->cancel, false)) {
+        TRY(change(run));
+        mf_simulate_changes_say(&run->changes, &run->scene.units, &run->progress);
+        TRY(save(run));
+        status = measure(run, &listener);
+    }
+    return status;
 }
 
 static enum status write_results(struct run *run) {
@@ -214,7 +270,7 @@ enum status mf_simulate_file(const char *file, const struct run_options *options
     enum status status = STATUS_OK;
     struct run *run = NULL;
     NEW_ARRAY(run, 1);
-    run->progress = mf_progress_begin(options->quiet);
+    run->progress = mf_progress_begin(options->quiet, options->watcher);
     CHECK(prepare(run, file, options));
     status = mf_units_mark(&run->scene.units, carry_out(run));
     if (status == STATUS_INTERRUPTED) {

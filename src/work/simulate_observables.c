@@ -71,6 +71,17 @@ enum status mf_simulate_observables_begin(struct simulate_observables *observabl
     return STATUS_OK;
 }
 
+enum status mf_simulate_observables_begin_anew(struct simulate_observables *observables,
+                                               const struct simulation *simulation,
+                                               const struct measure_plan *plan) {
+    for (struct observable_use *use = observables->use; use->observable; use++) {
+        use->observable->clear(use->state);
+        mf_memory_free(use->state);
+        use->state = NULL;
+    }
+    return mf_simulate_observables_begin(observables, simulation, plan);
+}
+
 void mf_simulate_observables_open(const struct simulate_observables *observables,
                                   const struct observable_results *results) {
     for (const struct observable_use *use = observables->use; use->observable; use++)
@@ -88,13 +99,13 @@ size_t mf_simulate_observables_spans(struct simulate_observables *observables,
 
 enum status mf_simulate_observables_load(struct simulate_observables *observables,
                                          struct simulation *simulation, const char *file,
-                                         uint64_t digest) {
-    struct memory_span spans[SIMULATE_MOST_SPANS];
-    size_t n = mf_simulation_spans(simulation, spans);
+                                         uint64_t digest, const struct memory_span *first) {
+    struct memory_span spans[1 + SIMULATE_MOST_SPANS] = {*first};
+    size_t n = 1 + mf_simulation_spans(simulation, spans + 1);
     if (simulation_wants_room(simulation)) {
-        TRY(mf_checkpoint_load_span(file, digest, 0, &spans[0]));
+        TRY(mf_checkpoint_load_span(file, digest, 1, &spans[1]));
         TRY(mf_simulation_make_room(simulation));
-        n = mf_simulation_spans(simulation, spans);
+        n = 1 + mf_simulation_spans(simulation, spans + 1);
     }
     for (const struct observable_use *use = observables->use; use->observable; use++) {
         size_t own = use->observable->spans(use->state, spans + n);

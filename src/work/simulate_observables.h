@@ -26,6 +26,11 @@ enum status mf_simulate_observables_begin(struct simulate_observables *observabl
                                           const struct simulation *simulation,
                                           const struct measure_plan *plan) MUST_USE;
 
+/// Forget all that was measured, and begin once more.
+enum status mf_simulate_observables_begin_anew(struct simulate_observables *observables,
+                                               const struct simulation *simulation,
+                                               const struct measure_plan *plan) MUST_USE;
+
 /// Tell those that write while they measure where their files go.
 void mf_simulate_observables_open(const struct simulate_observables *observables,
                                   const struct observable_results *results);
@@ -36,10 +41,12 @@ enum { SIMULATE_MOST_SPANS = SIMULATION_SPANS + OBSERVABLES_MOST * OBSERVABLE_MO
 size_t mf_simulate_observables_spans(struct simulate_observables *observables,
                                      struct simulation *simulation, struct memory_span *spans);
 
-/// Restore all of a checkpoint. Fails: as mf_checkpoint_load; NO_MEMORY.
+/// Restore all of a checkpoint.
+/// @param[in] first  the span before those
+/// Fails: as mf_checkpoint_load; NO_MEMORY.
 enum status mf_simulate_observables_load(struct simulate_observables *observables,
                                          struct simulation *simulation, const char *file,
-                                         uint64_t digest) MUST_USE;
+                                         uint64_t digest, const struct memory_span *first) MUST_USE;
 
 /// Write all tables. Fails: IO, NO_MEMORY.
 enum status mf_simulate_observables_write(const struct simulate_observables *observables,

@@ -21,6 +21,7 @@ static const char escape_with_holes[] = "# t E E E\n0 1 1 1\n0.04 nan 0.9 0.7\n0
 #define POTENTIAL "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25}"
 #define STEP "\"time_step\": 0.02"
 #define GENETIC "\"name\": \"genetic\", \"population\": 4, \"generations\": 1"
+#define MEMORY(omega) ", \"memory\": {\"slow\": {\"time\": 0.2" omega "}}"
 #define FIT_PLAN "\"samples\": 4, \"every\": 4"
 #define CHECK_PLAN "\"samples\": 3, \"every\": 5"
 
@@ -74,6 +75,31 @@ static const struct fault faults[] = {
     FAULT("no potential", ", " POTENTIAL, "", "scene.conservative", "missing"),
     FAULT("a friction weight that is known and unknown", POTENTIAL,
           POTENTIAL ", \"dissipative\": {\"law\": \"power\"}", "scene.dissipative", "unknown key"),
+    FAULT("a memory that the scene has not", OMEGA,
+          OMEGA ", \"memory\": {\"slow\": {\"coefficients\": 4}}", "unknowns.memory.slow",
+          "unknown key"),
+    FAULT("a memory that is known and unknown",
+          OMEGA "},\n\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, " STEP,
+          OMEGA
+          ", \"memory\": {\"slow\": {\"coefficients\": 4}}},\n\"scene\": {\"box\": [3, 3, 3], "
+          "\"particles\": {\"count\": 81}, " STEP MEMORY(", \"omega\": {\"law\": \"power\"}"),
+          "unknowns.memory.slow", "has an \"omega\""),
+    FAULT("a memory that is neither",
+          OMEGA "},\n\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, " STEP,
+          OMEGA
+          ", \"memory\": {\"fast\": {\"coefficients\": 4}}},\n\"scene\": {\"box\": [3, 3, 3], "
+          "\"particles\": {\"count\": 81}, " STEP
+          ", \"memory\": {\"slow\": {\"time\": 0.2}, \"fast\": {\"time\": 0.1}}",
+          "unknowns.memory.slow", "is missing"),
+    FAULT("a memory without omega that nothing finds", POTENTIAL, POTENTIAL MEMORY(""),
+          "scene.memory.slow.omega", "missing"),
+    FAULT("a formula across pairs", OMEGA, OMEGA ", \"omega_transverse\": {\"curve\": \"power\"}",
+          "unknowns.omega_transverse.curve", "\"numbers\""),
+    FAULT("friction across pairs that is known and unknown",
+          OMEGA "},\n\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, " STEP,
+          OMEGA ", \"omega_transverse\": {}},\n\"scene\": {\"box\": [3, 3, 3], \"particles\": "
+                "{\"count\": 81}, " STEP ", \"dissipative_transverse\": {\"law\": \"power\"}",
+          "scene.dissipative_transverse", "it is to be found"),
     FAULT("a potential without its g(r)",
           OMEGA "},\n\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, " STEP
                 ", " POTENTIAL,

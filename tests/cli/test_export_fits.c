@@ -42,9 +42,9 @@ static void fit_and_export(struct temporary_folder *folder, const char *unknowns
     char *text = temporary_folder_read("run.json");
     small_inputs_write(folder, "run.json", text, "FRICTION", friction);
     free(text);
-    RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit"); // that need not converge
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit", "--force"); // that need not converge
     const bool good = result.code == 0;
-    RUN_PROGRAM(&result, "export", "fit", "--engine", "lammps", "-o", "lammps");
+    RUN_PROGRAM(&result, "export", "fit", "--engine", "lammps", "-o", "lammps", "--force");
     run_program_assert_code(&result, 0);
     assert_int_equal(strstr(result.err, "warning: fit: the fit is ") == NULL, good);
 }
@@ -105,6 +105,24 @@ static void test_friction_weight_that_was_found_is_exported(void **state) {
     }
     free(text);
     assert_true(expected > 0 && fabs(found / expected - 1) < 1e-3);
+}
+
+/// No engine is told of what was found across pairs or with a memory.
+static void test_memory_that_was_found_is_left_out_and_told(void **state) {
+    static const char *const unknowns[] = {
+        "\"omega\": {\"coefficients\": 4, \"maximum\": 6}, \"omega_transverse\": "
+        "{\"coefficients\": 4, "
+        "\"maximum\": 3}",
+        "\"memory\": {\"slow\": {\"coefficients\": 4, \"maximum\": 6}}, \"numbers\": "
+        "{\"memory.slow.time\": {\"minimum\": 0.1, \"maximum\": 1}}"};
+    static const char *const scenes[] = {
+        "", ", \"dissipative\": {\"law\": \"power\"}, \"memory\": {\"slow\": {\"time\": 0.3}}"};
+    for (int k = 0; k < 2; k++) {
+        fit_and_export(*state, unknowns[k], scenes[k]);
+        char *text = temporary_folder_read("lammps/README");
+        assert_contains(text, "memory or across pairs is left out");
+        free(text);
+    }
 }
 
 /// A fit in the family of an engine needs no projection: γ is σ² of the style, s the exponent.
@@ -220,6 +238,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_numbers_that_were_found_are_exported),
         TEST(test_friction_weight_that_was_found_is_exported),
+        TEST(test_memory_that_was_found_is_left_out_and_told),
         TEST(test_fit_with_exponent_1_runs_as_dpd_tstat),
         TEST(test_fit_with_another_exponent_runs_as_dpd_ext_tstat),
         TEST(test_projection_of_a_power_law_costs_nothing),

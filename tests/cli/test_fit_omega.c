@@ -43,6 +43,15 @@ static const char joint_fit[] = RUN(ETD ", \"rdf\": {\"file\": \"target/rdf.tsv\
                                     OMEGA ", \"potential\": {\"coefficients\": 5, \"maximum\": 30, "
                                           "\"truth\": {\"law\": \"soft-repulsion\", \"a\": 25}}", );
 
+/// White friction, friction across pairs and a memory, of which the time is found, too.
+static const char memory_fit[] = RUN(
+    ETD,
+    OMEGA ", \"omega_transverse\": {\"coefficients\": 4, \"maximum\": 3, \"truth\": {\"law\": "
+          "\"power\", \"sigma\": 1}}, \"memory\": {\"slow\": {\"coefficients\": 4, \"maximum\": "
+          "9, \"truth\": {\"law\": \"power\", \"sigma\": 3}}}, \"numbers\": "
+          "{\"memory.slow.time\": {\"minimum\": 0.05, \"maximum\": 0.5}}",
+    ", " POTENTIAL ", \"memory\": {\"slow\": {\"time\": 0.2}}");
+
 #define GENETIC "\"name\": \"genetic\", \"population\": 7, \"generations\": 3"
 #define CMAES "\"name\": \"cma-es\", \"rounds\": 4, \"racing\": 1, \"warm_start\": \"yes\""
 #define NLOPT "\"name\": \"nlopt\", \"algorithm\": \"LN_SBPLX\", \"evaluations\": 25"
@@ -50,6 +59,11 @@ static const char joint_fit[] = RUN(ETD ", \"rdf\": {\"file\": \"target/rdf.tsv\
 
 static const char *const omega_tables[] = {"history.tsv", "omega_history.tsv", "omega.tsv",
                                            "etd_cells.tsv", NULL};
+static const char *const memory_tables[] = {"history.tsv",         "omega_history.tsv",
+                                            "omega.tsv",           "omega_transverse.tsv",
+                                            "memory_slow.tsv",     "memory_slow_history.tsv",
+                                            "numbers_history.tsv", "memory_slow_flat.tsv",
+                                            "etd_cells.tsv",       NULL};
 static const char *const joint_tables[] = {
     "history.tsv",           "omega_history.tsv", "omega.tsv", "potential.tsv",
     "potential_history.tsv", "etd_cells.tsv",     "rdf.tsv",   NULL};
@@ -123,6 +137,15 @@ static void test_gauss_newton_gives_both_unknowns_of_the_same_bits(void **state)
 
 static void test_cmaes_gives_both_unknowns_of_the_same_bits(void **state) {
     check_bits(*state, joint_fit, CMAES, joint_tables, CONVERGED);
+}
+
+static void test_gauss_newton_gives_memory_of_the_same_bits(void **state) {
+    check_bits(*state, memory_fit, GAUSS_NEWTON, memory_tables, CONVERGED);
+    static const char *const numbers[] = {"omega_truth_rms", "omega_transverse_truth_rms",
+                                          "memory_slow_truth_rms", "memory_slow_flat_share", NULL};
+    results_assert_numbers("1/summary.json", numbers);
+    results_assert_table("1/memory_slow.tsv", 4, 201);
+    results_assert_table("1/omega_transverse.tsv", 4, 201);
 }
 
 static void test_explain_and_describe_know_omega_and_its_targets(void **state) {
@@ -222,6 +245,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_nlopt_gives_omega_of_the_same_bits),
         TEST_WITHOUT_FIGURES(test_gauss_newton_gives_omega_of_the_same_bits),
         TEST_WITHOUT_FIGURES(test_gauss_newton_gives_both_unknowns_of_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_gauss_newton_gives_memory_of_the_same_bits),
         TEST_WITHOUT_FIGURES(test_cmaes_gives_both_unknowns_of_the_same_bits),
         TEST_WITHOUT_FIGURES(test_explain_and_describe_know_omega_and_its_targets),
         TEST_WITHOUT_FIGURES(test_fit_of_omega_ends_and_says_so_when_no_candidate_survives),

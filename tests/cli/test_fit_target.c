@@ -61,11 +61,28 @@ static void test_fit_target_takes_density_and_temperature_where_there_is_g_alone
     assert_contains(result.err, "--density takes a number above 0");
 }
 
+/// A temperature that the file lacks is the one of the command line, with the same bits.
+static void test_fit_target_takes_what_its_file_lacks(void **state) {
+    make_target(*state, shortest);
+    small_inputs_write(*state, "target/target.json", shortest, "\"temperature\": 1",
+                       "\"temperature\": 1.1");
+    RUN_PROGRAM(&result, "fit", "target/target.json", "-o", "whole", "--quiet");
+    run_program_assert_code(&result, 0);
+    small_inputs_write(*state, "target/target.json", shortest, ", \"temperature\": 1", "");
+    RUN_PROGRAM(&result, "fit", "--target", "target", "--temperature", "1.1", "-o", "filled",
+                "--quiet");
+    run_program_assert_code(&result, 0);
+    results_assert_same("whole", "filled", tables);
+    RUN_PROGRAM(&result, "fit", "--target", "target", "--temperature", "-1", "-o", "cold");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "--temperature takes a number above 0");
+}
+
 static void test_fit_target_tells_what_goes_together(void **state) {
     make_target(*state, shortest);
     RUN_PROGRAM(&result, "fit", "--target", "target", "--density", "3");
     run_program_assert_code(&result, 2);
-    assert_contains(result.err, "target/target.json says density and temperature");
+    assert_contains(result.err, "--density: target/target.json says scene.density itself");
     RUN_PROGRAM(&result, "fit", "--target", "nowhere");
     run_program_assert_code(&result, 2);
     assert_contains(result.err, "there is no nowhere/target.json, and no rdf.tsv beside it");
@@ -84,6 +101,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST_WITHOUT_FIGURES(test_fit_target_is_the_fit_of_the_run_file_in_the_folder),
         TEST_WITHOUT_FIGURES(test_fit_target_takes_density_and_temperature_where_there_is_g_alone),
+        TEST_WITHOUT_FIGURES(test_fit_target_takes_what_its_file_lacks),
         TEST_WITHOUT_FIGURES(test_fit_target_tells_what_goes_together),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

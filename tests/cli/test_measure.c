@@ -63,6 +63,12 @@ static void test_measure_counts_the_pairs_that_there_are(void **state) {
     assert_close(results_number("trr/summary.json", "temperature"), (292.570 + 287.689) / 2, 0.2);
     assert_close(results_number("trr/summary.json", "particles"), WATERS, 0);
     assert_close(results_number("trr/summary.json", "density"), WATERS / pow(4.384, 3), 1e-4);
+    // The longest waves are one along each edge.
+    struct data_table waves;
+    assert_ok(mf_data_table_read(&waves, "trr/structure_factor.tsv", 4));
+    assert_close(waves.values[0], 2 * acos(-1) / 4.384, 1e-3);
+    assert_close(waves.values[3], 3, 0);
+    mf_data_table_clear(&waves);
     // Rounded to 0.001 nm, a few pairs are in other bins.
     MEASURE(xtc, "-s", gro, "-o", "xtc");
     assert_contains(result.err, "no VACF: there are no velocities");
@@ -73,10 +79,14 @@ static void test_measure_counts_the_pairs_that_there_are(void **state) {
     MEASURE(gro, "-o", "gro", "--quiet");
     assert_close(count_pairs("gro/rdf.tsv", 0.2, 0.3), 3977, 20);
     assert_false(temporary_folder_exists("gro/msd.tsv")); // of one frame
+    char *summary = temporary_folder_read("gro/summary.json");
+    assert_contains(summary, "\"kirkwood_buff_error\":\tnull");
+    assert_contains(summary, "\"compressibility_error\":\tnull");
+    free(summary);
 }
 
-static const char *const tables[] = {"rdf.tsv",       "msd.tsv",      "etd.tsv",
-                                     "etd_error.tsv", "etd_bins.tsv", NULL};
+static const char *const tables[] = {
+    "rdf.tsv", "msd.tsv", "etd.tsv", "structure_factor.tsv", "etd_error.tsv", "etd_bins.tsv", NULL};
 
 static void test_measure_writes_the_same_bytes_when_threads_differ(void **state) {
     (void)state;
@@ -288,6 +298,9 @@ static const struct {
     {{"late.xtc", "early.xtc", "-s", "GRO"}, {"early.xtc: frame 0 is out of order"}},
     {{"early.xtc", "last.xtc", "-s", "GRO"}, {"last.xtc: frame 0, at 0.08", "not 0.02"}},
     {{"XTC", "-s", "GRO", "--begin", "7"}, {"no frame is left"}},
+    {{"XTC", "-s", "GRO", "--begin", "-5"}, {"--begin takes a number from 0 on, not \"-5\""}},
+    {{"XTC", "-s", "GRO", "--q-range", "1"}, {"frame 0: S(q): q_maximum 1 is below"}},
+    {{"XTC", "-s", "GRO", "--waves", "0"}, {"--waves takes a whole number from 1"}},
     {{"XTC", "-s", "GRO", "--range", "far"}, {"--range takes a number above 0"}},
     {{"XTC", "-s", "GRO", "--bins", "0"}, {"--bins takes a whole number"}},
     {{"XTC", "-s", "GRO", "--units", "mile"}, {"--units takes nm-ps|angstrom-fs"}},

@@ -296,6 +296,33 @@ static void test_simulate_warns_when_nothing_holds_the_temperature(void **state)
     assert_contains(result.err, "mesofit: warning: scene: nothing holds the temperature: ");
 }
 
+/// White friction of sigma 3 has D = 0.24; a memory of 0.002 had 0.12 with a step of 0.02, and one
+/// of 1e-6 had 0.009.
+static void test_simulate_warns_when_steps_do_not_follow_a_memory(void **state) {
+    static struct run_program_result result;
+    static const struct {
+        const char *mode;
+        bool warned;
+    } cases[] = {{"\"time\": 0.2, \"omega\": {\"law\": \"power\", \"sigma\": 3}", false},
+                 {"\"time\": 0.002, \"omega\": {\"law\": \"power\", \"sigma\": 3}", true},
+                 {"\"time\": 1e6, \"omega\": {\"law\": \"power\", \"sigma\": 3}", false},
+                 {"\"time\": 0.2, \"omega\": {\"law\": \"power\", \"sigma\": 40}", true},
+                 {"\"time\": 0.2, \"frequency\": 20, \"omega\": {\"law\": \"power\"}", false},
+                 {"\"time\": 0.2, \"frequency\": 300, \"omega\": {\"law\": \"power\"}", true}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        small_inputs_write(*state, "scene.json",
+                           "{\"box\": [3, 3, 3], \"particles\": {\"count\": 81},\n"
+                           "\"conservative\": {\"law\": \"soft-repulsion\"}, \"time_step\": 0.02,\n"
+                           "\"memory\": {\"slow\": {MODE}},\n"
+                           "\"measure\": {\"equilibration\": 1, \"samples\": 2}}",
+                           "MODE", cases[k].mode);
+        RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+        run_program_assert_code(&result, 0);
+        assert_int_equal(strstr(result.err, "\"time_step\" is too long for \"memory\"") != NULL,
+                         cases[k].warned);
+    }
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
 #define TEST_WITHOUT_FIGURES(name)                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
@@ -315,6 +342,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_unstable_scene_ends_with_step_and_force),
         TEST_WITHOUT_FIGURES(test_simulate_warns_when_only_the_kinetic_temperature_is_right),
         TEST_WITHOUT_FIGURES(test_simulate_warns_when_nothing_holds_the_temperature),
+        TEST_WITHOUT_FIGURES(test_simulate_warns_when_steps_do_not_follow_a_memory),
         TEST_WITHOUT_FIGURES(test_one_sample_is_enough),
         TEST_WITHOUT_FIGURES(test_ideal_gas_has_no_configurational_temperature),
     };

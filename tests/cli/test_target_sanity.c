@@ -123,6 +123,17 @@ static void test_simulate_refuses_units_that_cannot_be(void **state) {
     RUN_PROGRAM(&result, "simulate", "scene.json");
     run_program_assert_refused(&result, ".", "a mass in u", 1,
                                (const char *[]){"scene.json: units.mass: ", "in kg", NULL});
+    // 18.02 u as the unit, and 18.02 units: 18.02² u is no bead of water.
+    static const char twice[] =
+        "{\"units\": {\"length\": 0.46, \"temperature\": 300, \"mass\": 2.992e-26},\n"
+        "\"box\": [8, 8, 8], \"particles\": {\"count\": 1536, \"mass\": 18.02},\n"
+        "\"dynamics\": {\"integrator\": \"velocity-verlet\"}, \"conservative\":\n"
+        "{\"law\": \"soft-repulsion\", \"a\": 25}, \"measure\": {\"samples\": 2, \"every\": 1}}\n";
+    small_inputs_write(*state, "scene.json", twice, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json");
+    run_program_assert_refused(&result, ".", "a mass told twice", 1,
+                               (const char *[]){"scene.json: particles.mass: ", "makes mu 18.01",
+                                                "a bead would have 324.", NULL});
 }
 
 static void test_fit_warns_of_targets_that_hardly_can_be(void **state) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // "units" of a scene: tables stand in nm, ps, kJ/mol and bar beside the reduced units.
+#include "io/data_table.h"
 #include "shared/is_close.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
@@ -89,6 +90,33 @@ static void test_flat_scenes_have_no_pressure_in_bar(void **state) {
     free(summary);
 }
 
+/// Compared it is the number of the folder, over an area.
+static void test_flat_scenes_are_compared_by_areas(void **state) {
+    static struct run_program_result result;
+    static const char flat[] =
+        "{\"units\": \"nm-ps\", \"dimensions\": 2, \"box\": [6, 6], \"temperature\": 300,\n"
+        "\"particles\": {\"count\": 100, \"mass\": 18}, \"time_step\": 0.005,\n"
+        "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 60, \"cutoff\": 0.7},\n"
+        "\"dissipative\": {\"law\": \"power\", \"sigma\": 5, \"cutoff\": 0.7},\n"
+        "\"measure\": {\"equilibration\": 10, \"samples\": 4, \"every\": 5}}\n";
+    small_inputs_write(*state, "scene.json", flat, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "a", "--quiet");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "compare", "a", "a", "-o", "both", "--quiet");
+    run_program_assert_code(&result, 0);
+    char *table = temporary_folder_read("both/compare.tsv");
+    assert_contains(table, "pressure[kJ/mol/nm^2]");
+    assert_null(strstr(table, "nm^3"));
+    free(table);
+    struct data_table numbers;
+    assert_ok(mf_data_table_read(&numbers, "both/compare.tsv", 1));
+    const size_t column = mf_data_table_find(&numbers, "pressure");
+    assert_true(column > 0);
+    assert_close_relative(numbers.values[column - 1], results_number("a/summary.json", "pressure"),
+                          1e-12);
+    mf_data_table_clear(&numbers);
+}
+
 static void test_tables_of_a_fit_stand_in_physical_units_too(void **state) {
     static struct run_program_result result;
     small_inputs_write(*state, "scene.json", scene, NULL, NULL);
@@ -113,6 +141,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST_WITHOUT_FIGURES(test_tables_of_a_simulation_stand_in_physical_units_too),
         TEST_WITHOUT_FIGURES(test_flat_scenes_have_no_pressure_in_bar),
+        TEST_WITHOUT_FIGURES(test_flat_scenes_are_compared_by_areas),
         TEST_WITHOUT_FIGURES(test_tables_of_a_fit_stand_in_physical_units_too),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

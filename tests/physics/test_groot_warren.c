@@ -208,7 +208,7 @@ static void check_heating(const struct heating *heating) {
     assert_ok(mf_thermodynamics_init(&thermodynamics, (size_t)plan.samples));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
     const struct watched observables = {.thermodynamics = &thermodynamics};
-    const struct measure_listener listener = {add_end, &ends};
+    const struct measure_listener listener = {.tell = add_end, .context = &ends};
     assert_ok(watched_sample(&simulation, &plan, observables, &listener));
     const struct thermodynamics_summary s = mf_thermodynamics_result(&thermodynamics, 1);
     const double kinetic = ends.sum / (double)ends.count;

@@ -59,13 +59,13 @@ static void assert_normal(double *value, size_t count) {
 
 /// Hidden variables of one configuration: those of different pairs are independent.
 static void assert_variables_normal(const struct pair_memory *memory) {
-    double *values = calloc(memory->pairs, sizeof *values);
+    double *values = calloc(memory->pairs.count, sizeof *values);
     assert_non_null(values);
     for (int k = 0; k < memory->variables; k++) {
         size_t count = 0;
-        for (size_t n = 0; n < memory->pairs; n++)
-            if (!isnan(memory->value[k][n]))
-                values[count++] = memory->value[k][n];
+        for (size_t n = 0; n < memory->pairs.count; n++)
+            if (!isnan(memory->pairs.value[0][n]))
+                values[count++] = memory->pairs.value[k][n];
         assert_true(count > 1000);
         assert_normal(values, count);
     }

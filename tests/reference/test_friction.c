@@ -181,7 +181,7 @@ static void check_pair(const struct integrator *integrator,
         const double u = relative(particles), across = particles->velocity[1][0];
         kept_pairs_momentum(particles, before, &size);
         kept_pairs_keep(&kept, step);
-        mf_friction_sweep(&kept.friction, particles);
+        mf_friction_sweep(&kept.friction, particles, NULL);
         assert_close(relative(particles), law.decay * u + law.kick * noise(&kept, step),
                      factor_tolerance * (fabs(u) + 2));
         assert_identical(particles->velocity[1][0], across);
@@ -217,7 +217,7 @@ static void test_exact_friction_leaves_a_normal_number_when_drawn_often(void **s
         particles->velocity[0][far] = 0.9;
         particles->velocity[0][!far] = -0.6;
         kept_pairs_keep(&kept, step);
-        mf_friction_sweep(&kept.friction, particles);
+        mf_friction_sweep(&kept.friction, particles, NULL);
         const double change = relative(particles) - 1.5 * law.decay;
         sum += change;
         squares += change * change;
@@ -321,7 +321,7 @@ static void test_sweep_conserves_momentum_when_particles_are_many(void **state) 
     kept_pairs_momentum(&kept.particles, before, &size);
     for (uint64_t step = 1; step <= 100; step++) {
         kept_pairs_keep(&kept, step);
-        mf_friction_sweep(&kept.friction, &kept.particles);
+        mf_friction_sweep(&kept.friction, &kept.particles, NULL);
         kept_pairs_assert_momentum(&kept.particles, before);
     }
     kept_pairs_clear(&kept);

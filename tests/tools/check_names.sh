@@ -1,15 +1,15 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# check_names.sh LIBRARY: what the linker sees begins with mf_, or with mesofit_ if a public header
+# check_names.sh LIBRARY…: what the linker sees begins with mf_, or with mesofit_ if a public header
 # declares it. Behind mf_, every function and object of x_y.o is called x_y, or x_ys if it is the
 # list of them, or begins with x_, the first word of its file: files of one module, such as genetic.c
 # and genetic_operators.c, share it.
 set -u
 
-symbols=$(nm --defined-only --extern-only --format=posix "$1") || exit 1
+symbols=$(nm --defined-only --extern-only --format=posix "$@") || exit 1
 if [ -z "$symbols" ]; then
-    echo "names: no symbol found in $1"
+    echo "names: no symbol found in $*"
     exit 1
 fi
 faults=$(printf '%s\n' "$symbols" | awk '

@@ -1,11 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# lint.sh LIBRARY: every check that needs no run of the program. One line "name: OK" a check, or
+# lint.sh LIBRARY…: every check that needs no run of the program. One line "name: OK" a check, or
 # the offending lines; the exit status says whether all passed.
 set -u
 
 library=$(realpath "$1")
+libraries=$(realpath "$@")
 cd "$(dirname "$0")/../.." || exit 1
 
 # Files that belong to the project, committed or not yet, one a line. What came with a target
@@ -86,7 +87,7 @@ failed=0
 report format "$(check_format)"
 report cppcheck "$(check_cppcheck)"
 tests/tools/check_layers.sh || failed=1
-tests/tools/check_names.sh "$library" || failed=1
+tests/tools/check_names.sh $libraries || failed=1
 tests/tools/check_docs.sh || failed=1
 report licence "$(check_licence_lines)"
 report lengths "$(check_lengths)"

@@ -3,7 +3,7 @@
 // Statistical tests have fixed seeds and bounds of 4 standard errors: a right generator fails one
 // of them with a chance of 6e-5 for a seed chosen blindly. Estimators and their errors are those of
 // independent numbers.
-#include "base/rng.h"
+#include "base/rng_lanes.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
 
@@ -72,6 +72,24 @@ static void test_rng_philox_lane_equals_word_0_when_counters_vary(void **state) 
         const uint32_t lane = rng_philox_lane((uint32_t)seed, (uint32_t)(seed >> 32), a, b, c,
                                               rng_stream_word(stream, 0));
         assert_int_equal(lane, mf_rng_philox(seed, stream, a, b, c).word[0]);
+    }
+}
+
+static void test_rng_philox_lanes_words_equal_the_library_in_all_words(void **state) {
+    (void)state;
+    int32_t b[RNG_LANES], c[RNG_LANES], word[4][RNG_LANES + 3];
+    for (int n = 0; n < RNG_LANES; n++) {
+        const struct rng_block random = mf_rng_philox(5, RNG_SELECTION, (uint32_t)n, 0, 0);
+        b[n] = (int32_t)random.word[0];
+        c[n] = (int32_t)random.word[1];
+    }
+    rng_philox_lanes_words(0x89abcdef, 0x01234567, 17, b, c, rng_stream_word(RNG_PAIR_MEMORY, 0), 4,
+                           word[0], RNG_LANES + 3);
+    for (int n = 0; n < RNG_LANES; n++) {
+        const struct rng_block block =
+            mf_rng_philox(0x0123456789abcdef, RNG_PAIR_MEMORY, 17, (uint32_t)b[n], (uint32_t)c[n]);
+        for (int w = 0; w < 4; w++)
+            assert_int_equal((uint32_t)word[w][n], block.word[w]);
     }
 }
 
@@ -271,6 +289,7 @@ int main(void) {
         cmocka_unit_test(test_rng_philox_lane_gives_the_known_answers_when_given_their_counters),
         cmocka_unit_test(test_rng_philox_puts_seed_and_counters_in_place_when_they_differ),
         cmocka_unit_test(test_rng_philox_lane_equals_word_0_when_counters_vary),
+        cmocka_unit_test(test_rng_philox_lanes_words_equal_the_library_in_all_words),
         cmocka_unit_test(test_rng_stream_word_keeps_streams_apart_when_extra_is_large),
         cmocka_unit_test(test_rng_pair_noise_has_mean_0_and_variance_1_when_sampled_over_pairs),
         cmocka_unit_test(test_rng_pair_noise_is_uncorrelated_when_step_partner_or_seed_differ),

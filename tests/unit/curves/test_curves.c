@@ -406,8 +406,25 @@ static void test_core_starts_flat_when_the_potential_attracts_inwards(void **sta
     assert_identical(phi[0], 7);
 }
 
+static void
+test_sampled_friction_weight_has_straight_pieces_and_none_before_the_first(void **state) {
+    (void)state;
+    const double r[] = {0.5, 0.6, 0.8, 1}, y[] = {0, 3, 0, 0};
+    struct curve curve;
+    assert_ok(mf_curve_create(&curve, mf_curve_find(mf_curve_omegas, "table")));
+    assert_ok(mf_sampled_set_points(&curve, r, y, 4));
+    assert_close(mf_curve_value(&curve, 0.2), 0, 0);
+    assert_close(mf_curve_value(&curve, 0.52), 0.6, 1e-12);
+    assert_close(mf_curve_value(&curve, 0.7), 1.5, 1e-12);
+    assert_close(mf_curve_value(&curve, 0.9), 0, 0);
+    assert_close(mf_curve_value(&curve, 1), 0, 0);
+    mf_curve_clear(&curve);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(
+            test_sampled_friction_weight_has_straight_pieces_and_none_before_the_first),
         cmocka_unit_test(test_curve_find_knows_every_family_when_named),
         cmocka_unit_test(test_lennard_jones_has_its_textbook_values_when_shifted),
         cmocka_unit_test(test_lennard_jones_is_straight_when_particles_overlap),

@@ -55,7 +55,8 @@ static void test_interaction_forces_are_minus_the_slope_of_their_energy(void **s
         struct fluid fluid;
         struct simulation simulation;
         struct numbers numbers;
-        if (mf_interaction_list[n] == &mf_soft_discs) // in two dimensions: test_soft_discs
+        if (mf_interaction_list[n] == &mf_soft_discs || // in two dimensions: test_soft_discs
+            mf_interaction_list[n] == &mf_shear_wave)   // no potential, either
             continue;
         fill(mf_interaction_list[n], &numbers);
         begin(&fluid, &simulation, mf_interaction_list[n], &numbers);
@@ -101,6 +102,31 @@ static void test_uniform_force_accelerates_all_and_conserves_the_energy(void **s
     // Each has got 2.5 k_B T_0 of work, most of them on a way through the boundary; the fluid alone
     // keeps its energy to 0.01 of it at this time step.
     assert_close(energy[1] / COUNT, energy[0] / COUNT, 0.01);
+    mf_simulation_clear(&simulation);
+    fluid_clear(&fluid);
+}
+
+/// Free particles at rest: each is accelerated as the wave says, and all together not at all.
+static void test_shear_wave_accelerates_by_a_cosine_and_conserves_the_momentum(void **state) {
+    (void)state;
+    static const double acceleration = 0.7;
+    struct fluid fluid;
+    struct simulation simulation;
+    double momentum = 0, mean = 0;
+    begin(&fluid, &simulation, &mf_shear_wave, &acceleration);
+    struct particles *particles = &simulation.particles;
+    const double edge = fluid.setup.box.length[2];
+    simulation.setup.potential = simulation.law.potential = NULL;
+    assert_ok(mf_simulation_compute_forces(&simulation, 0));
+    for (size_t k = 0; k < COUNT; k++)
+        mean += acceleration * cos(2 * M_PI * particles->position[2][k] / edge) / COUNT;
+    for (size_t k = 0; k < COUNT; k++) {
+        momentum += particles->force[0][k];
+        assert_close(particles->force[0][k],
+                     acceleration * cos(2 * M_PI * particles->position[2][k] / edge) - mean, 1e-12);
+        assert_identical(particles->force[2][k], 0);
+    }
+    assert_close(momentum, 0, 1e-12);
     mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
 }
@@ -301,6 +327,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_interaction_forces_are_minus_the_slope_of_their_energy),
         cmocka_unit_test(test_uniform_force_accelerates_all_and_conserves_the_energy),
+        cmocka_unit_test(test_shear_wave_accelerates_by_a_cosine_and_conserves_the_momentum),
         cmocka_unit_test(test_restart_goes_on_with_the_same_bits_when_an_interaction_has_state),
         cmocka_unit_test(test_restart_goes_on_with_the_same_bits_when_an_integrator_has_state),
         cmocka_unit_test(test_pairs_come_first_and_too_many_interactions_are_refused),

@@ -37,8 +37,18 @@ static void test_data_table_convert_reads_the_units_of_headings(void **state) {
         assert_close_relative(value[0], 1, 1e-12);
         assert_close_relative(value[1], 1, 1e-7);
     }
+    // As `gmx rdf` writes it; the y axis, "g(r)", tells no unit.
+    assert_ok(
+        convert(state,
+                "# gmx rdf\n@    title \"Radial distribution\"\n@    xaxis  label \"r (nm)\"\n"
+                "@    yaxis  label \"g(r)\"\n@TYPE xy\n@ s0 legend \"OW\"\n0.34 0.997735512\n",
+                &argon, value));
+    assert_close_relative(value[0], 1, 1e-12);
+    assert_close_relative(value[1], 1, 1e-7);
     struct units real = argon;
     real.system = UNITS_ANGSTROM_FS;
+    assert_ok(convert(state, "@ xaxis label \"r (nm)\"\n0.34 0.23846451\n", &real, value));
+    assert_close_relative(value[0], 1, 1e-12);
     assert_ok(convert(state, "3.4 0.23846451\n", &real, value));
     assert_close_relative(value[0], 1, 1e-12);
     assert_close_relative(value[1], 1, 1e-7);
@@ -61,6 +71,8 @@ static void test_data_table_convert_leaves_reduced_files_alone(void **state) {
     assert_int_equal(convert(state, "# r[nm]\tphi[1]\n0.34 0.5\n", &reduced, value),
                      STATUS_BAD_INPUT);
     assert_contains(mf_status_message(), "column 1 is in nm");
+    assert_int_equal(convert(state, "@ xaxis label \"r (nm)\"\n0.34 0.5\n", &reduced, value),
+                     STATUS_BAD_INPUT);
     reduced.length = 1;
     assert_ok(convert(state, "# r[nm]\tphi[1]\n0.34 0.5\n", &reduced, value));
     assert_close(value[0], 0.34, 0);

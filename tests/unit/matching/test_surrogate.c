@@ -185,6 +185,39 @@ static void test_surrogate_error_of_an_open_variable_is_about_that_of_no_knowled
     }
 }
 
+/// One row in ten is wild, as a candidate that has frozen is: errors hardly grow, and hold the
+/// truth.
+static void test_surrogate_errors_do_not_follow_a_few_wild_rows(void **state) {
+    (void)state;
+    enum { EXPERIMENTS = 100, WILD = CAPACITY / 10 };
+    const struct experiment tame = {
+        .spread = 0.1, .noise = 0.01, .target_error = 0.01, .rows = CAPACITY - WILD};
+    const struct experiment wild = {.spread = 0.1, .noise = 3};
+    double ratio = 0, squares = 0;
+    for (uint32_t number = 0; number < EXPERIMENTS; number++) {
+        struct data data;
+        struct surrogate_model without, with;
+        struct rng_sequence random = mf_rng_sequence_begin(11, RNG_INITIAL, number, 0);
+        begin(&data, &tame, 0.1, number);
+        fit(&data, 0.3, &without);
+        for (int k = 0; k < WILD; k++)
+            add_row(&data, &wild, &random);
+        fit(&data, 0.3, &with);
+        for (int n = 0; n < VARIABLES; n++) {
+            ratio += sqrt(with.covariance[n * (VARIABLES + 1)] /
+                          without.covariance[n * (VARIABLES + 1)]) /
+                     (VARIABLES * EXPERIMENTS);
+            squares += pow(deviation(&data, &without, n), 2) / (VARIABLES * EXPERIMENTS);
+        }
+        mf_surrogate_model_clear(&without);
+        mf_surrogate_model_clear(&with);
+        mf_surrogate_clear(&data.surrogate);
+    }
+    print_message("errors grow by %.2f; rms deviation without %.2f errors\n", ratio, sqrt(squares));
+    assert_true(ratio < 1.5);
+    assert_in_range((int)(100 * sqrt(squares)), 70, 130);
+}
+
 static void test_surrogate_is_not_known_when_there_are_too_few_rows(void **state) {
     (void)state;
     const struct experiment e = {.spread = 0.1, .noise = 0.01, .target_error = 0.01};
@@ -323,6 +356,7 @@ int main(void) {
         cmocka_unit_test(test_surrogate_meets_one_feature_exactly_when_it_is_a_constraint),
         cmocka_unit_test(test_surrogate_errors_hold_the_truth_as_often_as_they_say),
         cmocka_unit_test(test_surrogate_error_of_an_open_variable_is_about_that_of_no_knowledge),
+        cmocka_unit_test(test_surrogate_errors_do_not_follow_a_few_wild_rows),
         cmocka_unit_test(test_surrogate_is_not_known_when_there_are_too_few_rows),
         cmocka_unit_test(test_surrogate_forgets_the_oldest_rows_when_it_is_full),
         cmocka_unit_test(test_surrogate_stays_within_the_range_when_the_target_is_beyond),

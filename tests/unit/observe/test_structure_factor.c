@@ -170,8 +170,10 @@ static void test_structure_factor_of_a_mixture_has_the_partial_ones(void **state
     assert_ok(still_begin(&still));
     still_sample(&still);
     const struct units none = {0};
-    const struct observable_results results = {&still.simulation.setup, &still.plan, &none,
-                                               ((struct temporary_folder *)*state)->path};
+    const struct observable_results results = {.setup = &still.simulation.setup,
+                                               .plan = &still.plan,
+                                               .units = &none,
+                                               .folder = ((struct temporary_folder *)*state)->path};
     assert_ok(still.use.observable->write(still.use.state, &results));
     char path[512];
     snprintf(path, sizeof path, "%s/structure_factor.tsv", results.folder);

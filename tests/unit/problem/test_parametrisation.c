@@ -123,7 +123,9 @@ static void test_parametrisation_start_falls_from_the_middle_when_no_weight_is_g
     assert_ok(mf_parametrisation_start(&both.parametrisation, both.variables));
     mf_parametrisation_curve(&both.parametrisation, UNKNOWN_OMEGA, both.variables, curve);
     for (int k = 0; k < OMEGA_POINTS; k++)
-        assert_close(curve[k], 2.5 * (1 - both.parametrisation.unknowns.omega.r[k] / 1.5), 0.02);
+        assert_close(curve[k],
+                     2.5 * (1 - both.parametrisation.unknowns.omega[UNKNOWN_OMEGA].r[k] / 1.5),
+                     0.02);
     mf_parametrisation_clear(&both.parametrisation);
 }
 
@@ -274,6 +276,44 @@ static void test_parametrisation_laws_are_those_of_the_scene_when_they_are_known
     mf_parametrisation_clear(&both.parametrisation);
 }
 
+/// What was found of a memory and across pairs is what a simulation of the scene reads; what is
+/// known of another mode stays.
+static void test_parametrisation_laws_put_friction_that_remembers_into_the_scene(void **state) {
+    (void)state;
+    struct both both;
+    struct unknowns_laws laws;
+    struct table known = {.cutoff = 7};
+    double curve[OMEGA_POINTS], value;
+    begin(&both, false, true);
+    mf_parametrisation_clear(&both.parametrisation);
+    const enum unknown_kind kinds[] = {UNKNOWN_MEMORY + 1, UNKNOWN_TRANSVERSE};
+    struct formula_power_omega_parameters power[] = {{2, 1, 0, 1.5}, {1, 1, 0, 1.5}};
+    struct curve start[2];
+    for (int k = 0; k < 2; k++) {
+        start[k] = (struct curve){&mf_formula_power_omega, &power[k]};
+        both.problem.unknown[kinds[k]] = both.problem.unknown[UNKNOWN_OMEGA];
+        both.problem.unknown[kinds[k]].start[0] = &start[k];
+    }
+    both.problem.unknown[UNKNOWN_OMEGA].wanted = false;
+    both.problem.scene.memory = (struct pair_memory_law){.modes = 2, .mode = {{&known, 1, 0}}};
+    assert_ok(mf_parametrisation_init(&both.parametrisation, &both.problem));
+    double variables[2 * WEIGHT_GENES];
+    assert_ok(mf_parametrisation_start(&both.parametrisation, variables));
+    assert_ok(mf_parametrisation_laws(&both.parametrisation, variables, &laws));
+    const struct pair_memory_law *memory = &laws.problem.scene.memory;
+    assert_ptr_equal(memory->mode[0].omega, &known);
+    const struct table *found[] = {memory->mode[1].omega, memory->transverse};
+    for (int k = 0; k < 2; k++) {
+        assert_non_null(found[k]);
+        mf_parametrisation_curve(&both.parametrisation, kinds[k], variables, curve);
+        mf_table_evaluate(found[k], 0.8, &value, NULL, NULL);
+        assert_close(value, curve[(OMEGA_POINTS - 1) / 2], 1e-6);
+        assert_close(value, mf_curve_value(&start[k], 0.8), 0.02);
+    }
+    mf_unknowns_laws_clear(&laws);
+    mf_parametrisation_clear(&both.parametrisation);
+}
+
 /// A formula beside nothing else: of three variables, or of those that are not fixed.
 static void begin_power_with(struct both *both, int64_t variables, double sigma, double exponent,
                              double inner_cutoff) {
@@ -312,9 +352,11 @@ static void test_parametrisation_power_holds_what_is_fixed(void **state) {
     both.variables[0] = 0.8; // σ = 4
     mf_parametrisation_curve(&both.parametrisation, UNKNOWN_OMEGA, both.variables, curve);
     for (size_t k = 0; k < OMEGA_POINTS; k++)
-        assert_close(
-            curve[k],
-            4 / 2.5 * mf_curve_value(&both.omega, both.parametrisation.unknowns.omega.r[k]), 1e-9);
+        assert_close(curve[k],
+                     4 / 2.5 *
+                         mf_curve_value(&both.omega,
+                                        both.parametrisation.unknowns.omega[UNKNOWN_OMEGA].r[k]),
+                     1e-9);
     mf_parametrisation_clear(&both.parametrisation);
     begin_power_with(&both, 2, 2.5, NAN, NAN);
     assert_int_equal(both.parametrisation.variables, 2);
@@ -359,10 +401,11 @@ static void test_parametrisation_band_of_the_formula_follows_its_genes(void **st
     assert_ok(mf_parametrisation_band(&both.parametrisation, UNKNOWN_OMEGA, both.variables,
                                       covariance, error, flat));
     for (size_t k = 0; k < OMEGA_POINTS; k++)
-        assert_close(error[k],
-                     mf_curve_value(&both.omega, both.parametrisation.unknowns.omega.r[k]) / 2.5 *
-                         5 * 0.01,
-                     1e-9);
+        assert_close(
+            error[k],
+            mf_curve_value(&both.omega, both.parametrisation.unknowns.omega[UNKNOWN_OMEGA].r[k]) /
+                2.5 * 5 * 0.01,
+            1e-9);
     mf_parametrisation_clear(&both.parametrisation);
 }
 
@@ -408,6 +451,7 @@ int main(void) {
         cmocka_unit_test(test_parametrisation_band_of_the_formula_follows_its_genes),
         cmocka_unit_test(test_parametrisation_flat_directions_are_principal_components),
         cmocka_unit_test(test_parametrisation_laws_are_those_of_the_scene_when_they_are_known),
+        cmocka_unit_test(test_parametrisation_laws_put_friction_that_remembers_into_the_scene),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -73,7 +73,8 @@ static void test_parametrisation_start_gives_back_each_potential_of_a_mixture(vo
     }
     mf_parametrisation_curve(&m.parametrisation, UNKNOWN_OMEGA, m.variables, omega);
     assert_close(omega[OMEGA_POINTS / 2],
-                 mf_curve_value(&m.omega, m.parametrisation.unknowns.omega.r[OMEGA_POINTS / 2]),
+                 mf_curve_value(
+                     &m.omega, m.parametrisation.unknowns.omega[UNKNOWN_OMEGA].r[OMEGA_POINTS / 2]),
                  0.02);
     mf_parametrisation_clear(&m.parametrisation);
 }

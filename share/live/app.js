@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The page: what the server tells goes to the panels, and buttons go to the server.
+import { getJson, getText, listen, post } from "/server.js";
+import { Tables, parse, pretty } from "/tables.js";
+import { Curves } from "/curves.js";
+import { Population } from "/population.js";
+import { Maps } from "/maps.js";
+import { Particles } from "/particles.js";
+import { Settings } from "/settings.js";
+import { Files } from "/files.js";
+
+const at = (id) => document.getElementById(id);
+const panels = [new Curves(at("panels")), new Population(at("panels")), new Maps(at("panels"))];
+const tables = new Tables();
+const particles = new Particles(at("particles"), { scene: at("scene"), frames: at("frames") });
+const settings = new Settings(at("settings"));
+const files = new Files(at("files"), { fail: showMessage, settings: () => settings.text,
+  open: async (path) => { await post("open", { path }); select("view"); } });
+let state = { phase: "", file: "" };
+
+function showMessage(text) {
+  const settings = text?.includes("--force"); // an option of the command line, of which this page has its own
+  at("message").textContent = (text || "") + (settings ? " (here: under Settings, the folder for the results and \"replace\")" : "");
+  at("message").hidden = !text;
+}
+
+async function act(what) {
+  try {
+    showMessage("");
+    await what();
+  } catch (error) {
+    showMessage(error.message);
+  }
+}
+
+// Tabs --------------------------------------------------------------------------------------------
+
+const tabs = ["view", "settings", "files", "log"];
+
+function select(name, focus = false) {
+  for (const tab of tabs) {
+    const chosen = tab === name, button = at("tab-" + tab);
+    button.setAttribute("aria-selected", chosen);
+    button.tabIndex = chosen ? 0 : -1;
+    at(tab).hidden = !chosen;
+    if (chosen && focus)
+      button.focus();
+  }
+  if (name === "files")
+    files.show();
+}
+
+for (const tab of tabs) {
+  at("tab-" + tab).addEventListener("click", () => select(tab));
+  at("tab-" + tab).addEventListener("keydown", (event) => {
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (step)
+      select(tabs[(tabs.indexOf(tab) + step + tabs.length) % tabs.length], true);
+  });
+}
+
+// What the server tells ---------------------------------------------------------------------------
+
+const phases = { choosing: "choose a file", looking: "results", ready: "ready", running: "running", paused: "paused",
+  stopped: "stopped", ended: "ended", refused: "refused" };
+
+async function takeState(next) {
+  const before = state;
+  state = next;
+  at("phase").textContent = phases[state.phase] || state.phase;
+  at("phase").dataset.phase = state.phase;
+  at("subject").textContent = [state.file, state.folder && `→ ${state.folder}`].filter(Boolean).join(" ") || "nothing is chosen";
+  at("version").textContent = "mesofit " + state.version;
+  document.title = `${phases[state.phase] || ""} · ${state.file || state.folder || "mesofit"}`;
+  if (state.message || state.phase !== before.phase)
+    showMessage(state.message);
+  showControls();
+  if (state.file !== before.file || (state.phase === "ready" && before.phase !== "ready"))
+    await loadSubject();
+  if (state.kind === "simulation" && ["running", "paused"].includes(state.phase))
+    particles.follow();
+  else
+    particles.leave();
+  if (state.phase === "ended" && !state.stays)
+    setTimeout(() => { stopListening(); showGone(state.message || "the run has ended, and mesofit with it"); }, 1500);
+}
+
+async function loadSubject() {
+  panels.forEach((panel) => panel.clear());
+  particles.clear();
+  at("numbers").replaceChildren();
+  showEmpty();
+  if (state.file)
+    await settings.load(await getText("text"));
+  else
+    settings.clear();
+}
+
+function showControls() {
+  const running = state.phase === "running", paused = state.phase === "paused", idle = !running && !paused;
+  const simulates = state.kind === "simulation";
+  const on = { start: idle && state.file !== "", resume: (idle && state.phase === "stopped") || paused, pause: running,
+    step: (running || paused) && simulates, stop: running || paused };
+  const focused = document.activeElement.id;
+  for (const [id, enabled] of Object.entries(on))
+    at(id).disabled = !enabled;
+  if (focused in on && !on[focused]) // a keyboard goes on where it was
+    at(Object.keys(on).find((id) => on[id]) || "tab-view").focus();
+  at("start").textContent = ["ended", "stopped"].includes(state.phase) ? "Start again" : "Start";
+  at("change").hidden = idle || !simulates;
+  at("step").hidden = at("speed-label").hidden = at("speed-value").hidden = !simulates;
+}
+
+function takeProgress(progress) {
+  at("bar").value = progress.total > 0 ? progress.done / progress.total : 0;
+  const left = progress.rate > 0 ? (progress.total - progress.done) / progress.rate : NaN;
+  const text = !Number.isFinite(left) ? "" : left < 100 ? `${left.toFixed(0)} s` : left < 6000 ? `${(left / 60).toFixed(0)} min` : `${(left / 3600).toFixed(1)} h`;
+  at("progress-text").textContent = `${progress.text}  ${progress.done}/${progress.total} ${progress.unit}, ${progress.rate.toPrecision(3)}/s${text && `, at most ${text} left`}`;
+}
+
+function takeNumbers(numbers) {
+  const shown = Object.entries(numbers).map(([name, { value, unit }]) => {
+    const box = document.createElement("div"), number = document.createElement("b"), label = document.createElement("span");
+    number.textContent = value === null ? "unknown" : Number.isInteger(value) ? String(value) : value.toPrecision(4);
+    label.textContent = name + (unit && unit !== "1" ? ` [${pretty(unit)}]` : "");
+    box.append(number, label);
+    return box;
+  });
+  at("numbers").replaceChildren(...shown);
+  at("change-temperature").placeholder = numbers["set temperature"]?.value ?? "";
+  at("change-time-step").placeholder = numbers["time step"]?.value ?? "";
+  showEmpty();
+}
+
+function showEmpty() {
+  const count = panels.reduce((sum, panel) => sum + panel.count, 0);
+  at("empty").textContent = (state.file ? "Nothing has been computed yet. Press Start, or choose another" : "Choose a") +
+    " scene, run file or folder of results under Files.";
+  at("empty").hidden = count > 0 || !at("scene").hidden;
+  at("compare").hidden = count === 0;
+}
+
+// One listing at a time, and then the newest.
+let newest = null, busy = false;
+async function takeTables(listing) {
+  newest = listing;
+  if (busy)
+    return;
+  busy = true;
+  while (newest) {
+    const now = newest;
+    newest = null;
+    const changed = await tables.update(now);
+    panels.forEach((panel) => panel.update(changed));
+    showEmpty();
+  }
+  busy = false;
+}
+
+// Events in their order: a new subject clears the panels before its tables come.
+let queue = Promise.resolve();
+const takers = { state: takeState, progress: takeProgress, numbers: takeNumbers, tables: takeTables };
+function take(name, text) {
+  queue = queue.then(async () => {
+    if (name === "log")
+      at("lines").textContent = text;
+    else if (takers[name])
+      await takers[name](JSON.parse(text));
+  }).catch((error) => showMessage(error.message));
+}
+
+function showGone(text) {
+  at("phase").textContent = "gone";
+  at("phase").dataset.phase = "gone";
+  showMessage(text);
+  particles.leave();
+  at("change").hidden = true;
+  for (const id of ["start", "resume", "pause", "step", "stop"])
+    at(id).disabled = true;
+}
+
+const stopListening = listen(take, (error, failures) => {
+  const refused = /token|127\.0\.0\.1|site/.test(error.message);
+  if (refused || failures > 2)
+    showGone(refused ? error.message : "mesofit does not answer: it has ended, or the tunnel is closed");
+}, () => state.phase === "ended" && !state.stays);
+
+// What the buttons ask for ------------------------------------------------------------------------
+
+const wish = (body) => post("wish", {}, JSON.stringify(body));
+at("start").addEventListener("click", () => act(async () => { await post("start", settings.query(), settings.text); select("view"); }));
+at("resume").addEventListener("click", () => act(() => (state.phase === "paused" ? wish({ wish: "go" })
+  : post("start", { ...settings.query(), resume: "1" }, settings.text))));
+at("pause").addEventListener("click", () => act(() => wish({ wish: "pause" })));
+at("step").addEventListener("click", () => act(() => wish({ wish: "step", steps: 1 })));
+at("stop").addEventListener("click", () => act(() => wish({ wish: "stop" })));
+at("speed").addEventListener("input", () => {
+  const value = Number(at("speed").value), free = value >= 5, speed = free ? 0 : Math.round(Math.pow(10, value));
+  at("speed-value").textContent = free ? "as fast as it can" : `${speed} steps/s`;
+  act(() => wish({ wish: "speed", speed }));
+});
+// What is no number goes as it is: the program says what is wrong with it.
+at("change").addEventListener("submit", (event) => {
+  const body = { wish: "change" };
+  event.preventDefault();
+  for (const [key, id] of [["temperature", "change-temperature"], ["time_step", "change-time-step"]]) {
+    const text = at(id).value.trim();
+    if (text)
+      body[key] = Number.isFinite(Number(text)) ? Number(text) : text;
+  }
+  act(async () => { await wish(body); at("change").reset(); });
+});
+at("colour").addEventListener("change", () => particles.choose("colour", at("colour").value));
+at("slice").addEventListener("input", () => particles.choose("slice", Number(at("slice").value)));
+at("slice-at").addEventListener("input", () => particles.choose("sliceAt", Number(at("slice-at").value)));
+at("bead").addEventListener("input", () => particles.choose("bead", Number(at("bead").value)));
+
+// Tables of the same names in another folder of results, dashed beside these.
+at("compare-go").addEventListener("click", () => act(async () => {
+  const folder = at("other").value.trim().replace(/\/$/, ""), other = new Map();
+  if (folder)
+    for (const file of await getJson("files", { path: folder }))
+      if (/^(potential|omega|rdf)[^_]*\.tsv$/.test(file.name))
+        other.set(file.name, parse(await getText("file", { path: folder + "/" + file.name })));
+  panels[0].compare(other);
+}));
+
+showControls();

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Panels of curves: one for each table that is known, whatever run has written it.
+import { keep, symbol } from "/tables.js";
+import { Plot, band, colour, curve, translucent } from "/plots.js";
+
+const most = 60; // faint lines of a history
+
+// y within what lies beyond the core, which would flatten the rest.
+function besideCore(datasets) {
+  const values = datasets.flatMap((set) => set.data.map((p) => p.y)).filter(Number.isFinite);
+  if (!values.length)
+    return [undefined, undefined];
+  const sorted = [...values].sort((a, b) => a - b);
+  const low = sorted[0], middle = sorted[Math.floor(sorted.length / 2)];
+  const high = sorted[sorted.length - 1];
+  const limit = middle + Math.max(4 * (middle - low), 0.5);
+  return high > limit + 3 * Math.abs(limit - low) ? [low - 0.1 * (limit - low), limit] : [undefined, undefined];
+}
+
+// What a table's columns say as curves: y, its error, and what it is to be compared with.
+function pairs(table, x, names) {
+  return names.filter((name) => table.has(name)).flatMap((name, k) => {
+    const y = table.values(name);
+    const error = table.has(name + "_error") ? table.values(name + "_error") : null;
+    return [...(error ? band(x, y, error, k) : []), curve(symbol(name), x, y, k)];
+  });
+}
+
+// An unknown: its curve with a band, earlier iterations, the truth, another run's.
+function showUnknown(plot, table, name, context) {
+  const x = table.column(0), value = table.columns[1].name;
+  const sets = [];
+  const history = context.tables.get(name.replace(".tsv", "_history.tsv"));
+  if (history) {
+    const count = history.columns.length - 1, first = Math.max(1, count - most + 1);
+    for (let k = first; k < count; k++)
+      sets.push(curve("", history.column(0), history.column(k), 7,
+        { borderWidth: 1, borderColor: translucent(colour(7), 0.15 + 0.35 * (k - first) / (count - first + 1)) }));
+  }
+  const y = table.values(value);
+  if (table.has(value + "_error"))
+    sets.push(...band(x, y, table.values(value + "_error"), 0));
+  sets.push(curve(symbol(value), x, y, 0));
+  if (table.has("truth") && table.values("truth").some(Number.isFinite))
+    sets.push(curve("truth", x, table.values("truth"), 1, { borderDash: [6, 4] }));
+  const other = context.other.get(name);
+  if (other)
+    sets.push(curve("other run", other.column(0), other.column(1), 2, { borderDash: [3, 3] }));
+  plot.show(sets, { x: table.label(0), y: table.label(1) });
+  plot.say(history ? `Iterations: ${history.columns.length - 1}. Grey: earlier ones. The band is 1.96 standard errors.` : "");
+}
+
+// The function that a table is of, and the pair of types in the table's name.
+const functions = { rdf: "g(r)", rdf_now: "g(r)", vacf: "velocity autocorrelation", msd: "mean-square displacement", structure_factor: "S(q)" };
+function functionOf(name) {
+  const key = /^(rdf_now|rdf|[a-z_]+)/.exec(name)[0];
+  return functions[key] || key.replaceAll("_", " ");
+}
+const nowOf = (name) => (name.startsWith("rdf_now") ? ", last samples of the fit" : "");
+const pairOf = (name) => name.replace(/^rdf(_now)?|\.tsv$/g, "").replace("_", " ");
+
+// A target and what was found of it.
+function showTarget(plot, table, name, context) {
+  const x = table.column(0), sets = [];
+  if (table.has("target")) {
+    sets.push(...band(x, table.values("target"), table.has("target_error") ? table.values("target_error") : x.map(() => 0), 7));
+    sets.push(curve("target", x, table.values("target"), 7, { borderWidth: 4, borderColor: translucent(colour(7), 0.6) }));
+    sets.push(curve("result", x, table.values("result"), 0));
+  } else {
+    sets.push(...pairs(table, x, [table.columns[1].name]));
+  }
+  const other = context.other.get(name);
+  if (other)
+    sets.push(curve("other run", other.column(0), other.values(other.has("result") ? "result" : other.columns[1].name), 2,
+      { borderDash: [3, 3] }));
+  plot.show(sets, { x: table.label(0), y: functionOf(name) + table.unit(1) });
+}
+
+function showDifference(plot, table) {
+  const x = table.column(0), target = table.values("target"), result = table.values("result");
+  const difference = result.map((v, k) => v - target[k]);
+  const known = table.has("result_error") && table.has("target_error");
+  const noise = known
+    ? table.values("result_error").map((e, k) => Math.hypot(e || 0, table.values("target_error")[k] || 0)) : x.map(() => 0);
+  plot.show([...band(x, x.map(() => 0), noise, 7), curve("result − target", x, difference, 1)],
+    { x: table.label(0), y: "difference" });
+  plot.say(known ? "The band is what statistical errors alone would give, 1.96 standard errors." : "");
+}
+
+// Columns of a history, each against the first one.
+const showColumns = (names) => (plot, table) => {
+  plot.show(pairs(table, table.column(0), names).map((set) => ({ ...set, pointRadius: set.label && table.length < 40 ? 3 : 0 })),
+    { x: table.label(0), y: names.length === 1 ? table.label(table.at(names[0])) : "" });
+};
+
+const positive = (names) => (table) => names.some((name) => table.has(name) && table.values(name).some((v) => v > 0));
+const hasColumns = (names) => (table) => names.some((name) => table.has(name) && table.values(name).some(Number.isFinite));
+
+// file, title, what shows it; `when` says whether the table has it.
+const kinds = [
+  { file: /^(potential|omega)(_[^_]+-[^_]+)?\.tsv$/, title: (n) => n.replace(".tsv", "").replace("potential", "Φ(r)").replace("omega", "ω(r)"),
+    show: showUnknown, range: besideCore },
+  { file: /^rdf(_now)?(_[^_]+-[^_]+)?\.tsv$/, title: (n) => "g(r)" + nowOf(n) + pairOf(n), show: showTarget },
+  { file: /^rdf(_now)?(_[^_]+-[^_]+)?\.tsv$/, title: (n) => "g(r) less its target" + nowOf(n) + pairOf(n), show: showDifference, when: (t) => t.has("target") },
+  { file: /^rdf_now(_[^_]+-[^_]+)?\.tsv$/, title: (n) => "S − S* by bin" + pairOf(n), show: showColumns(["excess"]) },
+  { file: /^history\.tsv$/, title: () => "error of the fit", show: showColumns(["error", "noise", "least", "mean"]), logarithmic: true, when: positive(["error"]) },
+  { file: /^history\.tsv$/, title: () => "pressure", show: showColumns(["pressure"]), when: hasColumns(["pressure"]) },
+  { file: /^history\.tsv$/, title: () => "directions of Φ that follow the data", show: showColumns(["directions"]), when: hasColumns(["directions"]) },
+  { file: /^history\.tsv$/, title: () => "step and samples", show: showColumns(["damping", "disagreement", "acceptance"]), when: hasColumns(["damping"]) },
+  { file: /^history\.tsv$/, title: () => "diversity of the population", show: showColumns(["diversity"]), when: hasColumns(["diversity"]) },
+  { file: /^history\.tsv$/, title: () => "simulations that failed", show: showColumns(["failures"]), when: hasColumns(["failures"]) },
+  { file: /^(vacf|msd|structure_factor|force_covariance)\.tsv$/, title: functionOf, show: showTarget },
+  { file: /^motion\.tsv$/, title: () => "mean-square displacement", show: showColumns(["msd"]) },
+  { file: /^motion\.tsv$/, title: () => "velocity autocorrelation", show: showColumns(["vacf"]), when: hasColumns(["vacf"]) },
+  { file: /^thermodynamics\.tsv$/, title: () => "temperatures", show: showColumns(["temperature", "temperature_configurational"]) },
+  { file: /^thermodynamics\.tsv$/, title: () => "potential energy of a bead", show: showColumns(["potential_energy"]) },
+  { file: /^thermodynamics\.tsv$/, title: () => "pressure", show: showColumns(["pressure"]) },
+  { file: /^(polarity|polar_order|clusters|local_density|speeds|collisions|flow_profile|pareto_history)\.tsv$/,
+    title: (n) => n.replace(".tsv", "").replaceAll("_", " "),
+    show: (plot, table) => showColumns([table.columns[1].name])(plot, table) },
+];
+
+export class Curves {
+  constructor(parent) {
+    this.parent = parent;
+    this.plots = new Map();
+    this.tables = new Map();
+    this.other = new Map();
+  }
+
+  update(changed) {
+    keep(this.tables, changed);
+    kinds.forEach((kind, number) => {
+      const names = [...this.tables.keys(), ...changed.keys()].filter((name) => kind.file.test(name));
+      for (const name of new Set(names))
+        this.showOne(kind, number, name);
+    });
+  }
+
+  showOne(kind, number, name) {
+    const key = number + name, table = this.tables.get(name);
+    if (!table || table.length === 0 || (kind.when && !kind.when(table))) {
+      this.plots.get(key)?.remove();
+      this.plots.delete(key);
+      return;
+    }
+    if (!this.plots.has(key)) {
+      const plot = new Plot(this.parent, kind.title(name), { logarithmic: kind.logarithmic, range: kind.range });
+      plot.figure.dataset.table = name;
+      this.plots.set(key, plot);
+    }
+    kind.show(this.plots.get(key), table, name, this);
+  }
+
+  compare(tables) {
+    this.other = tables;
+    this.update(new Map());
+  }
+
+  clear() {
+    this.plots.forEach((plot) => plot.remove());
+    this.plots.clear();
+    this.tables.clear();
+    this.other.clear();
+  }
+
+  get count() {
+    return this.plots.size;
+  }
+}

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The working folder: look, open, edit, save, download.
+import { ask, download, getJson, getText, post } from "/server.js";
+
+const element = (name, more = {}, ...inside) => {
+  const made = Object.assign(document.createElement(name), more);
+  made.append(...inside);
+  return made;
+};
+const button = (text, act) => {
+  const made = element("button", { type: "button", textContent: text });
+  made.addEventListener("click", act);
+  return made;
+};
+const sizeText = (bytes) => (bytes < 1000 ? `${bytes} B` : bytes < 1e6 ? `${(bytes / 1000).toFixed(1)} kB` : `${(bytes / 1e6).toFixed(1)} MB`);
+const join = (folder, name) => (folder ? folder + "/" + name : name);
+
+export class Files {
+  constructor(place, { open, fail, settings }) {
+    Object.assign(this, { place, open, fail, settings, root: "work", folder: "" });
+  }
+
+  async act(what) {
+    try {
+      await what();
+    } catch (error) {
+      this.fail(error.message);
+    }
+  }
+
+  async show(root = this.root, folder = this.folder) {
+    await this.act(async () => {
+      const list = await getJson("files", { in: root, path: folder });
+      Object.assign(this, { root, folder });
+      this.build(list);
+    });
+  }
+
+  build(list) {
+    list.sort((a, b) => b.folder - a.folder || a.name.localeCompare(b.name));
+    const rows = list.map((file) => this.row(file));
+    this.view = element("div");
+    this.place.replaceChildren(this.crumbs(list), element("table", {}, element("tbody", {}, ...rows)), this.view);
+    if (this.root === "work")
+      this.place.append(this.saver());
+  }
+
+  crumbs(list) {
+    const bar = element("div", { className: "tools crumbs" });
+    bar.append(button("working folder", () => this.show("work", "")), button("results", () => this.show("result", "")));
+    const parts = this.folder ? this.folder.split("/") : [];
+    parts.forEach((part, k) => bar.append(button(part, () => this.show(this.root, parts.slice(0, k + 1).join("/")))));
+    if (list.some((file) => file.name === "used.json" || file.name === "summary.json")) {
+      if (this.root === "work")
+        bar.append(button("show these results", () => this.act(() => this.open(this.folder))));
+      bar.append(button("download as zip", () => this.act(() => download("zip", { in: this.root, path: this.folder }, "results.zip"))));
+    }
+    return bar;
+  }
+
+  row(file) {
+    const whole = join(this.folder, file.name), acts = element("td");
+    const name = button(file.name + (file.folder ? "/" : ""), () => (file.folder ? this.show(this.root, whole) : this.look(file.name, whole)));
+    if (!file.folder && this.root === "work" && file.name.endsWith(".json"))
+      acts.append(button("open", () => this.act(() => this.open(whole))), " ");
+    if (!file.folder)
+      acts.append(button("download", () => this.act(() => download("file", { in: this.root, path: whole }, file.name))));
+    return element("tr", {}, element("td", {}, name), element("td", { className: "size", textContent: file.folder ? "" : sizeText(file.size) }), acts);
+  }
+
+  async look(name, whole) {
+    await this.act(async () => {
+      const heading = element("h2", { textContent: name });
+      if (/\.(png|svg)$/.test(name)) {
+        const picture = element("img", { className: "figure", alt: "figure " + name });
+        picture.src = URL.createObjectURL(await (await ask("file", { in: this.root, path: whole })).blob());
+        this.view.replaceChildren(heading, picture);
+      } else {
+        const text = await getText("file", { in: this.root, path: whole });
+        const shown = element("textarea", { value: text.slice(0, 200000), spellcheck: false, readOnly: this.root !== "work" || text.length > 200000 });
+        shown.setAttribute("aria-label", "contents of " + name);
+        this.view.replaceChildren(heading, shown);
+        if (!shown.readOnly)
+          this.view.append(button("save " + name, () => this.act(() => this.save(whole, shown.value, true))));
+      }
+      this.view.scrollIntoView({ block: "nearest" });
+    });
+  }
+
+  async save(whole, contents, replace) {
+    await post("file", { path: whole, ...(replace ? { replace: "1" } : {}) }, contents);
+    await this.show();
+  }
+
+  // The settings under a new name, or a file of this computer's.
+  saver() {
+    const name = element("input", { type: "text", placeholder: "new.json", size: 20 }), upload = element("input", { type: "file" });
+    upload.addEventListener("change", () => this.act(async () => {
+      if (upload.files[0])
+        await this.save(join(this.folder, upload.files[0].name), upload.files[0], false);
+    }));
+    return element("div", { className: "tools" }, element("label", {}, "save the settings here as ", name),
+      button("save", () => this.act(() => this.save(join(this.folder, name.value.trim()), this.settings(), false))),
+      element("label", {}, "load a file into this folder ", upload));
+  }
+}

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file What the work publishes for whoever looks: the latest texts and the latest particles.
+///
+/// The work replaces; threads of the server wait for what they have not seen. Whoever is slow
+/// misses what was replaced meanwhile, and nobody waits for him. Tested: test_live_feed.
+#pragma once
+
+#include "base/status.h"
+
+#include <pthread.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum live_slot {
+    LIVE_STATE,    ///< what is shown and what it does, JSON
+    LIVE_PROGRESS, ///< JSON
+    LIVE_LOG,      ///< lines for the person
+    LIVE_TABLES,   ///< files of the result, JSON
+    LIVE_NUMBERS,  ///< of a simulation, JSON
+    LIVE_SLOTS
+};
+
+/// Bytes of one moment, counted.
+struct live_bytes {
+    unsigned char *bytes;
+    size_t size, room;
+    uint64_t serial; ///< 0: there are none
+};
+
+struct live_feed {
+    pthread_mutex_t lock; ///< of all that follows
+    pthread_cond_t changed;
+    uint64_t serial;
+    struct {
+        char *text;
+        uint64_t serial;
+    } slot[LIVE_SLOTS];
+    struct live_bytes particles;
+    double particles_asked; ///< clock of the last request for them [s]
+    int streams;            ///< that are open
+    bool closed;
+};
+
+enum status mf_live_feed_init(struct live_feed *feed) MUST_USE;
+void mf_live_feed_clear(struct live_feed *feed);
+
+/// Nobody waits any more, now and later.
+void mf_live_feed_close(struct live_feed *feed);
+
+/// Replace a text. Without memory the old one stays.
+void mf_live_feed_put(struct live_feed *feed, enum live_slot slot, const char *text);
+
+/// A copy of a text, to be freed with free(); NULL if there is none.
+char *mf_live_feed_get(struct live_feed *feed, enum live_slot slot);
+
+/// Wait until there is a text newer than *seen, for so many seconds at most.
+/// @param[in,out] seen  0 at first
+/// @return server-sent events of all that is new, a comment if nothing is, to be freed with free();
+/// NULL once the feed is closed, or without memory
+char *mf_live_feed_wait(struct live_feed *feed, uint64_t *seen, double seconds);
+
+/// Somebody listens, or (−1) no longer.
+void mf_live_feed_count_stream(struct live_feed *feed, int change);
+int mf_live_feed_streams(struct live_feed *feed);
+
+/// Exchange the published particles for new ones: `bytes` is given away, and has afterwards the
+/// memory of the old ones.
+void mf_live_feed_put_particles(struct live_feed *feed, struct live_bytes *bytes);
+
+/// A copy of the particles newer than `seen`, which notes that somebody wants them; size 0 if there
+/// are none. `bytes` is to be freed with free().
+struct live_bytes mf_live_feed_get_particles(struct live_feed *feed, uint64_t seen);
+
+/// Whether somebody has asked for them within the last second.
+bool mf_live_feed_wants_particles(struct live_feed *feed);

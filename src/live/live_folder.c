@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#define _GNU_SOURCE // scandirat
+#include "live/live_folder.h"
+
+#include "io/json_write.h"
+#include "io/output.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/// What a page may write: settings and data, nothing that is run.
+static const char *const endings[] = {".json", ".tsv", ".txt", ".csv", ".xvg", ".dat", ".pot"};
+
+static bool is_plain_name(const char *name, size_t length) {
+    for (size_t k = 0; k < length; k++)
+        if ((unsigned char)name[k] < ' ' || name[k] == 127 || name[k] == '\\')
+            return false;
+    return length > 0 && length <= 255 && name[0] != '.';
+}
+
+bool mf_live_folder_is_plain(const char *path) {
+    if (strlen(path) >= OUTPUT_PATH_SIZE)
+        return false;
+    while (*path) {
+        const size_t length = strcspn(path, "/");
+        if (!is_plain_name(path, length))
+            return false;
+        path += length;
+        if (*path == '/' && *++path == '\0')
+            return false;
+    }
+    return true;
+}
+
+static int refuse(const char *path) {
+    mf_status_fail(STATUS_BAD_INPUT, "\"%.200s\" is no file of the working folder", path);
+    return -1;
+}
+
+static int tell_error(const char *path) {
+    mf_status_fail(STATUS_IO, "%.200s: %s", path,
+                   errno == ELOOP ? "links are not followed" : strerror(errno));
+    return -1;
+}
+
+/// Go down the first `length` bytes of a path that is plain, one name at a time.
+static int descend(int root, const char *path, size_t length) {
+    int folder = openat(root, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    for (size_t at = 0; at < length && folder >= 0;) {
+        char name[256];
+        const size_t part = strcspn(path + at, "/");
+        snprintf(name, sizeof name, "%.*s", (int)part, path + at);
+        const int next = openat(folder, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+        const int error = errno;
+        close(folder);
+        errno = error;
+        folder = next;
+        at += part + 1;
+    }
+    return folder >= 0 ? folder : tell_error(path);
+}
+
+int mf_live_folder_enter(int root, const char *path) {
+    return mf_live_folder_is_plain(path) ? descend(root, path, strlen(path)) : refuse(path);
+}
+
+/// The folder that a path's last name is in; *name points to that.
+static int enter_parent(int root, const char *path, const char **name) {
+    const char *slash = strrchr(path, '/');
+    *name = slash ? slash + 1 : path;
+    return mf_live_folder_is_plain(path) && path[0]
+               ? descend(root, path, slash ? (size_t)(slash - path) : 0)
+               : refuse(path);
+}
+
+/// Opening a FIFO must not wait for who writes it.
+static int open_regular(int folder, const char *name, size_t *size) {
+    struct stat status;
+    const int file = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0)
+        return tell_error(name);
+    if (fstat(file, &status) == 0 && S_ISREG(status.st_mode)) {
+        *size = (size_t)status.st_size;
+        return file;
+    }
+    close(file);
+    mf_status_fail(STATUS_BAD_INPUT, "%.200s is no regular file", name);
+    return -1;
+}
+
+int mf_live_folder_read(int root, const char *path, size_t *size) {
+    const char *name;
+    const int folder = enter_parent(root, path, &name);
+    if (folder < 0)
+        return -1;
+    const int file = open_regular(folder, name, size);
+    close(folder);
+    return file;
+}
+
+static bool may_be_written(const char *name) {
+    const char *end = strrchr(name, '.');
+    for (size_t k = 0; end && k < sizeof endings / sizeof *endings; k++)
+        if (strcmp(end, endings[k]) == 0)
+            return true;
+    return false;
+}
+
+static enum status write_bytes(int file, const char *name, const char *bytes, size_t size) {
+    while (size > 0) {
+        const ssize_t written = write(file, bytes, size);
+        if (written < 0 && errno == EINTR)
+            continue;
+        if (written <= 0)
+            return mf_status_fail(STATUS_IO, "%.200s: %s", name, strerror(errno));
+        bytes += written;
+        size -= (size_t)written;
+    }
+    return fsync(file) == 0 ? STATUS_OK
+                            : mf_status_fail(STATUS_IO, "%.200s: %s", name, strerror(errno));
+}
+
+/// A hard link fails if the name is taken, a rename replaces it.
+static enum status give_name(int folder, const char *partial, const char *name, bool replace) {
+    const int failed = replace ? renameat(folder, partial, folder, name)
+                               : linkat(folder, partial, folder, name, 0);
+    if (failed && errno == EEXIST)
+        return mf_status_fail(STATUS_BAD_INPUT, "%.200s is there already", name);
+    return failed ? mf_status_fail(STATUS_IO, "%.200s: %s", name, strerror(errno)) : STATUS_OK;
+}
+
+static enum status write_in(int folder, const char *name, const void *bytes, size_t size,
+                            bool replace) {
+    char partial[64];
+    snprintf(partial, sizeof partial, ".live.%ld" OUTPUT_PARTIAL, (long)getpid());
+    unlinkat(folder, partial, 0);
+    const int file =
+        openat(folder, partial, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (file < 0)
+        return mf_status_fail(STATUS_IO, "%.200s: %s", name, strerror(errno));
+    enum status status = write_bytes(file, name, bytes, size);
+    close(file);
+    if (status == STATUS_OK)
+        status = give_name(folder, partial, name, replace);
+    unlinkat(folder, partial, 0);
+    return status;
+}
+
+enum status mf_live_folder_write(int root, const char *path, const void *bytes, size_t size,
+                                 bool replace) {
+    const char *name;
+    if (!may_be_written(path))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "\"%.200s\": the page writes .json, .tsv, .txt, .csv, .xvg, .dat and "
+                              ".pot alone",
+                              path);
+    const int folder = enter_parent(root, path, &name);
+    if (folder < 0)
+        return STATUS_BAD_INPUT;
+    const enum status status = write_in(folder, name, bytes, size, replace);
+    close(folder);
+    return status;
+}
+
+/// Names of a folder that a plain path can have, sorted; −1 with a message.
+static int scan(int folder, const char *path, struct dirent ***entries) {
+    const int count = scandirat(folder, ".", entries, NULL, alphasort);
+    return count >= 0 ? count : tell_error(path);
+}
+
+static void put_entry(struct json_writer *writer, int folder, const char *name) {
+    struct stat status;
+    if (!is_plain_name(name, strlen(name)) ||
+        fstatat(folder, name, &status, AT_SYMLINK_NOFOLLOW) != 0 ||
+        (!S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)))
+        return;
+    mf_json_begin(writer, NULL);
+    mf_json_put_text(writer, "name", name);
+    mf_json_put_integer(writer, "folder", S_ISDIR(status.st_mode));
+    mf_json_put_integer(writer, "size", status.st_size);
+    mf_json_put_number(writer, "seconds",
+                       (double)status.st_mtim.tv_sec + 1e-9 * (double)status.st_mtim.tv_nsec);
+    mf_json_end(writer);
+}
+
+enum status mf_live_folder_list(int root, const char *path, FILE *stream) {
+    struct dirent **entries;
+    const int folder = mf_live_folder_enter(root, path);
+    if (folder < 0)
+        return STATUS_BAD_INPUT;
+    const int count = scan(folder, path, &entries);
+    struct json_writer *writer = mf_json_writer_create_list();
+    for (int k = 0; k < count; k++) {
+        if (writer)
+            put_entry(writer, folder, entries[k]->d_name);
+        free(entries[k]);
+    }
+    if (count >= 0)
+        free(entries);
+    close(folder);
+    const enum status status = count < 0 ? STATUS_IO
+                               : writer  ? mf_json_write_stream(writer, stream, path)
+                                         : STATUS_NO_MEMORY;
+    mf_json_writer_free(writer);
+    return status;
+}
+
+/// One entry: a file is acted upon, a folder entered.
+static enum status visit(int root, int folder, const char *name, const char *entry, int deep,
+                         enum status (*act)(void *, int, size_t, const char *), void *context) {
+    struct stat status;
+    size_t size;
+    if (!is_plain_name(entry, strlen(entry)) || strlen(name) >= OUTPUT_PATH_SIZE - 1 ||
+        fstatat(folder, entry, &status, AT_SYMLINK_NOFOLLOW) != 0)
+        return STATUS_OK;
+    if (S_ISDIR(status.st_mode) && deep > 0)
+        return mf_live_folder_each(root, name, deep - 1, act, context);
+    if (!S_ISREG(status.st_mode))
+        return STATUS_OK;
+    const int file = open_regular(folder, entry, &size);
+    if (file < 0)
+        return STATUS_IO;
+    const enum status done = act(context, file, size, name);
+    close(file);
+    return done;
+}
+
+enum status mf_live_folder_each(int root, const char *path, int deep,
+                                enum status (*act)(void *context, int file, size_t size,
+                                                   const char *name),
+                                void *context) {
+    enum status status = STATUS_OK;
+    struct dirent **entries;
+    const int folder = mf_live_folder_enter(root, path);
+    if (folder < 0)
+        return STATUS_BAD_INPUT;
+    const int count = scan(folder, path, &entries);
+    for (int k = 0; k < count; k++) {
+        char name[OUTPUT_PATH_SIZE + 256];
+        snprintf(name, sizeof name, "%s%s%s", path, path[0] ? "/" : "", entries[k]->d_name);
+        if (status == STATUS_OK)
+            status = visit(root, folder, name, entries[k]->d_name, deep, act, context);
+        free(entries[k]);
+    }
+    if (count >= 0)
+        free(entries);
+    close(folder);
+    return count < 0 ? STATUS_IO : status;
+}

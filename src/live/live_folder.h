@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Files beneath one folder, and none outside it.
+///
+/// A path is relative and of plain names: no "..", nothing hidden, no control characters. It is
+/// opened name by name beneath the folder, and no link is followed, so that it cannot lead out
+/// whatever changes meanwhile. Tested: test_live_folder.
+#pragma once
+
+#include "base/status.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+/// Most that a page may write into a file [bytes].
+enum { LIVE_FOLDER_LARGEST = 16 << 20 };
+
+/// Whether a path is of plain names; "" is the folder itself.
+bool mf_live_folder_is_plain(const char *path);
+
+/// Open a folder beneath a folder; −1 with a message of BAD_INPUT or IO.
+/// @param[in] root  an open folder
+int mf_live_folder_enter(int root, const char *path);
+
+/// Open a regular file for reading; −1 with a message. `size` gets its bytes.
+int mf_live_folder_read(int root, const char *path, size_t *size);
+
+/// Write a file, whole or not at all: data and settings alone, by the ends of their names.
+/// Fails: BAD_INPUT for another name, or if it is there and is not to be replaced; IO.
+enum status mf_live_folder_write(int root, const char *path, const void *bytes, size_t size,
+                                 bool replace) MUST_USE;
+
+/// What is in a folder that a plain path can name, sorted by names, as JSON: a list of objects with
+/// name, size, seconds (when it was written), folder (0 or 1). Fails: IO, NO_MEMORY, BAD_INPUT.
+enum status mf_live_folder_list(int root, const char *path, FILE *stream) MUST_USE;
+
+/// Act for every regular file of a folder and, `deep` folders down, of those in it.
+/// @param[in] act  gets an open file, which stays the caller's, and its path beneath the root
+enum status mf_live_folder_each(int root, const char *path, int deep,
+                                enum status (*act)(void *context, int file, size_t size,
+                                                   const char *name),
+                                void *context) MUST_USE;

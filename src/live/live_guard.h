@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Who may speak to the server: whoever knows the token, from a page of the server's own.
+///
+/// A page of another site can make a browser send requests to this machine. It does not know the
+/// token; its Origin is its own; and if it has made its name point here (DNS rebinding), the Host
+/// is that name. Tested: test_live_guard.
+#pragma once
+
+#include "base/status.h"
+
+#include <stdbool.h>
+
+/// 128 random bits as hexadecimal digits.
+enum { LIVE_TOKEN_SIZE = 33 };
+
+/// A new token. Fails: IO if the system gives no random bits.
+enum status mf_live_guard_make_token(char token[LIVE_TOKEN_SIZE]) MUST_USE;
+
+/// Whether what was given is the token, in a time that does not depend on where they differ.
+/// @param[in] given  NULL: nothing
+bool mf_live_guard_is_token(const char token[LIVE_TOKEN_SIZE], const char *given);
+
+/// Whether a Host is a name of this machine's loopback, 127.0.0.1 or localhost, with any port: an
+/// ssh tunnel may have another one.
+bool mf_live_guard_is_host(const char *host);
+
+/// Whether an Origin is the page that Host serves; NULL, as with requests of the page by GET, is.
+bool mf_live_guard_is_origin(const char *origin, const char *host);

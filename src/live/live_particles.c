@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "live/live_particles.h"
+
+#include "system/orientation.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct head {
+    char name[4];
+    uint32_t count, dimensions, parts, types;
+    uint32_t unused;
+    double step, time;
+    float box[3];
+    char zeros[12];
+};
+
+_Static_assert(sizeof(struct head) == LIVE_PARTICLES_HEAD, "the page reads 64 bytes");
+
+static size_t find_size(const struct particles *particles, bool polar) {
+    return LIVE_PARTICLES_HEAD + COMPOSITION_MOST_TYPES * sizeof(uint32_t) +
+           particles->count * (polar ? 6 : 4) * sizeof(float);
+}
+
+static bool make_room(struct live_bytes *bytes, size_t size) {
+    bytes->size = 0;
+    if (bytes->room < size) {
+        unsigned char *more = realloc(bytes->bytes, size);
+        if (more == NULL)
+            return false;
+        bytes->bytes = more;
+        bytes->room = size;
+    }
+    bytes->size = size;
+    return true;
+}
+
+static unsigned char *put_head(const struct simulation *simulation, bool polar, unsigned char *to) {
+    const struct composition *composition = &simulation->setup.composition;
+    const struct box *box = &simulation->particles.box;
+    const int types = composition->types > 1 ? composition->types : 1;
+    uint32_t counts[COMPOSITION_MOST_TYPES] = {0};
+    struct head head = {.name = "MFP1",
+                        .count = (uint32_t)simulation->particles.count,
+                        .dimensions = (uint32_t)box->dimensions,
+                        .parts = polar ? LIVE_PARTICLES_POLARITY : 0,
+                        .types = (uint32_t)types,
+                        .step = (double)simulation->step,
+                        .time = (double)simulation->step * simulation->setup.time_step};
+    for (int d = 0; d < 3; d++)
+        head.box[d] = (float)(d < box->dimensions ? box->length[d] : 0);
+    for (int type = 0; type < types; type++)
+        counts[type] = types > 1 ? (uint32_t)composition->count[type] : head.count;
+    memcpy(to, &head, sizeof head);
+    memcpy(to + sizeof head, counts, sizeof counts);
+    return to + sizeof head + sizeof counts;
+}
+
+/// Between two sorts particles may have left the box.
+static void put_places(const struct particles *particles, float *to) {
+    for (int d = 0; d < particles->box.dimensions; d++) {
+        const double length = particles->box.length[d];
+        for (size_t k = 0; k < particles->count; k++) {
+            const double x = particles->position[d][k];
+            to[3 * (size_t)particles->id[k] + (size_t)d] = (float)(x - length * floor(x / length));
+        }
+    }
+    for (size_t k = 0; particles->box.dimensions < 3 && k < particles->count; k++)
+        to[3 * k + 2] = 0;
+}
+
+static void put_speeds(const struct simulation *simulation, float *to) {
+    const struct particles *particles = &simulation->particles;
+    const bool flies = !simulation_is_overdamped(&simulation->setup);
+    for (size_t k = 0; k < particles->count; k++) {
+        double square = 0;
+        for (int d = 0; d < particles->box.dimensions; d++)
+            square += particles->velocity[d][k] * particles->velocity[d][k];
+        to[particles->id[k]] = flies ? (float)sqrt(square) : NAN;
+    }
+}
+
+void mf_live_particles_write(const struct simulation *simulation, struct live_bytes *bytes) {
+    const struct particles *particles = &simulation->particles;
+    const bool polar = mf_simulation_oriented(&simulation->setup) != NULL;
+    if (!make_room(bytes, find_size(particles, polar)))
+        return;
+    float *to = (float *)(void *)put_head(simulation, polar, bytes->bytes);
+    put_places(particles, to);
+    to += 3 * particles->count;
+    put_speeds(simulation, to);
+    to += particles->count;
+    if (!polar)
+        return;
+    const struct orientation orientation = mf_orientation_of(particles);
+    for (size_t k = 0; k < particles->count; k++)
+        for (int d = 0; d < 2; d++)
+            to[2 * (size_t)particles->id[k] + (size_t)d] = (float)orientation.polarity[d][k];
+}

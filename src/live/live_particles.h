@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The particles of a simulation as bytes that a browser draws.
+#pragma once
+
+#include "dynamics/simulation.h"
+#include "live/live_feed.h"
+
+/// What is told of each particle beside its place.
+enum live_particles_parts { LIVE_PARTICLES_POLARITY = 1 };
+
+enum { LIVE_PARTICLES_HEAD = 64 };
+
+/// Write a head and then, of all particles by their ids, single-precision numbers in the order of
+/// this machine's bytes:
+///   head: "MFP1"; count, dimensions, parts, types, four words of 32 bits; step and time, doubles;
+///   box, three numbers; and zeros up to LIVE_PARTICLES_HEAD;
+///   counts of the types, COMPOSITION_MOST_TYPES words; places, shape [count, 3] within the box;
+///   speeds [count], NaN without velocities; with LIVE_PARTICLES_POLARITY polarities [count, 2].
+/// @param[in,out] bytes  grows as needed; afterwards of size 0 if there is no memory
+/// Tested: tests/live/test_live.py, by the colours of the page.
+void mf_live_particles_write(const struct simulation *simulation, struct live_bytes *bytes);

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "observe/density_waves.h"
+
+#include "base/memory.h"
+#include "base/parallel.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+/// Beads whose phases are in memory at a time, so that they stay in a cache; no power of two, whose
+/// rows would get into each other's way there.
+enum { STRETCH = 1000 };
+
+enum status mf_density_waves_init(struct density_waves *waves,
+                                  const struct density_waves_plan *plan) {
+    enum status status = STATUS_OK;
+    const bool mixed = composition_is_mixed(&plan->composition);
+    *waves = (struct density_waves){
+        .plan = *plan,
+        .count = (size_t)mf_composition_particles(&plan->composition),
+        .curves = mixed ? 1 + (size_t)mf_composition_pairs(&plan->composition) : 1};
+    NEW_ARRAY(waves->q, plan->bins);
+    NEW_ARRAY(waves->members, plan->bins);
+done:
+    if (status != STATUS_OK)
+        mf_density_waves_clear(waves);
+    return status;
+}
+
+void mf_density_waves_clear(struct density_waves *waves) {
+    mf_memory_free(waves->wave);
+    mf_memory_free(waves->q);
+    mf_memory_free(waves->members);
+    mf_memory_free(waves->amplitude);
+    for (int i = 0; i < 3; i++)
+        mf_memory_free(waves->phase[i]);
+    *waves = (struct density_waves){0};
+}
+
+// Which waves -------------------------------------------------------------------------------------
+
+double mf_density_waves_expected(double q_maximum, const double length[3]) {
+    double all = 1;
+    for (int i = 0; i < 3; i++)
+        all *= q_maximum * length[i] / pi + 1;
+    return all / 2;
+}
+
+/// One of q and −q.
+static bool is_kept(int a, int b, int c) {
+    return c > 0 || (c == 0 && (b > 0 || (b == 0 && a > 0)));
+}
+
+static double find_length(const struct density_waves *waves, const int n[3]) {
+    double square = 0;
+    for (int d = 0; d < 3; d++) {
+        double q = 0;
+        for (int i = 0; i < 3; i++)
+            q += n[i] * waves->lattice[i][d];
+        square += q * q;
+    }
+    return sqrt(square);
+}
+
+/// Whether the next wave of a bin is taken, if `all` are counted and `taken` of `most` are: evenly.
+static bool is_next(size_t all, size_t taken, size_t members, size_t most) {
+    return most == 0 || members <= most || all * most >= taken * members;
+}
+
+/// Go through the waves up to q_maximum, and either count those of each bin, or list what is taken
+/// of them, with `members` in each.
+static void go_through(struct density_waves *waves, size_t *seen, const size_t *members) {
+    const struct density_waves_plan *const plan = &waves->plan;
+    for (int c = 0; c <= waves->largest[2]; c++)
+        for (int b = -waves->largest[1]; b <= waves->largest[1]; b++)
+            for (int a = -waves->largest[0]; a <= waves->largest[0]; a++) {
+                const int n[3] = {a, b, c};
+                const double q = is_kept(a, b, c) ? find_length(waves, n) : INFINITY;
+                if (q > plan->q_maximum)
+                    continue;
+                size_t bin = (size_t)(q / plan->q_maximum * (double)plan->bins);
+                bin = bin < plan->bins ? bin : plan->bins - 1;
+                const size_t taken = (size_t)waves->members[bin];
+                if (members && is_next(seen[bin], taken, members[bin], plan->most)) {
+                    waves->wave[waves->vectors++] = (struct density_wave){{a, b, c}, bin};
+                    waves->q[bin] += q;
+                    waves->members[bin] += 1;
+                }
+                seen[bin]++;
+            }
+}
+
+static enum status make_room_for_waves(struct density_waves *waves, size_t all) {
+    enum status status = STATUS_OK;
+    if (all <= waves->room)
+        return STATUS_OK;
+    mf_memory_free(waves->wave);
+    mf_memory_free(waves->amplitude);
+    waves->wave = NULL, waves->amplitude = NULL, waves->room = 0;
+    NEW_ARRAY(waves->wave, all);
+    NEW_ARRAY(waves->amplitude, all * (size_t)waves->plan.composition.types * 2);
+    waves->room = all;
+done:
+    return status;
+}
+
+static enum status make_room_for_phases(struct density_waves *waves) {
+    enum status status = STATUS_OK;
+    for (int i = 0; i < 3; i++) {
+        const size_t along = (size_t)waves->largest[i] + 1;
+        if (along <= waves->phase_room[i])
+            continue;
+        mf_memory_free(waves->phase[i]);
+        waves->phase[i] = NULL, waves->phase_room[i] = 0;
+        NEW_ARRAY(waves->phase[i], along * 2 * STRETCH);
+        waves->phase_room[i] = along;
+    }
+done:
+    return status;
+}
+
+static enum status fail_of_many(const struct density_waves *waves, double all) {
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "q_maximum %g has about %.2g wave vectors of the box; at most %d are "
+                          "measured",
+                          waves->plan.q_maximum, all, DENSITY_WAVES_MOST);
+}
+
+/// Room for all waves that are to be taken. @param[in] members  shape [bins]: those that there are
+static enum status make_room(struct density_waves *waves, const size_t *members) {
+    const size_t most = waves->plan.most;
+    size_t all = 0;
+    for (size_t bin = 0; bin < waves->plan.bins; bin++)
+        all += most > 0 && members[bin] > most ? most : members[bin];
+    if (all == 0)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "q_maximum %g is below that of the longest wave in the box",
+                              waves->plan.q_maximum);
+    if (all > DENSITY_WAVES_MOST)
+        return fail_of_many(waves, (double)all);
+    TRY(make_room_for_waves(waves, all));
+    return make_room_for_phases(waves);
+}
+
+/// The box's own n, and nothing of another box.
+static void begin_list(struct density_waves *waves, const double lattice[3][3],
+                       const double length[3]) {
+    static const double rounding = 1 + 1e-9;
+    memcpy(waves->lattice, lattice, sizeof waves->lattice);
+    for (int i = 0; i < 3; i++)
+        waves->largest[i] = (int)(waves->plan.q_maximum * length[i] / (2 * pi) * rounding);
+    memset(waves->q, 0, waves->plan.bins * sizeof *waves->q);
+    memset(waves->members, 0, waves->plan.bins * sizeof *waves->members);
+    waves->vectors = 0;
+}
+
+enum status mf_density_waves_list(struct density_waves *waves, const double lattice[3][3],
+                                  const double length[3]) {
+    enum status status = STATUS_OK;
+    static const double most_looked_at = 1e3 * DENSITY_WAVES_MOST;
+    const double all = mf_density_waves_expected(waves->plan.q_maximum, length);
+    size_t *seen = NULL, *members = NULL;
+    if (waves->vectors > 0 && memcmp(waves->lattice, lattice, sizeof waves->lattice) == 0)
+        return STATUS_OK;
+    if (all > most_looked_at)
+        return fail_of_many(waves, all);
+    NEW_ARRAY(seen, waves->plan.bins);
+    NEW_ARRAY(members, waves->plan.bins);
+    begin_list(waves, lattice, length);
+    go_through(waves, members, NULL);
+    CHECK(make_room(waves, members));
+    go_through(waves, seen, members);
+done:
+    mf_memory_free(seen);
+    mf_memory_free(members);
+    return status;
+}
+
+// Their amplitudes --------------------------------------------------------------------------------
+
+/// Beads first … first + count − 1, whose phases are in memory.
+struct stretch {
+    struct density_waves *waves;
+    const struct density_angles *angles;
+    size_t first, count;
+};
+
+/// Phases of the beads begin … end − 1 of the stretch, by Euler's formula and recurrence.
+static void find_phases(void *context, size_t begin, size_t end) {
+    const struct stretch *const stretch = context;
+    struct density_waves *const waves = stretch->waves;
+    for (size_t k = begin; k < end; k++) {
+        double angle[3];
+        stretch->angles->tell(stretch->angles->context, stretch->first + k, angle);
+        for (int i = 0; i < 3; i++) {
+            const double c = cos(angle[i]), s = sin(angle[i]);
+            double *phase = waves->phase[i] + k;
+            phase[0] = 1;
+            phase[STRETCH] = 0;
+            for (int n = 1; n <= waves->largest[i]; n++, phase += 2 * STRETCH) {
+                phase[2 * STRETCH] = phase[0] * c - phase[STRETCH] * s;
+                phase[3 * STRETCH] = phase[0] * s + phase[STRETCH] * c;
+            }
+        }
+    }
+}
+
+/// Add ρ of the beads begin … end − 1 of the stretch, of one wave.
+static void add_up(const struct density_waves *waves, const struct density_wave *wave, size_t begin,
+                   size_t end, double rho[2]) {
+    const double *c[3], *s[3], sign[2] = {wave->n[0] < 0 ? -1 : 1, wave->n[1] < 0 ? -1 : 1};
+    double real = 0, imaginary = 0;
+    for (int i = 0; i < 3; i++) {
+        c[i] = waves->phase[i] + (size_t)abs(wave->n[i]) * 2 * STRETCH;
+        s[i] = c[i] + STRETCH;
+    }
+#pragma omp simd reduction(+ : real, imaginary)
+    for (size_t k = begin; k < end; k++) {
+        const double sx = sign[0] * s[0][k], sy = sign[1] * s[1][k];
+        const double cxy = c[0][k] * c[1][k] - sx * sy, sxy = c[0][k] * sy + sx * c[1][k];
+        real += cxy * c[2][k] - sxy * s[2][k];
+        imaginary += cxy * s[2][k] + sxy * c[2][k];
+    }
+    rho[0] += real;
+    rho[1] += imaginary;
+}
+
+/// Add the stretch to ρ of the waves begin … end − 1, each type to its own.
+static void add_stretch(void *context, size_t begin, size_t end) {
+    const struct stretch *const stretch = context;
+    struct density_waves *const waves = stretch->waves;
+    const struct composition *const composition = &waves->plan.composition;
+    const size_t types = (size_t)composition->types, last = stretch->first + stretch->count;
+    size_t first = 0;
+    for (size_t type = 0; type < types; type++) {
+        const size_t next = first + (size_t)composition->count[type];
+        const size_t from = first > stretch->first ? first : stretch->first;
+        const size_t to = next < last ? next : last;
+        for (size_t k = begin; from < to && k < end; k++)
+            add_up(waves, &waves->wave[k], from - stretch->first, to - stretch->first,
+                   waves->amplitude + 2 * (k * types + type));
+        first = next;
+    }
+}
+
+void mf_density_waves_find(struct density_waves *waves, const struct density_angles *angles,
+                           int threads) {
+    struct stretch stretch = {.waves = waves, .angles = angles};
+    memset(waves->amplitude, 0,
+           waves->vectors * (size_t)waves->plan.composition.types * 2 * sizeof *waves->amplitude);
+    while (stretch.first < waves->count) {
+        const size_t left = waves->count - stretch.first;
+        stretch.count = left < STRETCH ? left : STRETCH;
+        mf_parallel_for(stretch.count, threads, find_phases, &stretch);
+        mf_parallel_for(waves->vectors, threads, add_stretch, &stretch);
+        stretch.first += stretch.count;
+    }
+}
+
+/// Add S of one wave, and of its pair types.
+static void add_wave(const struct density_waves *waves, size_t k, double *sums) {
+    const struct composition *const composition = &waves->plan.composition;
+    const size_t types = (size_t)composition->types, bin = waves->wave[k].bin;
+    const double *const rho = waves->amplitude + 2 * k * types;
+    double all[2] = {0};
+    for (size_t type = 0; type < types; type++)
+        for (size_t part = 0; part < 2; part++)
+            all[part] += rho[2 * type + part];
+    sums[bin] += (all[0] * all[0] + all[1] * all[1]) / (double)waves->count;
+    for (size_t curve = 1; curve < waves->curves; curve++) {
+        int type[2];
+        mf_composition_pair_types(composition, (int)curve - 1, type);
+        const double *const a = rho + 2 * type[0], *const b = rho + 2 * type[1];
+        const double beads =
+            (double)composition->count[type[0]] * (double)composition->count[type[1]];
+        sums[curve * waves->plan.bins + bin] += (a[0] * b[0] + a[1] * b[1]) / sqrt(beads);
+    }
+}
+
+void mf_density_waves_add(const struct density_waves *waves, double *sums) {
+    for (size_t k = 0; k < waves->vectors; k++)
+        add_wave(waves, k, sums);
+}

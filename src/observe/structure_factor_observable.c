@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The static structure factor of a scene's beads as an observable. Only vectors of the box
+/// obey its periodicity, so that nothing is cut off, and S of the smallest tells the
+/// compressibility: S(0) = ρ k_B T κ_T of one component. The same bits for any number of threads.
+/// Tested: test_structure_factor (unit, cli).
+#include "base/memory.h"
+#include "observe/measure.h"
+#include "observe/pooled.h"
+#include "observe/structure_factor.h"
+
+#include <math.h>
+
+static const double pi = 3.14159265358979323846;
+
+struct settings {
+    double q_maximum; ///< [1/λ]
+    int64_t bins;
+};
+
+#define MEMBER(name) .offset = offsetof(struct settings, name)
+static const struct field fields[] = {
+    {"q_maximum", FIELD_NUMBER, MEMBER(q_maximum), .required = true, .minimum = FIELD_ABOVE_ZERO,
+     .maximum = DBL_MAX, .unit = "1/lambda",
+     .help = "largest wave number; the vectors, and their time, grow as its cube"},
+    {"bins", FIELD_INTEGER, MEMBER(bins), .initial = 100, .minimum = 1, .maximum = 100000,
+     .unit = "",
+     .help = "of the wave number from 0 on; those without a vector of the box are left "
+             "out"},
+    FIELD_END,
+};
+
+struct state {
+    struct density_waves waves;
+    struct structure_factor factor;
+    double *numbers;                   ///< of one sample
+    uint32_t *place;                   ///< shape [count]: of an id among the particles
+    double unit[3];                    ///< 2π/L [1/λ]; 0 along what is no dimension
+    const struct particles *particles; ///< of the sample that is taken
+};
+
+static enum status begin_waves(struct state *s, const struct density_waves_plan *plan,
+                               const struct box *box) {
+    double lattice[3][3] = {{0}}, length[3] = {0};
+    for (int d = 0; d < box->dimensions; d++) {
+        length[d] = box->length[d];
+        lattice[d][d] = s->unit[d] = 2 * pi / box->length[d];
+    }
+    TRY(mf_density_waves_init(&s->waves, plan));
+    const enum status status = mf_density_waves_list(&s->waves, lattice, length);
+    return status == STATUS_BAD_INPUT ? mf_status_prefix(status, "structure_factor") : status;
+}
+
+static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+                         const struct measure_plan *plan) {
+    enum status status = STATUS_OK;
+    struct state *s = state;
+    const struct settings *const wish = settings;
+    const struct composition *const composition = &simulation->setup.composition;
+    const size_t count = simulation->particles.count;
+    const struct density_waves_plan waves = {
+        .composition = composition_is_mixed(composition) ? *composition
+                                                         : mf_composition_of_one((int64_t)count),
+        .q_maximum = wish->q_maximum,
+        .bins = (size_t)wish->bins};
+    CHECK(begin_waves(s, &waves, &simulation->setup.box));
+    CHECK(mf_structure_factor_init(&s->factor, &waves, (size_t)plan->samples));
+    NEW_ARRAY(s->numbers, mf_structure_factor_numbers(&s->factor));
+    NEW_ARRAY(s->place, count);
+done:
+    return status;
+}
+
+static void clear(void *state) {
+    struct state *s = state;
+    mf_density_waves_clear(&s->waves);
+    mf_structure_factor_clear(&s->factor);
+    mf_memory_free(s->numbers);
+    mf_memory_free(s->place);
+    *s = (struct state){0};
+}
+
+static void tell_angle(const void *context, size_t bead, double angle[3]) {
+    const struct state *const s = context;
+    for (int d = 0; d < 3; d++)
+        angle[d] = s->unit[d] > 0 ? s->unit[d] * s->particles->position[d][s->place[bead]] : 0;
+}
+
+static enum status sample(void *state, struct simulation *simulation) {
+    struct state *s = state;
+    const struct density_angles angles = {tell_angle, s};
+    s->particles = &simulation->particles;
+    for (size_t k = 0; k < s->particles->count; k++)
+        s->place[s->particles->id[k]] = (uint32_t)k;
+    mf_density_waves_find(&s->waves, &angles, simulation->setup.threads);
+    mf_structure_factor_take(&s->waves, s->numbers);
+    mf_structure_factor_add(&s->factor, s->numbers);
+    return STATUS_OK;
+}
+
+static size_t spans(void *state, struct memory_span *spans) {
+    struct structure_factor *const factor = &((struct state *)state)->factor;
+    spans[0] = (struct memory_span){&factor->samples, sizeof factor->samples};
+    spans[1] = (struct memory_span){
+        factor->sums, factor->blocks * mf_structure_factor_numbers(factor) * sizeof *factor->sums};
+    return 2;
+}
+
+static enum status write(const void *state, const struct observable_results *results) {
+    return mf_structure_factor_write(&((const struct state *)state)->factor, results);
+}
+
+/// S at a wave number, on the line between the two nearest that were measured; NaN beyond them.
+static void read_at(const struct structure_factor_curves *s, double q, double *value,
+                    double *value_error) {
+    const double rounding = 1e-4 * q; // of a table
+    size_t k = 0;
+    *value = *value_error = NAN;
+    if (s->bins == 0 || !(q >= s->q[0] - rounding) || q > s->q[s->bins - 1] + rounding)
+        return;
+    while (k + 2 < s->bins && s->q[k + 1] <= q)
+        k++;
+    const size_t next = k + 1 < s->bins ? k + 1 : k;
+    const double width = next > k ? s->q[next] - s->q[k] : 1;
+    const double part = fmin(fmax((q - s->q[k]) / width, 0), 1);
+    *value = (1 - part) * s->value[k] + part * s->value[next];
+    *value_error = hypot((1 - part) * s->error[k], part * s->error[next]);
+}
+
+static enum status result(const void *const *states, size_t count,
+                          const struct observable_values *values) {
+    enum status status = STATUS_OK;
+    struct structure_factor_curves curves = {0};
+    double *read = NULL;
+    struct pooled_curve *replicas = NULL;
+    NEW_ARRAY(read, 2 * count * values->count);
+    NEW_ARRAY(replicas, count);
+    for (size_t k = 0; k < count; k++) {
+        const struct structure_factor *const factor = &((const struct state *)states[k])->factor;
+        double *value = read + 2 * k * values->count, *error = value + values->count;
+        CHECK(mf_structure_factor_find(factor, &curves));
+        for (size_t n = 0; n < values->count; n++)
+            read_at(&curves, values->x[n], &value[n], &error[n]);
+        mf_structure_factor_curves_clear(&curves);
+        replicas[k] =
+            (struct pooled_curve){value, error, (double)mf_structure_factor_blocks(factor)};
+    }
+    mf_pooled_join(values, replicas, count);
+done:
+    mf_memory_free(read);
+    mf_memory_free(replicas);
+    return status;
+}
+
+// Record ------------------------------------------------------------------------------------------
+
+/// Nanoseconds of a particle and wave vector.
+static const double wave_cost = 1.1;
+
+static void explain(const void *settings, const struct simulation_setup *setup, double every,
+                    struct stages *stages) {
+    const struct settings *s = settings;
+    const double ball = mf_box_shell_volume(&setup->box, 0, s->q_maximum);
+    const double waves = ball * mf_box_volume(&setup->box) / pow(2 * pi, setup->box.dimensions) / 2;
+    mf_stages_add(stages, "structure factor", true, wave_cost * waves / every,
+                  "about %.0f wave vectors, one step in %.0f", waves, every);
+}
+
+static const struct observable_target targets[] = {{.name = "structure_factor",
+                                                    .summary = "S(q), of all beads",
+                                                    .form = OBSERVABLE_CURVE,
+                                                    .argument = "q[1/lambda]",
+                                                    .unit = "1",
+                                                    .has_settings = true},
+                                                   {.name = NULL}};
+static const char *const files[] = {"structure_factor.tsv", NULL};
+
+const struct observable mf_structure_factor = {
+    .name = "structure_factor",
+    .summary = "S(q) at the wave vectors of the box",
+    .fields = fields,
+    .settings_size = sizeof(struct settings),
+    .state_size = sizeof(struct state),
+    .begin = begin,
+    .clear = clear,
+    .sample = sample,
+    .spans = spans,
+    .write = write,
+    .explain = explain,
+    .stage = "structure factor",
+    .files = files,
+    .figure = OBSERVABLE_FIGURE_OF_CURVE,
+    .targets = targets,
+    .result = result,
+};

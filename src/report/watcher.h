@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Someone who watches a run while it works.
+///
+/// A run tells of itself through the calls of a watcher, and reads nothing back but how soon the
+/// next word is wanted, and whether a person has changed its temperature or time step: without such
+/// a change its results are the same bits with a watcher and without. A call may wait; the run then
+/// waits, too.
+#pragma once
+
+#include "dynamics/simulation_change.h"
+#include "observe/measure.h"
+#include "report/run_folder.h"
+
+#include <stdint.h>
+
+/// A run that has begun. Borrowed until its end.
+struct watcher_run {
+    enum run_kind kind;
+    const char *folder;            ///< of its results
+    const struct units *units;     ///< in which its files speak
+    struct simulation *simulation; ///< and what follows: NULL of a fit
+    const struct measure_plan *plan;
+    const struct observable_use *observables; ///< ended by one without an observable
+};
+
+/// How far it is.
+struct watcher_progress {
+    uint64_t done, total;
+    const char *unit, *text; ///< of what `done` counts; what else there is to say
+    double rate;             ///< parts a second
+};
+
+struct watcher {
+    void *context;
+    void (*begin)(void *context, const struct watcher_run *run);
+    /// From one thread at a time, of a simulation between two of its steps.
+    void (*tell)(void *context, const struct watcher_progress *progress);
+    void (*say)(void *context, const char *line); ///< a line for the person
+    void (*write)(void *context);                 ///< tables of the folder are new
+    /// Steps of a simulation until the next word at most; 0: as many as it likes.
+    int64_t (*steps)(void *context);
+    /// Whether a simulation is to go on with another temperature or time step, asked for after each
+    /// word: one that mf_simulation_check_change allows, told once.
+    bool (*change)(void *context, struct simulation_change *change);
+};

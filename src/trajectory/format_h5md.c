@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// H5MD 1.1 (P. de Buyl, P. H. Colberg and F. Höfling, Comput. Phys. Commun. 185, 1546 (2014);
+// https://h5md.nongnu.org): particles of one group, by the HDF5 library, frame by frame. Positions,
+// velocities, images, ids and the box's edges may change in time; masses and species are those of
+// the first frame. Built if HDF5 is there: format_h5md_without.c stands for it otherwise.
+#include "base/memory.h"
+#include "trajectory/h5md_file.h"
+#include "trajectory/trajectory.h"
+
+#include <math.h>
+#include <string.h>
+
+/// What goes before the numbers of a frame in its raw bytes.
+struct header {
+    double step, time; ///< [ps]
+    double box[3][3];  ///< [nm]; 0: none
+    bool has_velocities, has_images, has_ids;
+};
+
+static bool recognise(const unsigned char *begin, size_t size) {
+    return size >= 8 && memcmp(begin, "\x89HDF\r\n\x1A\n", 8) == 0;
+}
+
+static enum status open(struct trajectory *trajectory) {
+    struct h5md_file *const h5md = trajectory->state;
+    return mf_h5md_file_open(h5md, trajectory);
+}
+
+static void close(struct trajectory *trajectory) {
+    mf_h5md_file_close(trajectory->state);
+}
+
+// Fetching ----------------------------------------------------------------------------------------
+
+/// Room behind what is there, for the numbers of a frame.
+static enum status take(struct trajectory_frame *frame, const struct h5md_element *element,
+                        hsize_t at, hid_t type) {
+    const size_t size = mf_h5md_element_numbers(element) * sizeof(double);
+    TRY(mf_source_room(&frame->raw, size));
+    TRY(mf_h5md_element_read(element, at, type, frame->raw.data + frame->raw.size));
+    frame->raw.size += size;
+    return STATUS_OK;
+}
+
+/// The same of what may be missing, if it is there at this step.
+static enum status take_if(struct trajectory_frame *frame, struct h5md_element *element,
+                           double step, hsize_t at, hid_t type, bool *taken) {
+    *taken = false;
+    if (element->there)
+        TRY(mf_h5md_element_find(element, step, at, taken));
+    return *taken ? take(frame, element, element->at, type) : STATUS_OK;
+}
+
+/// What each frame must have has nothing of this one.
+static enum status fail_of_step(const struct h5md_element *element, double step, hsize_t at,
+                                const char *what) {
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: frame %llu: \"%s\"%s has no frame of the positions' step, %.15g",
+                          element->file, (unsigned long long)at, element->name, what, step);
+}
+
+static enum status read_box(struct h5md_file *h5md, double step, hsize_t at, double box[3][3]) {
+    struct h5md_element *const edges = &h5md->edges;
+    double numbers[9];
+    bool found = false;
+    if (!edges->there)
+        return STATUS_OK;
+    TRY(mf_h5md_element_find(edges, step, at, &found));
+    if (!found)
+        return fail_of_step(edges, step, at, " of the box");
+    TRY(mf_h5md_element_read(edges, edges->at, H5T_NATIVE_DOUBLE, numbers));
+    for (int i = 0; i < 3; i++)
+        for (int d = 0; d < 3; d++) {
+            const double number = edges->rank == 2 ? numbers[3 * i + d] : i == d ? numbers[d] : 0;
+            box[i][d] = number * h5md->edge_length;
+        }
+    return STATUS_OK;
+}
+
+static enum status fetch(struct trajectory *trajectory, struct trajectory_frame *frame,
+                         bool *more) {
+    struct h5md_file *const h5md = trajectory->state;
+    struct source *const source = &trajectory->source;
+    const hsize_t at = source->frame;
+    struct header header = {0};
+    *more = at < h5md->position.frames;
+    if (!*more)
+        return STATUS_OK;
+    TRY(mf_h5md_element_clock(&h5md->position, &h5md->position.step, at, &header.step));
+    TRY(mf_h5md_element_clock(&h5md->position, &h5md->position.time, at, &header.time));
+    TRY(read_box(h5md, header.step, at, header.box));
+    header.time *= trajectory->scale.time;
+    TRY(mf_source_room(&frame->raw, sizeof header));
+    frame->raw.size = sizeof header;
+    TRY(take(frame, &h5md->position, at, H5T_NATIVE_DOUBLE));
+    TRY(take_if(frame, &h5md->velocity, header.step, at, H5T_NATIVE_DOUBLE,
+                &header.has_velocities));
+    TRY(take_if(frame, &h5md->image, header.step, at, H5T_NATIVE_DOUBLE, &header.has_images));
+    TRY(take_if(frame, &h5md->id, header.step, at, H5T_NATIVE_INT64, &header.has_ids));
+    if (h5md->id.there && !header.has_ids) // nobody knows then which particle is which
+        return fail_of_step(&h5md->id, header.step, at, "");
+    memcpy(frame->raw.data, &header, sizeof header);
+    source->byte =
+        (uint64_t)((double)h5md->bytes * (double)(at + 1) / (double)h5md->position.frames);
+    return STATUS_OK;
+}
+
+static double peek(const struct trajectory_frame *frame) {
+    struct header header;
+    memcpy(&header, frame->raw.data, sizeof header);
+    return header.time;
+}
+
+// What the atoms are ------------------------------------------------------------------------------
+
+/// Numbers of the first frame of what tells of atoms, one each. The caller frees them.
+static enum status read_first(const struct h5md_element *element, hid_t type, void **numbers) {
+    *numbers = mf_memory_zeroed(mf_h5md_element_numbers(element), sizeof(double));
+    if (*numbers == NULL)
+        return STATUS_NO_MEMORY;
+    return mf_h5md_element_read(element, 0, type, *numbers);
+}
+
+static enum status describe_masses(const struct h5md_file *h5md, struct structure *structure) {
+    double *mass = NULL;
+    if (!h5md->mass.there)
+        return STATUS_OK;
+    const enum status status = read_first(&h5md->mass, H5T_NATIVE_DOUBLE, (void **)&mass);
+    structure->has_masses = status == STATUS_OK;
+    for (size_t k = 0; status == STATUS_OK && k < structure->atoms; k++)
+        structure->atom[k].mass = mass[k] * h5md->mass_unit;
+    mf_memory_free(mass);
+    return status;
+}
+
+/// A species' name is that of the file's enumeration, or else its number.
+static enum status describe_species(const struct h5md_file *h5md, struct structure *structure) {
+    int64_t *species = NULL;
+    if (!h5md->species.there)
+        return STATUS_OK;
+    const enum status status = read_first(&h5md->species, H5T_NATIVE_INT64, (void **)&species);
+    structure->has_types = status == STATUS_OK;
+    for (size_t k = 0; status == STATUS_OK && k < structure->atoms; k++) {
+        structure->atom[k].type = species[k];
+        mf_h5md_file_species(h5md, species[k], structure->atom[k].name);
+    }
+    mf_memory_free(species);
+    return status;
+}
+
+static const unsigned char *ids_of(const struct trajectory_frame *frame) {
+    return frame->raw.data + frame->raw.size - frame->atoms * sizeof(int64_t);
+}
+
+static int64_t read_id(const struct trajectory_frame *frame, size_t k) {
+    int64_t id;
+    memcpy(&id, ids_of(frame) + k * sizeof id, sizeof id);
+    return id;
+}
+
+static enum status describe(struct trajectory *trajectory, struct trajectory_frame *first) {
+    const struct h5md_file *const h5md = trajectory->state;
+    struct structure *const structure = &trajectory->structure;
+    struct header header;
+    memcpy(&header, first->raw.data, sizeof header);
+    first->atoms = (size_t)h5md->position.size[0];
+    TRY(mf_structure_init(structure, first->atoms));
+    TRY(describe_masses(h5md, structure));
+    TRY(describe_species(h5md, structure));
+    structure->has_ids = header.has_ids;
+    if (!header.has_ids)
+        return STATUS_OK;
+    for (size_t k = 0; k < structure->atoms; k++)
+        structure->atom[k].id = read_id(first, k);
+    const enum status status = mf_structure_sort(structure);
+    return status == STATUS_OK ? status : mf_status_prefix(status, "%s: frame 0", trajectory->file);
+}
+
+// Decoding ----------------------------------------------------------------------------------------
+
+/// Where each atom of the frame belongs, by its id.
+static enum status find_atoms(const struct trajectory *trajectory, struct trajectory_frame *frame,
+                              size_t *place) {
+    TRY(mf_trajectory_begin_atoms(trajectory, frame));
+    for (size_t k = 0; k < frame->atoms; k++) {
+        const int64_t id = read_id(frame, k);
+        place[k] = mf_structure_find(&trajectory->structure, id);
+        if (place[k] == frame->atoms || frame->scratch.data[place[k]])
+            return mf_status_fail(STATUS_BAD_INPUT, "%s: frame %zu: the id %lld %s", frame->file,
+                                  frame->number, (long long)id,
+                                  place[k] == frame->atoms ? "is not in the first frame"
+                                                           : "stands there twice");
+        frame->scratch.data[place[k]] = 1;
+    }
+    return STATUS_OK;
+}
+
+/// Add to vectors the numbers that stand at `*at`, in units of three vectors.
+static enum status add(const struct trajectory_frame *frame, size_t *at, const double unit[3][3],
+                       const size_t *place, double (*array)[3]) {
+    for (size_t k = 0; k < frame->atoms; k++, *at += 3 * sizeof(double)) {
+        double number[3];
+        memcpy(number, frame->raw.data + *at, sizeof number);
+        for (int i = 0; i < 3; i++) {
+            if (!isfinite(number[i]))
+                return mf_status_fail(STATUS_BAD_INPUT,
+                                      "%s: frame %zu: a coordinate of particle %zu is not finite",
+                                      frame->file, frame->number, k + 1);
+            for (int d = 0; d < 3; d++)
+                array[place ? place[k] : k][d] += number[i] * unit[i][d];
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status decode_vectors(const struct trajectory *trajectory,
+                                  struct trajectory_frame *frame, const struct header *header,
+                                  const size_t *place) {
+    const double x = trajectory->scale.length, v = trajectory->scale.speed;
+    const double lengths[3][3] = {{x, 0, 0}, {0, x, 0}, {0, 0, x}},
+                 speeds[3][3] = {{v, 0, 0}, {0, v, 0}, {0, 0, v}};
+    size_t at = sizeof *header;
+    memset(frame->position, 0, frame->atoms * sizeof *frame->position);
+    TRY(add(frame, &at, lengths, place, frame->position));
+    if (header->has_velocities) {
+        memset(frame->velocity, 0, frame->atoms * sizeof *frame->velocity);
+        TRY(add(frame, &at, speeds, place, frame->velocity));
+    }
+    return header->has_images ? add(frame, &at, header->box, place, frame->position) : STATUS_OK;
+}
+
+static enum status decode(const struct trajectory *trajectory, struct trajectory_frame *frame) {
+    enum status status = STATUS_OK;
+    const struct h5md_file *const h5md = trajectory->state;
+    struct header header;
+    size_t *place = NULL;
+    memcpy(&header, frame->raw.data, sizeof header);
+    frame->step = isfinite(header.step) && fabs(header.step) < 9e15 ? (int64_t)header.step : -1;
+    frame->time = header.time;
+    mf_frame_set_box(frame, (const double(*)[3])header.box);
+    for (int i = 0; i < 3; i++)
+        frame->periodic[i] = frame->has_box && h5md->periodic[i];
+    CHECK(mf_frame_reserve(frame, trajectory->structure.atoms, header.has_velocities));
+    if (header.has_ids) {
+        NEW_ARRAY(place, frame->atoms);
+        CHECK(find_atoms(trajectory, frame, place));
+    }
+    CHECK(decode_vectors(trajectory, frame, &header, place));
+done:
+    mf_memory_free(place);
+    return status;
+}
+
+static const char *const extensions[] = {"h5md", "h5", "hdf5", NULL};
+
+const struct trajectory_format mf_format_h5md = {
+    .name = "h5md",
+    .extensions = extensions,
+    .summary = "H5MD 1.1: positions, velocities, images, ids, box; masses and species",
+    .speaks = TRAJECTORY_UNITS_TOLD,
+    .state_size = sizeof(struct h5md_file),
+    .recognise = recognise,
+    .open = open,
+    .close = close,
+    .fetch = fetch,
+    .peek = peek,
+    .describe = describe,
+    .decode = decode,
+};

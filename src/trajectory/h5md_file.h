@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file A file of H5MD: its group of particles, what is in it, and its units.
+#pragma once
+
+#include "trajectory/h5md_element.h"
+#include "trajectory/trajectory.h"
+
+/// All zero is closed.
+struct h5md_file {
+    hid_t file, group;
+    uint64_t bytes;     ///< of the file
+    bool periodic[3];   ///< along the box's vectors
+    double edge_length; ///< unit of the box's edges [nm]
+    double mass_unit;   ///< [u]
+    struct h5md_element position, velocity, image, id, mass, species, edges;
+};
+
+/// Open the file of a trajectory and the group of particles that its options name, or its only one;
+/// find its units, which become the trajectory's scale: those that the file says, else those that
+/// the user tells, else nm, ps and u, which is noted.
+/// Fails: BAD_INPUT for what is damaged, no H5MD, or of a shape that does not fit; IO.
+/// Tested: test_trajectory_h5md.
+enum status mf_h5md_file_open(struct h5md_file *h5md, struct trajectory *trajectory) MUST_USE;
+
+void mf_h5md_file_close(struct h5md_file *h5md);
+
+/// The name of a species: that of the file's enumeration, or its number.
+void mf_h5md_file_species(const struct h5md_file *h5md, int64_t species, char name[STRUCTURE_NAME]);

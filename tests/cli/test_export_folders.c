@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// `mesofit export` from outside: what is refused, told and spared, and where a fit lets another run
+// begin. What stands in the tables: test_export.c.
+#include "shared/results.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/small_scenes.h"
+#include "shared/testing.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+
+static void run_export(struct run_program_result *result, const char *engine, const char *folder) {
+    RUN_PROGRAM(result, "export", "out", "--engine", engine, "-o", folder);
+    run_program_assert_code(result, 0);
+}
+
+/// One line on stderr, exit code 2, and no folder.
+static void assert_refused(const char *folder, const char *engine, const char *option,
+                           const char *word) {
+    static struct run_program_result result;
+    struct stat found;
+    RUN_PROGRAM(&result, "export", folder, "--engine", engine, "-o", "empty/to", option);
+    run_program_assert_refused(&result, "empty", word, 1, (const char *const[]){word, NULL});
+    assert_int_not_equal(stat("empty/to", &found), 0);
+}
+
+static void test_what_cannot_be_exported_is_one_line(void **state) {
+    static struct run_program_result result;
+    assert_int_equal(mkdir("empty", 0777), 0);
+    assert_refused("nowhere", "lammps", NULL, "No such file");
+    assert_refused("empty", "lammps", NULL, "used.json");
+    small_scenes_write(*state, small_scenes_dpd, NULL, NULL);
+    small_scenes_simulate(&result, "out");
+    assert_refused("out", "lamps", NULL, "lammps");
+    assert_refused("out", "lammps", "--bands", "no errors");
+    small_scenes_write(*state, small_scenes_dpd, "\"dissipative\"",
+                       "\"interactions\": {\"uniform-force\": {\"force\": [1, 0, 0]}}, "
+                       "\"dissipative\"");
+    small_scenes_simulate(&result, "pushed");
+    assert_refused("pushed", "lammps", NULL, "uniform-force");
+    small_scenes_write(*state, small_scenes_dpd,
+                       "\"dissipative\": {\"law\": \"power\", \"sigma\": 2.1213}",
+                       "\"dynamics\": {\"integrator\": \"brownian\"}");
+    small_scenes_simulate(&result, "overdamped");
+    assert_refused("overdamped", "gromacs", NULL, "without velocities");
+    RUN_PROGRAM(&result, "export", "out", "--engine", "lammps", "-o", "pushed");
+    assert_int_equal(result.code, 2);
+    assert_contains(result.err, "holds a result");
+    // What `measure` writes.
+    temporary_folder_write(*state, "empty/target.json", "{}", 2);
+    RUN_PROGRAM(&result, "export", "empty", "--engine", "lammps", "-o", "to");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "fit it first (mesofit fit --target empty -o fit)");
+    RUN_PROGRAM(&result, "export", "out");
+    assert_int_equal(result.code, 2);
+    assert_contains(result.err, "--engine");
+}
+
+/// What stands in its place would be another friction, called the result's own.
+static void test_friction_with_memory_is_left_out_and_told(void **state) {
+    static struct run_program_result result;
+    static const char *const instead[] = {
+        "\"memory\": {\"slow\": {\"time\": 0.3, \"omega\": {\"law\": \"power\", \"sigma\": 2}}}",
+        "\"dissipative_transverse\": {\"law\": \"power\", \"sigma\": 2},\n"
+        "\"dissipative\": {\"law\": \"power\", \"sigma\": 2.1213}"};
+    for (int k = 0; k < 2; k++) {
+        small_scenes_write(*state, small_scenes_dpd,
+                           "\"dissipative\": {\"law\": \"power\", \"sigma\": 2.1213}", instead[k]);
+        small_scenes_simulate(&result, k ? "across" : "slow");
+        RUN_PROGRAM(&result, "export", k ? "across" : "slow", "--engine", "lammps", "-o",
+                    k ? "to-across" : "to-slow");
+        run_program_assert_code(&result, 0);
+        assert_contains(result.err, "warning");
+        assert_contains(result.err, "memory");
+        char *readme = temporary_folder_read(k ? "to-across/README" : "to-slow/README");
+        assert_contains(readme, "memory or across pairs is left out");
+        assert_null(strstr(readme, "result's own omega"));
+        free(readme);
+        char *input = temporary_folder_read(k ? "to-across/in.mesofit" : "to-slow/in.mesofit");
+        assert_null(strstr(input, "dpd"));
+        free(input);
+    }
+}
+
+static void test_title_stays_in_the_line_of_its_comment(void **state) {
+    static struct run_program_result result;
+    small_scenes_write(*state, small_scenes_dpd, "\"seed\": 5",
+                       "\"seed\": 5, \"title\": \"soft\\nshell ls\"");
+    small_scenes_simulate(&result, "out");
+    run_export(&result, "lammps", "lammps");
+    char *input = temporary_folder_read("lammps/in.mesofit");
+    assert_null(strstr(input, "\nshell ls"));
+    assert_contains(input, "# soft shell ls: written by mesofit");
+    free(input);
+}
+
+static void test_folders_of_others_are_spared(void **state) {
+    static struct run_program_result result;
+    small_scenes_write(*state, small_scenes_dpd, NULL, NULL);
+    small_scenes_simulate(&result, "out");
+    assert_int_equal(mkdir("gromacs", 0777), 0);
+    temporary_folder_write(*state, "gromacs/topol.top", "mine", 4);
+    RUN_PROGRAM(&result, "export", "out", "--engine", "gromacs");
+    assert_int_equal(result.code, 2);
+    assert_contains(result.err, "gromacs: holds files that are not of an export");
+    temporary_folder_write(*state, "gromacs/README", "of mine", 7);
+    RUN_PROGRAM(&result, "export", "out", "--engine", "gromacs");
+    assert_int_equal(result.code, 2);
+    char *text = temporary_folder_read("gromacs/topol.top");
+    assert_string_equal(text, "mine");
+    free(text);
+    run_export(&result, "gromacs", "again");
+    run_export(&result, "gromacs", "again");
+}
+
+static void test_fit_leaves_where_another_run_begins(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "run.json", small_inputs_run, NULL, NULL);
+    small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit");
+    results_assert_table("fit/configuration.tsv", 6, 0);
+    RUN_PROGRAM(&result, "export", "fit", "--engine", "lammps", "-o", "lammps", "--bands");
+    run_program_assert_code(&result, 0);
+    char *table = temporary_folder_read("lammps/mesofit.table");
+    assert_contains(table, "PHI_A-A_lower");
+    assert_contains(table, "PHI_A-A_upper");
+    free(table);
+    // The first particle of both files is in the same place.
+    double x, start;
+    char *text = temporary_folder_read("fit/configuration.tsv");
+    assert_int_equal(sscanf(strchr(text, '\n'), "%lf", &x), 1);
+    free(text);
+    text = temporary_folder_read("lammps/data.mesofit");
+    assert_int_equal(sscanf(strstr(text, "Atoms # atomic") + 14, "%*d %*d %lf", &start), 1);
+    free(text);
+    assert_true(fabs(x - start) < 1e-9);
+}
+
+/// A fit that speaks nm and ps: where its first bead is, in Å.
+static void test_fit_in_nm_and_ps_is_exported(void **state) {
+    static struct run_program_result result;
+    static const char target[] = "# r[nm] g error\n0.05 0.3 0.1\n0.15 0.6 0.1\n0.25 0.8 0.1\n"
+                                 "0.35 1.1 0.1\n0.45 1.0 0.1\n";
+    static const char run[] =
+        "{\"units\": \"nm-ps\", \"seed\": 1, \"target\": {\"rdf\": {\"file\": \"target.tsv\"}},\n"
+        "\"scene\": {\"box\": [1.5, 1.5, 1.5], \"particles\": {\"count\": 81, \"mass\": 18},\n"
+        "\"temperature\": 300, \"time_step\": 0.02,\n"
+        "\"dissipative\": {\"law\": \"power\", \"sigma\": 9, \"cutoff\": 0.5}},\n"
+        "\"method\": {\"name\": \"imc\", \"replicas\": 2, \"equilibration\": 1, \"samples\": 8, "
+        "\"every\": 1, \"iterations\": 1},\n"
+        "\"verification\": {\"replicas\": 1, \"equilibration\": 1, \"samples\": 2, \"every\": "
+        "1}}\n";
+    double x, start, friction;
+    small_inputs_write(*state, "run.json", run, NULL, NULL);
+    small_inputs_write(*state, "target.tsv", target, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out");
+    run_export(&result, "lammps", "lammps");
+    char *text = temporary_folder_read("out/configuration.tsv");
+    assert_contains(text, "x[nm]");
+    assert_int_equal(sscanf(strchr(text, '\n'), "%lf", &x), 1);
+    free(text);
+    text = temporary_folder_read("lammps/data.mesofit");
+    assert_int_equal(sscanf(strstr(text, "Atoms # atomic") + 14, "%*d %*d %lf", &start), 1);
+    free(text);
+    assert_true(fabs(10 * x - start) < 1e-8);
+    text = temporary_folder_read("lammps/in.mesofit"); // 81 u/ps in kcal/mol fs/A²
+    const char *found = strstr(text, "pair_coeff 1 1 dpd/tstat ");
+    assert_non_null(found);
+    friction = strtod(found + strlen("pair_coeff 1 1 dpd/tstat "), NULL);
+    free(text);
+    assert_true(fabs(friction / (81 * 1e-3 * 48.88821291 * 48.88821291) - 1) < 1e-5);
+}
+
+#define TEST(name)                                                                                 \
+    cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        TEST(test_what_cannot_be_exported_is_one_line),
+        TEST(test_friction_with_memory_is_left_out_and_told),
+        TEST(test_title_stays_in_the_line_of_its_comment),
+        TEST(test_folders_of_others_are_spared),
+        TEST(test_fit_leaves_where_another_run_begins),
+        TEST(test_fit_in_nm_and_ps_is_exported),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

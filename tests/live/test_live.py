@@ -1,0 +1,328 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The page in a real browser: Debian's chromium by python3-selenium.
+
+With LIVE_SHOTS=FOLDER screenshots are left there, to be looked at."""
+import glob
+import json
+import os
+import shutil
+import tempfile
+import time
+import unittest
+import zipfile
+
+from served import Served, differences, make_folder, run_plain, water_fit
+
+try:
+    from selenium import webdriver
+    from selenium.webdriver import ActionChains
+    from selenium.webdriver.chrome.service import Service
+    from selenium.webdriver.common.keys import Keys
+    from selenium.webdriver.support.ui import WebDriverWait
+    MISSING = next((name for name in ("chromium", "chromedriver") if not shutil.which(name)), "")
+except ImportError:
+    MISSING = "python3-selenium"
+
+SHOTS = os.environ.get("LIVE_SHOTS", "")
+PATIENCE = 120
+
+
+def open_browser(profile, downloads, width=1280, height=800, dark=False):
+    options = webdriver.ChromeOptions()
+    for word in ("--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking",
+                 "--disable-component-update", "--disable-sync", "--disable-quic", "--enable-unsafe-swiftshader",
+                 f"--user-data-dir={profile}", f"--window-size={width},{height}"):
+        options.add_argument(word)
+    if dark:
+        options.add_argument("--blink-settings=preferredColorScheme=0")
+    options.add_experimental_option("prefs", {"download.default_directory": downloads})
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    return webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
+
+
+@unittest.skipIf(MISSING, f"{MISSING} is missing: the page is not tested in a browser")
+class Page(unittest.TestCase):
+    def setUp(self):
+        self.place = tempfile.TemporaryDirectory()
+        self.folder = os.path.join(self.place.name, "work")
+        self.downloads = os.path.join(self.place.name, "downloads")
+        os.mkdir(self.folder)
+        os.mkdir(self.downloads)
+        make_folder(self.folder)
+        self.served = self.browser = None
+
+    def tearDown(self):
+        if self.browser:
+            self.browser.quit()
+        if self.served:
+            self.served.end()
+        self.place.cleanup()
+
+    def begin(self, *words, **how):
+        self.served = Served(self.folder, *words)
+        self.browser = open_browser(os.path.join(self.place.name, "profile"), self.downloads, **how)
+        self.browser.get(self.served.address)
+        self.wait(lambda: self.text("phase") != "connecting")
+
+    def wait(self, condition, seconds=PATIENCE):
+        return WebDriverWait(self.browser, seconds, 0.1).until(lambda _: condition())
+
+    def at(self, name):
+        return self.browser.find_element("id", name)
+
+    def text(self, name):
+        return self.at(name).text
+
+    def phase(self):
+        return self.at("phase").get_attribute("data-phase")
+
+    def press(self, name):
+        self.wait(lambda: self.at(name).is_enabled())
+        self.at(name).click()
+
+    def panels(self):
+        return [panel.get_attribute("data-table") for panel in self.browser.find_elements("css selector", "#panels .panel")]
+
+    def button(self, text, within="files"):
+        return self.wait(lambda: next((b for b in self.at(within).find_elements("tag name", "button")
+                                       if b.text == text and b.is_displayed()), None))
+
+    def shoot(self, name):
+        if SHOTS:
+            self.browser.save_screenshot(os.path.join(SHOTS, name + ".png"))
+
+    def check_console(self):
+        faults = [entry["message"] for entry in self.browser.get_log("browser") if entry["level"] == "SEVERE"]
+        self.assertEqual(faults, [])
+
+    def iterations(self):
+        path = os.path.join(self.folder, "out", "history.tsv")
+        if not os.path.exists(path):
+            return 0
+        with open(path, encoding="utf-8") as file:
+            return sum(not line.startswith("#") for line in file)
+
+    def test_water_from_the_page(self):
+        """Begin, watch three iterations, pause, go on, stop, go on; download; the same bits again."""
+        with open(os.path.join(self.folder, "run.json"), "w", encoding="utf-8") as file:
+            json.dump(water_fit(6), file)
+        self.begin("live", "run.json", "--stay")
+        self.assertEqual(self.phase(), "ready")
+        self.press("start")
+        self.wait(lambda: "potential.tsv" in self.panels())
+        self.press("pause")
+        self.wait(lambda: self.phase() == "paused")
+        held = self.iterations()
+        time.sleep(2)
+        self.assertEqual(self.iterations(), held)
+        self.press("resume")
+        self.wait(lambda: self.phase() == "running")
+        self.press("stop")
+        self.wait(lambda: self.phase() == "stopped")
+        self.assertIn("interrupted", self.text("message"))
+        self.press("resume")
+        self.wait(lambda: self.phase() == "ended")
+        self.assertGreaterEqual(self.iterations(), 3)
+        self.wait(lambda: "rdf.tsv" in self.panels())
+        self.assertIn("rdf_now.tsv", self.panels())
+        self.shoot("fit")
+        self.at("tab-files").click()
+        self.button("results").click()
+        self.button("download as zip").click()
+        found = self.wait(lambda: glob.glob(os.path.join(self.downloads, "*.zip")))
+        with zipfile.ZipFile(found[0]) as archive:
+            again = os.path.join(self.folder, "again.json")
+            self.assertIsNone(archive.testzip())
+            with open(again, "wb") as file:
+                file.write(archive.read("used.json"))
+        self.assertIn(run_plain(self.folder, "fit", "again.json", "-o", "again"), (0, 1))
+        self.assertEqual(differences(os.path.join(self.folder, "out"), os.path.join(self.folder, "again")), [])
+        self.check_console()
+
+    def test_simulation_is_drawn_turned_and_stepped(self):
+        self.begin("live", "scene.json", "-o", "seen", "--stay", dark=True)
+        self.served.wish(wish="speed", speed=50)
+        self.press("start")
+        self.wait(lambda: "step" in self.text("frames"))
+        canvas = self.at("particles")
+        ActionChains(self.browser).move_to_element(canvas).click_and_hold().move_by_offset(80, 30).release().perform()
+        self.wait(lambda: canvas.get_attribute("data-turn"))
+        turned = canvas.get_attribute("data-turn")
+        canvas.send_keys(Keys.ARROW_LEFT)
+        self.wait(lambda: canvas.get_attribute("data-turn") != turned)
+        self.press("pause")
+        self.wait(lambda: self.phase() == "paused")
+        time.sleep(0.5)
+        before = self.step()
+        self.press("step")
+        self.wait(lambda: self.step() == before + 1, 10)
+        self.served.wish(wish="speed", speed=0)
+        self.press("resume")
+        self.wait(lambda: {"rdf_A-B.tsv", "motion.tsv", "thermodynamics.tsv"} <= set(self.panels()))
+        self.shoot("simulation")
+        self.check_pixels(canvas)
+        self.check_console()
+
+    def step(self):
+        return self.browser.execute_script(
+            "const box = [...document.querySelectorAll('#numbers div')].find((e) => e.querySelector('span').textContent === 'step');"
+            "return box ? Number(box.querySelector('b').textContent) : -1")
+
+    def check_pixels(self, canvas):
+        """Two types are drawn in two colours."""
+        blue, red = self.browser.execute_async_script("""
+            const [text, done] = arguments, bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+            createImageBitmap(new Blob([bytes], { type: "image/png" })).then((image) => {
+                const canvas = Object.assign(document.createElement("canvas"), { width: image.width, height: image.height });
+                const context = canvas.getContext("2d");
+                context.drawImage(image, 0, 0);
+                const data = context.getImageData(0, 0, image.width, image.height).data;
+                let blue = 0, red = 0;
+                for (let k = 0; k < data.length; k += 4) {
+                    blue += data[k + 2] > 90 && data[k + 2] > data[k] + 20;
+                    red += data[k] > 90 && data[k] > data[k + 2] + 20;
+                }
+                done([blue, red]);
+            });""", canvas.screenshot_as_base64)
+        self.assertGreater(blue, 200)
+        self.assertGreater(red, 200)
+
+    def test_temperature_and_time_step_change_while_it_runs(self):
+        self.begin("live", "scene.json", "-o", "changed", "--stay")
+        self.served.wish(wish="speed", speed=300)
+        self.press("start")
+        self.wait(lambda: self.at("change").is_displayed())
+        self.wait(lambda: self.at("change-temperature").get_attribute("placeholder") == "1")
+        self.at("change-temperature").send_keys("-2", Keys.ENTER)
+        self.wait(lambda: "temperature" in self.text("message"))
+        self.at("change-temperature").clear()
+        self.at("change-temperature").send_keys("1.25")
+        self.at("change-time-step").send_keys("0.01", Keys.ENTER)
+        self.wait(lambda: self.at("change-temperature").get_attribute("placeholder") == "1.25")
+        self.assertEqual(self.at("change-time-step").get_attribute("placeholder"), "0.01")
+        self.shoot("changed")
+        self.served.wish(wish="speed", speed=0)
+        self.wait(lambda: self.phase() == "ended")
+        self.assertFalse(self.at("change").is_displayed())
+        with open(os.path.join(self.folder, "changed", "summary.json"), encoding="utf-8") as file:
+            summary = json.load(file)
+        self.assertEqual([c["temperature"] for c in summary["changed"]], [1.25])
+        # The only fault that the console may tell is the answer that refused −2.
+        faults = [entry["message"] for entry in self.browser.get_log("browser") if entry["level"] == "SEVERE"]
+        self.assertTrue(all("400" in fault for fault in faults), faults)
+
+    def test_family_of_an_individual(self):
+        """A folder of a genetic fit has the cloud of its individuals; a click shows genes and parents."""
+        fluid = {"box": [3, 3, 3], "particles": {"count": 81}, "time_step": 0.02, "dissipative": {"law": "power", "sigma": 3}}
+        files = {"fluid.json": {**fluid, "seed": 5, "conservative": {"law": "soft-repulsion", "a": 25}, "rdf": {"range": 1, "bins": 20}},
+                 "genetic.json": {"seed": 3, "scene": fluid, "target": {"rdf": {"file": "fluid/rdf.tsv"}},
+                                  "unknowns": {"potential": {"coefficients": 6, "maximum": 30}},
+                                  "method": {"name": "genetic", "population": 10, "generations": 4, "equilibration": 40, "samples": 8,
+                                             "every": 5, "temperature_tolerance": 0.5},
+                                  "verification": {"replicas": 2, "equilibration": 20, "samples": 8, "every": 5}}}
+        for name, content in files.items():
+            with open(os.path.join(self.folder, name), "w", encoding="utf-8") as file:
+                json.dump(content, file)
+        self.assertEqual(run_plain(self.folder, "simulate", "fluid.json", "-o", "fluid"), 0)
+        self.assertIn(run_plain(self.folder, "fit", "genetic.json", "-o", "bred"), (0, 1))
+        self.begin("live", "bred")
+        cloud = self.wait(lambda: next(iter(self.browser.find_elements("css selector", "[data-population=cloud] canvas")), None))
+        self.browser.execute_script("arguments[0].scrollIntoView({ block: 'center' })", cloud)
+        # The last individual, where the chart has drawn it.
+        x, y = self.browser.execute_script("""
+            const chart = Chart.getChart(arguments[0]), set = chart.data.datasets.findIndex((s) => s.label === "an individual");
+            const points = chart.getDatasetMeta(set).data, point = points[points.length - 1], box = arguments[0].getBoundingClientRect();
+            return [point.x - box.width / 2, point.y - box.height / 2];""", cloud)
+        ActionChains(self.browser).move_to_element_with_offset(cloud, int(x), int(y)).click().perform()
+        note = self.wait(lambda: next((p for p in self.browser.find_elements("css selector", "[data-population='genes_potential.tsv'] p") if p.text), None), 20)
+        self.assertRegex(note.text, r"Individual \d+: error [\d.e-]+; parents \d+(, \d+)?; children none")
+        labels = self.browser.execute_script("return Chart.getChart(document.querySelector(\"[data-population='genes_potential.tsv'] canvas\")).data.datasets.map((s) => s.label)")
+        self.assertIn("genes", labels)
+        self.assertTrue(any(label.startswith("parent ") for label in labels))
+        self.shoot("family")
+        self.check_console()
+
+    def test_another_file_is_chosen_edited_refused_and_saved(self):
+        self.begin("live")
+        self.assertEqual(self.phase(), "choosing")
+        self.at("tab-files").click()
+        row = self.wait(lambda: next((r for r in self.at("files").find_elements("tag name", "tr") if "scene.json" in r.text), None))
+        row.find_element("xpath", ".//button[text()='open']").click()
+        self.wait(lambda: self.phase() == "ready")
+        self.at("tab-settings").click()
+        self.shoot("settings")
+        field = self.wait(lambda: self.at("settings").find_element("css selector", "input[data-name=temperature]"))
+        field.clear()
+        field.send_keys("-3", Keys.TAB)
+        self.press("start")
+        self.wait(lambda: self.phase() == "refused")
+        self.assertIn("temperature", self.text("message"))
+        self.at("tab-settings").click()
+        field = self.at("settings").find_element("css selector", "input[data-name=temperature]")
+        field.clear()
+        field.send_keys("1.5", Keys.TAB)
+        self.at("tab-files").click()
+        name = self.wait(lambda: self.at("files").find_element("css selector", "input[placeholder='new.json']"))
+        name.send_keys("hot.json")
+        self.button("save").click()
+        self.wait(lambda: os.path.exists(os.path.join(self.folder, "hot.json")))
+        with open(os.path.join(self.folder, "hot.json"), encoding="utf-8") as file:
+            self.assertEqual(json.load(file)["temperature"], 1.5)
+        self.shoot("files")
+        self.press("start")
+        self.wait(lambda: self.phase() == "ended")
+        with open(os.path.join(self.folder, "out", "used.json"), encoding="utf-8") as file:
+            self.assertEqual(json.load(file)["temperature"], 1.5)
+        self.check_console()
+
+    def test_results_open_the_same_panels_on_a_phone(self):
+        self.assertEqual(run_plain(self.folder, "simulate", "scene.json", "-o", "done"), 0)
+        self.begin("live", "done", width=500, height=840)
+        self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                                     {"width": 390, "height": 844, "deviceScaleFactor": 2, "mobile": True})
+        self.wait(lambda: {"rdf_A-A.tsv", "motion.tsv", "thermodynamics.tsv"} <= set(self.panels()))
+        wide = self.browser.execute_script("return document.documentElement.scrollWidth - window.innerWidth")
+        self.assertLessEqual(wide, 0)
+        self.shoot("phone")
+        self.check_console()
+
+    def type(self, key):
+        ActionChains(self.browser).send_keys(key).perform()
+
+    def tab_to(self, name):
+        for _ in range(40):
+            if self.browser.switch_to.active_element.get_attribute("id") == name:
+                return
+            self.type(Keys.TAB)
+        self.fail(f"no way to {name} by the keyboard")
+
+    def test_keyboard_alone(self):
+        self.begin("live", "scene.json", "--stay")
+        self.tab_to("start")
+        outline = self.browser.execute_script("return getComputedStyle(document.activeElement).outlineStyle")
+        self.assertNotEqual(outline, "none")
+        self.type(Keys.ENTER)
+        self.wait(lambda: self.phase() in ("running", "ended"))
+        self.tab_to("tab-view")
+        self.type(Keys.ARROW_RIGHT)
+        self.wait(lambda: self.at("settings").is_displayed())
+        self.assertEqual(self.browser.switch_to.active_element.get_attribute("id"), "tab-settings")
+        unnamed = self.browser.execute_script(
+            "return [...document.querySelectorAll('button, input, select, textarea, canvas')].filter((e) => "
+            "!e.textContent.trim() && !e.getAttribute('aria-label') && !(e.labels && e.labels.length)).length")
+        self.assertEqual(unnamed, 0)
+        self.wait(lambda: self.phase() == "ended")
+        self.check_console()
+
+    def test_stale_token_is_refused(self):
+        self.begin("live", "scene.json")
+        self.browser.get(self.served.address.replace(self.served.token, "0" * 32))
+        self.assertIn("The token is missing, or that of another run", self.browser.page_source)
+        self.browser.execute_script("sessionStorage.setItem('mesofit-token', '0'.repeat(32))")
+        self.browser.get(self.served.address.split("?")[0])
+        self.wait(lambda: self.phase() == "gone")
+        self.assertIn("token", self.text("message"))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`mesofit watch` on a terminal of its own."""
+import fcntl
+import os
+import pty
+import select
+import struct
+import subprocess
+import tempfile
+import termios
+import time
+import unittest
+
+from served import PROGRAM, make_folder, run_plain
+
+
+class Watch(unittest.TestCase):
+    def read(self, master, seconds):
+        text, until = b"", time.time() + seconds
+        while time.time() < until:
+            if select.select([master], [], [], 0.1)[0]:
+                try:
+                    text += os.read(master, 65536)
+                except OSError:
+                    break
+        return text.decode("utf-8", "replace")
+
+    def test_screen_is_drawn_follows_the_size_and_quits_with_q(self):
+        with tempfile.TemporaryDirectory() as folder:
+            make_folder(folder)
+            self.assertEqual(run_plain(folder, "simulate", "scene.json", "-o", "out"), 0)
+            master, slave = pty.openpty()
+            fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
+            before = termios.tcgetattr(slave)
+            process = subprocess.Popen([PROGRAM, "watch", "out"], cwd=folder, stdin=slave, stdout=slave, stderr=subprocess.PIPE)
+            text = self.read(master, 1.5)
+            self.assertTrue(text.startswith("\x1b[?1049h\x1b[?25l"))
+            self.assertIn("out: ok; last change", text)
+            self.assertIn("temperature, by step [T_0]", text)
+            self.assertTrue(any("\u2801" <= letter <= "\u28ff" for letter in text))
+            screen = text.split("\x1b[H")[1]
+            lines = screen.split("\x1b[K\r\n")
+            self.assertLessEqual(len(lines), 24)
+            self.assertLessEqual(max(len(line) for line in lines[:-1]), 80)
+            fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 12, 40, 0, 0))
+            self.read(master, 1.2)
+            lines = self.read(master, 1.5).split("\x1b[H")[1].split("\x1b[K\r\n")
+            self.assertLessEqual(max(len(line) for line in lines[:-1]), 40)
+            os.write(master, b"q")
+            self.assertEqual(process.wait(10), 0)
+            self.assertIn("\x1b[?25h\x1b[?1049l", self.read(master, 0.3))
+            self.assertEqual(termios.tcgetattr(slave), before)
+            self.assertEqual(process.stderr.read(), b"")
+            process.stderr.close()
+            os.close(master)
+            os.close(slave)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Flows whose transport coefficient is known: white noise, and Ornstein and Uhlenbeck's process.
+#include "observe/green_kubo.h"
+
+#include "base/rng.h"
+#include "shared/is_close.h"
+#include "shared/testing.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { COMPONENTS = 5, RUNS = 100 };
+
+/// Standard normal numbers of a run.
+static double normal(uint64_t run, uint32_t number, uint32_t component) {
+    const struct rng_block block = mf_rng_philox(run, RNG_INITIAL, number, component, 0);
+    const double u = (block.word[0] + 0.5) * 0x1p-32, angle = 2 * M_PI * 0x1p-32 * block.word[1];
+    return sqrt(-2 * log(u)) * cos(angle);
+}
+
+/// x ← a x + sqrt(1 − a²) ξ: ⟨x_0 x_k⟩ = a^k, and I(∞) = ½ (1 + a)/(1 − a).
+static struct green_kubo_summary simulate(uint64_t run, double a, size_t lags, size_t samples) {
+    struct green_kubo green_kubo;
+    double x[COMPONENTS] = {0};
+    assert_ok(mf_green_kubo_init(&green_kubo, lags, COMPONENTS, samples));
+    for (uint32_t c = 0; c < COMPONENTS; c++)
+        x[c] = normal(run, UINT32_MAX, c);
+    for (uint32_t n = 0; n < samples; n++) {
+        for (uint32_t c = 0; c < COMPONENTS; c++)
+            x[c] = a * x[c] + sqrt(1 - a * a) * normal(run, n, c);
+        mf_green_kubo_add(&green_kubo, x);
+    }
+    const struct green_kubo_summary s = mf_green_kubo_result(&green_kubo, NULL);
+    mf_green_kubo_clear(&green_kubo);
+    return s;
+}
+
+/// A hundred runs: their mean, and how far they lie from the truth in their own errors.
+static void check(double a, size_t lags, size_t samples) {
+    const double truth = 0.5 * (1 + a) / (1 - a);
+    double sum = 0, squares = 0, deviations = 0, errors = 0, reached = 0, window = 0;
+    for (uint64_t run = 1; run <= RUNS; run++) {
+        const struct green_kubo_summary s = simulate(run, a, lags, samples);
+        sum += s.value / RUNS;
+        squares += s.value * s.value / RUNS;
+        errors += s.error / RUNS;
+        deviations += pow((s.value - truth) / s.error, 2) / RUNS;
+        reached += s.reached;
+        window += (double)s.window / RUNS;
+    }
+    const double scatter = sqrt(squares - sum * sum);
+    print_message("a = %g: %.4f, truth %.4f, scatter %.4f, error %.4f, rms deviation %.2f errors, "
+                  "%.0f %% reached, window %.0f\n",
+                  a, sum, truth, scatter, errors, sqrt(deviations), reached, window);
+    assert_close(sum, truth, 4 * scatter / sqrt(RUNS) + 0.02 * truth);
+    assert_in_range((int)(100 * sqrt(deviations)), 60, 130);
+}
+
+static void test_green_kubo_knows_white_noise_and_its_own_error(void **state) {
+    (void)state;
+    check(0, 64, 8000);
+}
+
+static void test_green_kubo_knows_a_decay_and_its_own_error(void **state) {
+    (void)state;
+    check(exp(-1.0 / 5), 128, 8000);
+    check(exp(-1.0 / 5), 128, 1500);
+}
+
+static void test_green_kubo_tells_that_a_window_is_too_short(void **state) {
+    (void)state;
+    int reached = 0;
+    for (uint64_t run = 1; run <= RUNS; run++)
+        reached += simulate(run, exp(-1.0 / 100), 64, 20000).reached;
+    print_message("%d of %d\n", reached, RUNS);
+    assert_in_range(reached, 0, 5);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_green_kubo_knows_white_noise_and_its_own_error),
+        cmocka_unit_test(test_green_kubo_knows_a_decay_and_its_own_error),
+        cmocka_unit_test(test_green_kubo_tells_that_a_window_is_too_short),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
