@@ -61,7 +61,7 @@ static enum status measure_one(void *context, size_t task, void *unused) {
                                   (uint32_t)task),
     };
     status = mf_evaluate(&laws.problem, &candidate, &state->own.population.evaluate,
-                         work->features + task * state->features, NULL, &work->result[task]);
+                         work->features + task * state->features, NULL, NULL, &work->result[task]);
     if (status == STATUS_UNSTABLE || (status == STATUS_OK && !isfinite(work->result[task].error))) {
         work->result[task].error = OPTIMISER_FAILED;
         status = STATUS_OK;

@@ -180,26 +180,26 @@ static void spread(struct state *state, size_t count) {
 }
 
 /// Take a measured place for the best.
-static void move(struct state *state, const double *variables, double error, double noise,
-                 double variance) {
+static void move(struct state *state, const double *variables,
+                 const struct population_check *check) {
     struct progress *progress = &state->progress;
     memcpy(state->best, variables, state->parametrisation.variables * sizeof *variables);
     progress->known = true;
-    progress->error = error;
-    progress->noise = noise;
-    progress->variance = variance;
+    progress->error = check->error;
+    progress->noise = check->noise;
+    progress->variance = check->variance;
 }
 
 /// Compare the proposal's measurement with the best's: go there unless it failed or is worse by
 /// more than chance, and trust the model in a wider or narrower region.
-static void judge(struct state *state, double error, double noise, double variance) {
+static void judge(struct state *state, const struct population_check *check) {
     struct progress *progress = &state->progress;
-    const double chance = sqrt(variance + progress->variance);
-    const bool better = !progress->known || error < progress->error + chance;
-    if (error < OPTIMISER_FAILED && better) {
-        if (progress->known && error < progress->error - chance)
+    const double chance = sqrt(check->variance + progress->variance);
+    const bool better = !progress->known || check->error < progress->error + chance;
+    if (check->error < OPTIMISER_FAILED && better) {
+        if (progress->known && check->error < progress->error - chance)
             progress->reach = fmin(widest, widen * progress->reach);
-        move(state, state->proposal, error, noise, variance);
+        move(state, state->proposal, check);
     } else {
         progress->reach *= narrow;
     }
@@ -232,16 +232,15 @@ static enum status propose(struct state *state) {
     enum status status = STATUS_OK;
     struct surrogate_model model = {0};
     bool known;
-    double error, noise, variance;
     CHECK(mf_surrogate_fit(&state->population.surrogate, state->best, state->progress.reach, &model,
                            &known));
     if (known) {
         const double step = step_in_errors(state, &model);
         memcpy(state->proposal, model.best, state->parametrisation.variables * sizeof *model.best);
-        CHECK(mf_population_remeasure(&state->population, state->proposal,
-                                      (size_t)state->own.checks, 1, &error, &noise, &variance,
-                                      NULL));
-        judge(state, error, noise, variance);
+        struct population_check check;
+        CHECK(mf_population_check(&state->population, state->proposal, (size_t)state->own.checks, 1,
+                                  &check));
+        judge(state, &check);
         if (state->progress.known)
             watch(&state->progress, step);
     }

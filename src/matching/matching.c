@@ -209,20 +209,20 @@ static bool wants_check(const struct state *state, bool last) {
 /// Measure the incumbent afresh and keep it if it is better than the best so far, or as good within
 /// `slack` standard errors.
 static enum status check_incumbent(struct state *state, double slack) {
-    double error, noise, variance;
-    TRY(mf_population_remeasure(&state->population, state->incumbent,
-                                (size_t)state->parameters.checks, state->parameters.check_length,
-                                &error, &noise, &variance, NULL));
-    if (error >= OPTIMISER_FAILED ||
-        (state->progress.known && error > state->progress.error + slack * sqrt(variance)))
+    struct population_check check;
+    TRY(mf_population_check(&state->population, state->incumbent, (size_t)state->parameters.checks,
+                            state->parameters.check_length, &check));
+    if (check.error >= OPTIMISER_FAILED ||
+        (state->progress.known &&
+         check.error > state->progress.error + slack * sqrt(check.variance)))
         return STATUS_OK;
     memcpy(state->best, state->incumbent, state->parametrisation.variables * sizeof(double));
-    if (!state->progress.known || error < state->progress.error)
+    if (!state->progress.known || check.error < state->progress.error)
         state->progress.last_better = state->progress.iteration;
     state->progress.known = true;
-    state->progress.error = error;
-    state->progress.noise = noise;
-    state->progress.variance = variance;
+    state->progress.error = check.error;
+    state->progress.noise = check.noise;
+    state->progress.variance = check.variance;
     return STATUS_OK;
 }
 

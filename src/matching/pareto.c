@@ -164,15 +164,15 @@ static bool find_best(const struct pareto_state *state, size_t *best) {
 
 /// Measure a parent until it is checked.
 static enum status check_one(struct pareto_state *state, size_t parent) {
-    struct target_distance distance[TARGETS];
-    double error, noise, variance, value[TARGETS];
-    TRY(mf_population_remeasure(&state->population, mf_nsga2_parent(&state->nsga2, parent),
-                                (size_t)state->own.checks, 1, &error, &noise, &variance, distance));
-    take_distances(state, error, distance, value);
-    for (size_t m = 0; m < state->objectives && error < OPTIMISER_FAILED; m++)
-        state->progress.noise[m] = distance[state->target[m]].noise;
-    if (error < OPTIMISER_FAILED)
-        state->progress.variance = variance;
+    struct population_check check;
+    double value[TARGETS];
+    TRY(mf_population_check(&state->population, mf_nsga2_parent(&state->nsga2, parent),
+                            (size_t)state->own.checks, 1, &check));
+    take_distances(state, check.error, check.each, value);
+    for (size_t m = 0; m < state->objectives && check.error < OPTIMISER_FAILED; m++)
+        state->progress.noise[m] = check.each[state->target[m]].noise;
+    if (check.error < OPTIMISER_FAILED)
+        state->progress.variance = check.variance;
     // The mean of some measurements counts as many times.
     for (int64_t k = 0; k < state->own.checks; k++)
         TRY(mf_nsga2_add_measurement(&state->nsga2, parent, value));

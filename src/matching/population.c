@@ -51,7 +51,7 @@ struct inverse_sampling mf_population_sampling(const void *parameters) {
                                      .samples = evaluate->plan.samples};
 }
 
-static size_t coordinates(const struct population *population) {
+size_t mf_population_coordinates(const struct population *population) {
     const struct simulation_setup *scene = &population->parametrisation->unknowns.problem->scene;
     return (size_t)scene->box.dimensions * (size_t)scene->placement.count;
 }
@@ -76,8 +76,8 @@ enum status mf_population_init(struct population *population,
     mf_targets_take_features(targets, NULL, population->target, population->target_error);
     CHECK(mf_surrogate_init(&population->surrogate, parametrisation->variables, features,
                             POPULATION_MOST, population->target, population->target_error));
-    NEW_ARRAY(population->position, coordinates(population));
-    NEW_ARRAY(population->best_position, coordinates(population));
+    NEW_ARRAY(population->position, mf_population_coordinates(population));
+    NEW_ARRAY(population->best_position, mf_population_coordinates(population));
     mf_population_next_round(population);
     mf_population_forget_survey(population);
     population->totals.rounds = 0;
@@ -107,7 +107,7 @@ void mf_population_next_round(struct population *population) {
         population->errors[k] = UNMEASURED;
     if (population->parameters.warm_start && totals->best_error < OPTIMISER_FAILED) {
         memcpy(population->position, population->best_position,
-               coordinates(population) * sizeof *population->position);
+               mf_population_coordinates(population) * sizeof *population->position);
         totals->warm = totals->evaluations > 0;
     }
     totals->best_error = OPTIMISER_FAILED;
@@ -133,29 +133,25 @@ static void split(const struct population *population, double *position, double 
         column[d] = position + (size_t)d * (size_t)scene->placement.count;
 }
 
-/// One simulation of some variables, `length` times as long as those of a round. A failed one has
-/// the worst error.
-static enum status measure(const struct population *population, const double *variables,
-                           int64_t length, uint64_t seed, double discard_above, int threads,
-                           double *features, double *end, struct evaluate_result *result) {
+enum status mf_population_simulate(const struct population *population, const double *variables,
+                                   const struct population_task *task,
+                                   struct evaluate_result *result) {
     struct unknowns_laws laws;
-    struct evaluate_parameters parameters = population->parameters.evaluate;
-    parameters.plan.equilibration *= length;
-    parameters.plan.samples *= length;
     double *begin_column[3] = {NULL}, *end_column[3] = {NULL};
     split(population, population->position, begin_column);
-    split(population, end, end_column);
+    split(population, task->end, end_column);
     enum status status = mf_parametrisation_laws(population->parametrisation, variables, &laws);
     const struct evaluate_candidate candidate = {
         .potential = laws.table[UNKNOWN_POTENTIAL],
         .omega = laws.table[UNKNOWN_OMEGA],
         .position = population->totals.warm ? (const double *const *)begin_column : NULL,
-        .discard_above = discard_above,
-        .threads = threads,
-        .seed = seed,
+        .discard_above = task->discard_above,
+        .threads = task->threads,
+        .seed = task->seed,
     };
     if (status == STATUS_OK)
-        status = mf_evaluate(&laws.problem, &candidate, &parameters, features, end_column, result);
+        status = mf_evaluate(&laws.problem, &candidate, task->parameters, task->features,
+                             task->observed, end_column, result);
     if (status == STATUS_UNSTABLE || (status == STATUS_OK && !isfinite(result->error))) {
         result->error = OPTIMISER_FAILED;
         result->variance = 0;
@@ -210,7 +206,7 @@ static void take(struct population *population, size_t index, const struct evalu
         return;
     totals->best_error = result->error;
     totals->best_index = index;
-    memcpy(population->best_position, end, coordinates(population) * sizeof *end);
+    memcpy(population->best_position, end, mf_population_coordinates(population) * sizeof *end);
 }
 
 /// Equal candidates of a round are measurements of their own, also with common noise.
@@ -253,11 +249,17 @@ static enum status measure_one(void *context, size_t task, void *memory) {
     const struct population *population = work->population;
     struct measured *measured = memory;
     const size_t index = work->index[task];
-    return measure(population,
-                   work->round->variables + index * population->parametrisation->variables, 1,
-                   seed_of(population, work->round, index), work->discard_above, work->threads,
-                   population->features + index * population->surrogate.features, measured->end,
-                   &measured->result);
+    const struct population_task one = {
+        .parameters = &population->parameters.evaluate,
+        .seed = seed_of(population, work->round, index),
+        .discard_above = work->discard_above,
+        .threads = work->threads,
+        .features = population->features + index * population->surrogate.features,
+        .end = measured->end,
+    };
+    return mf_population_simulate(
+        population, work->round->variables + index * population->parametrisation->variables, &one,
+        &measured->result);
 }
 
 static void take_one(void *context, size_t task, const void *memory) {
@@ -277,9 +279,8 @@ static int threads_inside(const struct inverse_problem *problem) {
     return most < problem->threads ? (int)most : problem->threads;
 }
 
-/// What blew up has no features.
-static void remember(struct population *population, const double *variables, double error,
-                     const double *features) {
+void mf_population_remember(struct population *population, const double *variables, double error,
+                            const double *features) {
     if (error < OPTIMISER_FAILED)
         mf_surrogate_add(&population->surrogate, variables, features);
 }
@@ -323,83 +324,21 @@ enum status mf_population_measure(struct population *population,
         .threads = problem->threads,
         .run = measure_one,
         .take = take_one,
-        .result_size = sizeof(struct measured) + coordinates(population) * sizeof(double),
+        .result_size =
+            sizeof(struct measured) + mf_population_coordinates(population) * sizeof(double),
         .context = &work}));
     for (size_t k = 0; k < round->count; k++) {
         add(&population->survey, population->errors[k]);
-        remember(population, round->variables + k * population->parametrisation->variables,
-                 population->errors[k], population->features + k * population->surrogate.features);
+        mf_population_remember(
+            population, round->variables + k * population->parametrisation->variables,
+            population->errors[k], population->features + k * population->surrogate.features);
     }
     show(population, round);
     return STATUS_OK;
 }
 
-static struct target_distance mean_distance(const struct evaluate_result *results, size_t count,
-                                            enum target_kind kind) {
-    struct target_distance mean = {.count = results[0].distance[kind].count};
-    for (size_t k = 0; k < count; k++) {
-        mean.rms += results[k].distance[kind].rms / (double)count;
-        mean.noise += results[k].distance[kind].noise / (double)count;
-    }
-    return mean;
-}
-
-/// Fresh measurements of one candidate.
-struct fresh {
-    const struct population *population;
-    const double *variables;
-    int64_t length;
-    struct evaluate_result *results;
-    double *features; ///< shape [count, features]
-};
-
-static enum status measure_afresh(void *context, size_t k, void *end) {
-    const struct fresh *fresh = context;
-    const struct population *population = fresh->population;
-    const uint64_t seed =
-        mf_rng_child_seed(population->parametrisation->unknowns.problem->seed, RNG_REMEASUREMENT,
-                          (uint32_t)population->totals.remeasured, (uint32_t)k);
-    return measure(population, fresh->variables, fresh->length, seed, HUGE_VAL, 1,
-                   fresh->features + k * population->surrogate.features, end, &fresh->results[k]);
-}
-
-enum status mf_population_remeasure(struct population *population, const double *variables,
-                                    size_t count, int64_t length, double *error, double *noise,
-                                    double *variance, struct target_distance *distance) {
-    enum status status = STATUS_OK;
-    const size_t each = population->surrogate.features;
-    struct fresh fresh = {population, variables, length, NULL, NULL};
-    NEW_ARRAY(fresh.results, count);
-    NEW_ARRAY(fresh.features, count * each);
-    CHECK(mf_parallel_try(
-        &(struct parallel_tasks){.count = count,
-                                 .threads = population->parametrisation->unknowns.problem->threads,
-                                 .run = measure_afresh,
-                                 .result_size = coordinates(population) * sizeof(double),
-                                 .context = &fresh}));
-    population->totals.remeasured++;
-    *error = *noise = *variance = 0;
-    for (int kind = 0; kind < TARGETS && distance; kind++)
-        distance[kind] = mean_distance(fresh.results, count, kind);
-    for (size_t k = 0; k < count; k++) {
-        const struct evaluate_result *result = &fresh.results[k];
-        *error += result->error / (double)count;
-        *noise += result->noise / (double)count;
-        *variance += result->variance / (double)(count * count);
-        remember(population, variables, result->error, fresh.features + k * each);
-        population->totals.evaluations++;
-        population->totals.steps += result->engine_steps;
-        if (result->error >= OPTIMISER_FAILED)
-            *error = OPTIMISER_FAILED * (double)count;
-    }
-done:
-    mf_memory_free(fresh.results);
-    mf_memory_free(fresh.features);
-    return status;
-}
-
 size_t mf_population_spans(struct population *population, struct memory_span *span) {
-    const size_t positions = coordinates(population) * sizeof(double);
+    const size_t positions = mf_population_coordinates(population) * sizeof(double);
     const size_t errors = POPULATION_MOST * sizeof(double);
     size_t n = 0;
     span[n++] = (struct memory_span){&population->survey, sizeof population->survey};

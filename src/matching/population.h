@@ -74,13 +74,46 @@ enum status mf_population_measure(struct population *population,
 /// Forget the errors, and begin the next round's simulations where the best of this one ended.
 void mf_population_next_round(struct population *population);
 
-/// Mean error of `count` fresh measurements of one candidate, the noise in each, and the variance
-/// of the mean; OPTIMISER_FAILED if one of them fails.
-/// @param[in]  length    of their simulations, in those of a round
-/// @param[out] distance  shape [TARGETS]: means, or NULL
-enum status mf_population_remeasure(struct population *population, const double *variables,
-                                    size_t count, int64_t length, double *error, double *noise,
-                                    double *variance, struct target_distance *distance) MUST_USE;
+/// Numbers of a configuration: dimensions times particles.
+size_t mf_population_coordinates(const struct population *population);
+
+/// One simulation of a candidate.
+struct population_task {
+    const struct evaluate_parameters *parameters;
+    uint64_t seed;
+    double discard_above;      ///< error with which it cannot win; HUGE_VAL: none
+    int threads;               ///< of the simulation
+    double *features;          ///< shape [features], to be filled
+    struct observed *observed; ///< to be filled, or NULL
+    double *end;               ///< as population.position, to be filled
+};
+
+/// What blew up, left its temperature or collapsed has the error OPTIMISER_FAILED.
+/// Fails: as mf_evaluate but for UNSTABLE.
+enum status mf_population_simulate(const struct population *population, const double *variables,
+                                   const struct population_task *task,
+                                   struct evaluate_result *result) MUST_USE;
+
+/// Add a measurement to the linear model's; what failed has no features.
+void mf_population_remember(struct population *population, const double *variables, double error,
+                            const double *features);
+
+/// What fresh measurements of a candidate say together.
+struct population_check {
+    double error;                         ///< of their mean; OPTIMISER_FAILED if one of them failed
+    double noise;                         ///< in that
+    double variance;                      ///< of that
+    struct target_distance each[TARGETS]; ///< means of those of single measurements
+};
+
+/// Measure one candidate `count` times afresh, for as long as is set: none stops early. The mean of
+/// what was measured is compared with the targets: its noise is less than that of each, of which a
+/// mean of errors would keep all. (population_check.c)
+/// @param[in] length  of their simulations, in those of a round
+/// Fails: INTERRUPTED, NO_MEMORY, BAD_INPUT.
+enum status mf_population_check(struct population *population, const double *variables,
+                                size_t count, int64_t length,
+                                struct population_check *check) MUST_USE;
 
 /// Write the curves of the last round of at least eight candidates: population_potential.tsv and so
 /// on, r and a column for each that did not fail, from the least error on, as their names say.

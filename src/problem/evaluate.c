@@ -10,9 +10,10 @@ static const double collapse_factor = 2;
 /// Errors by which a temperature after equilibration may be off besides the tolerance.
 static const double deviations = 4;
 
-/// Parts of the samples after each of which a simulation may be stopped, and samples that it must
-/// have by then, so that their errors mean something.
-enum { PARTS = 16, LEAST_SAMPLES = 4 };
+/// Parts of the samples after each of which a simulation may be stopped, and samples and windows of
+/// the longest target that it must have by then, so that their errors mean something: one window of
+/// a VACF has none.
+enum { PARTS = 16, LEAST_SAMPLES = 4, LEAST_WINDOWS = 4 };
 
 static bool has_collapsed(const struct simulation *simulation) {
     const struct neighbours *neighbours = &simulation->neighbours;
@@ -68,11 +69,15 @@ static enum status sample(struct measurement *measurement, double discard_above,
                           const struct evaluate_parameters *parameters, struct observed *observed,
                           struct evaluate_result *result) {
     const struct measure_plan *plan = &parameters->plan;
+    enum target_kind longest;
+    const int64_t least_steps =
+        LEAST_WINDOWS * mf_measurement_window(measurement->targets,
+                                              measurement->simulation.setup.time_step, &longest);
     const bool may_stop = parameters->racing > 0 || parameters->precision > 0;
     for (int part = may_stop ? 1 : PARTS; part < PARTS; part++) {
         struct measure_plan so_far = *plan;
         so_far.samples = plan->samples * part / PARTS;
-        if (so_far.samples < LEAST_SAMPLES)
+        if (so_far.samples < LEAST_SAMPLES || so_far.samples * plan->every < least_steps)
             continue;
         TRY(mf_measure_sample(&measurement->simulation, &so_far, measurement->use, NULL));
         TRY(score(measurement, observed, result));
@@ -99,10 +104,11 @@ static void copy_positions(const struct particles *particles, double *const *pos
 enum status mf_evaluate(const struct inverse_problem *problem,
                         const struct evaluate_candidate *candidate,
                         const struct evaluate_parameters *parameters, double *features,
-                        double *const *position, struct evaluate_result *result) {
+                        struct observed *observed, double *const *position,
+                        struct evaluate_result *result) {
     enum status status = STATUS_OK;
     struct measurement measurement = {0};
-    struct observed observed = {0};
+    struct observed own = {0};
     struct measure_plan plan = parameters->plan;
     *result = (struct evaluate_result){0};
     const struct measurement_setup setup = {.targets = &problem->targets,
@@ -114,17 +120,20 @@ enum status mf_evaluate(const struct inverse_problem *problem,
                                                 parameters->estimator == RDF_FORCE_USED,
                                             .threads = candidate->threads,
                                             .seed = candidate->seed};
-    CHECK(mf_measurement_values_init(&observed, &problem->targets));
+    if (observed == NULL) {
+        CHECK(mf_measurement_values_init(&own, &problem->targets));
+        observed = &own;
+    }
     CHECK(mf_measurement_init(&measurement, problem, &setup));
     CHECK(equilibrate(&measurement.simulation, &plan, parameters->temperature_tolerance));
-    CHECK(sample(&measurement, candidate->discard_above, parameters, &observed, result));
+    CHECK(sample(&measurement, candidate->discard_above, parameters, observed, result));
     if (features)
-        mf_targets_take_features(&problem->targets, observed.value, features, NULL);
+        mf_targets_take_features(&problem->targets, observed->value, features, NULL);
     if (position)
         copy_positions(&measurement.simulation.particles, position);
 done:
     result->engine_steps = measurement.simulation.step;
     mf_measurement_clear(&measurement);
-    mf_measurement_values_clear(&observed);
+    mf_measurement_values_clear(&own);
     return status;
 }

@@ -36,6 +36,7 @@ struct evaluate_result {
 
 /// One simulation of the problem's scene.
 /// @param[out] features  of what was measured, shape [mf_targets_features], or NULL
+/// @param[out] observed  values and errors of all targets (mf_measurement_values_init), or NULL
 /// @param[out] position  where the particles were at the end, shape [dimensions][count] by particle
 ///                       number, or NULL
 /// Fails: UNSTABLE if it blows up, leaves its temperature or collapses into a drop (which would
@@ -43,4 +44,5 @@ struct evaluate_result {
 enum status mf_evaluate(const struct inverse_problem *problem,
                         const struct evaluate_candidate *candidate,
                         const struct evaluate_parameters *parameters, double *features,
-                        double *const *position, struct evaluate_result *result) MUST_USE;
+                        struct observed *observed, double *const *position,
+                        struct evaluate_result *result) MUST_USE;

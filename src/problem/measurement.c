@@ -2,6 +2,7 @@
 #include "problem/measurement.h"
 
 #include "base/memory.h"
+#include "base/statistics.h"
 #include "observe/motion.h"
 #include "observe/rdf_observable.h"
 
@@ -213,6 +214,27 @@ enum status mf_measurement_result(const struct measurement *replicas, size_t cou
     for (size_t use = 0; replicas->use[use].observable; use++)
         TRY(find_result(replicas, count, use, observed));
     return STATUS_OK;
+}
+
+void mf_measurement_mean(const struct observed *observed, size_t count,
+                         const struct targets *targets, struct observed *mean) {
+    for (int kind = 0; kind < TARGETS; kind++)
+        for (size_t k = 0; k < targets->target[kind].count; k++) {
+            struct running_mean all = {0};
+            double squares = 0;
+            bool known = true;
+            for (size_t n = 0; n < count; n++) {
+                const double value = observed[n].value[kind][k], error = observed[n].error[kind][k];
+                if (!isfinite(value))
+                    continue;
+                mf_statistics_add(&all, value);
+                squares += error * error;
+                known = known && error > 0;
+            }
+            mean->value[kind][k] = all.count > 0 ? all.mean : NAN;
+            mean->error[kind][k] =
+                known ? sqrt(squares) / all.count : mf_statistics_standard_error(&all);
+        }
 }
 
 void mf_measurement_distance(const struct observed *observed, const struct targets *targets,

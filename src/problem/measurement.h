@@ -61,6 +61,12 @@ void mf_measurement_values_clear(struct observed *observed);
 enum status mf_measurement_result(const struct measurement *replicas, size_t count,
                                   struct observed *observed) MUST_USE;
 
+/// Mean of independent simulations as long as each other; what one has not seen is the mean of the
+/// others. Where they know no errors, as after one window of time, the mean has those of their
+/// scatter.
+void mf_measurement_mean(const struct observed *observed, size_t count,
+                         const struct targets *targets, struct observed *mean);
+
 /// Distances of what was observed from all targets.
 void mf_measurement_distance(const struct observed *observed, const struct targets *targets,
                              struct target_distance distance[TARGETS]);

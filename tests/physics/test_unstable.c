@@ -229,7 +229,7 @@ static enum status measure(const struct inverse_problem *problem, const struct t
                                                  .discard_above = HUGE_VAL,
                                                  .threads = 1,
                                                  .seed = 8};
-    return mf_evaluate(problem, &candidate, parameters, NULL, NULL, result);
+    return mf_evaluate(problem, &candidate, parameters, NULL, NULL, NULL, result);
 }
 
 static void test_evaluate_is_a_score_when_the_potential_is_wild(void **state) {

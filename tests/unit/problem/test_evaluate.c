@@ -48,7 +48,7 @@ static void measure(const struct made *made, double discard_above, double racing
                                                  .discard_above = discard_above,
                                                  .threads = 1,
                                                  .seed = 11};
-    assert_ok(mf_evaluate(&made->problem, &candidate, &parameters, NULL, NULL, result));
+    assert_ok(mf_evaluate(&made->problem, &candidate, &parameters, NULL, NULL, NULL, result));
 }
 
 static void test_evaluate_stops_early_when_a_candidate_cannot_win(void **state) {
@@ -101,6 +101,33 @@ static void test_evaluate_races_with_fewer_samples_than_looks(void **state) {
     fluid_clear(&made.fluid);
 }
 
+/// One window of a VACF has no error of its own, and two have next to none: a simulation that may
+/// stop when its error is well known goes on for four.
+static void test_evaluate_sees_some_windows_before_it_stops(void **state) {
+    (void)state;
+    enum { LAGS = 10 };
+    struct made made;
+    struct evaluate_result result;
+    double vacf[LAGS + 1], error[LAGS + 1], time[LAGS + 1];
+    begin(&made);
+    for (int k = 0; k <= LAGS; k++) {
+        time[k] = 0.02 * k;
+        vacf[k] = 0;
+        error[k] = 0.001;
+    }
+    made.problem.targets.target[TARGET_RDF].count = 0;
+    made.problem.targets.target[TARGET_VACF] =
+        (struct target){.count = LAGS + 1, .x = time, .value = vacf, .error = error};
+    made.problem.targets.motion_interval = 0.02;
+    made.problem.targets.motion_lags = LAGS;
+    made.parameters.precision = 1;
+    measure(&made, HUGE_VAL, 0, &result);
+    assert_true(result.stopped);
+    assert_in_range(result.engine_steps, 20 + 4 * LAGS, 20 + 4 * LAGS + 15);
+    assert_true(result.variance > 0);
+    fluid_clear(&made.fluid);
+}
+
 /// With a time step of next to nothing a simulation ends where it begins.
 static void test_evaluate_begins_where_it_is_told(void **state) {
     (void)state;
@@ -120,7 +147,7 @@ static void test_evaluate_begins_where_it_is_told(void **state) {
         .discard_above = HUGE_VAL,
         .threads = 1,
         .seed = 11};
-    assert_ok(mf_evaluate(&made.problem, &candidate, &made.parameters, NULL,
+    assert_ok(mf_evaluate(&made.problem, &candidate, &made.parameters, NULL, NULL,
                           (double *const[]){to[0], to[1], to[2]}, &result));
     for (int d = 0; d < 3; d++)
         for (int k = 0; k < COUNT; k++)
@@ -139,8 +166,9 @@ static void test_evaluate_fails_when_the_temperature_is_another(void **state) {
                                                  .discard_above = HUGE_VAL,
                                                  .threads = 1,
                                                  .seed = 11};
-    assert_fails(mf_evaluate(&made.problem, &candidate, &made.parameters, NULL, NULL, &result),
-                 STATUS_UNSTABLE, "the temperature is");
+    assert_fails(
+        mf_evaluate(&made.problem, &candidate, &made.parameters, NULL, NULL, NULL, &result),
+        STATUS_UNSTABLE, "the temperature is");
     assert_int_equal(result.engine_steps, 20);
     fluid_clear(&made.fluid);
 }
@@ -173,7 +201,7 @@ static void test_evaluate_knows_how_well_a_temperature_is_known(void **state) {
                                                          .threads = 1,
                                                          .seed = seed};
             const enum status found =
-                mf_evaluate(&made.problem, &candidate, &made.parameters, NULL, NULL, &result);
+                mf_evaluate(&made.problem, &candidate, &made.parameters, NULL, NULL, NULL, &result);
             assert_int_equal(found, n == HOT ? STATUS_UNSTABLE : STATUS_OK);
             fluid_clear(&made.fluid);
         }
@@ -235,15 +263,44 @@ static void test_candidates_race_with_the_same_bits_for_any_threads(void **state
     fluid_clear(&made.fluid);
 }
 
+/// Where g(r) is 1 by nature, all that a measurement is off by is noise, of which the mean of n has
+/// 1/sqrt(n).
+static void test_checks_together_have_the_noise_of_their_mean(void **state) {
+    (void)state;
+    enum { CHECKS = 16 };
+    struct made made;
+    struct parametrisation parametrisation;
+    struct population population;
+    struct population_check check;
+    double variables[VARIABLES] = {0.5, 0.5, 0.5, 0.5};
+    begin(&made);
+    made.problem.scene.potential = NULL;
+    for (int k = 0; k < BINS; k++)
+        made.error[k] = 0;
+    const struct population_parameters parameters = {made.parameters, 0, 0};
+    assert_ok(mf_parametrisation_init(&parametrisation, &made.problem));
+    assert_ok(mf_population_init(&population, &parametrisation, &parameters));
+    assert_ok(mf_population_check(&population, variables, CHECKS, 1, &check));
+    assert_close_relative(check.error / check.each[TARGET_RDF].rms, 0.25, 0.5);
+    assert_close_relative(check.error / check.noise, 1, 0.5);
+    assert_int_equal(population.surrogate.rows.added, CHECKS);
+    assert_int_equal(population.totals.steps, CHECKS * 220);
+    mf_population_clear(&population);
+    mf_parametrisation_clear(&parametrisation);
+    fluid_clear(&made.fluid);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_evaluate_stops_early_when_a_candidate_cannot_win),
         cmocka_unit_test(test_evaluate_has_the_same_bits_when_it_is_not_stopped),
         cmocka_unit_test(test_evaluate_races_with_fewer_samples_than_looks),
+        cmocka_unit_test(test_evaluate_sees_some_windows_before_it_stops),
         cmocka_unit_test(test_evaluate_begins_where_it_is_told),
         cmocka_unit_test(test_evaluate_fails_when_the_temperature_is_another),
         cmocka_unit_test(test_evaluate_knows_how_well_a_temperature_is_known),
         cmocka_unit_test(test_candidates_race_with_the_same_bits_for_any_threads),
+        cmocka_unit_test(test_checks_together_have_the_noise_of_their_mean),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -94,7 +94,8 @@ static void test_evaluate_keeps_types_and_places_when_it_begins_where_another_en
                                                      .threads = 1,
                                                      .seed = seed};
         double *ended[3] = {memory[0], memory[1], memory[2]};
-        assert_ok(mf_evaluate(&slabs.problem, &candidate, &parameters, features, ended, &result));
+        assert_ok(
+            mf_evaluate(&slabs.problem, &candidate, &parameters, features, NULL, ended, &result));
         // A pair at an edge may be rounded to either side.
         for (int n = 0; n < PAIRS * BINS; n++)
             assert_close(features[n], expected[n], 0.05 + 0.1 * expected[n]);

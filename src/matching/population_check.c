@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "matching/population.h"
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/rng.h"
+
+#include <math.h>
+
+/// Fresh measurements of one candidate.
+struct fresh {
+    const struct population *population;
+    const double *variables;
+    struct evaluate_parameters parameters;
+    struct evaluate_result *results; ///< shape [count]
+    double *features;                ///< shape [count, features]
+    struct observed *observed;       ///< shape [count]
+};
+
+static enum status fresh_init(struct fresh *fresh, size_t count, int64_t length) {
+    enum status status = STATUS_OK;
+    const struct population *population = fresh->population;
+    fresh->parameters = population->parameters.evaluate;
+    fresh->parameters.plan.equilibration *= length;
+    fresh->parameters.plan.samples *= length;
+    fresh->parameters.precision = 0;
+    NEW_ARRAY(fresh->results, count);
+    NEW_ARRAY(fresh->features, count * population->surrogate.features);
+    NEW_ARRAY(fresh->observed, count);
+    for (size_t k = 0; k < count; k++)
+        CHECK(mf_measurement_values_init(&fresh->observed[k],
+                                         &population->parametrisation->unknowns.problem->targets));
+done:
+    return status;
+}
+
+static void fresh_clear(struct fresh *fresh, size_t count) {
+    for (size_t k = 0; fresh->observed && k < count; k++)
+        mf_measurement_values_clear(&fresh->observed[k]);
+    mf_memory_free(fresh->observed);
+    mf_memory_free(fresh->features);
+    mf_memory_free(fresh->results);
+}
+
+static enum status measure_one(void *context, size_t k, void *end) {
+    const struct fresh *fresh = context;
+    const struct population *population = fresh->population;
+    const struct population_task task = {
+        .parameters = &fresh->parameters,
+        .seed = mf_rng_child_seed(population->parametrisation->unknowns.problem->seed,
+                                  RNG_REMEASUREMENT, (uint32_t)population->totals.remeasured,
+                                  (uint32_t)k),
+        .discard_above = HUGE_VAL,
+        .threads = 1,
+        .features = fresh->features + k * population->surrogate.features,
+        .observed = &fresh->observed[k],
+        .end = end,
+    };
+    return mf_population_simulate(population, fresh->variables, &task, &fresh->results[k]);
+}
+
+static struct target_distance mean_distance(const struct evaluate_result *results, size_t count,
+                                            int kind) {
+    struct target_distance mean = {.count = results[0].distance[kind].count};
+    for (size_t k = 0; k < count; k++) {
+        mean.rms += results[k].distance[kind].rms / (double)count;
+        mean.noise += results[k].distance[kind].noise / (double)count;
+    }
+    return mean;
+}
+
+/// The mean of all, as one measurement.
+static enum status compare_mean(const struct fresh *fresh, size_t count,
+                                struct population_check *check) {
+    enum status status = STATUS_OK;
+    const struct targets *targets = &fresh->population->parametrisation->unknowns.problem->targets;
+    struct target_distance distance[TARGETS];
+    struct observed mean = {0};
+    CHECK(mf_measurement_values_init(&mean, targets));
+    mf_measurement_mean(fresh->observed, count, targets, &mean);
+    mf_measurement_distance(&mean, targets, distance);
+    check->error = mf_targets_error(targets, distance);
+    check->noise = mf_targets_noise(targets, distance);
+    check->variance = mf_targets_variance(targets, distance);
+done:
+    mf_measurement_values_clear(&mean);
+    return status;
+}
+
+enum status mf_population_check(struct population *population, const double *variables,
+                                size_t count, int64_t length, struct population_check *check) {
+    enum status status = STATUS_OK;
+    struct fresh fresh = {.population = population, .variables = variables};
+    bool failed = false;
+    *check = (struct population_check){.error = OPTIMISER_FAILED};
+    CHECK(fresh_init(&fresh, count, length));
+    CHECK(mf_parallel_try(&(struct parallel_tasks){
+        .count = count,
+        .threads = population->parametrisation->unknowns.problem->threads,
+        .run = measure_one,
+        .result_size = mf_population_coordinates(population) * sizeof(double),
+        .context = &fresh}));
+    population->totals.remeasured++;
+    for (size_t k = 0; k < count; k++) {
+        const struct evaluate_result *result = &fresh.results[k];
+        failed = failed || result->error >= OPTIMISER_FAILED;
+        mf_population_remember(population, variables, result->error,
+                               fresh.features + k * population->surrogate.features);
+        population->totals.evaluations++;
+        population->totals.steps += result->engine_steps;
+    }
+    for (int kind = 0; kind < TARGETS; kind++)
+        check->each[kind] = mean_distance(fresh.results, count, kind);
+    if (!failed)
+        CHECK(compare_mean(&fresh, count, check));
+done:
+    fresh_clear(&fresh, count);
+    return status;
+}
