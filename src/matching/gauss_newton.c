@@ -60,6 +60,7 @@ struct state {
         bool known;                    ///< whether the best has been measured
         double reach;                  ///< radius of the region [variable]
         double error, variance, noise; ///< of the best
+        double least;                  ///< of the errors that the best has had
         uint32_t at_noise;             ///< iterations since the error is no more than noise
         uint32_t idle;                 ///< since it fell by more than chance,
         double reference;              ///< from this
@@ -138,8 +139,11 @@ static enum status create(void *memory, const struct inverse_method *method,
     struct state *state = memory;
     state->own = *(const struct parameters *)parameters;
     state->problem = problem;
-    state->progress = (struct progress){
-        .reach = state->own.reach, .error = NAN, .noise = NAN, .reference = INFINITY};
+    state->progress = (struct progress){.reach = state->own.reach,
+                                        .error = NAN,
+                                        .noise = NAN,
+                                        .least = INFINITY,
+                                        .reference = INFINITY};
     CHECK(mf_parametrisation_init(&state->parametrisation, problem));
     if (most_candidates(state) > POPULATION_MOST) {
         status =
@@ -188,14 +192,16 @@ static void move(struct state *state, const double *variables,
     progress->error = check->error;
     progress->noise = check->noise;
     progress->variance = check->variance;
+    progress->least = fmin(progress->least, check->error);
 }
 
 /// Compare the proposal's measurement with the best's: go there unless it failed or is worse by
-/// more than chance, and trust the model in a wider or narrower region.
+/// more than chance than the least so far, and trust the model in a wider or narrower region. By
+/// chance alone, taken from one best to the next, a fit would climb step by step.
 static void judge(struct state *state, const struct population_check *check) {
     struct progress *progress = &state->progress;
     const double chance = sqrt(check->variance + progress->variance);
-    const bool better = !progress->known || check->error < progress->error + chance;
+    const bool better = !progress->known || check->error < progress->least + chance;
     if (check->error < OPTIMISER_FAILED && better) {
         if (progress->known && check->error < progress->error - chance)
             progress->reach = fmin(widest, widen * progress->reach);
@@ -232,6 +238,7 @@ static enum status propose(struct state *state) {
     enum status status = STATUS_OK;
     struct surrogate_model model = {0};
     bool known;
+    mf_population_expect(&state->population, state->progress.error, state->progress.noise);
     CHECK(mf_surrogate_fit(&state->population.surrogate, state->best, state->progress.reach, &model,
                            &known));
     if (known) {

@@ -232,6 +232,7 @@ static enum status try_surrogate(struct state *state) {
     enum status status = STATUS_OK;
     struct surrogate_model model = {0};
     bool known = false;
+    mf_population_expect(&state->population, state->progress.error, state->progress.noise);
     if (state->progress.known)
         CHECK(mf_surrogate_fit(&state->population.surrogate, state->best, reach, &model, &known));
     CHECK(mf_parametrisation_curves_bands(&state->parametrisation, state->best,

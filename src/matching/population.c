@@ -73,9 +73,11 @@ enum status mf_population_init(struct population *population,
     NEW_ARRAY(population->features, POPULATION_MOST * features);
     NEW_ARRAY(population->target, features);
     NEW_ARRAY(population->target_error, features);
+    NEW_ARRAY(population->excess, features);
     mf_targets_take_features(targets, NULL, population->target, population->target_error);
     CHECK(mf_surrogate_init(&population->surrogate, parametrisation->variables, features,
-                            POPULATION_MOST, population->target, population->target_error));
+                            POPULATION_MOST, population->target, population->target_error,
+                            population->excess));
     NEW_ARRAY(population->position, mf_population_coordinates(population));
     NEW_ARRAY(population->best_position, mf_population_coordinates(population));
     mf_population_next_round(population);
@@ -95,6 +97,7 @@ void mf_population_clear(struct population *population) {
     mf_memory_free(population->features);
     mf_memory_free(population->target);
     mf_memory_free(population->target_error);
+    mf_memory_free(population->excess);
     mf_surrogate_clear(&population->surrogate);
     mf_memory_free(population->position);
     mf_memory_free(population->best_position);

@@ -41,6 +41,7 @@ struct population {
     double *features;                  ///< shape [POPULATION_MOST, features] of the targets
     struct surrogate surrogate;        ///< that remembers them
     double *target, *target_error;     ///< shape [features]
+    double *excess;                    ///< shape [features]: see mf_population_expect
     double *first;                     ///< shape [variables]: the first candidate of the last round
     double *shown, *shown_error;       ///< the last large round, to be written
     size_t shown_count;
@@ -114,6 +115,10 @@ struct population_check {
 enum status mf_population_check(struct population *population, const double *variables,
                                 size_t count, int64_t length,
                                 struct population_check *check) MUST_USE;
+
+/// Tell the linear model what the best so far misses the targets by, and how much of that is noise;
+/// NaN: not known yet. (population_check.c)
+void mf_population_expect(struct population *population, double error, double noise);
 
 /// Write the curves of the last round of at least eight candidates: population_potential.tsv and so
 /// on, r and a column for each that did not fail, from the least error on, as their names say.

@@ -117,3 +117,9 @@ done:
     fresh_clear(&fresh, count);
     return status;
 }
+
+void mf_population_expect(struct population *population, double error, double noise) {
+    const double beyond = error > noise ? sqrt(error * error - noise * noise) : 0;
+    mf_targets_spread_error(&population->parametrisation->unknowns.problem->targets, beyond,
+                            population->excess);
+}

@@ -17,14 +17,16 @@ static const double prior_width = 0.28867513459481287;
 static const double least_error = 1e-4;
 
 enum status mf_surrogate_init(struct surrogate *surrogate, size_t variables, size_t features,
-                              size_t capacity, const double *target, const double *target_error) {
+                              size_t capacity, const double *target, const double *target_error,
+                              const double *excess) {
     enum status status = STATUS_OK;
     *surrogate = (struct surrogate){.variables = variables,
                                     .features = features,
                                     .capacity = capacity,
                                     .exact = features,
                                     .target = target,
-                                    .target_error = target_error};
+                                    .target_error = target_error,
+                                    .excess = excess};
     NEW_ARRAY(surrogate->x, capacity * variables);
     NEW_ARRAY(surrogate->y, capacity * features);
 done:
@@ -53,7 +55,8 @@ size_t mf_surrogate_least_rows(size_t variables) {
 /// Weight of a feature in the fit of the target.
 static double feature_weight(const struct surrogate_work *work, size_t j) {
     const double target = work->surrogate->target_error[j];
-    return 1 / (work->scatter[j] + target * target + least_error * least_error);
+    return 1 / (work->scatter[j] + target * target + work->surrogate->excess[j] +
+                least_error * least_error);
 }
 
 /// H = Jᵀ W J + damping.
@@ -302,17 +305,54 @@ static void meet_exactly(const struct surrogate_work *work, double share) {
         work->delta[a] += direction[a] * missing / response;
 }
 
-/// The step to where the target is met best, damped until it stays within the reach; of what the
-/// exact feature misses it then makes up for less and less.
-static void take_step(const struct surrogate_work *work, double reach) {
+/// The step to where the target is met best, damped until it stays within the reach together with
+/// what is held; of what the exact feature misses it then makes up for less and less.
+static void take_damped_step(const struct surrogate_work *work, const double *held, double reach) {
+    const size_t variables = work->surrogate->variables;
     double damping = 1 / (prior_width * prior_width), share = 1;
     do {
         factor_hessian(work, damping);
         solve(work, work->miss, NULL);
         meet_exactly(work, share);
+        for (size_t a = 0; a < variables; a++)
+            work->delta[a] += held[a];
         damping *= 2;
         share *= 0.7;
-    } while (rms(work->delta, work->surrogate->variables) > reach);
+    } while (rms(work->delta, variables) > reach && damping < 1e300);
+}
+
+/// Hold the variable that is farthest beyond a bound at that bound: the others have what is then
+/// missed to make up for. False if there is none.
+static bool hold_one(const struct surrogate_work *work, const double *centre, double *held) {
+    const struct surrogate *s = work->surrogate;
+    size_t farthest = 0;
+    double most = 0, bound = 0;
+    for (size_t a = 0; a < s->variables; a++) {
+        const double place = centre[a] + work->delta[a], inside = fmin(1, fmax(0, place));
+        if (fabs(place - inside) <= most + 1e-12)
+            continue;
+        most = fabs(place - inside);
+        bound = inside;
+        farthest = a;
+    }
+    if (most == 0)
+        return false;
+    const double step = bound - centre[farthest];
+    held[farthest] = step;
+    for (size_t j = 0; j < s->features; j++) {
+        double *slope = work->model + j * work->terms + 1 + farthest;
+        work->miss[j] -= *slope * step;
+        *slope = 0;
+    }
+    return true;
+}
+
+/// The best step within the reach and the bounds of the variables.
+static void take_step(const struct surrogate_work *work, const double *centre, double *held,
+                      double reach) {
+    do
+        take_damped_step(work, held, reach);
+    while (hold_one(work, centre, held));
 }
 
 /// No variable is less known than by the prior: C becomes (C⁻¹ + 1/s²)⁻¹ = s² − s² (C + s²)⁻¹ s².
@@ -334,14 +374,17 @@ static void bound(double *scratch, double *covariance, size_t variables) {
 static enum status find_best(const struct surrogate *surrogate, const double *centre, size_t kept,
                              double reach, struct surrogate_model *model) {
     struct surrogate_work work = {0};
+    double *held = NULL;
     const size_t most = MOST_ROWS_PER_GENE * surrogate->variables + MORE_ROWS;
     enum status status =
         mf_surrogate_fit_rows(&work, surrogate, centre, kept, kept < most ? kept : most, false);
-    if (status == STATUS_OK) {
-        take_step(&work, reach);
-        for (size_t n = 0; n < surrogate->variables; n++)
-            model->best[n] = fmin(1, fmax(0, centre[n] + work.delta[n]));
-    }
+    CHECK(status);
+    NEW_ARRAY(held, surrogate->variables);
+    take_step(&work, centre, held, reach);
+    for (size_t n = 0; n < surrogate->variables; n++)
+        model->best[n] = fmin(1, fmax(0, centre[n] + work.delta[n]));
+done:
+    mf_memory_free(held);
     mf_surrogate_clear_rows(&work);
     return status;
 }

@@ -8,11 +8,15 @@
 /// fitted to the nearest rows by least squares, so that the whole g(r) or E(t, r_0) of each
 /// simulation is used where an optimiser sees one number. The variables that meet the target t
 /// best,
-///   minimise  Σ_j w_j (y_cj + J_j δ − t_j)² + λ|δ|²,   w_j = 1/(σ_j² + τ_j²),
-/// with σ_j the scatter of the rows about the model, τ_j the target's standard error and λ as large
-/// as the step must be small, are the
-/// a damped Gauss-Newton step: J. Nocedal and S. J. Wright, Numerical Optimization (2nd ed., 2006),
-/// section 10.3. One feature may be a constraint instead, J_e δ = t_e − y_ce.
+///   minimise  Σ_j w_j (y_cj + J_j δ − t_j)² + λ|δ|²,   w_j = 1/(σ_j² + τ_j² + ε_j²),
+/// with σ_j the scatter of the rows about the model, τ_j the target's standard error, ε_j what the
+/// feature misses beyond noise, and λ as large as the step must be small, are a damped Gauss-Newton
+/// step: J. Nocedal and S. J. Wright, Numerical Optimization (2nd ed., 2006), section 10.3. Steps
+/// end at the bounds of the variables, and the others make up for it. One feature may be a
+/// constraint instead, J_e δ = t_e − y_ce.
+///
+/// A target that cannot be met is missed by more than noise. The step then goes where the misses
+/// are least by the weights of the targets, which ε_j hold, and not by their statistics.
 #pragma once
 
 #include "base/memory.h"
@@ -24,6 +28,7 @@ struct surrogate {
     size_t variables, features, capacity;
     size_t exact; ///< the feature that steps meet exactly, not in the mean; `features`: none
     const double *target, *target_error; ///< shape [features]; borrowed
+    const double *excess;                ///< shape [features]: ε_j²; borrowed
     struct surrogate_rows {
         uint64_t added; ///< rows ever; the last `capacity` are kept
     } rows;
@@ -32,8 +37,8 @@ struct surrogate {
 };
 
 enum status mf_surrogate_init(struct surrogate *surrogate, size_t variables, size_t features,
-                              size_t capacity, const double *target,
-                              const double *target_error) MUST_USE;
+                              size_t capacity, const double *target, const double *target_error,
+                              const double *excess) MUST_USE;
 void mf_surrogate_clear(struct surrogate *surrogate);
 
 /// Remember a measurement.

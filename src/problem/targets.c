@@ -172,3 +172,16 @@ void mf_targets_take_features(const struct targets *targets, double *const *obse
         }
     }
 }
+
+void mf_targets_spread_error(const struct targets *targets, double error, double *variance) {
+    const size_t count = mf_targets_count(targets);
+    const double features = (double)mf_targets_features(targets);
+    size_t n = 0;
+    for (int kind = 0; kind < TARGETS; kind++) {
+        const struct target *target = &targets->target[kind];
+        const size_t own = features_of(target);
+        const double weight = own > 0 && count > 1 ? mf_targets_weight(target) : 1;
+        for (size_t k = 0; k < own; k++)
+            variance[n++] = error * error / (weight * weight) * (double)own / features;
+    }
+}

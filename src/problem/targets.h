@@ -90,3 +90,8 @@ size_t mf_targets_features(const struct targets *targets);
 /// @param[out] value, error  shape [mf_targets_features]; error may be NULL with observed values
 void mf_targets_take_features(const struct targets *targets, double *const *observed, double *value,
                               double *error);
+
+/// Variances ε_j² of the features with which Σ_j (miss_j/ε_j)² is the square of mf_targets_error,
+/// up to a factor: their mean over features is as if each missed by `error`.
+/// @param[out] variance  shape [mf_targets_features]
+void mf_targets_spread_error(const struct targets *targets, double error, double *variance);

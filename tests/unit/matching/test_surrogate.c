@@ -9,6 +9,7 @@
 #include "shared/testing.h"
 
 #include <math.h>
+#include <string.h>
 #include <stdlib.h>
 
 enum { VARIABLES = 5, FEATURES = 30, CAPACITY = 60, REPETITIONS = 200 };
@@ -25,7 +26,7 @@ struct experiment {
 
 struct data {
     double slope[FEATURES][VARIABLES], truth[VARIABLES], centre[VARIABLES];
-    double target[FEATURES], error[FEATURES];
+    double target[FEATURES], error[FEATURES], excess[FEATURES];
     struct surrogate surrogate;
 };
 
@@ -76,7 +77,7 @@ static void begin(struct data *data, const struct experiment *e, double offset, 
         data->target[j] = answer(data, j, data->truth) + e->target_error * noise[j];
     }
     assert_ok(mf_surrogate_init(&data->surrogate, VARIABLES, FEATURES, CAPACITY, data->target,
-                                data->error));
+                                data->error, data->excess));
     for (size_t k = 0; k < e->rows; k++)
         add_row(data, e, &random);
 }
@@ -350,6 +351,57 @@ static void test_surrogate_knows_nothing_when_all_rows_are_at_one_place(void **s
     }
 }
 
+/// Two features alone depend on two variables, by slopes of the test's own, and are to be `target`.
+static void begin_plain(struct data *data, double slope[2][2], const double target[2]) {
+    const struct experiment e = {.spread = 0.05, .noise = 1e-6, .target_error = 1e-3};
+    struct rng_sequence random = mf_rng_sequence_begin(9, RNG_INITIAL, 0, 0);
+    begin(data, &e, 0, 0);
+    memset(data->slope, 0, sizeof data->slope);
+    for (int j = 0; j < FEATURES; j++) {
+        for (int n = 0; n < 2 && j < 2; n++)
+            data->slope[j][n] = slope[j][n];
+        data->target[j] = j < 2 ? 0.3 + target[j] : 0.3;
+    }
+    for (int k = 0; k < CAPACITY; k++)
+        add_row(data, &e, &random);
+}
+
+/// x + y is known much better than x − y, and both would be met at x = 1.4, y = 0. With x at its
+/// bound of 1, y makes up for it: a step that is merely cut off would leave y where it was.
+static void test_surrogate_steps_make_up_for_a_variable_at_its_bound(void **state) {
+    (void)state;
+    struct data data;
+    struct surrogate_model model;
+    begin_plain(&data, (double[2][2]){{4, 4}, {0.5, -0.5}}, (const double[2]){5.6, 0.7});
+    data.error[0] = data.error[1] = 0.05;
+    data.centre[0] = 0.9;
+    data.centre[1] = 0.1;
+    fit(&data, 1, &model);
+    assert_close(model.best[0], 1, 1e-9);
+    assert_close(model.best[1], 0.4, 0.02);
+    mf_surrogate_model_clear(&model);
+    mf_surrogate_clear(&data.surrogate);
+}
+
+/// Two features want the same variable at 0.4 and at 0.6: by their statistics the sharper wins, by
+/// weights of 1 and 1/2 of what is missed x = (4 · 0.4 + 0.6)/5.
+static void test_surrogate_weighs_what_cannot_be_met_by_its_weight(void **state) {
+    (void)state;
+    struct data data;
+    struct surrogate_model model;
+    begin_plain(&data, (double[2][2]){{1, 0}, {1, 0}}, (const double[2]){0.4, 0.6});
+    data.error[1] = 1e-4;
+    fit(&data, 1, &model);
+    assert_close(model.best[0], 0.6, 0.005);
+    mf_surrogate_model_clear(&model);
+    data.excess[0] = 0.01;
+    data.excess[1] = 0.04;
+    fit(&data, 1, &model);
+    assert_close(model.best[0], 0.44, 0.02);
+    mf_surrogate_model_clear(&model);
+    mf_surrogate_clear(&data.surrogate);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_surrogate_finds_the_truth_when_there_is_next_to_no_noise),
@@ -360,6 +412,8 @@ int main(void) {
         cmocka_unit_test(test_surrogate_is_not_known_when_there_are_too_few_rows),
         cmocka_unit_test(test_surrogate_forgets_the_oldest_rows_when_it_is_full),
         cmocka_unit_test(test_surrogate_stays_within_the_range_when_the_target_is_beyond),
+        cmocka_unit_test(test_surrogate_steps_make_up_for_a_variable_at_its_bound),
+        cmocka_unit_test(test_surrogate_weighs_what_cannot_be_met_by_its_weight),
         cmocka_unit_test(test_surrogate_knows_nothing_when_all_rows_are_at_one_place),
         cmocka_unit_test(test_surrogate_is_the_same_from_its_spans),
     };
