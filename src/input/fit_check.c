@@ -2,6 +2,7 @@
 #include "input/fit_check.h"
 
 #include "input/target_sanity.h"
+#include "io/units_scale.h"
 #include "inversion/inversion.h"
 #include "problem/measurement.h"
 #include "problem/unknowns.h"
@@ -136,6 +137,32 @@ static enum status check_free_step(const struct fit_file *fit, const char *file)
     return STATUS_OK;
 }
 
+/// The time step must be able to follow all that a memory may become.
+static enum status check_memory(const struct fit_file *fit, const char *file) {
+    const struct inverse_problem *problem = &fit->problem;
+    const double step = problem->scene.time_step;
+    for (size_t n = 0; n < problem->numbers; n++) {
+        const struct inverse_number *number = &problem->number[n];
+        const char *field = strrchr(number->name, '.');
+        if (strncmp(number->name, "memory.", strlen("memory.")) != 0 || field == NULL)
+            continue;
+        const double factor = mf_units_factor(&fit->scene.units, number->unit);
+        if (strcmp(field, ".time") == 0 && number->minimum < 2 * step)
+            return mf_status_fail(
+                STATUS_BAD_INPUT,
+                "%s: unknowns.numbers.%s.minimum: %.4g is below two time steps, %.4g: what is "
+                "forgotten so soon is \"omega\"",
+                file, number->name, number->minimum * factor, 2 * step * factor);
+        if (strcmp(field, ".frequency") == 0 && number->maximum * step > 0.5)
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: unknowns.numbers.%s.maximum: %.4g is beyond %.4g, half a "
+                                  "radian a time step",
+                                  file, number->name, number->maximum * factor,
+                                  0.5 / step * factor);
+    }
+    return STATUS_OK;
+}
+
 static enum status check_steps(const struct fit_file *fit, const char *file) {
     TRY(check_free_step(fit, file));
     enum status status = mf_target_files_check_steps(&fit->files, fit->scene.setup.time_step);
@@ -188,6 +215,7 @@ enum status mf_fit_check(const struct fit_file *fit, const char *file) {
     TRY(check_interactions(fit, file));
     TRY(check_velocities(fit, file));
     TRY(check_steps(fit, file));
+    TRY(check_memory(fit, file));
     TRY(check_windows(fit, file));
     if (fit->scene.setup.placement.kind == PLACEMENT_FILE)
         return mf_status_fail(

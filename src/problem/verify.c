@@ -151,6 +151,11 @@ static enum status summarise(struct measurement *replicas, size_t count,
     if (mf_thermodynamics_judge_fit(&verification->thermodynamics, &replicas->simulation.setup) !=
         STATUS_OK)
         snprintf(verification->warning, sizeof verification->warning, "%s", mf_status_message());
+    const struct simulation_setup *setup = &replicas->simulation.setup;
+    if (!verification->warning[0] && mf_pair_memory_is_coarse(&setup->memory, setup->time_step))
+        snprintf(verification->warning, sizeof verification->warning,
+                 "the time step is too long for the memory that was found: with a shorter one it "
+                 "is another friction");
     const void *moved = mf_measurement_state(replicas, &mf_motion_observable);
     if (moved) {
         const struct motion_summary motion = mf_motion_result(moved, NULL);

@@ -91,6 +91,19 @@ static const struct fault faults[] = {
           "\"particles\": {\"count\": 81}, " STEP
           ", \"memory\": {\"slow\": {\"time\": 0.2}, \"fast\": {\"time\": 0.1}}",
           "unknowns.memory.slow", "is missing"),
+    FAULT("a memory whose range no step follows",
+          OMEGA "},\n\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, " STEP,
+          OMEGA ", \"memory\": {\"slow\": {\"coefficients\": 4}}, \"numbers\": "
+                "{\"memory.slow.time\": {\"minimum\": 0.03, \"maximum\": 1}}},\n\"scene\": "
+                "{\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, " STEP MEMORY(""),
+          "unknowns.numbers.memory.slow.time.minimum", "0.03 is below two time steps, 0.04"),
+    FAULT("a memory that may swing faster than steps",
+          OMEGA "},\n\"scene\": {\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, " STEP,
+          OMEGA
+          ", \"memory\": {\"slow\": {\"coefficients\": 4}}, \"numbers\": "
+          "{\"memory.slow.frequency\": {\"minimum\": 1, \"maximum\": 30}}},\n\"scene\": "
+          "{\"box\": [3, 3, 3], \"particles\": {\"count\": 81}, " STEP MEMORY(", \"frequency\": 5"),
+          "unknowns.numbers.memory.slow.frequency.maximum", "30 is beyond 25"),
     FAULT("a memory without omega that nothing finds", POTENTIAL, POTENTIAL MEMORY(""),
           "scene.memory.slow.omega", "missing"),
     FAULT("a formula across pairs", OMEGA, OMEGA ", \"omega_transverse\": {\"curve\": \"power\"}",
